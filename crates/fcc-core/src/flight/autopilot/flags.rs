@@ -89,6 +89,8 @@ pub const UNDERSPEED: Flags = Flags::bit(37);
 pub const FROM_THE_FUTURE: Flags = Flags::bit(38);
 /// A quantity is lost, and the flight goes on without it.
 pub const DEGRADED: Flags = Flags::bit(39);
+/// The altitude contradicts the other sensors and is not used.
+pub const DOUBTED_ALTITUDE: Flags = Flags::bit(43);
 
 /// The shift from the bit of a quantity that is too old to the bit of the same
 /// quantity being frozen.
@@ -107,6 +109,7 @@ pub(super) const NOT_SENSED: Flags = Flags::from_bits(
         | REJECTED.bits()
         | SUSPECT_AIRSPEED.bits()
         | DOUBTED_AIRSPEED.bits()
+        | DOUBTED_ALTITUDE.bits()
         | FROM_THE_FUTURE.bits()),
 );
 
@@ -122,7 +125,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
 }
 
 /// The text of each bit, lowest first.
-pub(super) const NAMES: [&str; 40] = [
+pub(super) const NAMES: [&str; 44] = [
     "attitude is missing or too old",
     "heading is missing or too old",
     "body rates are missing or too old",
@@ -163,6 +166,10 @@ pub(super) const NAMES: [&str; 40] = [
     "too little energy for speed and height: height is given up",
     "a reading is from the future",
     "flying on without a lost quantity",
+    "unknown condition",
+    "unknown condition",
+    "unknown condition",
+    "altitude contradicts the other sensors and is not used",
 ];
 
 #[cfg(test)]

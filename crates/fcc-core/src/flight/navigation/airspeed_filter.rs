@@ -1,8 +1,8 @@
 //! Airspeed from the forces on the aircraft and its motion.
 
-use libm::{asin, cos, exp};
+use libm::{asin, atan2, cos, exp, sin};
 
-use crate::blocks::{limit, limit_abs};
+use crate::blocks::limit_abs;
 use crate::units::GRAVITY_MPS2;
 
 /// What an [`AirspeedFilter`] must know of the aircraft beforehand.
@@ -26,6 +26,10 @@ const LIFT_ANGLE_RAD: f64 = 0.067;
 const AXIAL_SD: f64 = 0.02;
 const LIFT_SD_RAD: f64 = 0.017_5;
 const SENSOR_SD_MPS: f64 = 0.514;
+/// The lift's, in multiples, while it determines the climb rate over long times.
+const LIFT_BY_ITSELF: f64 = 3.0;
+/// That of an airspeed whose models were wrong for some seconds, m/s.
+const RESTORED_SD_MPS: f64 = 2.0;
 /// The share of a change of thrust that the model does not explain, ...
 const THRUST_ERROR: f64 = 0.15;
 /// ... the time in which that counts as a lasting offset, s, and its weights in
@@ -34,15 +38,19 @@ const THRUST_SETTLES_S: f64 = 5.0;
 const THRUST_NOISE: f64 = 3.0;
 /// Beyond these innovations the force is not explained by airspeed: an engine
 /// that stops, or a wind that rises (weight; rad).
-const ENGINE_CHANGE: f64 = 0.06;
+const ENGINE_CHANGE: f64 = 0.05;
 const UPDRAUGHT_RAD: f64 = 0.026;
+/// Beyond this difference from the force by the remembered model, in weights,
+/// that is no longer the aircraft's: its engine has failed.
+const NO_LONGER_THE_SAME: f64 = 0.08;
 const UPDRAUGHT_SHARE: f64 = 0.2;
 /// The correlation time of vertical gusts, s: 533 m at 65 m/s (MIL-F-8785C,
 /// 3.7.3, above 2,000 ft).
 const GUST_S: f64 = 8.0;
-/// Random walks, per √s: of the airspeed in m/s, of the offset, of the thrust
+/// Random walks, per √s: of the airspeed in m/s, in upsets too, of the offset, of the thrust
 /// ratio, of the zero of the angle of attack in rad.
 const AIRSPEED_WALK_MPS: f64 = 0.3;
+const UPSET_WALK_MPS: f64 = 2.0;
 const OFFSET_WALK: f64 = 0.000_5;
 const THRUST_WALK: f64 = 0.003;
 const ANGLE_WALK_RAD: f64 = 0.000_87;
@@ -60,6 +68,8 @@ pub(super) struct ForceSample {
     pub(super) pitch_rad: f64,
     pub(super) roll_rad: f64,
     pub(super) climb_rate_mps: f64,
+    /// The climb rate comes from lift itself: the altimeter is doubted.
+    pub(super) climbs_by_lift: bool,
     /// √(density over its value at sea level).
     pub(super) sqrt_density: f64,
     /// Thrust over that at full throttle and V₀, and its change over seconds;
@@ -88,8 +98,9 @@ struct Vote {
 ///
 /// - along x, in weights: thrust·V₀/V - D₀ q + (A - K) n²/q + offset (the drag
 ///   polar with the lift's part along x; Stevens, Lewis and Johnson 2016, 2.3),
-/// - of lift: pitch = path + cos(bank) (α₀ + A n/q), where the path is the climb
-///   rate without vertical wind over the true airspeed.
+/// - of lift: the angle of attack α₀ + A n/q is the one between the body and a
+///   path whose slope is the climb rate without vertical wind over the true
+///   airspeed, in any attitude ([`Upward`]).
 ///
 /// What it does not know of the aircraft it learns while a sensor is believed.
 #[derive(Clone, Copy, Debug)]
@@ -108,7 +119,8 @@ impl AirspeedFilter {
     pub(super) fn new(prior: AirframePrior, airspeed_mps: f64, sample: &ForceSample) -> Self {
         let q = squared(airspeed_mps / prior.reference_mps);
         let path = sample.climb_rate_mps * sample.sqrt_density / airspeed_mps;
-        let zero_lift_rad = sample.pitch_rad - path - LIFT_ANGLE_RAD / q;
+        let zero_lift_rad =
+            Upward::of(sample).angle_of_attack_rad(path) - LIFT_ANGLE_RAD * sample.up / q;
         let x = [
             airspeed_mps,
             0.0,
@@ -140,6 +152,13 @@ impl AirspeedFilter {
         self.x[1]
     }
 
+    /// The climb rate by pitch and lift, m/s, without vertical wind.
+    pub(super) fn climb_rate_mps(&self, sample: &ForceSample) -> f64 {
+        let [.., zero, angle] = self.x;
+        let alpha = zero + angle * sample.up * squared(self.slower());
+        self.at_mps() / sample.sqrt_density * Upward::of(sample).sin_path(alpha)
+    }
+
     /// Standard deviation of the airspeed, m/s.
     pub(super) fn sd_mps(&self) -> f64 {
         libm::sqrt(self.covariance[0][0].max(0.0))
@@ -148,6 +167,14 @@ impl AirspeedFilter {
     /// Sets the airspeed.
     pub(super) const fn adopt(&mut self, airspeed_mps: f64) {
         self.x[0] = airspeed_mps;
+    }
+
+    /// Takes the models that it remembers, without vertical wind: what was
+    /// learned since came from an altimeter that is doubted.
+    pub(super) fn restore_models(&mut self) {
+        let [.., offset, thrust, zero, angle] = self.kept;
+        self.x = [self.x[0], 0.0, offset, thrust, zero, angle];
+        self.covariance[0][0] += squared(RESTORED_SD_MPS);
     }
 
     /// A copy that remembers the models as they are now.
@@ -198,6 +225,11 @@ impl AirspeedFilter {
         }
     }
 
+    /// `dt_s` seconds in an attitude for which the models do not hold.
+    pub(super) fn without_models(&mut self, dt_s: f64) {
+        self.covariance[0][0] += squared(UPSET_WALK_MPS) * dt_s;
+    }
+
     fn predict(&mut self, gusts_mps: f64, dt_s: f64) {
         let fades = exp(-dt_s / GUST_S);
         self.x[1] *= fades;
@@ -232,9 +264,11 @@ impl AirspeedFilter {
             / self.at_mps();
         let per_mps = per_mps.min(-1e-3);
         let kept = sample.forward - self.axial_of(self.kept, thrust, sample.up);
+        let is_explained = kept.abs() < NO_LONGER_THE_SAME;
         self.axial = Vote {
             differs_mps: kept / per_mps,
-            weight: squared(per_mps) / (squared(AXIAL_SD) + THRUST_NOISE * unexplained),
+            weight: f64::from(u8::from(is_explained)) * squared(per_mps)
+                / (squared(AXIAL_SD) + THRUST_NOISE * unexplained),
         };
         let by = sample.forward - self.axial_of(self.x, thrust, sample.up);
         if by.abs() > ENGINE_CHANGE {
@@ -259,28 +293,34 @@ impl AirspeedFilter {
     fn correct_by_lift(&mut self, sample: &ForceSample) {
         let true_mps = self.at_mps() / sample.sqrt_density;
         let lift = sample.up * squared(self.slower());
-        let level = cos(sample.roll_rad);
-        let pitch = |[_, wind, _, _, zero, angle]: State| {
-            limit_abs((sample.climb_rate_mps - wind) / true_mps, 0.5)
-                + level * (zero + angle * lift)
+        let upward = Upward::of(sample);
+        let share = upward.share;
+        // In the scale of pitch: with the wings level a difference of pitch.
+        let differs = |[_, wind, _, _, zero, angle]: State| {
+            let along = upward.angle_of_attack_rad((sample.climb_rate_mps - wind) / true_mps);
+            share * (along - zero - angle * lift)
         };
         let path = limit_abs((sample.climb_rate_mps - self.x[1]) / true_mps, 0.5);
-        let per_mps = -(path + 2.0 * level * self.x[5] * lift) / self.at_mps();
+        let per_mps = -(path + 2.0 * share * self.x[5] * lift) / self.at_mps();
         let gusts = squared(sample.gusts_mps) + 0.3;
-        let by_kept =
-            sample.pitch_rad - pitch([0.0, self.x[1], 0.0, 0.0, self.kept[4], self.kept[5]]);
+        let by_kept = differs([0.0, self.x[1], 0.0, 0.0, self.kept[4], self.kept[5]]);
         self.lift = Vote {
             differs_mps: by_kept / per_mps.min(-1e-3),
             weight: squared(per_mps) / (gusts / squared(true_mps) + squared(LIFT_SD_RAD)),
         };
-        let by = sample.pitch_rad - pitch(self.x);
+        let by = differs(self.x);
         if by.abs() > UPDRAUGHT_RAD {
             self.covariance[1][1] += UPDRAUGHT_SHARE * squared(by * true_mps);
         }
+        let sd_rad = if sample.climbs_by_lift {
+            LIFT_BY_ITSELF * LIFT_SD_RAD
+        } else {
+            LIFT_SD_RAD
+        };
         self.update(
-            [per_mps, -1.0 / true_mps, 0.0, 0.0, level, level * lift],
+            [per_mps, -1.0 / true_mps, 0.0, 0.0, share, share * lift],
             by,
-            squared(LIFT_SD_RAD),
+            squared(sd_rad),
         );
     }
 
@@ -314,14 +354,50 @@ impl AirspeedFilter {
     }
 }
 
+/// Where up is in the aircraft's plane of symmetry: (sin θ, cos φ cos θ).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Upward {
+    /// From the body's -z axis, inverted from its z axis, towards x, rad.
+    angle_rad: f64,
+    /// How much of it lies in that plane: cos φ in level flight; negative
+    /// inverted.
+    share: f64,
+}
+
+impl Upward {
+    pub(super) fn of(sample: &ForceSample) -> Self {
+        let along_x = sin(sample.pitch_rad);
+        let along_z = cos(sample.pitch_rad) * cos(sample.roll_rad);
+        let side = libm::copysign(1.0, along_z);
+        Self {
+            angle_rad: atan2(side * along_x, side * along_z),
+            share: side * libm::hypot(along_x, along_z).max(LEAST_UPWARD),
+        }
+    }
+
+    /// The angle of attack on a path of this slope (sine), without sideslip:
+    /// sin γ = cos α sin θ - sin α cos φ cos θ (Stevens, Lewis and Johnson 2016,
+    /// section 3.6), solved for the smaller α.
+    pub(super) fn angle_of_attack_rad(self, sin_path: f64) -> f64 {
+        self.angle_rad - asin(limit_abs(sin_path / self.share, 1.0))
+    }
+
+    /// The slope (sine) of the path with this angle of attack.
+    fn sin_path(self, angle_of_attack_rad: f64) -> f64 {
+        self.share * sin(self.angle_rad - angle_of_attack_rad)
+    }
+}
+
+/// Near the knife edge the path does not tell the angle of attack.
+const LEAST_UPWARD: f64 = 0.3;
+
 /// Acceleration of the indicated airspeed along the path, m/s², from the forces
 /// in g; without vertical wind, whose effect is of second order.
 pub(super) fn acceleration_mps2(sample: &ForceSample, airspeed_mps: f64) -> f64 {
     let true_mps = airspeed_mps.max(MIN_AIRSPEED_MPS) / sample.sqrt_density;
     let sin_path = limit_abs(sample.climb_rate_mps / true_mps, 1.0);
-    let level = cos(sample.roll_rad).max(0.3);
-    let alpha = limit((sample.pitch_rad - asin(sin_path)) / level, -0.3, 0.3);
-    let along = sample.forward * cos(alpha) - sample.up * libm::sin(alpha) - sin_path;
+    let alpha = limit_abs(Upward::of(sample).angle_of_attack_rad(sin_path), 0.3);
+    let along = sample.forward * cos(alpha) - sample.up * sin(alpha) - sin_path;
     GRAVITY_MPS2 * along * sample.sqrt_density
 }
 
@@ -331,4 +407,86 @@ pub(super) fn squared(x: f64) -> f64 {
 
 fn dot(a: State, b: State) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PRIOR: AirframePrior = AirframePrior {
+        reference_mps: 51.444,
+        full_thrust_ratio: 0.25,
+    };
+
+    fn rad(deg: f64) -> f64 {
+        deg.to_radians()
+    }
+
+    /// Level turns of an aircraft with the prior's lift and drag at the prior's
+    /// airspeed: n = 1/cos φ (FAA-H-8083-25B, chapter 5), and sin θ = tan α cos φ.
+    fn level_turn(bank_deg: f64) -> ForceSample {
+        let load = 1.0 / cos(rad(bank_deg));
+        // The lift is perpendicular to the path, the drag balanced by thrust.
+        let alpha = LIFT_ANGLE_RAD * load;
+        ForceSample {
+            forward: load * sin(alpha),
+            up: load * cos(alpha),
+            pitch_rad: libm::atan(libm::tan(alpha) * cos(rad(bank_deg))),
+            roll_rad: rad(bank_deg),
+            sqrt_density: 1.0,
+            thrust: Some((0.5, 0.0)),
+            ..ForceSample::default()
+        }
+    }
+
+    #[test]
+    fn a_turn_with_60_degrees_of_bank_is_no_acceleration() {
+        for bank_deg in [0.0, 30.0, 60.0, -60.0] {
+            let sample = level_turn(bank_deg);
+            assert!(
+                acceleration_mps2(&sample, 51.444).abs() < 0.01,
+                "{bank_deg}"
+            );
+        }
+    }
+
+    /// Inverted and level, nose 8° above the horizon, the wing at α = -8° with
+    /// -1 g: no acceleration either, but for drag, which thrust balances.
+    #[test]
+    fn the_angle_of_attack_is_right_inverted() {
+        let inverted = ForceSample {
+            pitch_rad: rad(8.0),
+            roll_rad: rad(180.0),
+            sqrt_density: 1.0,
+            ..ForceSample::default()
+        };
+        let alpha = Upward::of(&inverted).angle_of_attack_rad(0.0);
+        assert!((alpha - rad(-8.0)).abs() < 1e-9);
+        let descending = Upward::of(&inverted).angle_of_attack_rad(sin(rad(-3.0)));
+        assert!((descending - rad(-11.0)).abs() < 1e-9);
+    }
+
+    /// The filter learns the aircraft in level flight; then, 15 kt off, without
+    /// a sensor in a turn with 60° of bank, lift and drag take it back.
+    #[test]
+    fn the_airspeed_is_found_in_a_turn_with_60_degrees_of_bank() {
+        let level = level_turn(0.0);
+        let mut filter = AirspeedFilter::new(PRIOR, 51.444, &level);
+        for _ in 0..300 {
+            filter.correct(&level, 0.1);
+            filter.correct_by_sensor(51.444);
+        }
+        let turn = level_turn(60.0);
+        filter.adopt(51.444 - 7.7);
+        filter.without_models(10.0);
+        for _ in 0..300 {
+            filter.accelerate(acceleration_mps2(&turn, filter.airspeed_mps()), 0.1);
+            filter.correct(&turn, 0.1);
+        }
+        assert!(
+            (filter.airspeed_mps() - 51.444).abs() < 2.0,
+            "{}",
+            filter.airspeed_mps()
+        );
+    }
 }

@@ -9,6 +9,7 @@ mod air_data;
 mod airspeed_filter;
 mod airspeed_monitor;
 mod airspeed_reason;
+mod altitude_monitor;
 mod attitude;
 mod frozen;
 mod lift;
@@ -20,16 +21,17 @@ mod vertical_covariance;
 
 use core::time::Duration;
 
-use libm::sqrt;
+use libm::{sqrt, tan};
 
 use super::atmosphere::density_ratio;
 use super::{BodyRates, Measurements};
-use crate::blocks::LowPass;
+use crate::blocks::{LowPass, limit_abs};
 use crate::framework::{Reading, Time};
 use crate::schema;
 use crate::units::{GRAVITY_MPS2, KNOT_MPS};
-use airspeed_filter::{AirframePrior, ForceSample};
+use airspeed_filter::{AirframePrior, ForceSample, squared};
 use airspeed_monitor::{AirspeedMonitor, MonitorInput, in_g};
+use altitude_monitor::{AltitudeInput, AltitudeMonitor, Verdict};
 
 pub use air_data::AirspeedChannel;
 pub use airspeed_monitor::AirspeedSource;
@@ -181,6 +183,7 @@ pub struct Navigation {
     airspeed: AirspeedChannel,
     lift: LiftChannel,
     monitor: AirspeedMonitor,
+    altitude_monitor: AltitudeMonitor,
     airframe: AirframePrior,
     throttle: Option<f64>,
     is_engaged: bool,
@@ -197,6 +200,7 @@ impl Navigation {
             airspeed: AirspeedChannel::new(config.airspeed_tau_s),
             lift: LiftChannel::new(STALL_AIRSPEED_MPS),
             monitor: AirspeedMonitor::new(CESSNA_172),
+            altitude_monitor: AltitudeMonitor::new(),
             airframe: CESSNA_172,
             throttle: None,
             is_engaged: false,
@@ -251,6 +255,12 @@ impl Navigation {
         self.monitor.doubt()
     }
 
+    /// Whether the altimeter is doubted, and the altitude without it known.
+    pub(crate) fn altitude_doubt(&self) -> Option<bool> {
+        let monitor = &self.altitude_monitor;
+        monitor.is_doubted().then(|| monitor.is_sound())
+    }
+
     /// Whether an airspeed may be used beside those of other sensors.
     pub(crate) fn permits_airspeed(&self, airspeed_mps: f64) -> bool {
         self.monitor.permits(airspeed_mps)
@@ -270,7 +280,7 @@ impl Navigation {
     pub fn step(&mut self, now: Time, measurements: &Measurements, dt_s: f64) {
         let attitude = self.attitude.step(now, measurements, dt_s);
         let force = measurements.specific_force;
-        let vertical = self.vertical.step(now, measurements, &attitude, dt_s);
+        let vertical = self.step_vertical(now, measurements, &attitude, dt_s);
         let measured_mps = self
             .airspeed
             .step(now, measurements, &attitude, &vertical, dt_s);
@@ -319,6 +329,77 @@ impl Navigation {
         };
     }
 
+    /// Altitude and climb rate, without the altimeter while it is doubted.
+    fn step_vertical(
+        &mut self,
+        now: Time,
+        measurements: &Measurements,
+        attitude: &Orientation,
+        dt_s: f64,
+    ) -> VerticalState {
+        let (before, _) = self.vertical.state();
+        let sample = self
+            .monitor_input(now, measurements, attitude, &before)
+            .sample;
+        let path = self.monitor.path(&sample);
+        let path_mps = path.map(|(climb_rate_mps, _)| climb_rate_mps);
+        let ground_mps = is_current(&measurements.velocity, now)
+            .then_some(-measurements.velocity.value.down_mps);
+        let airspeed = measurements.airspeed_mps;
+        let altitude = measurements.altitude_m;
+        let density = squared(sample.sqrt_density);
+        let sensor_mps = is_current(&airspeed, now).then_some(airspeed.value);
+        let shared_mps = sensor_mps.filter(|mps| {
+            *mps > altitude_monitor::LEAST_MPS
+                && self.monitor.shares_static_port()
+                && is_current(&altitude, now)
+        });
+        let by_total_m = shared_mps.zip(path).map(|(sensor_mps, (_, forces_mps))| {
+            altitude.value
+                + altitude_monitor::height_by_total_pressure_m(sensor_mps, forces_mps, density)
+        });
+        if self.altitude_monitor.is_doubted() {
+            let reference = altitude_monitor::reference(ground_mps, by_total_m, path_mps);
+            self.vertical
+                .step_without_altimeter(now, measurements, attitude, reference, dt_s);
+        } else {
+            self.vertical.step(now, measurements, attitude, dt_s);
+        }
+        let (followed, bias_mps2) = self.vertical.state();
+        let is_felt = is_current(&measurements.specific_force, now);
+        let input = AltitudeInput {
+            altitude_m: (is_felt && is_current(&altitude, now)).then_some(altitude.value),
+            step_m: self.vertical.resolution().step(),
+            followed,
+            bias_mps2,
+            felt_mps2: self.vertical.felt_mps2() + bias_mps2,
+            path_mps,
+            ground_mps,
+            tan_bank: limit_abs(tan(attitude.roll_rad), 3.0),
+            gusts_mps: self.monitor.gusts_mps(),
+            sensor_mps,
+            airspeed_mps: self.estimate.airspeed_mps,
+            accelerates_mps2: self.airspeed.felt_mps2(),
+            density_ratio: density,
+            has_total: by_total_m.is_some(),
+            may_doubt: self.is_engaged,
+        };
+        if dt_s > 0.0 {
+            match self.altitude_monitor.step(&input, dt_s) {
+                Verdict::Believed | Verdict::Doubted => {}
+                Verdict::DoubtBegins(copy) => {
+                    self.vertical.adopt(copy.state, copy.bias_mps2);
+                    let (right_mps, shares) =
+                        copy.right_airspeed(altitude.value, airspeed.value, density);
+                    let shares = shares.then_some(airspeed.source);
+                    self.monitor.doubt_altimeter(right_mps, shares);
+                }
+                Verdict::BelievedAgain(altitude_m) => self.vertical.adopt_altitude(altitude_m),
+            }
+        }
+        self.vertical.state().0
+    }
+
     fn monitor_input(
         &self,
         now: Time,
@@ -336,12 +417,16 @@ impl Navigation {
                 pitch_rad: attitude.pitch_rad,
                 roll_rad: attitude.roll_rad,
                 climb_rate_mps: vertical.climb_rate_mps,
+                climbs_by_lift: self.altitude_monitor.is_doubted()
+                    && !self.monitor.shares_static_port()
+                    && !is_current(&measurements.velocity, now),
                 sqrt_density: sqrt(density_ratio(vertical.altitude_m)),
                 ..ForceSample::default()
             },
             throttle: self.throttle,
             altitude_m: vertical.altitude_m,
             sensor_mps: is_current(&airspeed, now).then_some((airspeed.value, airspeed.source)),
+            altimeter_is_doubted: self.altitude_monitor.is_doubted(),
             may_doubt: self.is_engaged,
         }
     }
@@ -386,6 +471,9 @@ impl Navigation {
         self.airspeed.adopt_next();
         if self.monitor.doubt().is_none() {
             self.monitor = AirspeedMonitor::new(self.airframe);
+        }
+        if !self.altitude_monitor.is_doubted() {
+            self.altitude_monitor = AltitudeMonitor::new();
         }
     }
 
