@@ -89,6 +89,10 @@ pub const UNDERSPEED: Flags = Flags::bit(37);
 pub const FROM_THE_FUTURE: Flags = Flags::bit(38);
 /// A quantity is lost, and the flight goes on without it.
 pub const DEGRADED: Flags = Flags::bit(39);
+/// The target altitude is limited by the floor.
+pub const AT_FLOOR: Flags = Flags::bit(40);
+/// Readings arrive too old, by their source's own clock.
+pub const SOURCE_CLOCK: Flags = Flags::bit(42);
 /// The altitude contradicts the other sensors and is not used.
 pub const DOUBTED_ALTITUDE: Flags = Flags::bit(43);
 
@@ -110,7 +114,8 @@ pub(super) const NOT_SENSED: Flags = Flags::from_bits(
         | SUSPECT_AIRSPEED.bits()
         | DOUBTED_AIRSPEED.bits()
         | DOUBTED_ALTITUDE.bits()
-        | FROM_THE_FUTURE.bits()),
+        | FROM_THE_FUTURE.bits()
+        | SOURCE_CLOCK.bits()),
 );
 
 /// The bits of the frozen quantities.
@@ -166,9 +171,9 @@ pub(super) const NAMES: [&str; 44] = [
     "too little energy for speed and height: height is given up",
     "a reading is from the future",
     "flying on without a lost quantity",
+    "the target altitude is limited by the floor",
     "unknown condition",
-    "unknown condition",
-    "unknown condition",
+    "readings arrive too old, by their source's own clock",
     "altitude contradicts the other sensors and is not used",
 ];
 
