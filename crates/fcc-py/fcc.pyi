@@ -180,7 +180,10 @@ class Measurements:
 
 @final
 class Surfaces:
-    """Throttle 0..1; elevator (nose up), aileron (right), rudder (right) -1..1."""
+    """Throttle 0..1; elevator (nose up), aileron (right), rudder (right) and elevator trim -1..1.
+
+    The trim is NaN where there is none, and is then left as it is.
+    """
 
     # <schema>
     def __new__(
@@ -190,6 +193,7 @@ class Surfaces:
         elevator: float = ...,
         aileron: float = ...,
         rudder: float = ...,
+        elevator_trim: float = ...,
     ) -> Surfaces: ...
     @property
     def throttle(self) -> float:
@@ -206,6 +210,10 @@ class Surfaces:
     @property
     def rudder(self) -> float:
         """Positive yaws right."""
+
+    @property
+    def elevator_trim(self) -> float:
+        """The elevator's trim, positive raises the nose."""
 
     # </schema>
     def to_array(self) -> _Array: ...
@@ -518,6 +526,7 @@ class Autopilot:
         elevator: float = 0.0,
         aileron: float = 0.0,
         rudder: float = 0.0,
+        elevator_trim: float | None = None,
     ) -> None: ...
     def step(self, measurements: Measurements, dt: float = 0.025) -> Surfaces: ...
     def fly(self, measurements: npt.ArrayLike, dt: float = 0.025) -> _Array: ...

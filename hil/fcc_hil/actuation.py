@@ -41,5 +41,6 @@ class Servos:
             aileron=now.aileron + share * (to.aileron - now.aileron),
             rudder=now.rudder + share * (to.rudder - now.rudder),
             throttle=to.throttle,
+            elevator_trim=to.elevator_trim,
         )
         return self._now

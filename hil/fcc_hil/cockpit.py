@@ -32,6 +32,8 @@ OVERRIDE_AUTOPILOT = _OVERRIDE + "override_autopilot"
 YOKE_PITCH = _JOYSTICK + "yoke_pitch_ratio"
 YOKE_ROLL = _JOYSTICK + "yoke_roll_ratio"
 YOKE_HEADING = _JOYSTICK + "yoke_heading_ratio"
+ELEVATOR_TRIM = "sim/flightmodel/controls/elv_trim"
+"""-1 full nose down .. 1 full nose up; needs no override."""
 SERVO_PITCH = _JOYSTICK + "servo_pitch_ratio"
 SERVO_ROLL = _JOYSTICK + "servo_roll_ratio"
 SERVO_HEADING = _JOYSTICK + "servo_heading_ratio"
@@ -65,7 +67,7 @@ _MORE_LIGHTS_SINCE = 111_000
 _FULL = (-1.0, 1.0)
 
 _RANGES = {
-    **dict.fromkeys((*YOKE, *_SERVO, *_ARTSTAB), _FULL),
+    **dict.fromkeys((*YOKE, *_SERVO, *_ARTSTAB, ELEVATOR_TRIM), _FULL),
     THROTTLE_USE: (-1.0, 1.2),
     THROTTLE_LEVER: (0.0, 1.0),
     PITOT_ICE: (0.0, 1.0),
@@ -146,6 +148,7 @@ class Cockpit:
             YAW_DAMPER_ON: 0.0,
             ALTIMETER_SETTING: altimeter_inhg,
             PITOT_ICE: 0.0,
+            ELEVATOR_TRIM: pilot.elevator_trim or 0.0,
             SIM_SPEED: 1.0,
             **dict.fromkeys((*YOKE, *_SERVO, *_ARTSTAB), 0.0),
         }
@@ -260,7 +263,9 @@ class Cockpit:
             min(1.0, max(-1.0, sum(self._values[part[axis], 0] for part in parts)))
             for axis in range(3)
         )
-        return Controls(pitch, roll, heading, self._values[THROTTLE_USE, 0])
+        return Controls(
+            pitch, roll, heading, self._values[THROTTLE_USE, 0], self._values[ELEVATOR_TRIM, 0]
+        )
 
     def _take(self, time_s: float, element: Element, value: float) -> None:
         name = element[0]

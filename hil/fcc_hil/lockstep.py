@@ -7,6 +7,7 @@ measurements of n ticks before.
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from dataclasses import dataclass, replace
 
@@ -71,6 +72,29 @@ def measurements(state: State) -> fcc.Measurements:
     )
 
 
+def as_surfaces(stand: Controls) -> fcc.Surfaces:
+    """Return where the controls stand, for the autopilot."""
+    return fcc.Surfaces(
+        throttle=stand.throttle,
+        elevator=stand.elevator,
+        aileron=stand.aileron,
+        rudder=stand.rudder,
+        elevator_trim=math.nan if stand.elevator_trim is None else stand.elevator_trim,
+    )
+
+
+def as_controls(surfaces: fcc.Surfaces) -> Controls:
+    """Return the autopilot's outputs, for the plant."""
+    trim = surfaces.elevator_trim
+    return Controls(
+        elevator=surfaces.elevator,
+        aileron=surfaces.aileron,
+        rudder=surfaces.rudder,
+        throttle=surfaces.throttle,
+        elevator_trim=None if math.isnan(trim) else trim,
+    )
+
+
 class _Sensors:
     """Noise and delay between a plant and the autopilot."""
 
@@ -100,6 +124,7 @@ def fly(scenario: Scenario) -> tuple[Score, Truth]:
         elevator=standing.elevator,
         aileron=standing.aileron,
         rudder=standing.rudder,
+        elevator_trim=standing.elevator_trim,
     )
 
     engaged_at_s = plant.time_s
@@ -108,14 +133,7 @@ def fly(scenario: Scenario) -> tuple[Score, Truth]:
         plant.step(STEPS_PER_ROW)
         state = plant.state()
         surfaces = autopilot.step(sensors.read(state), 1 / TRUTH_HZ)
-        plant.write(
-            Controls(
-                elevator=surfaces.elevator,
-                aileron=surfaces.aileron,
-                rudder=surfaces.rudder,
-                throttle=surfaces.throttle,
-            )
-        )
+        plant.write(as_controls(surfaces))
         rows.append(row(state, plant.controls))
     truth = Truth(rows)
     captured = truth.captured_at(engaged_at_s)

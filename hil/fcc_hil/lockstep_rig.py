@@ -10,7 +10,7 @@ from pathlib import Path
 import fcc
 
 from .actuation import Actuation, Servos
-from .lockstep import measurements
+from .lockstep import as_controls, as_surfaces, measurements
 from .noise import NoiseLevels, SensorNoise
 from .plant import STEPS_PER_SECOND, Plant
 from .quantities import SENSORS
@@ -139,21 +139,14 @@ class LockstepRig:
             surfaces = self.machine.step(
                 measurements(measured),
                 missing=_sensors_of(channels) if channels else (),
-                readback=(stand.throttle, stand.elevator, stand.aileron, stand.rudder),
+                readback=as_surfaces(stand),
                 switch=self._switch,
             )
         if surfaces is None:
             # The pilot has control, and holds the trimmed controls.
             self._write(plant.trim)
         else:
-            self._write(
-                Controls(
-                    elevator=surfaces.elevator,
-                    aileron=surfaces.aileron,
-                    rudder=surfaces.rudder,
-                    throttle=surfaces.throttle,
-                )
-            )
+            self._write(as_controls(surfaces))
         for event in self.machine.events():
             self.events.append(Event(plant.time_s, event.text))
         self._rows.append(row(state, plant.controls))

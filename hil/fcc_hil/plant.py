@@ -35,6 +35,9 @@ STEPS_PER_SECOND = 120
 
 STEP_S = 1.0 / STEPS_PER_SECOND
 
+_ELEVATOR_TRIM = "fcs/pitch-trim-cmd-norm"
+"""Positive lowers the nose."""
+
 _SETTLING_S = 60.0
 _SETTLING_MEAN_S = 5.0
 _STANDING_S = 5.0
@@ -118,6 +121,7 @@ class Plant:
             fdm["gear/gear-pos-norm"] = 0.0
         fdm.run_ic()
 
+        self._controls = Controls()
         self.engines: int = fdm.get_propulsion().get_num_engines()
         self._throttles = [f"fcs/throttle-cmd-norm[{i}]" for i in range(self.engines)]
         self._start_engines()
@@ -128,7 +132,9 @@ class Plant:
             self._fly_to_steady_state(heading_deg)
         self.trim = Controls(throttle=float(fdm[self._throttles[0]]))
         """The controls that hold the trimmed flight: surfaces centred, throttle as trimmed."""
-        self._controls = Controls(throttle=self.trim.throttle)
+        self._controls = Controls(
+            throttle=self.trim.throttle, elevator_trim=-float(fdm[_ELEVATOR_TRIM])
+        )
         self._set_turbulence(weather)
         self.steps = 0
         """Steps of 1/120 s since the set-up was done."""
@@ -167,8 +173,12 @@ class Plant:
             aileron=min(1.0, max(-1.0, controls.aileron)),
             rudder=min(1.0, max(-1.0, controls.rudder)),
             throttle=min(1.0, max(0.0, controls.throttle)),
+            elevator_trim=self._controls.elevator_trim,
         )
         fdm = self.fdm
+        if controls.elevator_trim is not None:
+            clipped.elevator_trim = min(1.0, max(-1.0, controls.elevator_trim))
+            fdm[_ELEVATOR_TRIM] = -clipped.elevator_trim
         # JSBSim: a positive elevator lowers the nose, a positive rudder yaws left.
         fdm["fcs/elevator-cmd-norm"] = -clipped.elevator
         fdm["fcs/aileron-cmd-norm"] = clipped.aileron

@@ -75,3 +75,5 @@ class Controls:
     """-1..1, positive yaws right."""
     throttle: float = 0.0
     """0 idle .. 1 full, all engines."""
+    elevator_trim: float | None = None
+    """-1..1, positive raises the nose; None leaves it where it is."""

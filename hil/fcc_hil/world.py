@@ -11,7 +11,14 @@ import time
 from bisect import bisect_left
 from dataclasses import dataclass, replace
 
-from .cockpit import OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, SIM_SPEED, YOKE_ROLL, Cockpit
+from .cockpit import (
+    ELEVATOR_TRIM,
+    OVERRIDE_JOYSTICK,
+    OVERRIDE_THROTTLES,
+    SIM_SPEED,
+    YOKE_ROLL,
+    Cockpit,
+)
 from .datarefs import getter
 from .frames import FrameClock, VaryingRate
 from .local_axes import LocalAxes, MeasuredAttitude
@@ -143,7 +150,10 @@ class World:
             )
         )
         self.cockpit = Cockpit(
-            self.plant.trim, self.plant.engines, settings.version, self._qnh_inhg
+            replace(self.plant.trim, elevator_trim=self.plant.controls.elevator_trim),
+            self.plant.engines,
+            settings.version,
+            self._qnh_inhg,
         )
         self.truth: list[Row] = [row(self.plant.state(), self.cockpit.controls())]
 
@@ -172,6 +182,7 @@ class World:
             self.cockpit.clear_overrides()
         self.cockpit.set(SIM_SPEED, 1.0)
         self.cockpit.hold(self.plant.trim)
+        self.cockpit.set(ELEVATOR_TRIM, self.plant.controls.elevator_trim or 0.0)
         self.truth = [row(self.plant.state(), self.cockpit.controls())]
 
     def jump(self, seconds: float) -> None:
@@ -318,6 +329,7 @@ class World:
             aileron=now.aileron + min(most, max(-most, to.aileron - now.aileron)),
             rudder=now.rudder + min(most, max(-most, to.rudder - now.rudder)),
             throttle=to.throttle,
+            elevator_trim=to.elevator_trim,
         )
 
     def _remember(self, state: State) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from fcc_hil.cockpit import (
@@ -17,7 +19,7 @@ from fcc_hil.cockpit import (
 )
 from fcc_hil.state import Controls
 
-TRIMMED = Controls(throttle=0.7)
+TRIMMED = Controls(throttle=0.7, elevator_trim=0.0)
 
 
 def test_the_yoke_belongs_to_the_pilot_until_overridden() -> None:
@@ -63,7 +65,7 @@ def test_values_are_clipped_to_the_range() -> None:
         cockpit.write(0.0, path, 1.0)
     cockpit.write(0.0, YOKE_PITCH, -7.0)
     cockpit.write(0.0, THROTTLE_USE, 3.0)
-    assert cockpit.controls() == Controls(elevator=-1.0, throttle=1.2)
+    assert cockpit.controls() == Controls(elevator=-1.0, throttle=1.2, elevator_trim=0.0)
 
 
 def test_rows_8_and_25_obey_the_overrides_and_skip_minus_999() -> None:
@@ -73,7 +75,7 @@ def test_rows_8_and_25_obey_the_overrides_and_skip_minus_999() -> None:
     cockpit.write(0.0, OVERRIDE_JOYSTICK, 1.0)
     cockpit.write(0.0, YOKE_ROLL, 0.2)
     assert cockpit.write_row(0.0, 8, row)
-    assert cockpit.controls() == Controls(elevator=0.1, aileron=0.2, rudder=0.3, throttle=0.7)
+    assert cockpit.controls() == replace(TRIMMED, elevator=0.1, aileron=0.2, rudder=0.3)
     cockpit.write(0.0, OVERRIDE_THROTTLES, 1.0)
     assert cockpit.write_row(0.0, 25, [0.4, *[-999.0] * 7])
     assert cockpit.throttles() == pytest.approx([0.4])

@@ -71,12 +71,14 @@ impl PyAutopilot {
     }
 
     /// Engages, `dt` seconds after the previous measurements: the present state
-    /// becomes the set points. `throttle`, `elevator`, `aileron` and `rudder`
-    /// are the present positions of the controls.
+    /// becomes the set points. `throttle`, `elevator`, `aileron`, `rudder`
+    /// and `elevator_trim` are the present positions of the controls; without a
+    /// trim, none is moved.
     ///
     /// Raises `EngageError` with the engage inhibits, if there are any.
     #[pyo3(signature = (measurements, dt = 0.025, *, throttle,
-                        elevator = 0.0, aileron = 0.0, rudder = 0.0))]
+                        elevator = 0.0, aileron = 0.0, rudder = 0.0, elevator_trim = None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn engage(
         this: &Bound<'_, Self>,
         measurements: &PyMeasurements,
@@ -85,12 +87,14 @@ impl PyAutopilot {
         elevator: f64,
         aileron: f64,
         rudder: f64,
+        elevator_trim: Option<f64>,
     ) -> PyResult<()> {
         let readback = checked(Surfaces {
             throttle,
             elevator,
             aileron,
             rudder,
+            elevator_trim,
         })?;
         this.get()
             .stepped(this.py())
@@ -108,7 +112,7 @@ impl PyAutopilot {
 
     /// One tick for each row of a series, as by `step`. `measurements` is an array of shape (n, m), the columns
     /// being `fcc.MEASUREMENTS`, the rows `dt` s apart; the result is of shape
-    /// (n, 4), the columns being `fcc.SURFACES`.
+    /// (n, 5), the columns being `fcc.SURFACES`.
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn fly<'py>(
         &self,

@@ -32,7 +32,7 @@ impl<C: Controller> Machine<C> {
             self.telemetry.events.push(tick, EventKind::StopRequested);
             self.stop_for(Ending::StopFlag, tick);
         } else if command == StateRequest::Stop {
-            self.stop_for(Ending::StopCommand, tick);
+            self.stop_by_command(tick);
         }
         // Before the switch: what loads a flight may switch it off, too.
         if self.state.holds_control() && !release_now.is_empty() {
@@ -70,6 +70,7 @@ impl<C: Controller> Machine<C> {
         {
             self.end_failsafe(tick);
         }
+        self.follow_commanded_stop(tick);
         if command == StateRequest::Engage && switch_forbids {
             let kind = EventKind::EngageRefusedBySwitch;
             self.telemetry.events.push(tick, kind);
@@ -121,7 +122,7 @@ impl<C: Controller> Machine<C> {
         }
     }
 
-    fn stop_for(&mut self, ending: Ending, tick: &Tick) {
+    pub(crate) fn stop_for(&mut self, ending: Ending, tick: &Tick) {
         self.end_by(ending);
         self.apply_input(Input::Stop, tick);
     }

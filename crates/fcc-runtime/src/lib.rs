@@ -106,6 +106,7 @@ mod link;
 mod machine;
 mod overruns;
 mod panics;
+mod release;
 mod report;
 mod run;
 mod sensors;

@@ -53,6 +53,8 @@ pub struct Machine<C: Controller> {
     pub(crate) conditions: Flags,
     pub(crate) measurements: C::Measurements,
     pub(crate) failsafe_since: Time,
+    /// When a stop was commanded whose release is being prepared.
+    pub(crate) stopping_since: Time,
     pub(crate) record: RecordOf<C>,
     pub(crate) overruns: Overruns,
 
@@ -105,6 +107,7 @@ impl<C: Controller> Machine<C> {
             conditions: Flags::NONE,
             measurements: C::Measurements::default(),
             failsafe_since: Time::NEVER,
+            stopping_since: Time::NEVER,
             record: Record::new(Tick::default(), State::Standby),
             overruns: Overruns::new(config.budget, period),
             timing: TimingStats::new(period)?,

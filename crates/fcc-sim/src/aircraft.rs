@@ -180,9 +180,13 @@ impl Aircraft {
         &self.trim
     }
 
-    /// The commands with hands off the controls: trim.
+    /// The commands with hands off the controls: the throttle and the neutral
+    /// surfaces of the beginning, and the elevator's trim where it is.
     pub fn hands_off(&self) -> Surfaces {
-        hands_off(&self.trim)
+        Surfaces {
+            elevator_trim: self.positions.elevator_trim,
+            ..hands_off(&self.trim)
+        }
     }
 
     /// The airframe.
@@ -256,6 +260,7 @@ impl Aircraft {
 fn hands_off(trim: &Trim) -> Surfaces {
     Surfaces {
         throttle: trim.throttle,
+        elevator_trim: Some(0.0),
         ..Surfaces::default()
     }
 }

@@ -15,8 +15,9 @@ use crate::truth::{NUMBERS, Truth};
 /// The state shared by sensor, actuator and observers.
 #[derive(Debug, Default)]
 pub(crate) struct SharedState {
-    /// Bits of throttle, elevator, aileron and rudder.
-    commands: [AtomicU64; 4],
+    /// Bits of throttle, elevator, aileron, rudder and elevator trim, NaN for
+    /// none.
+    commands: [AtomicU64; 5],
     /// Whether the actuator holds the controls.
     held: AtomicBool,
     /// 0 by the script, 1 off, 2 on.
@@ -37,6 +38,7 @@ impl SharedState {
             surfaces.elevator,
             surfaces.aileron,
             surfaces.rudder,
+            surfaces.elevator_trim.unwrap_or(f64::NAN),
         ];
         for (place, value) in self.commands.iter().zip(values) {
             place.store(value.to_bits(), Ordering::Relaxed);
@@ -54,7 +56,7 @@ impl SharedState {
         if !self.held.load(Ordering::Acquire) {
             return None;
         }
-        let [throttle, elevator, aileron, rudder] = self
+        let [throttle, elevator, aileron, rudder, trim] = self
             .commands
             .each_ref()
             .map(|place| f64::from_bits(place.load(Ordering::Relaxed)));
@@ -63,6 +65,7 @@ impl SharedState {
             elevator,
             aileron,
             rudder,
+            elevator_trim: Some(trim).filter(|trim| !trim.is_nan()),
         })
     }
 

@@ -55,6 +55,7 @@ impl Servos {
             elevator: surface.follow(positions.elevator, commands.elevator),
             aileron: surface.follow(positions.aileron, commands.aileron),
             rudder: surface.follow(positions.rudder, commands.rudder),
+            elevator_trim: commands.elevator_trim.or(positions.elevator_trim),
         }
     }
 }
@@ -85,17 +86,19 @@ impl Prepared {
     }
 }
 
-/// Deflections from actuator positions -1..=1 and the elevator's trim in rad,
-/// within the travel. +elevator raises the nose, +aileron rolls right, +rudder
+/// Deflections from actuator positions -1..=1 and the elevator in rad at which
+/// they begin, within the travel. The trim moves the elevator as far as the
+/// elevator's own command does. +elevator raises the nose, +aileron rolls right, +rudder
 /// yaws right; the derivatives' own signs differ for elevator and rudder.
 pub fn deflections(travel: &Travel, positions: &Surfaces, elevator_trim_rad: f64) -> Deflections {
-    let elevator_travel = if positions.elevator >= 0.0 {
+    let elevator = positions.elevator + positions.elevator_trim.unwrap_or(0.0);
+    let elevator_travel = if elevator >= 0.0 {
         travel.elevator_up_rad
     } else {
         travel.elevator_down_rad
     };
     Deflections {
-        elevator_rad: (elevator_trim_rad - positions.elevator * elevator_travel)
+        elevator_rad: (elevator_trim_rad - elevator * elevator_travel)
             .max(-travel.elevator_up_rad)
             .min(travel.elevator_down_rad),
         aileron_rad: positions.aileron * travel.aileron_rad,

@@ -142,9 +142,9 @@ impl Sensor<Measurements> for SimSensor {
     }
 }
 
-/// The aircraft's controls. When released, they return to trim: the surfaces go
-/// to where they were at the start, as with hands off the controls, and nothing
-/// levels the wings.
+/// The aircraft's controls. When released, surfaces and throttle go to where
+/// they were at the start, as with hands off the controls, and nothing levels the
+/// wings; the elevator's trim stays where it is.
 #[derive(Debug)]
 pub struct SimActuator {
     link: Arc<SharedState>,

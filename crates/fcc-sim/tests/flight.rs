@@ -222,6 +222,7 @@ fn full_deflections_leave_the_state_valid() {
                 elevator: sign(70),
                 aileron: sign(110),
                 rudder: sign(170),
+                elevator_trim: None,
             },
             0.025,
         );
@@ -281,6 +282,7 @@ fn substeps_are_short_enough() {
                     elevator: 0.3 * doublet,
                     aileron: doublet,
                     rudder: -doublet,
+                    elevator_trim: None,
                 },
                 0.025,
             );

@@ -104,7 +104,7 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
             held.asserted = now;
             sent = self.controls.take(write);
         }
-        let messages = self.controls.messages();
+        let messages = self.controls.messages(outputs);
         if held.pace.take(now, messages, link.frame_period_s()) {
             sent = sent.and(self.controls.set(outputs, write));
             held.confirmation.wrote(now, yoke_ratios(outputs));

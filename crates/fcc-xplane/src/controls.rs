@@ -8,7 +8,8 @@
 //! No override has a timeout: X-Plane would keep the last deflection.
 //! A release therefore centres the surfaces and then clears the overrides, in
 //! this order. The throttle has no centre position: it stays where it is until
-//! its override is cleared and the lever in the cockpit has control again.
+//! its override is cleared and the lever in the cockpit has control again. The
+//! elevator's trim needs no override, and stays where it is.
 
 use core::iter;
 
@@ -17,7 +18,7 @@ use fcc_core::flight::Surfaces;
 use crate::config::{Output, XPlaneConfig};
 use crate::port::Errno;
 use crate::protocol::{PathError, data, dref};
-use crate::quantity::{OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES};
+use crate::quantity::{ELEVATOR_TRIM, OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES};
 use crate::quantity::{YOKE_HEADING, YOKE_PITCH, YOKE_ROLL};
 
 const THROTTLE: &str = "sim/flightmodel/engine/ENGN_thro_use";
@@ -29,9 +30,9 @@ const ROW_THROTTLES: i32 = 25;
 /// there may be no program left to repeat it.
 pub(crate) const LET_GO_TIMES: usize = 3;
 
-/// Three surfaces and the throttles of eight engines, the maximum of
-/// [`XPlaneConfig::engines`].
-const MOST_WRITES: usize = 11;
+/// Three surfaces, the throttles of eight engines, the maximum of
+/// [`XPlaneConfig::engines`], and the elevator's trim.
+const MOST_WRITES: usize = 12;
 
 type Write = Box<[u8; dref::WRITE_BYTES]>;
 
@@ -40,13 +41,15 @@ type Write = Box<[u8; dref::WRITE_BYTES]>;
 pub(crate) struct Controls {
     overrides: [Write; 2],
     encoding: Encoding,
+    /// The elevator's trim beside rows.
+    trim: Write,
 }
 
 #[derive(Clone, Debug)]
 enum Encoding {
     Dref {
-        /// Elevator, aileron, rudder, then the throttles: contiguous, so that
-        /// one system call can send them.
+        /// Elevator, aileron, rudder, the throttles, then the elevator's trim:
+        /// contiguous, so that one system call can send them.
         writes: Box<[[u8; dref::WRITE_BYTES]]>,
     },
     Data {
@@ -61,16 +64,19 @@ struct Deflections {
     /// Elevator, aileron, rudder.
     yoke: [Option<f32>; 3],
     throttle: Option<f32>,
+    elevator_trim: Option<f32>,
 }
 
 impl Deflections {
     const CENTRED: Self = Self {
         yoke: [Some(0.0); 3],
         throttle: None,
+        elevator_trim: None,
     };
     const AS_THEY_ARE: Self = Self {
         yoke: [None; 3],
         throttle: None,
+        elevator_trim: None,
     };
 
     /// Limited to their ranges; NaN leaves a control unchanged. The loop has
@@ -79,12 +85,17 @@ impl Deflections {
         Self {
             yoke: yoke_ratios(surfaces),
             throttle: ratio(surfaces.throttle, 0.0),
+            elevator_trim: surfaces.elevator_trim.and_then(|trim| ratio(trim, -1.0)),
         }
     }
 
-    /// Elevator, aileron, rudder, then every throttle.
-    fn values(&self) -> impl Iterator<Item = Option<f32>> {
-        self.yoke.into_iter().chain(iter::repeat(self.throttle))
+    /// Elevator, aileron, rudder, the throttle of every engine, then the
+    /// elevator's trim, in as many writes.
+    fn values(&self, writes: usize) -> impl Iterator<Item = Option<f32>> {
+        let engines = writes.saturating_sub(4);
+        let throttles = iter::repeat_n(self.throttle, engines);
+        let trim = iter::once(self.elevator_trim);
+        self.yoke.into_iter().chain(throttles).chain(trim)
     }
 }
 
@@ -107,6 +118,7 @@ impl Controls {
                 let writes = yoke
                     .into_iter()
                     .chain(throttles)
+                    .chain([ELEVATOR_TRIM.to_owned()])
                     .map(|path| write_to(&path).map(|write| *write))
                     .collect::<Result<_, _>>()?;
                 Encoding::Dref { writes }
@@ -119,6 +131,7 @@ impl Controls {
         Ok(Self {
             overrides: [write_to(OVERRIDE_JOYSTICK)?, write_to(OVERRIDE_THROTTLES)?],
             encoding,
+            trim: write_to(ELEVATOR_TRIM)?,
         })
     }
 
@@ -141,10 +154,11 @@ impl Controls {
     }
 
     /// The number of datagrams that [`set`](Self::set) sends.
-    pub(crate) fn messages(&self) -> usize {
+    pub(crate) fn messages(&self, surfaces: &Surfaces) -> usize {
+        let trims = usize::from(surfaces.elevator_trim.is_some());
         match &self.encoding {
-            Encoding::Dref { writes } => writes.len(),
-            Encoding::Data { .. } => 1,
+            Encoding::Dref { writes } => writes.len() - 1 + trims,
+            Encoding::Data { .. } => 1 + trims,
         }
     }
 
@@ -156,8 +170,8 @@ impl Controls {
         let mut buffer = [[0; dref::WRITE_BYTES]; MOST_WRITES];
         if let Some(scratch) = buffer.get_mut(..writes.len()) {
             scratch.copy_from_slice(writes);
-            set_values(scratch, &Deflections::of(surfaces));
-            send(scratch.as_flattened());
+            let set = set_values(scratch, &Deflections::of(surfaces));
+            send(scratch.get(..set).unwrap_or_default().as_flattened());
         }
     }
 
@@ -199,10 +213,12 @@ impl Controls {
         let mut outcome = Ok(());
         match &mut self.encoding {
             Encoding::Dref { writes } => {
-                if set_values(writes, &to) {
-                    return send(writes.as_flattened());
+                let set = set_values(writes, &to);
+                // All, or all but the trim.
+                if set + 1 >= writes.len() {
+                    return send(writes.get(..set).unwrap_or_default().as_flattened());
                 }
-                for (write, value) in writes.iter().zip(to.values()) {
+                for (write, value) in writes.iter().zip(to.values(writes.len())) {
                     if value.is_some() {
                         outcome = outcome.and(send(write.as_slice()));
                     }
@@ -218,23 +234,25 @@ impl Controls {
                 if let Some(datagram) = data::write(datagram, &rows) {
                     outcome = send(datagram);
                 }
+                if let Some(trim) = to.elevator_trim {
+                    dref::set_value(&mut self.trim, trim);
+                    outcome = outcome.and(send(self.trim.as_slice()));
+                }
             }
         }
         outcome
     }
 }
 
-/// Sets the values of elevator, aileron, rudder and throttles; returns whether
-/// each had a value.
-fn set_values(writes: &mut [[u8; dref::WRITE_BYTES]], to: &Deflections) -> bool {
-    let mut all = true;
-    for (write, value) in writes.iter_mut().zip(to.values()) {
-        match value {
-            Some(value) => dref::set_value(write, value),
-            None => all = false,
+/// Sets the values that there are; returns how many of the first have one.
+fn set_values(writes: &mut [[u8; dref::WRITE_BYTES]], to: &Deflections) -> usize {
+    let values = to.values(writes.len());
+    for (write, value) in writes.iter_mut().zip(values) {
+        if let Some(value) = value {
+            dref::set_value(write, value);
         }
     }
-    all
+    to.values(writes.len()).take_while(Option::is_some).count()
 }
 
 fn write_to(path: &str) -> Result<Write, PathError> {
@@ -276,6 +294,7 @@ mod tests {
         elevator: 0.5,
         aileron: -0.25,
         rudder: 0.125,
+        elevator_trim: None,
     };
 
     #[test]
@@ -312,6 +331,29 @@ mod tests {
     }
 
     #[test]
+    fn the_trim_is_written_last_and_stays_at_a_release() {
+        for output in [Output::Dref, Output::Data] {
+            let config = XPlaneConfig {
+                output,
+                ..XPlaneConfig::default()
+            };
+            let mut controls = Controls::new(&config).unwrap();
+            let trimmed = Surfaces {
+                elevator_trim: Some(-0.375),
+                ..SURFACES
+            };
+            let mut datagrams = sent(|send| controls.set(&trimmed, send).unwrap());
+            let last = named(&[datagrams.pop().unwrap()]);
+            let expected = ("sim/flightmodel/controls/elv_trim".to_owned(), -0.375);
+            assert_eq!(last, [expected]);
+            let without = sent(|send| controls.set(&SURFACES, send).unwrap());
+            assert_eq!(without, datagrams);
+            let released = sent(|send| controls.release(send).unwrap());
+            assert!(!released.concat().windows(8).any(|path| path == b"elv_trim"));
+        }
+    }
+
+    #[test]
     fn by_rows_it_is_one_datagram_with_joystick_and_throttles() {
         let config = XPlaneConfig {
             output: Output::Data,
@@ -343,12 +385,14 @@ mod tests {
             elevator: f64::NAN,
             aileron: f64::INFINITY,
             rudder: -7.0,
+            elevator_trim: Some(1.5),
         };
         let writes = named(&sent(|send| controls.set(&surfaces, send).unwrap()));
         let expected = [
             ("sim/joystick/yoke_roll_ratio", 1.0),
             ("sim/joystick/yoke_heading_ratio", -1.0),
             ("sim/flightmodel/engine/ENGN_thro_use[0]", 0.0),
+            ("sim/flightmodel/controls/elv_trim", 1.0),
         ];
         assert_eq!(writes, expected.map(|(path, v)| (path.to_owned(), v)));
     }

@@ -261,12 +261,14 @@ impl Inbox {
         }
         if let Some(([throttle, elevator, aileron, rudder], taken)) = values.whole(Group::Surfaces)
         {
+            let trim = values.recent(Quantity::ElevatorTrim, now);
             // In reverse it is negative, and with emergency power above 1.
             let surfaces = Surfaces {
                 throttle: throttle.clamp(0.0, 1.0),
                 elevator,
                 aileron,
                 rudder,
+                elevator_trim: trim.map(|trim| trim.clamp(-1.0, 1.0)),
             };
             into.surfaces = Reading::new(surfaces, taken);
         }

@@ -19,10 +19,10 @@
 mod document;
 mod table;
 
-use table::{Entry, Place, TABLE};
 pub(crate) use table::{
-    OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, YOKE_HEADING, YOKE_PITCH, YOKE_ROLL,
+    ELEVATOR_TRIM, OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, YOKE_HEADING, YOKE_PITCH, YOKE_ROLL,
 };
+use table::{Entry, Place, TABLE};
 
 /// A quantity read from X-Plane. The number of each is the index under which
 /// its dataref is subscribed; it is the same in every run, so that a
@@ -84,6 +84,7 @@ pub(crate) enum Quantity {
     PressureAltitude,
     AltimeterSetting,
     NetworkTime,
+    ElevatorTrim,
 }
 
 impl Quantity {

@@ -27,12 +27,19 @@ schema! {
         /// Positive yaws right.
         #[field(4, range = -1.0..=1.0)]
         pub rudder: f64,
+        /// The elevator's trim, positive raises the nose; NaN where the aircraft
+        /// has none or it is not measured, and then it is left as it is.
+        #[field(5, range = -1.0..=1.0)]
+        pub elevator_trim: Option<f64>,
     }
 }
 
 impl Surfaces {
-    /// Whether every value is finite and in its range.
+    /// Whether every value is finite and in its range; a trim may be missing.
     pub fn is_valid(&self) -> bool {
-        in_range(self)
+        in_range(&Self {
+            elevator_trim: Some(self.elevator_trim.unwrap_or(0.0)),
+            ..*self
+        })
     }
 }

@@ -138,6 +138,18 @@ pub trait Controller: Send {
         Flags::NONE
     }
 
+    /// Begins to bring the plant into a state in which it can be released, before
+    /// a release that can wait; false to release it at once, as by default.
+    fn prepare_release(&mut self, _tick: &Tick, _measurements: &Self::Measurements) -> bool {
+        false
+    }
+
+    /// Whether the plant can be released now, after
+    /// [`prepare_release`](Self::prepare_release).
+    fn is_ready_for_release(&self) -> bool {
+        true
+    }
+
     /// Whether this tick's outputs are not to be sent although the loop holds
     /// control: the plant does not take them at present, and keeps the last.
     /// The state does not change. By default they are sent.

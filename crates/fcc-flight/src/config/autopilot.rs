@@ -21,6 +21,8 @@ pub struct AutopilotSection {
     /// The latency from an output to its effect that is assumed until it has
     /// been measured.
     pub assumed_latency_ms: f64,
+    /// Whether the elevator's trim takes over what the elevator holds.
+    pub trim: bool,
     /// How the aircraft differs from the one for which the gains were tuned.
     pub scale: ScaleSection,
     /// The limits of the loops' commands.
@@ -41,6 +43,7 @@ impl Default for AutopilotSection {
         Self {
             reference_airspeed_kt: rounded(core.reference_airspeed_mps / KNOT_MPS),
             assumed_latency_ms: rounded(core.assumed_latency_s * 1e3),
+            trim: core.trims,
             scale: ScaleSection::default(),
             envelope: EnvelopeSection::from(&core.envelope),
             navigation: NavigationSection::from(&core.navigation),
@@ -63,6 +66,7 @@ impl AutopilotSection {
         AutopilotConfig {
             reference_airspeed_mps: self.reference_airspeed_kt * KNOT_MPS,
             assumed_latency_s: self.assumed_latency_ms * 1e-3,
+            trims: self.trim,
             max_age,
             frozen_after,
             navigation: NavigationConfig::from(&self.navigation),

@@ -48,7 +48,8 @@ pub use guidance::GuidanceSection;
 pub use recording::RecordingSection;
 pub use restart::{RestartMode, RestartSection};
 pub use runtime::{
-    EarlyWakeSection, EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then,
+    EarlyWakeSection, EngageSection, FailsafeSection, LoopSection, RealtimeSection, ReleaseSection,
+    Then,
 };
 pub use telemetry::TelemetrySection;
 pub use values::keyed;
@@ -71,6 +72,8 @@ pub struct Config {
     pub engage: EngageSection,
     /// What happens when sensors become silent.
     pub failsafe: FailsafeSection,
+    /// What precedes a release that can wait.
+    pub release: ReleaseSection,
     /// Where flights are recorded.
     pub recording: RecordingSection,
     /// What to do about an interrupted flight.
@@ -238,6 +241,7 @@ impl Config {
             settling: self.restart.mode.settling(),
             max_silence: Duration::from_secs_f64(self.failsafe.all_silent_s),
             permitted: self.engage.permitted(),
+            level_and_trim: Duration::from_secs_f64(self.release.level_and_trim_s),
             failsafe: (&self.failsafe).into(),
             altimeter: (&self.altimeter).into(),
             ..self.autopilot.to_core(

@@ -37,6 +37,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("failsafe.hold_s", 0.0, 600.0),
     ("failsafe.degraded_s", 0.0, 86_400.0),
     ("failsafe.recover_s", 0.0, 600.0),
+    ("release.level_and_trim_s", 0.0, 10.0),
     ("recording.max_file_mb", 0.0, 1e6),
     ("recording.max_file_minutes", 0.0, 1e5),
     ("recording.keep_total_mb", 0.0, 1e8),

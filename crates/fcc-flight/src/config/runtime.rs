@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use fcc_core::flight::{FailsafeConfig, FailsafeEnd, flags};
+use fcc_core::flight::{AutopilotConfig, FailsafeConfig, FailsafeEnd, flags};
 use fcc_core::framework::{AfterRelease, Flags};
 use fcc_timer::{CpuRequest, EarlyWake, RealtimeRequest, Strictness, Timer, TimerError, TimerKind};
 use serde::{Deserialize, Serialize};
@@ -225,6 +225,24 @@ impl EngageSection {
             .with(flags::OTHER_AUTOTHROTTLE, self.permit_autothrottle)
             .with(flags::FLY_BY_WIRE, self.permit_fly_by_wire)
             .with(flags::UPSET, self.permit_upset)
+    }
+}
+
+/// `[release]`.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ReleaseSection {
+    /// How long at most the aircraft is levelled and trimmed before a release
+    /// that can wait.
+    pub level_and_trim_s: f64,
+}
+
+impl Default for ReleaseSection {
+    fn default() -> Self {
+        let core = AutopilotConfig::default();
+        Self {
+            level_and_trim_s: core.level_and_trim.as_secs_f64(),
+        }
     }
 }
 

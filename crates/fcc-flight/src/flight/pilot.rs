@@ -56,6 +56,16 @@ impl Controller for Pilot {
         self.autopilot.must_release(tick, measurements)
     }
 
+    /// A controller in place of the autopilot's is released at once: it is not
+    /// known to level.
+    fn prepare_release(&mut self, tick: &Tick, measurements: &Measurements) -> bool {
+        self.control.is_none() && self.autopilot.prepare_release(tick, measurements)
+    }
+
+    fn is_ready_for_release(&self) -> bool {
+        self.autopilot.is_ready_for_release()
+    }
+
     fn withholds_outputs(&self, tick: &Tick, measurements: &Measurements) -> bool {
         self.autopilot.withholds_outputs(tick, measurements)
     }

@@ -54,8 +54,8 @@ machine_class! {
     /// `missing` names the readings that do not arrive in this tick: attitude,
     /// heading, `body_rates`, `specific_force`, airspeed, altitude. `readback`
     /// contains the readback of the controls: throttle 0..1, elevator, aileron and
-    /// rudder -1..1, as `Surfaces` or as four numbers; `None` if the aircraft
-    /// has none. `switch` is the engage switch; `None` if there is none.
+    /// rudder -1..1, as `Surfaces` or as four numbers, without the elevator's
+    /// trim; `None` if the aircraft has none. `switch` is the engage switch; `None` if there is none.
     #[pyo3(signature = (measurements = None, *, missing = Vec::new(), readback = None,
                         switch = None))]
     fn step(
@@ -134,6 +134,7 @@ fn surfaces(readback: &Bound<'_, PyAny>) -> PyResult<Surfaces> {
         elevator,
         aileron,
         rudder,
+        elevator_trim: None,
     })
 }
 

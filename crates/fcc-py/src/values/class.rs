@@ -259,11 +259,17 @@ pub fn to_array<V: Values>(py: Python<'_>, of: V) -> Bound<'_, PyArray1<f64>> {
     row.to_pyarray(py)
 }
 
-/// Whether all values are equal; NaN never is.
+/// Whether all values are equal. NaN is equal to NaN where it is a value that is
+/// not there, and never where it is a reading.
 pub fn are_equal<V: Values>(one: V, other: V) -> bool {
     let (one, other) = (flat(&one.into()), flat(&other.into()));
     let mut leaves = V::attributes().leaves.iter();
-    leaves.all(|(index, _)| one.as_slice().get(*index) == other.as_slice().get(*index))
+    leaves.all(|(index, leaf)| {
+        let (one, other) = (one.as_slice().get(*index), other.as_slice().get(*index));
+        let is_nan =
+            |value: Option<&Value>| matches!(value, Some(Value::Number(number)) if number.is_nan());
+        one == other || leaf.reading.is_none() && is_nan(one) && is_nan(other)
+    })
 }
 
 /// An object as Python prints it.

@@ -183,13 +183,20 @@ pub(super) fn fill<T: Schema>(
     of.read(T::ROOT, &mut Given { next: 0, given })
 }
 
-/// A struct, each of its numbers finite and in its declared range.
+/// A struct, each of its numbers finite and in its declared range, or missing
+/// where it is missing by default.
 ///
 /// # Errors
 /// When one is not.
 pub fn checked<T: Schema>(of: T) -> PyResult<T> {
     let values = flat(&of);
-    for (leaf, value) in Shape::of::<T>().leaves.iter().zip(values.as_slice()) {
+    let blank = flat(&T::default());
+    let each = values.as_slice().iter().zip(blank.as_slice());
+    for (leaf, (value, blank)) in Shape::of::<T>().leaves.iter().zip(each) {
+        let is_nan = |value: &Value| matches!(value, Value::Number(number) if number.is_nan());
+        if is_nan(value) && is_nan(blank) {
+            continue;
+        }
         let (least, most) = leaf.column.range.unwrap_or((f64::MIN, f64::MAX));
         if let Value::Number(number) = value
             && !(least..=most).contains(number)

@@ -31,6 +31,7 @@ const RESUME: Resume = Resume {
         elevator: -0.1,
         aileron: 1e-300,
         rudder: 0.3,
+        elevator_trim: None,
     },
     altimeter_setting_pa: Some(102_000.0),
     altitude_reference: AltitudeReference::Field,

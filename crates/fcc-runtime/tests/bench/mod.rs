@@ -39,6 +39,8 @@ pub(crate) struct Script {
     pub(crate) has_recovered: bool,
     pub(crate) must_release: Flags,
     pub(crate) withholds: bool,
+    /// Whether the controller prepares a release, and is ready for it.
+    pub(crate) prepares_release: Option<bool>,
     pub(crate) notice: Option<Notice>,
     pub(crate) conditions: Flags,
     pub(crate) output: f64,
@@ -67,6 +69,7 @@ impl Default for Script {
             has_recovered: false,
             must_release: Flags::NONE,
             withholds: false,
+            prepares_release: None,
             notice: None,
             conditions: Flags::NONE,
             output: 0.5,

@@ -72,6 +72,15 @@ impl Controller for Stub {
         self.stage.script().must_release
     }
 
+    fn prepare_release(&mut self, _: &Tick, _: &Measured) -> bool {
+        self.stage.called("prepare");
+        self.stage.script().prepares_release.is_some()
+    }
+
+    fn is_ready_for_release(&self) -> bool {
+        self.stage.script().prepares_release == Some(true)
+    }
+
     fn withholds_outputs(&self, _: &Tick, _: &Measured) -> bool {
         self.stage.script().withholds
     }

@@ -11,6 +11,7 @@ pub(crate) const OVERRIDE_THROTTLES: &str = "sim/operation/override/override_thr
 pub(crate) const YOKE_PITCH: &str = "sim/joystick/yoke_pitch_ratio";
 pub(crate) const YOKE_ROLL: &str = "sim/joystick/yoke_roll_ratio";
 pub(crate) const YOKE_HEADING: &str = "sim/joystick/yoke_heading_ratio";
+pub(crate) const ELEVATOR_TRIM: &str = "sim/flightmodel/controls/elv_trim";
 
 /// Where X-Plane provides a quantity.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -241,4 +242,6 @@ pub(super) const TABLE: &[Entry] = &[
         .is("the setting of the pilot's altimeter").or_else("no altitude, where X-Plane has no pressure altitude: not engaged"),
     Entry::new(Quantity::NetworkTime, Dataref("sim/network/misc/network_time_sec"), Unit::Seconds, [0.0, 1e8])
         .is("runs on in a pause").instead("what a network delivers late, but evenly, is not noticed"),
+    Entry::new(Quantity::ElevatorTrim, Dataref(ELEVATOR_TRIM), Unit::Ratio, [-10.0, 10.0]).written()
+        .is("-1 to 1, nose up").instead("the elevator's trim is left as it is"),
 ];

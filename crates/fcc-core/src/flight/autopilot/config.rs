@@ -50,6 +50,11 @@ pub struct AutopilotConfig {
     /// prevent engaging: of `OTHER_AUTOPILOT`, `OTHER_AUTOTHROTTLE`,
     /// `FLY_BY_WIRE` and `UPSET`, from which it recovers first.
     pub permitted: Flags,
+    /// Whether the elevator's trim is moved, where it is measured.
+    pub trims: bool,
+    /// For how long at most a release that is ours to time levels and trims the
+    /// aircraft first; zero for not at all.
+    pub level_and_trim: Duration,
     /// How a flight goes on without a sensor, and how it ends.
     pub failsafe: FailsafeConfig,
     /// Navigation's time constants.
@@ -80,6 +85,8 @@ impl Default for AutopilotConfig {
             frozen_after: Duration::from_secs(2),
             settling: Duration::from_secs(1),
             permitted: Flags::NONE,
+            trims: true,
+            level_and_trim: Duration::from_secs(10),
             failsafe: FailsafeConfig::default(),
             navigation: NavigationConfig::default(),
             guidance: GuidanceConfig::TimedPattern(TimedPatternConfig::default()),

@@ -167,6 +167,13 @@ pub(super) struct Degraded {
     news: Option<u8>,
 }
 
+impl Degraded {
+    /// Whether what is held is sound.
+    pub(super) const fn is_sound(&self) -> bool {
+        self.is_sound
+    }
+}
+
 impl Autopilot {
     /// The quantities that control cannot use: too old, frozen, or contradicted.
     pub(super) fn lost(&self, now: Time, measured: &Measurements) -> Flags {

@@ -4,7 +4,8 @@ use super::capture::Capture;
 use super::degraded::Degraded;
 use super::upset::is_far_from_level;
 use super::{Autopilot, flags};
-use crate::flight::guidance::{ModeInput, Targets};
+use crate::flight::control::ElevatorTrim;
+use crate::flight::guidance::{ActiveMode, ModeInput, Targets};
 use crate::flight::{AltitudeReference, Measurements, PlantState, Surfaces};
 use crate::framework::{Flags, Time};
 
@@ -54,6 +55,9 @@ impl Autopilot {
                 throttle: self.config.airspeed.trim_throttle,
                 ..Surfaces::default()
             });
+        let trim = standing.elevator_trim.filter(|_| self.config.trims);
+        self.trim = ElevatorTrim::new(trim);
+        self.release = None;
         self.actuation.engage(&standing);
         self.take_over(&standing);
         self.begin_watching_for_upsets();
@@ -62,6 +66,7 @@ impl Autopilot {
     /// Engages the loops with the present throttle and surfaces.
     pub(super) fn take_over(&mut self, standing: &Surfaces) {
         self.last = *standing;
+        self.trim.take_over(standing.elevator_trim);
         let estimate = *self.navigation.estimate();
         let schedule = self.schedule();
         self.heading
@@ -70,5 +75,13 @@ impl Autopilot {
         let demand = self.throttle_demand(estimate.climb_rate_mps);
         self.airspeed.engage(standing.throttle, &demand, &estimate);
         self.keep_trims();
+    }
+
+    /// Enters the mode given by the transition table, with the present targets.
+    pub(super) fn change_mode(&mut self, input: ModeInput) {
+        let config = &self.config.guidance;
+        if let Some(mode) = self.guidance.mode().after(input, config.mode()) {
+            self.guidance = ActiveMode::enter(mode, config, self.targets);
+        }
     }
 }

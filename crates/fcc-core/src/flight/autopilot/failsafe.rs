@@ -202,6 +202,7 @@ impl Autopilot {
             elevator: vertical.elevator,
             aileron: lateral.aileron,
             rudder: lateral.rudder,
+            elevator_trim: None,
         }
     }
 
@@ -210,6 +211,7 @@ impl Autopilot {
     pub(super) fn fly_on(&mut self) {
         self.distrusted = Flags::NONE;
         self.degraded = Degraded::default();
+        self.end_release_of_failsafe();
         let last = self.last;
         self.take_over(&last);
         self.heading.lead_from(self.setpoints.roll_rad);
@@ -248,6 +250,7 @@ impl Autopilot {
             elevator: self.altitude.trim(),
             aileron: self.heading.aileron_trim(),
             rudder: self.heading.rudder_trim(),
+            elevator_trim: self.trim.position(),
         }
     }
 }

@@ -95,6 +95,8 @@ pub const AT_FLOOR: Flags = Flags::bit(40);
 pub const SOURCE_CLOCK: Flags = Flags::bit(42);
 /// The altitude contradicts the other sensors and is not used.
 pub const DOUBTED_ALTITUDE: Flags = Flags::bit(43);
+/// A release is being prepared: the aircraft is levelled and trimmed.
+pub const RELEASING: Flags = Flags::bit(44);
 
 /// The shift from the bit of a quantity that is too old to the bit of the same
 /// quantity being frozen.
@@ -130,7 +132,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
 }
 
 /// The text of each bit, lowest first.
-pub(super) const NAMES: [&str; 44] = [
+pub(super) const NAMES: [&str; 45] = [
     "attitude is missing or too old",
     "heading is missing or too old",
     "body rates are missing or too old",
@@ -175,6 +177,7 @@ pub(super) const NAMES: [&str; 44] = [
     "unknown condition",
     "readings arrive too old, by their source's own clock",
     "altitude contradicts the other sensors and is not used",
+    "levelling and trimming before the release",
 ];
 
 #[cfg(test)]

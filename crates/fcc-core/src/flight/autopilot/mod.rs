@@ -17,16 +17,16 @@ mod observe;
 mod other_control;
 mod plant_clock;
 mod reading_age;
+mod release;
 mod resume;
 mod scale;
 mod sensor_health;
+mod throttle_demand;
 mod upset;
 mod whereabouts;
 
 use core::fmt;
 use core::hint::black_box;
-
-use libm::cos;
 
 use actuation::Actuation;
 use capture::Capture;
@@ -38,11 +38,12 @@ pub use failsafe::{FailsafeConfig, FailsafeEnd};
 use following::Following;
 use plant_clock::PlantClock;
 use reading_age::ReadingAges;
+use release::Release;
 pub use resume::Resume;
 pub use scale::Scale;
 use whereabouts::Whereabouts;
 
-use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Recovery, ThrottleDemand};
+use super::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop, Recovery};
 use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
 use super::navigation::{Estimate, FrozenDetector, Navigation, Replacement, plausibility_gate};
 use super::{Altimeter, AltitudeReference, Measurements, Setpoints, Surfaces};
@@ -105,6 +106,9 @@ pub struct Autopilot {
     airspeed: AirspeedLoop,
     actuation: Actuation,
     recovery: Recovery,
+    trim: ElevatorTrim,
+    /// A release that is being prepared.
+    release: Option<Release>,
     setpoints: Setpoints,
     clock: PlantClock,
     ages: ReadingAges,
@@ -151,6 +155,8 @@ impl Autopilot {
             airspeed: AirspeedLoop::new(config.airspeed),
             actuation: Actuation::new(config.assumed_latency_s, config.pace),
             recovery: Recovery::new(),
+            trim: ElevatorTrim::new(None),
+            release: None,
             setpoints: Setpoints::default(),
             clock: PlantClock::default(),
             ages: ReadingAges::default(),
@@ -172,27 +178,6 @@ impl Autopilot {
     /// The configuration.
     pub const fn config(&self) -> &AutopilotConfig {
         &self.config
-    }
-
-    fn throttle_demand(&self, climb_rate_mps: f64) -> ThrottleDemand {
-        let estimate = self.navigation.estimate();
-        ThrottleDemand {
-            airspeed_mps: self
-                .envelope()
-                .least_target_mps(estimate)
-                .max(self.flyable_airspeed_mps(self.targets.airspeed_mps)),
-            climb_rate_mps,
-            load_factor: 1.0 / cos(estimate.roll_rad).max(0.5),
-            least_throttle: self.envelope().least_throttle(estimate.airspeed_mps),
-        }
-    }
-
-    /// Enters the mode given by the transition table, with the present targets.
-    fn change_mode(&mut self, input: ModeInput) {
-        let config = &self.config.guidance;
-        if let Some(mode) = self.guidance.mode().after(input, config.mode()) {
-            self.guidance = ActiveMode::enter(mode, config, self.targets);
-        }
     }
 }
 
@@ -220,6 +205,7 @@ impl Controller for Autopilot {
             .with(flags::RECOVERING, self.is_recovering())
             .with(flags::UNDERSPEED, self.altitude.gives_up_height())
             .with(flags::AT_FLOOR, self.is_at_floor)
+            .with(flags::RELEASING, self.release.is_some())
     }
 
     fn failsafe_goes_on(&self) -> bool {
@@ -236,6 +222,14 @@ impl Controller for Autopilot {
 
     fn must_release(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {
         self.is_elsewhere()
+    }
+
+    fn prepare_release(&mut self, tick: &Tick, measurements: &Measurements) -> bool {
+        self.begin_to_release(tick.woke, measurements)
+    }
+
+    fn is_ready_for_release(&self) -> bool {
+        self.is_trimmed_for_release()
     }
 
     fn withholds_outputs(&self, tick: &Tick, _measurements: &Measurements) -> bool {
@@ -313,8 +307,9 @@ impl Controller for Autopilot {
         if self.accepted.body_rates.value != self.kept_trims.found_with {
             self.keep_trims();
         }
-        if let Some(recovering) = self.recover_from_upset(tick.woke) {
-            self.last = recovering;
+        let recovering = self.recover_from_upset(tick.woke);
+        if let Some(outputs) = recovering.or_else(|| self.fly_to_release(&estimate, dt_s)) {
+            self.last = self.with_trim(outputs, Flags::NONE);
             return self.last;
         }
         let to = self.targets;
@@ -334,17 +329,21 @@ impl Controller for Autopilot {
             pitch_rad: vertical.pitch_rad,
             ..self.setpoints
         };
-        self.last = Surfaces {
+        let outputs = Surfaces {
             throttle,
             elevator: self.actuation.elevator(vertical.elevator),
             aileron: lateral.aileron,
             rudder: lateral.rudder,
+            elevator_trim: None,
         };
+        self.last = self.with_trim(outputs, Flags::NONE);
         self.last
     }
 
     fn failsafe(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
-        self.last = self.safest(tick.woke, measurements);
+        self.prepare_end_of_failsafe(tick.woke, measurements);
+        let outputs = self.safest(tick.woke, measurements);
+        self.last = self.with_trim(outputs, self.lost(tick.woke, measurements));
         self.last
     }
 
@@ -355,6 +354,7 @@ impl Controller for Autopilot {
         self.is_at_floor = false;
         self.capture = None;
         self.recovery = Recovery::new();
+        self.release = None;
         self.setpoints = Setpoints::default();
     }
 

@@ -1,7 +1,8 @@
 //! Airspeed from the forces on the aircraft and its motion.
 
-use libm::{asin, atan2, cos, exp, sin};
+use libm::{cos, exp, sin};
 
+use super::upward::Upward;
 use crate::blocks::limit_abs;
 use crate::units::GRAVITY_MPS2;
 
@@ -354,43 +355,6 @@ impl AirspeedFilter {
     }
 }
 
-/// Where up is in the aircraft's plane of symmetry: (sin θ, cos φ cos θ).
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Upward {
-    /// From the body's -z axis, inverted from its z axis, towards x, rad.
-    angle_rad: f64,
-    /// How much of it lies in that plane: cos φ in level flight; negative
-    /// inverted.
-    share: f64,
-}
-
-impl Upward {
-    pub(super) fn of(sample: &ForceSample) -> Self {
-        let along_x = sin(sample.pitch_rad);
-        let along_z = cos(sample.pitch_rad) * cos(sample.roll_rad);
-        let side = libm::copysign(1.0, along_z);
-        Self {
-            angle_rad: atan2(side * along_x, side * along_z),
-            share: side * libm::hypot(along_x, along_z).max(LEAST_UPWARD),
-        }
-    }
-
-    /// The angle of attack on a path of this slope (sine), without sideslip:
-    /// sin γ = cos α sin θ - sin α cos φ cos θ (Stevens, Lewis and Johnson 2016,
-    /// section 3.6), solved for the smaller α.
-    pub(super) fn angle_of_attack_rad(self, sin_path: f64) -> f64 {
-        self.angle_rad - asin(limit_abs(sin_path / self.share, 1.0))
-    }
-
-    /// The slope (sine) of the path with this angle of attack.
-    fn sin_path(self, angle_of_attack_rad: f64) -> f64 {
-        self.share * sin(self.angle_rad - angle_of_attack_rad)
-    }
-}
-
-/// Near the knife edge the path does not tell the angle of attack.
-const LEAST_UPWARD: f64 = 0.3;
-
 /// Acceleration of the indicated airspeed along the path, m/s², from the forces
 /// in g; without vertical wind, whose effect is of second order.
 pub(super) fn acceleration_mps2(sample: &ForceSample, airspeed_mps: f64) -> f64 {
@@ -410,83 +374,4 @@ fn dot(a: State, b: State) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const PRIOR: AirframePrior = AirframePrior {
-        reference_mps: 51.444,
-        full_thrust_ratio: 0.25,
-    };
-
-    fn rad(deg: f64) -> f64 {
-        deg.to_radians()
-    }
-
-    /// Level turns of an aircraft with the prior's lift and drag at the prior's
-    /// airspeed: n = 1/cos φ (FAA-H-8083-25B, chapter 5), and sin θ = tan α cos φ.
-    fn level_turn(bank_deg: f64) -> ForceSample {
-        let load = 1.0 / cos(rad(bank_deg));
-        // The lift is perpendicular to the path, the drag balanced by thrust.
-        let alpha = LIFT_ANGLE_RAD * load;
-        ForceSample {
-            forward: load * sin(alpha),
-            up: load * cos(alpha),
-            pitch_rad: libm::atan(libm::tan(alpha) * cos(rad(bank_deg))),
-            roll_rad: rad(bank_deg),
-            sqrt_density: 1.0,
-            thrust: Some((0.5, 0.0)),
-            ..ForceSample::default()
-        }
-    }
-
-    #[test]
-    fn a_turn_with_60_degrees_of_bank_is_no_acceleration() {
-        for bank_deg in [0.0, 30.0, 60.0, -60.0] {
-            let sample = level_turn(bank_deg);
-            assert!(
-                acceleration_mps2(&sample, 51.444).abs() < 0.01,
-                "{bank_deg}"
-            );
-        }
-    }
-
-    /// Inverted and level, nose 8° above the horizon, the wing at α = -8° with
-    /// -1 g: no acceleration either, but for drag, which thrust balances.
-    #[test]
-    fn the_angle_of_attack_is_right_inverted() {
-        let inverted = ForceSample {
-            pitch_rad: rad(8.0),
-            roll_rad: rad(180.0),
-            sqrt_density: 1.0,
-            ..ForceSample::default()
-        };
-        let alpha = Upward::of(&inverted).angle_of_attack_rad(0.0);
-        assert!((alpha - rad(-8.0)).abs() < 1e-9);
-        let descending = Upward::of(&inverted).angle_of_attack_rad(sin(rad(-3.0)));
-        assert!((descending - rad(-11.0)).abs() < 1e-9);
-    }
-
-    /// The filter learns the aircraft in level flight; then, 15 kt off, without
-    /// a sensor in a turn with 60° of bank, lift and drag take it back.
-    #[test]
-    fn the_airspeed_is_found_in_a_turn_with_60_degrees_of_bank() {
-        let level = level_turn(0.0);
-        let mut filter = AirspeedFilter::new(PRIOR, 51.444, &level);
-        for _ in 0..300 {
-            filter.correct(&level, 0.1);
-            filter.correct_by_sensor(51.444);
-        }
-        let turn = level_turn(60.0);
-        filter.adopt(51.444 - 7.7);
-        filter.without_models(10.0);
-        for _ in 0..300 {
-            filter.accelerate(acceleration_mps2(&turn, filter.airspeed_mps()), 0.1);
-            filter.correct(&turn, 0.1);
-        }
-        assert!(
-            (filter.airspeed_mps() - 51.444).abs() < 2.0,
-            "{}",
-            filter.airspeed_mps()
-        );
-    }
-}
+mod tests;

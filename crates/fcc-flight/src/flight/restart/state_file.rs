@@ -269,6 +269,8 @@ fn decode(bytes: &[u8]) -> Result<Saved, StateFileError> {
                 elevator: page.elevator,
                 aileron: page.aileron,
                 rudder: page.rudder,
+                // It stays where it is, and is measured.
+                elevator_trim: None,
             },
             altimeter_setting_pa: page.altimeter_setting_pa,
             altitude_reference: reference.ok_or(StateFileError::Damaged)?,
@@ -323,6 +325,7 @@ mod tests {
                     elevator: -0.1,
                     aileron: 0.02,
                     rudder: 0.0,
+                    elevator_trim: None,
                 },
                 altimeter_setting_pa: Some(102_340.0),
                 altitude_reference: AltitudeReference::SeaLevel,
