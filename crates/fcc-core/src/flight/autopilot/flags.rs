@@ -142,7 +142,7 @@ pub(super) const NAMES: [&str; 45] = [
     "simulator time jumped",
     "simulator is paused",
     "airspeed is below the floor",
-    "bank or pitch is beyond 60 degrees",
+    "bank or pitch is beyond 60 degrees, or it spins",
     "simulator time has stopped",
     "engage switch is silent",
     "navigation is settling",

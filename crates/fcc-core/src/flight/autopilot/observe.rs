@@ -57,11 +57,9 @@ impl Autopilot {
         self.take_over_unless_followed(now, self.config.max_age);
         self.follow_failsafe(tick, measured);
         // After an outage everything settles anew before it may engage.
-        if !self.stale(now).is_empty() {
-            self.watching_since = Time::NEVER;
-        } else if self.watching_since.is_never() {
-            self.watching_since = now;
-        }
+        let unusable = flags::unusable(self.stale(now), self.frozen());
+        let settled_s = self.settled_s.map_or(0.0, |settled_s| settled_s + step_s);
+        self.settled_s = unusable.is_empty().then_some(settled_s);
         self.before = now;
     }
 
@@ -157,7 +155,7 @@ impl Autopilot {
     fn settle_anew(&mut self, tick: &Tick) {
         self.navigation.resume(self.clock.passed_s());
         self.frozen = FrozenDetector::new(self.config.frozen_after.as_secs_f64());
-        self.watching_since = Time::NEVER;
+        self.settled_s = None;
         self.renewed_since = tick.woke;
     }
 
@@ -186,7 +184,7 @@ impl Autopilot {
         self.pass_gate(measured);
         self.navigation.reset(&self.config.navigation);
         self.frozen = FrozenDetector::new(self.config.frozen_after.as_secs_f64());
-        self.watching_since = Time::NEVER;
+        self.settled_s = None;
         self.renewed_since = Time::NEVER;
     }
 }

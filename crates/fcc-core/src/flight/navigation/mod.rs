@@ -156,6 +156,13 @@ schema! {
         /// 0 while the sensor is used.
         #[field(17)]
         pub airspeed_uncertainty_mps: f64,
+        /// How old the newest reading was when it arrived, s, by its source's own
+        /// clock and relative to the fastest one; 0 if it has none.
+        #[field(410)]
+        pub reading_age_s: f64,
+        /// The mean change of that age from one arrival to the next, s.
+        #[field(411)]
+        pub reading_jitter_s: f64,
     }
 }
 
@@ -229,6 +236,8 @@ impl Navigation {
                 acceleration_mps2: 0.0,
                 airspeed_source: AirspeedSource::Sensor,
                 airspeed_uncertainty_mps: 0.0,
+                reading_age_s: 0.0,
+                reading_jitter_s: 0.0,
             },
         }
     }
