@@ -389,8 +389,7 @@ impl Controller for Autopilot {
             measurements,
             &self.gate_limits(),
         );
-        let airspeed = plausible.contains(flags::AIRSPEED) && self.permits_airspeed(measurements);
-        plausible.with(flags::AIRSPEED, airspeed)
+        plausible.keeping(flags::AIRSPEED, self.permits_airspeed(measurements))
     }
 
     fn switch(&self, measurements: &Measurements) -> Reading<Switch> {

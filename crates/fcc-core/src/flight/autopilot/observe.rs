@@ -70,9 +70,17 @@ impl Autopilot {
         self.replacement
             .follow(&self.accepted, lost, &estimate, step_s);
         if self.degraded.is_failsafe && lost != Lost::default() {
-            let left = self
+            let mut left = self
                 .replacement
                 .without(&self.accepted, lost, &estimate, now);
+            // Navigation leaves doubted ones out by itself, and sees that they
+            // agree again.
+            if self.navigation.airspeed_doubt().is_some() {
+                left.airspeed_mps = self.accepted.airspeed_mps;
+            }
+            if self.navigation.altitude_doubt().is_some() {
+                left.altitude_m = self.accepted.altitude_m;
+            }
             self.navigation.step(now, &left, step_s);
         } else {
             self.navigation.step(now, &self.accepted, step_s);
