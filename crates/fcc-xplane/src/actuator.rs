@@ -9,6 +9,7 @@ use std::sync::Arc;
 use fcc_core::flight::Surfaces;
 use fcc_core::framework::{Actuator, ActuatorFault, Tick, Time};
 
+use crate::authority::plant_at;
 use crate::config::XPlaneConfig;
 use crate::confirmation::Confirmation;
 use crate::controls::{Controls, LET_GO_TIMES, yoke_ratios};
@@ -83,6 +84,9 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
                 // Counts as held before the first datagram is sent: what may
                 // have been taken must be released.
                 link.set_control(Control::Held);
+                if let Some((notice, plant)) = link.notice().zip(plant_at(simulator)) {
+                    notice.taking(&plant);
+                }
                 none.insert(HeldControl {
                     simulator,
                     asserted: Time::NEVER,

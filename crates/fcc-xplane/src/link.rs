@@ -9,8 +9,9 @@ use core::sync::atomic::{
     AtomicBool, AtomicI64, AtomicU8, AtomicU16, AtomicU32, AtomicU64, Ordering,
 };
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
+use std::sync::OnceLock;
 
-use fcc_core::framework::Time;
+use fcc_core::framework::{TakeoverNotice, Time};
 
 use crate::missing::ValueSet;
 use crate::quantity::Quantity;
@@ -116,6 +117,8 @@ pub(crate) struct SharedState {
     /// 0 not known, 1 in the air, 2 on the ground.
     ground: AtomicU8,
     read_back: [Readback; READ_BACK.len()],
+    /// Is told before control is taken.
+    notice: OnceLock<&'static dyn TakeoverNotice>,
     pub(crate) counters: Counters,
 }
 
@@ -140,8 +143,18 @@ impl SharedState {
             frame_period: AtomicU32::new(0),
             ground: AtomicU8::new(0),
             read_back: [const { Readback::never() }; READ_BACK.len()],
+            notice: OnceLock::new(),
             counters: Counters::default(),
         }
+    }
+
+    /// Only the first one counts.
+    pub(crate) fn notify(&self, notice: &'static dyn TakeoverNotice) {
+        let _ = self.notice.set(notice);
+    }
+
+    pub(crate) fn notice(&self) -> Option<&'static dyn TakeoverNotice> {
+        self.notice.get().copied()
     }
 
     pub(crate) fn simulator(&self) -> Option<SocketAddr> {

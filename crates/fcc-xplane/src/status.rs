@@ -5,6 +5,8 @@ use core::sync::atomic::{AtomicU64, Ordering};
 use std::net::SocketAddr;
 use std::sync::Arc;
 
+use fcc_core::framework::TakeoverNotice;
+
 use crate::config::DataRows;
 use crate::engage_switch::lights_if_beyond;
 use crate::link::{Control, SharedState};
@@ -95,6 +97,11 @@ impl XPlaneStatus {
     /// Permits taking control at this address only.
     pub fn allow(&self, simulator: SocketAddr) {
         self.link.allow(Some(simulator));
+    }
+
+    /// From now on this is called directly before control is taken.
+    pub fn notify(&self, notice: &'static dyn TakeoverNotice) {
+        self.link.notify(notice);
     }
 
     /// The simulator's state at the last tick.

@@ -116,7 +116,7 @@ impl Autopilot {
                 self.take_over(&trims);
             }
         }
-        let lost = self.lost(now, measured);
+        let lost = self.unreplaced(self.lost(now, measured));
         let held = held_without(lost);
         let glides = self.degraded.glides;
         self.setpoints.roll_rad = 0.0;
@@ -125,6 +125,7 @@ impl Autopilot {
         let idle = glides && !silent || measured.other_control.value.reverse_thrust;
         if held.lateral == Lateral::Trims {
             self.setpoints.pitch_rad = 0.0;
+            self.recovery.end();
             let throttle = if silent {
                 self.last.throttle
             } else if idle {
@@ -151,6 +152,9 @@ impl Autopilot {
             };
             estimate.true_airspeed_mps =
                 true_airspeed_mps(estimate.airspeed_mps, estimate.altitude_m);
+        }
+        if let Some(recovering) = self.recover_degraded(now, lost, &estimate, idle) {
+            return recovering;
         }
         let (schedule, dt_s) = (self.schedule_at(estimate.airspeed_mps), self.clock.step_s());
         let envelope = self.config.envelope;

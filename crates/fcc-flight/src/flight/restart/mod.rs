@@ -54,6 +54,7 @@ pub(super) struct RestartRequest {
     max_age: Duration,
     path: PathBuf,
     fingerprint: u32,
+    release_left_held: bool,
 }
 
 impl RestartRequest {
@@ -69,6 +70,7 @@ impl RestartRequest {
             max_age: Duration::from_secs_f64(section.max_age_s),
             path,
             fingerprint: fingerprint(config),
+            release_left_held: section.release_left_held,
         }
     }
 }
@@ -156,7 +158,7 @@ impl Restart {
     /// Whether an interrupted flight was found not to be recovered since the
     /// last call: it may have left the controls held.
     pub(super) const fn takes_over_release(&mut self) -> bool {
-        std::mem::replace(&mut self.left, false)
+        std::mem::replace(&mut self.left, false) && self.request.release_left_held
     }
 
     /// Processes a message of the loop.
