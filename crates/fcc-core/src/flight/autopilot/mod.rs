@@ -115,7 +115,9 @@ pub struct Autopilot {
     whereabouts: Whereabouts,
     /// The previous tick.
     before: Time,
-    watching_since: Time,
+    /// For how long of the plant's time all that control needs has been good, s;
+    /// none while it is not.
+    settled_s: Option<f64>,
     /// When a plant that was not heard returned, until all that control needs
     /// has been measured since.
     renewed_since: Time,
@@ -162,7 +164,7 @@ impl Autopilot {
             ages: ReadingAges::default(),
             whereabouts: Whereabouts::default(),
             before: Time::NEVER,
-            watching_since: Time::NEVER,
+            settled_s: None,
             renewed_since: Time::NEVER,
             last: Surfaces::default(),
             kept_trims: KeptTrims::default(),
@@ -363,7 +365,8 @@ impl Controller for Autopilot {
     }
 
     fn estimated(&self) -> Estimate {
-        self.actuation.shown_in(self.navigation.estimate())
+        let estimate = self.ages.shown_in(self.navigation.estimate());
+        self.actuation.shown_in(&estimate)
     }
 
     fn setpoints(&self) -> Setpoints {
@@ -386,8 +389,7 @@ impl Controller for Autopilot {
             measurements,
             &self.gate_limits(),
         );
-        let airspeed = plausible.contains(flags::AIRSPEED) && self.permits_airspeed(measurements);
-        plausible.with(flags::AIRSPEED, airspeed)
+        plausible.keeping(flags::AIRSPEED, self.permits_airspeed(measurements))
     }
 
     fn switch(&self, measurements: &Measurements) -> Reading<Switch> {
