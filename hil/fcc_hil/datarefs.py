@@ -121,6 +121,7 @@ _READABLE: dict[str, Getter] = {
     _T + "sim_speed_actual_ogl": Readout.achieved_speed,
     _T + "total_flight_time_sec": lambda r: r.flight_time_s,
     _T + "total_running_time_sec": lambda r: r.running_time_s,
+    "sim/network/misc/network_time_sec": lambda r: r.network_time_s,
     _T + "framerate_period": lambda r: r.smoothed_period_s,
     "sim/operation/misc/frame_rate_period": lambda r: r.frame_period_s,
     "sim/flightmodel/failures/onground_any": lambda r: float(r.state.on_ground),

@@ -42,6 +42,8 @@ class Readout:
     smoothed_period_s: float = 0.0
     running_time_s: float = 0.0
     """Since the simulator was started."""
+    network_time_s: float = 0.0
+    """The same by this machine's clock: it runs on in pauses and freezes."""
     in_replay: bool = False
     speed: float = 1.0
     """How many times as fast as real time it is to run; 0 when paused."""

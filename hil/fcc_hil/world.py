@@ -7,6 +7,7 @@ when it is told so.
 from __future__ import annotations
 
 import math
+import time
 from bisect import bisect_left
 from dataclasses import dataclass, replace
 
@@ -69,6 +70,7 @@ class World:
         varying = rates_hz and VaryingRate(rate_hz, *rates_hz, settings.seed + 2)
         self.clock = FrameClock(rate_hz, varying)
         self._running_time_s = 0.0
+        self._began_s = time.monotonic()
         self._hung_s = 0.0
         self.period_s = self._frame_period_s = self._smoothed_period_s = 1.0 / rate_hz
         self._mode_ends: tuple[Mode, float] | None = None
@@ -205,6 +207,7 @@ class World:
             axes=self.axes,
             magnetic_variation_deg=self.settings.magnetic_variation_deg,
             running_time_s=self._running_time_s,
+            network_time_s=time.monotonic() - self._began_s,
             in_replay=in_replay,
             speed=0.0 if self._is_paused() else self._speed(),
             qnh_pa=self._qnh_inhg * INHG_TO_PA,

@@ -1,4 +1,4 @@
-"""A link to the stand-in that can be cut in either direction, and can change values.
+"""A link to the stand-in that can be cut in either direction, hold and change what is sent.
 
 It is a separate process, like the stand-in, so that a busy test does not delay a datagram.
 """
@@ -10,6 +10,8 @@ import selectors
 import signal
 import socket
 import struct
+import time
+from collections import deque
 from collections.abc import Mapping
 from multiprocessing.connection import Connection
 
@@ -30,6 +32,8 @@ class _Link:
         self._pipe = pipe
         self._cut = {"to": False, "from": False}
         self._says: dict[str, float] = {}
+        self._held_s = 0.0
+        self._waiting: deque[tuple[float, bytes]] = deque()
         self._paths: dict[int, str] = {}
         self._daemon: tuple[str, int] | None = None
         self._outside = self._open()
@@ -54,7 +58,7 @@ class _Link:
             selector.register(self._inside, selectors.EVENT_READ, self._outwards)
             selector.register(self._pipe, selectors.EVENT_READ, self._obey)
             while not self._over:
-                for key, _ in selector.select():
+                for key, _ in selector.select(self._pass_on()):
                     # An ended program, at either end, is not an error of the link.
                     try:
                         key.data()
@@ -63,7 +67,7 @@ class _Link:
 
     def _obey(self) -> None:
         try:
-            self._cut, self._says, datagram = self._pipe.recv()
+            self._cut, self._says, datagram, self._held_s = self._pipe.recv()
             if datagram and self._daemon is not None:
                 self._outside.sendto(datagram, self._daemon)
             self._pipe.send(None)
@@ -82,7 +86,19 @@ class _Link:
     def _outwards(self) -> None:
         datagram = self._inside.recv(_LARGEST_DATAGRAM)
         if self._daemon is not None and not self._cut["from"]:
-            self._outside.sendto(self._tampered(datagram), self._daemon)
+            self._waiting.append((time.monotonic(), self._tampered(datagram)))
+            self._pass_on()
+
+    def _pass_on(self) -> float | None:
+        """Pass on what has waited for long enough; return until when the next one waits."""
+        while self._waiting and self._daemon is not None:
+            came_s, datagram = self._waiting[0]
+            left_s = came_s + self._held_s - time.monotonic()
+            if left_s > 0.0:
+                return left_s
+            self._waiting.popleft()
+            self._outside.sendto(datagram, self._daemon)
+        return None
 
     def _tampered(self, datagram: bytes) -> bytes:
         if not self._says or not datagram.startswith(b"RREF"):
@@ -137,12 +153,22 @@ class TamperedLink:
         """Send the daemon a datagram as the simulator would, and cut and replace nothing."""
         self._command({"to": False, "from": False}, {}, datagram)
 
+    def hold(self, seconds: float) -> None:
+        """Deliver what the simulator sends so much later, in order; nothing is cut or replaced."""
+        self._command({"to": False, "from": False}, {}, held_s=seconds)
+
     def restore(self) -> None:
         """Forward everything unchanged."""
         self.replace_values({})
 
-    def _command(self, cut: dict[str, bool], says: dict[str, float], send: bytes = b"") -> None:
-        self._pipe.send((cut, says, send))
+    def _command(
+        self,
+        cut: dict[str, bool],
+        says: dict[str, float],
+        send: bytes = b"",
+        held_s: float = 0.0,
+    ) -> None:
+        self._pipe.send((cut, says, send, held_s))
         self._answer()
 
     def _answer(self) -> int:

@@ -150,6 +150,29 @@ def a_bouncing_switch(fccd: Path, scratch: Path) -> Flown:
     return Flown.of(ending, scratch / "recordings")
 
 
+def a_queue(fccd: Path, scratch: Path) -> Flown:
+    """Hold for half a second all that the simulator sends, after a freeze of it."""
+    scratch.mkdir()
+    with (
+        StandInProcess(Settings(port=0)) as simulator,
+        TamperedLink(simulator.port) as link,
+        start(fccd, scratch, write_config(scratch, link.port)) as daemon,
+    ):
+        engage(simulator, daemon)
+        simulator.set_mode(Mode.FROZEN)
+        time.sleep(0.4)
+        simulator.set_mode(Mode.RUNNING)
+        daemon.wait_for("the simulator stood still for")
+        held_ns = time.monotonic_ns()
+        link.hold(0.5)
+        assert "own clock" in daemon.wait_for("engaged -> failsafe")
+        link.restore()
+        daemon.wait_for("failsafe -> engaged")
+        ending = daemon.end(signal.SIGTERM)
+        assert_released(simulator)
+    return Flown.of(ending, scratch / "recordings", held_ns)
+
+
 @pytest.fixture(scope="module")
 def flights(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Flown]:
     """All flights, side by side."""
@@ -160,6 +183,7 @@ def flights(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, F
             "to": lambda: nothing_gets_there(fccd, scratch / "to"),
             "slow": lambda: slow(fccd, scratch / "slow"),
             "two": lambda: one_of_two(fccd, scratch / "two"),
+            "queue": lambda: a_queue(fccd, scratch / "queue"),
             "switch": lambda: a_bouncing_switch(fccd, scratch / "switch"),
         }
     )
@@ -210,7 +234,7 @@ def test_a_slow_simulator_is_flown_at_its_own_speed(flights: dict[str, Flown]) -
     assert plant_s < 0.9 * ours_s
 
 
-@pytest.mark.parametrize("name", ["from", "to", "slow", "two", "switch"])
+@pytest.mark.parametrize("name", ["from", "to", "slow", "two", "queue", "switch"])
 def test_a_replay_is_identical(fccd: Path, flights: dict[str, Flown], name: str) -> None:
     assert_flown_again(fccd, flights[name])
 
@@ -236,6 +260,16 @@ def test_one_of_two_simulators_is_lost_and_the_other_one_flown(flights: dict[str
     before, after = altitudes[jumped - 1 : jumped + 1]
     assert abs(after.value - before.value) < 15.0
     assert {reading.source for reading in altitudes[jumped:]} == {1}
+
+
+def test_a_queue_in_the_network_is_failsafe_until_it_is_empty(flights: dict[str, Flown]) -> None:
+    flown = flights["queue"]
+    assert flown.ending.exit_code == FAILSAFE
+    record = flown.records[flown.failsafes[0]]
+    # It has just arrived.
+    age_s = (record.tick.woke_ns - record.measurements.attitude.taken_ns) * NS
+    assert 0.25 < age_s < 0.5 + AT_ONCE_S
+    assert 0.0 < (record.tick.woke_ns - flown.injected_ns) * NS < 0.5 + AT_ONCE_S
 
 
 def test_a_switch_that_bounces_disengages_once(flights: dict[str, Flown]) -> None:

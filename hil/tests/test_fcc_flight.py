@@ -117,6 +117,38 @@ def test_an_exception_in_the_loop_is_raised() -> None:
             fcc.fly(controller=controller)  # type: ignore[arg-type]
 
 
+def test_a_flight_that_ends_on_the_ground_says_how() -> None:
+    """Held in a spin: some 10,000 ft/min (FAA-H-8083-3C, chapter 5: 500 ft in a turn of 3 s)."""
+
+    def pro_spin(*_: object) -> fcc.Surfaces:
+        return fcc.Surfaces(elevator=1.0, rudder=1.0)
+
+    low = fcc.Config().replace({"built-in.altitude_ft": 4000.0, "built-in.ground_ft": 1000.0})
+    with pytest.warns(RuntimeWarning, match="not real time"):
+        flight = fcc.fly(low, controller=pro_spin)
+    assert flight.state == "stopped"
+    assert flight.ending.startswith("the aircraft hit the ground")
+    assert flight.impact is not None
+    assert flight.impact["altitude_ft"] == pytest.approx(1000.0, abs=2.0)
+    assert 6_000.0 < flight.impact["sink_rate_fpm"] < 12_000.0
+    assert flight.impact["pitch_deg"] < -30.0
+    assert flight.events[-1].time_s == pytest.approx(flight.impact["time_s"], abs=0.1)
+    turned = np.ptp(np.unwrap(flight.truth["heading_rad"])) / (2.0 * np.pi)
+    assert turned > 3.0
+    assert fcc.fly(seconds=1.0).impact is None
+
+
+@pytest.mark.parametrize("seed", [2, 13])
+def test_severe_gusts_are_survived(seed: int) -> None:
+    """The two worst of the seeds 1 to 20; before, four of the first five fell to the ground."""
+    flight = fcc.fly(fcc.Config().replace({"built-in.gusts": "severe", "built-in.seed": seed}))
+    assert flight.state == "engaged"
+    assert flight.impact is None
+    assert np.min(flight.truth["altitude_m"]) > 2_200.0 * FOOT_M
+    stalled = flight.truth["angle_of_attack_rad"] > np.radians(17.2)
+    assert np.count_nonzero(stalled) < 10
+
+
 def test_in_real_time_time_passes() -> None:
     fast = fcc.Config().replace({"built-in.engage_at_s": 1.2, "loop.rate_hz": 100.0})
     began_s = time.monotonic()

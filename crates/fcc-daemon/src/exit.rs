@@ -39,6 +39,7 @@ exits! {
     Incomplete = 13, "a recording is damaged or unfinished: the result is of the rest, or a part is lost";
     NotRecorded = 14, "the flight succeeded, but was not recorded completely";
     StepFailed = 15, "a step of the check against X-Plane failed or was skipped (x-plane check)";
+    HitGround = 16, "the built-in aircraft hit the ground";
 }
 
 impl From<Exit> for ExitCode {
@@ -54,6 +55,7 @@ impl From<Conclusion> for Exit {
             Conclusion::NotRecorded => Self::NotRecorded,
             Conclusion::Failed => Self::Failure,
             Conclusion::Failsafe => Self::Failsafe,
+            Conclusion::HitGround => Self::HitGround,
             Conclusion::Panicked => Self::Panicked,
             Conclusion::Hung => Self::Hung,
             Conclusion::NotReleased => Self::NotReleased,

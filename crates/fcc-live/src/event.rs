@@ -76,7 +76,8 @@ pub enum EventCode {
     /// (those that began, those that ended).
     ConditionsChanged = 19,
     /// The controller noticed something (how long it lasted, ns); the index is
-    /// which. An autopilot's: 1 the simulator stood still, 2 the link was lost.
+    /// which. An autopilot's: 1 the simulator stood still, 2 the link was lost, 5
+    /// the simulator's clock is missing.
     Noticed = 20,
     /// Control is given back at once (why, one bit each, as in the flags of a
     /// state).
@@ -84,6 +85,8 @@ pub enum EventCode {
     /// The engage switch was switched on while none of its readings arrived,
     /// and control is not taken.
     SwitchedOnUnseen = 22,
+    /// A command to engage was refused, because the engage switch is off.
+    EngageRefusedBySwitch = 23,
 }
 
 impl Event {
@@ -182,6 +185,7 @@ fn numbers<O: Copy>(event: &framework::Event<O>) -> (EventCode, u32, [u64; 3]) {
             (EventCode::ReleasedAtOnce, 0, [conditions.bits(), 0, 0])
         }
         EventKind::SwitchedOnUnseen => (EventCode::SwitchedOnUnseen, 0, NONE),
+        EventKind::EngageRefusedBySwitch => (EventCode::EngageRefusedBySwitch, 0, NONE),
         // An event without a number in this version still has its text.
         _ => (EventCode::Remark, 0, NONE),
     }

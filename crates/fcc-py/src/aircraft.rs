@@ -100,6 +100,13 @@ impl PyAircraft {
         self.inner().simulation.truth.get().into()
     }
 
+    /// Its true state when it hit the ground, which is then held; None while it
+    /// flies.
+    #[getter]
+    fn impact(&self) -> Option<PyTruth> {
+        self.inner().simulation.truth.impact().map(PyTruth::from)
+    }
+
     /// The position of its engage switch, as configured.
     #[getter]
     fn switch(&self) -> bool {

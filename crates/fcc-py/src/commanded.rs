@@ -1,6 +1,7 @@
 //! Set points that Python commands, checked.
 
 use fcc_core::flight::{AutopilotCommand, AutopilotConfig};
+use fcc_flight::flight::{altitudes_m, heights_m};
 use fcc_telemetry::units::{
     COMMANDED_ALTIMETER_SETTING_PA, COMMANDED_ALTITUDE_M, COMMANDED_HEADING_RAD,
 };
@@ -79,7 +80,7 @@ impl Commanded {
             (
                 "altitude_m",
                 self.altitude_m,
-                COMMANDED_ALTITUDE_M,
+                altitudes_m(config),
                 AutopilotCommand::Altitude,
             ),
             (
@@ -91,7 +92,7 @@ impl Commanded {
             (
                 "height_m",
                 self.height_m,
-                COMMANDED_ALTITUDE_M,
+                heights_m(config).unwrap_or(COMMANDED_ALTITUDE_M),
                 AutopilotCommand::Height,
             ),
         ];

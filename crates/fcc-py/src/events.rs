@@ -82,6 +82,7 @@ fn kind_of<T>(kind: &EventKind<T>) -> &'static str {
         EventKind::Noticed(_) => "noticed",
         EventKind::ReleasedAtOnce { .. } => "released-at-once",
         EventKind::SwitchedOnUnseen => "switched-on-unseen",
+        EventKind::EngageRefusedBySwitch => "engage-refused-by-switch",
         EventKind::ConditionsChanged { .. } => "conditions-changed",
         _ => "other",
     }

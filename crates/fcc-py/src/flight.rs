@@ -8,7 +8,8 @@ use fcc_core::flight::Autopilot;
 use fcc_core::framework::State;
 use fcc_flight::config::{Aircraft, Config};
 use fcc_flight::flight::{
-    Access, Assembly, FlightTime, FlyError, Host, Length, Observer, Outcome, Pace, Plan, assemble,
+    Access, Assembly, FlightTime, FlyError, Host, Impact, Length, Observer, Outcome, Pace, Plan,
+    assemble,
 };
 use fcc_runtime::StopHandle;
 use fcc_sim::{Truth, TruthHandle};
@@ -63,6 +64,7 @@ pub(crate) struct PyFlight {
     /// Why the loop ended, in words.
     #[pyo3(get)]
     ending: String,
+    impact: Option<Impact>,
     score: Option<FlightScore>,
     timing: TimingReport,
 }
@@ -84,6 +86,7 @@ impl PyFlight {
             took_s: took.as_secs_f64(),
             state: State::from(last.state).to_string(),
             ending: outcome.ending,
+            impact: outcome.impact,
             // A flight without a complete leg has no score.
             score: outcome.flight.filter(|score| !score.legs.is_empty()),
             timing: outcome.timing,
@@ -93,6 +96,13 @@ impl PyFlight {
 
 #[pymethods]
 impl PyFlight {
+    /// Where and how the aircraft hit the ground, None if it did not: a dict
+    /// with its units in the names.
+    #[getter]
+    fn impact<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        json::to_python(py, &self.impact)
+    }
+
     #[getter]
     fn score<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         json::to_python(py, &self.score)
@@ -124,7 +134,7 @@ impl PyFlight {
 ///
 /// The flight ends `seconds` after the engage switch goes on (by default as
 /// long as `fccd fly` takes: the hold and 8 legs, or 60 s without a pattern),
-/// or when the loop stops. With `keep` False no records and truths are kept: a
+/// when the loop stops, or when the aircraft hits the ground (`Flight.impact`). With `keep` False no records and truths are kept: a
 /// row of both is some 730 bytes. The GIL is released meanwhile: several flights
 /// run side by side in threads.
 ///

@@ -159,7 +159,7 @@ pub fn create_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> io::Result<Fi
         let input = input.as_ref().display();
         return Err(io::Error::new(
             io::ErrorKind::InvalidInput,
-            format!("it is {input}, which is read: choose another name"),
+            format!("it is {input}, which this command uses, too: choose another name"),
         ));
     }
     File::create(path)

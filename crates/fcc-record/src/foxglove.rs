@@ -39,6 +39,7 @@ pub(super) fn level<O>(event: &Event<O>) -> log::Level {
         | EventKind::TimerFailed => log::Level::Error,
         EventKind::Panicked | EventKind::Hung { .. } => log::Level::Fatal,
         EventKind::EngageRefused { .. }
+        | EventKind::EngageRefusedBySwitch
         | EventKind::SensorFault { .. }
         | EventKind::ActuatorFault { .. }
         | EventKind::RecordsDropped { .. }

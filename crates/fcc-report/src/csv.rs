@@ -24,12 +24,14 @@ pub struct CsvFolder<C> {
     row: Row,
 }
 
+/// The files in the folder.
+pub const TABLES: [&str; 2] = ["records.csv", "events.csv"];
+
 /// Bytes in the buffer before they are written.
 const BUFFER_BYTES: usize = 1 << 18;
 
 impl<C: Controller> CsvFolder<C> {
-    /// Creates the folder if it is missing, and in it `records.csv` and
-    /// `events.csv`. Existing files of these names are replaced.
+    /// Creates the folder if it is missing, and in it the [`TABLES`]. Existing files of these names are replaced.
     ///
     /// # Errors
     /// When the folder or a file cannot be made or written, or a file is the
@@ -41,9 +43,10 @@ impl<C: Controller> CsvFolder<C> {
                 .buffer_capacity(BUFFER_BYTES)
                 .from_writer(create_output(&folder.join(name), &[recording])?))
         };
-        let mut records = open("records.csv")?;
+        let [records, events] = TABLES;
+        let mut records = open(records)?;
         records.write_record(header::<RecordOf<C>>())?;
-        let mut events = open("events.csv")?;
+        let mut events = open(events)?;
         events.write_record(["tick", "time_ns", "event"])?;
         Ok(Self {
             of: PhantomData,

@@ -93,7 +93,9 @@ fn weight<T>(kind: &EventKind<T>) -> Weight {
         | EventKind::NotRecorded { .. }
         | EventKind::Overrun { .. }
         | EventKind::Released { ok: false } => Weight::Fault,
-        EventKind::CommandReceived(_) | EventKind::EngageRefused { .. } => Weight::Command,
+        EventKind::CommandReceived(_)
+        | EventKind::EngageRefused { .. }
+        | EventKind::EngageRefusedBySwitch => Weight::Command,
         _ => Weight::Minor,
     }
 }

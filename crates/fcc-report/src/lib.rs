@@ -41,7 +41,7 @@ mod turns;
 
 pub use box_plot::BoxPlot;
 pub use continuity::{Continuity, Gap};
-pub use csv::CsvFolder;
+pub use csv::{CsvFolder, TABLES};
 pub use durations::NamedPercentiles;
 pub use events::EventLine;
 #[cfg(feature = "flight")]

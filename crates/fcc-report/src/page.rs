@@ -101,13 +101,14 @@ impl<A: Addition> Report<A> {
         figures
     }
 
-    /// Writes the page into a file, which must not be the recording.
+    /// Writes the page into a file, which must be none of the `others`: the
+    /// recording, and what else was made of it.
     ///
     /// # Errors
     /// What could not be written.
-    pub fn write_page(&self, path: &Path, recording: &Path) -> Result<(), String> {
+    pub fn write_page<P: AsRef<Path>>(&self, path: &Path, others: &[P]) -> Result<(), String> {
         let page = self.to_html();
-        create_output(path, &[recording])
+        create_output(path, others)
             .and_then(|mut file| file.write_all(page.as_bytes()))
             .map_err(|error| format!("{}: cannot be written: {error}", path.display()))
     }

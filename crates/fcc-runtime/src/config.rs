@@ -27,6 +27,11 @@ pub struct LoopConfig {
     /// A reading of the engage switch older than this is no reading. 1 s by
     /// default.
     pub switch_max_age: Duration,
+    /// Whether a command engages only while the engage switch is on, if one is
+    /// read. Yes by default: a switch that is off is off, however the loop was
+    /// engaged. If not, a command engages although it is off, and only a movement
+    /// to off ends that.
+    pub command_needs_switch: bool,
     /// How long failsafe holds the actuators before it releases them. 10 s by
     /// default; zero releases at once.
     pub failsafe_hold: Duration,
@@ -54,6 +59,7 @@ impl Default for LoopConfig {
         Self {
             switch_off: AfterRelease::Standby,
             switch_max_age: Duration::from_secs(1),
+            command_needs_switch: true,
             failsafe_hold: Duration::from_secs(10),
             after_failsafe: AfterRelease::Standby,
             budget: Budget::default(),

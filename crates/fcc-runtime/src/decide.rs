@@ -26,6 +26,7 @@ impl<C: Controller> Machine<C> {
         }
         let switch = self.controller.switch(measurements);
         let edge = self.switch.watch(switch, tick.woke);
+        let switch_forbids = self.command_needs_switch && self.switch.is_off();
 
         if self.stop.is_set() {
             self.telemetry.events.push(tick, EventKind::StopRequested);
@@ -37,7 +38,7 @@ impl<C: Controller> Machine<C> {
         if self.state.holds_control() && !release_now.is_empty() {
             self.release_at_once(release_now, tick);
         }
-        if edge == Some(SwitchEdge::Off) {
+        if edge == Some(SwitchEdge::Off) || switch_forbids {
             self.apply_input(Input::SwitchedOff, tick);
             if self.state == State::Stopped {
                 self.end_by(Ending::SwitchedOff);
@@ -69,7 +70,10 @@ impl<C: Controller> Machine<C> {
         {
             self.end_failsafe(tick);
         }
-        if command == StateRequest::Engage || edge == Some(SwitchEdge::On) {
+        if command == StateRequest::Engage && switch_forbids {
+            let kind = EventKind::EngageRefusedBySwitch;
+            self.telemetry.events.push(tick, kind);
+        } else if command == StateRequest::Engage || edge == Some(SwitchEdge::On) {
             self.attempt_to_engage(tick, lost_control);
         }
         let is_free = matches!(self.state, State::Standby | State::Failsafe(_));

@@ -36,6 +36,7 @@ pub struct Machine<C: Controller> {
     pub(crate) actuators: Actuators<C::Outputs>,
 
     pub(crate) switch_off: AfterRelease,
+    pub(crate) command_needs_switch: bool,
     pub(crate) failsafe_hold: Duration,
     pub(crate) after_failsafe: AfterRelease,
 
@@ -91,6 +92,7 @@ impl<C: Controller> Machine<C> {
             controller: parts.controller,
             actuators: Actuators::new(parts.actuators),
             switch_off: config.switch_off,
+            command_needs_switch: config.command_needs_switch,
             failsafe_hold: config.failsafe_hold,
             after_failsafe: config.after_failsafe,
             commands,

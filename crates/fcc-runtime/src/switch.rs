@@ -18,6 +18,10 @@ pub(crate) enum SwitchEdge {
 /// engage again before it is steady.
 const LOCK_OUT: Duration = Duration::from_millis(500);
 
+/// A single reading may be wrong. It counts once a second one agrees, or after
+/// this time if none came: an off counts within it.
+const AGREES_AFTER: Duration = Duration::from_millis(100);
+
 /// The sensor to which the engage switch belongs: the most preferred one that
 /// has ever delivered a switch. What others deliver while that one is silent is
 /// no switch, since the difference between two sensors' switches is not a
@@ -34,6 +38,17 @@ impl SwitchOwner {
     }
 }
 
+/// A position that is not believed yet.
+#[derive(Clone, Copy, Debug)]
+struct Claimed {
+    position: Switch,
+    /// When it was first read, and the tick of that.
+    taken: Time,
+    since: Time,
+    /// Whether a reading of the other position came after it.
+    is_contradicted: bool,
+}
+
 /// Detects the edges of the engage switch, which [belongs](SwitchOwner) to one
 /// sensor.
 ///
@@ -46,8 +61,13 @@ pub(crate) struct EngageSwitch {
     max_age: Duration,
     owner: SwitchOwner,
     last_position: Option<Switch>,
+    claimed: Option<Claimed>,
+    /// The last reading, believed or not.
+    read: Option<Switch>,
+    /// Whether it is read, and off.
+    is_off: bool,
     off_since_gap: bool,
-    switched_off: Time,
+    went_off: Time,
     /// Switched on, but not yet counted.
     on_is_due: bool,
 }
@@ -58,10 +78,52 @@ impl EngageSwitch {
             max_age,
             owner: SwitchOwner(None),
             last_position: None,
+            claimed: None,
+            read: None,
+            is_off: false,
             off_since_gap: false,
-            switched_off: Time::NEVER,
+            went_off: Time::NEVER,
             on_is_due: false,
         }
+    }
+
+    /// Whether the switch is known to be off.
+    pub(crate) const fn is_off(&self) -> bool {
+        self.is_off
+    }
+
+    /// The position that the readings agree on: a new one once two readings have
+    /// it, or for long enough if there was no second one. An on between two offs is
+    /// a contact that bounces.
+    fn believed(&mut self, position: Switch, taken: Time, now: Time) -> Option<Switch> {
+        let is_recent = |claimed: &Claimed| now.since(claimed.since) <= AGREES_AFTER;
+        if self.last_position == Some(position) {
+            self.claimed = self
+                .claimed
+                .filter(|claimed| claimed.position == Switch::Off && is_recent(claimed))
+                .map(|claimed| Claimed {
+                    is_contradicted: true,
+                    ..claimed
+                });
+            return Some(position);
+        }
+        let claimed = self
+            .claimed
+            .filter(|claimed| claimed.position == position)
+            .filter(|claimed| !claimed.is_contradicted || is_recent(claimed))
+            .unwrap_or(Claimed {
+                position,
+                taken,
+                since: now,
+                is_contradicted: false,
+            });
+        let lasts = !claimed.is_contradicted && now.since(claimed.since) >= AGREES_AFTER;
+        if taken > claimed.taken || lasts {
+            self.claimed = None;
+            return Some(position);
+        }
+        self.claimed = Some(claimed);
+        self.last_position
     }
 
     /// Processes this tick's reading; a stale one, or one of another sensor, is
@@ -77,19 +139,28 @@ impl EngageSwitch {
             };
         }
         let Some(position) = position else {
+            self.claimed = None;
+            self.is_off = false;
             self.off_since_gap = false;
             self.on_is_due = false;
             return None;
         };
+        // While it bounces, too; a single bad reading of a switch that is off is
+        // none.
+        let is_going_off =
+            self.last_position == Some(Switch::On) || now.since(self.went_off) < LOCK_OUT;
+        if is_going_off && self.read == Some(Switch::On) && position == Switch::Off {
+            self.went_off = now;
+        }
+        self.read = Some(position);
+        let position = self.believed(position, reading.taken, now)?;
+        self.is_off = position == Switch::Off;
         let before = self.last_position.replace(position);
         match position {
             Switch::Off => {
-                self.off_since_gap = true;
+                self.off_since_gap |= self.read == Some(Switch::Off);
                 self.on_is_due = false;
-                (before == Some(Switch::On)).then(|| {
-                    self.switched_off = now;
-                    SwitchEdge::Off
-                })
+                (before == Some(Switch::On)).then_some(SwitchEdge::Off)
             }
             Switch::On => {
                 let was_off = before == Some(Switch::Off);
@@ -97,7 +168,7 @@ impl EngageSwitch {
                     return Some(SwitchEdge::OnUnseen);
                 }
                 self.on_is_due |= was_off;
-                let counts = self.on_is_due && now.since(self.switched_off) >= LOCK_OUT;
+                let counts = self.on_is_due && now.since(self.went_off) >= LOCK_OUT;
                 self.on_is_due &= !counts;
                 counts.then_some(SwitchEdge::On)
             }
@@ -109,19 +180,23 @@ impl EngageSwitch {
 mod tests {
     use super::*;
 
-    /// One reading per second, each fresh for 1.5 s; `None` is a second without a
-    /// reading.
+    /// Two readings at the begin of each second, 50 ms apart, each fresh for 1.5 s;
+    /// `None` is a second without a reading.
     fn watched<const N: usize>(positions: [Option<Switch>; N]) -> [Option<SwitchEdge>; N] {
         let mut switch = EngageSwitch::new(Duration::from_millis(1_500));
         let mut reading = Reading::new(Switch::Off, Time::NEVER);
         let mut second = 0;
         positions.map(|position| {
             second += 1;
-            let now = Time::from_nanos(second * 1_000_000_000);
-            if let Some(position) = position {
-                reading = Reading::new(position, now);
-            }
-            switch.watch(reading, now)
+            let mut watch = |ms: i64| {
+                let now = Time::from_nanos(second * 1_000_000_000 + ms * 1_000_000);
+                if let Some(position) = position {
+                    reading = Reading::new(position, now);
+                }
+                switch.watch(reading, now)
+            };
+            let first = watch(0);
+            first.or(watch(50))
         })
     }
 
@@ -196,9 +271,13 @@ mod tests {
         let mut second = 0;
         let mut watch = |source, position| {
             second += 1;
-            let now = Time::from_nanos(second * 1_000_000_000);
-            let reading = Reading::new(position, now);
-            switch.watch(Reading { source, ..reading }, now)
+            let mut watch = |ms: i64| {
+                let now = Time::from_nanos(second * 1_000_000_000 + ms * 1_000_000);
+                let reading = Reading::new(position, now);
+                switch.watch(Reading { source, ..reading }, now)
+            };
+            let first = watch(0);
+            first.or(watch(50))
         };
         // The first to deliver one has it, until a more preferred one does.
         assert_eq!(watch(1, Off), None);
@@ -217,7 +296,38 @@ mod tests {
     }
 
     #[test]
-    fn a_switch_that_bounces_counts_off_at_once_and_on_when_it_is_steady() {
+    fn a_single_bad_reading_changes_nothing() {
+        let mut switch = EngageSwitch::new(Duration::from_secs(1));
+        for tick in 0..400_i64 {
+            let now = Time::from_nanos(tick * 25_000_000);
+            let is_on = tick >= 100;
+            let is_bad = tick % 10 == 5;
+            let position = if is_on == is_bad {
+                Switch::Off
+            } else {
+                Switch::On
+            };
+            let edge = switch.watch(Reading::new(position, now), now);
+            assert_eq!(edge, (tick == 101).then_some(SwitchEdge::On), "{tick}");
+        }
+    }
+
+    #[test]
+    fn an_off_counts_within_a_tenth_of_a_second_without_a_second_reading() {
+        let mut switch = EngageSwitch::new(Duration::from_secs(1));
+        let ms = |ms: i64| Time::from_nanos(ms * 1_000_000);
+        switch.watch(Reading::new(Switch::On, ms(0)), ms(0));
+        switch.watch(Reading::new(Switch::On, ms(100)), ms(100));
+        let off = Reading::new(Switch::Off, ms(200));
+        for at_ms in [200, 225, 250, 275] {
+            assert_eq!(switch.watch(off, ms(at_ms)), None);
+        }
+        assert_eq!(switch.watch(off, ms(300)), Some(SwitchEdge::Off));
+        assert!(switch.is_off());
+    }
+
+    #[test]
+    fn a_switch_that_bounces_counts_off_with_the_second_and_on_when_it_is_steady() {
         use SwitchEdge::{Off, On};
         let mut switch = EngageSwitch::new(Duration::from_millis(1_500));
         let mut edges = Vec::new();
@@ -233,6 +343,6 @@ mod tests {
             }
         }
         // The last off is in tick 80; 0.5 s are 20 ticks.
-        assert_eq!(edges, [(2, On), (40, Off), (100, On)]);
+        assert_eq!(edges, [(3, On), (42, Off), (100, On)]);
     }
 }

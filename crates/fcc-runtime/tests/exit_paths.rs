@@ -60,7 +60,7 @@ fn the_switch() {
         ..LoopConfig::default()
     });
     for position in [Switch::Off, Switch::On, Switch::Off] {
-        bench.tick(|s| s.switch = Some(position));
+        bench.turn(position);
     }
     assert!(matches!(released(bench).ending, Ending::SwitchedOff));
 }

@@ -96,23 +96,25 @@ fn switching_off_stops_if_configured() {
         switch_off: AfterRelease::Stop,
         ..config()
     });
-    bench.tick(|s| s.switch = Some(Switch::Off));
-    bench.tick(|s| s.switch = Some(Switch::On));
-    assert_eq!(bench.tick(|s| s.switch = Some(Switch::Off)), Stopped);
+    bench.turn(Switch::Off);
+    bench.turn(Switch::On);
+    assert_eq!(bench.turn(Switch::Off), Stopped);
     assert_eq!(bench.stage.log().held, [false, false]);
 }
 
 #[test]
 fn disengaging_wins_over_engaging() {
     let mut bench = Bench::with(&config());
-    bench.tick(|s| s.switch = Some(Switch::Off));
-    bench.tick(|s| s.switch = Some(Switch::On));
+    bench.turn(Switch::Off);
+    bench.turn(Switch::On);
     bench.events();
+    bench.tick(|s| s.switch = Some(Switch::Off));
     bench.command(LoopCommand::Engage);
-    assert_eq!(bench.tick(|s| s.switch = Some(Switch::Off)), Standby);
+    assert_eq!(bench.tick(|_| {}), Standby);
+    let refused = EventKind::EngageRefusedBySwitch;
     assert_eq!(
         bench.events(),
-        [change(Engaged, Standby), RELEASED, refused(Flags::NONE)]
+        [change(Engaged, Standby), RELEASED, refused]
     );
 }
 
@@ -215,8 +217,8 @@ fn a_failsafe_of_no_length_releases_at_once() {
 fn failsafe_can_be_left_by_every_command() {
     let failing = || {
         let mut bench = Bench::with(&config());
-        bench.tick(|s| s.switch = Some(Switch::Off));
-        bench.tick(|s| s.switch = Some(Switch::On));
+        bench.turn(Switch::Off);
+        bench.turn(Switch::On);
         let state = bench.tick(|s| s.faults = LOST);
         assert_eq!(state, Failsafe(SENSORS_LOST));
         bench.stage.set(|s| s.faults = Flags::NONE);
@@ -240,7 +242,7 @@ fn failsafe_can_be_left_by_every_command() {
     assert_eq!(bench.stage.log().held, [false, false]);
 
     let mut bench = failing();
-    assert_eq!(bench.tick(|s| s.switch = Some(Switch::Off)), Standby);
+    assert_eq!(bench.turn(Switch::Off), Standby);
     assert_eq!(bench.stage.log().held, [false, false]);
 
     let mut bench = failing();

@@ -16,20 +16,21 @@ fn config() -> LoopConfig {
     }
 }
 
+/// 20 ticks after the first off are half a second; the off takes two.
 fn steadily_on(bench: &mut Bench) -> State {
-    let states = [(); 20].map(|()| bench.tick(|s| s.switch = Some(Switch::On)));
-    assert_eq!(states[18], Standby, "not before");
-    states[19]
+    let states = [(); 19].map(|()| bench.tick(|s| s.switch = Some(Switch::On)));
+    assert_eq!(states[17], Standby, "not before");
+    states[18]
 }
 
 #[test]
 fn the_switch_engages_on_its_rising_edge_only() {
     let mut bench = Bench::with(&config());
     // On from the start, as it was left.
-    assert_eq!(bench.tick(|s| s.switch = Some(Switch::On)), Standby);
-    assert_eq!(bench.tick(|s| s.switch = Some(Switch::Off)), Standby);
+    assert_eq!(bench.turn(Switch::On), Standby);
+    assert_eq!(bench.turn(Switch::Off), Standby);
     assert_eq!(steadily_on(&mut bench), Engaged);
-    assert_eq!(bench.tick(|s| s.switch = Some(Switch::Off)), Standby);
+    assert_eq!(bench.turn(Switch::Off), Standby);
     assert_eq!(
         bench.events(),
         [change(Standby, Engaged), change(Engaged, Standby), RELEASED]
@@ -39,11 +40,9 @@ fn the_switch_engages_on_its_rising_edge_only() {
 #[test]
 fn an_inhibited_switch_must_be_switched_on_again() {
     let mut bench = Bench::with(&config());
-    bench.tick(|s| s.switch = Some(Switch::Off));
-    bench.tick(|s| {
-        s.switch = Some(Switch::On);
-        s.engage_inhibits = LOST;
-    });
+    bench.turn(Switch::Off);
+    bench.stage.set(|s| s.engage_inhibits = LOST);
+    bench.turn(Switch::On);
     assert_eq!(bench.tick(|s| s.engage_inhibits = Flags::NONE), Standby);
     assert_eq!(
         bench.events(),
@@ -51,40 +50,63 @@ fn an_inhibited_switch_must_be_switched_on_again() {
             engage_inhibits: LOST
         }]
     );
-    bench.tick(|s| s.switch = Some(Switch::Off));
+    bench.turn(Switch::Off);
     assert_eq!(steadily_on(&mut bench), Engaged);
 }
 
 #[test]
 fn after_a_silence_the_switch_must_be_seen_off_again() {
     let mut bench = Bench::with(&config());
-    bench.tick(|s| s.switch = Some(Switch::Off));
+    bench.turn(Switch::Off);
     // Fresh for two periods, silent in the third.
     for _ in 0..3 {
         bench.tick(|s| s.switch = None);
     }
-    assert_eq!(bench.tick(|s| s.switch = Some(Switch::On)), Standby);
+    assert_eq!(bench.turn(Switch::On), Standby);
     bench.tick(|_| {});
     assert_eq!(bench.events(), [EventKind::SwitchedOnUnseen], "once");
-    bench.tick(|s| s.switch = Some(Switch::Off));
+    bench.turn(Switch::Off);
     assert_eq!(steadily_on(&mut bench), Engaged);
 }
 
 #[test]
 fn a_stale_switch_does_not_disengage() {
     let mut bench = Bench::with(&config());
-    bench.tick(|s| s.switch = Some(Switch::Off));
-    bench.tick(|s| s.switch = Some(Switch::On));
+    bench.turn(Switch::Off);
+    bench.turn(Switch::On);
     for _ in 0..50 {
         assert_eq!(bench.tick(|s| s.switch = None), Engaged);
     }
     // It was switched off during the gap, and is off now.
-    assert_eq!(bench.tick(|s| s.switch = Some(Switch::Off)), Standby);
+    assert_eq!(bench.turn(Switch::Off), Standby);
+}
+
+/// However it was engaged: here by a command before the switch was first read.
+#[test]
+fn a_switch_that_is_off_ends_what_a_command_began_and_refuses_the_next() {
+    let mut bench = Bench::with(&config());
+    bench.command(LoopCommand::Engage);
+    assert_eq!(bench.tick(|_| {}), Engaged);
+    bench.tick(|s| s.switch = Some(Switch::Off));
+    assert_eq!(bench.tick(|_| {}), Standby);
+    bench.events();
+    bench.command(LoopCommand::Engage);
+    assert_eq!(bench.tick(|_| {}), Standby);
+    assert_eq!(bench.events(), [EventKind::EngageRefusedBySwitch]);
+    bench.tick(|s| s.switch = Some(Switch::On));
+    assert_eq!(bench.tick(|_| {}), Engaged);
+    bench.command(LoopCommand::Disengage);
+    assert_eq!(bench.tick(|_| {}), Standby);
+    bench.command(LoopCommand::Engage);
+    assert_eq!(bench.tick(|_| {}), Engaged, "the switch is on");
 }
 
 #[test]
-fn a_switch_that_is_off_does_not_undo_a_command() {
-    let mut bench = Bench::with(&config());
+fn if_permitted_a_command_engages_with_the_switch_off() {
+    let mut bench = Bench::with(&LoopConfig {
+        command_needs_switch: false,
+        ..config()
+    });
     bench.tick(|s| s.switch = Some(Switch::Off));
     bench.command(LoopCommand::Engage);
     for _ in 0..10 {

@@ -1,7 +1,8 @@
 //! Forces and moments of the air and the propeller on the airframe.
 //!
 //! Published linear derivatives, with two non-linear curves where they are
-//! needed: lift through the stall and drag over lift. Derivatives are taken to
+//! needed: lift through the stall and drag over lift. The moments of the stalled
+//! wing are in [`stall`]. Derivatives are taken to
 //! hold in body axes; the source's stability axes coincide with them at its
 //! reference of zero angle of attack.
 
@@ -10,6 +11,7 @@ use nalgebra::Vector3;
 
 use crate::airframe::{Airframe, Drag, LateralRow, Lift, Propulsion};
 use crate::atmosphere::Air;
+use crate::stall;
 
 /// Sharpness of the stall, 1/rad: lift changes from one curve to the other
 /// within about ±2° of the stall.
@@ -98,24 +100,40 @@ pub fn loads(
     let half_span_time = airframe.wing_span_m / (2.0 * speed);
     let pitch = &airframe.pitch;
 
-    let (static_lift, drag) = coefficients(
+    let whole = coefficients(
         &airframe.lift,
         &airframe.drag,
         flow.alpha_rad,
         flow.sin_cos_alpha,
     );
-    let lift = static_lift
+    let drag = whole.drag;
+    let lift = whole.lift
         + pitch.lift_per_pitch_rate * rates.y * half_chord_time
         + pitch.lift_per_elevator * deflections.elevator_rad;
     let pitching = pitch.zero
         + pitch.per_alpha * flow.alpha_rad
         + pitch.per_pitch_rate * rates.y * half_chord_time
-        + pitch.per_elevator * deflections.elevator_rad;
-    let lateral = |row: &LateralRow| {
+        + pitch.per_elevator * deflections.elevator_rad
+        + stall::pitching(airframe, flow.alpha_rad, &whole);
+    let wing = stall::wing(airframe, flow, rates, deflections.aileron_rad);
+    // What is due to the wing's rotation and ailerons is the strips' in separated
+    // flow; sideslip, rudder and the tail's yaw damping stay.
+    let lateral = |row: &LateralRow, yaw_rate_by_wing: f64| {
+        let by_wing = row.per_roll_rate * rates.x * half_span_time
+            + yaw_rate_by_wing * rates.z * half_span_time
+            + row.per_aileron * deflections.aileron_rad;
         row.per_beta * flow.beta_rad
-            + (row.per_roll_rate * rates.x + row.per_yaw_rate * rates.z) * half_span_time
-            + row.per_aileron * deflections.aileron_rad
+            + (row.per_yaw_rate - yaw_rate_by_wing) * rates.z * half_span_time
             + row.per_rudder * deflections.rudder_rad
+            + (1.0 - wing.separated) * by_wing
+    };
+    let (side, roll, yaw) = {
+        let rows = &airframe.lateral;
+        (
+            lateral(&rows.side, 0.0),
+            lateral(&rows.roll, rows.roll.per_yaw_rate) + wing.separated * wing.rolling,
+            lateral(&rows.yaw, 0.0) + wing.separated * wing.yawing,
+        )
     };
 
     let (sin_alpha, cos_alpha) = flow.sin_cos_alpha;
@@ -128,13 +146,13 @@ pub fn loads(
     Loads {
         force_n: Vector3::new(
             pressure_area * (lift * sin_alpha - drag * cos_alpha) + thrust,
-            pressure_area * lateral(&airframe.lateral.side),
+            pressure_area * side,
             pressure_area * (-lift * cos_alpha - drag * sin_alpha),
         ),
         moment_nm: Vector3::new(
-            pressure_area * airframe.wing_span_m * lateral(&airframe.lateral.roll),
+            pressure_area * airframe.wing_span_m * roll,
             pressure_area * airframe.chord_m * pitching,
-            pressure_area * airframe.wing_span_m * lateral(&airframe.lateral.yaw),
+            pressure_area * airframe.wing_span_m * yaw,
         ),
         lift_per_alpha_rate: pressure_area * half_chord_time * pitch.lift_per_alpha_rate,
         pitch_per_alpha_rate: pressure_area
@@ -151,15 +169,24 @@ pub fn loads(
 /// *Small Unmanned Aircraft* (2012, eq. 4.10) blends the two, so that the
 /// result is smooth.
 pub fn lift_and_drag(lift: &Lift, drag: &Drag, alpha_rad: f64) -> (f64, f64) {
-    coefficients(lift, drag, alpha_rad, sincos(alpha_rad))
+    let coefficients = coefficients(lift, drag, alpha_rad, sincos(alpha_rad));
+    (coefficients.lift, coefficients.drag)
 }
 
-fn coefficients(
+/// Coefficients at an angle of attack.
+pub(crate) struct Coefficients {
+    pub(crate) lift: f64,
+    pub(crate) drag: f64,
+    /// The share of separated flow, 0..=1.
+    pub(crate) separated: f64,
+}
+
+pub(crate) fn coefficients(
     lift: &Lift,
     drag: &Drag,
     alpha_rad: f64,
     (sin_alpha, cos_alpha): (f64, f64),
-) -> (f64, f64) {
+) -> Coefficients {
     let attached_lift = lift.zero + lift.per_alpha * alpha_rad;
     let attached_drag = drag.zero + drag.induced * attached_lift * attached_lift;
 
@@ -180,10 +207,11 @@ fn coefficients(
     let above = exp(-STALL_SHARPNESS * (alpha_rad - lift.stall_alpha_rad));
     let below = exp(STALL_SHARPNESS * (alpha_rad + lift.stall_alpha_rad));
     let separated = (1.0 + above + below) / ((1.0 + above) * (1.0 + below));
-    (
-        attached_lift + separated * (separated_lift - attached_lift),
-        attached_drag + separated * (separated_drag - attached_drag),
-    )
+    Coefficients {
+        lift: attached_lift + separated * (separated_lift - attached_lift),
+        drag: attached_drag + separated * (separated_drag - attached_drag),
+        separated,
+    }
 }
 
 /// Thrust along body x, N, at a true airspeed in m/s. Negative where the

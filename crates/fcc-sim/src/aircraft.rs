@@ -36,6 +36,8 @@ pub struct Aircraft {
     substep_s: f64,
     time_s: f64,
     diverged: bool,
+    ground_m: f64,
+    impact_s: Option<f64>,
 }
 
 impl Aircraft {
@@ -81,6 +83,8 @@ impl Aircraft {
             substep_s: config.substep_s,
             time_s: 0.0,
             diverged: false,
+            ground_m: config.ground_m,
+            impact_s: None,
         })
     }
 
@@ -119,6 +123,10 @@ impl Aircraft {
     }
 
     fn substep(&mut self, dt_s: f64) {
+        if self.impact_s.is_some() {
+            self.time_s += dt_s;
+            return;
+        }
         let air = Air::at(self.state.altitude_m());
         self.positions = self.servos.follow(&self.positions, &self.commands, dt_s);
         if let Some(gusts) = &mut self.gusts {
@@ -126,7 +134,7 @@ impl Aircraft {
             let gust = gusts.step(
                 dt_s,
                 flow.airspeed_mps,
-                self.state.altitude_m(),
+                self.state.altitude_m() - self.ground_m,
                 self.airframe.wing_span_m,
             );
             self.motion.gust_mps = gust.velocity_mps;
@@ -146,6 +154,15 @@ impl Aircraft {
             self.diverged = true;
         }
         self.time_s += dt_s;
+        if self.state.altitude_m() <= self.ground_m && self.state.velocity_mps.z > 0.0 {
+            self.impact_s = Some(self.time_s);
+        }
+    }
+
+    /// When it hit the ground, s of simulated time; its state is then held as it
+    /// was at the impact. It cannot land.
+    pub fn impact_s(&self) -> Option<f64> {
+        self.impact_s
     }
 
     /// Simulated time, s.

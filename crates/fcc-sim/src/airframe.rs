@@ -88,6 +88,8 @@ pub struct PitchDerivatives {
     pub per_pitch_rate: f64,
     /// `C_mδe`, 1/rad.
     pub per_elevator: f64,
+    /// From the centre of gravity to the horizontal tail, m.
+    pub tail_arm_m: f64,
 }
 
 /// One row of lateral derivatives: of side force, roll or yaw.
@@ -162,6 +164,7 @@ impl Airframe {
     /// | mass: 2,400 lb, the maximum | Cessna, *Pilot's Operating Handbook 172P* (1981) |
     /// | `C_D0` 0.0319, e 0.75, A 7.32 | Loftin, *Quest for Performance*, NASA SP-468 (1985), Skyhawk |
     /// | lift at the stall: 1.6 | NACA 2412: Abbott and von Doenhoff, *Theory of Wing Sections* (1959) |
+    /// | arm of the horizontal tail | JSBSim's c172p, 15.7 ft |
     /// | surface travel | FAA type certificate data sheet 3A12, model 172 |
     /// | torque, diameter, propeller polar | Lowry, *Performance of Light Aircraft* (1999), Cessna 172's data plate |
     ///
@@ -209,6 +212,7 @@ impl Airframe {
             per_alpha_rate: -7.27,
             per_pitch_rate: -12.4,
             per_elevator: -1.122,
+            tail_arm_m: 15.7 * FOOT_M,
         },
         lateral: LateralDerivatives {
             side: LateralRow {

@@ -18,8 +18,11 @@ pub struct SimConfig {
     pub airframe: Airframe,
     /// Its actuators.
     pub servos: Servos,
-    /// Height above mean sea level at the start, m, 0..=15000.
+    /// Height above mean sea level at the start, m, 0..=15000, no lower
+    /// than the ground.
     pub altitude_m: f64,
+    /// The level ground, m above mean sea level, -500..=9000.
+    pub ground_m: f64,
     /// Indicated airspeed at the start, m/s, 10..=150.
     pub indicated_airspeed_mps: f64,
     /// True heading at the start, rad.
@@ -131,6 +134,7 @@ impl Default for SimConfig {
             },
             servos: Servos::default(),
             altitude_m: 3000.0 * FOOT_M,
+            ground_m: 0.0,
             indicated_airspeed_mps: 100.0 * KNOT_MPS,
             heading_rad: 0.0,
             latitude_rad: 0.0,
@@ -215,6 +219,8 @@ impl SimConfig {
             self.airframe.inertia.xz => -largest_xz, largest_xz, "smaller than √(xx·zz)";
             self.servos.surfaces.lag_s, self.servos.throttle.lag_s => 0.0, 10.0, "0..=10 s";
             self.altitude_m => 0.0, 15_000.0, "0..=15000 m";
+            self.ground_m => -500.0, 9_000.0, "-500..=9000 m";
+            self.altitude_m => self.ground_m, f64::MAX, "no lower than ground_m";
             self.indicated_airspeed_mps => 10.0, 150.0, "10..=150 m/s";
             self.heading_rad, self.wind.from_rad => -TAU, TAU, "-6.284..=6.284 rad";
             self.latitude_rad => -1.4, 1.4, "-1.4..=1.4 rad";

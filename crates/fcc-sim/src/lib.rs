@@ -1,9 +1,9 @@
 //! The built-in aircraft, for use without a simulator.
 //!
 //! A rigid body with six degrees of freedom, the published derivatives of a
-//! light single-engined aircraft, a stall, an engine with a fixed-pitch
-//! propeller, actuators, the standard atmosphere, wind, gusts and sensor
-//! errors. It advances by the time of the ticks with which it is sampled: in
+//! light single-engined aircraft, a stall and a spin, an engine with a
+//! fixed-pitch propeller, actuators, the standard atmosphere, wind, gusts, sensor
+//! errors, and a ground that ends the flight. It advances by the time of the ticks with which it is sampled: in
 //! real time in a loop, or in lockstep some thousand times faster. The same
 //! seed gives the same flight to the last bit on every machine, because
 //! transcendental functions are those of `libm` and random numbers those of
@@ -37,9 +37,9 @@
 //! | [`motion`] | the equations of motion and their integration |
 //! | [`turbulence`] | Dryden gusts |
 //!
-//! Not modelled: the ground, flaps, the engine's speed, torque, gyroscopic
-//! effect and slipstream, ice, fuel burn (mass is constant), Mach number, and
-//! wing drop at the stall: roll stays damped.
+//! Not modelled: take-off and landing, flaps, the engine's speed, torque,
+//! gyroscopic effect and slipstream, ice, fuel burn (mass is constant) and Mach
+//! number.
 #![forbid(unsafe_code)]
 
 pub mod aerodynamics;
@@ -53,6 +53,7 @@ pub mod motion;
 mod sensing;
 pub mod servos;
 mod simulation;
+mod stall;
 mod trim;
 mod truth;
 pub mod turbulence;

@@ -24,6 +24,8 @@ pub(crate) struct SharedState {
     /// Odd while the truth is being written.
     sequence: AtomicU64,
     truth: [AtomicU64; NUMBERS],
+    /// Bits of the time of the impact, s; 0 before.
+    impact: AtomicU64,
 }
 
 impl SharedState {
@@ -95,6 +97,19 @@ impl SharedState {
             .store(sequence.wrapping_add(2), Ordering::Release);
     }
 
+    /// The ground was hit at this time, s; the published truth is that of the
+    /// impact.
+    pub(crate) fn hit_ground(&self, at_s: f64) {
+        self.impact.store(at_s.to_bits(), Ordering::Release);
+    }
+
+    fn impact_s(&self) -> Option<f64> {
+        match self.impact.load(Ordering::Acquire) {
+            0 => None,
+            bits => Some(f64::from_bits(bits)),
+        }
+    }
+
     fn truth(&self) -> Truth {
         loop {
             let before = self.sequence.load(Ordering::Acquire);
@@ -142,5 +157,14 @@ impl TruthHandle {
     /// some ten nanoseconds.
     pub fn get(&self) -> Truth {
         self.0.truth()
+    }
+
+    /// The truth at the impact on the ground; none while it flies.
+    pub fn impact(&self) -> Option<Truth> {
+        let time_s = self.0.impact_s()?;
+        Some(Truth {
+            time_s,
+            ..self.get()
+        })
     }
 }

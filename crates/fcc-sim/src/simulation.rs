@@ -110,6 +110,9 @@ impl Sensor<Measurements> for SimSensor {
         }
         let truth = self.aircraft.truth();
         self.link.publish(&truth);
+        if let Some(at_s) = self.aircraft.impact_s() {
+            self.link.hit_ground(at_s);
+        }
 
         let taken = tick.woke;
         let measured = self

@@ -1,11 +1,12 @@
 //! Trim: the controls that hold an aircraft in straight and level flight.
 
-use libm::{cos, sin};
+use libm::{cos, sin, sincos};
 use thiserror::Error;
 
-use crate::aerodynamics::{full_thrust_n, lift_and_drag, windmill_n};
+use crate::aerodynamics::{coefficients, full_thrust_n, lift_and_drag, windmill_n};
 use crate::airframe::Airframe;
 use crate::atmosphere::Air;
+use crate::stall;
 
 /// Straight and level flight in still air.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -83,7 +84,10 @@ pub fn trim(airframe: &Airframe, indicated_mps: f64, altitude_m: f64) -> Result<
     let speed = air.true_of_indicated_mps(indicated_mps);
     let pressure_area = 0.5 * air.density_kgpm3 * speed * speed * airframe.wing_area_m2;
     let elevator = |alpha: f64| {
-        -(airframe.pitch.zero + airframe.pitch.per_alpha * alpha) / airframe.pitch.per_elevator
+        let wing = coefficients(&airframe.lift, &airframe.drag, alpha, sincos(alpha));
+        let stalled = stall::pitching(airframe, alpha, &wing);
+        -(airframe.pitch.zero + airframe.pitch.per_alpha * alpha + stalled)
+            / airframe.pitch.per_elevator
     };
     let thrust = |alpha: f64| {
         let (_, drag) = lift_and_drag(&airframe.lift, &airframe.drag, alpha);

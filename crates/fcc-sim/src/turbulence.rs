@@ -6,8 +6,7 @@
 //! their output is scaled, so that a change of height scales the present gust
 //! and does not start a new one.
 //!
-//! Gusts are applied in body axes at every height, and the ground is at mean
-//! sea level.
+//! Gusts are applied in body axes at every height.
 
 use libm::{cbrt, exp, pow, sqrt};
 use nalgebra::Vector3;

@@ -163,6 +163,7 @@ fn navion() -> Airframe {
             per_alpha_rate: -4.36,
             per_pitch_rate: -9.96,
             per_elevator: -0.923,
+            tail_arm_m: 16.0 * FOOT_M,
         },
         lateral: LateralDerivatives {
             side: LateralRow {

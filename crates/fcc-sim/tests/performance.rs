@@ -63,6 +63,7 @@ fn it_climbs_as_in_the_handbook() {
     let mut aircraft = Aircraft::new(&SimConfig {
         airframe: Airframe::SKYHAWK,
         altitude_m: 0.0,
+        ground_m: -100.0,
         indicated_airspeed_mps: 76.0 * KNOT_MPS,
         ..SimConfig::default()
     })

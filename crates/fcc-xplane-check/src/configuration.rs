@@ -56,6 +56,8 @@ pub(crate) fn text(
     set(&mut table, "recording", "folder", folder.into());
     set(&mut table, "restart", "mode", "cold".into());
     set(&mut table, "engage", "switch_off", "standby".into());
+    // Where no write can move the switch, a command engages.
+    set(&mut table, "engage", "command_needs_switch", false.into());
     set(&mut table, "telemetry", "enabled", true.into());
     set(&mut table, "telemetry", "commands", true.into());
     Ok(toml::to_string(&table)?)

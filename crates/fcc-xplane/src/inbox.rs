@@ -27,6 +27,7 @@ use crate::pressure_altitude::PressureAltitude;
 use crate::protocol::{Kind, Malformed, data, rpos, rref};
 use crate::quantity::Quantity;
 use crate::rows;
+use crate::sending_clock::SendingClock;
 use crate::simulator::{SimulatorClock, SimulatorReport, SimulatorState};
 use crate::values::{Group, Values};
 
@@ -41,6 +42,7 @@ pub(crate) struct Inbox {
     /// The rows to read, if rows are the input.
     rows: Option<DataRows>,
     clock: SimulatorClock,
+    sending: SendingClock,
     values: Values,
     position: Reading<Position>,
     motion: Motion,
@@ -57,6 +59,7 @@ impl Inbox {
         Self {
             rows,
             clock: SimulatorClock::new(silent_after),
+            sending: SendingClock::default(),
             values: Values::default(),
             position: Reading::default(),
             motion: Motion::new(rows),
@@ -127,12 +130,17 @@ impl Inbox {
             let elsewhere = with_rows && quantity.comes_in_rows();
             (!elsewhere).then_some((quantity, f64::from(value)))
         });
-        let time_s = pairs
-            .clone()
-            .find(|(quantity, _)| *quantity == Quantity::FlightTime)
-            .and_then(|(quantity, value)| quantity.validate(value));
+        let find = |time| {
+            let mut pairs = pairs.clone();
+            let found = pairs.find(|(quantity, _)| *quantity == time);
+            found.and_then(|(quantity, value)| quantity.validate(value))
+        };
+        let time_s = find(Quantity::FlightTime);
         if self.is_late(now, time_s, link) {
             return Ok(false);
+        }
+        if let (Some(network_s), Some(flight_s)) = (find(Quantity::NetworkTime), time_s) {
+            self.sending.receive(now, network_s, flight_s);
         }
         let mut report = SimulatorReport {
             time_s,
@@ -173,7 +181,7 @@ impl Inbox {
                 self.take(quantity, raw, now, &mut report, link);
             });
             if let Some(position) = rows::position(&row) {
-                self.position = Reading::new(position, now);
+                self.position = Reading::new(position, self.sending.stamp(now));
             }
         }
         self.values.end_frame();
@@ -189,7 +197,7 @@ impl Inbox {
                 longitude_rad: reply.longitude_deg.to_radians(),
                 altitude_m: reply.elevation_m,
             };
-            self.position = Reading::new(position, now);
+            self.position = Reading::new(position, self.sending.stamp(now));
         }
         self.clock.receive(now, SimulatorReport::default());
         Ok(self.rows.is_none())
@@ -215,7 +223,7 @@ impl Inbox {
             count(&link.counters.implausible);
             return;
         };
-        self.values.set(quantity, value, now);
+        self.values.set(quantity, value, self.sending.stamp(now));
         link.show(quantity, value, now);
         match quantity {
             Quantity::Paused => report.paused = Some(value >= 0.5),
@@ -240,7 +248,8 @@ impl Inbox {
         link: &SharedState,
         writing: &SharedState,
     ) -> SimulatorState {
-        self.motion.publish(now, &mut self.values, into, link);
+        let there = self.sending.there(now);
+        self.motion.publish(there, &mut self.values, into, link);
         self.publish_attitude(into);
         let values = &mut self.values;
         if let Some(([airspeed], taken)) = values.whole(Group::Airspeed) {
@@ -270,7 +279,7 @@ impl Inbox {
             into.engage_switch = Reading::new(self.switch, taken);
         }
         if self.clock.last_received() == now {
-            self.publish_observations(now, into, link, writing);
+            self.publish_observations(there, into, link, writing);
         }
         self.publish_plant(now, into, link)
     }
@@ -328,8 +337,8 @@ impl Inbox {
         }
     }
 
-    /// The simulator's clock and state: written in every tick in which it sent
-    /// something, once its clock is known.
+    /// The simulator's clock and state: written in every tick in which it sent its
+    /// time. If that value alone is missing, the reading grows old.
     fn publish_plant(
         &mut self,
         now: Time,
@@ -341,10 +350,10 @@ impl Inbox {
         if state == SimulatorState::Jumped {
             count(&link.counters.jumps);
         }
-        if self.clock.last_received() == now
+        if self.clock.time_seen() == now
             && let (Some(time_s), Some(state)) = (self.clock.time_s(), state.plant_state())
         {
-            into.plant = Reading::new(Plant { time_s, state }, now);
+            into.plant = Reading::new(Plant { time_s, state }, self.sending.stamp(now));
         }
         state
     }

@@ -78,6 +78,7 @@ mod release;
 mod release_monitor;
 mod reply_port;
 mod rows;
+mod sending_clock;
 mod sensor;
 mod silence;
 mod simulator;

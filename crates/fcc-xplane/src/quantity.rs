@@ -83,6 +83,7 @@ pub(crate) enum Quantity {
     Replay,
     PressureAltitude,
     AltimeterSetting,
+    NetworkTime,
 }
 
 impl Quantity {

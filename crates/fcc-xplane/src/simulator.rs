@@ -208,6 +208,11 @@ impl SimulatorClock {
         (!self.latest.seen.is_never()).then_some(self.latest.time_s)
     }
 
+    /// When its time was last read.
+    pub(crate) const fn time_seen(&self) -> Time {
+        self.latest.seen
+    }
+
     /// Whether it sends, but its time does not advance: measured up to the last
     /// report of its time, so that a gap between reports is not taken for a
     /// stopped clock.

@@ -44,7 +44,7 @@ pub(crate) fn report(file: &Path, page: Option<&Path>) -> Result<Report<()>, Str
     let recording = Recording::open(file).map_err(|error| error.to_string())?;
     let report = Survey::<Thermostat>::read(&recording, (), None, |_| {})?;
     if let Some(page) = page {
-        report.write_page(page, file)?;
+        report.write_page(page, &[file])?;
     }
     Ok(report)
 }

@@ -29,6 +29,11 @@ impl RateLimit {
         }
     }
 
+    /// Changes the largest rate of change, per second.
+    pub const fn set_rate(&mut self, rate_per_s: f64) {
+        self.rate_per_s = rate_per_s;
+    }
+
     /// Sets the output.
     pub const fn reset(&mut self, output: f64) {
         self.output = Some(output);

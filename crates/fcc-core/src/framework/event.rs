@@ -264,5 +264,8 @@ schema! {
         /// arrived, and control is not taken: it must go off and on again.
         #[field(32)]
         SwitchedOnUnseen,
+        /// A command to engage was refused, because the engage switch is off.
+        #[field(33)]
+        EngageRefusedBySwitch,
     }
 }

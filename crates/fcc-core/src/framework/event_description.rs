@@ -113,6 +113,9 @@ impl<C: Controller> fmt::Display for EventDescription<C> {
                 "not engaged: the engage switch was switched on while nothing arrived from it; \
                  switch it off and on again",
             ),
+            EventKind::EngageRefusedBySwitch => {
+                f.write_str("not engaged by the command: the engage switch is off")
+            }
             EventKind::ConditionsChanged { began, ended } => condition_change::<C>(f, began, ended),
             EventKind::SourceChanged(SourceChange { readings, from, to }) => {
                 for (n, bit) in readings.iter().enumerate() {

@@ -143,6 +143,11 @@ impl Cockpit {
     }
 
     pub(crate) fn observe(&mut self) {
+        self.observe_with(|_| {});
+    }
+
+    /// A tick whose measurements are changed before they are read.
+    pub(crate) fn observe_with(&mut self, change: impl FnOnce(&mut Measurements)) {
         self.next_tick();
         let (feel, now) = (self.feel, self.tick.woke);
         let before = self.measurements;
@@ -210,6 +215,7 @@ impl Cockpit {
             now.plant.value.time_s = before.plant.value.time_s;
             now.plant.value.state = PlantState::Stalled;
         }
+        change(now);
         self.autopilot.estimate(&self.tick, &self.measurements);
     }
 

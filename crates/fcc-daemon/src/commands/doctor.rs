@@ -11,9 +11,9 @@ use crate::output;
 
 /// Checks the machine, for the configured loop.
 pub(super) fn doctor(args: &DoctorArgs) -> Result<Exit, Failure> {
-    if !args.root.is_dir() {
+    if !args.root.join("proc").is_dir() {
         return Err(Failure::usage(format_args!(
-            "--root {}: there is no such folder: give the one with the machine's files",
+            "--root {}: there is no folder `proc` in it: give the one with the machine's files",
             args.root.display()
         )));
     }

@@ -44,7 +44,12 @@ fn make(args: &ReportArgs, recording: &Recording) -> Result<FlightReport, String
         report.write_svgs(folder, &args.file)?;
     }
     if let Some(page) = &args.html {
-        report.write_page(page, &args.file)?;
+        let tables = args
+            .csv
+            .iter()
+            .flat_map(|folder| fcc_report::TABLES.map(|table| folder.join(table)));
+        let others: Vec<_> = tables.chain([args.file.clone()]).collect();
+        report.write_page(page, &others)?;
     }
     Ok(report)
 }

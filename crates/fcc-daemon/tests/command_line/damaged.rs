@@ -204,7 +204,7 @@ fn an_input_is_not_overwritten() {
         let said = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{arguments:?}: {said}");
         assert!(
-            said.contains("which is read: choose another name"),
+            said.contains("which this command uses, too: choose another name"),
             "{said}"
         );
     }

@@ -111,6 +111,45 @@ fn a_flight_ends_with_its_own_exit_code_unless_its_result_was_wanted_and_is_lost
     }
 }
 
+/// A flight that touches the ground ends there, with a code of its own; its
+/// recording is whole and its report shows the impact.
+#[test]
+fn a_flight_that_ends_on_the_ground_has_an_exit_code_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let low = "[built-in]\naltitude_ft = 1000.0\nground_ft = 995.0\ngusts = \"severe\"\nseed = \
+               3\n[guidance]\nmode = \"hold\"\n";
+    std::fs::write(folder.path().join("low.toml"), low).unwrap();
+    let words = [
+        "fly",
+        "--config",
+        "low.toml",
+        "--lockstep",
+        "--json",
+        "--quiet",
+        "--recordings",
+        ".",
+    ];
+    let ended = fccd(folder.path(), &words).output().unwrap();
+    assert_eq!(ended.status.code(), Some(16));
+    let found: Value = serde_json::from_slice(&ended.stdout).unwrap();
+    let impact = &found["impact"];
+    assert!((impact["altitude_ft"].as_f64().unwrap() - 995.0).abs() < 1.0);
+    assert!(impact["sink_rate_fpm"].as_f64().unwrap() > 100.0);
+    assert!((60.0..130.0).contains(&impact["airspeed_kt"].as_f64().unwrap()));
+    let at_s = impact["time_s"].as_f64().unwrap();
+    assert!((3.0..60.0).contains(&at_s), "{at_s}");
+    let ending = found["ending"].as_str().unwrap();
+    assert!(
+        ending.starts_with("the aircraft hit the ground"),
+        "{ending}"
+    );
+    let file = found["recording"]["files"][0].as_str().unwrap();
+    let report = fccd(folder.path(), &["report", file]).output().unwrap();
+    assert_eq!(report.status.code(), Some(0));
+    let report = String::from_utf8(report.stdout).unwrap();
+    assert!(report.contains("the aircraft hit the ground"), "{report}");
+}
+
 /// A terminal obeys escape sequences, wherever they come from.
 #[test]
 fn control_characters_in_names_are_escaped() {

@@ -88,6 +88,24 @@ fn a_file_that_is_not_a_recording_or_would_be_lost_is_refused() {
     assert_eq!(fs::read_to_string(other).unwrap(), "not a recording");
 }
 
+/// The page is not written over a table of the same command.
+#[test]
+fn the_page_is_not_a_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = Plan::seconds(5).record(folder.path());
+    let tables = folder.path().join("tables");
+    let page = tables.join("records.csv");
+    let [file, tables, page] = [&file, &tables, &page].map(|path| path.to_str().unwrap());
+    let output = fccd(&[file, "--csv", tables, "--html", page]);
+    assert_eq!(output.status.code(), Some(1));
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        stderr.contains("records.csv: cannot be written"),
+        "{stderr}"
+    );
+    assert!(fs::read_to_string(page).unwrap().starts_with("tick,"));
+}
+
 /// Every number in the table parses to the bits in the recording.
 #[test]
 fn the_csv_is_the_recording() {

@@ -86,7 +86,8 @@ fn text(node: &Handle) -> String {
     }
 }
 
-/// 65 s: 2 s of standby, 20 s of holding, two whole legs and a part.
+/// 65 s: 2 s of standby and the switch's second reading, 20 s of holding, two
+/// whole legs and a part.
 #[test]
 fn a_flight_is_reported_as_it_was_flown() {
     let report = report(Plan::seconds(65), all);
@@ -100,7 +101,7 @@ fn a_flight_is_reported_as_it_was_flown() {
         .collect();
     assert_eq!(
         states,
-        [("standby", 0.0), ("engaged", 2.0), ("stopped", 64.975)]
+        [("standby", 0.0), ("engaged", 2.025), ("stopped", 64.975)]
     );
     let timing = report.timing.as_ref().unwrap();
     assert!((timing.table.period_ms.mean - 25.0).abs() < 1e-9);

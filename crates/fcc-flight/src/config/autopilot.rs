@@ -173,6 +173,11 @@ section! {
         max_sink_fpm => max_sink_mps * FOOT_PER_MINUTE_MPS,
         /// Commanded airspeeds keep this margin from both limits.
         airspeed_margin_kt => airspeed_margin_mps * KNOT_MPS,
+        /// The floor: nothing that is flown leads below this altitude above mean
+        /// sea level, by the altimeter setting; -1500 for none.
+        floor_ft => floor_m * FOOT_M,
+        /// Altitudes that are flown to keep this margin above the floor.
+        floor_margin_ft => floor_margin_m * FOOT_M,
         /// Stalling speed, clean, without power, at the heaviest weight flown.
         stall_airspeed_kt => stall_airspeed_mps * KNOT_MPS,
         /// Airspeed of the longest glide.

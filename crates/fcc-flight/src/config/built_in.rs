@@ -10,6 +10,8 @@ use serde::{Deserialize, Serialize};
 pub struct BuiltInSection {
     /// At the start.
     pub altitude_ft: f64,
+    /// The level ground, above mean sea level: the flight ends on it.
+    pub ground_ft: f64,
     /// Indicated, at the start.
     pub airspeed_kt: f64,
     /// At the start.
@@ -59,6 +61,7 @@ impl Default for BuiltInSection {
     fn default() -> Self {
         Self {
             altitude_ft: 3_000.0,
+            ground_ft: 0.0,
             airspeed_kt: 100.0,
             heading_deg: 0.0,
             wind_from_deg: 0.0,
@@ -99,6 +102,7 @@ impl From<&BuiltInSection> for SimConfig {
     fn from(section: &BuiltInSection) -> Self {
         Self {
             altitude_m: section.altitude_ft * FOOT_M,
+            ground_m: section.ground_ft * FOOT_M,
             indicated_airspeed_mps: section.airspeed_kt * KNOT_MPS,
             heading_rad: section.heading_deg.to_radians(),
             wind: Wind {

@@ -254,6 +254,7 @@ impl Config {
         LoopConfig {
             messages_capacity: self.tick.ticks_in(FETCHED_WITHIN_S, most),
             switch_off: self.engage.switch_off.into(),
+            command_needs_switch: self.engage.command_needs_switch,
             failsafe_hold: Duration::from_secs_f64(self.failsafe.hold_s),
             after_failsafe: self.failsafe.then.into(),
             budget: Budget::from(&self.budget),

@@ -37,6 +37,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&str, String)) {
         let message = format!("is {silent_s}: choose at least sensor_max_age_ms, {max_age_ms} ms");
         report("failsafe.all_silent_s", message);
     }
+    ages(config, report);
     budgets(config, report);
     built_in(config, report);
     if config.x_plane.is_some() && config.built_in.is_some() {
@@ -142,6 +143,30 @@ fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&str, String))
     }
 }
 
+/// The longest interval between two readings of all sensors with which JSBSim's
+/// c172p was flown at 73 and 100 kt, ms: in a loop of at least this rate, Hz, and in
+/// a slower one (`docs/envelope.md`, margins).
+const FAST_LOOP_HZ: f64 = 40.0;
+const MOST_AGE_MS: (f64, f64) = (600.0, 250.0);
+
+/// Of `failsafe.sensor_max_age_ms`: readings of that age can be flown.
+fn ages(config: &Config, report: &mut impl FnMut(&str, String)) {
+    let (age_ms, rate_hz) = (config.failsafe.sensor_max_age_ms, config.tick.rate_hz);
+    let (fast_ms, slow_ms) = MOST_AGE_MS;
+    let most_ms = if rate_hz >= FAST_LOOP_HZ {
+        fast_ms
+    } else {
+        slow_ms
+    };
+    if age_ms as f64 > most_ms {
+        let message = format!(
+            "is {age_ms}: choose at most {most_ms}: older readings cannot be flown with \
+             loop.rate_hz = {rate_hz}"
+        );
+        report("failsafe.sensor_max_age_ms", message);
+    }
+}
+
 /// X-Plane sends the values of a frame in one datagram, and the position in
 /// another.
 const DATAGRAMS_PER_FRAME: f64 = 2.0;
@@ -183,6 +208,15 @@ fn built_in(config: &Config, report: &mut impl FnMut(&str, String)) {
     };
     let airspeed = "built-in.airspeed_kt";
     // One that is out of its range is reported as such.
+    if section.ground_ft >= section.altitude_ft {
+        report(
+            "built-in.ground_ft",
+            format!(
+                "is {}: choose less than altitude_ft, {}: the flight begins in the air",
+                section.ground_ft, section.altitude_ft
+            ),
+        );
+    }
     if is_in_range(airspeed, section.airspeed_kt)
         && is_in_range("built-in.altitude_ft", section.altitude_ft)
         && let Some(message) = section.why_not_level()

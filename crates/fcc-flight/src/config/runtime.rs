@@ -183,7 +183,7 @@ impl From<Then> for AfterRelease {
 }
 
 /// `[engage]`.
-#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 #[expect(
     clippy::struct_excessive_bools,
@@ -192,6 +192,8 @@ impl From<Then> for AfterRelease {
 pub struct EngageSection {
     /// The effect of switching off.
     pub switch_off: Then,
+    /// A command engages only while the engage switch, if there is one, is on.
+    pub command_needs_switch: bool,
     /// Engage although another autopilot is on.
     pub permit_autopilot: bool,
     /// Engage although another autothrottle is on.
@@ -200,6 +202,19 @@ pub struct EngageSection {
     pub permit_fly_by_wire: bool,
     /// Engage beyond 60° of bank or pitch, and recover from it first.
     pub permit_upset: bool,
+}
+
+impl Default for EngageSection {
+    fn default() -> Self {
+        Self {
+            switch_off: Then::Standby,
+            command_needs_switch: true,
+            permit_autopilot: false,
+            permit_autothrottle: false,
+            permit_fly_by_wire: false,
+            permit_upset: false,
+        }
+    }
 }
 
 impl EngageSection {

@@ -16,6 +16,8 @@ use fcc_xplane::{OpenError, XPlane, XPlaneAuthority, XPlaneConfig, XPlaneStatus}
 use super::control_override::ControlOverride;
 use super::event_log::EventLog;
 #[cfg(feature = "live")]
+use super::limits::{altitudes_m, heights_m};
+#[cfg(feature = "live")]
 use super::live::Live;
 use super::observer::Observer;
 use super::plan::Pace;
@@ -213,17 +215,17 @@ impl Assembly {
 /// What an aircraft permits of the set points of other programs.
 #[cfg(feature = "live")]
 fn limits(autopilot: &AutopilotConfig) -> PlantLimits {
-    let mut limits = vec![("airspeed_mps", Ok(autopilot.envelope.allowed_airspeeds()))];
-    if autopilot.altimeter.field_elevation_m.is_none() {
-        limits.push((
+    vec![
+        ("airspeed_mps", Ok(autopilot.envelope.allowed_airspeeds())),
+        ("altitude_m", Ok(altitudes_m(autopilot))),
+        (
             "height_m",
-            Err(
+            heights_m(autopilot).ok_or(
                 "a height needs the elevation of its field: set altimeter.field_elevation_ft in \
                  the configuration, or give an altitude",
             ),
-        ));
-    }
-    limits
+        ),
+    ]
 }
 
 #[cfg(test)]

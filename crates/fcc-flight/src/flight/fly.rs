@@ -11,6 +11,7 @@ use fcc_timer::{ManualTimer, RealtimeGranted, Timer, TimerError};
 
 use super::assemble::Assembly;
 use super::follow::Follower;
+use super::ground::GroundWatch;
 use super::hang::HangWatch;
 use super::host::Host;
 use super::observer::{Facts, Observer};
@@ -97,6 +98,7 @@ pub fn fly(
         controller: Pilot::new(assembly.autopilot, assembly.control),
         actuators: assembly.actuators,
     };
+    let mut ground = GroundWatch::new(assembly.true_now);
     let report = match plan.pace {
         Pace::RealTime => {
             let (flight_loop, link) = Loop::new(parts, &assembly.loop_config)?;
@@ -109,6 +111,7 @@ pub fn fly(
                 loop_priority: assembly.loop_config.realtime.priority,
                 authority: authority.as_ref(),
                 length: plan.length,
+                ground: &mut ground,
             }
             .run(facts, &mut observers, host)?
         }
@@ -117,13 +120,22 @@ pub fn fly(
             host.attach(&link.stop).map_err(FlyError::Host)?;
             observers.begin(&facts);
             host.started();
-            run_in_lockstep(machine, &mut link, &mut observers, host, plan.length)?
+            run_in_lockstep(
+                machine,
+                &mut link,
+                &mut observers,
+                host,
+                plan.length,
+                &mut ground,
+            )?
         }
     };
     let report = await_release(report, authority.as_ref(), &mut observers, host);
     let released = report.released;
     let mut outcome = Outcome::new(timer_name, plan.pace, &report);
-    if matches!(report.ending, Ending::StopFlag) {
+    if let Some(impact) = ground.impact {
+        outcome.hit_ground(impact);
+    } else if matches!(report.ending, Ending::StopFlag) {
         outcome.explain(host.interrupted_by(), observers.monitor.over(plan.length));
     }
     // The controls have been released; writing to the disk may take time now.
@@ -150,6 +162,7 @@ struct RealTime<'a> {
     loop_priority: Option<u8>,
     authority: Option<&'a Arc<dyn ControlAuthority>>,
     length: Length,
+    ground: &'a mut GroundWatch,
 }
 
 impl RealTime<'_> {
@@ -189,6 +202,7 @@ impl RealTime<'_> {
             host,
             run_statistics: Some(&mut run_statistics),
             length: self.length,
+            ground: self.ground,
         }
         .follow(
             self.authority,
@@ -224,6 +238,7 @@ fn run_in_lockstep(
     observers: &mut Observers,
     host: &mut dyn Host,
     length: Length,
+    ground: &mut GroundWatch,
 ) -> Result<LoopReport, FlyError> {
     machine.start()?;
     let (ticks, length) = match length {
@@ -236,6 +251,7 @@ fn run_in_lockstep(
         host,
         run_statistics: None,
         length,
+        ground,
     };
     while machine.step() != State::Stopped {
         follower.drain();

@@ -8,6 +8,7 @@ use fcc_core::framework::{ControlAuthority, Event, EventKind, Message};
 use fcc_runtime::Link;
 use fcc_telemetry::FlightMessage;
 
+use super::ground::GroundWatch;
 use super::hang::{HangWatch, Hung};
 use super::host::Host;
 use super::observers::Observers;
@@ -28,17 +29,22 @@ pub(super) struct Follower<'a> {
     /// statistics.
     pub(super) run_statistics: Option<&'a mut RunStatistics<Pilot>>,
     pub(super) length: Length,
+    pub(super) ground: &'a mut GroundWatch,
 }
 
 impl Follower<'_> {
-    /// Reads all messages, stops the loop when its time is over, and polls each
-    /// observer.
+    /// Reads all messages, stops the loop when its time is over or its aircraft
+    /// on the ground, and polls each observer.
     pub(super) fn drain(&mut self) {
         while let Some(message) = self.link.messages.receive() {
             self.take(&message);
             if self.observers.monitor.over(self.length).is_some() {
                 self.link.stop.stop();
             }
+        }
+        if let Some(impact) = self.ground.hits() {
+            self.observers.remark(impact.to_string());
+            self.link.stop.stop();
         }
         self.observers.poll(&mut self.link.commands, self.host);
     }

@@ -12,10 +12,12 @@ mod event_log;
 mod flapping;
 mod fly;
 mod follow;
+mod ground;
 mod hang;
 mod host;
 #[cfg(feature = "fault-injection")]
 mod injection;
+mod limits;
 #[cfg(feature = "live")]
 mod live;
 mod monitor;
@@ -35,7 +37,9 @@ pub use assemble::{Assembly, AssemblyError, assemble, authority_without_connecti
 pub use control_override::ControlOverride;
 pub use flapping::Flapping;
 pub use fly::{FlyError, fly};
+pub use ground::Impact;
 pub use host::Host;
+pub use limits::{altitudes_m, heights_m};
 pub use observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 pub use outcome::{Conclusion, EventEntry, Outcome, RecordingOutcome};
 pub use pilot::Pilot;

@@ -53,7 +53,10 @@ impl Monitor {
                         ..
                     }
                 );
-                self.refused |= matches!(event.kind, EventKind::EngageRefused { .. });
+                self.refused |= matches!(
+                    event.kind,
+                    EventKind::EngageRefused { .. } | EventKind::EngageRefusedBySwitch
+                );
                 FlightTime {
                     time_s: self.seconds(event.time.as_nanos()),
                     tick: event.tick,

@@ -5,6 +5,7 @@ use fcc_telemetry::{FlightScore, Realtime, ScoredBy, TimingReport};
 use fcc_timer::RealtimeGranted;
 use serde::Serialize;
 
+use super::ground::Impact;
 use super::monitor::Over;
 use super::plan::Pace;
 
@@ -24,6 +25,8 @@ pub struct Outcome {
     pub events: Vec<EventEntry>,
     /// Why the loop ended.
     pub ending: String,
+    /// Where and how a simulated aircraft hit the ground; none if it did not.
+    pub impact: Option<Impact>,
     /// How often it entered failsafe.
     pub failsafes: u64,
     /// Ticks that overran their budget.
@@ -57,6 +60,8 @@ pub enum Conclusion {
     Failed,
     /// It entered failsafe.
     Failsafe,
+    /// The simulated aircraft hit the ground.
+    HitGround,
     /// A component of the loop panicked; the controls were released.
     Panicked,
     /// The loop hung; its watchdog released the controls.
@@ -116,6 +121,7 @@ impl Outcome {
             scored_by: ScoredBy::Measurement,
             events: Vec::new(),
             ending: report.ending.to_string(),
+            impact: None,
             failsafes: report.failsafes,
             overruns: report.overruns,
             released: report.released,
@@ -133,6 +139,18 @@ impl Outcome {
         if self.conclusion == Conclusion::Completed {
             self.conclusion = Conclusion::NotRecorded;
         }
+    }
+
+    /// The flight ended on the ground: the loop was stopped.
+    pub(super) fn hit_ground(&mut self, impact: Impact) {
+        if matches!(
+            self.conclusion,
+            Conclusion::Completed | Conclusion::Failed | Conclusion::Failsafe
+        ) {
+            self.conclusion = Conclusion::HitGround;
+        }
+        self.ending = impact.to_string();
+        self.impact = Some(impact);
     }
 
     /// Says who stopped a loop that was stopped from outside.

@@ -46,7 +46,12 @@ impl Flight {
             controller: Autopilot::new(AutopilotConfig::default()),
             actuators: vec![Box::new(actuator)],
         };
-        let (mut machine, link) = Machine::new(parts, &LoopConfig::default()).unwrap();
+        // The wire's switch stays off.
+        let config = LoopConfig {
+            command_needs_switch: false,
+            ..LoopConfig::default()
+        };
+        let (mut machine, link) = Machine::new(parts, &config).unwrap();
         machine.start().unwrap();
         let GuidanceConfig::TimedPattern(pattern) = AutopilotConfig::default().guidance else {
             panic!("the default");

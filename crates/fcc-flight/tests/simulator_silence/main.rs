@@ -5,8 +5,8 @@
 mod flight;
 mod world;
 
-use fcc_core::flight::flags::NOT_FOLLOWED;
-use fcc_core::framework::State::{Engaged, Standby};
+use fcc_core::flight::flags::{NOT_FOLLOWED, SOURCE_CLOCK};
+use fcc_core::framework::State::{Engaged, Failsafe, Standby};
 use fcc_core::framework::{EventKind, Notice};
 use flight::{Flight, PERIOD_NS};
 use world::Manner;
@@ -271,4 +271,31 @@ fn in_silence_a_command_still_releases() {
     flight.run(Manner::Flying, 0.1);
     assert_eq!(flight.state(), Standby);
     assert!(!flight.wire.world().is_overridden());
+}
+
+/// A queue holds all that X-Plane sends for half a second and delivers it in order.
+/// By the flight's time that is a freeze; its network time, which ran on through one
+/// before, tells that what arrives is half a second old.
+#[test]
+fn a_queue_in_the_network_is_failsafe_until_it_is_empty() {
+    for frame_hz in [60.0, 25.0] {
+        let mut flight = Flight::engaged(frame_hz, 3);
+        flight.fly(6.0);
+        flight.during(Manner::Frozen, 0.3);
+        flight.fly(6.0);
+        flight.events();
+        flight.wire.world().hold(0.5);
+        flight.fly(0.5);
+        flight.run(Manner::Flying, 2.5);
+        assert!(matches!(flight.state(), Failsafe(_)));
+        let named = flight.events().into_iter().any(|kind| match kind {
+            EventKind::ConditionsChanged { began, .. } => began.contains(SOURCE_CLOCK),
+            _ => false,
+        });
+        assert!(named);
+        flight.wire.world().hold(0.0);
+        flight.run(Manner::Flying, 2.5);
+        flight.fly(20.0);
+        assert!(flight.true_bank_deg().abs() < 35.0);
+    }
 }

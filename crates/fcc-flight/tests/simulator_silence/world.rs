@@ -51,7 +51,13 @@ pub(crate) struct World {
     values: HashMap<String, f64>,
     subscribed: HashMap<i32, String>,
     position_hz: u32,
-    to_client: VecDeque<Vec<u8>>,
+    /// What is on the way, each with the time of its arrival, ns.
+    to_client: VecDeque<(i64, Vec<u8>)>,
+    /// How long the network holds it, ns, and the time, ns.
+    held_ns: i64,
+    now_ns: i64,
+    /// When the present frame was made.
+    made_ns: i64,
     from_client: VecDeque<Vec<u8>>,
     /// Of our time, ns.
     next_frame_ns: i64,
@@ -72,8 +78,12 @@ pub(crate) struct Wire(Arc<Mutex<World>>);
 
 impl Port for Wire {
     fn receive(&self, into: &mut [u8]) -> Result<Option<(usize, SocketAddr)>, Errno> {
-        let next = self.world().to_client.pop_front();
-        Ok(next.map(|datagram| {
+        let mut world = self.world();
+        let now_ns = world.now_ns;
+        let next = world
+            .to_client
+            .pop_front_if(|(due_ns, _)| *due_ns <= now_ns);
+        Ok(next.map(|(_, datagram)| {
             let length = datagram.len().min(into.len());
             into[..length].copy_from_slice(&datagram[..length]);
             (length, ([127, 0, 0, 1], 49_001).into())
@@ -118,6 +128,9 @@ impl Wire {
             subscribed: HashMap::new(),
             position_hz: 0,
             to_client: VecDeque::new(),
+            held_ns: 0,
+            now_ns: 0,
+            made_ns: 0,
             from_client: VecDeque::new(),
             next_frame_ns: 7_000_000,
             frame_ns,
@@ -138,11 +151,24 @@ impl Wire {
 impl World {
     /// Makes the frames up to an instant of our clock.
     pub(crate) fn advance_to(&mut self, now_ns: i64) {
+        self.now_ns = now_ns;
         while self.next_frame_ns <= now_ns {
             let frame_ns = self.next_frame();
+            self.made_ns = self.next_frame_ns;
             self.next_frame_ns += frame_ns;
             if self.manner != Manner::Frozen {
                 self.frame(frame_ns as f64 * 1e-9);
+            }
+        }
+    }
+
+    /// From now on the network holds what is sent for so long; at 0 it delivers
+    /// all that waits.
+    pub(crate) fn hold(&mut self, held_s: f64) {
+        self.held_ns = (held_s * 1e9) as i64;
+        if self.held_ns == 0 {
+            for (due_ns, _) in &mut self.to_client {
+                *due_ns = self.now_ns;
             }
         }
     }
@@ -266,7 +292,8 @@ impl World {
 
     fn queue(&mut self, datagram: Vec<u8>) {
         if self.to_client.len() < QUEUED {
-            self.to_client.push_back(datagram);
+            self.to_client
+                .push_back((self.made_ns + self.held_ns, datagram));
         }
     }
 
@@ -289,6 +316,8 @@ impl World {
         }
         let name = path.rsplit('/').next().unwrap();
         Some(match name {
+            // A real clock: it runs on in all manners.
+            "network_time_sec" => 900.0 + self.made_ns as f64 * 1e-9,
             "total_flight_time_sec" => truth.time_s + self.time_offset_s,
             "theta" | "true_theta" => truth.pitch_rad.to_degrees(),
             "phi" | "true_phi" => truth.roll_rad.to_degrees(),

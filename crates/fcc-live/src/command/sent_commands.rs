@@ -96,7 +96,7 @@ impl<C: Commandable> SentCommands<C> {
                     }
                 }
             }
-            EventKind::EngageRefused { .. } => {
+            EventKind::EngageRefused { .. } | EventKind::EngageRefusedBySwitch => {
                 for waiting in self
                     .waiting
                     .iter_mut()

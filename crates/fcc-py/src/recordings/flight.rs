@@ -33,7 +33,7 @@ pub(crate) fn report(
             report.write_svgs(folder, &path)?;
         }
         if let Some(html) = &html {
-            report.write_page(html, &path)?;
+            report.write_page(html, &[&path])?;
         }
         Ok(report)
     });

@@ -126,6 +126,7 @@ fn every_event_is_restored() {
         EventKind::TimerFailed,
         EventKind::StopRequested,
         EventKind::SwitchedOnUnseen,
+        EventKind::EngageRefusedBySwitch,
         EventKind::OverrunsOver { count, first, last },
         EventKind::Hung {
             silent_ns: u64::MAX,

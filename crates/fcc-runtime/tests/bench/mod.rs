@@ -217,6 +217,12 @@ impl Bench {
         self.machine.step()
     }
 
+    /// Moves the switch, for the two ticks after which its position counts.
+    pub(crate) fn turn(&mut self, position: Switch) -> State {
+        self.tick(|s| s.switch = Some(position));
+        self.tick(|_| {})
+    }
+
     pub(crate) fn messages(&mut self) -> Vec<MessageOf<Stub>> {
         std::iter::from_fn(|| self.link.messages.receive()).collect()
     }

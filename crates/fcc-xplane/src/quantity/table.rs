@@ -239,4 +239,6 @@ pub(super) const TABLE: &[Entry] = &[
         .is("in the standard atmosphere; does not follow the pilot's knob").instead("the pilot's altimeter, corrected by its setting"),
     Entry::new(Quantity::AltimeterSetting, Dataref("sim/cockpit2/gauges/actuators/barometer_setting_in_hg_pilot"), Unit::InchesOfMercury, [22.0, 33.0])
         .is("the setting of the pilot's altimeter").or_else("no altitude, where X-Plane has no pressure altitude: not engaged"),
+    Entry::new(Quantity::NetworkTime, Dataref("sim/network/misc/network_time_sec"), Unit::Seconds, [0.0, 1e8])
+        .is("runs on in a pause").instead("what a network delivers late, but evenly, is not noticed"),
 ];

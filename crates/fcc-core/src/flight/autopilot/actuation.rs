@@ -1,6 +1,6 @@
 //! What is between the outputs and their effect: latency, play, oscillation.
 
-use super::flags;
+use super::{Autopilot, flags};
 use crate::blocks::limit;
 use crate::flight::Surfaces;
 use crate::flight::control::{ElevatorResponse, OscillationMonitor, PlayInverse, Schedule};
@@ -31,6 +31,9 @@ pub(super) struct Actuation {
     oscillation: OscillationMonitor,
     inverse: PlayInverse,
     is_late: bool,
+    /// The latency that the age of the readings shows, s.
+    known_s: f64,
+    assumed_s: f64,
     /// The loops' own unit of time: 1 over the pace of the configuration.
     unit: f64,
 }
@@ -43,6 +46,8 @@ impl Actuation {
             oscillation: OscillationMonitor::new(),
             inverse: PlayInverse::new(0.0),
             is_late: false,
+            known_s: 0.0,
+            assumed_s: assumed_latency_s,
             unit: 1.0 / configured_pace,
         }
     }
@@ -66,6 +71,11 @@ impl Actuation {
         self.is_late = latency_s > if self.is_late { timely_s } else { late_s };
     }
 
+    /// The mean age of the body rates, s: measured or not, the latency is not less.
+    pub(super) const fn knows_age(&mut self, age_s: f64) {
+        self.known_s = self.assumed_s + age_s;
+    }
+
     /// The schedule with the part of the loops' bandwidth that latency and
     /// oscillation leave.
     pub(super) fn slowed(&self, schedule: Schedule) -> Schedule {
@@ -73,7 +83,8 @@ impl Actuation {
     }
 
     fn pace(&self, tuned_for_s: f64) -> f64 {
-        let excess_s = (self.elevator.latency_s() - tuned_for_s * self.unit).max(0.0);
+        let latency_s = self.elevator.latency_s().max(self.known_s);
+        let excess_s = (latency_s - tuned_for_s * self.unit).max(0.0);
         let own_s = OWN_S * self.unit;
         let pace = own_s / (own_s + excess_s) * self.oscillation.pace();
         limit(pace, LEAST_PACE, 1.0)
@@ -98,5 +109,18 @@ impl Actuation {
             elevator_play: self.elevator.play(),
             ..*estimate
         }
+    }
+}
+
+impl Autopilot {
+    /// The gains for the present airspeed and latency.
+    pub(super) fn schedule(&self) -> Schedule {
+        self.schedule_at(self.navigation.estimate().airspeed_mps)
+    }
+
+    /// The gains for an airspeed and the present latency.
+    pub(super) fn schedule_at(&self, airspeed_mps: f64) -> Schedule {
+        let schedule = Schedule::at(airspeed_mps, self.config.reference_airspeed_mps);
+        self.actuation.slowed(schedule)
     }
 }

@@ -163,6 +163,7 @@ impl Autopilot {
         let roll_rad = if glides { config.glide_bank_rad } else { 0.0 };
         let lateral = self.heading.hold_bank(roll_rad, &estimate, schedule, dt_s);
         let glide_mps = estimate.true_airspeed_mps / config.glide_ratio;
+        let (kept_m, kept_mps) = (self.kept_altitude_m(), self.kept_climb_rate_mps());
         let altitude = &mut self.altitude;
         let vertical = match held.vertical {
             Vertical::Level if glides => {
@@ -170,9 +171,11 @@ impl Autopilot {
                 let climb_rate_mps = GLIDE_GAIN * fast_mps - glide_mps;
                 altitude.hold_climb_rate(climb_rate_mps, &estimate, &envelope, schedule, dt_s)
             }
-            Vertical::Level => altitude.hold_climb_rate(0.0, &estimate, &envelope, schedule, dt_s),
+            Vertical::Level => {
+                altitude.hold_climb_rate(kept_mps, &estimate, &envelope, schedule, dt_s)
+            }
             Vertical::Pitch | Vertical::Trim => {
-                let low_m = self.degraded.altitude_m - estimate.altitude_m;
+                let low_m = kept_m - estimate.altitude_m;
                 let path_rad = if glides {
                     -1.0 / config.glide_ratio
                 } else if lost.contains(flags::ALTITUDE) {

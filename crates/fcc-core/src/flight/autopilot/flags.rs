@@ -89,6 +89,10 @@ pub const UNDERSPEED: Flags = Flags::bit(37);
 pub const FROM_THE_FUTURE: Flags = Flags::bit(38);
 /// A quantity is lost, and the flight goes on without it.
 pub const DEGRADED: Flags = Flags::bit(39);
+/// The target altitude is limited by the floor.
+pub const AT_FLOOR: Flags = Flags::bit(40);
+/// Readings arrive too old, by their source's own clock.
+pub const SOURCE_CLOCK: Flags = Flags::bit(42);
 
 /// The shift from the bit of a quantity that is too old to the bit of the same
 /// quantity being frozen.
@@ -107,7 +111,8 @@ pub(super) const NOT_SENSED: Flags = Flags::from_bits(
         | REJECTED.bits()
         | SUSPECT_AIRSPEED.bits()
         | DOUBTED_AIRSPEED.bits()
-        | FROM_THE_FUTURE.bits()),
+        | FROM_THE_FUTURE.bits()
+        | SOURCE_CLOCK.bits()),
 );
 
 /// The bits of the frozen quantities.
@@ -122,7 +127,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
 }
 
 /// The text of each bit, lowest first.
-pub(super) const NAMES: [&str; 40] = [
+pub(super) const NAMES: [&str; 43] = [
     "attitude is missing or too old",
     "heading is missing or too old",
     "body rates are missing or too old",
@@ -163,6 +168,9 @@ pub(super) const NAMES: [&str; 40] = [
     "too little energy for speed and height: height is given up",
     "a reading is from the future",
     "flying on without a lost quantity",
+    "the target altitude is limited by the floor",
+    "unknown condition",
+    "readings arrive too old, by their source's own clock",
 ];
 
 #[cfg(test)]

@@ -9,12 +9,14 @@ mod degraded;
 mod engaging;
 mod failsafe;
 pub mod flags;
+mod floor;
 mod following;
 mod future;
 mod notices;
 mod observe;
 mod other_control;
 mod plant_clock;
+mod reading_age;
 mod resume;
 mod scale;
 mod sensor_health;
@@ -35,11 +37,12 @@ use failsafe::KeptTrims;
 pub use failsafe::{FailsafeConfig, FailsafeEnd};
 use following::Following;
 use plant_clock::PlantClock;
+use reading_age::ReadingAges;
 pub use resume::Resume;
 pub use scale::Scale;
 use whereabouts::Whereabouts;
 
-use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Recovery, Schedule, ThrottleDemand};
+use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Recovery, ThrottleDemand};
 use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
 use super::navigation::{Estimate, FrozenDetector, Navigation, Replacement, plausibility_gate};
 use super::{Altimeter, AltitudeReference, Measurements, Setpoints, Surfaces};
@@ -104,6 +107,7 @@ pub struct Autopilot {
     recovery: Recovery,
     setpoints: Setpoints,
     clock: PlantClock,
+    ages: ReadingAges,
     whereabouts: Whereabouts,
     /// The previous tick.
     before: Time,
@@ -120,6 +124,8 @@ pub struct Autopilot {
     distrusted: Flags,
     /// That the airspeed has just been doubted.
     doubt_notice: Option<Notice>,
+    /// Whether the target altitude is limited by the floor.
+    is_at_floor: bool,
 }
 
 impl Autopilot {
@@ -147,6 +153,7 @@ impl Autopilot {
             recovery: Recovery::new(),
             setpoints: Setpoints::default(),
             clock: PlantClock::default(),
+            ages: ReadingAges::default(),
             whereabouts: Whereabouts::default(),
             before: Time::NEVER,
             watching_since: Time::NEVER,
@@ -157,6 +164,7 @@ impl Autopilot {
             following: Following::default(),
             distrusted: Flags::NONE,
             doubt_notice: None,
+            is_at_floor: false,
             config,
         }
     }
@@ -164,15 +172,6 @@ impl Autopilot {
     /// The configuration.
     pub const fn config(&self) -> &AutopilotConfig {
         &self.config
-    }
-
-    fn schedule(&self) -> Schedule {
-        self.schedule_at(self.navigation.estimate().airspeed_mps)
-    }
-
-    fn schedule_at(&self, airspeed_mps: f64) -> Schedule {
-        let schedule = Schedule::at(airspeed_mps, self.config.reference_airspeed_mps);
-        self.actuation.slowed(schedule)
     }
 
     fn throttle_demand(&self, climb_rate_mps: f64) -> ThrottleDemand {
@@ -220,6 +219,7 @@ impl Controller for Autopilot {
         (self.external(tick.woke, measurements) | self.actuation.conditions() | self.doubted())
             .with(flags::RECOVERING, self.is_recovering())
             .with(flags::UNDERSPEED, self.altitude.gives_up_height())
+            .with(flags::AT_FLOOR, self.is_at_floor)
     }
 
     fn failsafe_goes_on(&self) -> bool {
@@ -296,6 +296,7 @@ impl Controller for Autopilot {
         if let Some(targets) = self.guidance.targets() {
             self.targets = targets;
         }
+        self.keep_above_floor();
         self.guidance
             .advance(self.navigation.estimate(), self.clock.passed_s());
     }
@@ -306,6 +307,7 @@ impl Controller for Autopilot {
             return self.last;
         }
         let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
+        self.actuation.knows_age(self.ages.rates_s());
         self.actuation.follow(&self.last, &estimate, dt_s);
         let (schedule, envelope) = (self.schedule(), self.envelope());
         if self.accepted.body_rates.value != self.kept_trims.found_with {
@@ -350,6 +352,7 @@ impl Controller for Autopilot {
         self.distrusted = Flags::NONE;
         self.degraded = Degraded::default();
         self.change_mode(ModeInput::Disengage);
+        self.is_at_floor = false;
         self.capture = None;
         self.recovery = Recovery::new();
         self.setpoints = Setpoints::default();

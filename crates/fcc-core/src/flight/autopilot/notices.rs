@@ -14,6 +14,9 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
             f,
             "link lost for {lasted_s:.1} s: the simulator ran on meanwhile"
         ),
+        plant_clock::CLOCK_MISSING => f.write_str(
+            "the simulator's clock is missing while its other values arrive: our time is used",
+        ),
         degraded::GOOD_AGAIN => write!(
             f,
             "all is good again: back to what was flown {lasted_s:.1} s ago"

@@ -4,6 +4,7 @@
 use super::degraded::by_name;
 use super::future::{is_from_the_future, without_future};
 use super::plant_clock::Waiting;
+use super::reading_age::taken_of_needed;
 use super::whereabouts::Whereabouts;
 use super::{Autopilot, flags};
 use crate::flight::navigation::{
@@ -44,6 +45,7 @@ impl Autopilot {
         if self.clock.advances(now) {
             self.whereabouts.keep(&self.accepted);
         }
+        self.follow_ages(now, measured);
         let step_s = self.clock.step_s();
         self.note_throttle(now);
         let doubted = self.navigation.airspeed_doubt();
@@ -160,17 +162,9 @@ impl Autopilot {
         let last = self.last;
         self.take_over(&last);
         self.heading.lead_from(self.setpoints.roll_rad);
-        let m = &self.accepted;
-        let renewed = [
-            m.attitude.taken,
-            m.heading_rad.taken,
-            m.body_rates.taken,
-            m.specific_force.taken,
-            m.airspeed_mps.taken,
-            m.altitude_m.taken,
-        ]
-        .into_iter()
-        .all(|taken| taken >= self.renewed_since);
+        let renewed = taken_of_needed(&self.accepted)
+            .into_iter()
+            .all(|(_, taken)| taken >= self.renewed_since);
         // What has not arrived by then is lost.
         if renewed || now.since(self.renewed_since) > self.config.max_age {
             self.renewed_since = Time::NEVER;

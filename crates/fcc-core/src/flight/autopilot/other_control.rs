@@ -32,6 +32,8 @@ impl Autopilot {
                 flags::SUSPECT_AIRSPEED,
                 airspeed_is_suspect(measurements) && self.doubted().is_empty(),
             )
+            .with(flags::PLANT_STALLED, self.clock.has_stopped())
+            .with(flags::SOURCE_CLOCK, !self.ages.late().is_empty())
             .with(flags::NOT_FOLLOWED, self.is_not_followed())
             .with(flags::DEGRADED, self.is_degraded())
             .with(

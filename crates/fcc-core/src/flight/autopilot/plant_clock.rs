@@ -7,6 +7,7 @@
 
 use core::time::Duration;
 
+use super::reading_age::newest;
 use crate::flight::{Measurements, Plant, PlantState};
 use crate::framework::{Notice, Reading, Tick, Time};
 
@@ -31,6 +32,7 @@ const USUAL_OF: usize = 4;
 /// The kinds of notices.
 pub(super) const STOOD_STILL: u8 = 1;
 pub(super) const LINK_LOST: u8 = 2;
+pub(super) const CLOCK_MISSING: u8 = 5;
 
 /// Why the plant's time is taken to stand still.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -74,6 +76,9 @@ pub(super) struct PlantClock {
     /// The ticks in which the plant's time last advanced, something last
     /// arrived, and its time was last not taken to stand still.
     advanced: Time,
+    /// When the plant's time was taken that last advanced: what a network held
+    /// back arrives late, and was sent without a gap.
+    sent: Time,
     arrived: Time,
     judged: Time,
     /// The newest time of a reading.
@@ -85,6 +90,9 @@ pub(super) struct PlantClock {
     /// tick after it, s.
     missed_s: f64,
     is_ignored: bool,
+    /// Whether readings arrive, but not its time, and since when they arrive.
+    is_missing: bool,
+    arrives_since: Time,
     step_s: f64,
     passed_s: f64,
     gap: Option<Gap>,
@@ -99,6 +107,7 @@ impl Default for PlantClock {
             source: 0,
             told: Time::NEVER,
             advanced: Time::NEVER,
+            sent: Time::NEVER,
             arrived: Time::NEVER,
             judged: Time::NEVER,
             newest: Time::NEVER,
@@ -106,6 +115,8 @@ impl Default for PlantClock {
             gaps_s: [0.0; USUAL_OF],
             missed_s: 0.0,
             is_ignored: false,
+            is_missing: false,
+            arrives_since: Time::NEVER,
             step_s: 0.0,
             passed_s: 0.0,
             gap: None,
@@ -133,9 +144,15 @@ impl PlantClock {
         let newest = newest(measured);
         let arrives = newest > self.newest;
         if arrives {
+            if tick.woke.since(self.arrived) > STOPPED_AFTER {
+                self.arrives_since = tick.woke;
+            }
             self.newest = newest;
             self.arrived = tick.woke;
             self.state = plant.value.state;
+        }
+        if self.misses_time(tick, &plant) {
+            return;
         }
         self.follow_source(&plant);
         let was = self.waiting;
@@ -146,7 +163,7 @@ impl PlantClock {
                 Waiting::Replaying
             }
             PlantState::Jumped | PlantState::Reloaded => {
-                self.begin(tick, plant.value.time_s);
+                self.begin(tick, &plant);
                 Waiting::No
             }
             state => {
@@ -155,7 +172,7 @@ impl PlantClock {
                     .map_or(0.0, |time_s| plant.value.time_s - time_s);
                 if gained_s < -SET_BACK_S {
                     self.state = PlantState::Jumped;
-                    self.begin(tick, plant.value.time_s);
+                    self.begin(tick, &plant);
                     Waiting::No
                 } else if arrives && (gained_s > LEAST_STEP_S || self.time_s.is_none()) {
                     self.advance(tick, gained_s, was);
@@ -180,6 +197,31 @@ impl PlantClock {
         }
     }
 
+    /// Whether readings arrive, but not the plant's time: then ours is used
+    /// instead. A clock that is read again is not compared with itself before.
+    fn misses_time(&mut self, tick: &Tick, plant: &Reading<Plant>) -> bool {
+        let is_finite = plant.value.time_s.is_finite();
+        let told = if is_finite { plant.taken } else { self.told };
+        let is_missing = self.state != PlantState::Replaying
+            && tick.woke.since(self.arrived) <= STOPPED_AFTER
+            && self.newest.since(told.max(self.arrives_since)) > STOPPED_AFTER;
+        if is_missing {
+            if !self.is_missing {
+                self.notice = Some(Notice {
+                    kind: CLOCK_MISSING,
+                    lasted_ns: 0,
+                });
+            }
+            self.is_missing = true;
+            self.waiting = Waiting::No;
+            self.judged = tick.woke;
+            self.pass(tick.dt_s.min(MAX_STEP_S));
+        } else if self.is_missing && self.newest.since(told) <= STOPPED_AFTER {
+            self.begin(tick, plant);
+        }
+        is_missing || !is_finite && !self.told.is_never()
+    }
+
     fn pass(&mut self, seconds: f64) {
         self.step_s = seconds;
         self.passed_s = seconds;
@@ -199,24 +241,26 @@ impl PlantClock {
     }
 
     /// Begins anew with a clock that was set.
-    fn begin(&mut self, tick: &Tick, time_s: f64) {
+    fn begin(&mut self, tick: &Tick, plant: &Reading<Plant>) {
         *self = Self {
             state: self.state,
             source: self.source,
-            told: self.told,
+            told: plant.taken,
             newest: self.newest,
             arrived: self.arrived,
-            time_s: Some(time_s),
+            arrives_since: self.arrives_since,
+            time_s: Some(plant.value.time_s),
             advanced: tick.woke,
+            sent: plant.taken,
             ..Self::default()
         };
     }
 
     /// The plant's time advanced, in this tick, for the first time after `was`.
     fn advance(&mut self, tick: &Tick, gained_s: f64, was: Waiting) {
-        let ours = tick.woke.since(self.advanced);
+        let ours = self.told.since(self.sent);
         let is_first = self.advanced.is_never();
-        self.advanced = tick.woke;
+        (self.advanced, self.sent) = (tick.woke, self.told);
         self.is_ignored = false;
         let missed_s = core::mem::take(&mut self.missed_s);
         if is_first {
@@ -304,6 +348,16 @@ impl PlantClock {
         self.is_ignored || self.waiting == Waiting::Stopped
     }
 
+    /// For how long the plant's time has stood still although it sends and is
+    /// not paused.
+    pub(super) fn stopped_for(&self, now: Time) -> Duration {
+        if self.has_stopped() {
+            now.since(self.advanced)
+        } else {
+            Duration::ZERO
+        }
+    }
+
     /// Why the plant's time is taken to stand still.
     pub(super) const fn waiting(&self) -> Waiting {
         self.waiting
@@ -338,23 +392,4 @@ impl PlantClock {
     pub(super) const fn judged(&self) -> Time {
         self.judged
     }
-}
-
-/// When the newest of the readings was taken that control needs or that are the
-/// plant's own.
-fn newest(measured: &Measurements) -> Time {
-    fn taken<T>(reading: &Reading<T>) -> Time {
-        reading.taken
-    }
-    [
-        taken(&measured.attitude),
-        taken(&measured.heading_rad),
-        taken(&measured.body_rates),
-        taken(&measured.specific_force),
-        taken(&measured.airspeed_mps),
-        taken(&measured.altitude_m),
-        taken(&measured.plant),
-    ]
-    .into_iter()
-    .fold(Time::NEVER, Time::max)
 }

@@ -4,6 +4,7 @@ use core::time::Duration;
 
 use super::future::is_from_the_future;
 use super::plant_clock::Waiting;
+use super::reading_age::taken_of_needed;
 use super::{Autopilot, flags};
 use crate::flight::{Measurements, PlantState};
 use crate::framework::{Flags, Reading, Time};
@@ -32,6 +33,12 @@ impl Autopilot {
     /// reading may be old. A paused plant may be silent.
     pub(super) fn is_silent(&self, now: Time) -> bool {
         self.silence(now) > self.config.max_age
+    }
+
+    /// For how long a simulated plant is waited for: one that is silent, or whose
+    /// time stands still although it sends and is not paused.
+    fn max_silence(&self) -> Duration {
+        self.config.max_silence.max(self.config.max_age)
     }
 
     /// For how long a simulated plant that is not paused has been silent.
@@ -65,21 +72,12 @@ impl Autopilot {
     /// The readings that are too old, by the plant's time.
     fn too_old(&self, measurements: &Measurements) -> Flags {
         let judged = self.clock.judged();
-        let taken = [
-            (flags::ATTITUDE, measurements.attitude.taken),
-            (flags::HEADING, measurements.heading_rad.taken),
-            (flags::BODY_RATES, measurements.body_rates.taken),
-            (flags::SPECIFIC_FORCE, measurements.specific_force.taken),
-            (flags::AIRSPEED, measurements.airspeed_mps.taken),
-            (flags::ALTITUDE, measurements.altitude_m.taken),
-        ];
+        let taken = taken_of_needed(measurements);
         taken.into_iter().fold(Flags::NONE, |old, (flag, taken)| {
-            let reading = Reading::new((), taken);
+            let is_fresh = Reading::new((), taken).is_fresh(judged, self.config.max_age)
+                && !self.ages.late().contains(flag);
             let needed = flag != flags::AIRSPEED || self.doubted().is_empty();
-            old.with(
-                flag,
-                needed && !reading.is_fresh(judged, self.config.max_age),
-            )
+            old.with(flag, needed && !is_fresh)
         })
     }
 
@@ -92,7 +90,7 @@ impl Autopilot {
 
     /// The faults of an engaged flight. A silent plant is waited for.
     pub(super) fn unsafe_to_fly(&self, now: Time, measurements: &Measurements) -> Flags {
-        let lost = self.silence(now) > self.config.max_silence.max(self.config.max_age);
+        let lost = self.silence(now) > self.max_silence();
         let stale = if lost {
             flags::NEEDED | flags::PLANT_SILENT
         } else {
@@ -112,10 +110,15 @@ impl Autopilot {
         let switch = self.accepted.engage_switch;
         let rejected = !self.rejected(measurements).is_empty();
         let is_lost_to_the_future = !stale.is_empty() && is_from_the_future(measurements, now);
+        let is_lost_on_the_way = !stale.is_empty() && !self.ages.late().is_empty();
         (stale | self.frozen() | self.is_elsewhere())
             .with(flags::REJECTED, rejected)
             .with(flags::FROM_THE_FUTURE, is_lost_to_the_future)
-            .with(flags::PLANT_STALLED, self.clock.is_ignored())
+            .with(flags::SOURCE_CLOCK, is_lost_on_the_way)
+            .with(
+                flags::PLANT_STALLED,
+                self.clock.is_ignored() || self.clock.stopped_for(now) > self.max_silence(),
+            )
             .with(
                 flags::ENGAGE_SWITCH,
                 !switch.is_never() && !switch.is_fresh(self.clock.judged(), SWITCH_MAX_AGE),

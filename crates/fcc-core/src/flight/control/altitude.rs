@@ -159,6 +159,13 @@ impl AltitudeLoop {
             .engage(elevator, rate, rate, feed_forward, gain);
     }
 
+    /// Changes the climb rate as fast as this at least (m/s²): 0 for as fast as
+    /// usual.
+    pub const fn pull_out(&mut self, least_mps2: f64) {
+        let usual_mps2 = self.config.climb_acceleration_mps2;
+        self.climb_rate.set_rate(usual_mps2.max(least_mps2));
+    }
+
     /// One step towards an altitude (m).
     pub fn step(
         &mut self,

@@ -40,6 +40,11 @@ pub struct Envelope {
     /// Airspeeds that are commanded keep this margin from either airspeed
     /// limit, m/s.
     pub airspeed_margin_mps: f64,
+    /// The floor: the altitude below which nothing that is flown leads, m above
+    /// mean sea level by the altimeter setting; [`Envelope::NO_FLOOR_M`] for none.
+    pub floor_m: f64,
+    /// Altitudes that are flown to keep this margin above the floor, m.
+    pub floor_margin_m: f64,
     /// Stalling speed, clean, without power, at the heaviest weight flown,
     /// indicated, m/s.
     pub stall_airspeed_mps: f64,
@@ -82,6 +87,8 @@ impl Default for Envelope {
             max_climb_mps: 4.902_2,         // 965 ft/min
             max_sink_mps: 4.902_2,          // 965 ft/min
             airspeed_margin_mps: 4.115_556, // 8 kt
+            floor_m: Self::NO_FLOOR_M,
+            floor_margin_m: 15.24,          // 50 ft
             stall_airspeed_mps: 27.265_556, // 53 kt
             best_glide_airspeed_mps: 33.438_889,
             maneuvering_airspeed_mps: 49.901_111,  // 97 kt
@@ -94,6 +101,15 @@ impl Default for Envelope {
 }
 
 impl Envelope {
+    /// The floor if there is none: 1,500 ft below sea level, below all land.
+    pub const NO_FLOOR_M: f64 = -457.2;
+
+    /// The lowest altitude that may be commanded, m above mean sea level: a margin
+    /// above the floor. None without a floor.
+    pub fn lowest_altitude_m(&self) -> Option<f64> {
+        (self.floor_m > Self::NO_FLOOR_M).then_some(self.floor_m + self.floor_margin_m)
+    }
+
     /// The bank limit: the configured one, or the one at which a level turn
     /// reaches the largest load factor (n = 1/cos φ), whichever is less; rad.
     pub fn bank_limit_rad(&self) -> f64 {

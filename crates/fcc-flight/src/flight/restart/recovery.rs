@@ -11,7 +11,9 @@ use std::time::Duration;
 
 use fcc_core::flight::guidance::Targets;
 use fcc_core::flight::{AutopilotCommand, Resume};
-use fcc_core::framework::{Controller, EventKind, Flags, LoopCommand, Message, State, Switch};
+use fcc_core::framework::{
+    Controller, EventKind, Flags, LoopCommand, Message, State, Switch, Time,
+};
 use fcc_runtime::CommandSender;
 use fcc_telemetry::FlightMessage;
 use fcc_telemetry::units::{M_FT, MPS_KT};
@@ -29,6 +31,10 @@ pub(super) struct Recovery {
     place: PresentPlace,
     /// The status in the latest tick.
     status: Option<LoopStatus>,
+    /// The first of the readings in a row of the switch that are off.
+    off_taken: Option<Time>,
+    /// The switch is off, and no command engages.
+    is_refused: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -58,6 +64,8 @@ impl Recovery {
             place: PresentPlace::default(),
             commanded: None,
             status: None,
+            off_taken: None,
+            is_refused: false,
         }
     }
 
@@ -72,19 +80,22 @@ impl Recovery {
             Message::Tick(record) => {
                 self.place.take(&record.measurements);
                 let switch = record.measurements.engage_switch;
+                let is_off = !switch.is_never()
+                    && switch.source == self.saved.switch.source
+                    && switch.value == Switch::Off;
+                self.off_taken = is_off.then(|| self.off_taken.unwrap_or(switch.taken));
                 self.status = Some(LoopStatus {
                     state: record.state.state(),
                     engage_inhibits: record.engage_inhibits,
-                    switched_off: !switch.is_never()
-                        && switch.source == self.saved.switch.source
-                        && switch.value == Switch::Off,
+                    // A single reading may be wrong.
+                    switched_off: self.off_taken.is_some_and(|first| switch.taken > first),
                 });
             }
-            Message::Event(event) => {
-                if matches!(event.kind, EventKind::EngageRefused { .. }) {
-                    self.commanded = None;
-                }
-            }
+            Message::Event(event) => match event.kind {
+                EventKind::EngageRefused { .. } => self.commanded = None,
+                EventKind::EngageRefusedBySwitch => self.is_refused = true,
+                _ => {}
+            },
         }
     }
 
@@ -95,16 +106,16 @@ impl Recovery {
         };
         let age = now.and_then(|now| now.since(&self.saved.at));
         let age = age.unwrap_or(Duration::MAX);
+        if self.is_refused || self.saved.switch.on && status.switched_off {
+            return Next::NotRecovered(
+                "the interrupted flight is not recovered: it was switched off since".to_owned(),
+            );
+        }
         match (status.state, &self.commanded) {
             (State::Engaged, Some(resume)) => return Next::Recovered(recovered(resume, age)),
             (State::Standby, None) => {}
             (State::Standby, Some(_)) => return Next::Wait,
             _ => return Next::NotRecovered("the interrupted flight is not recovered".to_owned()),
-        }
-        if self.saved.switch.on && status.switched_off {
-            return Next::NotRecovered(
-                "the interrupted flight is not recovered: it was switched off since".to_owned(),
-            );
         }
         if age > max_age {
             let mut message = format!(

@@ -7,10 +7,12 @@
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 use fcc_core::flight::guidance::{Mode, Progress, Targets};
 use fcc_core::flight::{AltitudeReference, Position, Resume, Surfaces};
+use fcc_telemetry::units::COMMANDED_HEADING_RAD;
 use serde::{Deserialize, Serialize};
 
 use super::boot_clock::BootInstant;
@@ -86,7 +88,23 @@ struct Page {
     position_source: u8,
 }
 
+/// The pressure altitudes that a flight can have captured, m: those that can be
+/// commanded, by the lowest and the highest altimeter setting.
+const CAPTURED_ALTITUDE_M: RangeInclusive<f64> = -1_500.0..=21_000.0;
+/// No flight has lasted longer, s: 3 years.
+const LONGEST_S: f64 = 1e8;
+/// None has been faster, m/s.
+const FASTEST_MPS: f64 = 1_000.0;
+
 impl Page {
+    /// Whether its numbers are those of a flight.
+    fn can_be_flown(&self) -> bool {
+        (0.0..=LONGEST_S).contains(&self.elapsed_s)
+            && (0.0..=FASTEST_MPS).contains(&self.airspeed_mps)
+            && COMMANDED_HEADING_RAD.contains(&self.heading_rad)
+            && CAPTURED_ALTITUDE_M.contains(&self.altitude_m)
+    }
+
     fn place(&self) -> SavedPlace {
         SavedPlace {
             plant_time_s: self.plant_time_s.map(|value| Sourced {
@@ -220,6 +238,9 @@ fn decode(bytes: &[u8]) -> Result<Saved, StateFileError> {
     let page: Page = serde_json::from_slice(body).map_err(|_| StateFileError::Damaged)?;
     let reference = AltitudeReference::from_number(page.altitude_reference);
     let mode = Mode::ALL.into_iter().find(|mode| mode.name() == page.mode);
+    if !page.can_be_flown() {
+        return Err(StateFileError::Damaged);
+    }
     Ok(Saved {
         place: page.place(),
         at: BootInstant {
@@ -332,6 +353,29 @@ mod tests {
         let said = |path: &Path| read(path).unwrap_err().to_string();
         assert!(said(&large).contains("more than 100000 bytes"));
         assert!(said(Path::new("/dev/zero")).contains("a pipe or a device"));
+    }
+
+    /// Of a file whose checksum is right.
+    #[test]
+    fn what_no_aircraft_flies_is_damaged() {
+        type Change = fn(&mut Saved);
+        let changes: [Change; 6] = [
+            |saved| saved.resume.progress.captured.heading_rad = 1e300,
+            |saved| saved.resume.progress.captured.altitude_m = 1e6,
+            |saved| saved.resume.progress.captured.altitude_m = -5_000.0,
+            |saved| saved.resume.progress.captured.airspeed_mps = 1e9,
+            |saved| saved.resume.progress.elapsed_s = 1e300,
+            |saved| saved.resume.progress.elapsed_s = f64::NAN,
+        ];
+        for (n, change) in changes.into_iter().enumerate() {
+            let mut changed = saved(Mode::Hold, 3.5);
+            change(&mut changed);
+            let bytes = encode(&changed).unwrap();
+            assert!(
+                matches!(decode(&bytes), Err(StateFileError::Damaged)),
+                "{n}"
+            );
+        }
     }
 
     #[test]

@@ -1,0 +1,43 @@
+//! What an aircraft permits of commanded altitudes.
+
+use std::ops::RangeInclusive;
+
+use fcc_core::flight::AutopilotConfig;
+use fcc_telemetry::units::COMMANDED_ALTITUDE_M;
+
+/// The altitudes above mean sea level that may be commanded, m: none below the
+/// floor and its margin, to a hundredth, as a message gives them.
+pub fn altitudes_m(autopilot: &AutopilotConfig) -> RangeInclusive<f64> {
+    above(autopilot, 0.0)
+}
+
+/// The heights above the field that may be commanded, m; none if its elevation is
+/// not configured.
+pub fn heights_m(autopilot: &AutopilotConfig) -> Option<RangeInclusive<f64>> {
+    let elevation_m = autopilot.altimeter.field_elevation_m?;
+    Some(above(autopilot, elevation_m))
+}
+
+fn above(autopilot: &AutopilotConfig, datum_m: f64) -> RangeInclusive<f64> {
+    let lowest_m = autopilot.envelope.lowest_altitude_m();
+    lowest_m.map_or(COMMANDED_ALTITUDE_M, |lowest_m| {
+        ((lowest_m - datum_m) * 100.0).round() / 100.0..=*COMMANDED_ALTITUDE_M.end()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 1 ft is 0.3048 m.
+    #[test]
+    fn the_floor_and_its_margin_limit_altitudes_and_heights() {
+        let mut autopilot = AutopilotConfig::default();
+        assert_eq!(altitudes_m(&autopilot), -500.0..=20_000.0);
+        assert_eq!(heights_m(&autopilot), None);
+        autopilot.envelope.floor_m = 2_000.0 * 0.304_8;
+        autopilot.altimeter.field_elevation_m = Some(1_000.0 * 0.304_8);
+        assert_eq!(altitudes_m(&autopilot), 624.84..=20_000.0);
+        assert_eq!(heights_m(&autopilot), Some(320.04..=20_000.0));
+    }
+}
