@@ -33,8 +33,8 @@ pub struct Schedule {
     /// command faster, so this is V₀/V there, times `pace`.
     pub path: f64,
     /// The bandwidth of altitude and heading. The path follows the pitch, and the
-    /// roll rate the aileron, within times that are proportional to 1/V (-V/Z_α
-    /// and -1/L_p: Stevens, Lewis and Johnson 2016, chapter 4), so this is V/V₀
+    /// roll rate the aileron, within times that are proportional to 1/V (`-V/Zα`
+    /// and `-1/Lp`: Stevens, Lewis and Johnson 2016, chapter 4), so this is V/V₀
     /// below the reference airspeed, and 1 above it.
     pub outer: f64,
 }
