@@ -103,7 +103,9 @@ def fly(script: Script, conditions: Conditions | None = None, seconds: float = 2
     for _ in range(round(_SETTLING_S / flight.machine.period_s)):
         flight.tick(None)
     flight.switch = True
-    flight.tick(None)
+    # The switch counts with its second reading.
+    for _ in range(2):
+        flight.tick(None)
     assert flight.machine.state == "engaged", flight.machine.engage_inhibits
     if conditions.airspeed_kt is not None:
         flight.machine.command(airspeed_mps=conditions.airspeed_kt * KT_TO_MPS)
