@@ -276,6 +276,11 @@ impl AltitudeLoop {
         self.speed.is_short()
     }
 
+    /// The least throttle, 0..=1: full while height is given up.
+    pub fn least_throttle(&self) -> f64 {
+        self.speed.shortage()
+    }
+
     /// The elevator trim that the loop has found.
     pub const fn trim(&self) -> f64 {
         self.pitch_rate.integral()
