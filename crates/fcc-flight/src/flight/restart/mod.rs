@@ -12,7 +12,9 @@ mod keeper;
 mod observer;
 mod place;
 mod recovery;
+mod saved;
 mod state_file;
+mod state_page;
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -30,7 +32,8 @@ use keeper::Keeper;
 pub(super) use observer::RestartKeeper;
 use place::SavedPlace;
 use recovery::{Next, Recovery};
-use state_file::{Saved, SavedSwitch, StateFileError};
+use saved::{Saved, SavedSwitch};
+use state_file::StateFileError;
 
 /// The state is stored at least at this interval.
 const KEEP_EVERY: Duration = Duration::from_secs(1);
