@@ -6,8 +6,8 @@ use libm::{asin, cos, sin, sqrt};
 
 use super::attitude::Orientation;
 use super::resolution::Resolution;
+use super::sample_tracker::{NewSample, SampleTracker, is_current};
 use super::vertical::VerticalState;
-use super::{NewSample, SampleTracker, is_current};
 use crate::blocks::{Complementary, limit_abs};
 use crate::flight::Measurements;
 use crate::flight::atmosphere::density_ratio;

@@ -2,6 +2,7 @@
 
 use libm::{cos, exp, sin};
 
+use super::force_sample::ForceSample;
 use super::upward::Upward;
 use crate::blocks::limit_abs;
 use crate::units::GRAVITY_MPS2;
@@ -58,27 +59,6 @@ const ANGLE_WALK_RAD: f64 = 0.000_87;
 /// The share of the gusts' variance that acts along the path.
 const GUSTS_ALONG: f64 = 0.3;
 const MIN_AIRSPEED_MPS: f64 = 5.0;
-
-/// What the filter's models need, averaged over the time between two
-/// corrections.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct ForceSample {
-    /// Specific force forward and up along the body axes, in g.
-    pub(super) forward: f64,
-    pub(super) up: f64,
-    pub(super) pitch_rad: f64,
-    pub(super) roll_rad: f64,
-    pub(super) climb_rate_mps: f64,
-    /// The climb rate comes from lift itself: the altimeter is doubted.
-    pub(super) climbs_by_lift: bool,
-    /// √(density over its value at sea level).
-    pub(super) sqrt_density: f64,
-    /// Thrust over that at full throttle and V₀, and its change over seconds;
-    /// none if the throttle is not known.
-    pub(super) thrust: Option<(f64, f64)>,
-    /// Standard deviation of vertical gusts, m/s.
-    pub(super) gusts_mps: f64,
-}
 
 /// The state: indicated airspeed V in m/s, vertical wind w in m/s, offset of
 /// the axial force, thrust ratio, angle of attack of zero lift in rad, angle of

@@ -1,28 +1,10 @@
 //! Whether the airspeed sensor is believed, and the airspeed without it.
 
-use super::airspeed_filter::{
-    AirframePrior, AirspeedFilter, ForceSample, acceleration_mps2, squared,
-};
+use super::airspeed_filter::{AirframePrior, AirspeedFilter, acceleration_mps2, squared};
 use super::airspeed_reason::{Doubt, DoubtReason, Reference};
+use super::filter_bank::FilterBank;
+use super::force_sample::ForceSample;
 use crate::blocks::{LowPass, smoothing_factor};
-use crate::schema;
-use crate::units::GRAVITY_MPS2;
-
-schema! {
-    /// Where the estimate's airspeed comes from.
-    ///
-    /// ```
-    /// use fcc_core::flight::navigation::AirspeedSource;
-    ///
-    /// assert_eq!(AirspeedSource::from_number(1), Some(AirspeedSource::Forces));
-    /// ```
-    pub enum AirspeedSource {
-        /// The airspeed sensor.
-        Sensor = 0,
-        /// Forces and motion: the sensor is doubted or silent.
-        Forces = 1,
-    }
-}
 
 /// The time between two corrections of the filters, s.
 const CORRECTED_S: f64 = 0.1;
@@ -59,11 +41,6 @@ const ANOTHER_BELIEVED_AFTER_S: f64 = 1.0;
 const LEARNED_S: f64 = 10.0;
 /// Below this share of the reference airspeed nothing is compared.
 const LEAST_RATIO: f64 = 0.4;
-/// Beyond these the models of the forces do not hold: bank and pitch in rad
-/// (60°, 45°), load in g.
-const STEEP_BANK_RAD: f64 = 1.05;
-const STEEP_PITCH_RAD: f64 = 0.79;
-const LOADS: core::ops::RangeInclusive<f64> = 0.3..=2.5;
 /// Vertical gusts are the filter's vertical wind, over this time, s; at least
 /// and at most these variances, m²/s².
 const GUSTS_OVER_S: f64 = 20.0;
@@ -86,44 +63,6 @@ pub(super) struct MonitorInput {
     pub(super) may_doubt: bool,
 }
 
-/// The filters of one flight: one that follows the sensor, and two that began
-/// as its copies and have run without it since.
-#[derive(Clone, Copy, Debug)]
-struct Bank {
-    believing: AirspeedFilter,
-    /// Without the sensor for 20 to 40 s, and for up to 20 s.
-    older: AirspeedFilter,
-    younger: AirspeedFilter,
-    younger_s: f64,
-    learned_s: f64,
-    thrust_is_known: bool,
-}
-
-impl Bank {
-    fn new(prior: AirframePrior, sensor_mps: f64, sample: &ForceSample) -> Self {
-        let believing = AirspeedFilter::new(prior, sensor_mps, sample);
-        Self {
-            believing,
-            older: believing,
-            younger: believing,
-            younger_s: 0.0,
-            learned_s: 0.0,
-            thrust_is_known: sample.thrust.is_some(),
-        }
-    }
-
-    const fn each(&mut self) -> [&mut AirspeedFilter; 3] {
-        [&mut self.believing, &mut self.older, &mut self.younger]
-    }
-
-    /// Both copies begin anew.
-    const fn follow_sensor(&mut self) {
-        self.older = self.believing.kept();
-        self.younger = self.older;
-        self.younger_s = 0.0;
-    }
-}
-
 /// Holds the airspeed sensor against forces and motion.
 ///
 /// A sensor is doubted if it differs from the airspeed of a filter that has not
@@ -133,7 +72,7 @@ impl Bank {
 #[derive(Clone, Debug)]
 pub(super) struct AirspeedMonitor {
     prior: AirframePrior,
-    bank: Option<Bank>,
+    bank: Option<FilterBank>,
     /// Sums of the samples since the last correction, and their time.
     sum: ForceSample,
     sensor_sum_mps: f64,
@@ -223,7 +162,7 @@ impl AirspeedMonitor {
     /// The climb rate by pitch and lift, m/s, and the airspeed by forces and
     /// motion, indicated, m/s.
     pub(super) fn path(&self, sample: &ForceSample) -> Option<(f64, f64)> {
-        let holds = holds(sample);
+        let holds = sample.models_hold();
         let filter = self.bank.filter(|_| holds)?.older;
         Some((filter.climb_rate_mps(sample), filter.airspeed_mps()))
     }
@@ -266,7 +205,7 @@ impl AirspeedMonitor {
         };
         let Some(mut bank) = self.bank else {
             if let Some((mps, _)) = input.sensor_mps.filter(|(mps, _)| *mps > 1.2 * least_mps) {
-                self.bank = Some(Bank::new(self.prior, mps, &sample));
+                self.bank = Some(FilterBank::new(self.prior, mps, &sample));
             }
             return;
         };
@@ -276,7 +215,7 @@ impl AirspeedMonitor {
             filter.accelerate(acceleration, dt_s);
         }
         self.add(&sample, input.sensor_mps, dt_s);
-        let holds = holds(&sample);
+        let holds = sample.models_hold();
         if self.sum_s >= CORRECTED_S - 1e-6 {
             self.correct(&mut bank, &sample, input.sensor_mps.is_some(), holds);
         }
@@ -307,7 +246,7 @@ impl AirspeedMonitor {
     }
 
     /// Corrects the filters by the mean of the samples since the last time.
-    fn correct(&mut self, bank: &mut Bank, now: &ForceSample, has_sensor: bool, holds: bool) {
+    fn correct(&mut self, bank: &mut FilterBank, now: &ForceSample, has_sensor: bool, holds: bool) {
         let passed_s = core::mem::take(&mut self.sum_s);
         let sum = core::mem::take(&mut self.sum);
         let sensor_mps = core::mem::take(&mut self.sensor_sum_mps) / passed_s;
@@ -348,7 +287,7 @@ impl AirspeedMonitor {
 
     fn compare(
         &mut self,
-        bank: &mut Bank,
+        bank: &mut FilterBank,
         input: &MonitorInput,
         (sensor_mps, source): (f64, u8),
         holds: bool,
@@ -416,23 +355,11 @@ impl AirspeedMonitor {
     }
 
     /// The filters follow the sensor from now on.
-    fn follow_sensor(&mut self, bank: &mut Bank) {
+    fn follow_sensor(&mut self, bank: &mut FilterBank) {
         bank.follow_sensor();
         self.difference.reset(0.0);
         self.vote.reset(0.0);
         self.differs_s = 0.0;
         self.wind_s = 0.0;
     }
-}
-
-/// Whether the models of the forces hold.
-fn holds(sample: &ForceSample) -> bool {
-    sample.roll_rad.abs() < STEEP_BANK_RAD
-        && sample.pitch_rad.abs() < STEEP_PITCH_RAD
-        && LOADS.contains(&sample.up)
-}
-
-/// Specific force in m/s² to weights, forward and up.
-pub(super) fn in_g(x_mps2: f64, z_mps2: f64) -> (f64, f64) {
-    (x_mps2 / GRAVITY_MPS2, -z_mps2 / GRAVITY_MPS2)
 }

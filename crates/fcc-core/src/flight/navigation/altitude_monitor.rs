@@ -1,7 +1,7 @@
 //! Whether the altimeter is believed, and altitude and climb rate without it.
 
 use super::airspeed_filter::squared;
-use super::vertical::VerticalState;
+use super::vertical::{Reference, VerticalState};
 use crate::units::GRAVITY_MPS2;
 
 /// The time for which a copy runs without the altimeter before it is compared,
@@ -75,15 +75,6 @@ pub(super) struct AltitudeInput {
     pub(super) has_total: bool,
     /// Whether the altimeter may be doubted: while engaged.
     pub(super) may_doubt: bool,
-}
-
-/// What a filter without an altimeter follows, with this bandwidth, rad/s.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Reference {
-    /// A climb rate, m/s.
-    ClimbRate(f64, f64),
-    /// An altitude, m.
-    Altitude(f64, f64),
 }
 
 /// A copy of the filter that has run without the altimeter.

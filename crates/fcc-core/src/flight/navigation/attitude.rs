@@ -5,7 +5,7 @@ use core::time::Duration;
 use libm::{atan2, cos, sin, sqrt};
 
 use super::resolution::Resolution;
-use super::{NewSample, SampleTracker, is_current};
+use super::sample_tracker::{NewSample, SampleTracker, is_current};
 use crate::blocks::{smoothing_factor, wrap_pi};
 use crate::flight::orientation::{
     EulerAngles, earth_to_body, euler_from_quaternion, product, quaternion_from_euler,

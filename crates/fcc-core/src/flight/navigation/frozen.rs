@@ -28,7 +28,8 @@ use libm::{cos, sin};
 use super::attitude::MIN_COS_PITCH;
 use evidence::{LeakyIntegrator, StuckDetector};
 
-use super::{Estimate, Resolutions};
+use super::estimate::Estimate;
+use super::resolution::Resolutions;
 use crate::blocks::wrap_pi;
 use crate::flight::Measurements;
 use crate::framework::Time;

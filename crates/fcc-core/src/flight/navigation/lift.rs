@@ -3,7 +3,7 @@
 use libm::{asin, cos, sin, sqrt};
 
 use super::attitude::Orientation;
-use super::is_current;
+use super::sample_tracker::is_current;
 use crate::blocks::{LowPass, limit, limit_abs};
 use crate::flight::{Measurements, SpecificForce};
 use crate::framework::Time;

@@ -11,11 +11,17 @@ mod airspeed_monitor;
 mod airspeed_reason;
 mod altitude_monitor;
 mod attitude;
+mod config;
+mod estimate;
+mod filter_bank;
+mod force_sample;
 mod frozen;
 mod lift;
+mod marked_altitude;
 mod plausibility;
 mod replacement;
 mod resolution;
+mod sample_tracker;
 mod upward;
 mod vertical;
 mod vertical_covariance;
@@ -25,21 +31,23 @@ use core::time::Duration;
 
 use libm::sqrt;
 
+use super::Measurements;
 use super::atmosphere::density_ratio;
-use super::{BodyRates, Measurements};
 use crate::blocks::LowPass;
-use crate::framework::{Reading, Time};
-use crate::schema;
+use crate::framework::Time;
 use crate::units::{GRAVITY_MPS2, KNOT_MPS};
-use airspeed_filter::{AirframePrior, ForceSample};
-use airspeed_monitor::{AirspeedMonitor, MonitorInput, in_g};
+use airspeed_filter::AirframePrior;
+use airspeed_monitor::{AirspeedMonitor, MonitorInput};
 use altitude_monitor::AltitudeMonitor;
+use force_sample::{ForceSample, in_g};
+use sample_tracker::is_current;
 
 pub use air_data::AirspeedChannel;
-pub use airspeed_monitor::AirspeedSource;
 pub(crate) use airspeed_reason::{Doubt, DoubtReason};
 pub use attitude::AttitudeChannel;
 use attitude::Orientation;
+pub use config::NavigationConfig;
+pub use estimate::{AirspeedSource, Estimate};
 pub(crate) use frozen::{Frozen, FrozenDetector, Known};
 pub use lift::{Lift, LiftChannel};
 pub(crate) use plausibility::{
@@ -50,121 +58,6 @@ pub(crate) use replacement::{Lost, Replacement};
 pub(crate) use resolution::Resolutions;
 pub use vertical::VerticalChannel;
 use vertical::VerticalState;
-
-/// Time constants of navigation's channels.
-///
-/// ```
-/// use fcc_core::flight::navigation::{Navigation, NavigationConfig};
-///
-/// let smooth = NavigationConfig { airspeed_tau_s: 2.0, ..NavigationConfig::default() };
-/// assert_eq!(Navigation::new(&smooth).estimate().airspeed_mps, 0.0);
-/// ```
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct NavigationConfig {
-    /// Time constant of the attitude, s: the gyroscopes determine it over
-    /// shorter times, the measured pitch and roll over longer times.
-    pub attitude_tau_s: f64,
-    /// Time constant of the heading, s, likewise.
-    pub heading_tau_s: f64,
-    /// Bandwidth of the climb rate, rad/s: above it the accelerometers
-    /// determine it, below it the barometer.
-    pub vertical_bandwidth_radps: f64,
-    /// Time constant of the airspeed, s: the accelerometers determine it over
-    /// shorter times, the airspeed sensor over longer times.
-    pub airspeed_tau_s: f64,
-    /// Time constant of the low pass of the side force, s.
-    pub side_force_tau_s: f64,
-}
-
-impl Default for NavigationConfig {
-    fn default() -> Self {
-        Self {
-            attitude_tau_s: 1.36,
-            heading_tau_s: 1.44,
-            vertical_bandwidth_radps: 0.68,
-            airspeed_tau_s: 0.89,
-            side_force_tau_s: 0.19,
-        }
-    }
-}
-
-schema! {
-    /// Navigation's estimate.
-    ///
-    /// ```
-    /// use fcc_core::flight::navigation::Estimate;
-    ///
-    /// // The heading is continuous: 370° is 10° after a turn to the right.
-    /// let turned = Estimate { heading_rad: 370.0_f64.to_radians(), ..Estimate::default() };
-    /// let compass_rad = fcc_core::blocks::wrap_two_pi(turned.heading_rad);
-    /// assert!((compass_rad.to_degrees() - 10.0).abs() < 1e-9);
-    /// ```
-    #[derive(Clone, Copy, PartialEq, Debug, Default)]
-    pub struct Estimate {
-        /// Right wing down, rad.
-        #[field(1)]
-        pub roll_rad: f64,
-        /// Nose up, rad.
-        #[field(2)]
-        pub pitch_rad: f64,
-        /// Magnetic heading, rad, continuous through full turns: 370° is 10°
-        /// after one turn to the right.
-        #[field(3)]
-        pub heading_rad: f64,
-        /// Turn rates about the body axes.
-        #[field(4)]
-        pub body_rates: BodyRates,
-        /// Indicated airspeed, m/s.
-        #[field(5)]
-        pub airspeed_mps: f64,
-        /// True airspeed, m/s.
-        #[field(6)]
-        pub true_airspeed_mps: f64,
-        /// Pressure altitude, m.
-        #[field(7)]
-        pub altitude_m: f64,
-        /// Climb rate, m/s, up.
-        #[field(8)]
-        pub climb_rate_mps: f64,
-        /// Specific force to the right, m/s²: 0 in a coordinated turn.
-        #[field(9)]
-        pub side_force_mps2: f64,
-        /// Load factor, g, along the body's z axis, upwards.
-        #[field(10)]
-        pub load_factor: f64,
-        /// Standard deviation of the load that gusts cause, g.
-        #[field(11)]
-        pub gust_load: f64,
-        /// Angle of attack, rad: measured if a source has it, otherwise
-        /// estimated from the lift.
-        #[field(12, column = "estimated_angle_of_attack_rad")]
-        pub angle_of_attack_rad: f64,
-        /// Acceleration along the flight path, without gusts, m/s².
-        #[field(13)]
-        pub acceleration_mps2: f64,
-        /// The time from an output to its effect, s, measured by the elevator;
-        /// until then the assumed one.
-        #[field(14)]
-        pub output_latency_s: f64,
-        /// The play of the elevator, in the elevator's units of -1 to 1.
-        #[field(15)]
-        pub elevator_play: f64,
-        /// Where the airspeed comes from.
-        #[field(16)]
-        pub airspeed_source: AirspeedSource,
-        /// Standard deviation of an airspeed that comes from the forces, m/s;
-        /// 0 while the sensor is used.
-        #[field(17)]
-        pub airspeed_uncertainty_mps: f64,
-        /// How old the newest reading was when it arrived, s, by its source's own
-        /// clock and relative to the fastest one; 0 if it has none.
-        #[field(410)]
-        pub reading_age_s: f64,
-        /// The mean change of that age from one arrival to the next, s.
-        #[field(411)]
-        pub reading_jitter_s: f64,
-    }
-}
 
 /// Computes an [`Estimate`] from measurements.
 ///
@@ -214,31 +107,7 @@ impl Navigation {
             throttle: None,
             is_engaged: false,
             side_force: LowPass::new(config.side_force_tau_s),
-            estimate: Estimate {
-                roll_rad: 0.0,
-                pitch_rad: 0.0,
-                heading_rad: 0.0,
-                body_rates: BodyRates {
-                    roll_radps: 0.0,
-                    pitch_radps: 0.0,
-                    yaw_radps: 0.0,
-                },
-                airspeed_mps: 0.0,
-                true_airspeed_mps: 0.0,
-                altitude_m: 0.0,
-                climb_rate_mps: 0.0,
-                side_force_mps2: 0.0,
-                output_latency_s: 0.0,
-                elevator_play: 0.0,
-                load_factor: 1.0,
-                gust_load: 0.0,
-                angle_of_attack_rad: 0.0,
-                acceleration_mps2: 0.0,
-                airspeed_source: AirspeedSource::Sensor,
-                airspeed_uncertainty_mps: 0.0,
-                reading_age_s: 0.0,
-                reading_jitter_s: 0.0,
-            },
+            estimate: Estimate::INITIAL,
         }
     }
 
@@ -463,59 +332,3 @@ const CESSNA_172: AirframePrior = AirframePrior {
 /// Thrust over weight at full throttle, from the throttle per g in cruise: thrust
 /// is proportional to the square of the throttle, whose slope is 1 at a half.
 const FULL_THRUST_SHARE: f64 = 0.9;
-
-/// A source that is silent for longer than this is no longer integrated, and
-/// when it returns, its value is adopted at once.
-const CURRENT: Duration = Duration::from_millis(500);
-
-fn is_current<T>(reading: &Reading<T>, now: Time) -> bool {
-    reading.is_fresh(now, CURRENT)
-}
-
-/// Distinguishes new values from ones processed before, and determines how to
-/// use them.
-#[derive(Clone, Copy, Debug, Default)]
-struct SampleTracker {
-    taken: Time,
-    /// The next new one is adopted at once, whatever its age.
-    adopts_next: bool,
-}
-
-enum NewSample {
-    /// Nothing new.
-    None,
-    /// The first, or the first after a long silence: adopt it at once.
-    First,
-    /// A further one, this many seconds after the previous one.
-    Next(f64),
-}
-
-impl SampleTracker {
-    const fn new() -> Self {
-        Self {
-            taken: Time::NEVER,
-            adopts_next: false,
-        }
-    }
-
-    fn postpone(&mut self, by: Duration, latest: Time) {
-        self.taken = self.taken.postponed(by, latest);
-    }
-
-    /// `dt_s` is the plant's time since the last tick: while it does not
-    /// advance, a measurement is not new.
-    fn of<T>(&mut self, reading: &Reading<T>, dt_s: f64) -> NewSample {
-        if reading.is_never() || reading.taken <= self.taken {
-            return NewSample::None;
-        }
-        let gap = reading.taken.since(self.taken);
-        self.taken = reading.taken;
-        if core::mem::take(&mut self.adopts_next) || gap > CURRENT {
-            NewSample::First
-        } else if dt_s > 0.0 {
-            NewSample::Next(gap.as_secs_f64())
-        } else {
-            NewSample::None
-        }
-    }
-}

@@ -4,7 +4,7 @@ use core::time::Duration;
 
 use libm::{asin, atan2, cos, exp, sin};
 
-use super::Estimate;
+use super::estimate::Estimate;
 use crate::blocks::{LowPass, limit_abs, wrap_pi};
 use crate::flight::{Attitude, BodyRates, Measurements};
 use crate::framework::{Reading, Time};

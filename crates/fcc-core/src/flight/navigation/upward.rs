@@ -2,7 +2,7 @@
 
 use libm::{asin, atan2, cos, sin};
 
-use super::airspeed_filter::ForceSample;
+use super::force_sample::ForceSample;
 use crate::blocks::limit_abs;
 
 /// Where up is in the aircraft's plane of symmetry: (sin θ, cos φ cos θ).

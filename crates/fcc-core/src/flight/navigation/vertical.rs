@@ -4,11 +4,11 @@ use core::time::Duration;
 
 use libm::{cos, sin};
 
-use super::altitude_monitor::Reference;
 use super::attitude::Orientation;
+use super::marked_altitude::MarkedAltitude;
 use super::resolution::Resolution;
-use super::vertical_covariance::{CrossCovariance, Gains, VerticalCovariance};
-use super::{NewSample, SampleTracker, is_current};
+use super::sample_tracker::{NewSample, SampleTracker, is_current};
+use super::vertical_covariance::{Gains, VerticalCovariance};
 use crate::blocks::limit_abs;
 use crate::flight::Measurements;
 use crate::framework::Time;
@@ -21,6 +21,15 @@ pub struct VerticalState {
     pub altitude_m: f64,
     /// Up, m/s.
     pub climb_rate_mps: f64,
+}
+
+/// What a filter without an altimeter follows, with this bandwidth, rad/s.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Reference {
+    /// A climb rate, m/s.
+    ClimbRate(f64, f64),
+    /// An altitude, m.
+    Altitude(f64, f64),
 }
 
 /// Kalman filter: vertical acceleration integrated twice, corrected by
@@ -61,18 +70,11 @@ pub struct VerticalChannel {
     state: VerticalState,
     bias_mps2: f64,
     covariance: VerticalCovariance,
-    mark: Option<Mark>,
+    mark: Option<MarkedAltitude>,
     news: SampleTracker,
     resolution: Resolution,
     /// The vertical acceleration that was integrated last, up, m/s².
     felt_mps2: f64,
-}
-
-/// The altitude at a past instant, and its covariance with the present state.
-#[derive(Clone, Copy, Debug)]
-struct Mark {
-    altitude_m: f64,
-    link: CrossCovariance,
 }
 
 /// The largest bias of an intact accelerometer, m/s².
@@ -229,21 +231,18 @@ impl VerticalChannel {
         self.state.altitude_m += self.state.climb_rate_mps * passed_s;
         self.covariance.coast(passed_s);
         if let Some(mark) = &mut self.mark {
-            mark.link.predict(false, passed_s);
+            mark.predict(false, passed_s);
         }
     }
 
     /// Marks the present altitude.
     pub const fn mark(&mut self) {
-        self.mark = Some(Mark {
-            altitude_m: self.state.altitude_m,
-            link: self.covariance.of_altitude(),
-        });
+        self.mark = Some(MarkedAltitude::new(self.state.altitude_m, &self.covariance));
     }
 
     /// The present estimate of the marked altitude, m.
     pub fn marked_altitude_m(&self) -> Option<f64> {
-        self.mark.map(|mark| mark.altitude_m)
+        self.mark.map(MarkedAltitude::altitude_m)
     }
 
     fn predict(&mut self, acceleration_mps2: f64, measured: bool, dt_s: f64) {
@@ -252,7 +251,7 @@ impl VerticalChannel {
         state.climb_rate_mps += acceleration_mps2 * dt_s;
         self.covariance.predict(measured, dt_s);
         if let Some(mark) = &mut self.mark {
-            mark.link.predict(measured, dt_s);
+            mark.predict(measured, dt_s);
         }
     }
 
@@ -267,7 +266,7 @@ impl VerticalChannel {
         self.covariance.restart();
         self.covariance.widen(self.resolution.step());
         if let Some(mark) = &mut self.mark {
-            mark.link = CrossCovariance::default();
+            mark.keep();
         }
     }
 
@@ -297,112 +296,10 @@ impl VerticalChannel {
         self.state.climb_rate_mps += gains.climb_rate_per_s * error;
         self.bias_mps2 = limit_abs(self.bias_mps2 + gains.bias_per_s2 * error, MAX_BIAS_MPS2);
         if let Some(mark) = &mut self.mark {
-            mark.altitude_m += mark.link.correct(gains) * error;
+            mark.correct(gains, error);
         }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::flight::SpecificForce;
-    use crate::framework::Reading;
-
-    const DT_S: f64 = 0.025;
-    const SAMPLES: i64 = 200;
-    /// The noise of a phone's sensors, one sigma in every sample.
-    const ALTITUDE_SIGMA_M: f64 = 0.762;
-    const FORCE_SIGMA_MPS2: f64 = 0.183;
-
-    /// Normal numbers: twelve uniform ones, of a linear congruential generator.
-    struct Noise(u64);
-
-    impl Noise {
-        fn next(&mut self) -> f64 {
-            let sum: f64 = (0..12)
-                .map(|_| {
-                    self.0 = self
-                        .0
-                        .wrapping_mul(6_364_136_223_846_793_005)
-                        .wrapping_add(1_442_695_040_888_963_407);
-                    (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-                })
-                .sum();
-            sum - 6.0
-        }
-    }
-
-    fn root_mean_square(errors: &[f64]) -> f64 {
-        let sum: f64 = errors.iter().map(|error| error * error).sum();
-        libm::sqrt(sum / errors.len() as f64)
-    }
-
-    /// Level flight at 900 m. A straight line fitted to 5 s of samples is
-    /// accurate to 2σ/√N at its end, 0.11 m, and after as many further samples
-    /// to σ/√(2N) there, 0.04 m (Bar-Shalom, Li and Kirubarajan 2001, section
-    /// 3.5). A filter without knowledge of slope and bias, with a noisy
-    /// accelerometer, cannot be better than either.
-    #[test]
-    fn a_marked_altitude_is_refined_later() {
-        let mut noise = Noise(7);
-        let mut at_once = [0.0; 60];
-        let mut later = [0.0; 60];
-        for trial in 0..at_once.len() {
-            let mut channel = VerticalChannel::new(0.7);
-            let mut state = VerticalState::default();
-            for sample in 1..=2 * SAMPLES {
-                let now = Time::from_nanos(sample * 25_000_000);
-                let force = SpecificForce {
-                    z_mps2: -GRAVITY_MPS2 + FORCE_SIGMA_MPS2 * noise.next(),
-                    ..SpecificForce::default()
-                };
-                let measurements = Measurements {
-                    specific_force: Reading::new(force, now),
-                    altitude_m: Reading::new(900.0 + ALTITUDE_SIGMA_M * noise.next(), now),
-                    ..Measurements::default()
-                };
-                state = channel.step(now, &measurements, &Orientation::default(), DT_S);
-                if sample == SAMPLES {
-                    channel.mark();
-                    at_once[trial] = state.altitude_m - 900.0;
-                }
-            }
-            later[trial] = channel.marked_altitude_m().unwrap() - 900.0;
-            assert!(state.climb_rate_mps.abs() < 0.5);
-        }
-        let (at_once, later) = (root_mean_square(&at_once), root_mean_square(&later));
-        assert!((0.10..0.18).contains(&at_once), "{at_once}");
-        assert!((0.04..0.075).contains(&later), "{later}");
-    }
-
-    /// A bias of 0.2 m/s² is estimated within a minute.
-    #[test]
-    fn the_bias_is_estimated() {
-        let mut channel = VerticalChannel::new(0.7);
-        let mut state = VerticalState::default();
-        for sample in 1..=2_400 {
-            let now = Time::from_nanos(sample * 25_000_000);
-            let force = SpecificForce {
-                z_mps2: -GRAVITY_MPS2 - 0.2,
-                ..SpecificForce::default()
-            };
-            let measurements = Measurements {
-                specific_force: Reading::new(force, now),
-                // Not to the last bit, as of a coarse altimeter.
-                altitude_m: Reading::new(900.0 + (sample % 2) as f64 * 1e-6, now),
-                ..Measurements::default()
-            };
-            state = channel.step(now, &measurements, &Orientation::default(), DT_S);
-        }
-        assert!(
-            (channel.bias_mps2 - 0.2).abs() < 0.01,
-            "{}",
-            channel.bias_mps2
-        );
-        assert!(
-            (state.altitude_m - 900.0).abs() < 0.05,
-            "{}",
-            state.altitude_m
-        );
-    }
-}
+mod tests;

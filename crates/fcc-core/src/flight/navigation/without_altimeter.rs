@@ -2,11 +2,12 @@
 
 use libm::tan;
 
+use super::Navigation;
 use super::airspeed_filter::squared;
 use super::altitude_monitor::{self, AltitudeInput, Verdict};
 use super::attitude::Orientation;
+use super::sample_tracker::is_current;
 use super::vertical::VerticalState;
-use super::{Navigation, is_current};
 use crate::blocks::limit_abs;
 use crate::flight::Measurements;
 use crate::framework::Time;

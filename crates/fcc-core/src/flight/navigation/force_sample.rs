@@ -1,0 +1,44 @@
+//! The forces on the aircraft and its motion, as models of its airspeed use them.
+
+use crate::units::GRAVITY_MPS2;
+
+/// Beyond these the models of the forces do not hold: bank and pitch in rad
+/// (60°, 45°), load in g.
+const STEEP_BANK_RAD: f64 = 1.05;
+const STEEP_PITCH_RAD: f64 = 0.79;
+const LOADS: core::ops::RangeInclusive<f64> = 0.3..=2.5;
+
+/// What the filter's models need, averaged over the time between two
+/// corrections.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ForceSample {
+    /// Specific force forward and up along the body axes, in g.
+    pub(super) forward: f64,
+    pub(super) up: f64,
+    pub(super) pitch_rad: f64,
+    pub(super) roll_rad: f64,
+    pub(super) climb_rate_mps: f64,
+    /// The climb rate comes from lift itself: the altimeter is doubted.
+    pub(super) climbs_by_lift: bool,
+    /// √(density over its value at sea level).
+    pub(super) sqrt_density: f64,
+    /// Thrust over that at full throttle and V₀, and its change over seconds;
+    /// none if the throttle is not known.
+    pub(super) thrust: Option<(f64, f64)>,
+    /// Standard deviation of vertical gusts, m/s.
+    pub(super) gusts_mps: f64,
+}
+
+impl ForceSample {
+    /// Whether the models of the forces hold.
+    pub(super) fn models_hold(&self) -> bool {
+        self.roll_rad.abs() < STEEP_BANK_RAD
+            && self.pitch_rad.abs() < STEEP_PITCH_RAD
+            && LOADS.contains(&self.up)
+    }
+}
+
+/// Specific force in m/s² to weights, forward and up.
+pub(super) fn in_g(x_mps2: f64, z_mps2: f64) -> (f64, f64) {
+    (x_mps2 / GRAVITY_MPS2, -z_mps2 / GRAVITY_MPS2)
+}
