@@ -23,7 +23,7 @@ const FIRST_AFTER: u32 = 120;
 /// A smaller mean square of the pitch acceleration, (rad/s²)², says nothing.
 const LEAST_MOTION: f64 = 1e-3;
 /// The part of it that the elevator must explain.
-const LEAST_EXPLAINED: f64 = 0.05;
+const LEAST_EXPLAINED: f64 = 0.15;
 /// Another model is believed if it leaves less than this part of what the
 /// present one leaves unexplained.
 const BETTER: f64 = 0.94;
