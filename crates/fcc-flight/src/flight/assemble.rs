@@ -97,7 +97,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
     let loop_config = config.loop_config();
     let mut plant = match config.aircraft() {
         Some(Aircraft::BuiltIn(section)) => built_in(section, loop_config.messages_capacity)?,
-        Some(Aircraft::XPlane(section)) => x_plane(section)?,
+        Some(Aircraft::XPlane(section)) => x_plane(section, config)?,
         None => Plant::default(),
     };
     let mut sensors = Vec::new();
@@ -105,7 +105,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
         match entry {
             SensorEntry::Simulator(_) => sensors.append(&mut plant.sensors),
             SensorEntry::XPlane(section) => {
-                let (sensor, _) = XPlane::open(&XPlaneConfig::from(section.as_ref()))?;
+                let (sensor, _) = XPlane::open(&x_plane_config(section, config))?;
                 sensors.push(Box::new(match &plant.x_plane {
                     Some(flown) => sensor.beside(flown),
                     None => sensor,
@@ -149,8 +149,17 @@ fn built_in(section: &BuiltInSection, ticks: usize) -> Result<Plant, AssemblyErr
     })
 }
 
-fn x_plane(section: &XPlaneSection) -> Result<Plant, AssemblyError> {
-    let config = XPlaneConfig::from(section);
+/// The configuration of a connection in a flight: what it reads depends on what
+/// is used.
+fn x_plane_config(section: &XPlaneSection, config: &Config) -> XPlaneConfig {
+    XPlaneConfig {
+        pilot_controls: config.engage.stick_takeover.is_some(),
+        ..XPlaneConfig::from(section)
+    }
+}
+
+fn x_plane(section: &XPlaneSection, config: &Config) -> Result<Plant, AssemblyError> {
+    let config = x_plane_config(section, config);
     let (sensor, actuator) = XPlane::open(&config)?;
     let status = sensor.status();
     let authority = XPlaneAuthority::of(status.clone(), &config);
