@@ -391,6 +391,14 @@ class Estimate:
     def airspeed_uncertainty_mps(self) -> float:
         """Standard deviation of an airspeed that comes from the forces, m/s."""
 
+    @property
+    def reading_age_s(self) -> float:
+        """How old the newest reading was when it arrived."""
+
+    @property
+    def reading_jitter_s(self) -> float:
+        """The mean change of that age from one arrival to the next, s."""
+
     # </schema>
     def __eq__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]

@@ -69,12 +69,20 @@ def add(commands: Any) -> None:
         "--aircraft", default="c172p", metavar="NAME,NAME", help="(default %(default)s)"
     )
     margins.add_argument(
-        "--airspeeds", type=_numbers, default=(70.0, 85.0, 100.0, 125.0), metavar="KT,KT"
+        "--airspeeds",
+        type=_numbers,
+        metavar="KT,KT",
+        help="(default: 1.3 Vs, cruise and the greatest)",
     )
     margins.add_argument("--axes", default=",".join(_AXES), metavar="AXIS,AXIS")
     margins.add_argument("--delays", type=_numbers, default=(25.0,), metavar="MS,MS")
     margins.add_argument("--servo", type=float, default=3.0, metavar="HZ", help="0 for none")
-    margins.add_argument("--light", action="store_true", help="also with a tenth of the fuel")
+    margins.add_argument(
+        "--weights",
+        default="",
+        metavar="NAME,NAME",
+        help="light and heavy as in the campaign, or file (default: file)",
+    )
     margins.add_argument("--workers", type=_positive, metavar="N", help="processes")
     margins.add_argument("--json", type=Path, metavar="FILE", help="write all figures here")
     margins.add_argument("--picture", type=Path, metavar="FILE", help="write a picture here")
@@ -172,11 +180,11 @@ def _margins(options: argparse.Namespace) -> int:
     from .margins import report  # noqa: PLC0415 - matplotlib takes a second
 
     conditions = [
-        margins.Condition(name, airspeed_kt, axis, delay_ms / 1e3, options.servo, is_light)
+        margins.Condition(name, airspeed_kt, axis, delay_ms / 1e3, options.servo, weight)
         for name in options.aircraft.split(",")
-        for is_light in ((False, True) if options.light else (False,))
+        for weight in (("" if each == "file" else each) for each in options.weights.split(","))
         for delay_ms in options.delays
-        for airspeed_kt in options.airspeeds
+        for airspeed_kt in options.airspeeds or margins.airspeeds_kt(name, weight)
         for axis in options.axes.split(",")
     ]
     measured = []

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from fcc_hil import airspeed
+from fcc_hil import airspeed, altitude
 from fcc_hil.lockstep import measurements
 from fcc_hil.noise import SensorNoise
 from fcc_hil.plant import Plant, Weather
@@ -39,6 +39,8 @@ class _Flown:
 
     time_s: npt.NDArray[np.float64]
     true_kt: npt.NDArray[np.float64]
+    true_ft: npt.NDArray[np.float64]
+    used_ft: npt.NDArray[np.float64]
     sensed_kt: npt.NDArray[np.float64]
     used_kt: npt.NDArray[np.float64]
     is_doubted: npt.NDArray[np.bool_]
@@ -50,6 +52,8 @@ def _fly(
     end_s: float = _END_S,
     weather: Weather | None = None,
     disturb: Callable[[Plant], None] | None = None,
+    *,
+    over_ground: bool = False,
 ) -> _Flown:
     """Hold heading and altitude from 5 s on; at the fault's time change the altitude."""
     plant = Plant("c172p", seed=SEED, weather=weather or Weather())
@@ -69,6 +73,9 @@ def _fly(
         measured, _ = sensors.read(plant.time_s, noise.apply(state))
         assert measured is not None
         sample = measurements(measured)
+        if over_ground:
+            sample.north_mps, sample.east_mps = state.north_mps, state.east_mps
+            sample.down_mps = state.down_mps
         if plant.time_s < 5.0:
             autopilot.observe(sample)
             continue
@@ -89,10 +96,14 @@ def _fly(
                 measured.airspeed_mps / KT_TO_MPS,
                 estimate.airspeed_mps / KT_TO_MPS,
                 estimate.airspeed_source != "sensor",
+                state.altitude_m / FT_TO_M,
+                estimate.altitude_m / FT_TO_M,
             )
         )
-    times_s, true_kt, measured_kt, estimated_kt, doubted = np.array(rows).T
-    return _Flown(times_s, true_kt, measured_kt, estimated_kt, is_doubted=doubted > 0.5)
+    times_s, true_kt, measured_kt, estimated_kt, doubted, true_ft, used_ft = np.array(rows).T
+    return _Flown(
+        times_s, true_kt, true_ft, used_ft, measured_kt, estimated_kt, is_doubted=doubted > 0.5
+    )
 
 
 @pytest.mark.parametrize(
@@ -118,6 +129,35 @@ def test_a_wrong_airspeed_is_doubted_and_flown_on_without(break_it: Break, climb
     assert doubted_s - wrong_s < 5.0
     later = flown.time_s > _FAULT_S + 15.0
     assert np.abs(flown.used_kt - flown.true_kt)[later].max() < 10.0
+
+
+def _block_static(faults: Faults) -> None:
+    """Trap the static pressure; the transducers keep their noise."""
+    faults.blocked_static(after=_FAULT_S)
+    faults.noise(altitude("ft"), sigma=2.5, after=_FAULT_S)
+
+
+@pytest.mark.parametrize(
+    ("climb_ft", "doubted_s", "error_ft"),
+    [
+        (1_000.0, 7.0, 200.0),
+        (-1_000.0, 7.0, 200.0),
+        (300.0, 7.0, 200.0),
+        (0.0, 30.0, 300.0),
+    ],
+)
+@pytest.mark.parametrize("over_ground", [False, True])
+def test_a_blocked_static_port_is_doubted_and_flown_on_without(
+    climb_ft: float, doubted_s: float, error_ft: float, *, over_ground: bool
+) -> None:
+    flown = _fly(_block_static, climb_ft, over_ground=over_ground, end_s=110.0)
+    assert flown.true_kt.min() > 1.2 * _VS_KT
+    assert flown.true_kt.max() < _VNE_KT
+    assert flown.is_doubted.any()
+    assert flown.time_s[flown.is_doubted][0] - _FAULT_S < doubted_s
+    assert np.abs(flown.used_ft - flown.true_ft).max() < error_ft
+    climbed_ft = flown.true_ft[-1] - flown.true_ft[0]
+    assert abs(climbed_ft - climb_ft) < error_ft
 
 
 def test_a_sensor_that_agrees_again_is_taken_again() -> None:

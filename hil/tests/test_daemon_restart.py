@@ -11,7 +11,6 @@ import json
 import os
 import re
 import signal
-import socket
 import subprocess
 import time
 from collections.abc import Callable, Iterator
@@ -25,6 +24,7 @@ from daemon_under_test import (
     Ending,
     assert_released,
     engage,
+    flight,
     start,
     wait_until,
     write_config,
@@ -234,24 +234,29 @@ def test_a_flight_that_ended_regularly_is_not_recovered(cockpit: Cockpit) -> Non
     assert "was interrupted" not in ending.log
 
 
-def test_a_helper_that_still_releases_is_ended(fccd: Path) -> None:
-    """At a simulator that never answers, a release helper continues for two minutes."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as simulator:
-        simulator.bind(("127.0.0.1", 0))
-        simulator.settimeout(15.0)
-        address = "{}:{}".format(*simulator.getsockname())
+def test_a_helper_of_an_earlier_daemon_is_ended(fccd: Path, tmp_path: Path) -> None:
+    """It would release what the next daemon flies; one that is stopped does not wait for it."""
+    folder = tmp_path / "run"
+    folder.mkdir(mode=0o700)
+    environment = {"RUNTIME_DIRECTORY": str(folder)}
+    with flight(fccd, tmp_path, environment=environment) as (simulator, daemon):
+        address = f"127.0.0.1:{simulator.port}"
         with subprocess.Popen(
-            [fccd, "release-helper"], stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+            [fccd, "release-helper"],
+            stdin=subprocess.PIPE,
+            text=True,
+            env={**os.environ, **environment},
         ) as helper:
             assert helper.stdin is not None
-            assert helper.stderr is not None
             config = json.dumps(f'[x-plane]\nsimulator = "{address}"\n')
-            helper.stdin.write(f"{config}\nheld X-Plane at {address}\n")
-            helper.stdin.close()
-            assert simulator.recv(600), "it releases"
-            with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as successor:
-                successor.connect(f"\0fccd-release-helper-X-Plane at {address}")
-                successor.settimeout(15.0)
-                assert successor.recv(1) == b"", "it has ended"
-            assert "another daemon has taken over" in helper.stderr.read()
-    assert helper.returncode == SUCCESS
+            helper.stdin.write(f"{config}\nheld 1 X-Plane at {address}\n")
+            helper.stdin.flush()
+            wait_until(lambda: len(list(Path(f"/proc/{helper.pid}/fd").iterdir())) == 4, "its lock")
+            helper.send_signal(signal.SIGSTOP)
+            engage(simulator, daemon)
+            daemon.wait_for("the release helper of the previous daemon was ended")
+            assert helper.wait(15.0) == -signal.SIGKILL
+        assert simulator.progress().overridden
+        assert daemon.end(signal.SIGTERM).exit_code == SUCCESS
+        assert_released(simulator)
+    assert list(folder.iterdir()) == [], "nothing is left to do"

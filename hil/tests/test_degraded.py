@@ -13,10 +13,11 @@ import numpy as np
 import pytest
 
 from fcc_hil.lockstep_rig import LockstepRig
-from fcc_hil.plant import Plant
+from fcc_hil.plant import Plant, Weather
 from fcc_hil.quantities import SENSORS
 from fcc_hil.sensor_faults import Kind, SensorFault
 from fcc_hil.standin import Settings
+from fcc_hil.units import KT_TO_MPS
 
 SEED = 11
 """Not one of those on which the laws were developed (7)."""
@@ -29,10 +30,18 @@ class Flight:
     """A flight that is engaged, with sensors lost from `LOST_AT_S` on."""
 
     def __init__(
-        self, lost: Sequence[str], lasts_s: float, *, aircraft: str = "c172x", config: str = ""
+        self,
+        lost: Sequence[str],
+        lasts_s: float,
+        *,
+        aircraft: str = "c172x",
+        config: str = "",
+        seed: int = SEED,
+        severity: int = 0,
+        bias_kt: float = 0.0,
     ) -> None:
-        plant = Plant(aircraft, seed=SEED)
-        settings = Settings(port=0, aircraft=aircraft, seed=SEED, noise=True)
+        plant = Plant(aircraft, seed=seed, weather=Weather(turbulence_severity=severity))
+        settings = Settings(port=0, aircraft=aircraft, seed=seed, noise=True)
         self.rig = LockstepRig(settings, plant, fcc.Machine(config))
         self.rig.prepare()
         self.rig.set_switch(on=True)
@@ -44,12 +53,18 @@ class Flight:
         self.rig.fly_to(self.rig.time_s + 0.6, until=lambda: self.rig.machine.state == "engaged")
         self.began_s = self.rig.time_s
         begins_s = self.began_s + LOST_AT_S
-        self.rig.set_faults(
-            [
-                SensorFault(Kind.LOSS, name, SENSORS[name], begins_s, begins_s + lasts_s)
-                for name in lost
-            ]
-        )
+        faults = [
+            SensorFault(Kind.LOSS, name, SENSORS[name], begins_s, begins_s + lasts_s)
+            for name in lost
+        ]
+        if bias_kt != 0.0:
+            wrong = SENSORS["airspeed"]
+            faults.append(
+                SensorFault(
+                    Kind.BIAS, "airspeed", wrong, begins_s - 5.0, amount=bias_kt * KT_TO_MPS
+                )
+            )
+        self.rig.set_faults(faults)
 
     def fly_to(self, time_s: float) -> None:
         """Fly to a time since engaging."""
@@ -88,7 +103,7 @@ class Limits:
 ROWS = {
     "heading": (["heading"], Limits(1.0, 15.0, 3.0)),
     "acceleration": (["specific_force"], Limits(1.5, 60.0, 5.0)),
-    "airspeed": (["airspeed"], Limits(1.0, 100.0, 12.0)),
+    "airspeed": (["airspeed"], Limits(1.0, 30.0, 8.0)),
     "altitude": (["altitude"], Limits(1.0, 100.0, 15.0)),
     "body rates": (["body_rates"], Limits(2.0, 15.0, 3.0)),
     "body rates and heading": (["body_rates", "heading"], Limits(2.0, 15.0, 3.0)),
@@ -121,6 +136,26 @@ def test_what_is_left_is_held_and_then_the_pattern_is_flown_on(name: str) -> Non
     assert np.max(np.abs((turned_deg - 90.0 + 180.0) % 360.0 - 180.0)) < 3.0
     climbed_ft = flight.between("altitude_ft", *end) - captured.altitude_ft
     assert np.max(np.abs(climbed_ft - 150.0)) < 20.0
+
+
+def test_a_lost_airspeed_is_replaced_by_forces_in_turbulence() -> None:
+    """By pitch and power alone the same flight differs by 22 kt."""
+    flight = Flight(["airspeed"], LOST_FOR_S, aircraft="c172r", seed=22, severity=3)
+    flight.fly_to(LOST_AT_S + LOST_FOR_S)
+    airspeed_kt = flight.between("airspeed_kt", LEVEL_AFTER_S, LOST_FOR_S)
+    assert np.max(np.abs(airspeed_kt - 100.0)) < 14.0
+    altitude_ft = flight.between("altitude_ft", 0.0, LOST_FOR_S)
+    assert np.max(np.abs(altitude_ft - altitude_ft[0])) < 40.0
+
+
+def test_a_doubted_airspeed_counts_as_lost_when_another_quantity_is() -> None:
+    flight = Flight(["heading"], LOST_FOR_S, aircraft="c172p", bias_kt=15.0)
+    flight.fly_to(LOST_AT_S)
+    assert flight.rig.machine.estimate.airspeed_source == "forces"
+    flight.fly_to(LOST_AT_S + LOST_FOR_S)
+    assert flight.rig.machine.state == "failsafe"
+    airspeed_kt = flight.between("airspeed_kt", LEVEL_AFTER_S, LOST_FOR_S)
+    assert np.max(np.abs(airspeed_kt - 100.0)) < 7.0
 
 
 def test_half_a_second_without_any_sensor_is_flown_through() -> None:

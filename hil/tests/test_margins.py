@@ -104,7 +104,7 @@ def test_the_latency_is_measured_in_flight(delay_s: float, least_ms: float, most
 
 
 @pytest.mark.parametrize("airspeed_kt", [70, 125])
-@pytest.mark.parametrize("axis", ["elevator", "aileron"])
+@pytest.mark.parametrize("axis", ["elevator", "aileron", "rudder", "throttle"])
 def test_6_db_and_45_degrees_with_25_ms_and_a_3_hz_servo(airspeed_kt: float, axis: str) -> None:
     margins = measure(Condition("c172p", airspeed_kt, axis))
     assert margins.gain_db >= 6.0

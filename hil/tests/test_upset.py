@@ -81,6 +81,81 @@ def test_upsets_are_recovered_from(script: Script, most_lost_ft: float) -> None:
     _flown_on(flown)
 
 
+@pytest.mark.parametrize("aircraft", ["c172x", "c182", "c172r"])
+def test_other_aircraft_stay_within_the_limit_load(aircraft: str) -> None:
+    """Before, 4.0 g (c172x) and 3.9 g (c182); the script pushes at up to -1 g."""
+    dive = to_attitude(0.0, -60.0, throttle=0.0)
+    flown = fly(dive, replace(ROUGH, aircraft=aircraft), 10.0)
+    assert flown.greatest_load < LIMIT_LOAD - 0.3
+    assert flown.lost_ft < 500.0
+    assert flown.greatest_kt < NEVER_EXCEED_KT
+
+
+@pytest.mark.parametrize("missing", ["heading", "airspeed", "altitude"])
+def test_a_failsafe_recovers_as_well(missing: str) -> None:
+    """Attitude and body rates are there; before, only the wings were levelled."""
+    flown = fly(full_aileron, replace(ROUGH, missing=(missing,)))
+    assert flown.state.startswith("failsafe")
+    _within_limits(flown, 900.0)
+    assert flown.end is not None
+    assert abs(math.degrees(flown.end.roll_rad)) < 10.0
+    said = [event.split(" ", 1)[1] for event in flown.events]
+    assert "now: recovering from an upset" in said
+    assert "no longer: recovering from an upset" in said
+
+
+@pytest.mark.parametrize(("turns", "rudder"), [(1.0, 1.0), (3.0, -1.0), (6.0, 1.0)])
+def test_a_spin_is_recovered_from(turns: float, rudder: float) -> None:
+    """The built-in aircraft, with noisy sensors, is engaged in a spin that was held for a while.
+
+    14 CFR 23.221 (before 2017) allows one more turn; Cessna gives up to 1,000 ft for a spin of one
+    turn and its recovery.
+    """
+    aircraft = fcc.BuiltInAircraft("[built-in]\naltitude_ft = 8000.0\nairspeed_kt = 75.0\n")
+    machine = fcc.Machine(HOLD + "[engage]\npermit_upset = true\n")
+    controls, measured = aircraft.controls, aircraft.step(None)
+    turned = held_turns = recovered_turns = 0.0
+    stalled, low_m, begin_m = False, math.inf, 0.0
+    loads: list[float] = []
+    heading = aircraft.truth.heading_rad
+    for tick in range(2_400):
+        truth = aircraft.truth
+        turned += math.remainder(truth.heading_rad - heading, math.tau) / math.tau
+        heading = truth.heading_rad
+        if not held_turns and stalled and abs(turned) >= turns:
+            held_turns, begin_m = abs(turned), truth.altitude_m
+        stand = aircraft.controls
+        surfaces = machine.step(
+            measured,
+            readback=(stand.throttle, stand.elevator, stand.aileron, stand.rudder),
+            switch=held_turns > 0.0,
+        )
+        if surfaces is not None:
+            controls = surfaces
+        elif stalled:
+            controls = fcc.Surfaces(elevator=1.0, rudder=rudder)
+        elif tick > 120:
+            level = -0.8 * truth.roll_rad - 0.4 * truth.roll_rate_radps
+            up = min(1.0, 0.00175 * (tick - 120))
+            controls = fcc.Surfaces(elevator=up, aileron=max(-1.0, min(1.0, level)))
+            stalled = truth.angle_of_attack_rad > math.radians(17.0)
+        if held_turns:
+            loads.append(-truth.specific_force_z_mps2 / 9.80665)
+            low_m = min(low_m, truth.altitude_m)
+            if abs(truth.yaw_rate_radps) > math.radians(20.0):
+                recovered_turns = abs(turned) - held_turns
+        measured = aircraft.step(controls)
+    assert held_turns
+    assert recovered_turns < 1.0
+    assert (begin_m - low_m) / FT_TO_M < 700.0
+    assert max(loads) < LIMIT_LOAD
+    assert min(loads) > -0.1
+    assert machine.state == "engaged"
+    assert abs(math.degrees(aircraft.truth.roll_rad)) < 40.0
+    said = [event.text for event in machine.events()]
+    assert "now: recovering from an upset" in said
+
+
 def test_a_wake_vortex() -> None:
     flown = fly(wake_vortex, ROUGH, 15.0)
     assert abs(math.degrees(flown.begin.roll_rad)) > 45.0
@@ -103,10 +178,11 @@ def test_it_engages_in_an_upset_only_if_permitted(permitted: bool) -> None:
         plant.write(taken)
         plant.step(3)
         machine.step(measurements(plant.state()), switch=False)
-    surfaces = machine.step(measurements(plant.state()), switch=True)
+    for _ in range(2):  # two readings agree
+        surfaces = machine.step(measurements(plant.state()), switch=True)
     assert machine.state == ("engaged" if permitted else "standby")
     if surfaces is None:
-        assert machine.engage_inhibits == ["bank or pitch is beyond 60 degrees"]
+        assert machine.engage_inhibits == ["bank or pitch is beyond 60 degrees, or it spins"]
         return
     assert surfaces.aileron < -0.5, "the shorter way"
     for _ in range(400):

@@ -46,6 +46,8 @@ class Conditions:
     config: str = HOLD
     airspeed_kt: float | None = None
     """Commanded before the upset."""
+    missing: tuple[str, ...] = ()
+    """Readings that do not arrive from 2 s before the script on."""
 
 
 ROUGH = Conditions(noise=True, delay_ticks=1, servo_hz=3.0)
@@ -103,12 +105,16 @@ def fly(script: Script, conditions: Conditions | None = None, seconds: float = 2
     for _ in range(round(_SETTLING_S / flight.machine.period_s)):
         flight.tick(None)
     flight.switch = True
-    flight.tick(None)
+    for _ in range(2):  # two readings agree
+        flight.tick(None)
     assert flight.machine.state == "engaged", flight.machine.engage_inhibits
     if conditions.airspeed_kt is not None:
         flight.machine.command(airspeed_mps=conditions.airspeed_kt * KT_TO_MPS)
     wait_s = 5.0 if conditions.airspeed_kt is None else 25.0
     for _ in range(round(wait_s / flight.machine.period_s)):
+        flight.tick(None)
+    flight.missing = conditions.missing
+    for _ in range(80 if conditions.missing else 0):
         flight.tick(None)
     before_ft = flight.plant.state().altitude_m / FT_TO_M
     began_s = flight.plant.time_s
@@ -139,6 +145,7 @@ class _Flight:
         self.machine = fcc.Machine(conditions.config)
         self.wanted = self.flown = self.plant.trim
         self.switch = False
+        self.missing: tuple[str, ...] = ()
         self.events: list[str] = []
         self._noise = SensorNoise(conditions.seed) if conditions.noise else None
         self._waiting: deque[State] = deque(maxlen=conditions.delay_ticks + 1)
@@ -152,6 +159,7 @@ class _Flight:
         stand = plant.controls
         surfaces = self.machine.step(
             measurements(self._waiting[0]),
+            missing=self.missing,
             readback=(stand.throttle, stand.elevator, stand.aileron, stand.rudder),
             switch=self.switch,
         )

@@ -3,19 +3,10 @@
 
 mod bench;
 
-use bench::{Bench, PERIOD};
+use bench::{Bench, LOST, SENSORS_LOST, config};
 use fcc_core::framework::State::{Engaged, Failsafe, Stopped};
-use fcc_core::framework::{Cause, Flags, Switch};
-use fcc_runtime::{Ending, LoopCommand, LoopConfig};
-
-const LOST: Flags = Flags::bit(0);
-
-fn config() -> LoopConfig {
-    LoopConfig {
-        failsafe_hold: 4 * PERIOD,
-        ..LoopConfig::default()
-    }
-}
+use fcc_core::framework::Switch;
+use fcc_runtime::{Ending, LoopCommand};
 
 fn stopping() -> Bench {
     let mut bench = Bench::engaged(&config());
@@ -91,7 +82,7 @@ fn a_controller_that_does_not_prepare_is_released_at_once() {
 #[test]
 fn a_failsafe_ends_after_its_time_while_a_stop_waits() {
     let mut bench = stopping();
-    let failsafe = Failsafe(Cause::Faults(LOST));
+    let failsafe = Failsafe(SENSORS_LOST);
     for _ in 0..4 {
         assert_eq!(bench.tick(|s| s.faults = LOST), failsafe);
     }

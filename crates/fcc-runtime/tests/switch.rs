@@ -2,19 +2,10 @@
 
 mod bench;
 
-use bench::{Bench, EventKind, PERIOD, RELEASED, change};
+use bench::{Bench, EventKind, LOST, RELEASED, change, config};
 use fcc_core::framework::State::{Engaged, Standby};
 use fcc_core::framework::{AfterRelease, Flags, State, Switch};
 use fcc_runtime::{Ending, LoopCommand, LoopConfig};
-
-const LOST: Flags = Flags::bit(1);
-
-fn config() -> LoopConfig {
-    LoopConfig {
-        switch_max_age: 2 * PERIOD,
-        ..LoopConfig::default()
-    }
-}
 
 /// 20 ticks after the first off are half a second; the off takes two.
 fn steadily_on(bench: &mut Bench) -> State {

@@ -9,10 +9,13 @@ use std::sync::Arc;
 use fcc_core::flight::Surfaces;
 use fcc_core::framework::{Actuator, ActuatorFault, Tick, Time};
 
+use crate::authority::plant_at;
 use crate::config::XPlaneConfig;
 use crate::confirmation::Confirmation;
-use crate::controls::{Controls, LET_GO_TIMES, yoke_ratios};
-use crate::link::{Control, SharedState, count};
+use crate::controls::{Controls, LET_GO_TIMES};
+use crate::counters::count;
+use crate::deflections::yoke_ratios;
+use crate::link::{Control, SharedState};
 use crate::port::{Errno, Port};
 use crate::protocol::PathError;
 use crate::protocol::dref::WRITE_BYTES;
@@ -78,11 +81,17 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
         let held = match &mut self.held {
             Some(held) => held,
             none => {
-                let simulator = link.simulator().filter(|at| link.is_allowed(*at));
+                let simulator = link
+                    .address
+                    .simulator()
+                    .filter(|at| link.address.is_allowed(*at));
                 let simulator = simulator.ok_or(ActuatorFault::NotConnected)?;
                 // Counts as held before the first datagram is sent: what may
                 // have been taken must be released.
                 link.set_control(Control::Held);
+                if let Some((notice, plant)) = link.notice().zip(plant_at(simulator)) {
+                    notice.taking(&plant);
+                }
                 none.insert(HeldControl {
                     simulator,
                     asserted: Time::NEVER,

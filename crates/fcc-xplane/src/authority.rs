@@ -5,7 +5,7 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use fcc_core::framework::{ActuatorFault, ControlAuthority, PlantId, Released};
+use fcc_core::framework::{ActuatorFault, ControlAuthority, PlantId, Released, TakeoverNotice};
 
 use crate::config::XPlaneConfig;
 use crate::link::Control;
@@ -74,6 +74,12 @@ impl ControlAuthority for XPlaneAuthority {
     fn permit(&self, plant: &PlantId) {
         if let Some((status, simulator)) = self.status.as_ref().zip(address(plant)) {
             status.allow(simulator);
+        }
+    }
+
+    fn notify(&self, notice: &'static dyn TakeoverNotice) {
+        if let Some(status) = &self.status {
+            status.notify(notice);
         }
     }
 

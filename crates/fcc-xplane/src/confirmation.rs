@@ -147,7 +147,8 @@ impl Confirmation {
 
     /// The latest readback of a quantity, and its time.
     fn recent(&self, quantity: Quantity, now: Time, link: &SharedState) -> Option<(f32, Time)> {
-        link.shown(quantity)
+        link.read_back
+            .shown(quantity)
             .filter(|(_, at)| *at > self.began && now.since(*at) <= LATELY)
     }
 
@@ -191,9 +192,12 @@ mod tests {
             .map(|tick| {
                 now = now + TICK;
                 if let Some([joystick, throttles, pitch]) = readback(written[tick as usize]) {
-                    link.show(Quantity::OverrideJoystick, f64::from(joystick), now);
-                    link.show(Quantity::OverrideThrottles, f64::from(throttles), now);
-                    link.show(Quantity::YokePitch, f64::from(pitch), now);
+                    link.read_back
+                        .show(Quantity::OverrideJoystick, f64::from(joystick), now);
+                    link.read_back
+                        .show(Quantity::OverrideThrottles, f64::from(throttles), now);
+                    link.read_back
+                        .show(Quantity::YokePitch, f64::from(pitch), now);
                 }
                 let elevator = (tick as f32 * 0.1).sin();
                 written.push(elevator);
@@ -247,8 +251,9 @@ mod tests {
             now = now + TICK;
             let elevator = (f64::from(tick) * 0.1).sin() as f32 * 0.2;
             confirmation.wrote(now, [Some(elevator), Some(0.0), Some(0.0)]);
-            link.show(Quantity::OverrideJoystick, override_joystick, now);
-            link.show(
+            link.read_back
+                .show(Quantity::OverrideJoystick, override_joystick, now);
+            link.read_back.show(
                 Quantity::YokePitch,
                 f64::from(readback(tick, elevator)),
                 now,
@@ -289,9 +294,9 @@ mod tests {
             now = now + TICK;
             confirmation.wrote(now, [Some(written(tick)), Some(0.0), Some(0.0)]);
             if tick % 16 == 0 {
-                link.show(Quantity::OverrideJoystick, 1.0, now);
+                link.read_back.show(Quantity::OverrideJoystick, 1.0, now);
                 let shown = written(tick.saturating_sub(30));
-                link.show(Quantity::YokePitch, shown.into(), now);
+                link.read_back.show(Quantity::YokePitch, shown.into(), now);
             }
             assert!(!confirmation.is_contested(now, &link), "tick {tick}");
         }

@@ -1,21 +1,15 @@
 //! The datagrams by which surfaces, throttles and overrides are written.
 //!
-//! The signs are those used throughout: X-Plane's `yoke_pitch_ratio` is
-//! positive nose up, `yoke_roll_ratio` positive right, `yoke_heading_ratio`
-//! positive nose right, each -1..1, and so are the columns of row 8; throttles
-//! are 0..1.
-//!
 //! No override has a timeout: X-Plane would keep the last deflection.
 //! A release therefore centres the surfaces and then clears the overrides, in
 //! this order. The throttle has no centre position: it stays where it is until
 //! its override is cleared and the lever in the cockpit has control again. The
 //! elevator's trim needs no override, and stays where it is.
 
-use core::iter;
-
 use fcc_core::flight::Surfaces;
 
 use crate::config::{Output, XPlaneConfig};
+use crate::deflections::Deflections;
 use crate::port::Errno;
 use crate::protocol::{PathError, data, dref};
 use crate::quantity::{ELEVATOR_TRIM, OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES};
@@ -56,56 +50,6 @@ enum Encoding {
         engines: usize,
         datagram: [u8; data::size(2)],
     },
-}
-
-/// The values to write; `None` leaves a control unchanged.
-#[derive(Clone, Copy)]
-struct Deflections {
-    /// Elevator, aileron, rudder.
-    yoke: [Option<f32>; 3],
-    throttle: Option<f32>,
-    elevator_trim: Option<f32>,
-}
-
-impl Deflections {
-    const CENTRED: Self = Self {
-        yoke: [Some(0.0); 3],
-        throttle: None,
-        elevator_trim: None,
-    };
-    const AS_THEY_ARE: Self = Self {
-        yoke: [None; 3],
-        throttle: None,
-        elevator_trim: None,
-    };
-
-    /// Limited to their ranges; NaN leaves a control unchanged. The loop has
-    /// already checked its outputs; this is the last check before the aircraft.
-    fn of(surfaces: &Surfaces) -> Self {
-        Self {
-            yoke: yoke_ratios(surfaces),
-            throttle: ratio(surfaces.throttle, 0.0),
-            elevator_trim: surfaces.elevator_trim.and_then(|trim| ratio(trim, -1.0)),
-        }
-    }
-
-    /// Elevator, aileron, rudder, the throttle of every engine, then the
-    /// elevator's trim, in as many writes.
-    fn values(&self, writes: usize) -> impl Iterator<Item = Option<f32>> {
-        let engines = writes.saturating_sub(4);
-        let throttles = iter::repeat_n(self.throttle, engines);
-        let trim = iter::once(self.elevator_trim);
-        self.yoke.into_iter().chain(throttles).chain(trim)
-    }
-}
-
-fn ratio(value: f64, least: f64) -> Option<f32> {
-    (!value.is_nan()).then(|| value.clamp(least, 1.0) as f32)
-}
-
-/// What is written to the yoke for these surfaces: elevator, aileron, rudder.
-pub(crate) fn yoke_ratios(surfaces: &Surfaces) -> [Option<f32>; 3] {
-    [surfaces.elevator, surfaces.aileron, surfaces.rudder].map(|value| ratio(value, -1.0))
 }
 
 impl Controls {

@@ -19,8 +19,9 @@ use fcc_core::framework::{Reading, Switch, Time};
 
 use crate::config::DataRows;
 use crate::consistency::ConsistencyCheck;
+use crate::counters::count;
 use crate::engage_switch::NONEXISTENT_INDEX;
-use crate::link::{Control, SharedState, count};
+use crate::link::{Control, SharedState};
 use crate::motion::Motion;
 use crate::other_control::OtherControlWatch;
 use crate::pressure_altitude::PressureAltitude;
@@ -224,7 +225,7 @@ impl Inbox {
             return;
         };
         self.values.set(quantity, value, self.sending.stamp(now));
-        link.show(quantity, value, now);
+        link.read_back.show(quantity, value, now);
         match quantity {
             Quantity::Paused => report.paused = Some(value >= 0.5),
             Quantity::Replay => report.replaying = Some(value >= 0.5),
@@ -330,7 +331,7 @@ impl Inbox {
     /// may be another program's doing; it is set again.
     fn notice_reload(&mut self, link: &SharedState) {
         let overrides = [Quantity::OverrideJoystick, Quantity::OverrideThrottles];
-        let shown = overrides.map(|of| link.shown(of).map(|(value, _)| value >= 0.5));
+        let shown = overrides.map(|of| link.read_back.shown(of).map(|(value, _)| value >= 0.5));
         match shown {
             _ if link.control() != Control::Held => self.overridden = false,
             [Some(true), Some(true)] => self.overridden = true,

@@ -34,7 +34,8 @@
 //! | `subscriptions`, `missing` | what to request, when to repeat it, and what does not arrive |
 //! | `traffic` | how much is sent to X-Plane |
 //! | `engage_switch` | the dataref that engages |
-//! | `controls`, `confirmation`, `release_monitor`, `release` | writing, confirmation that it takes effect, release |
+//! | `controls`, `deflections`, `readbacks`, `confirmation`, `release_monitor`, `release` | writing, confirmation that it takes effect, release |
+//! | `link`, `shared_address`, `counters` | what the sensor, the actuator and readers of the status share |
 //! | `authority`, `status` | who has control, and the state of the connection, seen from outside the loop |
 //! | `silence`, `no_answer` | why X-Plane does not answer |
 //! | `address`, `port`, `discovery` | where it is, sockets, the beacon |
@@ -60,6 +61,8 @@ mod config;
 mod confirmation;
 mod consistency;
 mod controls;
+mod counters;
+mod deflections;
 mod discovery;
 mod engage_switch;
 mod inbox;
@@ -74,12 +77,14 @@ mod port;
 mod pressure_altitude;
 pub mod protocol;
 mod quantity;
+mod readbacks;
 mod release;
 mod release_monitor;
 mod reply_port;
 mod rows;
 mod sending_clock;
 mod sensor;
+mod shared_address;
 mod silence;
 mod simulator;
 mod specific_force;

@@ -5,15 +5,16 @@
 //! are for readers in other threads, and allow the two to run in separate
 //! threads.
 
-use core::sync::atomic::{
-    AtomicBool, AtomicI64, AtomicU8, AtomicU16, AtomicU32, AtomicU64, Ordering,
-};
-use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
+use core::sync::atomic::{AtomicBool, AtomicU8, AtomicU16, AtomicU32, AtomicU64, Ordering};
+use std::net::SocketAddr;
+use std::sync::OnceLock;
 
-use fcc_core::framework::Time;
+use fcc_core::framework::TakeoverNotice;
 
+use crate::counters::Counters;
 use crate::missing::ValueSet;
-use crate::quantity::Quantity;
+use crate::readbacks::Readbacks;
+use crate::shared_address::SharedAddress;
 use crate::simulator::SimulatorState;
 
 /// Who has the controls, as far as this program knows.
@@ -29,71 +30,9 @@ pub enum Control {
     ReleaseMonitor = 2,
 }
 
-/// A value reported by the simulator and its time.
-#[derive(Debug)]
-struct Readback {
-    bits: AtomicU32,
-    at: AtomicI64,
-}
-
-impl Readback {
-    const fn never() -> Self {
-        Self {
-            bits: AtomicU32::new(0),
-            at: AtomicI64::new(Time::NEVER.as_nanos()),
-        }
-    }
-}
-
-/// The quantities that are written to X-Plane and read back, and where a
-/// released throttle returns to.
-pub(crate) const READ_BACK: [Quantity; 6] = [
-    Quantity::OverrideJoystick,
-    Quantity::OverrideThrottles,
-    Quantity::YokePitch,
-    Quantity::YokeRoll,
-    Quantity::YokeHeading,
-    Quantity::ThrottleLever,
-];
-
-/// All counters since opening.
-#[derive(Debug, Default)]
-pub(crate) struct Counters {
-    pub(crate) received: AtomicU64,
-    pub(crate) discarded: AtomicU64,
-    pub(crate) foreign: AtomicU64,
-    pub(crate) malformed: AtomicU64,
-    pub(crate) unknown: AtomicU64,
-    pub(crate) late: AtomicU64,
-    pub(crate) implausible: AtomicU64,
-    pub(crate) jumps: AtomicU64,
-    pub(crate) requests: AtomicU64,
-    pub(crate) writes: AtomicU64,
-    pub(crate) refused: AtomicU64,
-}
-
-/// Adds one.
-pub(crate) fn count(counter: &AtomicU64) {
-    counter.fetch_add(1, Ordering::Relaxed);
-}
-
-/// Marks any address as allowed: no packed address has so many bits.
-const ANYWHERE: u64 = u64::MAX;
-/// Stands for the configured address: no packed address has these bits.
-const CONFIGURED: u64 = u64::MAX - 1;
-/// No address is allowed: no packed address is 0.
-const NOWHERE: u64 = 0;
-
 #[derive(Debug)]
 pub(crate) struct SharedState {
-    /// The simulator's configured address, if there is one.
-    configured: Option<SocketAddr>,
-    /// [`CONFIGURED`], or the IPv4 address and port from a beacon in the low 48
-    /// bits; 0 while unknown.
-    simulator: AtomicU64,
-    /// The address at which control may be taken, packed likewise, or
-    /// [`ANYWHERE`].
-    allowed: AtomicU64,
+    pub(crate) address: SharedAddress,
     /// The simulator's port that answered last, 0 while unknown.
     reply_port: AtomicU16,
     /// The port that is received on here, 0 while unknown.
@@ -115,16 +54,16 @@ pub(crate) struct SharedState {
     frame_period: AtomicU32,
     /// 0 not known, 1 in the air, 2 on the ground.
     ground: AtomicU8,
-    read_back: [Readback; READ_BACK.len()],
+    pub(crate) read_back: Readbacks,
+    /// Is told before control is taken.
+    notice: OnceLock<&'static dyn TakeoverNotice>,
     pub(crate) counters: Counters,
 }
 
 impl SharedState {
     pub(crate) fn new(simulator: Option<SocketAddr>) -> Self {
         Self {
-            configured: simulator,
-            simulator: AtomicU64::new(simulator.map_or(NOWHERE, |_| CONFIGURED)),
-            allowed: AtomicU64::new(ANYWHERE),
+            address: SharedAddress::new(simulator),
             reply_port: AtomicU16::new(0),
             local_port: AtomicU16::new(0),
             state: AtomicU8::new(SimulatorState::Silent as u8),
@@ -139,42 +78,19 @@ impl SharedState {
             missing: AtomicU64::new(0),
             frame_period: AtomicU32::new(0),
             ground: AtomicU8::new(0),
-            read_back: [const { Readback::never() }; READ_BACK.len()],
+            read_back: Readbacks::never(),
+            notice: OnceLock::new(),
             counters: Counters::default(),
         }
     }
 
-    pub(crate) fn simulator(&self) -> Option<SocketAddr> {
-        match self.simulator.load(Ordering::Relaxed) {
-            NOWHERE => None,
-            CONFIGURED => self.configured,
-            packed => Some(unpack(packed)),
-        }
+    /// Only the first one counts.
+    pub(crate) fn notify(&self, notice: &'static dyn TakeoverNotice) {
+        let _ = self.notice.set(notice);
     }
 
-    pub(crate) fn set_simulator(&self, address: SocketAddr) {
-        self.simulator.store(self.pack(address), Ordering::Relaxed);
-    }
-
-    /// An address as a number. Any address other than the configured one comes
-    /// from a beacon, and beacons are sent over IPv4.
-    fn pack(&self, address: SocketAddr) -> u64 {
-        match address {
-            configured if Some(configured) == self.configured => CONFIGURED,
-            SocketAddr::V4(at) => (u64::from(at.ip().to_bits()) << 16) | u64::from(at.port()),
-            SocketAddr::V6(_) => NOWHERE,
-        }
-    }
-
-    /// Whether control may be taken there.
-    pub(crate) fn is_allowed(&self, simulator: SocketAddr) -> bool {
-        let allowed = self.allowed.load(Ordering::Acquire);
-        allowed == ANYWHERE || (allowed != NOWHERE && allowed == self.pack(simulator))
-    }
-
-    pub(crate) fn allow(&self, simulator: Option<SocketAddr>) {
-        let allowed = simulator.map_or(NOWHERE, |simulator| self.pack(simulator));
-        self.allowed.store(allowed, Ordering::Release);
+    pub(crate) fn notice(&self) -> Option<&'static dyn TakeoverNotice> {
+        self.notice.get().copied()
     }
 
     pub(crate) fn reply_port(&self) -> Option<u16> {
@@ -325,74 +241,11 @@ impl SharedState {
         self.ground
             .store(1 + u8::from(on_ground), Ordering::Relaxed);
     }
-
-    fn slot(&self, quantity: Quantity) -> Option<&Readback> {
-        let index = READ_BACK.iter().position(|of| *of == quantity)?;
-        self.read_back.get(index)
-    }
-
-    /// Stores a readback; quantities that are not read back are ignored.
-    pub(crate) fn show(&self, quantity: Quantity, value: f64, at: Time) {
-        if let Some(slot) = self.slot(quantity) {
-            slot.bits.store((value as f32).to_bits(), Ordering::Relaxed);
-            slot.at.store(at.as_nanos(), Ordering::Release);
-        }
-    }
-
-    /// The simulator's last readback, and its time.
-    pub(crate) fn shown(&self, quantity: Quantity) -> Option<(f32, Time)> {
-        let slot = self.slot(quantity)?;
-        let at = Time::from_nanos(slot.at.load(Ordering::Acquire));
-        let value = f32::from_bits(slot.bits.load(Ordering::Relaxed));
-        (!at.is_never()).then_some((value, at))
-    }
 }
 
 fn known_port(port: &AtomicU16) -> Option<u16> {
     match port.load(Ordering::Relaxed) {
         0 => None,
         port => Some(port),
-    }
-}
-
-fn unpack(packed: u64) -> SocketAddr {
-    let [_, _, a, b, c, d, high, low] = packed.to_be_bytes();
-    let port = u16::from_be_bytes([high, low]);
-    SocketAddrV4::new(Ipv4Addr::new(a, b, c, d), port).into()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_address_is_restored_unchanged() {
-        let [announced, v4, v6] = ["192.168.250.7:49000", "10.0.0.1:49000", "[fe80::1%2]:49000"]
-            .map(|text| text.parse::<SocketAddr>().unwrap());
-        for configured in [v4, v6] {
-            let state = SharedState::new(Some(configured));
-            assert_eq!(state.simulator(), Some(configured));
-            state.allow(None);
-            assert!(!state.is_allowed(configured) && !state.is_allowed(announced));
-            state.allow(Some(configured));
-            assert!(state.is_allowed(configured) && !state.is_allowed(announced));
-        }
-        let state = SharedState::new(None);
-        assert_eq!(state.simulator(), None);
-        state.set_simulator(announced);
-        assert_eq!(state.simulator(), Some(announced));
-        state.allow(Some(announced));
-        assert!(state.is_allowed(announced) && !state.is_allowed(v4) && !state.is_allowed(v6));
-    }
-
-    #[test]
-    fn a_readback_is_kept_with_its_time() {
-        let link = SharedState::new(None);
-        assert_eq!(link.shown(Quantity::YokeRoll), None);
-        link.show(Quantity::YokeRoll, -0.25, Time::from_nanos(7));
-        assert_eq!(
-            link.shown(Quantity::YokeRoll),
-            Some((-0.25, Time::from_nanos(7)))
-        );
     }
 }

@@ -61,7 +61,7 @@ impl ReleaseMonitor {
         let settled = self.since + SETTLED_AFTER;
         // An override without a readback does not exist in this simulator.
         let readback = [Quantity::OverrideJoystick, Quantity::OverrideThrottles]
-            .map(|quantity| link.shown(quantity));
+            .map(|quantity| link.read_back.shown(quantity));
         let readback = readback.iter().flatten();
         let still_set = readback
             .clone()
@@ -100,8 +100,10 @@ mod tests {
         let mut sent = 0;
         for _ in 0..ticks {
             *now = *now + TICK;
-            link.show(Quantity::OverrideJoystick, overrides[0], *now);
-            link.show(Quantity::OverrideThrottles, overrides[1], *now);
+            link.read_back
+                .show(Quantity::OverrideJoystick, overrides[0], *now);
+            link.read_back
+                .show(Quantity::OverrideThrottles, overrides[1], *now);
             release_monitor
                 .poll(*now, link, |_| {
                     sent += 1;

@@ -11,8 +11,9 @@ use fcc_core::framework::{Sensor, SensorFault, Tick, Time};
 
 use crate::config::{DataRows, Input, XPlaneConfig};
 use crate::controls::Controls;
+use crate::counters::count;
 use crate::inbox::Inbox;
-use crate::link::{Control, SharedState, count};
+use crate::link::{Control, SharedState};
 use crate::port::{Errno, Port};
 use crate::protocol::{Kind, PathError, beacon};
 use crate::release_monitor::ReleaseMonitor;
@@ -147,7 +148,7 @@ impl<P: Port> XPlaneSensor<P> {
                 count(&self.link.counters.malformed);
                 continue;
             };
-            let known = self.link.simulator();
+            let known = self.link.address.simulator();
             let silent = now.since(self.inbox.last_received()) > self.silent_after;
             let address = SocketAddr::new(from.ip(), beacon.port);
             let keep = known.is_some_and(|known| {
@@ -156,7 +157,7 @@ impl<P: Port> XPlaneSensor<P> {
             if !beacon.is_flyable() || keep {
                 continue;
             }
-            self.link.set_simulator(address);
+            self.link.address.set_simulator(address);
         }
     }
 
@@ -215,7 +216,7 @@ impl<P: Port> XPlaneSensor<P> {
     /// they did not arrive, and each tick would read older ones. Returns the
     /// length of the last one with values, if there was one.
     fn discard_rest(&mut self, now: Time) -> Option<usize> {
-        let simulator = self.link.simulator().map(|at| at.ip());
+        let simulator = self.link.address.simulator().map(|at| at.ip());
         let mut newest = None;
         for _ in 0..DISCARDED_PER_TICK {
             let Ok(Some((length, from))) = self.port.receive(self.buffer.as_mut_slice()) else {
@@ -287,7 +288,7 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
             self.began = now;
         }
         self.listen_for_beacons(now);
-        let simulator = self.link.simulator();
+        let simulator = self.link.address.simulator();
 
         self.inbox.begin();
         let missed_s = tick.dt_s - tick.dt_s / tick.missed.saturating_add(1) as f64;
@@ -306,7 +307,7 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
         let mut sent = Ok(());
         if let Some(simulator) = simulator {
             sent = self.send_requests(now, simulator);
-            if self.link.is_allowed(simulator) {
+            if self.link.address.is_allowed(simulator) {
                 sent = sent.and(self.poll_release_monitor(now, simulator));
             }
         }
@@ -327,7 +328,7 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
     /// changes.
     fn warm_up(&self, tick: &Tick) {
         self.port.warm_up_receive();
-        let link = SharedState::new(self.link.simulator());
+        let link = SharedState::new(self.link.address.simulator());
         let mut inbox = self.inbox.clone();
         let mut measurements = Measurements::default();
         let datagram = self.last_values.get(..self.last_values_bytes);
@@ -347,7 +348,7 @@ impl<P: Port> Drop for XPlaneSensor<P> {
     /// Ends the subscriptions; otherwise X-Plane would keep sending until it
     /// quits.
     fn drop(&mut self) {
-        if let Some(simulator) = self.link.simulator() {
+        if let Some(simulator) = self.link.address.simulator() {
             // A failure can no longer be reported and has no consequence.
             self.subscriptions.end(|request| {
                 let _ = self.port.send(request, simulator);

@@ -5,6 +5,8 @@ use core::sync::atomic::{AtomicU64, Ordering};
 use std::net::SocketAddr;
 use std::sync::Arc;
 
+use fcc_core::framework::TakeoverNotice;
+
 use crate::config::DataRows;
 use crate::engage_switch::lights_if_beyond;
 use crate::link::{Control, SharedState};
@@ -70,7 +72,7 @@ impl XPlaneStatus {
 
     /// Where the simulator is; `None` until a beacon has arrived.
     pub fn simulator(&self) -> Option<SocketAddr> {
-        self.link.simulator()
+        self.link.address.simulator()
     }
 
     /// The port from which it answers; `None` until it has.
@@ -89,12 +91,17 @@ impl XPlaneStatus {
     /// there. Until then [`apply`](fcc_core::framework::Actuator::apply)
     /// reports that it is not connected.
     pub fn require_permission(&self) {
-        self.link.allow(None);
+        self.link.address.allow(None);
     }
 
     /// Permits taking control at this address only.
     pub fn allow(&self, simulator: SocketAddr) {
-        self.link.allow(Some(simulator));
+        self.link.address.allow(Some(simulator));
+    }
+
+    /// From now on this is called directly before control is taken.
+    pub fn notify(&self, notice: &'static dyn TakeoverNotice) {
+        self.link.notify(notice);
     }
 
     /// The simulator's state at the last tick.
@@ -121,7 +128,7 @@ impl XPlaneStatus {
 
     /// Where the controls are held, or their release is not yet confirmed.
     pub fn held_at(&self) -> Option<SocketAddr> {
-        let allowed = |at: &SocketAddr| self.link.is_allowed(*at);
+        let allowed = |at: &SocketAddr| self.link.address.is_allowed(*at);
         let held = self.control() != Control::Free;
         self.simulator().filter(allowed).filter(|_| held)
     }
@@ -134,7 +141,7 @@ impl XPlaneStatus {
     /// The position of the first engine's throttle lever, 0 to 1, less in
     /// reverse; once received.
     pub fn throttle_lever(&self) -> Option<f64> {
-        let (lever, _) = self.link.shown(Quantity::ThrottleLever)?;
+        let (lever, _) = self.link.read_back.shown(Quantity::ThrottleLever)?;
         Some(lever.into())
     }
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import fcc
 
 from ..configurations import configuration, value_of
+from ..loading import Loading
 from ..units import FT_TO_M, KT_TO_MPS
 
 _SEA_LEVEL_DENSITY_SLUGFT3 = 0.0023769
@@ -55,6 +56,21 @@ class Limits:
         return max(
             self._configured("stall_airspeed_kt"), float(math.ceil(self.stall_kt(self.most_lb)))
         )
+
+    def loading(self, weight: str) -> Loading:
+        """Return "light", one person and little fuel, or "heavy", the greatest weight.
+
+        Raises ValueError for another name.
+        """
+        fuel_lb = 0.1 * self.tanks_lb
+        weights_lb = {"light": self.bare_lb + fuel_lb + 10.0, "heavy": self.most_lb}
+        if weight not in weights_lb:
+            raise ValueError(f"weight '{weight}': choose one of {', '.join(weights_lb)}")
+        return Loading(weights_lb[weight], fuel_lb)
+
+    def slow_kt(self, weight_lb: float) -> float:
+        """Return 1.3 Vs, or 4 kt above the lowest permitted airspeed if that is more."""
+        return max(1.3 * self.stall_kt(weight_lb), self.floor_kt + 4.0)
 
     def _configured(self, name: str) -> float:
         key = f"autopilot.envelope.{name}"

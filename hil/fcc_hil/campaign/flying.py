@@ -27,6 +27,7 @@ from .draw import HOLD_S, LEG_S, Bounds, Fault, Flight, Order, draw
 from .verdict import Verdict, judge
 
 _ENGAGES_WITHIN_S = 10.0
+_TRIES_FOR_S = 1.0
 _GROUND_FT = 50.0
 _NO_EVENTS: tuple[Event, ...] = ()
 
@@ -95,7 +96,7 @@ def fly(flight: Flight, recording: Path | None = None) -> tuple[Outcome, Truth |
     except (TrimError, ValueError) as error:
         verdict = Verdict({"not flown": str(error)}, {})
         return Outcome(flight, verdict, _NO_EVENTS, "", 0.0, time.process_time() - began_s), None
-    inhibits = "" if rig.holds_control else ", ".join(rig.machine.engage_inhibits)
+    inhibits = "" if rig.holds_control else ", ".join(rig.machine.engage_inhibits) or "refused"
     legs, refused = ([], []) if inhibits else _fly(rig, flight)
     truth = rig.truth()
     if recording is not None:
@@ -155,12 +156,22 @@ def _rig(flight: Flight) -> LockstepRig:
     for name, by in flight.biases.items():
         faults.bias(name, by=by)
     rig.prepare()
-    rig.set_switch(on=True)
-    rig.fly_to(rig.time_s + _ENGAGES_WITHIN_S, until=lambda: rig.holds_control)
+    _engage(rig)
     engaged_s[0] = rig.time_s
     if flight.fault is not None:
         _put_in(flight.fault, faults)
     return rig
+
+
+def _engage(rig: LockstepRig) -> None:
+    """Switch on; if that is refused, as in a gust below the lowest airspeed, off and on again."""
+    ends_s = rig.time_s + _ENGAGES_WITHIN_S
+    while not rig.holds_control and rig.time_s < ends_s:
+        rig.set_switch(on=True)
+        rig.fly_to(rig.time_s + _TRIES_FOR_S, until=lambda: rig.holds_control)
+        if not rig.holds_control:
+            rig.set_switch(on=False)
+            rig.fly_to(rig.time_s + _TRIES_FOR_S)
 
 
 def _put_in(fault: Fault, faults: Faults) -> None:

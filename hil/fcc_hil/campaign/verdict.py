@@ -75,7 +75,12 @@ def judge(
     flown = [leg for leg in legs if leg.start_s < ends_s]
     stalled_s = longest_s(engaged["angle_of_attack_deg"] > flight.limits.stall_deg)
     slow_s = longest_s(engaged["airspeed_kt"] < flight.stall_kt)
-    calm = [leg for leg in flown if not _is_gusty(flight, leg.end_s - legs[0].start_s)]
+    calm = [
+        leg
+        for leg in flown
+        if not _is_gusty(flight, leg.end_s - legs[0].start_s)
+        and not (flight.is_pattern and _is_degraded(flight, leg, legs[0].start_s))
+    ]
     figures = motion(engaged, flown) | {
         "pitch_rate_sd_degps": max(
             (steady_pitch_rate_sd(engaged, leg) for leg in calm), default=0.0

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..aircraft import by_name
+from ..campaign.aircraft import AIRCRAFT, Limits
 from ..configurations import configuration, with_values
 from ..lockstep import measurements
 from ..plant import Plant
@@ -67,8 +68,8 @@ class Condition:
     axis: str
     delay_s: float = 0.025
     servo_hz: float = 3.0
-    is_light: bool = False
-    """With a tenth of its fuel; else as JSBSim has it."""
+    weight: str = ""
+    """"light" or "heavy" as in the campaign; else as JSBSim has it."""
 
 
 @dataclass(frozen=True)
@@ -99,13 +100,32 @@ class Margins:
             "axis": condition.axis,
             "delay_s": condition.delay_s,
             "servo_hz": condition.servo_hz,
-            "light": condition.is_light,
+            "weight": condition.weight or None,
             "gain_db": self.gain_db if math.isfinite(self.gain_db) else None,
             "phase_deg": self.phase_deg if math.isfinite(self.phase_deg) else None,
             "crossover_hz": self.crossover_hz if math.isfinite(self.crossover_hz) else None,
             "frequency_hz": list(self.frequency_hz),
             "open_loop": [[point.real, point.imag] for point in self.open_loop],
         }
+
+
+def limits_of(aircraft: str) -> Limits:
+    """Return the weights and speeds of an aircraft. Raises ValueError if they are not known."""
+    if aircraft not in AIRCRAFT:
+        raise ValueError(
+            f"{aircraft}: weights and speeds are known of {', '.join(AIRCRAFT)}; give --airspeeds"
+        )
+    return AIRCRAFT[aircraft]
+
+
+def airspeeds_kt(aircraft: str, weight: str = "") -> tuple[float, float, float]:
+    """Return 1.3 Vs, or 4 kt above the lowest airspeed permitted, cruise and the greatest airspeed.
+
+    Raises ValueError if they are not known.
+    """
+    limits = limits_of(aircraft)
+    slow_kt = limits.slow_kt(limits.loading(weight or "heavy").weight_lb)
+    return round(slow_kt, 1), by_name(aircraft).airspeed_kt, limits.fast_kt
 
 
 def measure(condition: Condition) -> Margins:
@@ -160,13 +180,10 @@ def _fly(
     condition: Condition, excitation: _Excitation, frequency_hz: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the autopilot's command and the excited command of one period."""
-    aircraft = replace(by_name(condition.aircraft), airspeed_kt=condition.airspeed_kt)
-    plant = Plant(aircraft)
-    if condition.is_light:
-        for tank in plant.fdm.query_property_catalog("/contents-lbs"):
-            path = tank.split()[0]
-            plant.fdm[path] = 0.1 * plant.fdm[path]
-    autopilot = fcc.Autopilot(with_values(configuration(condition.aircraft), _HOLDS))
+    name, weight = condition.aircraft, condition.weight
+    loading = limits_of(name).loading(weight) if weight else None
+    plant = Plant(replace(by_name(name), airspeed_kt=condition.airspeed_kt, loading=loading))
+    autopilot = fcc.Autopilot(with_values(configuration(name), _HOLDS))
     for _ in range(2 * _TICK_HZ):
         autopilot.observe(measurements(plant.state()))
         plant.step(_STEPS)

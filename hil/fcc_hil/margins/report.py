@@ -21,7 +21,7 @@ _WANTED, _GRID = "#c0504d", "#dddddd"
 
 def _name(margins: Margins) -> str:
     condition = margins.condition
-    weight = ", light" if condition.is_light else ""
+    weight = f", {condition.weight}" if condition.weight else ""
     servo = f", {condition.servo_hz:g} Hz servo" if condition.servo_hz else ""
     return f"{condition.aircraft}{weight}, {1e3 * condition.delay_s:g} ms{servo}"
 

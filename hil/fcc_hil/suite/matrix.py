@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from ..campaign.aircraft import AIRCRAFT
 from ..configurations import configuration, pattern_of, with_values
 from ..initial_state import InitialState
-from ..loading import Loading
 from ..lockstep import Scenario
 from ..peer import PEER_AIRCRAFT
 from ..plant import Weather
@@ -170,14 +169,10 @@ def _speeds_and_loads() -> Iterator[Case]:
                 "guidance.climb_ft": pattern.climb_ft,
             },
         )
-        fuel_lb = 0.1 * limits_of.tanks_lb
-        for weight, weight_lb in (
-            ("light", limits_of.bare_lb + fuel_lb + 10.0),
-            ("heavy", limits_of.most_lb),
-        ):
-            slow_kt = max(1.3 * limits_of.stall_kt(weight_lb), limits_of.floor_kt + 4.0)
+        for weight in ("light", "heavy"):
+            loading = limits_of.loading(weight)
             for speed, airspeed_kt in (
-                ("1.3 Vs", slow_kt),
+                ("1.3 Vs", limits_of.slow_kt(loading.weight_lb)),
                 ("cruise", None),
                 ("fast", limits_of.fast_kt),
             ):
@@ -192,7 +187,7 @@ def _speeds_and_loads() -> Iterator[Case]:
                         config=config,
                         pattern=pattern,
                         airspeed_kt=airspeed_kt,
-                        loading=Loading(weight_lb, fuel_lb),
+                        loading=loading,
                     ),
                     EDGES[aircraft],
                     is_quick=(aircraft, speed) in (("c172r", "1.3 Vs"), ("J3Cub", "fast")),

@@ -26,6 +26,9 @@ pub trait ControlAuthority: Send + Sync {
     /// Permits the actuator to take control of this plant only.
     fn permit(&self, plant: &PlantId);
 
+    /// From now on this is called directly before control is taken.
+    fn notify(&self, _notice: &'static dyn TakeoverNotice) {}
+
     /// A unique name for a plant that can be addressed by several names: two
     /// programs that control the same plant get the same name.
     fn unique(&self, plant: &PlantId) -> PlantId {
@@ -57,6 +60,14 @@ pub trait ControlAuthority: Send + Sync {
 
     /// What a user does at the plant to take control back manually.
     fn by_hand(&self) -> &'static str;
+}
+
+/// Learns that control is being taken, for what outlives the program.
+pub trait TakeoverNotice: fmt::Debug + Send + Sync {
+    /// Control of this plant is taken next: [`held`](ControlAuthority::held)
+    /// reports it already, and nothing has been written yet. Called in a tick:
+    /// must not wait or allocate.
+    fn taking(&self, plant: &PlantId);
 }
 
 /// The result of waiting for a release.

@@ -12,6 +12,7 @@ use core::ops::{BitOr, BitOrAssign};
 /// let found = Flags::NONE.with(open, true).with(cold, false);
 /// assert!(found.contains(open) && !found.intersects(cold));
 /// assert_eq!((found | cold).iter().collect::<Vec<_>>(), [0, 1]);
+/// assert!(found.keeping(open, false).is_empty());
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 #[repr(transparent)]
@@ -58,6 +59,12 @@ impl Flags {
     #[must_use]
     pub const fn with(self, other: Self, holds: bool) -> Self {
         if holds { Self(self.0 | other.0) } else { self }
+    }
+
+    /// These conditions, but `other` only if `keeps`.
+    #[must_use]
+    pub const fn keeping(self, other: Self, keeps: bool) -> Self {
+        if keeps { self } else { Self(self.0 & !other.0) }
     }
 
     /// The bits that are set, lowest first.

@@ -31,7 +31,7 @@ mod tick;
 mod time;
 
 pub use actuator::{Actuator, ActuatorFault};
-pub use authority::{ControlAuthority, Released};
+pub use authority::{ControlAuthority, Released, TakeoverNotice};
 pub use command::LoopCommand;
 pub use controller::{Controller, Switch};
 pub use event::{Event, EventKind, EventOf};

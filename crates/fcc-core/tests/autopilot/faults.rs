@@ -312,7 +312,7 @@ fn engage_inhibits_are_named() {
     assert_eq!(upset.engage_inhibits(), flags::UPSET);
     assert_eq!(
         Autopilot::flag_name(9),
-        "bank or pitch is beyond 60 degrees"
+        "bank or pitch is beyond 60 degrees, or it spins"
     );
 }
 

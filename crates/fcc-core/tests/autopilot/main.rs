@@ -9,6 +9,7 @@ mod event_texts;
 mod faults;
 mod flying;
 mod future;
+mod gate;
 mod link_loss;
 mod other_control;
 mod resuming;

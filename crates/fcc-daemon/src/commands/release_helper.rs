@@ -1,8 +1,13 @@
 //! `fccd release-helper`: releases the controls of a daemon that was killed.
 
+use std::fs::{self, OpenOptions};
 use std::io;
+use std::os::unix::fs::OpenOptionsExt;
+use std::path::{Path, PathBuf};
 
 use fcc_core::framework::Released;
+use nix::libc::{O_NOCTTY, O_NOFOLLOW, O_NONBLOCK};
+use nix::unistd::{dup2_stderr, ttyname};
 use signal_hook::consts::{SIGABRT, SIGHUP, SIGINT, SIGTERM};
 
 use super::failure::Failure;
@@ -12,6 +17,9 @@ use crate::process::{run_release_helper, tolerate};
 
 /// Waits until the daemon that started this has ended.
 pub(super) fn release_helper() -> Result<Exit, Failure> {
+    // First, while nothing of its own is open.
+    close_inherited();
+    let terminal = leave_terminal();
     // A signal to all processes of the daemon must not end the helper before
     // the controls are released: it ends only after the daemon's end. ABRT is
     // sent by a service manager's watchdog.
@@ -32,11 +40,9 @@ pub(super) fn release_helper() -> Result<Exit, Failure> {
     let plant = result.plant;
     let (text, exit) = match result.released {
         Released::Unreachable => return Ok(Exit::Success),
-        Released::Cancelled => (
-            format!("; another daemon has taken over {plant}"),
-            Exit::Success,
-        ),
-        Released::Confirmed => (format!("; {plant} was released"), Exit::Success),
+        Released::Cancelled | Released::Confirmed => {
+            (format!("; {plant} was released"), Exit::Success)
+        }
         Released::Unconfirmed => (
             format!(
                 ", and {plant} did not confirm the release of its controls: {}",
@@ -45,6 +51,46 @@ pub(super) fn release_helper() -> Result<Exit, Failure> {
             Exit::NotReleased,
         ),
     };
+    if let Some(terminal) = terminal {
+        return_to(&terminal);
+    }
     output::message(format!("fccd release-helper: the daemon has ended{text}"));
     Ok(exit)
+}
+
+/// Closes what this process inherited besides its standard streams, from the
+/// daemon or from the program that started that: nobody else's file or
+/// connection stays open for as long as this helper lives.
+fn close_inherited() {
+    let open: Vec<i32> = fs::read_dir("/proc/self/fd")
+        .into_iter()
+        .flatten()
+        .flatten()
+        .filter_map(|entry| entry.file_name().to_str()?.parse().ok())
+        .filter(|number| *number > 2)
+        .collect();
+    for number in open {
+        // The folder's own is closed already.
+        let _ = nix::unistd::close(number);
+    }
+}
+
+/// Closes the terminal, if messages go to one; returns its path.
+fn leave_terminal() -> Option<PathBuf> {
+    let path = ttyname(io::stderr()).ok()?;
+    let nowhere = OpenOptions::new().write(true).open("/dev/null").ok()?;
+    dup2_stderr(nowhere).ok()?;
+    Some(path)
+}
+
+/// Messages go to the terminal again, if it still exists; one that is blocked
+/// is not waited for.
+fn return_to(terminal: &Path) {
+    let opened = OpenOptions::new()
+        .write(true)
+        .custom_flags(O_NOCTTY | O_NONBLOCK | O_NOFOLLOW)
+        .open(terminal);
+    if let Ok(opened) = opened {
+        let _ = dup2_stderr(opened);
+    }
 }

@@ -1,34 +1,40 @@
 //! Prevents two daemons from controlling one plant.
 //!
 //! Two daemons that read the same engage switch would both take control and
-//! overwrite each other's outputs. The first binds a socket name (abstract, see
-//! unix(7)) that the kernel gives to one socket only and frees when the process
-//! ends for any reason: a killed daemon leaves no file.
+//! overwrite each other's outputs. The first locks the [file](super::plant_file)
+//! of the plant; the kernel unlocks it when the process ends for any reason.
+//! Only daemons of one user share the file: another user's cannot prevent a
+//! start, and is found by what it writes.
 //!
-//! The name is that of the plant, not of its configuration: a daemon that
+//! The file is that of the plant, not of its configuration: a daemon that
 //! follows a beacon locks after it has received the address, and takes no
 //! control before.
 
-use std::io;
-use std::os::linux::net::SocketAddrExt;
-use std::os::unix::net::{SocketAddr, UnixDatagram};
 use std::sync::Arc;
 
 use fcc_core::framework::{ControlAuthority, PlantId};
 
+use super::folder::Folder;
+use super::notice::Notice;
+use super::plant_file::PlantFile;
+use super::release_handover;
+use crate::output;
+
 /// The right to control a plant; released when dropped.
 pub(super) struct InstanceLock {
     authority: Arc<dyn ControlAuthority>,
+    folder: Option<Folder>,
+    notice: &'static Notice,
     claim: Claim,
 }
 
 enum Claim {
     /// No plant is known yet.
     NoPlant,
-    /// If the kernel has no such names, two daemons are not prevented.
+    /// Without a file, two daemons are not prevented.
     Locked {
         plant: PlantId,
-        _name: Option<UnixDatagram>,
+        file: Option<PlantFile>,
     },
     /// Another daemon controls it.
     Taken(PlantId),
@@ -37,35 +43,62 @@ enum Claim {
 impl InstanceLock {
     /// Locks the connected plant, if it is known yet. Control is taken only of
     /// a locked plant.
-    pub(super) fn of(authority: Arc<dyn ControlAuthority>) -> Self {
+    pub(super) fn of(
+        authority: Arc<dyn ControlAuthority>,
+        folder: Option<Folder>,
+        notice: &'static Notice,
+    ) -> Self {
         authority.require_permission();
-        let mut this = Self {
+        Self {
             authority,
+            folder,
+            notice,
             claim: Claim::NoPlant,
-        };
-        this.follow();
-        this
+        }
     }
 
     /// Locks the plant that was found since. It does not change while its
-    /// controls are held, so that no plant under control is unlocked.
-    pub(super) fn follow(&mut self) {
+    /// controls are held, so that no plant under control is unlocked. Returns
+    /// whether an earlier daemon has left its controls held.
+    pub(super) fn follow(&mut self) -> bool {
         let Some(plant) = self.authority.plant() else {
-            return;
+            return false;
         };
         if matches!(self.claim, Claim::Locked { plant: of, .. } | Claim::Taken(of) if of == plant) {
-            return;
+            return false;
         }
-        self.claim = match claim(&self.authority.unique(&plant)) {
-            Err(error) if error.kind() == io::ErrorKind::AddrInUse => Claim::Taken(plant),
-            claimed => {
-                self.authority.permit(&plant);
-                Claim::Locked {
-                    plant,
-                    _name: claimed.ok(),
-                }
-            }
+        self.claim = self.lock(plant);
+        let Claim::Locked { file, .. } = &self.claim else {
+            return false;
         };
+        self.authority.permit(&plant);
+        file.as_ref().is_some_and(PlantFile::is_held)
+    }
+
+    fn lock(&self, plant: PlantId) -> Claim {
+        let without = Claim::Locked { plant, file: None };
+        let Some(folder) = &self.folder else {
+            return without;
+        };
+        let unique = self.authority.unique(&plant);
+        let Some(locked) = PlantFile::locked(folder, &unique).transpose() else {
+            return Claim::Taken(plant);
+        };
+        // Another opening of the same file: this one's end does not unlock.
+        let files = locked.and_then(|locked| Ok((locked, PlantFile::open(folder, &unique)?)));
+        match files {
+            Ok((locked, told)) => {
+                self.notice.add_file(plant, told);
+                let file = Some(locked);
+                Claim::Locked { plant, file }
+            }
+            Err(error) => {
+                output::message(format!(
+                    "{plant} cannot be locked ({error}): a second fccd is not prevented"
+                ));
+                without
+            }
+        }
     }
 
     /// The plant, if another daemon controls it.
@@ -75,26 +108,18 @@ impl InstanceLock {
             Claim::NoPlant | Claim::Locked { .. } => None,
         }
     }
-}
 
-/// `AddrInUse` if another daemon of this machine has locked it.
-fn claim(plant: &PlantId) -> io::Result<UnixDatagram> {
-    UnixDatagram::bind_addr(&SocketAddr::from_abstract_name(format!("fccd/{plant}"))?)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_plant_is_locked_once_and_unlocked() {
-        let [one, other] = ["one", "another"]
-            .map(|which| PlantId::new(format_args!("{which} of a test")).unwrap());
-        let first = claim(&one).unwrap();
-        let error = claim(&one).unwrap_err();
-        assert_eq!(error.kind(), io::ErrorKind::AddrInUse);
-        assert!(claim(&other).is_ok());
-        drop(first);
-        assert!(claim(&one).is_ok());
+    /// The process is about to end, and its controls are released.
+    pub(super) fn remove_files(&self) {
+        if let Claim::Locked {
+            plant,
+            file: Some(file),
+        } = &self.claim
+        {
+            file.remove_if_released();
+            if let Some(folder) = &self.folder {
+                release_handover::remove_file(folder, &self.authority.unique(plant));
+            }
+        }
     }
 }

@@ -3,10 +3,17 @@
 //! | module | what it does |
 //! |---|---|
 //! | `release_helper`, `release_handover` | a second process that releases the controls if this one is killed |
+//! | `notice` | tells that process, and the plant's file, before control is taken |
+//! | `folder`, `plant_file` | files of this user alone: who may control a plant, and whether it was left held |
 //! | `instance_lock` | keeps two daemons from one plant |
+//! | `left_held` | releases what a killed daemon left held |
 //! | `signals` | the signals that end a flight, and those that must not |
 
+mod folder;
 mod instance_lock;
+mod left_held;
+mod notice;
+mod plant_file;
 mod release_handover;
 mod release_helper;
 mod signals;
@@ -16,22 +23,26 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use fcc_core::framework::{ControlAuthority, PlantId};
+use fcc_core::framework::{ControlAuthority, PlantId, TakeoverNotice};
 use fcc_flight::config::Config;
 use fcc_flight::flight::Host;
 use fcc_runtime::StopHandle;
 
 use crate::exit::Exit;
 use crate::output;
+use folder::Folder;
 use instance_lock::InstanceLock;
+use left_held::LeftHeld;
+pub(crate) use notice::Notice;
 pub(crate) use release_helper::{ReleaseHelper, run_release_helper};
 use signals::{BlockedSignals, Caught};
 pub(crate) use signals::{end_with_parent, tolerate};
 
 /// While control is held, this is the interval of checks for a release helper
-/// of an earlier daemon, which would release it; a check is one refused
-/// connection.
+/// of an earlier daemon, which would release it.
 const CHECK_EVERY: Duration = Duration::from_secs(1);
+/// A helper that has just been started is not started again before this.
+const HELPER_AGAIN_AFTER: Duration = Duration::from_secs(1);
 /// A release helper that has ended is started again this often.
 const HELPERS_AGAIN: u32 = 5;
 
@@ -46,11 +57,16 @@ pub(crate) struct Process<'a> {
 /// What outlives the process, or is shared with other processes.
 struct Plant {
     authority: Arc<dyn ControlAuthority>,
+    folder: Option<Folder>,
+    notice: &'static Notice,
     lock: InstanceLock,
+    left_held: LeftHeld,
     helper: Option<ReleaseHelper>,
+    helper_started: Instant,
     /// How often it may still be started again.
     helpers_again: u32,
-    /// When the helpers, this daemon's and an earlier one's, were last checked.
+    was_held: bool,
+    /// When an earlier daemon's helper was last looked for.
     checked: Instant,
 }
 
@@ -68,20 +84,15 @@ impl<'a> Process<'a> {
 
 impl Host for Process<'_> {
     fn prepare(&mut self, authority: Option<&Arc<dyn ControlAuthority>>) -> io::Result<()> {
-        let lock = authority.map(|authority| InstanceLock::of(Arc::clone(authority)));
+        let plant = authority.map(|authority| Plant::of(Arc::clone(authority), self.config));
         self.blocked_signals =
             Some(BlockedSignals::in_new_threads().map_err(|error| uncaught(&error))?);
-        self.plant = authority.zip(lock).map(|(authority, lock)| Plant {
-            authority: Arc::clone(authority),
-            helper: lock
-                .taken()
-                .is_none()
-                .then(|| start_helper(self.config))
-                .flatten(),
-            lock,
-            helpers_again: HELPERS_AGAIN,
-            checked: Instant::now(),
-        });
+        self.plant = plant;
+        if let Some(plant) = &mut self.plant
+            && plant.lock.taken().is_none()
+        {
+            plant.helper = start_helper(self.config, plant.notice, None);
+        }
         Ok(())
     }
 
@@ -94,23 +105,12 @@ impl Host for Process<'_> {
         self.blocked_signals = None;
     }
 
-    fn poll(&mut self) {
+    fn poll(&mut self, report: &mut dyn FnMut(String)) {
         if self.caught.suspended.swap(false, Ordering::Relaxed) {
             output::message("Ctrl-Z does not stop a flight; Ctrl-C ends it");
         }
         if let Some(plant) = &mut self.plant {
-            plant.lock.follow();
-            let held = plant.authority.held();
-            if plant.checked.elapsed() >= CHECK_EVERY {
-                plant.checked = Instant::now();
-                if held.is_some() {
-                    plant.end_earlier_helper();
-                }
-                plant.replace_helper(self.config);
-            }
-            if let Some(helper) = &mut plant.helper {
-                helper.report(held);
-            }
+            plant.poll(self.config, report);
         }
     }
 
@@ -146,12 +146,15 @@ impl Host for Process<'_> {
         }
     }
 
-    /// A helper that is not ended here reads the end of the pipe, and continues
-    /// the release.
+    /// A helper that is not ended here releases after the end of the process:
+    /// only then can nothing take control again.
     fn end(&mut self, released: bool) {
-        let helper = self.plant.as_mut().and_then(|plant| plant.helper.take());
-        if let Some(helper) = helper.filter(|_| released) {
-            helper.end();
+        if let Some(plant) = self.plant.as_mut().filter(|_| released) {
+            plant.notice.release(plant.notice.number());
+            if let Some(helper) = plant.helper.take() {
+                helper.end();
+            }
+            plant.lock.remove_files();
         }
     }
 
@@ -161,31 +164,98 @@ impl Host for Process<'_> {
 }
 
 impl Plant {
+    fn of(authority: Arc<dyn ControlAuthority>, config: &Config) -> Self {
+        let folder = Folder::of_this_process(&mut |why| output::message(why));
+        if folder.is_none() {
+            output::message("without a folder of this user, a second fccd is not prevented");
+        }
+        let notice = Notice::of_this_process();
+        authority.notify(notice);
+        let now = Instant::now();
+        let mut this = Self {
+            lock: InstanceLock::of(Arc::clone(&authority), folder.clone(), notice),
+            authority,
+            folder,
+            notice,
+            left_held: LeftHeld::new(&config.restart),
+            helper: None,
+            helper_started: now,
+            helpers_again: HELPERS_AGAIN,
+            was_held: false,
+            checked: now,
+        };
+        this.follow();
+        this
+    }
+
+    fn follow(&mut self) {
+        if self.lock.follow() {
+            self.left_held.found();
+        }
+    }
+
+    fn poll(&mut self, config: &Config, report: &mut dyn FnMut(String)) {
+        self.follow();
+        // In this order: a takeover in between is then not counted as released.
+        let number = self.notice.number();
+        let held = self.authority.held();
+        match held {
+            // What an earlier program left is being released.
+            Some(plant) if self.notice.is_released() => self.notice.taking(&plant),
+            Some(_) => {}
+            None => self.notice.release(number),
+        }
+        self.left_held.poll(self.authority.as_ref(), held, report);
+        let begins = held.is_some() && !self.was_held;
+        self.was_held = held.is_some();
+        if begins || (held.is_some() && self.checked.elapsed() >= CHECK_EVERY) {
+            self.checked = Instant::now();
+            self.end_earlier_helper();
+        }
+        self.replace_helper(config, held, report);
+    }
+
     /// Ends the helper of a daemon that was killed, if it still releases the
     /// controls that are, or are to be, held here.
     fn end_earlier_helper(&self) {
-        if let Some(plant) = self.authority.plant() {
-            release_handover::end_helper(&plant);
+        let Some((plant, folder)) = self.authority.plant().zip(self.folder.as_ref()) else {
+            return;
+        };
+        let ours = self.helper.as_ref().map(ReleaseHelper::id);
+        match release_handover::end_helper(folder, &self.authority.unique(&plant), ours) {
+            Ok(false) => {}
+            Ok(true) => output::message("the release helper of the previous daemon was ended"),
+            Err(_) => output::message(
+                "the release helper of the previous daemon does not end: it may release the \
+                 controls",
+            ),
         }
     }
 
     /// Starts the helper again if it has ended: it was killed, for example for
     /// want of memory.
-    fn replace_helper(&mut self, config: &Config) {
-        if !self.helper.as_mut().is_some_and(ReleaseHelper::has_ended) {
+    fn replace_helper(
+        &mut self,
+        config: &Config,
+        held: Option<PlantId>,
+        report: &mut dyn FnMut(String),
+    ) {
+        let is_young = self.helper_started.elapsed() < HELPER_AGAIN_AFTER;
+        if is_young || !self.helper.as_mut().is_some_and(ReleaseHelper::has_ended) {
             return;
         }
         self.helper = None;
         if self.helpers_again == 0 {
-            output::message(format!(
+            report(format!(
                 "the release helper has ended again, and is not started any more: {BY_HAND}"
             ));
             return;
         }
         self.helpers_again -= 1;
-        self.helper = start_helper(config);
+        self.helper_started = Instant::now();
+        self.helper = start_helper(config, self.notice, held);
         if self.helper.is_some() {
-            output::message("the release helper had ended, and was started again");
+            report("the release helper had ended, and was started again".to_owned());
         }
     }
 }
@@ -193,8 +263,12 @@ impl Plant {
 const BY_HAND: &str = "if this process is killed, release the controls by hand";
 
 /// Without a helper the flight continues, and this is reported.
-pub(crate) fn start_helper(config: &Config) -> Option<ReleaseHelper> {
-    ReleaseHelper::start(config)
+pub(crate) fn start_helper(
+    config: &Config,
+    notice: &Notice,
+    held: Option<PlantId>,
+) -> Option<ReleaseHelper> {
+    ReleaseHelper::start(config, notice, held)
         .inspect_err(|error| {
             output::message(format!("no release helper ({error}): {BY_HAND}"));
         })

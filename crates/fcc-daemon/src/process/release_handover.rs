@@ -3,125 +3,112 @@
 //!
 //! A release helper repeats the release until the plant confirms it, for up to
 //! two minutes. It would thereby take control from a daemon that was started
-//! again and flies. So while it releases, the helper listens at a socket named
-//! after the plant; a program that is about to take control connects to it, and
-//! the helper ends.
-//!
-//! The name is an abstract one: no file is left behind, and it is valid within
-//! one network namespace. Any process there can connect; a helper ends only for
-//! the same user and for root.
+//! again and flies. So a helper locks a file named after the plant from the
+//! moment it is told that control is held. The kernel tells who has locked a
+//! file (`F_GETLK`, fcntl(2)); a program that takes control kills that process,
+//! which works also if it is stopped. Nobody connects to anybody, so nobody
+//! waits; only this user can open the file, and only processes of this user can
+//! be killed.
 
-use std::io::{ErrorKind, Read};
-use std::os::linux::net::SocketAddrExt;
-use std::os::unix::net::{SocketAddr, UnixListener, UnixStream};
-use std::time::Duration;
+use std::fs::{self, File};
+use std::io;
+use std::thread;
+use std::time::{Duration, Instant};
 
 use fcc_core::framework::PlantId;
-use nix::sys::socket::{getsockopt, sockopt::PeerCredentials};
-use nix::unistd::{Uid, geteuid};
+use nix::fcntl::{FcntlArg, fcntl};
+use nix::libc;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 
-use crate::output;
+use super::folder::Folder;
+use super::plant_file;
 
-/// How long a helper may take to end: it checks every 20 ms.
-const ENDS_WITHIN: Duration = Duration::from_secs(1);
+/// How long the end of a killed helper is waited for.
+const ENDS_WITHIN: Duration = Duration::from_millis(200);
+const LOOK_EVERY: Duration = Duration::from_millis(1);
 
-fn name(plant: &PlantId) -> std::io::Result<SocketAddr> {
-    SocketAddr::from_abstract_name(format!("fccd-release-helper-{plant}"))
+fn name(plant: &PlantId) -> String {
+    format!("{}.helper", plant_file::name(plant))
 }
 
-/// The socket of a helper while it releases.
-pub(super) struct HandoverPoint {
-    listener: Option<UnixListener>,
-    /// Closed when the helper ends, which the other side detects.
-    successor: Option<UnixStream>,
+/// The lock of a helper, while the file is open.
+pub(super) struct HelperLock {
+    plant: PlantId,
+    file: File,
 }
 
-impl HandoverPoint {
-    /// Opens the socket. If that fails, this helper cannot be ended, and
-    /// releases to its end.
-    pub(super) fn at(plant: &PlantId) -> Self {
-        let listener = name(plant)
-            .and_then(|name| UnixListener::bind_addr(&name))
-            .and_then(|listener| listener.set_nonblocking(true).map(|()| listener));
-        Self {
-            listener: listener.ok(),
-            successor: None,
-        }
+impl HelperLock {
+    /// Opens the file; without it, this helper cannot be ended.
+    pub(super) fn of(folder: &Folder, plant: PlantId) -> Option<Self> {
+        let file = folder.open(&name(&plant)).ok()?;
+        let this = Self { plant, file };
+        this.lock();
+        Some(this)
     }
 
-    /// Whether a program has connected; never waits.
-    pub(super) fn is_requested(&mut self) -> bool {
-        if let Some(Ok((stream, _))) = self.listener.as_ref().map(UnixListener::accept)
-            && user(&stream).is_some_and(|user| may_end(user, geteuid()))
-        {
-            self.successor = Some(stream);
-        }
-        self.successor.is_some()
+    pub(super) const fn plant(&self) -> PlantId {
+        self.plant
+    }
+
+    /// Locks the file, unless another helper has locked it: that one is ended
+    /// first.
+    pub(super) fn lock(&self) {
+        let _ = fcntl(&self.file, FcntlArg::F_SETLK(&whole(libc::F_WRLCK)));
     }
 }
 
-/// The user at the other end, from the kernel.
-fn user(stream: &UnixStream) -> Option<Uid> {
-    let credentials = getsockopt(stream, PeerCredentials).ok()?;
-    Some(Uid::from_raw(credentials.uid()))
+/// A lock on all of a file.
+fn whole(kind: libc::c_int) -> libc::flock {
+    libc::flock {
+        l_type: kind as libc::c_short,
+        l_whence: libc::SEEK_SET as libc::c_short,
+        l_start: 0,
+        l_len: 0,
+        l_pid: 0,
+    }
 }
 
-/// Whether `user` may end a helper that runs as `helper`.
-fn may_end(user: Uid, helper: Uid) -> bool {
-    user == helper || user.is_root()
+/// The process that has locked the file of a plant, unless it is `except`.
+fn helper_of(file: &File, except: Option<u32>) -> Option<Pid> {
+    let mut lock = whole(libc::F_WRLCK);
+    fcntl(file, FcntlArg::F_GETLK(&mut lock)).ok()?;
+    let is_locked = lock.l_type != libc::F_UNLCK as libc::c_short;
+    // Not positive: of another namespace of processes.
+    let is_other = lock.l_pid > 1 && u32::try_from(lock.l_pid).ok() != except;
+    (is_locked && is_other).then(|| Pid::from_raw(lock.l_pid))
 }
 
-/// Ends the helper that releases `plant`, if there is one, and waits up to a
-/// second until it has ended. Returns whether there was one.
-pub(super) fn end_helper(plant: &PlantId) -> bool {
-    let Ok(mut stream) = name(plant).and_then(|name| UnixStream::connect_addr(&name)) else {
-        return false;
+/// Ends the helper that releases, or would release, `plant`, if there is one
+/// other than `ours`; waits at most a fifth of a second. Returns whether there
+/// was one.
+///
+/// # Errors
+/// When it does not end: it may release the controls.
+pub(super) fn end_helper(folder: &Folder, plant: &PlantId, ours: Option<u32>) -> io::Result<bool> {
+    let Ok(file) = folder.open(&name(plant)) else {
+        return Ok(false);
     };
-    let ended = stream
-        .set_read_timeout(Some(ENDS_WITHIN))
-        .and_then(|()| stream.read(&mut [0; 1]));
-    if let Err(error) = ended
-        && matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut)
-    {
-        output::message(
-            "the release helper of the previous daemon does not end: it may release the controls",
-        );
+    let mut found = false;
+    let until = Instant::now() + ENDS_WITHIN;
+    while let Some(helper) = helper_of(&file, ours) {
+        found = true;
+        kill(helper, Signal::SIGKILL)?;
+        if Instant::now() > until {
+            return Err(io::ErrorKind::TimedOut.into());
+        }
+        thread::sleep(LOOK_EVERY);
     }
-    true
+    Ok(found)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Used by no other test.
-    fn plant() -> PlantId {
-        PlantId::new(format_args!("the plant of a test")).unwrap()
-    }
-
-    #[test]
-    fn a_helper_ends_only_for_its_own_user_and_root() {
-        let (ours, theirs) = UnixStream::pair().unwrap();
-        assert_eq!(user(&ours), Some(geteuid()));
-        drop(theirs);
-        let [helper, stranger] = [1_000, 1_001].map(Uid::from_raw);
-        assert!(may_end(helper, helper));
-        assert!(may_end(Uid::from_raw(0), helper));
-        assert!(!may_end(stranger, helper));
-        assert!(!may_end(stranger, Uid::from_raw(0)));
-    }
-
-    #[test]
-    fn a_helper_ends_once_a_program_connects_and_not_before() {
-        assert!(!end_helper(&plant()), "there is no helper");
-        let mut handover = HandoverPoint::at(&plant());
-        assert!(!handover.is_requested());
-        let connects = std::thread::spawn(|| end_helper(&plant()));
-        while !handover.is_requested() {
-            std::thread::yield_now();
-        }
-        drop(handover);
-        assert!(connects.join().unwrap());
-        assert!(!end_helper(&plant()), "it has ended");
+/// Removes the file of a plant, if no helper uses it.
+pub(super) fn remove_file(folder: &Folder, plant: &PlantId) {
+    let name = name(plant);
+    if folder
+        .open(&name)
+        .is_ok_and(|file| helper_of(&file, None).is_none())
+    {
+        let _ = fs::remove_file(folder.path(&name));
     }
 }

@@ -4,69 +4,72 @@
 //! A simulator never clears its overrides by itself, and a process that is
 //! killed can do nothing more. So before a flight this program starts itself
 //! again as `fccd release-helper`, which waits at the end of a pipe. Through
-//! the pipe it receives where control is held; the pipe closes when this
-//! process ends for any reason. If control was held then, the helper releases
-//! it until the plant confirms it, or until a daemon that takes control itself
-//! [takes over](super::release_handover).
+//! the pipe it [is told](super::notice) where control is held, before anything
+//! is written there; the pipe closes when this process ends for any reason. If
+//! control was held then, the helper releases it until the plant confirms it,
+//! or until a daemon that takes control itself
+//! [ends it](super::release_handover).
 
 use std::io::{self, BufRead, Write};
 use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, Stdio};
-use std::time::Duration;
+use std::thread;
+use std::time::{Duration, Instant};
 
 use fcc_core::framework::{ActuatorFault, PlantId, Released};
 use fcc_flight::config::{Config, ConfigError};
 use fcc_flight::flight::authority_without_connection;
 
-use super::release_handover::HandoverPoint;
+use nix::sys::stat::{SFlag, fstat};
 
-/// Prefix of a line that gives the plant whose control is held.
-const HELD: &str = "held ";
-/// The line that reports that control is not held.
-const FREE: &str = "free";
+use super::folder::Folder;
+use super::notice::{FREE, HELD, Notice};
+use super::plant_file::PlantFile;
+use super::release_handover::HelperLock;
+
 /// How long a helper repeats the release: a simulator that loads scenery hangs
 /// for some time.
 const RELEASE_FOR: Duration = Duration::from_secs(120);
 
+/// How long the end of a helper that was killed is waited for.
+const ENDS_WITHIN: Duration = Duration::from_millis(200);
+
 /// The release helper, as seen by the process that started it.
 pub(crate) struct ReleaseHelper {
     child: Child,
-    held: Option<PlantId>,
 }
 
 impl ReleaseHelper {
-    /// Starts the helper.
+    /// Starts the helper, and tells it where control is held; from here on
+    /// `notice` does.
     ///
     /// # Errors
     /// When this program cannot be started a second time.
-    pub(super) fn start(config: &Config) -> io::Result<Self> {
+    pub(super) fn start(
+        config: &Config,
+        notice: &Notice,
+        held: Option<PlantId>,
+    ) -> io::Result<Self> {
+        let line = in_one_line(config)?;
         let mut child = Command::new(std::env::current_exe()?)
             .arg("release-helper")
             // A separate process group, so that Ctrl-C does not end it.
             .process_group(0)
+            .current_dir("/")
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
+            .stderr(messages())
             .spawn()?;
-        let line = in_one_line(config)?;
-        if let Some(pipe) = &mut child.stdin {
-            writeln!(pipe, "{line}")?;
-        }
-        Ok(Self { child, held: None })
+        let mut pipe = child.stdin.take().ok_or(io::ErrorKind::BrokenPipe)?;
+        // The new pipe has room for it.
+        writeln!(pipe, "{line}")?;
+        notice.add_helper(pipe, held)?;
+        Ok(Self { child })
     }
 
-    /// Reports where control is held, if it is. A helper that has ended is no
-    /// reason to stop: [`has_ended`](Self::has_ended) tells.
-    pub(crate) fn report(&mut self, held: Option<PlantId>) {
-        if self.held == held {
-            return;
-        }
-        self.held = held;
-        if let Some(pipe) = &mut self.child.stdin {
-            let _ = match held {
-                Some(plant) => writeln!(pipe, "{HELD}{plant}"),
-                None => writeln!(pipe, "{FREE}"),
-            };
-        }
+    /// Its process number.
+    pub(super) fn id(&self) -> u32 {
+        self.child.id()
     }
 
     /// Whether it has ended by itself, or was killed; never waits.
@@ -74,11 +77,26 @@ impl ReleaseHelper {
         matches!(self.child.try_wait(), Ok(Some(_)))
     }
 
-    /// Ends the helper, and waits until it has ended.
+    /// Ends a helper that has nothing to release, also one that is stopped.
     pub(super) fn end(mut self) {
-        self.report(None);
-        drop(self.child.stdin.take());
-        let _ = self.child.wait();
+        let _ = self.child.kill();
+        let until = Instant::now() + ENDS_WITHIN;
+        while !self.has_ended() && Instant::now() < until {
+            thread::sleep(Duration::from_millis(1));
+        }
+    }
+}
+
+/// Where a helper prints. Not into a pipe: its reader would wait for the end of
+/// the helper.
+fn messages() -> Stdio {
+    let is_pipe = fstat(io::stderr()).is_ok_and(|found| {
+        SFlag::from_bits_truncate(found.st_mode & SFlag::S_IFMT.bits()) == SFlag::S_IFIFO
+    });
+    if is_pipe {
+        Stdio::null()
+    } else {
+        Stdio::inherit()
     }
 }
 
@@ -111,25 +129,60 @@ pub(crate) fn run_release_helper(
     let first = lines.next().ok_or(ReleaseHelperError::Nothing)??;
     let text: String = serde_json::from_str(&first)?;
     let config = Config::parse(&text, "standard input")?;
-    let mut held: Option<PlantId> = None;
+    let folder = Folder::of_this_process(&mut drop);
+    let authority = authority_without_connection(&config);
+    let mut held: Option<(u64, PlantId)> = None;
+    let mut lock: Option<HelperLock> = None;
     // A broken pipe counts as its end.
     for line in lines.map_while(Result::ok) {
-        if line == FREE {
+        if let Some((number, plant)) = takeover(&line) {
+            held = Some((number, plant));
+            let unique = authority.as_ref().map(|this| this.unique(&plant));
+            if !lock
+                .as_ref()
+                .is_some_and(|lock| Some(lock.plant()) == unique)
+            {
+                // One of another plant is unlocked first.
+                drop(lock.take());
+                lock = folder
+                    .as_ref()
+                    .zip(unique)
+                    .and_then(|(folder, plant)| HelperLock::of(folder, plant));
+            }
+        } else if let Some(freed) = line.strip_prefix(FREE).and_then(|text| text.parse().ok())
+            && held.is_some_and(|(number, _)| number <= freed)
+        {
             held = None;
-        } else if let Some(plant) = line.strip_prefix(HELD) {
-            held = PlantId::new(format_args!("{plant}")).or(held);
+            lock = None;
         }
     }
-    let Some((plant, authority)) = held.zip(authority_without_connection(&config)) else {
+    let Some(((number, plant), authority)) = held.zip(authority) else {
         return Ok(None);
     };
-    let mut handover = HandoverPoint::at(&plant);
-    let released = authority.release(&plant, RELEASE_FOR, &mut || handover.is_requested())?;
+    if let Some(lock) = &lock {
+        lock.lock();
+    }
+    let released = authority.release(&plant, RELEASE_FOR, &mut || false)?;
+    // The next start need not release it.
+    if released.is_over()
+        && let Some(folder) = folder
+        && let Ok(file) = PlantFile::open(&folder, &authority.unique(&plant))
+    {
+        file.release(number);
+        file.remove_if_released();
+    }
     Ok(Some(HelperResult {
         plant,
         released,
         by_hand: authority.by_hand(),
     }))
+}
+
+/// The number and the plant of a takeover, if the line is of one.
+fn takeover(line: &str) -> Option<(u64, PlantId)> {
+    let (number, plant) = line.strip_prefix(HELD)?.split_once(' ')?;
+    let plant = PlantId::new(format_args!("{plant}"))?;
+    Some((number.parse().ok()?, plant))
 }
 
 /// Why a helper could not do its work.
@@ -169,7 +222,7 @@ mod tests {
         };
         let config = in_one_line(&config).unwrap();
         let at = simulator.local_addr().unwrap();
-        format!("{config}\nheld X-Plane at {at}\n{last}")
+        format!("{config}\nheld 1 X-Plane at {at}\n{last}")
     }
 
     fn simulator() -> UdpSocket {
@@ -215,7 +268,7 @@ mod tests {
         for ignored in [0, 3] {
             let simulator = simulator();
             let script = script(&simulator, "");
-            let helper = std::thread::spawn(move || run_release_helper(script.as_bytes()).unwrap());
+            let helper = thread::spawn(move || run_release_helper(script.as_bytes()).unwrap());
             assert!(answer(&simulator, ignored).abs() < 0.5);
             let released = helper.join().unwrap().unwrap().released;
             assert_eq!(released, Released::Confirmed);
@@ -225,7 +278,7 @@ mod tests {
     #[test]
     fn controls_that_are_not_held_are_not_released() {
         let simulator = simulator();
-        let result = run_release_helper(script(&simulator, "free\n").as_bytes()).unwrap();
+        let result = run_release_helper(script(&simulator, "free 1\n").as_bytes()).unwrap();
         assert!(result.is_none());
         assert!(simulator.recv(&mut [0; 600]).is_err(), "something was sent");
     }

@@ -238,6 +238,8 @@ section! {
         roll_rate_integral_gain => roll_rate_integral_gain * SI,
         /// Rudder per aileron.
         rudder_per_aileron => rudder_per_aileron * SI,
+        /// Time constant of its washout.
+        rudder_washout_s => rudder_washout_s * SI,
         /// Rudder per g of side force.
         rudder_per_side_g => side_force_gain * (1.0 / GRAVITY_MPS2),
         /// Rudder per g of side force and second.
@@ -284,6 +286,8 @@ section! {
         airspeed_gain_per_s => airspeed_gain_per_s * SI,
         /// The same, integrated.
         airspeed_integral_gain_per_s2 => airspeed_integral_gain_per_s2 * SI,
+        /// Acceleration against the present one.
+        acceleration_gain => acceleration_gain * SI,
         /// Throttle that accelerates the aircraft by 1 g.
         throttle_per_g => throttle_per_mps2 * (1.0 / GRAVITY_MPS2),
         /// Induced drag over weight at 1 g.

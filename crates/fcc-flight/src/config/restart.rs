@@ -17,6 +17,9 @@ pub struct RestartSection {
     pub state_file: Option<PathBuf>,
     /// A flight that was interrupted longer ago is not recovered.
     pub max_age_s: f64,
+    /// Controls that a killed flight and its release helper left held are
+    /// released at the next start.
+    pub release_left_held: bool,
 }
 
 /// What a daemon does that is restarted in flight.
@@ -49,6 +52,7 @@ impl Default for RestartSection {
             mode: RestartMode::Cold,
             state_file: None,
             max_age_s: 10.0,
+            release_left_held: true,
         }
     }
 }

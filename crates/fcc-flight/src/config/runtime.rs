@@ -205,7 +205,7 @@ pub struct EngageSection {
     pub permit_autothrottle: bool,
     /// Engage although another flight control computer moves the surfaces.
     pub permit_fly_by_wire: bool,
-    /// Engage beyond 60° of bank or pitch, and recover from it first.
+    /// Engage beyond 60° of bank or pitch or in a spin, and recover from it first.
     pub permit_upset: bool,
 }
 

@@ -62,7 +62,7 @@ impl Follower<'_> {
             #[cfg(feature = "fault-injection")]
             pause.look();
             self.drain();
-            self.host.poll();
+            self.host.poll(&mut |words| self.observers.remark(words));
             if self.host.taken_by_another().is_some() {
                 self.link.stop.stop();
             }

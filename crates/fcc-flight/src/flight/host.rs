@@ -31,8 +31,9 @@ pub trait Host {
     /// All threads of the flight run.
     fn started(&mut self) {}
 
-    /// Called 50 times a second in real time.
-    fn poll(&mut self) {}
+    /// Called 50 times a second in real time; `report` passes a message to the
+    /// observers.
+    fn poll(&mut self, _report: &mut dyn FnMut(String)) {}
 
     /// The plant, if another program controls it; the flight then ends.
     fn taken_by_another(&self) -> Option<PlantId> {

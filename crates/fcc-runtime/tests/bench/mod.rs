@@ -16,7 +16,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use fcc_core::framework::{
-    ActuatorFault, Flags, Notice, Reading, SensorFault, State, Switch, Time,
+    ActuatorFault, Cause, Flags, Notice, Reading, SensorFault, State, Switch, Time,
 };
 use fcc_runtime::{Link, LoopConfig, Machine, Message, MessageOf, RecordOf};
 use fcc_timer::Expiry;
@@ -27,6 +27,19 @@ pub(crate) type EventKind = fcc_runtime::EventKind<u32>;
 
 /// 40 Hz.
 pub(crate) const PERIOD: Duration = Duration::from_millis(25);
+
+/// A fault of the sensors, and the cause of a failsafe that it is.
+pub(crate) const LOST: Flags = Flags::bit(1);
+pub(crate) const SENSORS_LOST: Cause = Cause::Faults(LOST);
+
+/// A failsafe of four periods, and a switch that is silent after two.
+pub(crate) fn config() -> LoopConfig {
+    LoopConfig {
+        failsafe_hold: 4 * PERIOD,
+        switch_max_age: 2 * PERIOD,
+        ..LoopConfig::default()
+    }
+}
 
 /// What the stubs do from now on.
 #[derive(Clone, Copy, Debug)]

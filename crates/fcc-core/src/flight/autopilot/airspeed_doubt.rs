@@ -12,7 +12,7 @@ use crate::framework::{Flags, Notice, Time};
 
 /// The numbers of notices: one for each reason, with the sensor's number in the
 /// lowest bits.
-const REASONS: [(u8, DoubtReason, &str); 3] = [
+const REASONS: [(u8, DoubtReason, &str); 4] = [
     (
         0x40,
         DoubtReason::BlockedTube,
@@ -27,6 +27,11 @@ const REASONS: [(u8, DoubtReason, &str); 3] = [
         0x80,
         DoubtReason::TooLow,
         "it is lower than forces and motion allow",
+    ),
+    (
+        0xa0,
+        DoubtReason::BlockedStatic,
+        "it changes against the height, and the altitude stands: the static port may be blocked",
     ),
 ];
 const SENSORS: u8 = 0x1f;
@@ -78,12 +83,17 @@ impl Autopilot {
         });
     }
 
-    /// The condition that the airspeed is doubted.
-    pub(super) const fn doubted(&self) -> Flags {
-        Flags::NONE.with(
-            flags::DOUBTED_AIRSPEED,
-            self.navigation.airspeed_doubt().is_some(),
-        )
+    /// The conditions that airspeed and altitude are doubted.
+    pub(super) fn doubted(&self) -> Flags {
+        Flags::NONE
+            .with(
+                flags::DOUBTED_AIRSPEED,
+                self.navigation.airspeed_doubt().is_some(),
+            )
+            .with(
+                flags::DOUBTED_ALTITUDE,
+                self.navigation.altitude_doubt().is_some(),
+            )
     }
 
     /// Whether a sensor's airspeed may be used beside others'.

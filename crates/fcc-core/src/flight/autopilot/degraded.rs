@@ -4,7 +4,7 @@ use core::time::Duration;
 
 use super::{Autopilot, FailsafeEnd, flags};
 use crate::flight::Measurements;
-use crate::flight::navigation::Lost;
+use crate::flight::navigation::{AirspeedSource, Lost};
 use crate::framework::{Flags, Notice, Tick, Time};
 
 /// The kinds of notices.
@@ -88,7 +88,7 @@ const TABLE: [Row; 8] = {
             P::Airspeed,
             SOUND,
         ),
-        // Pitch and power determine the airspeed.
+        // Pitch and power determine the airspeed, unless forces and motion do.
         row(flags::AIRSPEED, L::WingsLevel, V::Pitch, P::Trim, SOUND),
         row(flags::ALTITUDE, L::WingsLevel, V::Pitch, P::Trim, SOUND),
         // The derivative of attitude and heading replaces the gyroscope.
@@ -119,6 +119,14 @@ const TABLE: [Row; 8] = {
         ),
     ]
 };
+
+/// What an airspeed by forces and motion needs, and the standard deviation up to
+/// which it counts as known, by the reference airspeed: 5 kt of 100 kt, so that
+/// three of them lie between cruise and the lowest airspeed of a Cessna 172.
+const FORCES_NEED: Flags = Flags::from_bits(
+    flags::ATTITUDE.bits() | flags::SPECIFIC_FORCE.bits() | flags::ALTITUDE.bits(),
+);
+const ACCURATE_RATIO: f64 = 0.05;
 
 /// What is held without these quantities.
 pub(super) fn held_without(lost: Flags) -> Held {
@@ -171,8 +179,21 @@ impl Autopilot {
     pub(super) fn lost(&self, now: Time, measured: &Measurements) -> Flags {
         let contradicted = self
             .external(now, measured)
-            .contains(flags::SUSPECT_AIRSPEED);
+            .contains(flags::SUSPECT_AIRSPEED)
+            || self.navigation.airspeed_doubt().is_some();
         flags::unusable(self.stale(now), self.frozen()).with(flags::AIRSPEED, contradicted)
+    }
+
+    /// What is lost and not replaced by what counts as measured: an airspeed by
+    /// forces and motion does while it is accurate, and nothing is lost that it
+    /// comes from.
+    pub(super) fn unreplaced(&self, lost: Flags) -> Flags {
+        let estimate = self.navigation.estimate();
+        let accurate_mps = ACCURATE_RATIO * self.config.reference_airspeed_mps;
+        let is_known = estimate.airspeed_source == AirspeedSource::Forces
+            && estimate.airspeed_uncertainty_mps < accurate_mps
+            && !lost.intersects(FORCES_NEED);
+        lost.keeping(flags::AIRSPEED, !is_known)
     }
 
     /// Follows a failsafe: for how long it has lasted, and whether all is good
@@ -183,7 +204,7 @@ impl Autopilot {
         }
         let faults =
             self.unsafe_to_fly(tick.woke, measured) | self.not_flyable(tick.woke, measured);
-        let held = held_without(self.lost(tick.woke, measured));
+        let held = held_without(self.unreplaced(self.lost(tick.woke, measured)));
         let config = &self.config.failsafe;
         let degraded = &mut self.degraded;
         degraded.lasted_s += tick.dt_s;

@@ -9,6 +9,9 @@ use crate::flight::guidance::{ActiveMode, ModeInput, Targets};
 use crate::flight::{AltitudeReference, Measurements, PlantState, Surfaces};
 use crate::framework::{Flags, Time};
 
+/// Of a sum of the plant's steps, s.
+const ROUNDING_S: f64 = 1e-6;
+
 impl Autopilot {
     /// Why the autopilot does not engage.
     pub(super) fn inhibits(&self, now: Time, measurements: &Measurements) -> Flags {
@@ -21,7 +24,9 @@ impl Autopilot {
         .with(flags::PLANT_STALLED, self.clock.has_stopped())
         .with(
             flags::SETTLING,
-            self.watching_since.is_never() || now.since(self.watching_since) < self.config.settling,
+            self.settled_s.is_none_or(|settled_s| {
+                settled_s + ROUNDING_S < self.config.settling.as_secs_f64()
+            }),
         )
         .with(
             flags::TOO_SLOW,

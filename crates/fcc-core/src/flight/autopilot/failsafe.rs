@@ -6,6 +6,7 @@ use super::degraded::{Degraded, Lateral, Power, Vertical, held_without};
 use super::{Autopilot, flags};
 use crate::blocks::{limit_abs, wrap_two_pi};
 use crate::flight::atmosphere::true_airspeed_mps;
+use crate::flight::navigation::Estimate;
 use crate::flight::{Attitude, BodyRates, Measurements, Surfaces};
 use crate::framework::{Flags, Time};
 
@@ -116,7 +117,7 @@ impl Autopilot {
                 self.take_over(&trims);
             }
         }
-        let lost = self.lost(now, measured);
+        let lost = self.unreplaced(self.lost(now, measured));
         let held = held_without(lost);
         let glides = self.degraded.glides;
         self.setpoints.roll_rad = 0.0;
@@ -125,6 +126,7 @@ impl Autopilot {
         let idle = glides && !silent || measured.other_control.value.reverse_thrust;
         if held.lateral == Lateral::Trims {
             self.setpoints.pitch_rad = 0.0;
+            self.recovery.end();
             let throttle = if silent {
                 self.last.throttle
             } else if idle {
@@ -138,19 +140,9 @@ impl Autopilot {
             };
         }
         let config = self.config.failsafe;
-        let mut estimate = *self.navigation.estimate();
-        if lost.contains(flags::SPECIFIC_FORCE) {
-            estimate.side_force_mps2 = 0.0;
-        }
-        if lost.contains(flags::AIRSPEED) {
-            // That of the pitch and power that are held.
-            estimate.airspeed_mps = if glides {
-                self.config.envelope.best_glide_airspeed_mps
-            } else {
-                self.targets.airspeed_mps
-            };
-            estimate.true_airspeed_mps =
-                true_airspeed_mps(estimate.airspeed_mps, estimate.altitude_m);
+        let estimate = self.estimate_without(lost);
+        if let Some(recovering) = self.recover_degraded(now, lost, &estimate, idle) {
+            return recovering;
         }
         let (schedule, dt_s) = (self.schedule_at(estimate.airspeed_mps), self.clock.step_s());
         let envelope = self.config.envelope;
@@ -204,6 +196,25 @@ impl Autopilot {
             rudder: lateral.rudder,
             elevator_trim: None,
         }
+    }
+
+    /// The estimate, with what takes the place of the lost quantities.
+    fn estimate_without(&self, lost: Flags) -> Estimate {
+        let mut estimate = *self.navigation.estimate();
+        if lost.contains(flags::SPECIFIC_FORCE) {
+            estimate.side_force_mps2 = 0.0;
+        }
+        if lost.contains(flags::AIRSPEED) {
+            // That of the pitch and power that are held.
+            estimate.airspeed_mps = if self.degraded.glides {
+                self.config.envelope.best_glide_airspeed_mps
+            } else {
+                self.targets.airspeed_mps
+            };
+            estimate.true_airspeed_mps =
+                true_airspeed_mps(estimate.airspeed_mps, estimate.altitude_m);
+        }
+        estimate
     }
 
     /// Continues what was flown before the failsafe: targets, mode and progress

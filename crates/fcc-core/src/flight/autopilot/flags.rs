@@ -95,6 +95,8 @@ pub const AT_FLOOR: Flags = Flags::bit(40);
 pub const PILOT_TAKES_OVER: Flags = Flags::bit(41);
 /// Readings arrive too old, by their source's own clock.
 pub const SOURCE_CLOCK: Flags = Flags::bit(42);
+/// The altitude contradicts the other sensors and is not used.
+pub const DOUBTED_ALTITUDE: Flags = Flags::bit(43);
 /// A release is being prepared: the aircraft is levelled and trimmed.
 pub const RELEASING: Flags = Flags::bit(44);
 
@@ -115,6 +117,7 @@ pub(super) const NOT_SENSED: Flags = Flags::from_bits(
         | REJECTED.bits()
         | SUSPECT_AIRSPEED.bits()
         | DOUBTED_AIRSPEED.bits()
+        | DOUBTED_ALTITUDE.bits()
         | FROM_THE_FUTURE.bits()
         | SOURCE_CLOCK.bits()),
 );
@@ -141,7 +144,7 @@ pub(super) const NAMES: [&str; 45] = [
     "simulator time jumped",
     "simulator is paused",
     "airspeed is below the floor",
-    "bank or pitch is beyond 60 degrees",
+    "bank or pitch is beyond 60 degrees, or it spins",
     "simulator time has stopped",
     "engage switch is silent",
     "navigation is settling",
@@ -175,7 +178,7 @@ pub(super) const NAMES: [&str; 45] = [
     "the target altitude is limited by the floor",
     "the pilot moves the controls",
     "readings arrive too old, by their source's own clock",
-    "unknown condition",
+    "altitude contradicts the other sensors and is not used",
     "levelling and trimming before the release",
 ];
 

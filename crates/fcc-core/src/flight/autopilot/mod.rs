@@ -119,7 +119,9 @@ pub struct Autopilot {
     whereabouts: Whereabouts,
     /// The previous tick.
     before: Time,
-    watching_since: Time,
+    /// For how long of the plant's time all that control needs has been good, s;
+    /// none while it is not.
+    settled_s: Option<f64>,
     /// When a plant that was not heard returned, until all that control needs
     /// has been measured since.
     renewed_since: Time,
@@ -167,7 +169,7 @@ impl Autopilot {
             ages: ReadingAges::default(),
             whereabouts: Whereabouts::default(),
             before: Time::NEVER,
-            watching_since: Time::NEVER,
+            settled_s: None,
             renewed_since: Time::NEVER,
             last: Surfaces::default(),
             kept_trims: KeptTrims::default(),
@@ -207,7 +209,7 @@ impl Controller for Autopilot {
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         (self.external(tick.woke, measurements) | self.actuation.conditions() | self.doubted())
-            .with(flags::RECOVERING, self.is_recovering())
+            .with(flags::RECOVERING, self.recovery.is_active())
             .with(flags::UNDERSPEED, self.altitude.gives_up_height())
             .with(flags::AT_FLOOR, self.is_at_floor)
             .with(flags::RELEASING, self.release.is_some())
@@ -317,7 +319,7 @@ impl Controller for Autopilot {
         if self.accepted.body_rates.value != self.kept_trims.found_with {
             self.keep_trims();
         }
-        let recovering = self.recover_from_upset(tick.woke);
+        let recovering = self.recover_from_upset(tick.woke, &estimate);
         if let Some(outputs) = recovering.or_else(|| self.fly_to_release(&estimate, dt_s)) {
             self.last = self.with_trim(outputs, Flags::NONE);
             return self.last;
@@ -374,7 +376,8 @@ impl Controller for Autopilot {
     }
 
     fn estimated(&self) -> Estimate {
-        self.actuation.shown_in(self.navigation.estimate())
+        let estimate = self.ages.shown_in(self.navigation.estimate());
+        self.actuation.shown_in(&estimate)
     }
 
     fn setpoints(&self) -> Setpoints {
@@ -397,8 +400,7 @@ impl Controller for Autopilot {
             measurements,
             &self.gate_limits(),
         );
-        let airspeed = plausible.contains(flags::AIRSPEED) && self.permits_airspeed(measurements);
-        plausible.with(flags::AIRSPEED, airspeed)
+        plausible.keeping(flags::AIRSPEED, self.permits_airspeed(measurements))
     }
 
     fn switch(&self, measurements: &Measurements) -> Reading<Switch> {

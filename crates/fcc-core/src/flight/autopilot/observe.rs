@@ -58,11 +58,9 @@ impl Autopilot {
         self.take_over_unless_followed(now, self.config.max_age);
         self.follow_failsafe(tick, measured);
         // After an outage everything settles anew before it may engage.
-        if !self.stale(now).is_empty() {
-            self.watching_since = Time::NEVER;
-        } else if self.watching_since.is_never() {
-            self.watching_since = now;
-        }
+        let unusable = flags::unusable(self.stale(now), self.frozen());
+        let settled_s = self.settled_s.map_or(0.0, |settled_s| settled_s + step_s);
+        self.settled_s = unusable.is_empty().then_some(settled_s);
         self.before = now;
     }
 
@@ -73,9 +71,17 @@ impl Autopilot {
         self.replacement
             .follow(&self.accepted, lost, &estimate, step_s);
         if self.degraded.is_failsafe && lost != Lost::default() {
-            let left = self
+            let mut left = self
                 .replacement
                 .without(&self.accepted, lost, &estimate, now);
+            // Navigation leaves doubted ones out by itself, and sees that they
+            // agree again.
+            if self.navigation.airspeed_doubt().is_some() {
+                left.airspeed_mps = self.accepted.airspeed_mps;
+            }
+            if self.navigation.altitude_doubt().is_some() {
+                left.altitude_m = self.accepted.altitude_m;
+            }
             self.navigation.step(now, &left, step_s);
         } else {
             self.navigation.step(now, &self.accepted, step_s);
@@ -150,7 +156,7 @@ impl Autopilot {
     fn settle_anew(&mut self, tick: &Tick) {
         self.navigation.resume(self.clock.passed_s());
         self.frozen = FrozenDetector::new(self.config.frozen_after.as_secs_f64());
-        self.watching_since = Time::NEVER;
+        self.settled_s = None;
         self.renewed_since = tick.woke;
     }
 
@@ -179,7 +185,7 @@ impl Autopilot {
         self.pass_gate(measured);
         self.navigation.reset(&self.config.navigation);
         self.frozen = FrozenDetector::new(self.config.frozen_after.as_secs_f64());
-        self.watching_since = Time::NEVER;
+        self.settled_s = None;
         self.renewed_since = Time::NEVER;
     }
 }

@@ -30,7 +30,7 @@ impl Autopilot {
             .with(flags::PLANT_FAST, self.plant_is(PlantState::Fast))
             .with(
                 flags::SUSPECT_AIRSPEED,
-                airspeed_is_suspect(measurements) && self.doubted().is_empty(),
+                airspeed_is_suspect(measurements) && self.navigation.airspeed_doubt().is_none(),
             )
             .with(flags::PLANT_STALLED, self.clock.has_stopped())
             .with(flags::SOURCE_CLOCK, !self.ages.late().is_empty())

@@ -8,6 +8,7 @@ use core::time::Duration;
 
 use super::{Autopilot, flags};
 use crate::flight::Measurements;
+use crate::flight::navigation::Estimate;
 use crate::framework::{Flags, Time};
 
 /// The age of the body rates is averaged over this time, s: the mean age of
@@ -72,6 +73,15 @@ impl ReadingAges {
     /// than it may be.
     pub(super) const fn late(&self) -> Flags {
         self.late
+    }
+
+    /// The estimate with the ages of arrival.
+    pub(super) fn shown_in(&self, estimate: &Estimate) -> Estimate {
+        Estimate {
+            reading_age_s: self.arrival_s,
+            reading_jitter_s: self.jitter_s,
+            ..*estimate
+        }
     }
 
     /// The mean age of the body rates, s.

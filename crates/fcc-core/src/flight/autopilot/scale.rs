@@ -67,6 +67,7 @@ impl AutopilotConfig {
         heading.roll_rate_gain *= scale.aileron;
         heading.roll_rate_integral_gain *= scale.aileron * pace;
         heading.rudder_per_aileron *= scale.rudder;
+        heading.rudder_washout_s /= pace;
         heading.side_force_gain *= scale.rudder;
         heading.side_force_integral_gain *= scale.rudder * pace;
         heading.yaw_damping *= scale.rudder;

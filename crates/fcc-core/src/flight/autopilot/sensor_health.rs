@@ -61,23 +61,35 @@ impl Autopilot {
         if self.navigation.estimate().airspeed_mps < self.config.envelope.min_airspeed_mps {
             Flags::NONE
         } else {
-            let frozen = flags::frozen(self.frozen.frozen());
-            frozen.with(
-                flags::FROZEN_AIRSPEED,
-                frozen.contains(flags::FROZEN_AIRSPEED) && self.doubted().is_empty(),
-            )
+            let doubted = self.doubted();
+            flags::frozen(self.frozen.frozen())
+                .keeping(
+                    flags::FROZEN_AIRSPEED,
+                    !doubted.contains(flags::DOUBTED_AIRSPEED),
+                )
+                .keeping(
+                    flags::FROZEN_ALTITUDE,
+                    !doubted.contains(flags::DOUBTED_ALTITUDE),
+                )
         }
     }
 
-    /// The readings that are too old, by the plant's time.
+    /// The readings that are too old, by the plant's time. Of a doubted sensor
+    /// none is used: the airspeed and, for a time, the altitude are known without.
     fn too_old(&self, measurements: &Measurements) -> Flags {
         let judged = self.clock.judged();
         let taken = taken_of_needed(measurements);
         taken.into_iter().fold(Flags::NONE, |old, (flag, taken)| {
-            let is_fresh = Reading::new((), taken).is_fresh(judged, self.config.max_age)
-                && !self.ages.late().contains(flag);
-            let needed = flag != flags::AIRSPEED || self.doubted().is_empty();
-            old.with(flag, needed && !is_fresh)
+            let reading = Reading::new((), taken);
+            let is_known = match flag {
+                flags::AIRSPEED => self.navigation.airspeed_doubt().map(|_| true),
+                flags::ALTITUDE => self.navigation.altitude_doubt(),
+                _ => None,
+            };
+            let is_fresh = || {
+                reading.is_fresh(judged, self.config.max_age) && !self.ages.late().contains(flag)
+            };
+            old.with(flag, !is_known.unwrap_or_else(is_fresh))
         })
     }
 

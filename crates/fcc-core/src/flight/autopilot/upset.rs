@@ -1,10 +1,12 @@
 //! Recovery from an upset, between the outer loops.
 
+use libm::sin;
+
 use super::{Autopilot, flags};
 use crate::flight::control::{Change, Recovery, RecoveryInputs};
 use crate::flight::navigation::Estimate;
 use crate::flight::{Setpoints, Surfaces};
-use crate::framework::Time;
+use crate::framework::{Flags, Time};
 
 /// The surfaces follow the outputs if they differ by no more than this.
 const FOLLOWS: f64 = 0.15;
@@ -13,9 +15,15 @@ const FOLLOWS: f64 = 0.15;
 /// rad.
 const UPSET_RAD: f64 = 1.047;
 
-/// Whether bank or pitch is beyond 60°.
+/// ... and with this yaw rate, rad/s (40 °/s): that of a spin, four times that of
+/// any turn at 60° of bank.
+const UPSET_RADPS: f64 = 0.698;
+
+/// Whether bank or pitch is beyond 60°, or it yaws as in a spin.
 pub(super) fn is_far_from_level(estimate: &Estimate) -> bool {
-    estimate.roll_rad.abs() > UPSET_RAD || estimate.pitch_rad.abs() > UPSET_RAD
+    estimate.roll_rad.abs() > UPSET_RAD
+        || estimate.pitch_rad.abs() > UPSET_RAD
+        || estimate.body_rates.yaw_radps.abs() > UPSET_RADPS
 }
 
 impl Autopilot {
@@ -37,20 +45,21 @@ impl Autopilot {
 
     /// The outputs while the aircraft is upset; none otherwise. When it no longer
     /// is, the loops take over from them.
-    pub(super) fn recover_from_upset(&mut self, now: Time) -> Option<Surfaces> {
-        let estimate = *self.navigation.estimate();
+    pub(super) fn recover_from_upset(
+        &mut self,
+        now: Time,
+        estimate: &Estimate,
+    ) -> Option<Surfaces> {
         let inputs = RecoveryInputs {
             envelope: &self.config.envelope,
-            schedule: self.schedule(),
+            schedule: self.schedule_at(estimate.airspeed_mps),
             heading: &self.heading,
             altitude: &self.altitude,
             followed: self.is_followed(now),
             dt_s: self.clock.step_s(),
         };
         let trims = self.trims();
-        let change = self
-            .recovery
-            .observe(&self.last, &trims, &estimate, &inputs);
+        let change = self.recovery.observe(&self.last, &trims, estimate, &inputs);
         match change {
             Change::Ends => {
                 let last = self.last;
@@ -62,7 +71,7 @@ impl Autopilot {
             Change::Begins | Change::None if !self.recovery.is_active() => return None,
             Change::Begins | Change::None => {}
         }
-        let outputs = self.recovery.step(&estimate, &inputs);
+        let outputs = self.recovery.step(estimate, &inputs);
         if change == Change::Begins {
             self.heading.lead_from(self.setpoints.roll_rad);
         }
@@ -75,9 +84,31 @@ impl Autopilot {
         Some(outputs)
     }
 
-    /// Whether it recovers from an upset: in failsafe it does not.
-    pub(super) const fn is_recovering(&self) -> bool {
-        self.recovery.is_active() && !self.degraded.is_failsafe
+    /// The same in a failsafe, with what takes the place of the lost quantities.
+    /// Attitude, body rates and accelerations are needed; without altitude the path
+    /// is taken to be along the pitch. With the throttle `idle` or as it needs it.
+    pub(super) fn recover_degraded(
+        &mut self,
+        now: Time,
+        lost: Flags,
+        estimate: &Estimate,
+        idle: bool,
+    ) -> Option<Surfaces> {
+        let needed = [flags::ATTITUDE, flags::BODY_RATES, flags::SPECIFIC_FORCE];
+        if needed.iter().any(|quantity| lost.contains(*quantity)) {
+            self.recovery.end();
+            return None;
+        }
+        let mut estimate = *estimate;
+        if lost.contains(flags::ALTITUDE) {
+            estimate.climb_rate_mps = estimate.true_airspeed_mps * sin(estimate.pitch_rad);
+        }
+        let recovering = self.recover_from_upset(now, &estimate)?;
+        let throttle = if idle { 0.0 } else { recovering.throttle };
+        Some(Surfaces {
+            throttle,
+            ..recovering
+        })
     }
 
     /// Whether the surfaces stand where they were last commanded to, if the plant

@@ -1,7 +1,7 @@
 //! Airspeed → throttle.
 
 use super::SURFACE;
-use crate::blocks::{Pid, PidConfig, limit};
+use crate::blocks::{LowPass, Pid, PidConfig, limit};
 use crate::flight::navigation::Estimate;
 use crate::units::GRAVITY_MPS2;
 
@@ -20,6 +20,9 @@ pub struct AirspeedConfig {
     pub airspeed_gain_per_s: f64,
     /// The same, integrated, 1/s².
     pub airspeed_integral_gain_per_s2: f64,
+    /// Commanded acceleration per acceleration, against it: the phase lead that
+    /// the lag of an engine and its propeller needs.
+    pub acceleration_gain: f64,
     /// Throttle that accelerates the aircraft, per m/s².
     pub throttle_per_mps2: f64,
     /// Induced drag at 1 g over weight: the additional drag of a turn is this
@@ -35,8 +38,9 @@ pub struct AirspeedConfig {
 impl Default for AirspeedConfig {
     fn default() -> Self {
         Self {
-            airspeed_gain_per_s: 0.62,
-            airspeed_integral_gain_per_s2: 0.052,
+            airspeed_gain_per_s: 0.45,
+            airspeed_integral_gain_per_s2: 0.045,
+            acceleration_gain: 0.3,
             throttle_per_mps2: 0.370_157, // 3.63 per g
             induced_drag_ratio: 0.035,
             max_throttle_rate_per_s: 1.0,
@@ -71,7 +75,17 @@ pub struct ThrottleDemand {
     pub least_throttle: f64,
 }
 
+/// The acceleration is smoothed by this, s: a fifth of the engine's lag.
+const SMOOTHED_S: f64 = 0.2;
+
 /// Airspeed → throttle, with feed-forward of climb and turn.
+///
+/// An engine with a propeller follows the throttle after 1 to 2 s (manifold
+/// pressure, then speed of rotation), and airspeed integrates thrust. So the
+/// throttle answers to the acceleration along the flight path, too, as it
+/// does to the rate of total energy in Lambregts 1983: the acceleration is
+/// that of the accelerometers, in which gusts and sensor noise are less than
+/// in the airspeed's derivative.
 ///
 /// ```
 /// use fcc_core::flight::control::{AirspeedConfig, AirspeedLoop, ThrottleDemand};
@@ -94,12 +108,16 @@ pub struct ThrottleDemand {
 /// // Engaged at the present throttle; a knot too slow gives more throttle.
 /// assert!((airspeed.step(&demand, &level, 0.025) - 0.65).abs() < 1e-9);
 /// let slow = Estimate { airspeed_mps: 50.9, ..level };
-/// assert!(airspeed.step(&demand, &slow, 0.025) > 0.65);
+/// assert!(airspeed.clone().step(&demand, &slow, 0.025) > 0.65);
+/// // One that accelerates gets less.
+/// let accelerates = Estimate { acceleration_mps2: 1.0, ..level };
+/// assert!(airspeed.step(&demand, &accelerates, 0.025) < 0.65);
 /// ```
 #[derive(Clone, Debug)]
 pub struct AirspeedLoop {
     config: AirspeedConfig,
     throttle: Pid,
+    acceleration: LowPass,
 }
 
 impl AirspeedLoop {
@@ -114,12 +132,14 @@ impl AirspeedLoop {
                 output_rate_per_s: config.max_throttle_rate_per_s,
                 ..SURFACE
             }),
+            acceleration: LowPass::new(SMOOTHED_S),
         }
     }
 
     /// Engages with the present throttle.
     pub fn engage(&mut self, throttle: f64, demand: &ThrottleDemand, estimate: &Estimate) {
-        let feed_forward = self.feed_forward(demand, estimate);
+        self.acceleration.reset(estimate.acceleration_mps2);
+        let feed_forward = self.feed_forward(demand, estimate, 0.0);
         self.throttle.engage(
             throttle,
             demand.airspeed_mps,
@@ -131,7 +151,7 @@ impl AirspeedLoop {
 
     /// Performs one step; returns the throttle, 0..=1.
     pub fn step(&mut self, demand: &ThrottleDemand, estimate: &Estimate, dt_s: f64) -> f64 {
-        let feed_forward = self.feed_forward(demand, estimate);
+        let feed_forward = self.feed_forward(demand, estimate, dt_s);
         let throttle = self.throttle.step_scheduled(
             demand.airspeed_mps,
             estimate.airspeed_mps,
@@ -147,13 +167,16 @@ impl AirspeedLoop {
         limit(self.throttle.integral(), 0.0, 1.0)
     }
 
-    /// A climb needs g sin γ, a turn the additional induced drag.
-    fn feed_forward(&self, demand: &ThrottleDemand, estimate: &Estimate) -> f64 {
+    /// A climb needs g sin γ, a turn the additional induced drag; against the
+    /// present acceleration.
+    fn feed_forward(&mut self, demand: &ThrottleDemand, estimate: &Estimate, dt_s: f64) -> f64 {
         let speed = estimate.true_airspeed_mps.max(1.0);
         let climb = GRAVITY_MPS2 * demand.climb_rate_mps / speed;
         let turn = GRAVITY_MPS2
             * self.config.induced_drag_ratio
             * (demand.load_factor * demand.load_factor - 1.0);
-        self.config.throttle_per_mps2 * (climb + turn)
+        let accelerates = self.config.acceleration_gain
+            * self.acceleration.step(estimate.acceleration_mps2, dt_s);
+        self.config.throttle_per_mps2 * (climb + turn - accelerates)
     }
 }

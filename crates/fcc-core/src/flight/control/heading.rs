@@ -3,7 +3,7 @@
 use libm::{atan, cos, sin, tan};
 
 use super::{Envelope, MAX_TURN_BANK_RAD, SURFACE, Schedule};
-use crate::blocks::{Pid, PidConfig, RateLimit, SquareRootProfile, limit_abs};
+use crate::blocks::{HighPass, Pid, PidConfig, RateLimit, SquareRootProfile, limit_abs};
 use crate::flight::navigation::Estimate;
 use crate::units::GRAVITY_MPS2;
 
@@ -35,8 +35,11 @@ pub struct HeadingConfig {
     pub roll_rate_gain: f64,
     /// Aileron per integrated roll-rate error, per rad.
     pub roll_rate_integral_gain: f64,
-    /// Rudder per aileron, against adverse yaw.
+    /// Rudder per aileron, against adverse yaw, at the reference airspeed.
     pub rudder_per_aileron: f64,
+    /// Time constant of its washout, s: after it, an aileron beyond that of
+    /// the commanded roll rate moves no rudder.
+    pub rudder_washout_s: f64,
     /// Rudder per side force, per m/s².
     pub side_force_gain: f64,
     /// Rudder per integrated side force, per m/s.
@@ -58,9 +61,10 @@ impl Default for HeadingConfig {
             roll_rate_gain: 0.38,
             roll_rate_integral_gain: 0.40,
             rudder_per_aileron: 0.76,
+            rudder_washout_s: 2.0,
             side_force_gain: 0.060_163,          // 0.59 per g
             side_force_integral_gain: 0.054_045, // 0.53 per g and s
-            yaw_damping: 0.96,
+            yaw_damping: 1.5,
         }
     }
 }
@@ -112,6 +116,8 @@ pub struct HeadingLoop {
     roll_command: RateLimit,
     roll_rate: Pid,
     side_force: Pid,
+    /// The aileron that corrects the roll rate, without its constant part.
+    correction: HighPass,
     /// While the commanded bank is led from an earlier command to the present
     /// one.
     lead: Option<Lead>,
@@ -148,6 +154,7 @@ impl HeadingLoop {
                 ki: config.side_force_integral_gain,
                 ..SURFACE
             }),
+            correction: HighPass::new(config.rudder_washout_s),
             lead: None,
         }
     }
@@ -164,20 +171,22 @@ impl HeadingLoop {
     /// Engages with the present surfaces.
     pub fn engage(&mut self, aileron: f64, rudder: f64, estimate: &Estimate, schedule: Schedule) {
         let roll_rate = estimate.body_rates.roll_radps;
+        let rolling = self.aileron_feed_forward(roll_rate, schedule);
         self.lead = None;
         self.roll_command.reset(roll_rate);
         self.roll_rate.engage(
             aileron,
             roll_rate,
             roll_rate,
-            self.aileron_feed_forward(roll_rate, schedule),
+            rolling,
             schedule.moment * schedule.lateral_pace,
         );
+        self.correction.reset(aileron - rolling);
         self.side_force.engage(
             rudder,
             0.0,
             estimate.side_force_mps2,
-            self.rudder_feed_forward(aileron, estimate, schedule),
+            self.rudder_feed_forward(rolling, estimate, schedule),
             schedule.moment * schedule.lateral_pace,
         );
     }
@@ -237,18 +246,22 @@ impl HeadingLoop {
             config.max_roll_rate_radps,
         );
         let roll_rate = self.roll_command.step(wanted, dt_s);
+        let rolling = self.aileron_feed_forward(roll_rate, schedule);
         let aileron = self.roll_rate.step_scheduled(
             roll_rate,
             estimate.body_rates.roll_radps,
-            self.aileron_feed_forward(roll_rate, schedule),
+            rolling,
             schedule.moment * schedule.lateral_pace,
             schedule.lateral_pace * dt_s,
         );
+        let correction = self
+            .correction
+            .step(aileron - rolling, schedule.lateral_pace * dt_s);
         // A side force to the right requires yaw to the left.
         let rudder = self.side_force.step_scheduled(
             0.0,
             estimate.side_force_mps2,
-            self.rudder_feed_forward(aileron, estimate, schedule),
+            self.rudder_feed_forward(rolling + correction, estimate, schedule),
             schedule.moment * schedule.lateral_pace,
             schedule.lateral_pace * dt_s,
         );
@@ -289,14 +302,19 @@ impl HeadingLoop {
         schedule.rate * self.config.aileron_per_roll_rate * roll_rate_radps
     }
 
-    /// The rudder for the aileron, plus damping of the yaw rate in excess of
-    /// the turn's: g/V sin φ cos θ in a level coordinated turn.
+    /// The rudder for an aileron off its trim, plus damping of the yaw rate in
+    /// excess of the turn's: g/V sin φ cos θ in a level coordinated turn.
+    ///
+    /// Adverse yaw is proportional to the lift coefficient where it comes from
+    /// the wing, and does not depend on it where it comes from the profile drag
+    /// of the ailerons (Etkin and Reid 1996, chapter 3): the rudder against
+    /// it follows V₀/V, between the two.
     fn rudder_feed_forward(&self, aileron: f64, estimate: &Estimate, schedule: Schedule) -> f64 {
         let turn_yaw_rate = GRAVITY_MPS2 / estimate.true_airspeed_mps.max(1.0)
             * sin(estimate.roll_rad)
             * cos(estimate.pitch_rad);
         let excess = estimate.body_rates.yaw_radps - turn_yaw_rate;
-        self.config.rudder_per_aileron * aileron
+        schedule.rate * self.config.rudder_per_aileron * aileron
             - schedule.moment * schedule.lateral_pace * self.config.yaw_damping * excess
     }
 
@@ -306,7 +324,41 @@ impl HeadingLoop {
     }
 
     /// The rudder trim that the loop has found for no sideslip.
-    pub fn rudder_trim(&self) -> f64 {
-        self.side_force.integral() + self.config.rudder_per_aileron * self.aileron_trim()
+    pub const fn rudder_trim(&self) -> f64 {
+        self.side_force.integral()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A roll rate that the ailerons cannot stop: at first the rudder moves
+    /// with them, against adverse yaw; later it does not, or it would hold a
+    /// sideslip.
+    #[test]
+    fn a_constant_correction_moves_no_rudder() {
+        let rolling = Estimate {
+            airspeed_mps: 50.0,
+            true_airspeed_mps: 50.0,
+            body_rates: crate::flight::BodyRates {
+                roll_radps: 0.1,
+                ..crate::flight::BodyRates::default()
+            },
+            ..Estimate::default()
+        };
+        let schedule = Schedule::at(50.0, 50.0);
+        let mut heading = HeadingLoop::new(HeadingConfig::default());
+        heading.engage(0.0, 0.0, &Estimate::default(), schedule);
+        let first = heading.hold_bank(0.0, &rolling, schedule, 0.025);
+        assert!(first.aileron < -0.03);
+        let config = HeadingConfig::default();
+        assert!((first.rudder / first.aileron - config.rudder_per_aileron).abs() < 0.05);
+        let mut later = first;
+        for _ in 0..400 {
+            later = heading.hold_bank(0.0, &rolling, schedule, 0.025);
+        }
+        assert!(later.aileron < -0.3);
+        assert!(later.rudder.abs() < 0.2 * later.aileron.abs());
     }
 }

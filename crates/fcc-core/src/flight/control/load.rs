@@ -4,7 +4,7 @@ use libm::{cos, sqrt};
 
 use super::upset::Motion;
 use super::{Envelope, RecoveryInputs};
-use crate::blocks::{LowPass, RateLimit, limit, limit_abs};
+use crate::blocks::{LowPass, limit, limit_abs};
 use crate::flight::navigation::Estimate;
 use crate::units::GRAVITY_MPS2;
 
@@ -22,8 +22,11 @@ const OF_LIMIT_LOAD: f64 = 0.8;
 const FULL_LIFT: f64 = 0.643;
 /// With the nose this far down any pull raises it, whatever the bank: sin 65°.
 const STEEP: f64 = 0.906;
-/// How fast the commanded load grows, g/s.
+/// How fast the commanded load grows at most, g/s, and the time constant with which
+/// it reaches what is wanted, s: an aircraft whose elevator gives more load than
+/// was configured would overshoot the end of a ramp.
 const LOAD_RATE_PER_S: f64 = 4.0;
+const LOAD_TAU_S: f64 = 0.3;
 /// The lag of the load behind the elevator, with that of servos and sensors, s.
 const LOAD_LAG_S: f64 = 0.25;
 /// Path rate per path error, 1/s.
@@ -43,14 +46,21 @@ const ALPHA_BELOW: f64 = 1.6;
 const LEAST_SPEED: f64 = 0.6;
 /// The largest correction of the elevator by integration.
 const MAX_CORRECTION: f64 = 0.5;
+/// How far ahead the load's error is extrapolated, s, and the time constant of the
+/// filter that differentiates the load, s.
+const LOAD_AHEAD_S: f64 = 0.2;
+const LOAD_RATE_TAU_S: f64 = 0.1;
 
 /// Turns the path to the horizon, as far as lift can: load → pitch rate →
 /// elevator.
 #[derive(Clone, Debug)]
 pub(super) struct LoadLoop {
-    load: RateLimit,
+    /// The commanded load, g.
+    load: f64,
     /// The load expected now from the past commands, g.
     expected: LowPass,
+    /// The load a little earlier, g.
+    slower: LowPass,
     /// The elevator's correction by integration.
     correction: f64,
 }
@@ -58,8 +68,9 @@ pub(super) struct LoadLoop {
 impl LoadLoop {
     pub(super) const fn new() -> Self {
         Self {
-            load: RateLimit::new(LOAD_RATE_PER_S),
+            load: 1.0,
             expected: LowPass::new(LOAD_LAG_S),
+            slower: LowPass::new(LOAD_RATE_TAU_S),
             correction: 0.0,
         }
     }
@@ -73,8 +84,9 @@ impl LoadLoop {
     /// Commands the present load, but none that is less than that of unloading.
     fn begin_load(&mut self, estimate: &Estimate) {
         let load = estimate.load_factor.max(UNLOADED);
-        self.load.reset(load);
+        self.load = load;
         self.expected.reset(load);
+        self.slower.reset(estimate.load_factor);
     }
 
     /// One step; returns the elevator. `trim` is that of undisturbed flight,
@@ -92,15 +104,20 @@ impl LoadLoop {
             self.begin_load(estimate);
         }
         let wanted = wanted_load(motion, estimate, inputs.envelope, rolls);
-        let load = self.load.step(wanted, inputs.dt_s);
+        let rate_per_s = limit_abs((wanted - self.load) / LOAD_TAU_S, LOAD_RATE_PER_S);
+        self.load += inputs.dt_s * rate_per_s;
+        let load = self.load;
         let expected = self.expected.step(load, inputs.dt_s);
+        let slower = self.slower.step(estimate.load_factor, inputs.dt_s);
+        let gained =
+            (estimate.load_factor - slower) / LOAD_RATE_TAU_S - (load - expected) / LOAD_LAG_S;
         let stall_mps = inputs.envelope.stall_airspeed_mps;
         let speed = estimate.true_airspeed_mps.max(LEAST_SPEED * stall_mps);
         let [_, _, down] = motion.down;
         // The pitch rate of a path that is curved by a load n: g/V (n - cos θ cos
         // φ).
         let turning = |n: f64| GRAVITY_MPS2 / speed * (n - down);
-        let by_load = LOAD_GAIN_RADPS * (expected - estimate.load_factor);
+        let by_load = LOAD_GAIN_RADPS * (expected - estimate.load_factor - LOAD_AHEAD_S * gained);
         let mut pitch_rate = turning(load) + by_load;
         let mut at_limit = false;
         if estimate.airspeed_mps < ALPHA_BELOW * stall_mps {

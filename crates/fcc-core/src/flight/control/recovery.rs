@@ -36,8 +36,12 @@ const STALLED_AILERON: f64 = 0.3;
 const SPEED_AHEAD_S: f64 = 2.0;
 /// How long the rudder acts in a spin before the elevator, s.
 const RUDDER_FIRST_S: f64 = 0.3;
-/// The elevator in a spin, less than all of it: more load would turn negative.
+/// The elevator in a spin; the load at which the wing is unloaded enough, g, and the
+/// rate at which the nose drops fast enough, rad/s (20 °/s): there it is neutral
+/// again, or the load would turn negative.
 const SPIN_ELEVATOR: f64 = -0.7;
+const SPIN_UNLOADED: f64 = 0.3;
+const SPIN_NOSE_DROPS_RADPS: f64 = 0.349;
 /// How fast the throttle moves, 1/s.
 const THROTTLE_RATE_PER_S: f64 = 1.0;
 /// The time constant with which the trims of undisturbed flight are followed, s.
@@ -102,6 +106,11 @@ impl Recovery {
     /// Whether the aircraft is being recovered.
     pub(crate) const fn is_active(&self) -> bool {
         self.upset.is_upset()
+    }
+
+    /// Ends a recovery that cannot go on.
+    pub(crate) const fn end(&mut self) {
+        self.upset = UpsetDetector::new();
     }
 
     /// Detects an upset, and its end. In undisturbed flight follows the `trims`
@@ -186,7 +195,9 @@ impl Recovery {
         let elevator = if self.spinning_s < RUDDER_FIRST_S {
             0.0
         } else {
-            SPIN_ELEVATOR
+            let loaded = limit((estimate.load_factor - SPIN_UNLOADED) / 0.7, 0.0, 1.0);
+            let drops = 1.0 + estimate.body_rates.pitch_radps / SPIN_NOSE_DROPS_RADPS;
+            SPIN_ELEVATOR * loaded.min(limit(drops, 0.0, 1.0))
         };
         Surfaces {
             throttle: self.throttle.step(0.0, dt_s),
@@ -310,7 +321,7 @@ mod tests {
             }
             outputs
         };
-        let first = fly(&spinning(), 16);
+        let first = fly(&spinning(), 12);
         assert_eq!((first.rudder, first.elevator), (-1.0, 0.0));
         let later = fly(&spinning(), 80);
         assert_eq!((later.rudder, later.aileron), (-1.0, 0.0));

@@ -135,9 +135,10 @@ const STALLED_FOR_S: f64 = 0.6;
 /// about half of it in yaw; in a level turn at 60° and 60 kt yaw is 16 °/s.
 const SPIN_RADPS: f64 = 0.698;
 const SPIN_STOPPED_RADPS: f64 = 0.349;
-const SPIN_FOR_S: f64 = 0.3;
-/// A spin is slow: at no more than this multiple of the stalling airspeed.
-const SPIN_BELOW: f64 = 1.5;
+const SPIN_FOR_S: f64 = 0.1;
+/// A spin is slow: at no more than this multiple of the stalling airspeed. The lift
+/// of a wing at 30° is two thirds of the largest, and it turns at 2 to 3 g.
+const SPIN_BELOW: f64 = 2.0;
 /// When the flight is normal again: bank (30°), rates (20 °/s), path (-10°).
 const NORMAL_BANK_RAD: f64 = 0.524;
 const NORMAL_RADPS: f64 = 0.349;
@@ -166,7 +167,10 @@ impl UpsetDetector {
         let stalled = motion.angle_of_attack_rad > STALLED_RAD
             && estimate.airspeed_mps < STALLED_BELOW * stall_mps;
         self.stalled_s = lasting(self.stalled_s, stalled, dt_s);
-        let spin = motion.angle_of_attack_rad > STALLED_RAD
+        // In a spin the airspeed's estimate may be wrong, and the path with it: an
+        // angle that is measured counts as well.
+        let largest = motion.angle_of_attack_rad.max(estimate.angle_of_attack_rad);
+        let spin = largest > STALLED_RAD
             && rates.yaw_radps.abs() > SPIN_RADPS
             && estimate.airspeed_mps < SPIN_BELOW * stall_mps;
         self.spinning_s = lasting(self.spinning_s, spin, dt_s);

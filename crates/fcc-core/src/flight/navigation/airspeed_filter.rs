@@ -1,8 +1,9 @@
 //! Airspeed from the forces on the aircraft and its motion.
 
-use libm::{asin, cos, exp};
+use libm::{cos, exp, sin};
 
-use crate::blocks::{limit, limit_abs};
+use super::upward::Upward;
+use crate::blocks::limit_abs;
 use crate::units::GRAVITY_MPS2;
 
 /// What an [`AirspeedFilter`] must know of the aircraft beforehand.
@@ -26,6 +27,10 @@ const LIFT_ANGLE_RAD: f64 = 0.067;
 const AXIAL_SD: f64 = 0.02;
 const LIFT_SD_RAD: f64 = 0.017_5;
 const SENSOR_SD_MPS: f64 = 0.514;
+/// The lift's, in multiples, while it determines the climb rate over long times.
+const LIFT_BY_ITSELF: f64 = 3.0;
+/// That of an airspeed whose models were wrong for some seconds, m/s.
+const RESTORED_SD_MPS: f64 = 2.0;
 /// The share of a change of thrust that the model does not explain, ...
 const THRUST_ERROR: f64 = 0.15;
 /// ... the time in which that counts as a lasting offset, s, and its weights in
@@ -34,15 +39,19 @@ const THRUST_SETTLES_S: f64 = 5.0;
 const THRUST_NOISE: f64 = 3.0;
 /// Beyond these innovations the force is not explained by airspeed: an engine
 /// that stops, or a wind that rises (weight; rad).
-const ENGINE_CHANGE: f64 = 0.06;
+const ENGINE_CHANGE: f64 = 0.05;
 const UPDRAUGHT_RAD: f64 = 0.026;
+/// Beyond this difference from the force by the remembered model, in weights,
+/// that is no longer the aircraft's: its engine has failed.
+const NO_LONGER_THE_SAME: f64 = 0.08;
 const UPDRAUGHT_SHARE: f64 = 0.2;
 /// The correlation time of vertical gusts, s: 533 m at 65 m/s (MIL-F-8785C,
 /// 3.7.3, above 2,000 ft).
 const GUST_S: f64 = 8.0;
-/// Random walks, per √s: of the airspeed in m/s, of the offset, of the thrust
+/// Random walks, per √s: of the airspeed in m/s, in upsets too, of the offset, of the thrust
 /// ratio, of the zero of the angle of attack in rad.
 const AIRSPEED_WALK_MPS: f64 = 0.3;
+const UPSET_WALK_MPS: f64 = 2.0;
 const OFFSET_WALK: f64 = 0.000_5;
 const THRUST_WALK: f64 = 0.003;
 const ANGLE_WALK_RAD: f64 = 0.000_87;
@@ -60,6 +69,8 @@ pub(super) struct ForceSample {
     pub(super) pitch_rad: f64,
     pub(super) roll_rad: f64,
     pub(super) climb_rate_mps: f64,
+    /// The climb rate comes from lift itself: the altimeter is doubted.
+    pub(super) climbs_by_lift: bool,
     /// √(density over its value at sea level).
     pub(super) sqrt_density: f64,
     /// Thrust over that at full throttle and V₀, and its change over seconds;
@@ -88,8 +99,9 @@ struct Vote {
 ///
 /// - along x, in weights: thrust·V₀/V - D₀ q + (A - K) n²/q + offset (the drag
 ///   polar with the lift's part along x; Stevens, Lewis and Johnson 2016, 2.3),
-/// - of lift: pitch = path + cos(bank) (α₀ + A n/q), where the path is the climb
-///   rate without vertical wind over the true airspeed.
+/// - of lift: the angle of attack α₀ + A n/q is the one between the body and a
+///   path whose slope is the climb rate without vertical wind over the true
+///   airspeed, in any attitude ([`Upward`]).
 ///
 /// What it does not know of the aircraft it learns while a sensor is believed.
 #[derive(Clone, Copy, Debug)]
@@ -108,7 +120,8 @@ impl AirspeedFilter {
     pub(super) fn new(prior: AirframePrior, airspeed_mps: f64, sample: &ForceSample) -> Self {
         let q = squared(airspeed_mps / prior.reference_mps);
         let path = sample.climb_rate_mps * sample.sqrt_density / airspeed_mps;
-        let zero_lift_rad = sample.pitch_rad - path - LIFT_ANGLE_RAD / q;
+        let zero_lift_rad =
+            Upward::of(sample).angle_of_attack_rad(path) - LIFT_ANGLE_RAD * sample.up / q;
         let x = [
             airspeed_mps,
             0.0,
@@ -140,6 +153,13 @@ impl AirspeedFilter {
         self.x[1]
     }
 
+    /// The climb rate by pitch and lift, m/s, without vertical wind.
+    pub(super) fn climb_rate_mps(&self, sample: &ForceSample) -> f64 {
+        let [.., zero, angle] = self.x;
+        let alpha = zero + angle * sample.up * squared(self.slower());
+        self.at_mps() / sample.sqrt_density * Upward::of(sample).sin_path(alpha)
+    }
+
     /// Standard deviation of the airspeed, m/s.
     pub(super) fn sd_mps(&self) -> f64 {
         libm::sqrt(self.covariance[0][0].max(0.0))
@@ -148,6 +168,14 @@ impl AirspeedFilter {
     /// Sets the airspeed.
     pub(super) const fn adopt(&mut self, airspeed_mps: f64) {
         self.x[0] = airspeed_mps;
+    }
+
+    /// Takes the models that it remembers, without vertical wind: what was
+    /// learned since came from an altimeter that is doubted.
+    pub(super) fn restore_models(&mut self) {
+        let [.., offset, thrust, zero, angle] = self.kept;
+        self.x = [self.x[0], 0.0, offset, thrust, zero, angle];
+        self.covariance[0][0] += squared(RESTORED_SD_MPS);
     }
 
     /// A copy that remembers the models as they are now.
@@ -198,6 +226,11 @@ impl AirspeedFilter {
         }
     }
 
+    /// `dt_s` seconds in an attitude for which the models do not hold.
+    pub(super) fn without_models(&mut self, dt_s: f64) {
+        self.covariance[0][0] += squared(UPSET_WALK_MPS) * dt_s;
+    }
+
     fn predict(&mut self, gusts_mps: f64, dt_s: f64) {
         let fades = exp(-dt_s / GUST_S);
         self.x[1] *= fades;
@@ -232,9 +265,11 @@ impl AirspeedFilter {
             / self.at_mps();
         let per_mps = per_mps.min(-1e-3);
         let kept = sample.forward - self.axial_of(self.kept, thrust, sample.up);
+        let is_explained = kept.abs() < NO_LONGER_THE_SAME;
         self.axial = Vote {
             differs_mps: kept / per_mps,
-            weight: squared(per_mps) / (squared(AXIAL_SD) + THRUST_NOISE * unexplained),
+            weight: f64::from(u8::from(is_explained)) * squared(per_mps)
+                / (squared(AXIAL_SD) + THRUST_NOISE * unexplained),
         };
         let by = sample.forward - self.axial_of(self.x, thrust, sample.up);
         if by.abs() > ENGINE_CHANGE {
@@ -259,28 +294,34 @@ impl AirspeedFilter {
     fn correct_by_lift(&mut self, sample: &ForceSample) {
         let true_mps = self.at_mps() / sample.sqrt_density;
         let lift = sample.up * squared(self.slower());
-        let level = cos(sample.roll_rad);
-        let pitch = |[_, wind, _, _, zero, angle]: State| {
-            limit_abs((sample.climb_rate_mps - wind) / true_mps, 0.5)
-                + level * (zero + angle * lift)
+        let upward = Upward::of(sample);
+        let share = upward.share;
+        // In the scale of pitch: with the wings level a difference of pitch.
+        let differs = |[_, wind, _, _, zero, angle]: State| {
+            let along = upward.angle_of_attack_rad((sample.climb_rate_mps - wind) / true_mps);
+            share * (along - zero - angle * lift)
         };
         let path = limit_abs((sample.climb_rate_mps - self.x[1]) / true_mps, 0.5);
-        let per_mps = -(path + 2.0 * level * self.x[5] * lift) / self.at_mps();
+        let per_mps = -(path + 2.0 * share * self.x[5] * lift) / self.at_mps();
         let gusts = squared(sample.gusts_mps) + 0.3;
-        let by_kept =
-            sample.pitch_rad - pitch([0.0, self.x[1], 0.0, 0.0, self.kept[4], self.kept[5]]);
+        let by_kept = differs([0.0, self.x[1], 0.0, 0.0, self.kept[4], self.kept[5]]);
         self.lift = Vote {
             differs_mps: by_kept / per_mps.min(-1e-3),
             weight: squared(per_mps) / (gusts / squared(true_mps) + squared(LIFT_SD_RAD)),
         };
-        let by = sample.pitch_rad - pitch(self.x);
+        let by = differs(self.x);
         if by.abs() > UPDRAUGHT_RAD {
             self.covariance[1][1] += UPDRAUGHT_SHARE * squared(by * true_mps);
         }
+        let sd_rad = if sample.climbs_by_lift {
+            LIFT_BY_ITSELF * LIFT_SD_RAD
+        } else {
+            LIFT_SD_RAD
+        };
         self.update(
-            [per_mps, -1.0 / true_mps, 0.0, 0.0, level, level * lift],
+            [per_mps, -1.0 / true_mps, 0.0, 0.0, share, share * lift],
             by,
-            squared(LIFT_SD_RAD),
+            squared(sd_rad),
         );
     }
 
@@ -319,9 +360,8 @@ impl AirspeedFilter {
 pub(super) fn acceleration_mps2(sample: &ForceSample, airspeed_mps: f64) -> f64 {
     let true_mps = airspeed_mps.max(MIN_AIRSPEED_MPS) / sample.sqrt_density;
     let sin_path = limit_abs(sample.climb_rate_mps / true_mps, 1.0);
-    let level = cos(sample.roll_rad).max(0.3);
-    let alpha = limit((sample.pitch_rad - asin(sin_path)) / level, -0.3, 0.3);
-    let along = sample.forward * cos(alpha) - sample.up * libm::sin(alpha) - sin_path;
+    let alpha = limit_abs(Upward::of(sample).angle_of_attack_rad(sin_path), 0.3);
+    let along = sample.forward * cos(alpha) - sample.up * sin(alpha) - sin_path;
     GRAVITY_MPS2 * along * sample.sqrt_density
 }
 
@@ -332,3 +372,6 @@ pub(super) fn squared(x: f64) -> f64 {
 fn dot(a: State, b: State) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
+
+#[cfg(test)]
+mod tests;

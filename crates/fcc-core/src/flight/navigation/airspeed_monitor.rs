@@ -3,7 +3,7 @@
 use super::airspeed_filter::{
     AirframePrior, AirspeedFilter, ForceSample, acceleration_mps2, squared,
 };
-use super::airspeed_reason::{Doubt, Reference};
+use super::airspeed_reason::{Doubt, DoubtReason, Reference};
 use crate::blocks::{LowPass, smoothing_factor};
 use crate::schema;
 use crate::units::GRAVITY_MPS2;
@@ -40,6 +40,10 @@ const DIFFERS_RATIO: f64 = 0.09;
 const DIFFERS_SDS: f64 = 3.5;
 const DIFFERS_GUSTS: f64 = 4.5;
 const DOUBTED_AFTER_S: f64 = 2.5;
+/// With an altimeter that is doubted for its static port: the share of that
+/// limit, and the time.
+const STATIC_SHARE: f64 = 0.5;
+const STATIC_AFTER_S: f64 = 0.5;
 /// The forces vote for the sensor if they put the airspeed more than this share
 /// of the way towards it: then the wind has changed, after this time in s.
 const SENSOR_SHARE: f64 = 0.45;
@@ -76,6 +80,8 @@ pub(super) struct MonitorInput {
     pub(super) altitude_m: f64,
     /// Indicated, with the number of its sensor; none if it is silent.
     pub(super) sensor_mps: Option<(f64, u8)>,
+    /// The altimeter is doubted, whose static port the sensor may share.
+    pub(super) altimeter_is_doubted: bool,
     /// Whether the sensor may be doubted: while engaged.
     pub(super) may_doubt: bool,
 }
@@ -155,6 +161,7 @@ impl AirspeedMonitor {
             pitch_rad: 0.0,
             roll_rad: 0.0,
             climb_rate_mps: 0.0,
+            climbs_by_lift: false,
             sqrt_density: 0.0,
             thrust: None,
             gusts_mps: 0.0,
@@ -184,6 +191,13 @@ impl AirspeedMonitor {
         self.doubt
     }
 
+    /// Whether the sensor was doubted because it shares the static port of a
+    /// doubted altimeter.
+    pub(super) fn shares_static_port(&self) -> bool {
+        self.doubt
+            .is_some_and(|doubt| doubt.reason == DoubtReason::BlockedStatic)
+    }
+
     /// Whether an airspeed may be used beside others: until one was doubted,
     /// any.
     pub(super) fn permits(&self, airspeed_mps: f64) -> bool {
@@ -204,6 +218,34 @@ impl AirspeedMonitor {
             (None, Some(_)) => return None,
         };
         Some((filter.airspeed_mps(), filter.sd_mps()))
+    }
+
+    /// The climb rate by pitch and lift, m/s, and the airspeed by forces and
+    /// motion, indicated, m/s.
+    pub(super) fn path(&self, sample: &ForceSample) -> Option<(f64, f64)> {
+        let holds = holds(sample);
+        let filter = self.bank.filter(|_| holds)?.older;
+        Some((filter.climb_rate_mps(sample), filter.airspeed_mps()))
+    }
+
+    /// The altimeter has just been doubted; this is the airspeed without it, and
+    /// the sensor, if it shares the altimeter's static port.
+    pub(super) fn doubt_altimeter(&mut self, airspeed_mps: f64, shares: Option<u8>) {
+        if let Some(bank) = &mut self.bank {
+            bank.older.adopt(airspeed_mps);
+            bank.older.restore_models();
+            (bank.believing, bank.younger) = (bank.older, bank.older);
+            bank.younger_s = 0.0;
+            let reason = DoubtReason::BlockedStatic;
+            self.doubt = self.doubt.or(shares.map(|source| Doubt { source, reason }));
+            self.was_doubted |= shares.is_some();
+            self.agrees_s = 0.0;
+        }
+    }
+
+    /// Standard deviation of vertical gusts, m/s.
+    pub(super) fn gusts_mps(&self) -> f64 {
+        libm::sqrt(self.gusts_mps2)
     }
 
     /// Processes one tick.
@@ -234,9 +276,7 @@ impl AirspeedMonitor {
             filter.accelerate(acceleration, dt_s);
         }
         self.add(&sample, input.sensor_mps, dt_s);
-        let holds = sample.roll_rad.abs() < STEEP_BANK_RAD
-            && sample.pitch_rad.abs() < STEEP_PITCH_RAD
-            && LOADS.contains(&sample.up);
+        let holds = holds(&sample);
         if self.sum_s >= CORRECTED_S - 1e-6 {
             self.correct(&mut bank, &sample, input.sensor_mps.is_some(), holds);
         }
@@ -285,9 +325,11 @@ impl AirspeedMonitor {
                 filter.learn_offset(&mean);
             }
         }
-        if holds {
-            for filter in bank.each() {
+        for filter in bank.each() {
+            if holds {
                 filter.correct(&mean, passed_s);
+            } else {
+                filter.without_models(passed_s);
             }
         }
         if self.doubt.is_none() && has_sensor {
@@ -316,7 +358,9 @@ impl AirspeedMonitor {
         let differs = self.difference.step(sensor_mps - filter_mps, dt_s);
         let vote = self.vote.step(bank.older.vote_mps(), dt_s);
         if let Some(doubt) = self.doubt {
-            let agrees = differs.abs() < AGREES_RATIO * self.prior.reference_mps;
+            let is_static = doubt.reason == DoubtReason::BlockedStatic;
+            let agrees = differs.abs() < AGREES_RATIO * self.prior.reference_mps
+                && !(is_static && input.altimeter_is_doubted);
             self.agrees_s = if agrees { self.agrees_s + dt_s } else { 0.0 };
             let needed_s = if source == doubt.source {
                 BELIEVED_AFTER_S
@@ -331,9 +375,16 @@ impl AirspeedMonitor {
             }
             return;
         }
-        let limit_mps = self.limit_mps(&bank.older);
+        let (share, doubted_after_s) = if input.altimeter_is_doubted {
+            (STATIC_SHARE, STATIC_AFTER_S)
+        } else {
+            (1.0, DOUBTED_AFTER_S)
+        };
+        let limit_mps = share * self.limit_mps(&bank.older);
         let is_large = holds && differs.abs() > limit_mps;
-        let for_sensor = vote * differs.signum() > SENSOR_SHARE * differs.abs();
+        // Without an altimeter the lift does not tell the wind.
+        let for_sensor =
+            !input.altimeter_is_doubted && vote * differs.signum() > SENSOR_SHARE * differs.abs();
         let count = |now: bool, s: f64| if now { s + dt_s } else { (s - dt_s).max(0.0) };
         self.differs_s = count(is_large && !for_sensor, self.differs_s);
         self.wind_s = count(is_large && for_sensor, self.wind_s);
@@ -342,12 +393,15 @@ impl AirspeedMonitor {
         }
         if self.wind_s > WIND_CHANGED_AFTER_S {
             self.follow_sensor(bank);
-        } else if self.differs_s > DOUBTED_AFTER_S {
+        } else if self.differs_s > doubted_after_s {
             if input.may_doubt && bank.learned_s > LEARNED_S {
                 let sigma = squared(input.sample.sqrt_density);
-                let reason = self
-                    .reference
-                    .reason(input.altitude_m, sensor_mps, sigma, differs);
+                let reason = if input.altimeter_is_doubted {
+                    DoubtReason::BlockedStatic
+                } else {
+                    self.reference
+                        .reason(input.altitude_m, sensor_mps, sigma, differs)
+                };
                 self.doubt = Some(Doubt { source, reason });
                 self.was_doubted = true;
                 self.agrees_s = 0.0;
@@ -369,6 +423,13 @@ impl AirspeedMonitor {
         self.differs_s = 0.0;
         self.wind_s = 0.0;
     }
+}
+
+/// Whether the models of the forces hold.
+fn holds(sample: &ForceSample) -> bool {
+    sample.roll_rad.abs() < STEEP_BANK_RAD
+        && sample.pitch_rad.abs() < STEEP_PITCH_RAD
+        && LOADS.contains(&sample.up)
 }
 
 /// Specific force in m/s² to weights, forward and up.

@@ -16,6 +16,9 @@ pub(crate) enum DoubtReason {
     /// trapped, so its dynamic pressure changes by -dp = ρ g dh (FAA-H-8083-15B,
     /// chapter 5, blocked pitot tube and drain).
     BlockedTube,
+    /// The altimeter stands, and this one changes against the height: the static
+    /// pressure is trapped (the same, blocked static system).
+    BlockedStatic,
     /// It is too high.
     TooHigh,
     /// It is too low.

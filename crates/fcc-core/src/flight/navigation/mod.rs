@@ -9,14 +9,17 @@ mod air_data;
 mod airspeed_filter;
 mod airspeed_monitor;
 mod airspeed_reason;
+mod altitude_monitor;
 mod attitude;
 mod frozen;
 mod lift;
 mod plausibility;
 mod replacement;
 mod resolution;
+mod upward;
 mod vertical;
 mod vertical_covariance;
+mod without_altimeter;
 
 use core::time::Duration;
 
@@ -30,6 +33,7 @@ use crate::schema;
 use crate::units::{GRAVITY_MPS2, KNOT_MPS};
 use airspeed_filter::{AirframePrior, ForceSample};
 use airspeed_monitor::{AirspeedMonitor, MonitorInput, in_g};
+use altitude_monitor::AltitudeMonitor;
 
 pub use air_data::AirspeedChannel;
 pub use airspeed_monitor::AirspeedSource;
@@ -152,6 +156,13 @@ schema! {
         /// 0 while the sensor is used.
         #[field(17)]
         pub airspeed_uncertainty_mps: f64,
+        /// How old the newest reading was when it arrived, s, by its source's own
+        /// clock and relative to the fastest one; 0 if it has none.
+        #[field(410)]
+        pub reading_age_s: f64,
+        /// The mean change of that age from one arrival to the next, s.
+        #[field(411)]
+        pub reading_jitter_s: f64,
     }
 }
 
@@ -181,6 +192,7 @@ pub struct Navigation {
     airspeed: AirspeedChannel,
     lift: LiftChannel,
     monitor: AirspeedMonitor,
+    altitude_monitor: AltitudeMonitor,
     airframe: AirframePrior,
     throttle: Option<f64>,
     is_engaged: bool,
@@ -197,6 +209,7 @@ impl Navigation {
             airspeed: AirspeedChannel::new(config.airspeed_tau_s),
             lift: LiftChannel::new(STALL_AIRSPEED_MPS),
             monitor: AirspeedMonitor::new(CESSNA_172),
+            altitude_monitor: AltitudeMonitor::new(),
             airframe: CESSNA_172,
             throttle: None,
             is_engaged: false,
@@ -223,6 +236,8 @@ impl Navigation {
                 acceleration_mps2: 0.0,
                 airspeed_source: AirspeedSource::Sensor,
                 airspeed_uncertainty_mps: 0.0,
+                reading_age_s: 0.0,
+                reading_jitter_s: 0.0,
             },
         }
     }
@@ -251,6 +266,12 @@ impl Navigation {
         self.monitor.doubt()
     }
 
+    /// Whether the altimeter is doubted, and the altitude without it known.
+    pub(crate) fn altitude_doubt(&self) -> Option<bool> {
+        let monitor = &self.altitude_monitor;
+        monitor.is_doubted().then(|| monitor.is_sound())
+    }
+
     /// Whether an airspeed may be used beside those of other sensors.
     pub(crate) fn permits_airspeed(&self, airspeed_mps: f64) -> bool {
         self.monitor.permits(airspeed_mps)
@@ -270,7 +291,7 @@ impl Navigation {
     pub fn step(&mut self, now: Time, measurements: &Measurements, dt_s: f64) {
         let attitude = self.attitude.step(now, measurements, dt_s);
         let force = measurements.specific_force;
-        let vertical = self.vertical.step(now, measurements, &attitude, dt_s);
+        let vertical = self.step_vertical(now, measurements, &attitude, dt_s);
         let measured_mps = self
             .airspeed
             .step(now, measurements, &attitude, &vertical, dt_s);
@@ -336,12 +357,16 @@ impl Navigation {
                 pitch_rad: attitude.pitch_rad,
                 roll_rad: attitude.roll_rad,
                 climb_rate_mps: vertical.climb_rate_mps,
+                climbs_by_lift: self.altitude_monitor.is_doubted()
+                    && !self.monitor.shares_static_port()
+                    && !is_current(&measurements.velocity, now),
                 sqrt_density: sqrt(density_ratio(vertical.altitude_m)),
                 ..ForceSample::default()
             },
             throttle: self.throttle,
             altitude_m: vertical.altitude_m,
             sensor_mps: is_current(&airspeed, now).then_some((airspeed.value, airspeed.source)),
+            altimeter_is_doubted: self.altitude_monitor.is_doubted(),
             may_doubt: self.is_engaged,
         }
     }
@@ -386,6 +411,9 @@ impl Navigation {
         self.airspeed.adopt_next();
         if self.monitor.doubt().is_none() {
             self.monitor = AirspeedMonitor::new(self.airframe);
+        }
+        if !self.altitude_monitor.is_doubted() {
+            self.altitude_monitor = AltitudeMonitor::new();
         }
     }
 

@@ -4,6 +4,7 @@ use core::time::Duration;
 
 use libm::{cos, sin};
 
+use super::altitude_monitor::Reference;
 use super::attitude::Orientation;
 use super::resolution::Resolution;
 use super::vertical_covariance::{CrossCovariance, Gains, VerticalCovariance};
@@ -123,19 +124,7 @@ impl VerticalChannel {
         orientation: &Orientation,
         dt_s: f64,
     ) -> VerticalState {
-        let measured = is_current(&measurements.specific_force, now);
-        let acceleration = if measured {
-            let force = measurements.specific_force.value;
-            let (sin_roll, cos_roll) = (sin(orientation.roll_rad), cos(orientation.roll_rad));
-            let (sin_pitch, cos_pitch) = (sin(orientation.pitch_rad), cos(orientation.pitch_rad));
-            let up = force.x_mps2 * sin_pitch
-                - cos_pitch * (force.y_mps2 * sin_roll + force.z_mps2 * cos_roll);
-            up - GRAVITY_MPS2 - self.bias_mps2
-        } else {
-            0.0
-        };
-        self.felt_mps2 = acceleration;
-        self.predict(acceleration, measured, dt_s);
+        self.feel(now, measurements, orientation, dt_s);
         let measured = measurements.altitude_m;
         let sample = self.news.of(&measured, dt_s);
         let known = self.resolution.step();
@@ -161,6 +150,74 @@ impl VerticalChannel {
             }
         }
         self.state
+    }
+
+    /// The same without an altimeter: climb rate or altitude follow another one,
+    /// with equal poles; none is the accelerometers alone.
+    pub(super) fn step_without_altimeter(
+        &mut self,
+        now: Time,
+        measurements: &Measurements,
+        orientation: &Orientation,
+        reference: Option<Reference>,
+        dt_s: f64,
+    ) {
+        self.feel(now, measurements, orientation, dt_s);
+        self.news.of(&measurements.altitude_m, dt_s);
+        let state = &mut self.state;
+        let towards = match reference {
+            Some(Reference::ClimbRate(climb_rate_mps, pole)) => {
+                let error_mps = climb_rate_mps - state.climb_rate_mps;
+                state.climb_rate_mps += 2.0 * pole * error_mps * dt_s;
+                pole * pole * error_mps
+            }
+            Some(Reference::Altitude(altitude_m, pole)) => {
+                let error_m = altitude_m - state.altitude_m;
+                state.altitude_m += 3.0 * pole * error_m * dt_s;
+                state.climb_rate_mps += 3.0 * pole * pole * error_m * dt_s;
+                pole * pole * pole * error_m
+            }
+            None => 0.0,
+        };
+        self.bias_mps2 = limit_abs(self.bias_mps2 - towards * dt_s, MAX_BIAS_MPS2);
+    }
+
+    /// Integrates the vertical acceleration.
+    fn feel(
+        &mut self,
+        now: Time,
+        measurements: &Measurements,
+        orientation: &Orientation,
+        dt_s: f64,
+    ) {
+        let measured = is_current(&measurements.specific_force, now);
+        self.felt_mps2 = if measured {
+            let force = measurements.specific_force.value;
+            let (sin_roll, cos_roll) = (sin(orientation.roll_rad), cos(orientation.roll_rad));
+            let (sin_pitch, cos_pitch) = (sin(orientation.pitch_rad), cos(orientation.pitch_rad));
+            let up = force.x_mps2 * sin_pitch
+                - cos_pitch * (force.y_mps2 * sin_roll + force.z_mps2 * cos_roll);
+            up - GRAVITY_MPS2 - self.bias_mps2
+        } else {
+            0.0
+        };
+        self.predict(self.felt_mps2, measured, dt_s);
+    }
+
+    /// The state, and the accelerometer's bias in m/s².
+    pub(super) const fn state(&self) -> (VerticalState, f64) {
+        (self.state, self.bias_mps2)
+    }
+
+    /// Replaces the state and the bias.
+    pub(super) const fn adopt(&mut self, state: VerticalState, bias_mps2: f64) {
+        (self.state, self.bias_mps2) = (state, bias_mps2);
+    }
+
+    /// Adopts an altitude, m; climb rate and bias are kept.
+    pub(super) const fn adopt_altitude(&mut self, altitude_m: f64) {
+        self.state.altitude_m = altitude_m;
+        self.covariance.restart();
     }
 
     pub(super) fn postpone(&mut self, by: Duration, latest: Time) {

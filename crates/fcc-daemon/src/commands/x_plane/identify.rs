@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use fcc_core::framework::{PlantId, TakeoverNotice};
 use fcc_xplane_check::{FlownBy, Identified, IdentifyError, identify as carry_out};
 
 use super::terminal::Terminal;
@@ -9,7 +10,7 @@ use super::{Failure, not_begun, request};
 use crate::cli::x_plane::IdentifyArgs;
 use crate::exit::Exit;
 use crate::output;
-use crate::process::start_helper;
+use crate::process::{Notice, start_helper};
 
 /// Measures the responses, and prints gains.
 pub(super) fn identify(args: &IdentifyArgs) -> Result<Exit, Failure> {
@@ -22,11 +23,11 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<Exit, Failure> {
     };
     // It releases the controls that the measurement itself has taken if this
     // process is killed, or X-Plane has not confirmed their release.
-    let mut helper = start_helper(&config);
-    let mut held = |plant| {
-        if let Some(helper) = &mut helper {
-            helper.report(plant);
-        }
+    let notice = Notice::of_this_process();
+    let _helper = start_helper(&config, notice, None);
+    let mut held = |plant: Option<PlantId>| match plant {
+        Some(plant) => notice.taking(&plant),
+        None => notice.release(notice.number()),
     };
     let result = carry_out(request, by, &mut terminal, &mut held);
     drop(terminal);

@@ -6,7 +6,8 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use std::{io, thread};
 
-use super::state_file::{self, Saved};
+use super::saved::Saved;
+use super::state_file;
 
 /// How long the end of a flight waits for the disk.
 const PATIENCE: Duration = Duration::from_secs(2);

@@ -12,7 +12,9 @@ mod keeper;
 mod observer;
 mod place;
 mod recovery;
+mod saved;
 mod state_file;
+mod state_page;
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -30,7 +32,8 @@ use keeper::Keeper;
 pub(super) use observer::RestartKeeper;
 use place::SavedPlace;
 use recovery::{Next, Recovery};
-use state_file::{Saved, SavedSwitch, StateFileError};
+use saved::{Saved, SavedSwitch};
+use state_file::StateFileError;
 
 /// The state is stored at least at this interval.
 const KEEP_EVERY: Duration = Duration::from_secs(1);
@@ -54,6 +57,7 @@ pub(super) struct RestartRequest {
     max_age: Duration,
     path: PathBuf,
     fingerprint: u32,
+    release_left_held: bool,
 }
 
 impl RestartRequest {
@@ -69,6 +73,7 @@ impl RestartRequest {
             max_age: Duration::from_secs_f64(section.max_age_s),
             path,
             fingerprint: fingerprint(config),
+            release_left_held: section.release_left_held,
         }
     }
 }
@@ -156,7 +161,7 @@ impl Restart {
     /// Whether an interrupted flight was found not to be recovered since the
     /// last call: it may have left the controls held.
     pub(super) const fn takes_over_release(&mut self) -> bool {
-        std::mem::replace(&mut self.left, false)
+        std::mem::replace(&mut self.left, false) && self.request.release_left_held
     }
 
     /// Processes a message of the loop.

@@ -20,7 +20,7 @@ use fcc_telemetry::units::{M_FT, MPS_KT};
 
 use super::boot_clock::BootInstant;
 use super::place::{Continuity, PresentPlace};
-use super::state_file::Saved;
+use super::saved::Saved;
 use crate::flight::pilot::Pilot;
 
 /// A flight that is to be recovered.
@@ -194,7 +194,7 @@ mod tests {
     use fcc_timer::ManualTimer;
 
     use super::super::place::SavedPlace;
-    use super::super::state_file::SavedSwitch;
+    use super::super::saved::SavedSwitch;
     use super::*;
     use crate::config::Config;
 

@@ -7,16 +7,10 @@
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
-use std::ops::RangeInclusive;
 use std::path::Path;
 
-use fcc_core::flight::guidance::{Mode, Progress, Targets};
-use fcc_core::flight::{AltitudeReference, Position, Resume, Surfaces};
-use fcc_telemetry::units::COMMANDED_HEADING_RAD;
-use serde::{Deserialize, Serialize};
-
-use super::boot_clock::BootInstant;
-use super::place::{SavedPlace, Sourced};
+use super::saved::Saved;
+use super::state_page::Page;
 
 /// The beginning of every state file.
 const NAME: &str = "fccd-flight";
@@ -24,106 +18,6 @@ const NAME: &str = "fccd-flight";
 const MOST_BYTES: u64 = 100_000;
 /// The version of the layout.
 const VERSION: u32 = 2;
-
-/// The stored state of a flight.
-#[derive(Clone, PartialEq, Debug)]
-pub(super) struct Saved {
-    /// The time of this state.
-    pub(super) at: BootInstant,
-    /// A fingerprint of the configuration.
-    pub(super) config: u32,
-    /// The engage switch.
-    pub(super) switch: SavedSwitch,
-    /// The number of consecutive recoveries of the flight.
-    pub(super) recoveries: u32,
-    /// Where the aircraft was.
-    pub(super) place: SavedPlace,
-    /// What was flown.
-    pub(super) resume: Resume,
-}
-
-/// The engage switch as it was last delivered by its owner.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub(super) struct SavedSwitch {
-    /// Whether it was on.
-    pub(super) on: bool,
-    /// The sensor to which it belongs.
-    pub(super) source: u8,
-}
-
-/// The same as stored in the file.
-#[derive(Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-struct Page {
-    boot: String,
-    boottime_ns: u64,
-    config: u32,
-    switch_on: bool,
-    /// Not in the files of earlier versions, which knew one sensor.
-    #[serde(default)]
-    switch_source: u8,
-    #[serde(rename = "take_ups")]
-    recoveries: u32,
-    mode: String,
-    elapsed_s: f64,
-    airspeed_mps: f64,
-    heading_rad: f64,
-    altitude_m: f64,
-    #[serde(default)]
-    altimeter_setting_pa: Option<f64>,
-    /// The number of what the altitude refers to.
-    #[serde(default)]
-    altitude_reference: u8,
-    throttle: f64,
-    elevator: f64,
-    aileron: f64,
-    rudder: f64,
-    #[serde(default)]
-    plant_time_s: Option<f64>,
-    #[serde(default)]
-    plant_source: u8,
-    #[serde(default)]
-    position_rad: Option<[f64; 2]>,
-    #[serde(default)]
-    position_source: u8,
-}
-
-/// The pressure altitudes that a flight can have captured, m: those that can be
-/// commanded, by the lowest and the highest altimeter setting.
-const CAPTURED_ALTITUDE_M: RangeInclusive<f64> = -1_500.0..=21_000.0;
-/// No flight has lasted longer, s: 3 years.
-const LONGEST_S: f64 = 1e8;
-/// None has been faster, m/s.
-const FASTEST_MPS: f64 = 1_000.0;
-
-impl Page {
-    /// Whether its numbers are those of a flight.
-    fn can_be_flown(&self) -> bool {
-        (0.0..=LONGEST_S).contains(&self.elapsed_s)
-            && (0.0..=FASTEST_MPS).contains(&self.airspeed_mps)
-            && COMMANDED_HEADING_RAD.contains(&self.heading_rad)
-            && CAPTURED_ALTITUDE_M.contains(&self.altitude_m)
-    }
-
-    fn place(&self) -> SavedPlace {
-        SavedPlace {
-            plant_time_s: self.plant_time_s.map(|value| Sourced {
-                value,
-                source: self.plant_source,
-            }),
-            position: self
-                .position_rad
-                .map(|[latitude_rad, longitude_rad]| Sourced {
-                    value: Position {
-                        latitude_rad,
-                        longitude_rad,
-                        altitude_m: 0.0,
-                    },
-                    source: self.position_source,
-                }),
-        }
-    }
-}
 
 /// Why a file cannot be used.
 #[derive(thiserror::Error, Debug)]
@@ -176,34 +70,7 @@ fn sync_folder(path: &Path) -> io::Result<()> {
 }
 
 fn encode(saved: &Saved) -> io::Result<Vec<u8>> {
-    let Resume {
-        progress, surfaces, ..
-    } = saved.resume;
-    let targets = progress.captured;
-    let (plant, position) = (saved.place.plant_time_s, saved.place.position);
-    let body = serde_json::to_vec(&Page {
-        boot: saved.at.boot.clone(),
-        boottime_ns: saved.at.ns,
-        config: saved.config,
-        switch_on: saved.switch.on,
-        switch_source: saved.switch.source,
-        recoveries: saved.recoveries,
-        mode: progress.mode.to_string(),
-        elapsed_s: progress.elapsed_s,
-        airspeed_mps: targets.airspeed_mps,
-        heading_rad: targets.heading_rad,
-        altitude_m: targets.altitude_m,
-        altimeter_setting_pa: saved.resume.altimeter_setting_pa,
-        altitude_reference: saved.resume.altitude_reference as u8,
-        throttle: surfaces.throttle,
-        elevator: surfaces.elevator,
-        aileron: surfaces.aileron,
-        rudder: surfaces.rudder,
-        plant_time_s: plant.map(|plant| plant.value),
-        plant_source: plant.map_or(0, |plant| plant.source),
-        position_rad: position.map(|at| [at.value.latitude_rad, at.value.longitude_rad]),
-        position_source: position.map_or(0, |at| at.source),
-    })?;
+    let body = serde_json::to_vec(&Page::of(saved))?;
     let mut bytes = format!("{NAME} {VERSION} {:08x}\n", crc32fast::hash(&body)).into_bytes();
     bytes.extend(body);
     Ok(bytes)
@@ -236,52 +103,19 @@ fn decode(bytes: &[u8]) -> Result<Saved, StateFileError> {
         return Err(StateFileError::Damaged);
     }
     let page: Page = serde_json::from_slice(body).map_err(|_| StateFileError::Damaged)?;
-    let reference = AltitudeReference::from_number(page.altitude_reference);
-    let mode = Mode::ALL.into_iter().find(|mode| mode.name() == page.mode);
-    if !page.can_be_flown() {
-        return Err(StateFileError::Damaged);
-    }
-    Ok(Saved {
-        place: page.place(),
-        at: BootInstant {
-            boot: page.boot,
-            ns: page.boottime_ns,
-        },
-        config: page.config,
-        switch: SavedSwitch {
-            on: page.switch_on,
-            source: page.switch_source,
-        },
-        recoveries: page.recoveries,
-        resume: Resume {
-            progress: Progress {
-                mode: mode.ok_or(StateFileError::Damaged)?,
-                elapsed_s: page.elapsed_s,
-                captured: Targets {
-                    airspeed_mps: page.airspeed_mps,
-                    heading_rad: page.heading_rad,
-                    altitude_m: page.altitude_m,
-                },
-                ..Progress::default()
-            },
-            surfaces: Surfaces {
-                throttle: page.throttle,
-                elevator: page.elevator,
-                aileron: page.aileron,
-                rudder: page.rudder,
-                // It stays where it is, and is measured.
-                elevator_trim: None,
-            },
-            altimeter_setting_pa: page.altimeter_setting_pa,
-            altitude_reference: reference.ok_or(StateFileError::Damaged)?,
-        },
-    })
+    page.saved().ok_or(StateFileError::Damaged)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use fcc_core::flight::guidance::{Mode, Progress, Targets};
+    use fcc_core::flight::{AltitudeReference, Position, Resume, Surfaces};
     use proptest::prelude::*;
+
+    use super::super::boot_clock::BootInstant;
+    use super::super::place::{SavedPlace, Sourced};
+    use super::super::saved::SavedSwitch;
+    use super::*;
 
     fn saved(mode: Mode, elapsed_s: f64) -> Saved {
         Saved {

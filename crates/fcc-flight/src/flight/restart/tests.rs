@@ -54,6 +54,7 @@ impl Folder {
             max_age: Duration::from_secs(60),
             path: folder.path().join("fccd.flight"),
             fingerprint: 7,
+            release_left_held: true,
         };
         Self { folder, request }
     }

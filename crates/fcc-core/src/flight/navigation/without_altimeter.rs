@@ -1,0 +1,85 @@
+//! Altitude and climb rate, with the altimeter or without it.
+
+use libm::tan;
+
+use super::airspeed_filter::squared;
+use super::altitude_monitor::{self, AltitudeInput, Verdict};
+use super::attitude::Orientation;
+use super::vertical::VerticalState;
+use super::{Navigation, is_current};
+use crate::blocks::limit_abs;
+use crate::flight::Measurements;
+use crate::framework::Time;
+
+impl Navigation {
+    /// Altitude and climb rate, without the altimeter while it is doubted.
+    pub(super) fn step_vertical(
+        &mut self,
+        now: Time,
+        measurements: &Measurements,
+        attitude: &Orientation,
+        dt_s: f64,
+    ) -> VerticalState {
+        let (before, _) = self.vertical.state();
+        let sample = self
+            .monitor_input(now, measurements, attitude, &before)
+            .sample;
+        let path = self.monitor.path(&sample);
+        let path_mps = path.map(|(climb_rate_mps, _)| climb_rate_mps);
+        let ground_mps = is_current(&measurements.velocity, now)
+            .then_some(-measurements.velocity.value.down_mps);
+        let airspeed = measurements.airspeed_mps;
+        let altitude = measurements.altitude_m;
+        let density = squared(sample.sqrt_density);
+        let sensor_mps = is_current(&airspeed, now).then_some(airspeed.value);
+        let shared_mps = sensor_mps.filter(|mps| {
+            *mps > altitude_monitor::LEAST_MPS
+                && self.monitor.shares_static_port()
+                && is_current(&altitude, now)
+        });
+        let by_total_m = shared_mps.zip(path).map(|(sensor_mps, (_, forces_mps))| {
+            altitude.value
+                + altitude_monitor::height_by_total_pressure_m(sensor_mps, forces_mps, density)
+        });
+        if self.altitude_monitor.is_doubted() {
+            let reference = altitude_monitor::reference(ground_mps, by_total_m, path_mps);
+            self.vertical
+                .step_without_altimeter(now, measurements, attitude, reference, dt_s);
+        } else {
+            self.vertical.step(now, measurements, attitude, dt_s);
+        }
+        let (followed, bias_mps2) = self.vertical.state();
+        let is_felt = is_current(&measurements.specific_force, now);
+        let input = AltitudeInput {
+            altitude_m: (is_felt && is_current(&altitude, now)).then_some(altitude.value),
+            step_m: self.vertical.resolution().step(),
+            followed,
+            bias_mps2,
+            felt_mps2: self.vertical.felt_mps2() + bias_mps2,
+            path_mps,
+            ground_mps,
+            tan_bank: limit_abs(tan(attitude.roll_rad), 3.0),
+            gusts_mps: self.monitor.gusts_mps(),
+            sensor_mps,
+            airspeed_mps: self.estimate.airspeed_mps,
+            accelerates_mps2: self.airspeed.felt_mps2(),
+            density_ratio: density,
+            has_total: by_total_m.is_some(),
+            may_doubt: self.is_engaged,
+        };
+        if dt_s > 0.0 {
+            match self.altitude_monitor.step(&input, dt_s) {
+                Verdict::Believed | Verdict::Doubted => {}
+                Verdict::DoubtBegins(copy) => {
+                    self.vertical.adopt(copy.state, copy.bias_mps2);
+                    let (right_mps, shares) =
+                        copy.right_airspeed(altitude.value, airspeed.value, density);
+                    let shares = shares.then_some(airspeed.source);
+                    self.monitor.doubt_altimeter(right_mps, shares);
+                }
+                Verdict::BelievedAgain(altitude_m) => self.vertical.adopt_altitude(altitude_m),
+            }
+        }
+        self.vertical.state().0
+    }
+}

@@ -1,0 +1,144 @@
+//! The file of a plant: the lock of the daemon that may control it, and whether
+//! a daemon holds, or has left held, its controls.
+//!
+//! It contains two numbers: that of the last takeover, and that of the last
+//! takeover whose release was confirmed. They differ while the controls are
+//! held. A daemon that is killed leaves the file, and the lock to the next.
+
+use std::fs::{self, File, TryLockError};
+use std::io;
+use std::os::unix::fs::{FileExt, MetadataExt};
+use std::path::PathBuf;
+
+use fcc_core::framework::PlantId;
+
+use super::folder::Folder;
+
+/// Where the two numbers are in the file, each 8 bytes, little-endian.
+const TAKEN_AT: u64 = 0;
+const RELEASED_AT: u64 = 8;
+
+/// The name of a plant's file. A plant at a loopback address is another one in
+/// each network namespace.
+pub(super) fn name(plant: &PlantId) -> String {
+    let namespace = fs::metadata("/proc/self/ns/net").map_or(0, |found| found.ino());
+    let plant = plant.as_str().replace(['/', '\0'], "_");
+    format!("{plant} in {namespace}")
+}
+
+/// The file of a plant.
+#[derive(Debug)]
+pub(super) struct PlantFile {
+    path: PathBuf,
+    file: File,
+}
+
+impl PlantFile {
+    /// Opens the file; creates it if it is missing.
+    pub(super) fn open(folder: &Folder, plant: &PlantId) -> io::Result<Self> {
+        let name = name(plant);
+        Ok(Self {
+            path: folder.path(&name),
+            file: folder.open(&name)?,
+        })
+    }
+
+    /// Opens and locks the file; none if another daemon has locked it.
+    pub(super) fn locked(folder: &Folder, plant: &PlantId) -> io::Result<Option<Self>> {
+        loop {
+            let this = Self::open(folder, plant)?;
+            match this.file.try_lock() {
+                Ok(()) if this.is_in_place() => return Ok(Some(this)),
+                // Removed by the daemon that had locked it.
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => return Ok(None),
+                Err(TryLockError::Error(error)) => return Err(error),
+            }
+        }
+    }
+
+    fn is_in_place(&self) -> bool {
+        let [ours, there] = [self.file.metadata(), fs::symlink_metadata(&self.path)];
+        ours.is_ok_and(|ours| there.is_ok_and(|there| ours.ino() == there.ino()))
+    }
+
+    fn number(&self, at: u64) -> u64 {
+        let mut bytes = [0; 8];
+        match self.file.read_exact_at(&mut bytes, at) {
+            Ok(()) => u64::from_le_bytes(bytes),
+            Err(_) => 0,
+        }
+    }
+
+    /// The number of the last takeover.
+    pub(super) fn taken(&self) -> u64 {
+        self.number(TAKEN_AT)
+    }
+
+    /// Whether the controls are held, or were left held.
+    pub(super) fn is_held(&self) -> bool {
+        self.taken() != self.number(RELEASED_AT)
+    }
+
+    /// Stores that control is taken.
+    pub(super) fn take(&self, number: u64) {
+        // Without the file, the release helper knows.
+        let _ = self.file.write_all_at(&number.to_le_bytes(), TAKEN_AT);
+    }
+
+    /// Stores that the release after this takeover is confirmed, if it is the
+    /// last one.
+    pub(super) fn release(&self, number: u64) {
+        if self.taken() == number {
+            let _ = self.file.write_all_at(&number.to_le_bytes(), RELEASED_AT);
+        }
+    }
+
+    /// Removes the file, unless another daemon has locked it, or it is needed
+    /// at the next start.
+    pub(super) fn remove_if_released(&self) {
+        if self.file.try_lock().is_ok() && !self.is_held() {
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::process::folder::tests::folder;
+
+    fn plant(which: &str) -> PlantId {
+        PlantId::new(format_args!("{which} of a/test")).unwrap()
+    }
+
+    #[test]
+    fn a_plant_is_locked_once_and_unlocked() {
+        let (_root, folder) = folder();
+        let lock = |which| PlantFile::locked(&folder, &plant(which)).unwrap();
+        let first = lock("one").unwrap();
+        assert!(lock("one").is_none());
+        assert!(lock("another").is_some());
+        first.remove_if_released();
+        drop(first);
+        assert!(lock("one").is_some());
+    }
+
+    #[test]
+    fn what_is_held_is_found_by_the_next_and_only_the_last_release_counts() {
+        let (_root, folder) = folder();
+        let open = || PlantFile::open(&folder, &plant("one")).unwrap();
+        assert!(!open().is_held());
+        open().take(3);
+        open().remove_if_released();
+        assert_eq!(open().taken(), 3);
+        assert!(open().is_held());
+        open().take(4);
+        open().release(3);
+        assert!(open().is_held());
+        open().release(4);
+        assert!(!open().is_held());
+        open().remove_if_released();
+        assert_eq!(open().taken(), 0, "a new file");
+    }
+}

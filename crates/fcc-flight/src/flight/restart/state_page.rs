@@ -1,0 +1,163 @@
+//! The layout of the stored state of a flight, and which states can be those of
+//! a flight.
+
+use std::ops::RangeInclusive;
+
+use fcc_core::flight::guidance::{Mode, Progress, Targets};
+use fcc_core::flight::{AltitudeReference, Position, Resume, Surfaces};
+use fcc_telemetry::units::COMMANDED_HEADING_RAD;
+use serde::{Deserialize, Serialize};
+
+use super::boot_clock::BootInstant;
+use super::place::{SavedPlace, Sourced};
+use super::saved::{Saved, SavedSwitch};
+
+/// The stored state of a flight as named numbers.
+#[derive(Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Page {
+    boot: String,
+    boottime_ns: u64,
+    config: u32,
+    switch_on: bool,
+    /// Not in the files of earlier versions, which knew one sensor.
+    #[serde(default)]
+    switch_source: u8,
+    #[serde(rename = "take_ups")]
+    recoveries: u32,
+    mode: String,
+    elapsed_s: f64,
+    airspeed_mps: f64,
+    heading_rad: f64,
+    altitude_m: f64,
+    #[serde(default)]
+    altimeter_setting_pa: Option<f64>,
+    /// The number of what the altitude refers to.
+    #[serde(default)]
+    altitude_reference: u8,
+    throttle: f64,
+    elevator: f64,
+    aileron: f64,
+    rudder: f64,
+    #[serde(default)]
+    plant_time_s: Option<f64>,
+    #[serde(default)]
+    plant_source: u8,
+    #[serde(default)]
+    position_rad: Option<[f64; 2]>,
+    #[serde(default)]
+    position_source: u8,
+}
+
+/// The pressure altitudes that a flight can have captured, m: those that can be
+/// commanded, by the lowest and the highest altimeter setting.
+const CAPTURED_ALTITUDE_M: RangeInclusive<f64> = -1_500.0..=21_000.0;
+/// No flight has lasted longer, s: 3 years.
+const LONGEST_S: f64 = 1e8;
+/// None has been faster, m/s.
+const FASTEST_MPS: f64 = 1_000.0;
+
+impl Page {
+    /// Of a state.
+    pub(super) fn of(saved: &Saved) -> Self {
+        let Resume {
+            progress, surfaces, ..
+        } = saved.resume;
+        let targets = progress.captured;
+        let (plant, position) = (saved.place.plant_time_s, saved.place.position);
+        Self {
+            boot: saved.at.boot.clone(),
+            boottime_ns: saved.at.ns,
+            config: saved.config,
+            switch_on: saved.switch.on,
+            switch_source: saved.switch.source,
+            recoveries: saved.recoveries,
+            mode: progress.mode.to_string(),
+            elapsed_s: progress.elapsed_s,
+            airspeed_mps: targets.airspeed_mps,
+            heading_rad: targets.heading_rad,
+            altitude_m: targets.altitude_m,
+            altimeter_setting_pa: saved.resume.altimeter_setting_pa,
+            altitude_reference: saved.resume.altitude_reference as u8,
+            throttle: surfaces.throttle,
+            elevator: surfaces.elevator,
+            aileron: surfaces.aileron,
+            rudder: surfaces.rudder,
+            plant_time_s: plant.map(|plant| plant.value),
+            plant_source: plant.map_or(0, |plant| plant.source),
+            position_rad: position.map(|at| [at.value.latitude_rad, at.value.longitude_rad]),
+            position_source: position.map_or(0, |at| at.source),
+        }
+    }
+
+    /// The state; none if it cannot be that of a flight.
+    pub(super) fn saved(self) -> Option<Saved> {
+        let reference = AltitudeReference::from_number(self.altitude_reference);
+        let mode = Mode::ALL.into_iter().find(|mode| mode.name() == self.mode);
+        if !self.can_be_flown() {
+            return None;
+        }
+        Some(Saved {
+            place: self.place(),
+            at: BootInstant {
+                boot: self.boot,
+                ns: self.boottime_ns,
+            },
+            config: self.config,
+            switch: SavedSwitch {
+                on: self.switch_on,
+                source: self.switch_source,
+            },
+            recoveries: self.recoveries,
+            resume: Resume {
+                progress: Progress {
+                    mode: mode?,
+                    elapsed_s: self.elapsed_s,
+                    captured: Targets {
+                        airspeed_mps: self.airspeed_mps,
+                        heading_rad: self.heading_rad,
+                        altitude_m: self.altitude_m,
+                    },
+                    ..Progress::default()
+                },
+                surfaces: Surfaces {
+                    throttle: self.throttle,
+                    elevator: self.elevator,
+                    aileron: self.aileron,
+                    rudder: self.rudder,
+                    // It stays where it is, and is measured.
+                    elevator_trim: None,
+                },
+                altimeter_setting_pa: self.altimeter_setting_pa,
+                altitude_reference: reference?,
+            },
+        })
+    }
+
+    /// Whether its numbers are those of a flight.
+    fn can_be_flown(&self) -> bool {
+        (0.0..=LONGEST_S).contains(&self.elapsed_s)
+            && (0.0..=FASTEST_MPS).contains(&self.airspeed_mps)
+            && COMMANDED_HEADING_RAD.contains(&self.heading_rad)
+            && CAPTURED_ALTITUDE_M.contains(&self.altitude_m)
+    }
+
+    fn place(&self) -> SavedPlace {
+        SavedPlace {
+            plant_time_s: self.plant_time_s.map(|value| Sourced {
+                value,
+                source: self.plant_source,
+            }),
+            position: self
+                .position_rad
+                .map(|[latitude_rad, longitude_rad]| Sourced {
+                    value: Position {
+                        latitude_rad,
+                        longitude_rad,
+                        altitude_m: 0.0,
+                    },
+                    source: self.position_source,
+                }),
+        }
+    }
+}

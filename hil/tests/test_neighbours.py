@@ -1,0 +1,239 @@
+"""The daemon among other programs of its machine: whatever they do, the controls are released."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from daemon_under_test import (
+    DaemonUnderTest,
+    Ending,
+    assert_released,
+    engage,
+    flight,
+    start,
+    wait_until,
+    write_config,
+)
+
+from fcc_hil.cockpit import OVERRIDE_JOYSTICK
+from fcc_hil.fly import ENGAGE_SWITCH
+from fcc_hil.process import StandInProcess
+from fcc_hil.standin import Settings
+
+SUCCESS = 0
+STRANGER = 65534
+CUT_OFF = "an earlier flight was cut off and may have left the controls held"
+KILLS = int(os.environ.get("FCCD_KILLS", "4"))
+"""How many flights are killed; 100 takes a quarter of an hour."""
+
+needs_two_users = pytest.mark.skipif(os.geteuid() != 0, reason="only root can act as another user")
+
+# Listens at abstract names with queues that are full: whoever connects waits.
+SQUATTER = """
+import socket, sys, time
+held = []
+for name in sys.argv[1:]:
+    for kind in (socket.SOCK_STREAM, socket.SOCK_DGRAM):
+        s = socket.socket(socket.AF_UNIX, kind)
+        try:
+            s.bind("\\0" + name)
+        except OSError:
+            continue
+        held.append(s)
+        if kind == socket.SOCK_STREAM:
+            s.listen(0)
+            full = socket.socket(socket.AF_UNIX, kind)
+            full.connect("\\0" + name)
+            held.append(full)
+print("ready", flush=True)
+time.sleep(600)
+"""
+
+
+@contextlib.contextmanager
+def squatter(*names: str) -> Iterator[None]:
+    """Let another user take names of the abstract namespace."""
+    words = ["setpriv", f"--reuid={STRANGER}", f"--regid={STRANGER}", "--clear-groups"]
+    with subprocess.Popen(
+        [*words, sys.executable, "-I", "-c", SQUATTER, *names], stdout=subprocess.PIPE, cwd="/"
+    ) as process:
+        assert process.stdout is not None
+        try:
+            assert process.stdout.readline() == b"ready\n"
+            yield
+        finally:
+            process.kill()
+
+
+@needs_two_users
+def test_another_user_can_neither_prevent_a_start_nor_block_it(fccd: Path, tmp_path: Path) -> None:
+    with StandInProcess(Settings(port=0)) as simulator:
+        plant = f"X-Plane at 127.0.0.1:{simulator.port}"
+        config = write_config(tmp_path, simulator.port)
+        with squatter(f"fccd/{plant}", f"fccd-release-helper-{plant}"):
+            with start(fccd, tmp_path, config) as daemon:
+                engage(simulator, daemon)
+                # Longer than the interval at which an earlier helper is looked for.
+                time.sleep(1.5)
+                assert daemon.end(signal.SIGTERM, within_s=8.0).exit_code == SUCCESS
+            assert_released(simulator)
+            simulator.write(ENGAGE_SWITCH, 0.0)
+            with start(fccd, tmp_path, config) as daemon:
+                engage(simulator, daemon)
+                daemon.end(signal.SIGKILL)
+            wait_until(lambda: not simulator.progress().overridden, "the helper releases")
+
+
+@needs_two_users
+def test_a_folder_of_another_user_is_refused_and_the_flight_is_flown(
+    fccd: Path, tmp_path: Path
+) -> None:
+    theirs = tmp_path / "theirs"
+    theirs.mkdir(mode=0o700)
+    os.chown(theirs, STRANGER, STRANGER)
+    with flight(fccd, tmp_path, environment={"RUNTIME_DIRECTORY": str(theirs)}) as (
+        simulator,
+        daemon,
+    ):
+        daemon.wait_for(f"the folder {theirs} is not used: it belongs to user {STRANGER}")
+        engage(simulator, daemon)
+        assert daemon.end(signal.SIGTERM).exit_code == SUCCESS
+        assert_released(simulator)
+    assert list(theirs.iterdir()) == []
+
+
+def test_no_exit_waits_for_a_helper_that_is_stopped(fccd: Path, tmp_path: Path) -> None:
+    with flight(fccd, tmp_path) as (simulator, daemon):
+        engage(simulator, daemon)
+        (helper,) = daemon.children()
+        os.kill(helper, signal.SIGSTOP)
+        ending = daemon.end(signal.SIGTERM, within_s=8.0)
+        assert_released(simulator)
+        wait_until(lambda: not Path(f"/proc/{helper}").exists(), "it has ended, too")
+    assert ending.exit_code == SUCCESS
+
+
+def test_a_helper_holds_nothing_of_others(fccd: Path, tmp_path: Path) -> None:
+    """Neither a descriptor that the daemon inherited, nor the pipe that it prints into."""
+    with StandInProcess(Settings(port=0)) as simulator:
+        config = write_config(tmp_path, simulator.port)
+        with (
+            (tmp_path / "inherited").open("w") as inherited,
+            subprocess.Popen(
+                [fccd, "run", "--config", config, "--quiet"],
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.PIPE,
+                pass_fds=[inherited.fileno()],
+            ) as process,
+        ):
+            folder = Path(f"/proc/{process.pid}/task/{process.pid}/children")
+            wait_until(lambda: folder.read_text().strip() != "", "its helper")
+            helper = Path("/proc") / folder.read_text().strip() / "fd"
+            wait_until(lambda: len(list(helper.iterdir())) == 3, "three descriptors")
+            assert (helper / "2").readlink() == Path("/dev/null")
+            # Signals are caught by then.
+            recordings = tmp_path / "recordings"
+            wait_until(lambda: list(recordings.glob("*.mcap")) != [], "it records")
+            process.send_signal(signal.SIGTERM)
+            assert process.wait(15.0) == SUCCESS
+
+
+Kill = Callable[[DaemonUnderTest, random.Random], None]
+
+
+def _daemon(daemon: DaemonUnderTest, _: random.Random) -> None:
+    daemon.send(signal.SIGKILL)
+
+
+def _helper(daemon: DaemonUnderTest, _: random.Random) -> None:
+    for helper in daemon.children():
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(helper, signal.SIGKILL)
+
+
+def _helper_then_daemon(daemon: DaemonUnderTest, dice: random.Random) -> None:
+    _helper(daemon, dice)
+    time.sleep(dice.choice([0.0, 0.005, 0.02, 0.1]))
+    _daemon(daemon, dice)
+
+
+def _daemon_then_helper(daemon: DaemonUnderTest, dice: random.Random) -> None:
+    helpers = daemon.children()
+    _daemon(daemon, dice)
+    time.sleep(dice.choice([0.0, 0.002, 0.01]))
+    for helper in helpers:
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(helper, signal.SIGKILL)
+
+
+ORDERS: list[Kill] = [_daemon, _helper_then_daemon, _daemon_then_helper, _helper]
+
+
+def test_whoever_is_killed_the_controls_are_released_in_the_end(fccd: Path, tmp_path: Path) -> None:
+    """Daemon, helper, both, in every order; after both, by the next start, which is cold."""
+    dice = random.Random(12)
+    left = 0
+    with StandInProcess(Settings(port=0)) as simulator:
+        config = write_config(tmp_path, simulator.port)
+        for number in range(KILLS):
+            simulator.write(ENGAGE_SWITCH, 0.0)
+            with start(fccd, tmp_path, config) as daemon:
+                daemon.wait_until_ready()
+                simulator.write(ENGAGE_SWITCH, 1.0)
+                deadline_s = time.monotonic() + 15.0
+                while simulator.read(OVERRIDE_JOYSTICK) != 1.0:
+                    assert time.monotonic() < deadline_s, daemon.log
+                # The first 20 ms, or later.
+                time.sleep(dice.choice([dice.uniform(0.0, 0.02), dice.uniform(0.0, 1.5)]))
+                order = ORDERS[number % len(ORDERS)]
+                order(daemon, dice)
+                if order is _helper:
+                    # It is started again, and releases.
+                    daemon.wait_for("the release helper had ended, and was started again")
+                    _daemon(daemon, dice)
+                daemon.end()
+            what = f"flight {number}, {order.__name__}"
+            simulator.write(ENGAGE_SWITCH, 0.0)
+            if order is _daemon or order is _helper:
+                wait_until(lambda: not simulator.progress().overridden, what)
+                continue
+            with start(fccd, tmp_path, config) as again:
+                wait_until(lambda: not simulator.progress().overridden, what)
+                again.wait_until_ready()
+                ending: Ending = again.end(signal.SIGTERM)
+            left += CUT_OFF in ending.log
+            assert ending.exit_code == SUCCESS
+    assert left > 0, "a helper was never killed in time"
+
+
+def test_what_is_left_held_is_only_reported_if_configured(fccd: Path, tmp_path: Path) -> None:
+    others = "[restart]\nrelease_left_held = false"
+    with flight(fccd, tmp_path, others=others) as (simulator, daemon):
+        engage(simulator, daemon)
+        daemon.send(signal.SIGSTOP)
+        _helper(daemon, random.Random(0))
+        daemon.end(signal.SIGKILL)
+        simulator.write(ENGAGE_SWITCH, 0.0)
+        with start(fccd, tmp_path, tmp_path / "fccd.toml") as again:
+            words = again.wait_for(CUT_OFF)
+            assert "restart.release_left_held is false" in words
+            again.wait_until_ready()
+            assert again.end(signal.SIGTERM).exit_code == SUCCESS
+        assert simulator.progress().overridden
+        # The next start may do otherwise.
+        (tmp_path / "other").mkdir()
+        config = write_config(tmp_path / "other", simulator.port)
+        with start(fccd, tmp_path / "other", config) as again:
+            assert "they are released" in again.wait_for(CUT_OFF)
+            wait_until(lambda: not simulator.progress().overridden, "they are")
+            assert again.end(signal.SIGTERM).exit_code == SUCCESS
