@@ -38,12 +38,13 @@ def _fly(
     *,
     delay_s: float = 0.0,
     servo_hz: float = 0.0,
+    elevator_gain: float = 1.0,
     noise: bool = False,
     seconds: float = 25.0,
     judged_after_s: float = 15.0,
 ) -> _Flight:
     plant = Plant(replace(by_name(aircraft), airspeed_kt=airspeed_kt), seed=_SEED)
-    machine = fcc.Machine(_HOLD)
+    machine = fcc.Machine(f"{_HOLD}[autopilot.scale]\nelevator = {elevator_gain}\n")
     sensors = SensorNoise(_SEED) if noise else None
     actuation = Actuation(plant, delay_s, servo_hz)
     flown = _Flight()
@@ -86,7 +87,16 @@ def test_late_commands_and_a_slow_servo_do_not_oscillate(
     assert np.std(flown.pitch_rate_degps) <= 2.0
 
 
-@pytest.mark.parametrize(("airspeed_kt", "most_g"), [(80, 0.1), (100, 0.1), (120, 0.15)])
+def test_three_times_the_gain_oscillates_until_the_monitor_takes_gain_out() -> None:
+    """As in an aircraft whose elevator is three times as effective as configured."""
+    flown = _fly(
+        "c172p", 100, delay_s=0.025, servo_hz=3, elevator_gain=3, seconds=40, judged_after_s=25
+    )
+    assert "now: oscillation: gain is reduced" in flown.events
+    assert np.std(flown.pitch_rate_degps) <= 2.0
+
+
+@pytest.mark.parametrize(("airspeed_kt", "most_g"), [(80, 0.1), (100, 0.1), (120, 0.11)])
 def test_play_in_the_elevator_is_found_and_inverted(airspeed_kt: float, most_g: float) -> None:
     """JSBSim's c172x: hysteresis of 0.05 rad, of 0.40 to 0.49 rad of travel."""
     flown = _fly("c172x", airspeed_kt)

@@ -2,7 +2,7 @@
 //!
 //! Published linear derivatives, with two non-linear curves where they are
 //! needed: lift through the stall and drag over lift. The moments of the stalled
-//! wing are in [`stall`]. Derivatives are taken to
+//! wing are in `stall`. Derivatives are taken to
 //! hold in body axes; the source's stability axes coincide with them at its
 //! reference of zero angle of attack.
 

@@ -68,8 +68,12 @@ impl Autopilot {
         self.release.take_if(|release| release.in_failsafe);
     }
 
-    /// Trims in the last seconds of a failsafe, when nothing is held any longer.
+    /// Trims in the last seconds of a failsafe, when nothing is held any longer:
+    /// not in its first tick, before what can be held is known.
     pub(super) fn prepare_end_of_failsafe(&mut self, now: Time, measured: &Measurements) {
+        if !self.degraded.is_failsafe {
+            return;
+        }
         if self.degraded.is_sound() {
             self.end_release_of_failsafe();
         } else if self.release.is_none() && self.config.failsafe.end == FailsafeEnd::Release {

@@ -16,7 +16,10 @@ impl Autopilot {
                 .max(self.flyable_airspeed_mps(self.targets.airspeed_mps)),
             climb_rate_mps,
             load_factor: 1.0 / cos(estimate.roll_rad).max(0.5),
-            least_throttle: self.envelope().least_throttle(estimate.airspeed_mps),
+            least_throttle: self
+                .envelope()
+                .least_throttle(estimate.airspeed_mps)
+                .max(self.altitude.least_throttle()),
         }
     }
 }

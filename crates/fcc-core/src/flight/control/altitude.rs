@@ -47,7 +47,7 @@ pub struct AltitudeConfig {
 impl Default for AltitudeConfig {
     fn default() -> Self {
         Self {
-            altitude_gain_per_s: 1.5,
+            altitude_gain_per_s: 1.25,
             capture_mps2: 1.108_151,            // 0.113 g
             climb_acceleration_mps2: 3.285_228, // 0.335 g
             climb_rate_gain: 1.53,
@@ -56,8 +56,8 @@ impl Default for AltitudeConfig {
             angle_of_attack_per_g_rad: 0.038_572, // 2.21°
             pitch_gain_per_s: 4.96,
             max_pitch_rate_radps: 0.174_533, // 10 °/s
-            pitch_rate_gain: 0.69,
-            pitch_rate_integral_gain: 1.77,
+            pitch_rate_gain: 0.8,
+            pitch_rate_integral_gain: 1.2,
             elevator_per_g: 0.30,
         }
     }
@@ -176,7 +176,7 @@ impl AltitudeLoop {
         dt_s: f64,
     ) -> PitchCommand {
         let profile = SquareRootProfile {
-            gain_per_s: schedule.pace * self.config.altitude_gain_per_s,
+            gain_per_s: schedule.outer * schedule.pace * self.config.altitude_gain_per_s,
             deceleration: self.config.capture_mps2,
         };
         let wanted = profile.speed(altitude_m - estimate.altitude_m);
@@ -274,6 +274,11 @@ impl AltitudeLoop {
     /// held, and height is given up.
     pub const fn gives_up_height(&self) -> bool {
         self.speed.is_short()
+    }
+
+    /// The least throttle, 0..=1: full while height is given up.
+    pub fn least_throttle(&self) -> f64 {
+        self.speed.shortage()
     }
 
     /// The elevator trim that the loop has found.

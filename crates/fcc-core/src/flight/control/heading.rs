@@ -204,7 +204,7 @@ impl HeadingLoop {
         let turn_rate = GRAVITY_MPS2 / speed * tan(limit_abs(estimate.roll_rad, MAX_TURN_BANK_RAD));
         let error = heading_rad - estimate.heading_rad - self.config.lead_s * turn_rate;
         let profile = SquareRootProfile {
-            gain_per_s: schedule.lateral_pace * self.config.heading_gain_per_s,
+            gain_per_s: schedule.outer * schedule.lateral_pace * self.config.heading_gain_per_s,
             deceleration: GRAVITY_MPS2 / speed * self.config.rollout_rate_radps,
         };
         // Coordinated turn: tan φ = V ψ̇ / g.

@@ -32,6 +32,11 @@ pub struct Schedule {
     /// follows the pitch faster, by V/V₀, but the pitch does not follow its
     /// command faster, so this is V₀/V there, times `pace`.
     pub path: f64,
+    /// The bandwidth of altitude and heading. The path follows the pitch, and the
+    /// roll rate the aileron, within times that are proportional to 1/V (`-V/Zα`
+    /// and `-1/Lp`: Stevens, Lewis and Johnson 2016, chapter 4), so this is V/V₀
+    /// below the reference airspeed, and 1 above it.
+    pub outer: f64,
 }
 
 /// The limit of the ratio, in both directions: a blocked pitot tube must not
@@ -57,6 +62,7 @@ impl Schedule {
             lateral_pace: 1.0,
             pitch_pace: (1.0 / ratio).min(MAX_PITCH_PACE),
             path: ratio.min(1.0),
+            outer: (1.0 / ratio).min(1.0),
         }
     }
 
@@ -106,8 +112,10 @@ mod tests {
         let slow = Schedule::at(37.0, 50.0);
         assert!((slow.pitch_pace - 0.74).abs() < 1e-12);
         assert_eq!(slow.path, 1.0);
+        assert!((slow.outer - 0.74).abs() < 1e-12);
         let fast = Schedule::at(62.5, 50.0);
         assert_eq!(fast.pitch_pace, 1.15);
         assert!((fast.path - 0.8).abs() < 1e-12);
+        assert_eq!(fast.outer, 1.0);
     }
 }

@@ -143,6 +143,13 @@ impl SpeedLimits {
         }
     }
 
+    /// How long the pitch has been at its upper limit, 0..=1: 1 when energy is
+    /// short. Height is given up for want of thrust, so that this is also the
+    /// least throttle.
+    pub fn shortage(&self) -> f64 {
+        self.held_s / SHORT_S
+    }
+
     /// Whether energy is short for both height and airspeed: the airspeed is
     /// held, and height is given up.
     pub const fn is_short(&self) -> bool {
@@ -193,6 +200,7 @@ mod tests {
             knots(airspeed_mps)
         );
         assert!(speed.is_short());
+        assert_eq!(speed.shortage(), 1.0);
     }
 
     #[test]
