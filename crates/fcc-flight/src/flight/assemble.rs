@@ -254,4 +254,21 @@ mod tests {
         assert!(beacon(ErrorKind::AddrInUse).is_taken());
         assert!(!beacon(ErrorKind::PermissionDenied).is_taken());
     }
+
+    #[test]
+    fn the_pilots_axes_are_read_if_they_can_take_over() {
+        for (engage, is_read) in [("", false), ("[engage]\nstick_takeover = 0.3\n", true)] {
+            let text = format!("[x-plane]\nengage_switch = \"sim/mine\"\n{engage}");
+            let config = Config::parse(&text, "test").unwrap();
+            let Some(Aircraft::XPlane(section)) = config.aircraft() else {
+                panic!("X-Plane's");
+            };
+            assert_eq!(x_plane_config(section, &config).pilot_controls, is_read);
+            let remarks = config.remarks(&text);
+            assert_eq!(remarks.len(), usize::from(is_read));
+            let axes = "engage.stick_takeover is 0.3: the pilot's stick takes over, read from \
+                        X-Plane's sim/joystick/joy_mapped_axis_value[1] to [3]";
+            assert!(remarks.iter().all(|remark| remark.starts_with(axes)));
+        }
+    }
 }
