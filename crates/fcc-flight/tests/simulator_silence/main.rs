@@ -261,6 +261,18 @@ fn writes_that_do_not_arrive_wind_nothing_up() {
 }
 
 #[test]
+fn the_pilots_stick_releases_the_overrides() {
+    let mut flight = Flight::engaged(60.0, 0);
+    flight.fly(1.0);
+    flight.wire.world().stick += 0.4;
+    flight.run(Manner::Flying, 0.15);
+    assert_eq!(flight.state(), Engaged);
+    flight.run(Manner::Flying, 0.15);
+    assert_eq!(flight.state(), Standby);
+    assert!(!flight.wire.world().is_overridden());
+}
+
+#[test]
 fn in_silence_a_command_still_releases() {
     let mut flight = Flight::engaged(60.0, 0);
     flight.fly(21.0);
