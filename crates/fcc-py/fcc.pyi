@@ -62,6 +62,9 @@ class Measurements:
         north_mps: float = ...,
         east_mps: float = ...,
         down_mps: float = ...,
+        pilot_pitch: float = ...,
+        pilot_roll: float = ...,
+        pilot_yaw: float = ...,
     ) -> Measurements: ...
     @property
     def pitch_rad(self) -> float:
@@ -171,6 +174,24 @@ class Measurements:
 
     @down_mps.setter
     def down_mps(self, value: float) -> None: ...
+    @property
+    def pilot_pitch(self) -> float:
+        """Pulled, for nose up."""
+
+    @pilot_pitch.setter
+    def pilot_pitch(self, value: float) -> None: ...
+    @property
+    def pilot_roll(self) -> float:
+        """To the right."""
+
+    @pilot_roll.setter
+    def pilot_roll(self, value: float) -> None: ...
+    @property
+    def pilot_yaw(self) -> float:
+        """Right pedal."""
+
+    @pilot_yaw.setter
+    def pilot_yaw(self, value: float) -> None: ...
     # </schema>
     @staticmethod
     def from_array(row: npt.ArrayLike) -> Measurements: ...

@@ -78,6 +78,8 @@ class LockstepRig:
             if conditions.actuation == _AT_ONCE
             else Servos(conditions.actuation, plant.controls)
         )
+        self.stick: tuple[float, float, float] | None = None
+        """Where the pilot holds pitch, roll and yaw, -1 to 1; None if that is not measured."""
         self._switch = False
         self._rows: list[Row] = [row(plant.state(), plant.controls)]
 
@@ -136,8 +138,11 @@ class LockstepRig:
             surfaces = self.machine.step(None)
         else:
             stand = plant.controls
+            values = measurements(measured)
+            if self.stick is not None:
+                values.pilot_pitch, values.pilot_roll, values.pilot_yaw = self.stick
             surfaces = self.machine.step(
-                measurements(measured),
+                values,
                 missing=_sensors_of(channels) if channels else (),
                 readback=as_surfaces(stand),
                 switch=self._switch,

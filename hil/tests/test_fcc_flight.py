@@ -18,9 +18,9 @@ SLOWEST_TIMES_REAL_TIME = 100.0
 def test_the_timed_pattern_is_flown_and_scored() -> None:
     flight = fcc.fly()
     assert flight.state == "engaged"
-    # The switch goes on at 2 s; then a hold of 20 s and 8 legs of 20 s.
+    # The switch goes on at 2 s and counts a tick later; then a hold of 20 s and 8 legs of 20 s.
     assert flight.seconds == pytest.approx(182.0, abs=0.05)
-    assert len(flight.records) == len(flight.truth) == 7_280
+    assert len(flight.records) == len(flight.truth) == 7_281
     assert flight.score is not None
     assert len(flight.score["legs"]) == 8
     # The pattern's own criteria in shared terms: turned within 20 s, climbed within it.
@@ -30,7 +30,7 @@ def test_the_timed_pattern_is_flown_and_scored() -> None:
     assert np.degrees(turned[-1] - turned[0]) == pytest.approx(8 * 90.0, abs=4.0)
     assert np.ptp(flight.truth["altitude_m"]) == pytest.approx(150 * FOOT_M, abs=6.0)
     assert flight.times_real_time > SLOWEST_TIMES_REAL_TIME
-    assert flight.timing["ticks"] == 7_280
+    assert flight.timing["ticks"] == 7_281
     modes = [event.text for event in flight.events if event.kind == "mode-changed"]
     assert modes == ["mode: timed-pattern, was none"]
 

@@ -23,6 +23,7 @@ fn uncommented(text: &str) -> String {
 fn write_the_choices(config: &mut Config) {
     config.realtime.cpu = Some(CpuChoice::Number(3));
     config.realtime.cpu_dma_latency_us = Some(0);
+    config.engage.stick_takeover = Some(0.3);
     config.restart.state_file = Some("recordings/fccd.flight".into());
     config.altimeter.field_elevation_ft = Some(723.0);
     config.budget = BudgetSection {

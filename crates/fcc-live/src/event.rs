@@ -179,7 +179,7 @@ fn numbers<O: Copy>(event: &framework::Event<O>) -> (EventCode, u32, [u64; 3]) {
         EventKind::Noticed(notice) => (
             EventCode::Noticed,
             notice.kind.into(),
-            [notice.lasted_ns, 0, 0],
+            [notice.lasted_ns, notice.amount_permille.into(), 0],
         ),
         EventKind::ReleasedAtOnce { conditions } => {
             (EventCode::ReleasedAtOnce, 0, [conditions.bits(), 0, 0])

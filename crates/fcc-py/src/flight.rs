@@ -163,9 +163,11 @@ pub(crate) fn fly(
              for another",
         ));
     };
+    let period_s = config.tick.period().as_secs_f64();
     let seconds = match seconds {
         Some(seconds) => within("seconds", seconds, 0.1, LONGEST_S)?,
-        None => config.guidance.default_length_s(),
+        // The switch counts from its second reading.
+        None => period_s + config.guidance.default_length_s(),
     };
     let ticks = ((section.engage_at_s + seconds) * config.tick.rate_hz).ceil() as u64;
     if keep && ticks > MOST_KEPT {
@@ -176,7 +178,6 @@ pub(crate) fn fly(
     if sensor.is_some() || controller.is_some() {
         PyErr::warn(py, &py.get_type::<PyRuntimeWarning>(), NOT_REAL_TIME, 1)?;
     }
-    let period_s = config.tick.period().as_secs_f64();
     let raised = Raised::default();
     let mut assembly = assemble(&config).map_err(|error| errors::FLIGHT.with(error))?;
     // Python asks the kernel for nothing.

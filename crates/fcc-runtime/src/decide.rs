@@ -24,6 +24,7 @@ impl<C: Controller> Machine<C> {
         if before != State::Engaged {
             self.record.engage_inhibits = self.controller.engage_inhibits(tick, measurements);
         }
+        let taken_over = self.controller.is_taken_over(tick, measurements);
         let switch = self.controller.switch(measurements);
         let edge = self.switch.watch(switch, tick.woke);
         let switch_forbids = self.command_needs_switch && self.switch.is_off();
@@ -38,7 +39,13 @@ impl<C: Controller> Machine<C> {
         if self.state.holds_control() && !release_now.is_empty() {
             self.release_at_once(release_now, tick);
         }
-        if edge == Some(SwitchEdge::Off) || switch_forbids {
+        let is_taken_over = self.state.holds_control() && !taken_over.is_empty();
+        if is_taken_over {
+            let conditions = taken_over;
+            let kind = EventKind::ReleasedAtOnce { conditions };
+            self.telemetry.events.push(tick, kind);
+        }
+        if edge == Some(SwitchEdge::Off) || switch_forbids || is_taken_over {
             self.apply_input(Input::SwitchedOff, tick);
             if self.state == State::Stopped {
                 self.end_by(Ending::SwitchedOff);

@@ -72,6 +72,14 @@ fn disengaging_and_the_switch_release_at_once_and_the_stop_follows() {
 }
 
 #[test]
+fn who_takes_over_while_it_waits_has_control_at_once() {
+    let mut bench = stopping();
+    assert_eq!(bench.tick(|s| s.taken_over = LOST), Stopped);
+    assert_eq!(bench.stage.log().held, [false, false]);
+    assert!(is_by_command(bench));
+}
+
+#[test]
 fn a_controller_that_does_not_prepare_is_released_at_once() {
     let mut bench = Bench::engaged(&config());
     bench.command(LoopCommand::Stop);

@@ -180,6 +180,7 @@ fn a_notice_is_an_event() {
     let notice = Notice {
         kind: 3,
         lasted_ns: 7,
+        amount_permille: 0,
     };
     bench.tick(|s| s.notice = Some(notice));
     bench.tick(|s| s.notice = None);

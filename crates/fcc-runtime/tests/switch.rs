@@ -4,8 +4,8 @@ mod bench;
 
 use bench::{Bench, EventKind, LOST, RELEASED, change, config};
 use fcc_core::framework::State::{Engaged, Standby};
-use fcc_core::framework::{Flags, State, Switch};
-use fcc_runtime::{LoopCommand, LoopConfig};
+use fcc_core::framework::{AfterRelease, Flags, State, Switch};
+use fcc_runtime::{Ending, LoopCommand, LoopConfig};
 
 /// 20 ticks after the first off are half a second; the off takes two.
 fn steadily_on(bench: &mut Bench) -> State {
@@ -103,4 +103,56 @@ fn if_permitted_a_command_engages_with_the_switch_off() {
     for _ in 0..10 {
         assert_eq!(bench.tick(|_| {}), Engaged);
     }
+}
+
+/// As the switch off does, with an event; and it does not engage by itself when
+/// nobody takes over any longer.
+#[test]
+fn who_takes_over_has_control_at_once_and_keeps_it() {
+    let taken_over = Flags::bit(2);
+    for from_failsafe in [false, true] {
+        let mut bench = Bench::with(&config());
+        bench.turn(Switch::Off);
+        assert_eq!(bench.turn(Switch::On), Engaged);
+        if from_failsafe {
+            bench.tick(|s| s.faults = LOST);
+        }
+        let from = bench.machine.state();
+        bench.events();
+        bench.stage.forget();
+        bench.command(LoopCommand::Engage);
+        assert_eq!(bench.tick(|s| s.taken_over = taken_over), Standby);
+        assert!(bench.stage.log().applied.is_empty());
+        assert_eq!(bench.stage.log().held, [false, false]);
+        let conditions = taken_over;
+        let engage_inhibits = Flags::NONE;
+        assert_eq!(
+            bench.events(),
+            [
+                EventKind::ReleasedAtOnce { conditions },
+                change(from, Standby),
+                RELEASED,
+                EventKind::EngageRefused { engage_inhibits },
+            ]
+        );
+        bench.tick(|s| (s.taken_over, s.faults) = (Flags::NONE, Flags::NONE));
+        for _ in 0..100 {
+            assert_eq!(bench.tick(|_| {}), Standby);
+        }
+        bench.turn(Switch::Off);
+        assert_eq!(steadily_on(&mut bench), Engaged);
+    }
+}
+
+#[test]
+fn who_takes_over_ends_the_loop_if_switching_off_does() {
+    let mut bench = Bench::with(&LoopConfig {
+        switch_off: AfterRelease::Stop,
+        ..config()
+    });
+    bench.command(LoopCommand::Engage);
+    assert_eq!(bench.tick(|_| {}), Engaged);
+    assert_eq!(bench.tick(|s| s.taken_over = LOST), State::Stopped);
+    let ending = bench.machine.finish().ending;
+    assert!(matches!(ending, Ending::SwitchedOff));
 }

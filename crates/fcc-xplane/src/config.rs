@@ -52,6 +52,9 @@ pub struct XPlaneConfig {
     /// known to use, and which the command `sim/lights/generic_57_light_tog`
     /// switches.
     pub engage_switch: String,
+    /// Whether the axes of the pilot's own stick and pedals are read, which
+    /// X-Plane has since 11.5. Default: no.
+    pub pilot_controls: bool,
     /// A dataref without a value for this long is requested again, 100 ms to 1
     /// h. Default: 5 s.
     pub resubscribe: Duration,
@@ -81,6 +84,7 @@ impl Default for XPlaneConfig {
             rate_hz: 250,
             engines: 1,
             engage_switch: engage_switch::DEFAULT.to_owned(),
+            pilot_controls: false,
             resubscribe: Duration::from_secs(5),
             silent_after: Duration::from_millis(500),
             datagrams_per_tick: 128,

@@ -14,7 +14,7 @@
 
 use core::time::Duration;
 
-use fcc_core::flight::{BodyRates, Measurements, Plant, Position, Surfaces};
+use fcc_core::flight::{BodyRates, Measurements, PilotControls, Plant, Position, Surfaces};
 use fcc_core::framework::{Reading, Switch, Time};
 
 use crate::config::DataRows;
@@ -280,6 +280,9 @@ impl Inbox {
                 _ => self.switch,
             };
             into.engage_switch = Reading::new(self.switch, taken);
+        }
+        if let Some(([pitch, roll, yaw], taken)) = values.whole(Group::PilotControls) {
+            into.pilot_controls = Reading::new(PilotControls { pitch, roll, yaw }, taken);
         }
         if self.clock.last_received() == now {
             self.publish_observations(there, into, link, writing);

@@ -85,6 +85,9 @@ pub(crate) enum Quantity {
     AltimeterSetting,
     NetworkTime,
     ElevatorTrim,
+    PilotPitch,
+    PilotRoll,
+    PilotYaw,
 }
 
 impl Quantity {
@@ -119,6 +122,11 @@ impl Quantity {
     /// RREF while rows are the input.
     pub(crate) fn comes_in_rows(self) -> bool {
         self.entry().is_some_and(|entry| entry.comes_in_rows)
+    }
+
+    /// Whether it is one of the pilot's own controls.
+    pub(crate) fn is_pilots(self) -> bool {
+        matches!(self, Self::PilotPitch | Self::PilotRoll | Self::PilotYaw)
     }
 
     /// The path to subscribe; `None` if it is in no dataref. For set-up: it

@@ -107,6 +107,9 @@ impl Subscriptions {
         let mut list = Vec::new();
         let mut expected = Vec::new();
         for quantity in Quantity::all() {
+            if quantity.is_pilots() && !config.pilot_controls {
+                continue;
+            }
             if let Some(rows) = rows.filter(|_| quantity.comes_in_rows()) {
                 let comes = row_of(rows, quantity).map(|_| Expected::Value(quantity));
                 expected.extend(comes.filter(|_| quantity.is_needed()));

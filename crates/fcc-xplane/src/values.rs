@@ -31,10 +31,11 @@ pub(crate) enum Group {
     AngleOfAttack,
     Surfaces,
     Switch,
+    PilotControls,
 }
 
 impl Group {
-    const COUNT: usize = 13;
+    const COUNT: usize = 14;
 
     /// All of them, in the order of their numbers.
     const ALL: [Self; Self::COUNT] = [
@@ -51,6 +52,7 @@ impl Group {
         Self::AngleOfAttack,
         Self::Surfaces,
         Self::Switch,
+        Self::PilotControls,
     ];
 
     /// The quantities of which it is made, in the order of its values.
@@ -77,6 +79,7 @@ impl Group {
             Self::AngleOfAttack => &[Q::AngleOfAttack],
             Self::Surfaces => &[Q::Throttle, Q::YokePitch, Q::YokeRoll, Q::YokeHeading],
             Self::Switch => &[Q::EngageSwitch],
+            Self::PilotControls => &[Q::PilotPitch, Q::PilotRoll, Q::PilotYaw],
         }
     }
 }

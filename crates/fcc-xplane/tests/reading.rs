@@ -230,3 +230,25 @@ fn rows_of_data_output_give_all_measurements() {
     );
     close(bench.measurements.heading_rad.value.to_degrees(), 90.0);
 }
+
+#[test]
+fn the_pilots_axes_are_read_only_if_configured() {
+    let axis = |number| format!("sim/joystick/joy_mapped_axis_value[{number}]");
+    for wanted in [true, false] {
+        let mut bench = Bench::with(|config| config.pilot_controls = wanted);
+        for (number, value) in [(1, 0.5), (2, -0.25), (3, 0.125)] {
+            bench.simulator.set(&axis(number), value);
+        }
+        bench.settle();
+        bench.watch().unwrap();
+        let read = bench.measurements.pilot_controls;
+        assert_eq!(!read.is_never(), wanted);
+        if wanted {
+            assert_eq!(
+                [read.value.pitch, read.value.roll, read.value.yaw],
+                [0.5, -0.25, 0.125]
+            );
+            assert_eq!(read.taken, bench.ticks.now);
+        }
+    }
+}

@@ -73,6 +73,10 @@ schema! {
         /// Readings of the same source that its own other values contradict.
         #[field(14, column = "suspect_*")]
         pub suspect: Reading<Suspect>,
+        /// Where the pilot holds the controls, while another one moves the
+        /// surfaces.
+        #[field(15, column = "pilot_*")]
+        pub pilot_controls: Reading<PilotControls>,
     }
 }
 
@@ -91,6 +95,7 @@ readings!(Measurements {
     plant: "the plant's state",
     other_control: "other control",
     suspect: "suspect readings",
+    pilot_controls: "the pilot's controls",
 });
 
 schema! {
@@ -285,6 +290,41 @@ schema! {
         /// Whether the specific force is contradicted.
         #[field(2)]
         pub specific_force: bool,
+    }
+}
+
+schema! {
+    /// Where the pilot holds the controls, as the hardware measures it and not as
+    /// the surfaces move.
+    ///
+    /// ```
+    /// use fcc_core::flight::PilotControls;
+    ///
+    /// let pulls = PilotControls { pitch: 0.4, ..PilotControls::default() };
+    /// assert_eq!(pulls.roll, 0.0);
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub struct PilotControls {
+        /// Pulled, for nose up.
+        #[field(1, range = -1.0..=1.0)]
+        pub pitch: f64,
+        /// To the right.
+        #[field(2, range = -1.0..=1.0)]
+        pub roll: f64,
+        /// Right pedal.
+        #[field(3, range = -1.0..=1.0)]
+        pub yaw: f64,
+    }
+}
+
+impl PilotControls {
+    /// Full deflection, and a little more of an axis that is not calibrated.
+    const MOST: f64 = 1.1;
+
+    /// Whether all axes are finite, and none is beyond full deflection.
+    pub fn is_valid(&self) -> bool {
+        let axes = [self.pitch, self.roll, self.yaw];
+        axes.iter().all(|axis| axis.abs() <= Self::MOST)
     }
 }
 

@@ -21,11 +21,12 @@ mod surfaces;
 
 pub use altimeter::{ALTIMETER_SETTINGS_PA, Altimeter, AltitudeReference};
 pub use autopilot::{
-    Autopilot, AutopilotCommand, AutopilotConfig, FailsafeConfig, FailsafeEnd, Resume, Scale, flags,
+    Autopilot, AutopilotCommand, AutopilotConfig, FailsafeConfig, FailsafeEnd, Resume, Scale,
+    StickTakeover, flags,
 };
 pub use measurements::{
-    Attitude, BodyRates, Measurements, OtherControl, Plant, PlantState, Position, SpecificForce,
-    Suspect, Velocity,
+    Attitude, BodyRates, Measurements, OtherControl, PilotControls, Plant, PlantState, Position,
+    SpecificForce, Suspect, Velocity,
 };
 pub use setpoints::Setpoints;
 pub use surfaces::Surfaces;

@@ -138,6 +138,12 @@ pub trait Controller: Send {
         Flags::NONE
     }
 
+    /// Whether a person takes control, and how: control is given back at once,
+    /// as by switching off. Empty if nobody does, as by default.
+    fn is_taken_over(&self, _tick: &Tick, _measurements: &Self::Measurements) -> Flags {
+        Flags::NONE
+    }
+
     /// Begins to bring the plant into a state in which it can be released, before
     /// a release that can wait; false to release it at once, as by default.
     fn prepare_release(&mut self, _tick: &Tick, _measurements: &Self::Measurements) -> bool {

@@ -245,7 +245,8 @@ schema! {
         /// Control is given back at once, without a failsafe.
         #[field(30)]
         ReleasedAtOnce {
-            /// Why: [`Controller::must_release`].
+            /// Why: [`Controller::must_release`] or
+            /// [`Controller::is_taken_over`].
             #[field(1)]
             conditions: Flags,
         },

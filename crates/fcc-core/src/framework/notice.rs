@@ -9,7 +9,7 @@ schema! {
     /// use fcc_core::framework::Notice;
     ///
     /// // A thermostat's own number for a window that was open for a minute.
-    /// let window = Notice { kind: 1, lasted_ns: 60_000_000_000 };
+    /// let window = Notice { kind: 1, lasted_ns: 60_000_000_000, ..Notice::default() };
     /// assert_eq!(window.lasted_s(), 60.0);
     /// ```
     #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -22,6 +22,10 @@ schema! {
         /// How long it lasted, ns.
         #[field(2)]
         pub lasted_ns: u64,
+        /// How large it was, in thousandths of what the kind is measured in; 0 if
+        /// it has no size.
+        #[field(3)]
+        pub amount_permille: u16,
     }
 }
 

@@ -346,7 +346,14 @@ fn notices_are_in_words() {
     }
     let of = |kind| {
         let lasted_ns = 1_200_000_000;
-        std::format!("{}", Text(Notice { kind, lasted_ns }))
+        std::format!(
+            "{}",
+            Text(Notice {
+                kind,
+                lasted_ns,
+                ..Notice::default()
+            })
+        )
     };
     assert_eq!(of(STOOD_STILL), "the simulator stood still for 1.2 s");
     assert_eq!(

@@ -59,7 +59,8 @@ fn every_kind_of_command() {
         &rough(),
         &Happenings {
             commands,
-            steps: 2_000,
+            // The stop levels and trims for 10 s first.
+            steps: 2_100,
             ..Happenings::default()
         },
     );

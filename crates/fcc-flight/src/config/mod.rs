@@ -213,6 +213,7 @@ impl Config {
                 section.engage_switch
             ));
         }
+        remarks.extend(self.stick_remark());
         if self.actuators().is_empty() {
             remarks.push(NO_ACTUATOR.to_owned());
         }
@@ -235,12 +236,28 @@ impl Config {
         remarks
     }
 
+    /// Where the pilot's stick is read, if it is to take over.
+    fn stick_remark(&self) -> Option<String> {
+        let threshold = self.engage.stick_takeover?;
+        let source = if self.x_planes().next().is_some() {
+            "read from X-Plane's sim/joystick/joy_mapped_axis_value[1] to [3], which it has since \
+             11.50 and which was not tried with a real one: move the stick once in standby and \
+             look at pilot_pitch in the recording"
+        } else {
+            "and no sensor here reads it: without effect, unless a program supplies it"
+        };
+        Some(format!(
+            "engage.stick_takeover is {threshold}: the pilot's stick takes over, {source}"
+        ))
+    }
+
     /// The core's configuration.
     pub fn autopilot_config(&self) -> AutopilotConfig {
         AutopilotConfig {
             settling: self.restart.mode.settling(),
             max_silence: Duration::from_secs_f64(self.failsafe.all_silent_s),
             permitted: self.engage.permitted(),
+            stick_takeover: self.engage.takeover(),
             level_and_trim: Duration::from_secs_f64(self.release.level_and_trim_s),
             failsafe: (&self.failsafe).into(),
             altimeter: (&self.altimeter).into(),

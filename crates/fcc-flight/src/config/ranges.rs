@@ -38,6 +38,8 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("failsafe.degraded_s", 0.0, 86_400.0),
     ("failsafe.recover_s", 0.0, 600.0),
     ("release.level_and_trim_s", 0.0, 10.0),
+    ("engage.stick_takeover", 0.05, 1.0),
+    ("engage.stick_takeover_s", 0.0, 2.0),
     ("recording.max_file_mb", 0.0, 1e6),
     ("recording.max_file_minutes", 0.0, 1e5),
     ("recording.keep_total_mb", 0.0, 1e8),
@@ -284,6 +286,7 @@ mod tests {
             ..Config::default()
         };
         config.realtime.cpu = Some(CpuChoice::Number(1));
+        config.engage.stick_takeover = Some(0.3);
         config.realtime.cpu_dma_latency_us = Some(0);
         let us = Some(1);
         config.budget = BudgetSection {

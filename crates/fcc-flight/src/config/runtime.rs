@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use fcc_core::flight::{AutopilotConfig, FailsafeConfig, FailsafeEnd, flags};
+use fcc_core::flight::{AutopilotConfig, FailsafeConfig, FailsafeEnd, StickTakeover, flags};
 use fcc_core::framework::{AfterRelease, Flags};
 use fcc_timer::{CpuRequest, EarlyWake, RealtimeRequest, Strictness, Timer, TimerError, TimerKind};
 use serde::{Deserialize, Serialize};
@@ -194,6 +194,11 @@ pub struct EngageSection {
     pub switch_off: Then,
     /// A command engages only while the engage switch, if there is one, is on.
     pub command_needs_switch: bool,
+    /// The pilot's controls end the engagement beyond this deflection of any axis
+    /// from where it rests, of full deflection; without it, they never do.
+    pub stick_takeover: Option<f64>,
+    /// How long they must be beyond it.
+    pub stick_takeover_s: f64,
     /// Engage although another autopilot is on.
     pub permit_autopilot: bool,
     /// Engage although another autothrottle is on.
@@ -209,6 +214,8 @@ impl Default for EngageSection {
         Self {
             switch_off: Then::Standby,
             command_needs_switch: true,
+            stick_takeover: None,
+            stick_takeover_s: 0.2,
             permit_autopilot: false,
             permit_autothrottle: false,
             permit_fly_by_wire: false,
@@ -218,6 +225,13 @@ impl Default for EngageSection {
 }
 
 impl EngageSection {
+    /// When the pilot's controls end the engagement.
+    pub(super) fn takeover(&self) -> Option<StickTakeover> {
+        let after = Duration::from_secs_f64(self.stick_takeover_s);
+        let threshold = self.stick_takeover?;
+        Some(StickTakeover { threshold, after })
+    }
+
     /// The conditions that do not prevent engaging.
     pub(super) const fn permitted(&self) -> Flags {
         Flags::NONE

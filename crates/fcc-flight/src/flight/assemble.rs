@@ -97,7 +97,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
     let loop_config = config.loop_config();
     let mut plant = match config.aircraft() {
         Some(Aircraft::BuiltIn(section)) => built_in(section, loop_config.messages_capacity)?,
-        Some(Aircraft::XPlane(section)) => x_plane(section)?,
+        Some(Aircraft::XPlane(section)) => x_plane(section, config)?,
         None => Plant::default(),
     };
     let mut sensors = Vec::new();
@@ -105,7 +105,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
         match entry {
             SensorEntry::Simulator(_) => sensors.append(&mut plant.sensors),
             SensorEntry::XPlane(section) => {
-                let (sensor, _) = XPlane::open(&XPlaneConfig::from(section.as_ref()))?;
+                let (sensor, _) = XPlane::open(&x_plane_config(section, config))?;
                 sensors.push(Box::new(match &plant.x_plane {
                     Some(flown) => sensor.beside(flown),
                     None => sensor,
@@ -149,8 +149,17 @@ fn built_in(section: &BuiltInSection, ticks: usize) -> Result<Plant, AssemblyErr
     })
 }
 
-fn x_plane(section: &XPlaneSection) -> Result<Plant, AssemblyError> {
-    let config = XPlaneConfig::from(section);
+/// The configuration of a connection in a flight: what it reads depends on what
+/// is used.
+fn x_plane_config(section: &XPlaneSection, config: &Config) -> XPlaneConfig {
+    XPlaneConfig {
+        pilot_controls: config.engage.stick_takeover.is_some(),
+        ..XPlaneConfig::from(section)
+    }
+}
+
+fn x_plane(section: &XPlaneSection, config: &Config) -> Result<Plant, AssemblyError> {
+    let config = x_plane_config(section, config);
     let (sensor, actuator) = XPlane::open(&config)?;
     let status = sensor.status();
     let authority = XPlaneAuthority::of(status.clone(), &config);
@@ -244,5 +253,22 @@ mod tests {
         };
         assert!(beacon(ErrorKind::AddrInUse).is_taken());
         assert!(!beacon(ErrorKind::PermissionDenied).is_taken());
+    }
+
+    #[test]
+    fn the_pilots_axes_are_read_if_they_can_take_over() {
+        for (engage, is_read) in [("", false), ("[engage]\nstick_takeover = 0.3\n", true)] {
+            let text = format!("[x-plane]\nengage_switch = \"sim/mine\"\n{engage}");
+            let config = Config::parse(&text, "test").unwrap();
+            let Some(Aircraft::XPlane(section)) = config.aircraft() else {
+                panic!("X-Plane's");
+            };
+            assert_eq!(x_plane_config(section, &config).pilot_controls, is_read);
+            let remarks = config.remarks(&text);
+            assert_eq!(remarks.len(), usize::from(is_read));
+            let axes = "engage.stick_takeover is 0.3: the pilot's stick takes over, read from \
+                        X-Plane's sim/joystick/joy_mapped_axis_value[1] to [3]";
+            assert!(remarks.iter().all(|remark| remark.starts_with(axes)));
+        }
     }
 }

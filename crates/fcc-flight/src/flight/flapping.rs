@@ -146,7 +146,11 @@ mod tests {
         // A cut link of another length in each second.
         for second in 0..20_u32 {
             let lasted_ns = 300_000_000 + u64::from(second) * 10_000_000;
-            let kind = EventKind::Noticed(Notice { kind: 2, lasted_ns });
+            let kind = EventKind::Noticed(Notice {
+                kind: 2,
+                lasted_ns,
+                ..Notice::default()
+            });
             let line = format!("link lost for 0.{} s", 30 + second);
             shown += usize::from(flapping.passes::<()>(&kind, &line, second.into()));
         }
@@ -155,6 +159,7 @@ mod tests {
         let stood_still = EventKind::Noticed(Notice {
             kind: 1,
             lasted_ns: 400_000_000,
+            ..Notice::default()
         });
         let line = "simulator stood still for 0.4 s";
         assert!(flapping.passes::<()>(&stood_still, line, 20.0));

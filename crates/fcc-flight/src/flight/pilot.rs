@@ -66,6 +66,10 @@ impl Controller for Pilot {
         self.autopilot.is_ready_for_release()
     }
 
+    fn is_taken_over(&self, tick: &Tick, measurements: &Measurements) -> Flags {
+        self.autopilot.is_taken_over(tick, measurements)
+    }
+
     fn withholds_outputs(&self, tick: &Tick, measurements: &Measurements) -> bool {
         self.autopilot.withholds_outputs(tick, measurements)
     }

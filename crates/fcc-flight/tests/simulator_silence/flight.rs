@@ -1,7 +1,9 @@
 //! A flight of the whole loop: the adapter, the machine, the autopilot.
 
+use std::time::Duration;
+
 use fcc_core::flight::guidance::{GuidanceConfig, TimedPatternConfig};
-use fcc_core::flight::{Autopilot, AutopilotConfig};
+use fcc_core::flight::{Autopilot, AutopilotConfig, StickTakeover};
 use fcc_core::framework::{Event, EventKind, LoopCommand, Message, State};
 use fcc_flight::flight::true_sample;
 use fcc_runtime::{Link, LoopConfig, Machine, Parts};
@@ -36,14 +38,21 @@ impl Flight {
     /// Engaged at frames of a rate, with jitter unless its seed is 0.
     pub(crate) fn engaged(frame_hz: f64, jitter: u64) -> Self {
         let wire = Wire::new(frame_hz, jitter);
-        let config = XPlaneConfig::default();
+        let config = XPlaneConfig {
+            pilot_controls: true,
+            ..XPlaneConfig::default()
+        };
         let (sensor, actuator) = XPlane::over(&config, wire.clone(), None).unwrap();
         let parts = Parts {
-            timer: Box::new(
-                ManualTimer::new(std::time::Duration::from_nanos(PERIOD_NS as u64)).unwrap(),
-            ),
+            timer: Box::new(ManualTimer::new(Duration::from_nanos(PERIOD_NS as u64)).unwrap()),
             sensors: vec![Box::new(sensor)],
-            controller: Autopilot::new(AutopilotConfig::default()),
+            controller: Autopilot::new(AutopilotConfig {
+                stick_takeover: Some(StickTakeover {
+                    threshold: 0.3,
+                    after: Duration::from_millis(200),
+                }),
+                ..AutopilotConfig::default()
+            }),
             actuators: vec![Box::new(actuator)],
         };
         // The wire's switch stays off.

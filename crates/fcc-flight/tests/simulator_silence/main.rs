@@ -239,7 +239,7 @@ fn freezes_in_a_row_and_in_a_pause_are_flown_through() {
 /// turn: the loops do not wind up what has no effect.
 #[test]
 fn writes_that_do_not_arrive_wind_nothing_up() {
-    for (after_s, length_s) in [(7.0, 15.0), (23.0, 4.0)] {
+    for (after_s, length_s) in [(7.0, 15.0), (23.0, 8.0)] {
         let mut flight = Flight::engaged(60.0, 0);
         flight.fly(after_s);
         flight.deafen();
@@ -258,6 +258,18 @@ fn writes_that_do_not_arrive_wind_nothing_up() {
         });
         assert!(reported, "{after_s} s");
     }
+}
+
+#[test]
+fn the_pilots_stick_releases_the_overrides() {
+    let mut flight = Flight::engaged(60.0, 0);
+    flight.fly(1.0);
+    flight.wire.world().stick += 0.4;
+    flight.run(Manner::Flying, 0.15);
+    assert_eq!(flight.state(), Engaged);
+    flight.run(Manner::Flying, 0.15);
+    assert_eq!(flight.state(), Standby);
+    assert!(!flight.wire.world().is_overridden());
 }
 
 #[test]

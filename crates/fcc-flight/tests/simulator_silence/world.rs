@@ -48,6 +48,8 @@ pub(crate) struct World {
     pub(crate) manner: Manner,
     pub(crate) sends: bool,
     pub(crate) hears: bool,
+    /// Where the pilot holds stick and pedals.
+    pub(crate) stick: f64,
     values: HashMap<String, f64>,
     subscribed: HashMap<i32, String>,
     position_hz: u32,
@@ -121,6 +123,7 @@ impl Wire {
             manner: Manner::Flying,
             sends: true,
             hears: true,
+            stick: 0.1,
             values: values
                 .chain([throttle])
                 .map(|(path, value)| (path.to_owned(), value))
@@ -336,6 +339,7 @@ impl World {
             "altitude_ft_pilot" | "pressure_altitude" => truth.altitude_m / 0.304_8,
             "alpha" => truth.angle_of_attack_rad.to_degrees(),
             _ if path.contains("generic_lights_switch") => 0.0,
+            _ if path.contains("joy_mapped_axis_value") => self.stick,
             _ => return None,
         })
     }

@@ -139,6 +139,7 @@ fn every_event_is_restored() {
         EventKind::Noticed(Notice {
             kind: u8::MAX,
             lasted_ns: u64::MAX,
+            amount_permille: u16::MAX,
         }),
         EventKind::ReleasedAtOnce {
             conditions: Flags::bit(6),

@@ -51,6 +51,7 @@ pub(crate) struct Script {
     pub(crate) goes_on: bool,
     pub(crate) has_recovered: bool,
     pub(crate) must_release: Flags,
+    pub(crate) taken_over: Flags,
     pub(crate) withholds: bool,
     /// Whether the controller prepares a release, and is ready for it.
     pub(crate) prepares_release: Option<bool>,
@@ -81,6 +82,7 @@ impl Default for Script {
             goes_on: false,
             has_recovered: false,
             must_release: Flags::NONE,
+            taken_over: Flags::NONE,
             withholds: false,
             prepares_release: None,
             notice: None,

@@ -72,6 +72,10 @@ impl Controller for Stub {
         self.stage.script().must_release
     }
 
+    fn is_taken_over(&self, _: &Tick, _: &Measured) -> Flags {
+        self.stage.script().taken_over
+    }
+
     fn prepare_release(&mut self, _: &Tick, _: &Measured) -> bool {
         self.stage.called("prepare");
         self.stage.script().prepares_release.is_some()

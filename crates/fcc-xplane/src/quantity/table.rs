@@ -134,6 +134,7 @@ const NO_ACCELERATION: &str = "no acceleration: not engaged";
 const NO_VELOCITY: &str = "no velocity over the ground, which control does not need";
 const UNCONFIRMED: &str = "that the controls take effect is not confirmed";
 const NOT_NOTICED: &str = "not noticed";
+const NO_TAKEOVER: &str = "the stick does not take over";
 const NO_SURFACES: &str = "engages from trim throttle and centred surfaces";
 
 /// All quantities, in the order of their numbers.
@@ -244,4 +245,10 @@ pub(super) const TABLE: &[Entry] = &[
         .is("runs on in a pause").instead("what a network delivers late, but evenly, is not noticed"),
     Entry::new(Quantity::ElevatorTrim, Dataref(ELEVATOR_TRIM), Unit::Ratio, [-10.0, 10.0]).written()
         .is("-1 to 1, nose up").instead("the elevator's trim is left as it is"),
+    Entry::new(Quantity::PilotPitch, Dataref("sim/joystick/joy_mapped_axis_value[1]"), Unit::Ratio, [-1.1, 1.1]).since("11.5")
+        .is("where the pilot holds the stick, nose up; asked for only with `engage.stick_takeover`").or_else(NO_TAKEOVER),
+    Entry::new(Quantity::PilotRoll, Dataref("sim/joystick/joy_mapped_axis_value[2]"), Unit::Ratio, [-1.1, 1.1]).since("11.5")
+        .is("the same, right").or_else(NO_TAKEOVER),
+    Entry::new(Quantity::PilotYaw, Dataref("sim/joystick/joy_mapped_axis_value[3]"), Unit::Ratio, [-1.1, 1.1]).since("11.5")
+        .is("the same, right pedal").or_else(NO_TAKEOVER),
 ];

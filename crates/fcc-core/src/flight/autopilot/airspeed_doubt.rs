@@ -78,7 +78,7 @@ impl Autopilot {
                 .find(|(_, reason, _)| *reason == doubt.reason);
             known.map(|(number, ..)| Notice {
                 kind: number | doubt.source.min(SENSORS),
-                lasted_ns: 0,
+                ..Notice::default()
             })
         });
     }

@@ -8,7 +8,7 @@ use crate::flight::guidance::{GuidanceConfig, TimedPatternConfig};
 use crate::flight::navigation::NavigationConfig;
 use crate::framework::Flags;
 
-use super::FailsafeConfig;
+use super::{FailsafeConfig, StickTakeover};
 
 /// The autopilot's configuration.
 ///
@@ -50,6 +50,8 @@ pub struct AutopilotConfig {
     /// prevent engaging: of `OTHER_AUTOPILOT`, `OTHER_AUTOTHROTTLE`,
     /// `FLY_BY_WIRE` and `UPSET`, from which it recovers first.
     pub permitted: Flags,
+    /// When the pilot's controls end the engagement; `None` for never.
+    pub stick_takeover: Option<StickTakeover>,
     /// Whether the elevator's trim is moved, where it is measured.
     pub trims: bool,
     /// For how long at most a release that is ours to time levels and trims the
@@ -85,6 +87,7 @@ impl Default for AutopilotConfig {
             frozen_after: Duration::from_secs(2),
             settling: Duration::from_secs(1),
             permitted: Flags::NONE,
+            stick_takeover: None,
             trims: true,
             level_and_trim: Duration::from_secs(10),
             failsafe: FailsafeConfig::default(),

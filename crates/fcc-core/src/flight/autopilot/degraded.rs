@@ -244,7 +244,11 @@ impl Autopilot {
         let is_good = self.is_good_again().then_some(GOOD_AGAIN);
         let kind = is_good.or(self.degraded.news)?;
         let lasted_ns = (self.degraded.lasted_s * 1e9) as u64;
-        Some(Notice { kind, lasted_ns })
+        Some(Notice {
+            kind,
+            lasted_ns,
+            ..Notice::default()
+        })
     }
 
     /// Whether it flies on without a quantity.

@@ -19,6 +19,7 @@ impl Autopilot {
         (self.unsafe_with(self.stale(now), now, measurements)
             | self.not_permitted(now, measurements))
         .with(flags::PLANT_REPLAYING, self.plant_is(PlantState::Replaying))
+        .with(flags::PILOT_TAKES_OVER, self.pilot.is_moved())
         .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))
         .with(flags::PLANT_STALLED, self.clock.has_stopped())
         .with(
@@ -41,6 +42,7 @@ impl Autopilot {
     /// Engages: what is flown now is held, or the pattern begins.
     pub(super) fn begin_flight(&mut self, now: Time) {
         self.distrusted = Flags::NONE;
+        self.pilot.set_engaged(true);
         self.degraded = Degraded::default();
         let estimate = *self.navigation.estimate();
         self.targets = Targets {

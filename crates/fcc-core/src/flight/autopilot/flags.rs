@@ -91,6 +91,8 @@ pub const FROM_THE_FUTURE: Flags = Flags::bit(38);
 pub const DEGRADED: Flags = Flags::bit(39);
 /// The target altitude is limited by the floor.
 pub const AT_FLOOR: Flags = Flags::bit(40);
+/// The pilot moves the controls.
+pub const PILOT_TAKES_OVER: Flags = Flags::bit(41);
 /// Readings arrive too old, by their source's own clock.
 pub const SOURCE_CLOCK: Flags = Flags::bit(42);
 /// The altitude contradicts the other sensors and is not used.
@@ -174,7 +176,7 @@ pub(super) const NAMES: [&str; 45] = [
     "a reading is from the future",
     "flying on without a lost quantity",
     "the target altitude is limited by the floor",
-    "unknown condition",
+    "the pilot moves the controls",
     "readings arrive too old, by their source's own clock",
     "altitude contradicts the other sensors and is not used",
     "levelling and trimming before the release",

@@ -15,6 +15,7 @@ mod future;
 mod notices;
 mod observe;
 mod other_control;
+mod pilot_takeover;
 mod plant_clock;
 mod reading_age;
 mod release;
@@ -36,6 +37,8 @@ use degraded::Degraded;
 use failsafe::KeptTrims;
 pub use failsafe::{FailsafeConfig, FailsafeEnd};
 use following::Following;
+use pilot_takeover::PilotTakeover;
+pub use pilot_takeover::StickTakeover;
 use plant_clock::PlantClock;
 use reading_age::ReadingAges;
 use release::Release;
@@ -107,6 +110,7 @@ pub struct Autopilot {
     actuation: Actuation,
     recovery: Recovery,
     trim: ElevatorTrim,
+    pilot: PilotTakeover,
     /// A release that is being prepared.
     release: Option<Release>,
     setpoints: Setpoints,
@@ -158,6 +162,7 @@ impl Autopilot {
             actuation: Actuation::new(config.assumed_latency_s, config.pace),
             recovery: Recovery::new(),
             trim: ElevatorTrim::new(None),
+            pilot: PilotTakeover::new(config.stick_takeover),
             release: None,
             setpoints: Setpoints::default(),
             clock: PlantClock::default(),
@@ -226,6 +231,10 @@ impl Controller for Autopilot {
         self.is_elsewhere()
     }
 
+    fn is_taken_over(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {
+        Flags::NONE.with(flags::PILOT_TAKES_OVER, self.pilot.is_moved())
+    }
+
     fn prepare_release(&mut self, tick: &Tick, measurements: &Measurements) -> bool {
         self.begin_to_release(tick.woke, measurements)
     }
@@ -239,8 +248,9 @@ impl Controller for Autopilot {
     }
 
     fn notice(&self) -> Option<Notice> {
-        self.clock
+        self.pilot
             .notice()
+            .or_else(|| self.clock.notice())
             .or_else(|| self.degraded_notice())
             .or(self.doubt_notice)
     }
@@ -352,6 +362,7 @@ impl Controller for Autopilot {
     fn disengage(&mut self) {
         self.distrusted = Flags::NONE;
         self.degraded = Degraded::default();
+        self.pilot.set_engaged(false);
         self.change_mode(ModeInput::Disengage);
         self.is_at_floor = false;
         self.capture = None;

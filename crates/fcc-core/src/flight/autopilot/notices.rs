@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::{airspeed_doubt, degraded, plant_clock};
+use super::{airspeed_doubt, degraded, pilot_takeover, plant_clock};
 use crate::framework::Notice;
 
 /// Writes the text of a notice.
@@ -25,6 +25,16 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
             f,
             "nothing can be held any longer: gliding in a gentle turn, with idle throttle"
         ),
-        kind => airspeed_doubt::write(kind, f),
+        kind => match pilot_takeover::axis_of(kind) {
+            Some(axis) => {
+                let deflection = f64::from(notice.amount_permille) / 1_000.0;
+                write!(
+                    f,
+                    "the pilot takes over: the {axis} control is {deflection:.2} of full \
+                     deflection from where it rested"
+                )
+            }
+            None => airspeed_doubt::write(kind, f),
+        },
     }
 }

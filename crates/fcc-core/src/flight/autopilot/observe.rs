@@ -34,6 +34,7 @@ impl Autopilot {
             return;
         }
         self.follow(measured);
+        self.follow_pilot(now, measured);
         if self.is_elsewhere().is_empty() {
             self.accept(tick, measured);
         } else {

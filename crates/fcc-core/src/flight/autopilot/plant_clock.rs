@@ -209,7 +209,7 @@ impl PlantClock {
             if !self.is_missing {
                 self.notice = Some(Notice {
                     kind: CLOCK_MISSING,
-                    lasted_ns: 0,
+                    ..Notice::default()
                 });
             }
             self.is_missing = true;
@@ -308,6 +308,7 @@ impl PlantClock {
             self.notice = Some(Notice {
                 kind,
                 lasted_ns: (lasted_s.min(heard_s) * 1e9) as u64,
+                ..Notice::default()
             });
         }
     }

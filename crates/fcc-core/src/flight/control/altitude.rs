@@ -50,14 +50,14 @@ impl Default for AltitudeConfig {
             altitude_gain_per_s: 1.25,
             capture_mps2: 1.108_151,            // 0.113 g
             climb_acceleration_mps2: 3.285_228, // 0.335 g
-            climb_rate_gain: 1.53,
+            climb_rate_gain: 1.45,
             climb_rate_integral_gain_per_s: 0.35,
             flight_path_lag_s: 0.235,
             angle_of_attack_per_g_rad: 0.038_572, // 2.21°
-            pitch_gain_per_s: 4.96,
+            pitch_gain_per_s: 4.6,
             max_pitch_rate_radps: 0.174_533, // 10 °/s
-            pitch_rate_gain: 0.8,
-            pitch_rate_integral_gain: 1.2,
+            pitch_rate_gain: 0.92,
+            pitch_rate_integral_gain: 0.8,
             elevator_per_g: 0.30,
         }
     }

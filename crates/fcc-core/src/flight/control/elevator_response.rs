@@ -23,7 +23,7 @@ const FIRST_AFTER: u32 = 120;
 /// A smaller mean square of the pitch acceleration, (rad/s²)², says nothing.
 const LEAST_MOTION: f64 = 1e-3;
 /// The part of it that the elevator must explain.
-const LEAST_EXPLAINED: f64 = 0.05;
+const LEAST_EXPLAINED: f64 = 0.15;
 /// Another model is believed if it leaves less than this part of what the
 /// present one leaves unexplained.
 const BETTER: f64 = 0.94;
@@ -33,6 +33,9 @@ const PLAY_IS_BETTER: f64 = 0.94;
 const PLAY_EXPLAINS: f64 = 0.25;
 /// Play is no longer believed if a model without it leaves less than this part.
 const NO_PLAY_IS_BETTER: f64 = 0.9;
+/// And does so for as long, s: a gust moves the aircraft without the elevator,
+/// but play does not go away in flight. Twice the memory.
+const NO_PLAY_AFTER_S: f64 = 2.0 * MEMORY_S;
 /// The part of a change that is adopted at each comparison.
 const ADOPTED: f64 = 0.25;
 
@@ -153,6 +156,8 @@ pub struct ElevatorResponse {
     play: f64,
     /// The width of play and the delay in samples of the model that is believed.
     believed: (f64, f64),
+    /// For how long a model without play has been better than the believed one with it, s.
+    without_play_s: f64,
     /// Since the last sample, s.
     elapsed_s: f64,
     /// Mean time between samples, s.
@@ -174,6 +179,7 @@ impl ElevatorResponse {
             latency_s: assumed_s,
             play: 0.0,
             believed: (0.0, 0.0),
+            without_play_s: 0.0,
             elapsed_s: 0.0,
             period_s: LEAST_PERIOD_S,
             samples: 0,
@@ -307,7 +313,12 @@ impl ElevatorResponse {
         }
         let has_play = with_play.0 < PLAY_IS_BETTER * without.0
             && with_play.0 < (1.0 - PLAY_EXPLAINS) * explained.left;
-        let had_play = believed_width > 0.0 && NO_PLAY_IS_BETTER * present <= without.0;
+        self.without_play_s = if without.0 < NO_PLAY_IS_BETTER * present {
+            self.without_play_s + f64::from(COMPARED_EVERY) * self.period_s
+        } else {
+            0.0
+        };
+        let had_play = believed_width > 0.0 && self.without_play_s < NO_PLAY_AFTER_S;
         let (left, width, delay) = if has_play || had_play {
             with_play
         } else {

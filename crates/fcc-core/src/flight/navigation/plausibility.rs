@@ -13,7 +13,8 @@ use libm::{asin, cos, sin, sqrt};
 
 use crate::blocks::wrap_pi;
 use crate::flight::{
-    Attitude, BodyRates, Measurements, Plant, Position, SpecificForce, Surfaces, Velocity,
+    Attitude, BodyRates, Measurements, PilotControls, Plant, Position, SpecificForce, Surfaces,
+    Velocity,
 };
 use crate::framework::{Flags, Reading};
 
@@ -183,10 +184,10 @@ pub(crate) fn plausibility_gate(
             HEIGHT_M.holds(beyond_m, gap_s)
         },
     );
-    let [angle, position, velocity, surfaces, plant] = take_others(good, new);
+    let [angle, position, velocity, surfaces, plant, pilot] = take_others(good, new);
     [
         attitude, heading, rates, force, airspeed, altitude, angle, position, velocity, surfaces,
-        true, plant, true, true,
+        true, plant, true, true, pilot,
     ]
     .into_iter()
     .zip(0..)
@@ -196,8 +197,8 @@ pub(crate) fn plausibility_gate(
 }
 
 /// Copies what can be anything valid at once: angle of attack, position,
-/// velocity, surfaces, plant; and what is always plausible.
-fn take_others(good: &mut Measurements, new: &Measurements) -> [bool; 5] {
+/// velocity, surfaces, plant, the pilot's controls; and what is always plausible.
+fn take_others(good: &mut Measurements, new: &Measurements) -> [bool; 6] {
     let anywhere = Duration::ZERO;
     let angle = take(
         &mut good.angle_of_attack_rad,
@@ -237,10 +238,17 @@ fn take_others(good: &mut Measurements, new: &Measurements) -> [bool; 5] {
         },
         |_, _, _| true,
     );
+    let pilot = take(
+        &mut good.pilot_controls,
+        &new.pilot_controls,
+        anywhere,
+        PilotControls::is_valid,
+        |_, _, _| true,
+    );
     replace(&mut good.engage_switch, &new.engage_switch);
     replace(&mut good.other_control, &new.other_control);
     replace(&mut good.suspect, &new.suspect);
-    [angle, position, velocity, surfaces, plant]
+    [angle, position, velocity, surfaces, plant, pilot]
 }
 
 /// Whether an airspeed can be that of an aircraft which had another one before it

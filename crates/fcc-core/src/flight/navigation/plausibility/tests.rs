@@ -13,6 +13,10 @@ const LIMITS: GateLimits = GateLimits {
     altitude_step_m: 0.0,
 };
 
+/// The number of readings.
+const READINGS: u32 = <Measurements as Readings>::NAMES.len() as u32;
+const ALL: u64 = (1 << READINGS) - 1;
+
 fn ms(ms: i64) -> Time {
     Time::from_nanos(ms * 1_000_000)
 }
@@ -60,13 +64,13 @@ fn a_jump_is_rejected_until_it_lasts() {
 fn which_values_are_plausible_is_returned_in_the_order_of_the_measurements() {
     let mut good = flying(ms(0));
     let mut new = flying(ms(25));
-    assert_eq!(plausibility_gate(&mut good, &new, &LIMITS).bits(), 0x3fff);
+    assert_eq!(plausibility_gate(&mut good, &new, &LIMITS).bits(), ALL);
     // 30 m in 25 ms, and 400 kt more.
     new.altitude_m = Reading::new(944.0, ms(50));
     new.airspeed_mps = Reading::new(257.0, ms(50));
     new.plant.value.time_s = f64::NAN;
     let plausible = plausibility_gate(&mut good, &new, &LIMITS);
-    let rejected = (0..14)
+    let rejected = (0..READINGS)
         .filter(|bit| !plausible.contains(Flags::bit(*bit)))
         .map(|bit| <Measurements as Readings>::NAMES[bit as usize]);
     assert!(rejected.eq(["airspeed", "altitude", "the plant's state"]));
@@ -196,7 +200,7 @@ fn what_is_not_a_number_does_not_pass_in_any_field() {
             let mut good = Measurements::default();
             let plausible = plausibility_gate(&mut good, &new, &LIMITS);
             assert!(numbers(&good).iter().all(|number| number.is_finite()));
-            assert_ne!(plausible.bits(), 0x3fff, "value {place} is {by}");
+            assert_ne!(plausible.bits(), ALL, "value {place} is {by}");
         }
     }
     // A trim that is NaN is missing.
