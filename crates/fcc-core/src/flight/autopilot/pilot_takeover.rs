@@ -117,6 +117,11 @@ impl PilotTakeover {
         }
     }
 
+    /// Whether the autopilot has the controls.
+    pub(super) const fn is_engaged(&self) -> bool {
+        self.is_engaged
+    }
+
     /// The controls are no longer the pilot's, or are again.
     pub(super) const fn set_engaged(&mut self, is_engaged: bool) {
         self.is_engaged = is_engaged;

@@ -56,9 +56,12 @@ impl Autopilot {
             || self.clock.silent_for(now) > self.config.max_age + SENT_FOR
     }
 
-    /// The frozen quantities; none while the airspeed is below the floor.
+    /// The frozen quantities; none on the ground: with an airspeed below the
+    /// floor, and not engaged. A glide may be slower.
     pub(super) fn frozen(&self) -> Flags {
-        if self.navigation.estimate().airspeed_mps < self.config.envelope.min_airspeed_mps {
+        let airspeed_mps = self.navigation.estimate().airspeed_mps;
+        let is_slow = airspeed_mps < self.config.envelope.min_airspeed_mps;
+        if is_slow && !self.pilot.is_engaged() {
             Flags::NONE
         } else {
             let doubted = self.doubted();

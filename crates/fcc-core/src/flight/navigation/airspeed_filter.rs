@@ -284,7 +284,10 @@ impl AirspeedFilter {
         let path = limit_abs((sample.climb_rate_mps - self.x[1]) / true_mps, 0.5);
         let per_mps = -(path + 2.0 * share * self.x[5] * lift) / self.at_mps();
         let gusts = squared(sample.gusts_mps) + 0.3;
-        let by_kept = differs([0.0, self.x[1], 0.0, 0.0, self.kept[4], self.kept[5]]);
+        // A horizontal wind that changes and a vertical one look alike to the
+        // filter. The vote is without one, so that it is for a sensor which
+        // explains the lift by itself.
+        let by_kept = differs([0.0, 0.0, 0.0, 0.0, self.kept[4], self.kept[5]]);
         self.lift = Vote {
             differs_mps: by_kept / per_mps.min(-1e-3),
             weight: squared(per_mps) / (gusts / squared(true_mps) + squared(LIFT_SD_RAD)),
@@ -338,11 +341,20 @@ impl AirspeedFilter {
 /// Acceleration of the indicated airspeed along the path, m/s², from the forces
 /// in g; without vertical wind, whose effect is of second order.
 pub(super) fn acceleration_mps2(sample: &ForceSample, airspeed_mps: f64) -> f64 {
-    let true_mps = airspeed_mps.max(MIN_AIRSPEED_MPS) / sample.sqrt_density;
-    let sin_path = limit_abs(sample.climb_rate_mps / true_mps, 1.0);
+    let sin_path = sin_path(sample, airspeed_mps);
     let alpha = limit_abs(Upward::of(sample).angle_of_attack_rad(sin_path), 0.3);
     let along = sample.forward * cos(alpha) - sample.up * sin(alpha) - sin_path;
     GRAVITY_MPS2 * along * sample.sqrt_density
+}
+
+/// The angle between the body and the path at an airspeed, rad; without vertical wind.
+pub(super) fn angle_of_attack_rad(sample: &ForceSample, airspeed_mps: f64) -> f64 {
+    Upward::of(sample).angle_of_attack_rad(sin_path(sample, airspeed_mps))
+}
+
+fn sin_path(sample: &ForceSample, airspeed_mps: f64) -> f64 {
+    let true_mps = airspeed_mps.max(MIN_AIRSPEED_MPS) / sample.sqrt_density;
+    limit_abs(sample.climb_rate_mps / true_mps, 1.0)
 }
 
 pub(super) fn squared(x: f64) -> f64 {

@@ -1,6 +1,8 @@
 //! Whether the airspeed sensor is believed, and the airspeed without it.
 
-use super::airspeed_filter::{AirframePrior, AirspeedFilter, acceleration_mps2, squared};
+use super::airspeed_filter::{
+    AirframePrior, AirspeedFilter, acceleration_mps2, angle_of_attack_rad, squared,
+};
 use super::airspeed_reason::{Doubt, DoubtReason, Reference};
 use super::filter_bank::FilterBank;
 use super::force_sample::ForceSample;
@@ -37,6 +39,12 @@ const DIFFERENCE_LAG_S: f64 = 0.5;
 const AGREES_RATIO: f64 = 0.07;
 const BELIEVED_AFTER_S: f64 = 10.0;
 const ANOTHER_BELIEVED_AFTER_S: f64 = 1.0;
+/// A doubted sensor that is lower than the forces is believed at once if the aircraft
+/// meets the air at this angle or more by its attitude and path, rad (14°: less than a wing
+/// stalls at, more than 1.2 times the stalling speed needs), for this time, s: in a stall the
+/// models do not hold, and too slow is more dangerous than too fast.
+const NEAR_STALL_RAD: f64 = 0.25;
+const NEAR_STALL_AFTER_S: f64 = 1.0;
 /// Doubt needs models that have learned the aircraft for this time, s.
 const LEARNED_S: f64 = 10.0;
 /// Below this share of the reference airspeed nothing is compared.
@@ -77,6 +85,8 @@ pub(super) struct AirspeedMonitor {
     sum: ForceSample,
     sensor_sum_mps: f64,
     sum_s: f64,
+    /// The part of that time in which the sensor had a reading.
+    sensor_s: f64,
     thrust: LowPass,
     recent_thrust: LowPass,
     gusts_mps2: f64,
@@ -85,6 +95,8 @@ pub(super) struct AirspeedMonitor {
     differs_s: f64,
     wind_s: f64,
     agrees_s: f64,
+    /// For how long a doubted sensor has been lower than the forces, near the stall, s.
+    near_stall_s: f64,
     reference: Reference,
     doubt: Option<Doubt>,
     /// A sensor was doubted in this flight: of several, readings that
@@ -111,6 +123,7 @@ impl AirspeedMonitor {
             sum: NOTHING,
             sensor_sum_mps: 0.0,
             sum_s: 0.0,
+            sensor_s: 0.0,
             thrust: LowPass::new(THRUST_LAG_S),
             recent_thrust: LowPass::new(THRUST_RECENT_S),
             gusts_mps2: 1.0,
@@ -119,6 +132,7 @@ impl AirspeedMonitor {
             differs_s: 0.0,
             wind_s: 0.0,
             agrees_s: 0.0,
+            near_stall_s: 0.0,
             reference: Reference::NONE,
             doubt: None,
             was_doubted: false,
@@ -217,7 +231,7 @@ impl AirspeedMonitor {
         self.add(&sample, input.sensor_mps, dt_s);
         let holds = sample.models_hold();
         if self.sum_s >= CORRECTED_S - 1e-6 {
-            self.correct(&mut bank, &sample, input.sensor_mps.is_some(), holds);
+            self.correct(&mut bank, &sample, holds);
         }
         bank.younger_s += dt_s;
         bank.learned_s += dt_s;
@@ -241,15 +255,19 @@ impl AirspeedMonitor {
         sum.pitch_rad += sample.pitch_rad * dt_s;
         sum.roll_rad += sample.roll_rad * dt_s;
         sum.climb_rate_mps += sample.climb_rate_mps * dt_s;
-        self.sensor_sum_mps += sensor_mps.unwrap_or_default().0 * dt_s;
+        if let Some((sensor_mps, _)) = sensor_mps {
+            self.sensor_sum_mps += sensor_mps * dt_s;
+            self.sensor_s += dt_s;
+        }
         self.sum_s += dt_s;
     }
 
     /// Corrects the filters by the mean of the samples since the last time.
-    fn correct(&mut self, bank: &mut FilterBank, now: &ForceSample, has_sensor: bool, holds: bool) {
+    fn correct(&mut self, bank: &mut FilterBank, now: &ForceSample, holds: bool) {
         let passed_s = core::mem::take(&mut self.sum_s);
         let sum = core::mem::take(&mut self.sum);
-        let sensor_mps = core::mem::take(&mut self.sensor_sum_mps) / passed_s;
+        let sensor_sum_mps = core::mem::take(&mut self.sensor_sum_mps);
+        let sensor_s = core::mem::take(&mut self.sensor_s);
         let mean = ForceSample {
             forward: sum.forward / passed_s,
             up: sum.up / passed_s,
@@ -271,8 +289,8 @@ impl AirspeedMonitor {
                 filter.without_models(passed_s);
             }
         }
-        if self.doubt.is_none() && has_sensor {
-            bank.believing.correct_by_sensor(sensor_mps);
+        if self.doubt.is_none() && sensor_s > 0.0 {
+            bank.believing.correct_by_sensor(sensor_sum_mps / sensor_s);
             let seen = (2.0 * squared(bank.believing.vertical_wind_mps())).min(MOST_GUSTS_MPS2);
             self.gusts_mps2 += smoothing_factor(passed_s, GUSTS_OVER_S)
                 * (seen + LEAST_GUSTS_MPS2 - self.gusts_mps2);
@@ -306,7 +324,14 @@ impl AirspeedMonitor {
             } else {
                 ANOTHER_BELIEVED_AFTER_S
             };
-            if self.agrees_s > needed_s {
+            let is_near_stall =
+                differs < 0.0 && angle_of_attack_rad(&input.sample, sensor_mps) > NEAR_STALL_RAD;
+            self.near_stall_s = if is_near_stall {
+                self.near_stall_s + dt_s
+            } else {
+                0.0
+            };
+            if self.agrees_s > needed_s || self.near_stall_s > NEAR_STALL_AFTER_S {
                 bank.believing = bank.older;
                 bank.believing.adopt(sensor_mps);
                 self.follow_sensor(bank);
