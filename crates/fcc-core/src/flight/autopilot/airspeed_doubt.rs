@@ -69,18 +69,20 @@ impl Autopilot {
         self.navigation.flown_with(throttle, is_engaged);
     }
 
-    /// Prepares the notice of a doubt that has begun.
+    /// Prepares the notice of a doubt that has begun, or whose reason is another.
     pub(super) fn note_doubt(&mut self, before: Option<Doubt>) {
         let now = self.navigation.airspeed_doubt();
-        self.doubt_notice = now.filter(|_| before.is_none()).and_then(|doubt| {
-            let known = REASONS
-                .iter()
-                .find(|(_, reason, _)| *reason == doubt.reason);
-            known.map(|(number, ..)| Notice {
-                kind: number | doubt.source.min(SENSORS),
-                ..Notice::default()
-            })
-        });
+        self.doubt_notice = now
+            .filter(|doubt| before != Some(*doubt))
+            .and_then(|doubt| {
+                let known = REASONS
+                    .iter()
+                    .find(|(_, reason, _)| *reason == doubt.reason);
+                known.map(|(number, ..)| Notice {
+                    kind: number | doubt.source.min(SENSORS),
+                    ..Notice::default()
+                })
+            });
     }
 
     /// The conditions that airspeed and altitude are doubted.

@@ -91,6 +91,7 @@ pub(super) struct AirspeedFilter {
     covariance: [State; N],
     /// The models as they were when the filter was copied.
     kept: State,
+    is_copy: bool,
     axial: Vote,
     lift: Vote,
 }
@@ -117,6 +118,7 @@ impl AirspeedFilter {
             x,
             covariance: [[0.0; N]; N],
             kept: x,
+            is_copy: false,
             axial: Vote::default(),
             lift: Vote::default(),
         };
@@ -135,7 +137,15 @@ impl AirspeedFilter {
 
     /// The climb rate by pitch and lift, m/s, without vertical wind.
     pub(super) fn climb_rate_mps(&self, sample: &ForceSample) -> f64 {
-        let [.., zero, angle] = self.x;
+        self.climb_rate_by(self.x, sample)
+    }
+
+    /// The same with the models as they were when the filter was copied.
+    pub(super) fn kept_climb_rate_mps(&self, sample: &ForceSample) -> f64 {
+        self.climb_rate_by(self.kept, sample)
+    }
+
+    fn climb_rate_by(&self, [.., zero, angle]: State, sample: &ForceSample) -> f64 {
         let alpha = zero + angle * sample.up * squared(self.slower());
         self.at_mps() / sample.sqrt_density * Upward::of(sample).sin_path(alpha)
     }
@@ -158,10 +168,16 @@ impl AirspeedFilter {
         self.covariance[0][0] += squared(RESTORED_SD_MPS);
     }
 
+    /// Whether it remembers models that were learned, not those it began with.
+    pub(super) const fn is_copy(&self) -> bool {
+        self.is_copy
+    }
+
     /// A copy that remembers the models as they are now.
     pub(super) const fn kept(&self) -> Self {
         let mut copy = *self;
         copy.kept = self.x;
+        copy.is_copy = true;
         copy
     }
 

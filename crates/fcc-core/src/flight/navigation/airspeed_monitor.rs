@@ -8,6 +8,11 @@ use super::filter_bank::FilterBank;
 use super::force_sample::ForceSample;
 use crate::blocks::{LowPass, smoothing_factor};
 
+mod static_port;
+
+pub(super) use static_port::Blocked;
+use static_port::StaticPort;
+
 /// The time between two corrections of the filters, s.
 const CORRECTED_S: f64 = 0.1;
 /// The throttle's lag: propeller and engine follow it over this time, s. Thrust
@@ -99,6 +104,9 @@ pub(super) struct AirspeedMonitor {
     near_stall_s: f64,
     reference: Reference,
     doubt: Option<Doubt>,
+    /// While the cause of a doubt may be the static port.
+    static_port: Option<StaticPort>,
+    blocked: Option<Blocked>,
     /// A sensor was doubted in this flight: of several, readings that
     /// contradict the forces are left out.
     was_doubted: bool,
@@ -135,6 +143,8 @@ impl AirspeedMonitor {
             near_stall_s: 0.0,
             reference: Reference::NONE,
             doubt: None,
+            static_port: None,
+            blocked: None,
             was_doubted: false,
         }
     }
@@ -315,6 +325,7 @@ impl AirspeedMonitor {
         let differs = self.difference.step(sensor_mps - filter_mps, dt_s);
         let vote = self.vote.step(bank.older.vote_mps(), dt_s);
         if let Some(doubt) = self.doubt {
+            self.look_at_static_port(bank, input, filter_mps + differs, holds, dt_s);
             let is_static = doubt.reason == DoubtReason::BlockedStatic;
             let agrees = differs.abs() < AGREES_RATIO * self.prior.reference_mps
                 && !(is_static && input.altimeter_is_doubted);
@@ -335,7 +346,7 @@ impl AirspeedMonitor {
                 bank.believing = bank.older;
                 bank.believing.adopt(sensor_mps);
                 self.follow_sensor(bank);
-                self.doubt = None;
+                (self.doubt, self.static_port, self.blocked) = (None, None, None);
             }
             return;
         }
@@ -367,6 +378,11 @@ impl AirspeedMonitor {
                         .reason(input.altitude_m, sensor_mps, sigma, differs)
                 };
                 self.doubt = Some(Doubt { source, reason });
+                let may_be_static = bank.older.is_copy()
+                    && bank.learned_s > 2.0 * ALONE_S
+                    && matches!(reason, DoubtReason::TooHigh | DoubtReason::TooLow);
+                self.static_port = may_be_static
+                    .then(|| StaticPort::new(self.port_input(bank, input, filter_mps + differs)));
                 self.was_doubted = true;
                 self.agrees_s = 0.0;
             } else {

@@ -1,6 +1,7 @@
 //! Whether the altimeter is believed, and altitude and climb rate without it.
 
 use super::airspeed_filter::squared;
+use super::airspeed_monitor::Blocked;
 use super::vertical::{Reference, VerticalState};
 use crate::units::GRAVITY_MPS2;
 
@@ -73,6 +74,8 @@ pub(super) struct AltitudeInput {
     pub(super) density_ratio: f64,
     /// The altitude by the total pressure is known.
     pub(super) has_total: bool,
+    /// A doubted airspeed tells that the static port is blocked.
+    pub(super) blocked: Option<Blocked>,
     /// Whether the altimeter may be doubted: while engaged.
     pub(super) may_doubt: bool,
 }
@@ -176,6 +179,8 @@ struct Doubted {
     has_moved: bool,
     agrees_s: f64,
     error_m: f64,
+    /// Only a blocked static port explains the airspeed.
+    by_airspeed: bool,
 }
 
 /// Holds the altimeter against the accelerometers.
@@ -201,10 +206,14 @@ pub(super) enum Verdict {
     Believed,
     /// Begin anew with this copy, without the altimeter.
     DoubtBegins(Coasting),
+    /// The same with this state, because the static port is blocked.
+    StaticPortIsBlocked(VerticalState),
     /// Follow no altimeter.
     Doubted,
     /// Adopt the altimeter's altitude, m.
     BelievedAgain(f64),
+    /// The same, because the altimeter moves: its port is not blocked.
+    StaticPortIsFree(f64),
 }
 
 impl AltitudeMonitor {
@@ -237,6 +246,10 @@ impl AltitudeMonitor {
                 return Verdict::Doubted;
             };
             doubted.has_moved |= (altitude_m - doubted.stood_m).abs() > MOVED_M + input.step_m;
+            if doubted.has_moved && doubted.by_airspeed {
+                *self = Self::new();
+                return Verdict::StaticPortIsFree(altitude_m);
+            }
             let by_m = (altitude_m - input.followed.altitude_m).abs();
             let agrees = doubted.has_moved && by_m < DIFFERS_M + input.step_m + doubted.error_m;
             doubted.agrees_s = if agrees { doubted.agrees_s + dt_s } else { 0.0 };
@@ -245,6 +258,21 @@ impl AltitudeMonitor {
                 return Verdict::BelievedAgain(altitude_m);
             }
             return Verdict::Doubted;
+        }
+        if let (true, Some(blocked), Some(altitude_m)) =
+            (input.may_doubt, input.blocked, input.altitude_m)
+        {
+            self.doubted = Some(Doubted {
+                stood_m: altitude_m,
+                has_moved: false,
+                agrees_s: 0.0,
+                error_m: DIFFERS_M,
+                by_airspeed: true,
+            });
+            return Verdict::StaticPortIsBlocked(VerticalState {
+                altitude_m: altitude_m + blocked.height_m,
+                climb_rate_mps: blocked.climb_rate_mps,
+            });
         }
         let (Some(altitude_m), Some(mut older), Some(mut younger)) =
             (input.altitude_m, self.older, self.younger)
@@ -274,6 +302,7 @@ impl AltitudeMonitor {
                     has_moved: false,
                     agrees_s: 0.0,
                     error_m: older.error_m,
+                    by_airspeed: false,
                 });
                 return Verdict::DoubtBegins(older);
             }

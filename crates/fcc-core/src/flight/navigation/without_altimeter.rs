@@ -66,6 +66,7 @@ impl Navigation {
             accelerates_mps2: self.airspeed.felt_mps2(),
             density_ratio: density,
             has_total: by_total_m.is_some(),
+            blocked: self.monitor.blocked_static(),
             may_doubt: self.is_engaged,
         };
         if dt_s > 0.0 {
@@ -78,7 +79,15 @@ impl Navigation {
                     let shares = shares.then_some(airspeed.source);
                     self.monitor.doubt_altimeter(right_mps, shares);
                 }
+                Verdict::StaticPortIsBlocked(state) => {
+                    self.vertical.adopt(state, bias_mps2);
+                    self.monitor.doubt_static_port();
+                }
                 Verdict::BelievedAgain(altitude_m) => self.vertical.adopt_altitude(altitude_m),
+                Verdict::StaticPortIsFree(altitude_m) => {
+                    self.vertical.adopt_altitude(altitude_m);
+                    self.monitor.static_port_is_free();
+                }
             }
         }
         self.vertical.state().0
