@@ -45,7 +45,8 @@ const AGREES_RATIO: f64 = 0.07;
 const BELIEVED_AFTER_S: f64 = 10.0;
 const ANOTHER_BELIEVED_AFTER_S: f64 = 1.0;
 /// A doubted sensor that is lower than the forces is believed at once if the aircraft
-/// meets the air at this angle or more by its attitude and path, rad (14°: less than a wing
+/// meets the air at this angle or more by its attitude and the path at the airspeed of the
+/// forces, rad (14°: less than a wing
 /// stalls at, more than 1.2 times the stalling speed needs), for this time, s: in a stall the
 /// models do not hold, and too slow is more dangerous than too fast.
 const NEAR_STALL_RAD: f64 = 0.25;
@@ -336,7 +337,7 @@ impl AirspeedMonitor {
                 ANOTHER_BELIEVED_AFTER_S
             };
             let is_near_stall =
-                differs < 0.0 && angle_of_attack_rad(&input.sample, sensor_mps) > NEAR_STALL_RAD;
+                differs < 0.0 && angle_of_attack_rad(&input.sample, filter_mps) > NEAR_STALL_RAD;
             self.near_stall_s = if is_near_stall {
                 self.near_stall_s + dt_s
             } else {
