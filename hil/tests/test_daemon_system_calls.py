@@ -95,7 +95,7 @@ def test_only_the_timers_and_the_sockets_calls(
     assert set(following) == {clock.waits_by}
     # Each tick reads until there is nothing left, and every third one writes all controls, the
     # trim among them, at one go once engaged (one by one where the kernel cannot cut them apart):
-    # X-Plane could not take more in a long frame. Five datagrams at 60 in 50 ms are due every 4.2 ms.
+    # X-Plane could not take more in a long frame. At 60 in 50 ms, five are due every 4.2 ms.
     emptied = [words for name, words in calls if name == "recvfrom" and "EAGAIN" in words]
     assert len(emptied) == flown
     assert counts["sendto"] >= ticks / 3

@@ -36,7 +36,7 @@ def _watch(
 
 
 def _switch_on(machine: fcc.Machine, level: fcc.Measurements) -> None:
-    """A position of the switch counts with its second reading."""
+    """Give the two readings with which a position counts."""
     assert machine.step(level, readback=READBACK, switch=True) is None
     assert machine.step(level, readback=READBACK, switch=True) is not None
 
