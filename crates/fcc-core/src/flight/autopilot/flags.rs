@@ -99,6 +99,12 @@ pub const SOURCE_CLOCK: Flags = Flags::bit(42);
 pub const DOUBTED_ALTITUDE: Flags = Flags::bit(43);
 /// A release is being prepared: the aircraft is levelled and trimmed.
 pub const RELEASING: Flags = Flags::bit(44);
+/// The measured elevator trim does not move as commanded.
+pub const TRIM_NOT_FOLLOWED: Flags = Flags::bit(45);
+/// A release is being prepared, and the trim does not follow.
+pub const UNTRIMMED: Flags = Flags::bit(46);
+/// The angle of attack contradicts lift and path, and is not used.
+pub const DOUBTED_ANGLE: Flags = Flags::bit(47);
 
 /// The shift from the bit of a quantity that is too old to the bit of the same
 /// quantity being frozen.
@@ -118,6 +124,7 @@ pub(super) const NOT_SENSED: Flags = Flags::from_bits(
         | SUSPECT_AIRSPEED.bits()
         | DOUBTED_AIRSPEED.bits()
         | DOUBTED_ALTITUDE.bits()
+        | DOUBTED_ANGLE.bits()
         | FROM_THE_FUTURE.bits()
         | SOURCE_CLOCK.bits()),
 );
@@ -134,7 +141,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
 }
 
 /// The text of each bit, lowest first.
-pub(super) const NAMES: [&str; 45] = [
+pub(super) const NAMES: [&str; 48] = [
     "attitude is missing or too old",
     "heading is missing or too old",
     "body rates are missing or too old",
@@ -180,6 +187,9 @@ pub(super) const NAMES: [&str; 45] = [
     "readings arrive too old, by their source's own clock",
     "altitude contradicts the other sensors and is not used",
     "levelling and trimming before the release",
+    "the elevator trim does not follow",
+    "the release cannot trim: hold the elevator",
+    "angle of attack contradicts lift and path and is not used",
 ];
 
 #[cfg(test)]
