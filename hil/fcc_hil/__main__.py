@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import signal
 import sys
 import threading
@@ -27,6 +28,8 @@ from .standin import BEACON_GROUP
 from .table import table
 
 _LOOK_S = 0.05
+# 128 and the number of SIGPIPE, as a shell reports it.
+_PIPE_CLOSED = 141
 _KILL = actions.Action("end at once, as a crash does", lambda _, __: None)
 
 
@@ -244,13 +247,31 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command; return the exit code: 0 success, 1 failure, 2 wrong usage."""
+    """Run a command; return the exit code: 0 success, 1 failure, 2 wrong usage.
+
+    If the reader of its output has ended, as `head` does, the command ends silently, with 141.
+    """
+    try:
+        try:
+            return _run(arguments)
+        finally:
+            # Here, and not when Python ends: a closed pipe is found by writing to it.
+            sys.stdout.flush()
+    except BrokenPipeError:
+        # What was not written must not be tried again when Python ends.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return _PIPE_CLOSED
+
+
+def _run(arguments: Sequence[str] | None) -> int:
     options = _parser().parse_args(arguments)
     if getattr(options, "legs", 1) < 1:
         print("error: --legs: give at least 1", file=sys.stderr)
         return 2
     try:
         code: int = options.run(options)
+    except BrokenPipeError:
+        raise
     except (
         FlightError,
         SoakError,

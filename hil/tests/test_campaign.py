@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,6 +30,7 @@ from fcc_hil.truth import COLUMNS, TRUTH_HZ, Truth
 from fcc_hil.workers import local_workers, on_dask
 
 USUAL = Bounds()
+USAGE = 2
 
 
 def _calm(**changes: object) -> Flight:
@@ -184,12 +188,28 @@ def test_the_command_names_what_flies_a_flight_again(
     ("wrong", "match"),
     [
         (["--seed", "-1"], "--seed"),
+        (["--seed", "one"], "--seed"),
         (["--flight", "-2"], "--flight"),
         (["--record", "flight.mcap"], "--flight"),
+        (["--flight", "1", "--record", "/none/x.mcap"], "there is no folder '/none'"),
+        (["--flight", "1", "--picture", "/none/x.png"], "there is no folder '/none'"),
+        (["--json", "/"], "is a folder"),
     ],
 )
-def test_wrong_arguments_are_refused(
+def test_wrong_arguments_are_refused_before_flying(
     wrong: list[str], match: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert commands.main(["campaign", *wrong]) == 1
+    with pytest.raises(SystemExit) as ended:
+        commands.main(["campaign", *wrong])
+    assert ended.value.code == USAGE
     assert match in capsys.readouterr().err
+    assert not Path("/none").exists()
+
+
+def test_a_reader_that_leaves_ends_it_silently() -> None:
+    words = [sys.executable, "-m", "fcc_hil", "peer", "--legs", "1"]
+    read, write = os.pipe()
+    os.close(read)
+    ended = subprocess.run(words, stdout=write, stderr=subprocess.PIPE, text=True, check=False)
+    os.close(write)
+    assert ended.stderr == ""

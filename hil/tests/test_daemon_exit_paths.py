@@ -26,6 +26,7 @@ PANICKED = 6
     [
         (signal.SIGTERM, "SIGTERM"),
         (signal.SIGINT, "Ctrl-C (SIGINT)"),
+        (signal.SIGQUIT, "Ctrl-\\ (SIGQUIT)"),
         (signal.SIGHUP, "the end of its terminal (SIGHUP)"),
     ],
 )
@@ -49,6 +50,18 @@ def test_a_signal_centres_and_releases(
     events = Flown.of(ending, tmp_path / "recordings").events
     heard = next(event for event in events if event.kind.WhichOneof("kind") == "stop_requested")
     assert (heard.time_ns - told_ns) * NS < AT_ONCE_S
+
+
+def test_signals_without_a_meaning_do_not_end_a_flight(fccd: Path, tmp_path: Path) -> None:
+    with flight(fccd, tmp_path) as (simulator, daemon):
+        engage(simulator, daemon)
+        for number in (signal.SIGUSR1, signal.SIGUSR2, signal.SIGALRM):
+            daemon.send(number)
+        time.sleep(0.3)
+        ending = daemon.end(signal.SIGTERM)
+        assert_released(simulator)
+    assert ending.exit_code == SUCCESS
+    assert ending.report["ending"] == "interrupted by SIGTERM"
 
 
 def test_a_panic_in_control_centres_and_releases(faulty_fccd: Path, tmp_path: Path) -> None:

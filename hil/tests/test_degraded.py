@@ -190,7 +190,7 @@ def test_body_rates_that_come_and_go_are_left_out(period_s: float) -> None:
 
 @pytest.mark.parametrize("name", ["specific_force", "altitude"])
 def test_an_engine_that_fails_meanwhile_is_no_fault_of_the_airspeed(name: str) -> None:
-    flight = Flight([name], LOST_FOR_S, aircraft="c172p")
+    flight = Flight([name], LOST_FOR_S, aircraft="c172r")
     flight.fly_to(LOST_AT_S + 1.0)
     flight.rig.plant.fdm["propulsion/magneto_cmd"] = 0
     flight.fly_to(LOST_AT_S + LOST_FOR_S + 40.0)

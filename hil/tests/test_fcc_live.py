@@ -7,6 +7,8 @@ import json
 import os
 import signal
 import subprocess
+import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import fcc
@@ -121,6 +123,26 @@ def test_commands_are_carried_out_or_refused_with_the_reason(
     assert ending.exit_code == 0
     with pytest.raises(fcc.TelemetryError, match="no fccd named"):
         commander.engage()
+
+
+def test_a_stop_of_an_engaged_flight_waits_until_it_has_stopped(
+    fccd: Path, tmp_path: Path, instance: str
+) -> None:
+    with fly(fccd, tmp_path, instance) as daemon, ThreadPoolExecutor() as beside:
+        daemon.wait_for("standby -> engaged")
+        commander = fcc.Commander(instance)
+        # In the first moments there is nothing to level and to trim.
+        time.sleep(1.0)
+        stops = beside.submit(command, fccd, instance, "stop", "--json")
+        daemon.wait_for("levelling and trimming before the release")
+        for begin in (commander.engage, lambda: commander.set(heading_rad=1.0)):
+            with pytest.raises(fcc.CommandError, match="it is stopping"):
+                begin()
+        stopped = stops.result()
+        ending = daemon.end()
+    assert stopped.returncode == 0
+    assert json.loads(stopped.stdout)["carried_out"] is True
+    assert ending.report["ending"] == "stopped by command"
 
 
 def test_a_daemon_without_commands_is_reported(fccd: Path, tmp_path: Path, instance: str) -> None:

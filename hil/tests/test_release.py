@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Literal
 
 import fcc
 import numpy as np
@@ -24,13 +25,35 @@ FPM = FT_TO_M / 60.0
 HANDS_OFF_S = 20.0
 
 
+class FaultyTrim(Plant):
+    """An aircraft whose trim runs 0.1 a second, and runs away or is stuck if it is told to."""
+
+    fault: Literal["none", "runs up", "stuck"] = "none"
+    commanded = 0.0
+
+    def write(self, controls: Controls, throttles: Sequence[float] | None = None) -> None:
+        """Write, the trim as far as it comes in a tick."""
+        now = self.controls.elevator_trim or 0.0
+        to = now if controls.elevator_trim is None else controls.elevator_trim
+        self.commanded = to
+        wanted = {"none": to, "runs up": 1.0, "stuck": now}[self.fault]
+        trim = now + min(0.0025, max(-0.0025, wanted - now))
+        super().write(replace(controls, elevator_trim=trim), throttles)
+
+
 class Flight:
     """A flight in level flight, engaged."""
 
     def __init__(
-        self, airspeed_kt: float, *, aircraft: str = "c172p", config: str = "", noise: bool = True
+        self,
+        airspeed_kt: float,
+        *,
+        aircraft: str = "c172p",
+        config: str = "",
+        noise: bool = True,
+        plant: type[Plant] = Plant,
     ) -> None:
-        self.plant = Plant(replace(by_name(aircraft), airspeed_kt=airspeed_kt), seed=SEED)
+        self.plant = plant(replace(by_name(aircraft), airspeed_kt=airspeed_kt), seed=SEED)
         settings = Settings(port=0, aircraft=aircraft, seed=SEED, noise=noise)
         hold = '[guidance]\nmode = "hold"\n'
         self.machine = fcc.Machine(hold + config)
@@ -154,3 +177,48 @@ def test_degraded_flight_ends_with_a_trimmed_aircraft() -> None:
     changed_kt, climb_fpm = flight.hands_off()
     assert abs(changed_kt) < 10.0
     assert abs(climb_fpm) < 500.0
+
+
+@pytest.mark.parametrize("aircraft", ["c172p", "c182"])
+def test_a_trim_that_runs_away_and_is_stuck_is_reported_and_harmless_when_free(
+    aircraft: str,
+) -> None:
+    flight = Flight(100.0, aircraft=aircraft, plant=FaultyTrim)
+    plant = flight.plant
+    assert isinstance(plant, FaultyTrim)
+    flight.fly(2.0)
+    plant.fault = "runs up"
+    flight.fly(4.0)
+    plant.fault = "stuck"
+    flight.fly(15.0)
+    texts = [event.text for event in flight.rig.events]
+    assert any("now: the elevator trim does not follow" in text for text in texts)
+    # What is commanded stays near what is measured, so that little happens later.
+    assert abs(plant.commanded - (plant.controls.elevator_trim or 0.0)) < 0.06
+    plant.fault = "none"
+    flight.fly(25.0)
+    texts = [event.text for event in flight.rig.events]
+    assert any("no longer: the elevator trim does not follow" in text for text in texts)
+    assert abs(plant.controls.elevator) < 0.06
+    truth = flight.rig.truth()
+    assert np.abs(truth["altitude_ft"] - truth["altitude_ft"][0]).max() < 20.0
+
+
+def test_a_release_that_cannot_trim_says_so() -> None:
+    flight = Flight(100.0, plant=FaultyTrim)
+    plant = flight.plant
+    assert isinstance(plant, FaultyTrim)
+    plant.fault = "runs up"
+    flight.fly(3.0)
+    plant.fault = "stuck"
+    assert 9.9 < flight.stop() < 10.1
+    assert any("the release cannot trim" in event.text for event in flight.rig.events)
+
+
+def test_a_stop_in_failsafe_levels_before_it_releases() -> None:
+    flight = Flight(100.0)
+    turning(flight)
+    flight.lose("heading")
+    flight.fly_until("failsafe")
+    assert flight.stop() > 2.0
+    assert abs(math.degrees(flight.plant.state().roll_rad)) < 3.0

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import time
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -26,11 +28,14 @@ def add(commands: Any) -> None:
     )
     campaign.add_argument(
         "--seed",
-        type=int,
+        type=_from_zero,
         default=1,
+        metavar="N",
         help="of all that is drawn (%(default)s); see docs/campaign.md",
     )
-    campaign.add_argument("--flight", type=int, metavar="N", help="fly only this one, and show it")
+    campaign.add_argument(
+        "--flight", type=_from_zero, metavar="N", help="fly only this one, and show it"
+    )
     campaign.add_argument(
         "--delay-ms",
         type=_delay,
@@ -57,21 +62,40 @@ def add(commands: Any) -> None:
     campaign.add_argument(
         "--scheduler", metavar="ADDRESS", help="fly on a Dask cluster, as in tcp://10.0.0.5:8786"
     )
-    campaign.add_argument("--json", type=Path, metavar="FILE", help="write everything here")
-    campaign.add_argument("--picture", type=Path, metavar="FILE", help="write a picture here")
+    campaign.add_argument("--json", type=_file, metavar="FILE", help="write everything here")
+    campaign.add_argument("--picture", type=_file, metavar="FILE", help="write a picture here")
     campaign.add_argument(
         "--record",
-        type=Path,
+        type=_file,
         metavar="FILE",
         help="with --flight: write its recording here (.mcap)",
     )
-    campaign.set_defaults(run=_campaign)
+    campaign.set_defaults(run=partial(_campaign, campaign))
 
 
 def _number(text: str) -> int:
     if not text.isdigit() or not 0 < int(text) <= 1_000_000:
         raise argparse.ArgumentTypeError(f"'{text}': give a number from 1 up")
     return int(text)
+
+
+def _from_zero(text: str) -> int:
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"'{text}': give a number from 0 up")
+    return int(text)
+
+
+def _file(text: str) -> Path:
+    """Check before flying that a file can be written there."""
+    path = Path(text)
+    folder = path.parent
+    if path.is_dir():
+        raise argparse.ArgumentTypeError(f"'{text}' is a folder: give a file")
+    if not folder.is_dir():
+        raise argparse.ArgumentTypeError(f"'{text}': there is no folder '{folder}': create it")
+    if not os.access(path if path.exists() else folder, os.W_OK):
+        raise argparse.ArgumentTypeError(f"'{text}' may not be written: give another file")
+    return path
 
 
 def _delay(text: str) -> float:
@@ -84,17 +108,15 @@ def _delay(text: str) -> float:
     return late_ms
 
 
-def _campaign(options: argparse.Namespace) -> int:
+def _campaign(parser: argparse.ArgumentParser, options: argparse.Namespace) -> int:
+    if options.record and options.flight is None:
+        parser.error("argument --record: give the number of a flight with --flight, too")
     from . import report  # noqa: PLC0415 - needs the module fcc, which other commands do not
     from .flying import Task, fly_task  # noqa: PLC0415
 
     bounds = Bounds(options.delay_ms, options.turbulence)
-    if options.seed < 0:
-        raise ValueError(f"--seed {options.seed}: give 0 or more")
     if options.flight is not None:
         return _one(options, bounds)
-    if options.record:
-        raise ValueError("--record: give the number of a flight with --flight, too")
     tasks = [Task(number, options.seed, bounds) for number in range(options.flights)]
     workers = (
         on_dask(fly_task, options.scheduler)
@@ -129,8 +151,6 @@ def _one(options: argparse.Namespace, bounds: Bounds) -> int:
     from .draw import draw  # noqa: PLC0415
     from .flying import fly  # noqa: PLC0415
 
-    if options.flight < 0:
-        raise ValueError(f"--flight {options.flight}: give 0 or more")
     outcome, truth = fly(draw(options.flight, options.seed, bounds), options.record)
     print(report.failure(outcome))
     for event in outcome.events:

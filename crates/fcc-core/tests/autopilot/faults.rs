@@ -350,3 +350,30 @@ fn failsafe_flies_level_whatever_the_pitch_was() {
     assert_eq!(aims.climb_rate_mps, 0.0);
     assert!(aims.pitch_rad.to_degrees() < 5.0, "{}", aims.pitch_rad);
 }
+
+/// A failsafe because of overruns does not end this way, however good all is.
+#[test]
+fn that_all_is_good_again_is_said_once_when_the_loop_continues() {
+    let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
+    cockpit.steps(40);
+    let mut said = Vec::new();
+    // 2 s without a fault are enough; the loop does not continue for 4 s.
+    for _ in 0..160 {
+        cockpit.observe();
+        cockpit.failsafe();
+        said.extend(cockpit.autopilot.notice());
+    }
+    assert_eq!(said, []);
+    assert!(cockpit.autopilot.has_recovered());
+    let (tick, measurements) = (cockpit.tick, cockpit.measurements);
+    cockpit.autopilot.recover(&tick, &measurements);
+    for _ in 0..40 {
+        cockpit.step();
+        said.extend(cockpit.autopilot.notice());
+    }
+    let [notice] = said[..] else {
+        panic!("{said:?}");
+    };
+    let after_s = notice.lasted_ns as f64 * 1e-9;
+    assert!((after_s - 160.0 * DT_S).abs() < 2.0 * DT_S, "{after_s}");
+}

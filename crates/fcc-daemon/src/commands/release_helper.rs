@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use fcc_core::framework::Released;
 use nix::libc::{O_NOCTTY, O_NOFOLLOW, O_NONBLOCK};
 use nix::unistd::{dup2_stderr, ttyname};
-use signal_hook::consts::{SIGABRT, SIGHUP, SIGINT, SIGTERM};
+use signal_hook::consts::{SIGABRT, SIGHUP, SIGINT, SIGQUIT, SIGTERM};
 
 use super::failure::Failure;
 use crate::exit::Exit;
@@ -23,7 +23,7 @@ pub(super) fn release_helper() -> Result<Exit, Failure> {
     // A signal to all processes of the daemon must not end the helper before
     // the controls are released: it ends only after the daemon's end. ABRT is
     // sent by a service manager's watchdog.
-    let caught = [SIGTERM, SIGINT, SIGHUP, SIGABRT]
+    let caught = [SIGTERM, SIGINT, SIGQUIT, SIGHUP, SIGABRT]
         .into_iter()
         .try_for_each(|signal| {
             signal_hook::flag::register(signal, std::sync::Arc::default()).map(drop)

@@ -1,5 +1,5 @@
-//! The signals that end a flight: TERM, INT and, unless it is ignored from the
-//! start, HUP; and those that must not stop or end it.
+//! The signals that end a flight: TERM, INT, QUIT and, unless it is ignored from
+//! the start, HUP; and those that must not stop or end it.
 
 use std::fs;
 use std::io;
@@ -11,11 +11,23 @@ use fcc_runtime::StopHandle;
 use nix::sys::prctl;
 use nix::sys::signal::{SigSet, Signal};
 
-const ENDING: [Signal; 3] = [Signal::SIGTERM, Signal::SIGINT, Signal::SIGHUP];
+const ENDING: [Signal; 4] = [
+    Signal::SIGTERM,
+    Signal::SIGINT,
+    Signal::SIGQUIT,
+    Signal::SIGHUP,
+];
 
-/// What a terminal sends to a process in the background that reads or writes
-/// it.
-const BACKGROUND: [Signal; 2] = [Signal::SIGTTIN, Signal::SIGTTOU];
+/// What has no meaning for a flight: what a terminal sends to a process in the
+/// background that reads or writes it, and what would end a process without a
+/// release by default (signal(7)).
+const WITHOUT_EFFECT: [Signal; 5] = [
+    Signal::SIGTTIN,
+    Signal::SIGTTOU,
+    Signal::SIGUSR1,
+    Signal::SIGUSR2,
+    Signal::SIGALRM,
+];
 
 /// Prepares for a flight, before any thread is started: a process that is
 /// stopped holds the controls, and one that is killed for the size of a file
@@ -27,7 +39,7 @@ pub(crate) fn tolerate() -> io::Result<()> {
     signal_hook::flag::register(Signal::SIGXFSZ as i32, Arc::default())?;
     // Blocked, in the threads started from here on too: the terminal then
     // accepts what is written. A handler would be called again and again.
-    SigSet::from_iter(BACKGROUND).thread_block()?;
+    SigSet::from_iter(WITHOUT_EFFECT).thread_block()?;
     Ok(())
 }
 
@@ -66,6 +78,7 @@ impl Caught {
             .find(|signal| *signal as usize == number)
             .map(|signal| match signal {
                 Signal::SIGINT => "Ctrl-C (SIGINT)",
+                Signal::SIGQUIT => "Ctrl-\\ (SIGQUIT)",
                 Signal::SIGHUP => "the end of its terminal (SIGHUP)",
                 other => other.as_str(),
             })

@@ -208,6 +208,29 @@ fn every_command_reports_an_error_as_json() {
     }
 }
 
+/// The two results whose form does not depend on success.
+#[test]
+fn the_forms_of_check_and_command_are_those_of_the_readme() {
+    let readme = include_str!("../../../../README.md");
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("wrong.toml"), "[lop]\n").unwrap();
+    let instance = format!("form-{}", std::process::id());
+    for words in [
+        &["check", "wrong.toml"][..],
+        &["command", "stop", "--instance", &instance],
+    ] {
+        let ended = fccd(folder.path(), words).arg("--json").output().unwrap();
+        assert!(ended.stderr.is_empty(), "{words:?}");
+        let printed: Value = serde_json::from_slice(&ended.stdout).unwrap();
+        let names = printed.as_object().unwrap().keys();
+        let names: Vec<_> = names.map(|name| format!("\"{name}\"")).collect();
+        let described = readme.split(['{', '}']).any(|form| {
+            form.split(", ").count() == names.len() && names.iter().all(|name| form.contains(name))
+        });
+        assert!(described, "{words:?}: {names:?}");
+    }
+}
+
 /// The report, and the same as JSON beside it, are two files, and neither is
 /// the configuration.
 #[test]

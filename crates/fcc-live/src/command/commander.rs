@@ -16,6 +16,9 @@ use fcc_telemetry::Instance;
 /// How long a daemon may take to answer: about ten times what it takes at the
 /// slowest rate, 1 Hz.
 const PATIENCE: Duration = Duration::from_secs(10);
+/// How much longer a stop may take: the loop prepares the plant for its release
+/// for 12 s at most.
+const STOPS_WITHIN: Duration = Duration::from_secs(12);
 const LOOK_EVERY: Duration = Duration::from_millis(2);
 
 /// Sends commands to a daemon, or to the loop of any other plant, on this
@@ -81,7 +84,7 @@ impl Commander {
     }
 
     /// Sends a command and waits until it is carried out; returns the tick that
-    /// did.
+    /// did. A stop may take 12 s: the plant is prepared for its release first.
     ///
     /// # Errors
     /// When the daemon refuses the command, has ended, or does not answer.
@@ -91,7 +94,11 @@ impl Commander {
             .client
             .send_copy(CommandRequest::try_from(command)?)
             .map_err(|error| WatchError::NoSharedMemory(services::explained(&error)))?;
-        let deadline = Instant::now() + PATIENCE;
+        let patience = match command {
+            Command::Stop => PATIENCE + STOPS_WITHIN,
+            _ => PATIENCE,
+        };
+        let deadline = Instant::now() + patience;
         loop {
             // Checked first: an answer sent before the daemon ended counts.
             let connected = pending.is_connected();
@@ -112,7 +119,7 @@ impl Commander {
             if Instant::now() > deadline {
                 return Err(CommandError::NoAnswer(
                     self.instance.clone(),
-                    PATIENCE.as_secs(),
+                    patience.as_secs(),
                 ));
             }
             std::thread::sleep(LOOK_EVERY);

@@ -52,6 +52,9 @@ impl<C: Commandable> SentCommands<C> {
             }
             Err(invalid) => return Some((asked.id, Verdict::Refused(invalid.to_string()))),
         };
+        if self.is_stopping() && matches!(asked.command, Command::Engage | Command::Set(_)) {
+            return Some((asked.id, Verdict::Refused("it is stopping".to_owned())));
+        }
         // Before any part of it is carried out.
         if let Some(state) = self.state.filter(|state| *state != State::Engaged)
             && matches!(asked.command, Command::Set(_))
@@ -78,6 +81,12 @@ impl<C: Commandable> SentCommands<C> {
     fn is_to_be_engaged(&self) -> bool {
         let mut waiting = self.waiting.iter();
         waiting.any(|waiting| waiting.asked.command == Command::Engage)
+    }
+
+    /// Whether a stop was sent: it waits here until the loop has stopped.
+    fn is_stopping(&self) -> bool {
+        let mut waiting = self.waiting.iter();
+        waiting.any(|waiting| waiting.asked.command == Command::Stop)
     }
 
     /// Processes an event of the loop; it comes before the record of its tick.
@@ -113,14 +122,22 @@ impl<C: Commandable> SentCommands<C> {
     /// permits. Call it again until there is none.
     pub fn verdict(&mut self, now: u64, state: State) -> Option<(u64, Verdict)> {
         self.state = Some(state);
-        let first = self.waiting.front()?;
-        let tick = first.read_in.filter(|tick| *tick <= now)?;
-        let waiting = self.waiting.pop_front()?;
+        // The loop may prepare the plant for its release before it stops;
+        // commands that were sent later are answered meanwhile.
+        let at = self.waiting.iter().position(|waiting| {
+            waiting.read_in.is_some_and(|tick| tick <= now)
+                && (waiting.asked.command != Command::Stop || state == State::Stopped)
+        })?;
+        let waiting = self.waiting.remove(at)?;
+        let tick = match waiting.asked.command {
+            Command::Stop => now,
+            _ => waiting.read_in?,
+        };
         let done = match &waiting.asked.command {
             command if command.needs_control::<C>() => state == State::Engaged,
             Command::Engage | Command::Set(_) => state != State::Stopped,
             Command::Disengage => matches!(state, State::Standby | State::Stopped),
-            Command::Stop => state == State::Stopped,
+            Command::Stop => true,
         };
         let verdict = if done {
             Verdict::CarriedOut { tick }
@@ -145,7 +162,7 @@ fn only_engaged(state: State) -> String {
 #[cfg(all(test, feature = "flight"))]
 mod tests {
     use fcc_core::flight::{Autopilot, AutopilotCommand, flags};
-    use fcc_core::framework::{Controller, Event, Time};
+    use fcc_core::framework::{Cause, Controller, Event, Time};
 
     use super::*;
 
@@ -194,6 +211,34 @@ mod tests {
             Some((1, Verdict::CarriedOut { tick: 5 }))
         );
         assert_eq!(commands.verdict(5, State::Engaged), None);
+    }
+
+    #[test]
+    fn a_stop_is_answered_when_the_loop_has_stopped_and_nothing_begins_before() {
+        for state in [State::Engaged, State::Failsafe(Cause::Overrun)] {
+            let mut commands = commands();
+            assert_eq!(commands.verdict(1, state), None);
+            waiting(&mut commands, 1, Command::Stop);
+            let stop = EventKind::CommandReceived(LoopCommand::Stop);
+            commands.event(&event(5, stop));
+            // It levels and trims.
+            assert_eq!(commands.verdict(5, state), None);
+            for command in [Command::Engage, heading()] {
+                let sent = commands.send(PendingCommand { id: 2, command }, |_| {
+                    panic!("not to be sent")
+                });
+                let refused = Verdict::Refused("it is stopping".to_owned());
+                assert_eq!(sent, Some((2, refused)));
+            }
+            // What gives control back earlier is not made to wait.
+            waiting(&mut commands, 3, Command::Disengage);
+            let disengage = EventKind::CommandReceived(LoopCommand::Disengage);
+            commands.event(&event(9, disengage));
+            let carried_out = |id, tick| Some((id, Verdict::CarriedOut { tick }));
+            assert_eq!(commands.verdict(9, State::Standby), carried_out(3, 9));
+            assert_eq!(commands.verdict(10, State::Stopped), carried_out(1, 10));
+            assert_eq!(commands.verdict(10, State::Stopped), None);
+        }
     }
 
     #[test]

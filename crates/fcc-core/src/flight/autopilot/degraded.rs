@@ -206,14 +206,25 @@ pub(super) struct Degraded {
     is_sound: bool,
     pub(super) glides: bool,
     intermittent: Intermittent,
-    /// What happened in this tick, by the number of a notice.
-    news: Option<u8>,
+    /// What happened in this tick, by the number of a notice, after how long, s.
+    news: Option<(u8, f64)>,
+    /// How long the failsafe lasted that the loop ended in the last tick because
+    /// all was good again, s.
+    recovered_s: Option<f64>,
 }
 
 impl Degraded {
     /// Whether what is held is sound.
     pub(super) const fn is_sound(&self) -> bool {
         self.is_sound
+    }
+
+    /// After a failsafe that the loop has ended because all is good again.
+    pub(super) fn recovered(&self) -> Self {
+        Self {
+            recovered_s: Some(self.lasted_s),
+            ..Self::default()
+        }
     }
 }
 
@@ -268,6 +279,8 @@ impl Autopilot {
     /// Follows a failsafe: for how long it has lasted, and whether all is good
     /// again.
     pub(super) fn follow_failsafe(&mut self, tick: &Tick, measured: &Measurements) {
+        let recovered_s = self.degraded.recovered_s.take();
+        self.degraded.news = recovered_s.map(|lasted_s| (GOOD_AGAIN, lasted_s));
         if !self.degraded.is_failsafe {
             return;
         }
@@ -290,7 +303,9 @@ impl Autopilot {
         };
         let glides = degraded.glides
             || config.end == FailsafeEnd::Glide && degraded.unsound_s > config.hold.as_secs_f64();
-        degraded.news = (glides && !degraded.glides).then_some(GLIDES);
+        if glides && !degraded.glides {
+            degraded.news = Some((GLIDES, degraded.lasted_s));
+        }
         degraded.glides = glides;
     }
 
@@ -300,7 +315,8 @@ impl Autopilot {
         self.degraded.is_sound || self.config.failsafe.end == FailsafeEnd::Glide
     }
 
-    /// Whether what was lost has been good for long enough.
+    /// Whether what was lost has been good for long enough. Whether the failsafe
+    /// ends then is for the loop to decide: one because of overruns does not.
     pub(super) fn is_good_again(&self) -> bool {
         let after = self.config.failsafe.recovered_after;
         let good = Duration::from_secs_f64(self.degraded.good_s);
@@ -309,12 +325,10 @@ impl Autopilot {
 
     /// What happened in this tick.
     pub(super) fn degraded_notice(&self) -> Option<Notice> {
-        let is_good = self.is_good_again().then_some(GOOD_AGAIN);
-        let kind = is_good.or(self.degraded.news)?;
-        let lasted_ns = (self.degraded.lasted_s * 1e9) as u64;
+        let (kind, lasted_s) = self.degraded.news?;
         Some(Notice {
             kind,
-            lasted_ns,
+            lasted_ns: (lasted_s * 1e9) as u64,
             ..Notice::default()
         })
     }

@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use super::degraded::{Degraded, Lateral, Power, Vertical, held_without};
+use super::degraded::{Lateral, Power, Vertical, held_without};
 use super::{Autopilot, flags};
 use crate::blocks::{limit_abs, wrap_two_pi};
 use crate::flight::atmosphere::true_airspeed_mps;
@@ -221,7 +221,7 @@ impl Autopilot {
     /// are as they were.
     pub(super) fn fly_on(&mut self) {
         self.distrusted = Flags::NONE;
-        self.degraded = Degraded::default();
+        self.degraded = self.degraded.recovered();
         self.end_release_of_failsafe();
         let last = self.last;
         self.take_over(&last);

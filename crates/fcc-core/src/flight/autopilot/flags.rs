@@ -99,6 +99,10 @@ pub const SOURCE_CLOCK: Flags = Flags::bit(42);
 pub const DOUBTED_ALTITUDE: Flags = Flags::bit(43);
 /// A release is being prepared: the aircraft is levelled and trimmed.
 pub const RELEASING: Flags = Flags::bit(44);
+/// The measured elevator trim does not move as commanded.
+pub const TRIM_NOT_FOLLOWED: Flags = Flags::bit(45);
+/// A release is being prepared, and the trim does not follow.
+pub const UNTRIMMED: Flags = Flags::bit(46);
 
 /// The shift from the bit of a quantity that is too old to the bit of the same
 /// quantity being frozen.
@@ -134,7 +138,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
 }
 
 /// The text of each bit, lowest first.
-pub(super) const NAMES: [&str; 45] = [
+pub(super) const NAMES: [&str; 47] = [
     "attitude is missing or too old",
     "heading is missing or too old",
     "body rates are missing or too old",
@@ -180,6 +184,8 @@ pub(super) const NAMES: [&str; 45] = [
     "readings arrive too old, by their source's own clock",
     "altitude contradicts the other sensors and is not used",
     "levelling and trimming before the release",
+    "the elevator trim does not follow",
+    "the release cannot trim: hold the elevator",
 ];
 
 #[cfg(test)]

@@ -208,7 +208,8 @@ impl Controller for Autopilot {
     }
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        (self.external(tick.woke, measurements) | self.actuation.conditions() | self.doubted())
+        let of_parts = self.actuation.conditions() | self.doubted() | self.trim_conditions();
+        (self.external(tick.woke, measurements) | of_parts)
             .with(flags::RECOVERING, self.recovery.is_active())
             .with(flags::UNDERSPEED, self.altitude.gives_up_height())
             .with(flags::AT_FLOOR, self.is_at_floor)
@@ -236,7 +237,7 @@ impl Controller for Autopilot {
     }
 
     fn prepare_release(&mut self, tick: &Tick, measurements: &Measurements) -> bool {
-        self.begin_to_release(tick.woke, measurements)
+        self.begin_to_release(false, tick.woke, measurements)
     }
 
     fn is_ready_for_release(&self) -> bool {
@@ -321,7 +322,7 @@ impl Controller for Autopilot {
         }
         let recovering = self.recover_from_upset(tick.woke, &estimate);
         if let Some(outputs) = recovering.or_else(|| self.fly_to_release(&estimate, dt_s)) {
-            self.last = self.with_trim(outputs, Flags::NONE);
+            self.last = self.with_trim(tick.woke, outputs, Flags::NONE);
             return self.last;
         }
         let to = self.targets;
@@ -348,14 +349,15 @@ impl Controller for Autopilot {
             rudder: lateral.rudder,
             elevator_trim: None,
         };
-        self.last = self.with_trim(outputs, Flags::NONE);
+        self.last = self.with_trim(tick.woke, outputs, Flags::NONE);
         self.last
     }
 
     fn failsafe(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
         self.prepare_end_of_failsafe(tick.woke, measurements);
         let outputs = self.safest(tick.woke, measurements);
-        self.last = self.with_trim(outputs, self.lost(tick.woke, measurements));
+        let lost = self.lost(tick.woke, measurements);
+        self.last = self.with_trim(tick.woke, outputs, lost);
         self.last
     }
 
@@ -368,6 +370,7 @@ impl Controller for Autopilot {
         self.capture = None;
         self.recovery = Recovery::new();
         self.release = None;
+        self.trim = ElevatorTrim::new(None);
         self.setpoints = Setpoints::default();
     }
 

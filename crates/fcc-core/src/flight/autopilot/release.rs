@@ -27,7 +27,8 @@ const THROTTLE_STANDS_S: f64 = 0.2;
 /// A release that is being prepared.
 #[derive(Clone, Debug)]
 pub(super) struct Release {
-    /// It ends with the failsafe in which it began.
+    /// It belongs to the end of a failsafe, and ends with it; one that was
+    /// commanded does not.
     in_failsafe: bool,
     /// The airspeed that is held, m/s.
     airspeed_mps: f64,
@@ -39,8 +40,14 @@ pub(super) struct Release {
 }
 
 impl Autopilot {
-    /// Begins to level and to trim; whether that is possible.
-    pub(super) fn begin_to_release(&mut self, now: Time, measured: &Measurements) -> bool {
+    /// Begins to level and to trim, at the end of a failsafe or by a command;
+    /// whether that is possible.
+    pub(super) fn begin_to_release(
+        &mut self,
+        in_failsafe: bool,
+        now: Time,
+        measured: &Measurements,
+    ) -> bool {
         let estimate = self.navigation.estimate();
         let unsafe_now = self.unsafe_to_fly(now, measured) | self.not_flyable(now, measured);
         let is_flyable = !unsafe_now.intersects(flags::NOT_SENSED)
@@ -53,7 +60,7 @@ impl Autopilot {
             return false;
         }
         self.release = Some(Release {
-            in_failsafe: self.degraded.is_failsafe,
+            in_failsafe,
             airspeed_mps: self.config.envelope.allowed_airspeed(estimate.airspeed_mps),
             throttle: LowPass::new(THROTTLE_MEAN_S),
             acceleration: LowPass::new(SETTLED_S),
@@ -77,7 +84,7 @@ impl Autopilot {
         if self.degraded.is_sound() {
             self.end_release_of_failsafe();
         } else if self.release.is_none() && self.config.failsafe.end == FailsafeEnd::Release {
-            self.begin_to_release(now, measured);
+            self.begin_to_release(true, now, measured);
         }
     }
 
@@ -118,7 +125,7 @@ impl Autopilot {
 
     /// The outputs with the trim, after one step of it: quick before a release,
     /// slow in steady flight, none where the climb rate is not held.
-    pub(super) fn with_trim(&mut self, outputs: Surfaces, lost: Flags) -> Surfaces {
+    pub(super) fn with_trim(&mut self, now: Time, outputs: Surfaces, lost: Flags) -> Surfaces {
         let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
         let is_known = held_without(lost).vertical == Vertical::Level;
         let trimming = if !is_known || self.recovery.is_active() {
@@ -130,7 +137,9 @@ impl Autopilot {
         } else {
             Trimming::Held
         };
-        self.trim.step(outputs.elevator, trimming, dt_s);
+        let controls = self.accepted.surfaces.fresh(now, self.config.max_age);
+        let measured = controls.and_then(|controls| controls.elevator_trim);
+        self.trim.step(outputs.elevator, measured, trimming, dt_s);
         let mut outputs = Surfaces {
             elevator_trim: self.trim.position(),
             ..outputs
@@ -157,6 +166,14 @@ impl Autopilot {
             }
         }
         outputs
+    }
+
+    /// What is reported of the trim.
+    pub(super) fn trim_conditions(&self) -> Flags {
+        let is_lost = self.trim.does_not_follow();
+        Flags::NONE
+            .with(flags::TRIM_NOT_FOLLOWED, is_lost)
+            .with(flags::UNTRIMMED, is_lost && self.release.is_some())
     }
 
     fn is_steady(&self, estimate: &Estimate) -> bool {

@@ -20,6 +20,17 @@ const QUICK_RATE_PER_S: f64 = 0.12;
 /// The time constant of the elevator's mean before a release, s.
 const QUICK_MEAN_TAU_S: f64 = 0.3;
 
+/// The command is at most this and one second of its rate from the measured
+/// trim: a trim that stands still or runs away does not move far when it is free
+/// again.
+const REACH: f64 = 0.05;
+const REACH_S: f64 = 1.0;
+/// A trim that is farther than the first from its command, and has not come
+/// nearer by the second for so long, does not follow.
+const AWAY: f64 = 0.04;
+const NEARER: f64 = 0.02;
+const FOR_S: f64 = 3.0;
+
 /// How the trim may move.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Trimming {
@@ -42,12 +53,18 @@ pub enum Trimming {
 /// // The elevator and the trim together hold 0.3.
 /// for _ in 0..40 * 20 {
 ///     let elevator = 0.3 - trim.position().unwrap_or(0.0);
-///     trim.step(elevator, Trimming::Steady, 0.025);
+///     trim.step(elevator, trim.position(), Trimming::Steady, 0.025);
 /// }
 /// assert!((trim.position().unwrap_or(0.0) - 0.3).abs() < 0.02);
+/// // One that is stuck is not commanded far away, and is reported.
+/// for _ in 0..40 * 10 {
+///     trim.step(-0.2, Some(0.4), Trimming::Steady, 0.025);
+/// }
+/// assert!(trim.does_not_follow());
+/// assert!((trim.position().unwrap_or(0.0) - 0.35).abs() < 1e-9);
 /// // An aircraft without a trim, or whose trim is not measured, keeps it.
 /// let mut none = ElevatorTrim::new(None);
-/// none.step(0.3, Trimming::Quick, 0.025);
+/// none.step(0.3, None, Trimming::Quick, 0.025);
 /// assert_eq!(none.position(), None);
 /// ```
 #[derive(Clone, Debug)]
@@ -55,6 +72,10 @@ pub struct ElevatorTrim {
     position: Option<f64>,
     mean: LowPass,
     held_s: f64,
+    /// Where the measured trim was when it last came nearer to the command, or
+    /// farthest from it since, and for how long it has not come nearer, s.
+    from: f64,
+    away_s: f64,
 }
 
 impl ElevatorTrim {
@@ -64,6 +85,8 @@ impl ElevatorTrim {
             position,
             mean: LowPass::new(MEAN_TAU_S),
             held_s: 0.0,
+            from: 0.0,
+            away_s: 0.0,
         }
     }
 
@@ -84,8 +107,16 @@ impl ElevatorTrim {
         self.mean.output()
     }
 
-    /// One step with the elevator, -1..=1, that was commanded last.
-    pub fn step(&mut self, elevator: f64, trimming: Trimming, dt_s: f64) {
+    /// Whether the measured trim does not move when it is commanded to, or moves
+    /// by itself.
+    pub fn does_not_follow(&self) -> bool {
+        self.away_s >= FOR_S
+    }
+
+    /// One step with the elevator, -1..=1, that was commanded last, and with the
+    /// measured trim: while it is not measured, or does not follow, the trim is
+    /// not moved farther.
+    pub fn step(&mut self, elevator: f64, measured: Option<f64>, trimming: Trimming, dt_s: f64) {
         let is_quick = trimming == Trimming::Quick;
         let faster = if is_quick {
             MEAN_TAU_S / QUICK_MEAN_TAU_S
@@ -93,11 +124,34 @@ impl ElevatorTrim {
             1.0
         };
         let mean = self.mean.step(elevator, faster * dt_s);
+        let rate_per_s = self.rate_per_s(mean, trimming, dt_s);
+        let (Some(measured), Some(position)) = (measured, self.position) else {
+            self.away_s = 0.0;
+            return;
+        };
+        self.compare(measured, position, dt_s);
+        let is_farther = rate_per_s * (position - measured) > 0.0;
+        let rate_per_s = if self.does_not_follow() && is_farther {
+            0.0
+        } else {
+            rate_per_s
+        };
+        let reach = REACH + rate_per_s.abs() * REACH_S;
+        let near = limit(
+            position + rate_per_s * dt_s,
+            measured - reach,
+            measured + reach,
+        );
+        self.position = Some(limit(near, -1.0, 1.0));
+    }
+
+    /// The rate that the mean of the elevator asks for, 1/s.
+    fn rate_per_s(&mut self, mean: f64, trimming: Trimming, dt_s: f64) -> f64 {
         let (begins, ends) = HELD;
-        let rate_per_s = match trimming {
+        match trimming {
             Trimming::Held => {
                 self.held_s = 0.0;
-                return;
+                0.0
             }
             Trimming::Steady => {
                 if mean.abs() < ends {
@@ -106,14 +160,26 @@ impl ElevatorTrim {
                     self.held_s += dt_s;
                 }
                 if self.held_s <= AFTER_S {
-                    return;
+                    return 0.0;
                 }
                 limit_abs(mean / TAU_S, RATE_PER_S)
             }
             Trimming::Quick => limit_abs(mean / QUICK_TAU_S, QUICK_RATE_PER_S),
-        };
-        if let Some(position) = &mut self.position {
-            *position = limit(*position + rate_per_s * dt_s, -1.0, 1.0);
+        }
+    }
+
+    /// Compares the measured trim with its command.
+    fn compare(&mut self, measured: f64, command: f64, dt_s: f64) {
+        let away = command - measured;
+        let nearer = (measured - self.from) * away.signum();
+        if away.abs() < AWAY || nearer > NEARER {
+            self.from = measured;
+            self.away_s = 0.0;
+        } else {
+            if nearer < 0.0 {
+                self.from = measured;
+            }
+            self.away_s += dt_s;
         }
     }
 }

@@ -8,7 +8,7 @@ use std::thread;
 
 use fcc_xplane_check::{Answer, Outcome, Screen, Step, StepResult};
 use indicatif::ProgressBar;
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGTSTP};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP};
 
 use super::Failure;
 use crate::output;
@@ -38,6 +38,7 @@ impl Terminal {
         for (signal, flag) in [
             (SIGINT, &stopped),
             (SIGTERM, &stopped),
+            (SIGQUIT, &stopped),
             (SIGHUP, &stopped),
             (SIGTSTP, &suspended),
         ] {
