@@ -188,16 +188,6 @@ def test_body_rates_that_come_and_go_are_left_out(period_s: float) -> None:
     assert flight.when("failsafe -> engaged") == pytest.approx(LOST_FOR_S + 2.0, abs=period_s)
 
 
-@pytest.mark.parametrize("name", ["specific_force", "altitude"])
-def test_an_engine_that_fails_meanwhile_is_no_fault_of_the_airspeed(name: str) -> None:
-    flight = Flight([name], LOST_FOR_S, aircraft="c172r")
-    flight.fly_to(LOST_AT_S + 1.0)
-    flight.rig.plant.fdm["propulsion/magneto_cmd"] = 0
-    flight.fly_to(LOST_AT_S + LOST_FOR_S + 40.0)
-    assert not [text for _, text in flight.events() if "doubt" in text or "contradicts" in text]
-    assert np.min(flight.between("airspeed_kt", 0.0, LOST_FOR_S + 40.0)) > 60.0
-
-
 def test_without_attitude_and_rates_control_is_given_back() -> None:
     flight = Flight(["attitude", "body_rates"], 60.0)
     flight.fly_to(LOST_AT_S + 6.0)
