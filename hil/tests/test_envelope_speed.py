@@ -145,6 +145,7 @@ def test_climbing_turns_at_75_kt_do_not_stall(turbulence: int, seed: int) -> Non
         ("max_airspeed_kt = 170.0\n", "max_airspeed_kt: is 170: choose at most never_exceed"),
         ("best_glide_airspeed_kt = 40.0\n", r"best_glide_airspeed_kt: is 40: choose 58\.3 to 135"),
         ("max_load_factor_g = 5.0\n", "max_load_factor_g: is 5: choose at most limit_load_factor"),
+        ("max_load_factor_g = 1.1\n", r"max_load_factor_g: is 1\.1: choose at least 1\.11: less"),
     ],
 )
 def test_an_envelope_without_room_to_fly_is_refused(text: str, message: str) -> None:

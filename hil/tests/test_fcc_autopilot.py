@@ -49,8 +49,9 @@ def test_a_series_is_its_steps_to_the_last_bit() -> None:
     one, other = engaged(HOLD, measured), engaged(HOLD, measured)
     rows = measured[101:]
     steps = [one.step(fcc.Measurements.from_array(row)).to_array() for row in rows]
-    assert np.array_equal(other.fly(rows), steps)
-    assert other.fly(np.empty((0, len(fcc.MEASUREMENTS)))).shape == (0, 4)
+    # Without a trim's position at engaging none is moved: NaN.
+    assert np.array_equal(other.fly(rows), np.array(steps), equal_nan=True)
+    assert other.fly(np.empty((0, len(fcc.MEASUREMENTS)))).shape == (0, 5)
 
 
 def test_a_fleet_is_its_autopilots_to_the_last_bit() -> None:
@@ -59,11 +60,12 @@ def test_a_fleet_is_its_autopilots_to_the_last_bit() -> None:
     fleet = fcc.Fleet([configs[0], fcc.Config(configs[1])])
     for row in measured[:100]:
         fleet.observe([row, row])
-    fleet.engage([measured[100]] * 2, [[0.6, 0.0, 0.0, 0.0]] * 2)
+    fleet.engage([measured[100]] * 2, [[0.6, 0.0, 0.0, 0.0, np.nan]] * 2)
     both = np.array([fleet.step([row, row]) for row in measured[101:]])
     for n, config in enumerate(configs):
-        assert np.array_equal(both[:, n], engaged(config, measured).fly(measured[101:]))
-    assert not np.array_equal(both[:, 0], both[:, 1])
+        alone = engaged(config, measured).fly(measured[101:])
+        assert np.array_equal(both[:, n], alone, equal_nan=True)
+    assert not np.array_equal(both[:, 0], both[:, 1], equal_nan=True)
     assert len(fleet) == 2
     assert fleet.setpoints.shape == (2, 6)
 

@@ -7,7 +7,6 @@ import json
 import os
 import signal
 import subprocess
-import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -131,8 +130,6 @@ def test_a_stop_of_an_engaged_flight_waits_until_it_has_stopped(
     with fly(fccd, tmp_path, instance) as daemon, ThreadPoolExecutor() as beside:
         daemon.wait_for("standby -> engaged")
         commander = fcc.Commander(instance)
-        # In the first moments there is nothing to level and to trim.
-        time.sleep(1.0)
         stops = beside.submit(command, fccd, instance, "stop", "--json")
         daemon.wait_for("levelling and trimming before the release")
         for begin in (commander.engage, lambda: commander.set(heading_rad=1.0)):

@@ -28,9 +28,17 @@ def level() -> fcc.Measurements:
     return measurements(Plant("c172p").state())
 
 
-def _watch(machine: fcc.Machine, level: fcc.Measurements, seconds: float) -> None:
+def _watch(
+    machine: fcc.Machine, level: fcc.Measurements, seconds: float, *, switch: bool | None = False
+) -> None:
     for _ in range(round(seconds / machine.period_s)):
-        machine.step(level, readback=READBACK, switch=False)
+        machine.step(level, readback=READBACK, switch=switch)
+
+
+def _switch_on(machine: fcc.Machine, level: fcc.Measurements) -> None:
+    """Give the two readings with which a position counts."""
+    assert machine.step(level, readback=READBACK, switch=True) is None
+    assert machine.step(level, readback=READBACK, switch=True) is not None
 
 
 def _texts(machine: fcc.Machine) -> list[str]:
@@ -43,10 +51,12 @@ def test_it_engages_and_releases_by_the_switch(level: fcc.Measurements) -> None:
     _watch(machine, level, 2.0)
     assert (machine.state, machine.tick, machine.engage_inhibits) == ("standby", 80, [])
     assert machine.time_s == pytest.approx(2.0)
+    assert machine.step(level, readback=READBACK, switch=True) is None, "one may be wrong"
     surfaces = machine.step(level, readback=READBACK, switch=True)
     assert surfaces is not None
     assert surfaces.throttle == pytest.approx(READBACK[0], abs=0.05), "no bump"
     assert (machine.state, machine.holds_control) == ("engaged", True)
+    assert machine.step(level, readback=READBACK, switch=False) is not None, "one may be wrong"
     assert machine.step(level, readback=READBACK, switch=False) is None
     assert (machine.state, machine.holds_control) == ("standby", False)
     assert _texts(machine) == ["standby -> engaged", "engaged -> standby", "actuators released"]
@@ -68,7 +78,7 @@ def test_a_sensor_that_is_missing_for_longer_than_allowed_is_a_failsafe(
     """250 ms by default, and a second of failsafe by this configuration."""
     machine = fcc.Machine(HOLD + "[failsafe]\nhold_s = 1.0\ndegraded_s = 0.0\n")
     _watch(machine, level, 2.0)
-    machine.step(level, readback=READBACK, switch=True)
+    _switch_on(machine, level)
     for _ in range(10):
         machine.step(level, missing=[sensor], readback=READBACK, switch=True)
         assert machine.state == "engaged"
@@ -85,7 +95,7 @@ def test_a_sensor_that_is_missing_for_longer_than_allowed_is_a_failsafe(
 def test_no_measurements_are_a_silent_sensor(level: fcc.Measurements) -> None:
     machine = fcc.Machine(HOLD)
     _watch(machine, level, 2.0)
-    machine.step(level, readback=READBACK, switch=True)
+    _switch_on(machine, level)
     machine.step()
     machine.step(level, readback=READBACK, switch=True)
     assert _texts(machine) == [
@@ -97,7 +107,7 @@ def test_no_measurements_are_a_silent_sensor(level: fcc.Measurements) -> None:
 
 def test_commands_set_the_set_points(level: fcc.Measurements) -> None:
     machine = fcc.Machine(HOLD)
-    _watch(machine, level, 2.0)
+    _watch(machine, level, 2.0, switch=None)
     machine.engage()
     machine.step(level, readback=READBACK)
     machine.command(heading_rad=1.0, altitude_m=1_000.0, airspeed_mps=50.0)
@@ -118,11 +128,11 @@ def test_it_records_as_the_daemon_does(level: fcc.Measurements, tmp_path: Path) 
     """Read back by PyPI's mcap, which knows nothing of us."""
     machine = fcc.Machine(HOLD)
     _watch(machine, level, 2.0)
-    machine.step(level, readback=READBACK, switch=True)
+    _switch_on(machine, level)
     files = machine.record_to(tmp_path / "flights", aircraft="a Cessna", ending="enough")
     assert [path.parent for path in files] == [tmp_path / "flights"]
     messages = by_index(files[0])
-    assert sum(message.topic == RECORD for message in messages) == 81
+    assert sum(message.topic == RECORD for message in messages) == 82
     # Engaged, and the mode that began with it.
     assert sum(message.topic == EVENT for message in messages) == 2
     log = metadata(files[0])

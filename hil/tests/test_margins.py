@@ -96,16 +96,20 @@ def test_three_times_the_gain_oscillates_until_the_monitor_takes_gain_out() -> N
     assert np.std(flown.pitch_rate_degps) <= 2.0
 
 
-@pytest.mark.parametrize(("airspeed_kt", "most_g"), [(80, 0.1), (100, 0.1), (120, 0.11)])
-def test_play_in_the_elevator_is_found_and_inverted(airspeed_kt: float, most_g: float) -> None:
-    """JSBSim's c172x: hysteresis of 0.05 rad, of 0.40 to 0.49 rad of travel."""
-    flown = _fly("c172x", airspeed_kt)
-    assert np.max(np.abs(np.array(flown.load_g) - 1.0)) <= most_g
+@pytest.mark.parametrize("airspeed_kt", [80, 100, 120])
+def test_play_in_the_elevator_is_found_and_inverted(airspeed_kt: float) -> None:
+    """JSBSim's c172x: hysteresis of 0.05 rad, of 0.40 to 0.49 rad of travel.
+
+    At 80 kt the play is found last, after 20 s.
+    """
+    flown = _fly("c172x", airspeed_kt, seconds=35.0, judged_after_s=25.0)
+    assert np.max(np.abs(np.array(flown.load_g) - 1.0)) <= 0.1
     assert 0.05 / 0.49 - 0.02 <= flown.play <= 0.05 / 0.40
 
 
-@pytest.mark.parametrize(("delay_s", "least_ms", "most_ms"), [(0.0, 0, 50), (0.15, 110, 210)])
+@pytest.mark.parametrize(("delay_s", "least_ms", "most_ms"), [(0.0, 0, 50), (0.15, 120, 230)])
 def test_the_latency_is_measured_in_flight(delay_s: float, least_ms: float, most_ms: float) -> None:
+    """The truth is the delay and a tick, 25 and 175 ms; the bank's models are 25 ms apart."""
     flown = _fly("c172p", 100, delay_s=delay_s, noise=True)
     assert least_ms <= flown.latency_ms <= most_ms
     late = "the outputs take effect too late for the gains"

@@ -103,8 +103,17 @@ def test_unknown_aircraft_is_refused_with_the_names_there_are() -> None:
 
 def test_controls_are_clipped_to_their_range() -> None:
     plant = Plant("c172p")
-    plant.write(Controls(elevator=2.0, aileron=-3.0, rudder=1.5, throttle=-0.5))
-    assert plant.controls == Controls(elevator=1.0, aileron=-1.0, rudder=1.0, throttle=0.0)
+    plant.write(Controls(elevator=2.0, aileron=-3.0, rudder=1.5, throttle=-0.5, elevator_trim=-1.5))
+    limits = Controls(elevator=1.0, aileron=-1.0, rudder=1.0, throttle=0.0, elevator_trim=-1.0)
+    assert plant.controls == limits
+
+
+def test_a_trim_that_is_not_written_stays_where_it_is() -> None:
+    plant = Plant("c172p")
+    trimmed = plant.controls.elevator_trim
+    assert trimmed is not None
+    plant.write(Controls(elevator=0.1))
+    assert plant.controls.elevator_trim == trimmed
 
 
 @pytest.mark.parametrize("name", ["c172x", "global5000"])

@@ -62,8 +62,8 @@ def test_a_failed_test_saves_a_plot_the_truth_and_a_recording(
     assert plot.read_bytes().startswith(b"\x89PNG")
     header, *rows = truth.read_text().splitlines()
     assert header.startswith("time_s,heading_deg,altitude_ft")
-    # 2 s of standby, the tick that engages, and 5 s, at 40 Hz.
-    assert len(rows) == 1 + 80 + 1 + 200
+    # 2 s of standby, the two readings of the switch that engage, and 5 s, at 40 Hz.
+    assert len(rows) == 1 + 80 + 2 + 200
     ticks = [message for message in by_index(recording) if message.topic == RECORD]
     assert len(ticks) == len(rows) - 1
     assert (
@@ -115,6 +115,7 @@ def test_aircraft_and_autopilot_can_be_stepped_by_a_test(pytester: pytest.Pytest
             for _ in range(80):
                 aircraft.step(3)
                 autopilot.step(measurements(aircraft.state()), switch=False)
+            assert autopilot.step(measurements(aircraft.state()), switch=True) is None
             assert autopilot.step(measurements(aircraft.state()), switch=True) is not None
             assert abs(autopilot.setpoints.heading_rad - 1.5708) < 0.02
         """.replace("\n        ", "\n"),

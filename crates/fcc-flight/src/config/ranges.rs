@@ -58,7 +58,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("autopilot.scale.throttle", 0.01, 100.0),
     ("autopilot.scale.pace", 0.05, 5.0),
     ("autopilot.envelope.max_bank_deg", 5.0, 60.0),
-    ("autopilot.envelope.max_load_factor_g", 1.05, 6.0),
+    ("autopilot.envelope.max_load_factor_g", 1.0, 6.0),
     ("autopilot.envelope.max_pitch_deg", 2.0, 45.0),
     ("autopilot.envelope.min_pitch_deg", -45.0, -2.0),
     ("autopilot.envelope.min_airspeed_kt", 5.0, 400.0),

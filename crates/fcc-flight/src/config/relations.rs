@@ -1,5 +1,7 @@
 //! Constraints between the values of a configuration, and on its lists.
 
+use fcc_core::flight::control::Envelope;
+
 use super::ranges::range_of;
 use super::{AutopilotSection, Config, SensorEntry};
 
@@ -139,6 +141,16 @@ fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&str, String))
             "max_load_factor_g",
             load,
             format!("at most limit_load_factor_g, {limit_load}"),
+        );
+    }
+    let least_load = Envelope::LEAST_MAX_LOAD_FACTOR;
+    if load < least_load {
+        at(
+            "max_load_factor_g",
+            load,
+            format!(
+                "at least {least_load:.2}: less leaves no turn, since 0.1 g are kept for the flight path"
+            ),
         );
     }
 }

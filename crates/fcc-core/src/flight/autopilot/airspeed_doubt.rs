@@ -1,4 +1,4 @@
-//! What follows from an airspeed that is doubted: it is reported, of several
+//! What follows from an airspeed or another quantity that is doubted: it is reported, of several
 //! sensors left out, and the limits keep a distance that its uncertainty needs.
 
 use core::fmt;
@@ -12,7 +12,7 @@ use crate::framework::{Flags, Notice, Time};
 
 /// The numbers of notices: one for each reason, with the sensor's number in the
 /// lowest bits.
-const REASONS: [(u8, DoubtReason, &str); 4] = [
+const REASONS: [(u8, DoubtReason, &str); 6] = [
     (
         0x40,
         DoubtReason::BlockedTube,
@@ -33,8 +33,20 @@ const REASONS: [(u8, DoubtReason, &str); 4] = [
         DoubtReason::BlockedStatic,
         "it changes against the height, and the altitude stands: the static port may be blocked",
     ),
+    (
+        0xc0,
+        DoubtReason::Contradicts,
+        "neither lift nor path agrees with it",
+    ),
+    (
+        0xe0,
+        DoubtReason::Impossible,
+        "it is beyond 90 degrees or no number",
+    ),
 ];
 const SENSORS: u8 = 0x1f;
+/// From here on they are those of the angle of attack.
+const FIRST_OF_ANGLE: u8 = 0xc0;
 
 /// Limits move inwards by this many standard deviations of the airspeed, at most
 /// by this share of the range between them.
@@ -47,9 +59,14 @@ pub(super) fn write(kind: u8, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         .iter()
         .find(|(number, ..)| *number == kind & !SENSORS);
     match known {
-        Some((_, _, reason)) => write!(
+        Some((number, _, reason)) => write!(
             f,
-            "airspeed of sensor {} is doubted: {reason}; flying on without it",
+            "{} of sensor {} is doubted: {reason}; flying on without it",
+            if *number < FIRST_OF_ANGLE {
+                "airspeed"
+            } else {
+                "angle of attack"
+            },
             (kind & SENSORS) + 1
         ),
         None => f.write_str("an unknown notice"),
@@ -70,9 +87,10 @@ impl Autopilot {
     }
 
     /// Prepares the notice of a doubt that has begun.
-    pub(super) fn note_doubt(&mut self, before: Option<Doubt>) {
-        let now = self.navigation.airspeed_doubt();
-        self.doubt_notice = now.filter(|_| before.is_none()).and_then(|doubt| {
+    pub(super) fn note_doubt(&mut self, before: [Option<Doubt>; 2]) {
+        let begun = self.doubts().into_iter().zip(before);
+        let mut begun = begun.filter_map(|(now, before)| now.filter(|_| before.is_none()));
+        self.doubt_notice = begun.next().and_then(|doubt| {
             let known = REASONS
                 .iter()
                 .find(|(_, reason, _)| *reason == doubt.reason);
@@ -83,7 +101,15 @@ impl Autopilot {
         });
     }
 
-    /// The conditions that airspeed and altitude are doubted.
+    /// The doubts of airspeed and angle of attack.
+    pub(super) const fn doubts(&self) -> [Option<Doubt>; 2] {
+        [
+            self.navigation.airspeed_doubt(),
+            self.navigation.angle_doubt(),
+        ]
+    }
+
+    /// The conditions that airspeed, altitude and angle of attack are doubted.
     pub(super) fn doubted(&self) -> Flags {
         Flags::NONE
             .with(
@@ -93,6 +119,10 @@ impl Autopilot {
             .with(
                 flags::DOUBTED_ALTITUDE,
                 self.navigation.altitude_doubt().is_some(),
+            )
+            .with(
+                flags::DOUBTED_ANGLE,
+                self.navigation.angle_doubt().is_some(),
             )
     }
 

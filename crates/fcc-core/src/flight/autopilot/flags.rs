@@ -103,6 +103,8 @@ pub const RELEASING: Flags = Flags::bit(44);
 pub const TRIM_NOT_FOLLOWED: Flags = Flags::bit(45);
 /// A release is being prepared, and the trim does not follow.
 pub const UNTRIMMED: Flags = Flags::bit(46);
+/// The angle of attack contradicts lift and path, and is not used.
+pub const DOUBTED_ANGLE: Flags = Flags::bit(47);
 
 /// The shift from the bit of a quantity that is too old to the bit of the same
 /// quantity being frozen.
@@ -122,6 +124,7 @@ pub(super) const NOT_SENSED: Flags = Flags::from_bits(
         | SUSPECT_AIRSPEED.bits()
         | DOUBTED_AIRSPEED.bits()
         | DOUBTED_ALTITUDE.bits()
+        | DOUBTED_ANGLE.bits()
         | FROM_THE_FUTURE.bits()
         | SOURCE_CLOCK.bits()),
 );
@@ -138,7 +141,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
 }
 
 /// The text of each bit, lowest first.
-pub(super) const NAMES: [&str; 47] = [
+pub(super) const NAMES: [&str; 48] = [
     "attitude is missing or too old",
     "heading is missing or too old",
     "body rates are missing or too old",
@@ -186,6 +189,7 @@ pub(super) const NAMES: [&str; 47] = [
     "levelling and trimming before the release",
     "the elevator trim does not follow",
     "the release cannot trim: hold the elevator",
+    "angle of attack contradicts lift and path and is not used",
 ];
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use super::reading_age::taken_of_needed;
 use super::whereabouts::Whereabouts;
 use super::{Autopilot, flags};
 use crate::flight::navigation::{
-    FrozenDetector, GateLimits, Lost, airspeed_can_follow, plausibility_gate,
+    ANGLE_OF_ATTACK, FrozenDetector, GateLimits, Lost, airspeed_can_follow, plausibility_gate,
 };
 use crate::flight::{Measurements, PlantState};
 use crate::framework::{Flags, Readings, Tick, Time};
@@ -50,7 +50,7 @@ impl Autopilot {
         let step_s = self.clock.step_s();
         self.note_throttle(now);
         self.follow_intermittent(step_s);
-        let doubted = self.navigation.airspeed_doubt();
+        let doubted = self.doubts();
         self.navigate(now, measured, step_s);
         self.note_doubt(doubted);
         let known = self.navigation.known();
@@ -143,7 +143,11 @@ impl Autopilot {
     /// Accepts the plausible ones of a tick's measurements.
     fn pass_gate(&mut self, measured: &Measurements) {
         let limits = self.gate_limits();
-        plausibility_gate(&mut self.accepted, measured, &limits);
+        let plausible = plausibility_gate(&mut self.accepted, measured, &limits);
+        let angle = measured.angle_of_attack_rad;
+        let is_impossible = !plausible.contains(ANGLE_OF_ATTACK);
+        self.navigation
+            .impossible_angle_from(is_impossible.then_some(angle.source));
     }
 
     /// By what measurements are judged at present.

@@ -325,10 +325,14 @@ impl AltitudeLoop {
         // approaches its limit and does not exceed it.
         let spare_rad = envelope.max_angle_of_attack_rad - estimate.angle_of_attack_rad;
         let kept = per_load * (estimate.load_factor - cos(bank));
-        let pitch_rate = wanted.min(limit_abs(
-            ANGLE_OF_ATTACK_GAIN_PER_S * spare_rad + kept,
-            2.0 * config.max_pitch_rate_radps,
-        ));
+        let most_rate = 2.0 * config.max_pitch_rate_radps;
+        let kept_rate = limit_abs(ANGLE_OF_ATTACK_GAIN_PER_S * spare_rad + kept, most_rate);
+        // It lowers the nose to the smallest pitch, and not further.
+        let to_least = schedule.pitch_pace
+            * config.pitch_gain_per_s
+            * (envelope.min_pitch_rad - estimate.pitch_rad);
+        let least_rate = limit_abs(to_least, most_rate) * cos(bank) + turn_pitch_rate;
+        let pitch_rate = wanted.min(kept_rate.max(least_rate));
         let elevator = self.pitch_rate.step_scheduled(
             pitch_rate,
             estimate.body_rates.pitch_radps,

@@ -13,15 +13,15 @@ use crate::flight::navigation::Estimate;
 /// ```
 /// use fcc_core::flight::control::Envelope;
 ///
-/// // A level turn at 2 g has a bank of 60°.
-/// let envelope = Envelope { max_bank_rad: 1.3, max_load_factor: 2.0, ..Envelope::default() };
+/// // A level turn at 2 g has a bank of 60°; 0.1 g are kept for the path.
+/// let envelope = Envelope { max_bank_rad: 1.3, max_load_factor: 2.1, ..Envelope::default() };
 /// assert!((envelope.bank_limit_rad().to_degrees() - 60.0).abs() < 1e-9);
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Envelope {
     /// Largest bank, rad.
     pub max_bank_rad: f64,
-    /// Largest load factor in g; above 1.
+    /// Largest load factor in g; at least [`Envelope::LEAST_MAX_LOAD_FACTOR`].
     pub max_load_factor: f64,
     /// Largest pitch, rad.
     pub max_pitch_rad: f64,
@@ -66,6 +66,10 @@ pub struct Envelope {
 /// The factor over the stalling speed at the present load that the lowest
 /// airspeed keeps at least.
 const OVER_STALL: f64 = 1.15;
+/// The part of the largest load factor that turns leave to the flight path, g: a
+/// turn that needs all of it cannot raise its path. 0.1 g turns a path at 100 kt
+/// by 1° in a second.
+const RESERVED_LOAD: f64 = 0.1;
 /// Gusts of so many standard deviations count as load.
 const GUST_DEVIATIONS: f64 = 2.0;
 /// The bank that is left to a slow aircraft, rad (5°).
@@ -110,11 +114,16 @@ impl Envelope {
         (self.floor_m > Self::NO_FLOOR_M).then_some(self.floor_m + self.floor_margin_m)
     }
 
+    /// The smallest of the largest load factors with which turns are flown, g:
+    /// the reserve, and 0.01 g for a bank of 8°.
+    pub const LEAST_MAX_LOAD_FACTOR: f64 = 1.11;
+
     /// The bank limit: the configured one, or the one at which a level turn
-    /// reaches the largest load factor (n = 1/cos φ), whichever is less; rad.
+    /// (n = 1/cos φ) leaves 0.1 g of the largest load factor, whichever is less;
+    /// rad.
     pub fn bank_limit_rad(&self) -> f64 {
-        self.max_bank_rad
-            .min(acos(1.0 / self.max_load_factor.max(1.0)))
+        let load = (self.max_load_factor - RESERVED_LOAD).max(1.0);
+        self.max_bank_rad.min(acos(1.0 / load))
     }
 
     /// The bank limit at an airspeed, rad: less where the aircraft is too slow
@@ -175,12 +184,19 @@ mod tests {
     /// FAA-H-8083-3C, figure 10-1: a level turn at 60° of bank has a load
     /// factor of 2.
     #[test]
-    fn the_load_factor_limits_the_bank() {
-        let envelope = Envelope {
-            max_bank_rad: 80.0_f64.to_radians(),
-            ..Envelope::default()
+    fn the_load_factor_less_a_reserve_limits_the_bank() {
+        let degrees = |max_load_factor| {
+            let envelope = Envelope {
+                max_bank_rad: 80.0_f64.to_radians(),
+                max_load_factor,
+                ..Envelope::default()
+            };
+            envelope.bank_limit_rad().to_degrees()
         };
-        assert!((envelope.bank_limit_rad().to_degrees() - 60.0).abs() < 1e-9);
+        assert!((degrees(2.1) - 60.0).abs() < 1e-9);
+        // 1/cos 17.75° is 1.05, 1/cos 8.07° is 1.01.
+        assert!((degrees(1.15) - 17.75).abs() < 0.01);
+        assert!((degrees(Envelope::LEAST_MAX_LOAD_FACTOR) - 8.07).abs() < 0.01);
         assert!((Envelope::default().bank_limit_rad().to_degrees() - 30.0).abs() < 1e-9);
     }
 

@@ -1,4 +1,4 @@
-//! Why an airspeed sensor is doubted.
+//! Why a sensor of airspeed or angle of attack is doubted.
 
 use crate::units::GRAVITY_MPS2;
 
@@ -9,7 +9,7 @@ const SEA_LEVEL_DENSITY: f64 = 1.225;
 const TELLING_M: f64 = 8.0;
 const SEEN: core::ops::RangeInclusive<f64> = 0.6..=1.6;
 
-/// What is wrong with a doubted airspeed.
+/// What is wrong with a doubted airspeed or angle of attack.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum DoubtReason {
     /// It rises with height as an altimeter does: the total pressure is
@@ -23,9 +23,13 @@ pub(crate) enum DoubtReason {
     TooHigh,
     /// It is too low.
     TooLow,
+    /// An angle of attack that neither lift nor path explains.
+    Contradicts,
+    /// An angle of attack beyond ±90°, or no number.
+    Impossible,
 }
 
-/// A doubted airspeed sensor.
+/// A doubted sensor of airspeed or angle of attack.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) struct Doubt {
     /// The number of the sensor.

@@ -66,8 +66,8 @@ schema! {
         /// Standard deviation of the load that gusts cause, g.
         #[field(11)]
         pub gust_load: f64,
-        /// Angle of attack, rad: measured if a source has it, otherwise
-        /// estimated from the lift.
+        /// Angle of attack, rad: measured if a source has it that is not
+        /// doubted, otherwise estimated from the lift.
         #[field(12, column = "estimated_angle_of_attack_rad")]
         pub angle_of_attack_rad: f64,
         /// Acceleration along the flight path, without gusts, m/s².

@@ -2,10 +2,14 @@
 
 use libm::{asin, cos, sin, sqrt};
 
+use super::airspeed_reason::Doubt;
+use super::angle_monitor::{AngleMonitor, OtherAngles};
 use super::attitude::Orientation;
+use super::force_sample::ForceSample;
 use super::sample_tracker::is_current;
+use super::upward::Upward;
 use crate::blocks::{LowPass, limit, limit_abs};
-use crate::flight::{Measurements, SpecificForce};
+use crate::flight::{BodyRates, Measurements, SpecificForce};
 use crate::framework::Time;
 use crate::units::GRAVITY_MPS2;
 
@@ -51,8 +55,8 @@ pub(super) struct Path<'a> {
 /// Load, angle of attack and the acceleration along the flight path, from the
 /// accelerometers.
 ///
-/// The angle of attack is measured where a source has it. Otherwise it follows
-/// from the lift: α = α₀ + a·n/V² below the stall (lift n·W = ½ρV²·S·c(α);
+/// The angle of attack is measured where a source has it that agrees with lift
+/// or path. Otherwise it follows from the lift: α = α₀ + a·n/V² below the stall (lift n·W = ½ρV²·S·c(α);
 /// Stevens, Lewis and Johnson 2016, section 2.3). That line leads from the angle
 /// without lift to the stalling angle at the stalling speed; it is moved in
 /// flight, slowly and within 3°, to pitch less path angle
@@ -66,6 +70,9 @@ pub struct LiftChannel {
     gust_square: LowPass,
     /// What was learned of the angle without lift, rad.
     learned_rad: f64,
+    monitor: AngleMonitor,
+    /// The source of an impossible measured angle.
+    impossible: Option<u8>,
 }
 
 /// The angle of attack without lift, and that of the stall, of an unswept wing
@@ -104,7 +111,19 @@ impl LiftChannel {
             slow_load: LowPass::new(PATH_TAU_S),
             gust_square: LowPass::new(GUST_TAU_S),
             learned_rad: 0.0,
+            monitor: AngleMonitor::new(),
+            impossible: None,
         }
+    }
+
+    /// The source of a measured angle of attack that is impossible, from now on.
+    pub(super) const fn impossible_from(&mut self, source: Option<u8>) {
+        self.impossible = source;
+    }
+
+    /// The doubt of the measured angle of attack, while it lasts.
+    pub(super) const fn doubt(&self) -> Option<Doubt> {
+        self.monitor.doubt()
     }
 
     /// The same channel in its initial state.
@@ -127,17 +146,35 @@ impl LiftChannel {
         let load_factor = self.load.step(-force.value.z_mps2 / GRAVITY_MPS2, dt_s);
         let gust = load_factor - self.slow_load.step(load_factor, dt_s);
         let gust_load = sqrt(self.gust_square.step(gust * gust, dt_s).max(0.0));
+        let by_lift_rad = self.angle_of_attack(load_factor, path, dt_s);
         let measured = measurements.angle_of_attack_rad;
-        let angle_of_attack_rad = if is_current(&measured, now) {
-            measured.value
-        } else {
-            self.angle_of_attack(load_factor, path, dt_s)
-        };
+        let believed = self.monitor.step(
+            is_current(&measured, now).then_some((measured.value, measured.source)),
+            self.impossible,
+            &self.other_angles(by_lift_rad, &measurements.body_rates.value, path),
+            dt_s,
+        );
+        let angle_of_attack_rad = believed.unwrap_or(by_lift_rad);
         Lift {
             load_factor,
             gust_load,
             angle_of_attack_rad,
             acceleration_mps2: acceleration(&force.value, angle_of_attack_rad, path.orientation),
+        }
+    }
+
+    fn other_angles(&self, by_lift_rad: f64, rates: &BodyRates, path: &Path<'_>) -> OtherAngles {
+        let upward = Upward::of(&ForceSample {
+            pitch_rad: path.orientation.pitch_rad,
+            roll_rad: path.orientation.roll_rad,
+            ..ForceSample::default()
+        });
+        let sin_path = path.climb_rate_mps / path.true_airspeed_mps.max(1.0);
+        OtherAngles {
+            by_lift_rad,
+            by_path_rad: upward.angle_of_attack_rad(sin_path),
+            speed_ratio: path.airspeed_mps / self.stall_airspeed_mps,
+            turning_radps: rates.yaw_radps.abs().max(rates.roll_radps.abs()),
         }
     }
 

@@ -10,6 +10,7 @@ mod airspeed_filter;
 mod airspeed_monitor;
 mod airspeed_reason;
 mod altitude_monitor;
+mod angle_monitor;
 mod attitude;
 mod config;
 mod estimate;
@@ -51,8 +52,8 @@ pub use estimate::{AirspeedSource, Estimate};
 pub(crate) use frozen::{Frozen, FrozenDetector, Known};
 pub use lift::{Lift, LiftChannel};
 pub(crate) use plausibility::{
-    ATTITUDE_RAD, GateLimits, HEADING_RAD, HEIGHT_M, PlausibilityLimit, airspeed_can_follow,
-    airspeed_is_suspect, plausibility_gate,
+    ANGLE_OF_ATTACK, ATTITUDE_RAD, GateLimits, HEADING_RAD, HEIGHT_M, PlausibilityLimit,
+    airspeed_can_follow, airspeed_is_suspect, plausibility_gate,
 };
 pub(crate) use replacement::{Lost, Replacement};
 pub(crate) use resolution::Resolutions;
@@ -143,6 +144,16 @@ impl Navigation {
     /// The doubt of the airspeed sensor, while it lasts.
     pub(crate) const fn airspeed_doubt(&self) -> Option<Doubt> {
         self.monitor.doubt()
+    }
+
+    /// The doubt of the sensor of the angle of attack, while it lasts.
+    pub(crate) const fn angle_doubt(&self) -> Option<Doubt> {
+        self.lift.doubt()
+    }
+
+    /// The source of a measured angle of attack that is impossible, from now on.
+    pub(crate) const fn impossible_angle_from(&mut self, source: Option<u8>) {
+        self.lift.impossible_from(source);
     }
 
     /// Whether the altimeter is doubted, and the altitude without it known.

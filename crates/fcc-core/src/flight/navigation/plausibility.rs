@@ -6,7 +6,7 @@
 //! time. A single outlier then has no effect; a lasting one is a loss of its
 //! sensor.
 
-use core::f64::consts::PI;
+use core::f64::consts::{FRAC_PI_2, PI};
 use core::time::Duration;
 
 use libm::{asin, cos, sin, sqrt};
@@ -115,6 +115,9 @@ pub(crate) struct GateLimits {
     pub(crate) altitude_step_m: f64,
 }
 
+/// The bit of the angle of attack in what the gate returns.
+pub(crate) const ANGLE_OF_ATTACK: Flags = Flags::bit(6);
+
 /// Copies the plausible values from `new` into `good`, and returns which they
 /// are: a bit for each, in the order of the measurements.
 pub(crate) fn plausibility_gate(
@@ -204,7 +207,7 @@ fn take_others(good: &mut Measurements, new: &Measurements) -> [bool; 6] {
         &mut good.angle_of_attack_rad,
         &new.angle_of_attack_rad,
         anywhere,
-        |rad| within(*rad, MAX_ANGLE_RAD),
+        |rad| within(*rad, FRAC_PI_2),
         |_, _, _| true,
     );
     let surfaces = take(
