@@ -39,6 +39,9 @@ const BELIEVED_AFTER_S: f64 = 10.0;
 const ANOTHER_BELIEVED_AFTER_S: f64 = 1.0;
 /// Doubt needs models that have learned the aircraft for this time, s.
 const LEARNED_S: f64 = 10.0;
+/// After attitude, rates, forces or altitude were not measured, the models learn
+/// for this time, s, before they are compared again.
+const SETTLED_S: f64 = 10.0;
 /// Below this share of the reference airspeed nothing is compared.
 const LEAST_RATIO: f64 = 0.4;
 /// Vertical gusts are the filter's vertical wind, over this time, s; at least
@@ -59,6 +62,8 @@ pub(super) struct MonitorInput {
     pub(super) sensor_mps: Option<(f64, u8)>,
     /// The altimeter is doubted, whose static port the sensor may share.
     pub(super) altimeter_is_doubted: bool,
+    /// Whether forces and motion are measured.
+    pub(super) motion_is_known: bool,
     /// Whether the sensor may be doubted: while engaged.
     pub(super) may_doubt: bool,
 }
@@ -85,6 +90,8 @@ pub(super) struct AirspeedMonitor {
     differs_s: f64,
     wind_s: f64,
     agrees_s: f64,
+    /// For how long the models still learn before they are compared, s.
+    settles_s: f64,
     reference: Reference,
     doubt: Option<Doubt>,
     /// A sensor was doubted in this flight: of several, readings that
@@ -119,6 +126,7 @@ impl AirspeedMonitor {
             differs_s: 0.0,
             wind_s: 0.0,
             agrees_s: 0.0,
+            settles_s: 0.0,
             reference: Reference::NONE,
             doubt: None,
             was_doubted: false,
@@ -189,6 +197,9 @@ impl AirspeedMonitor {
 
     /// Processes one tick.
     pub(super) fn step(&mut self, input: &MonitorInput, dt_s: f64) {
+        if !input.motion_is_known {
+            self.settles_s = SETTLED_S;
+        }
         if dt_s <= 0.0 {
             return;
         }
@@ -209,6 +220,7 @@ impl AirspeedMonitor {
             }
             return;
         };
+        let settles = self.settle(&mut bank, input, dt_s);
         let now_mps = bank.older.airspeed_mps();
         let acceleration = acceleration_mps2(&sample, now_mps);
         for filter in bank.each() {
@@ -221,10 +233,31 @@ impl AirspeedMonitor {
         }
         bank.younger_s += dt_s;
         bank.learned_s += dt_s;
-        if let Some((sensor_mps, source)) = input.sensor_mps {
-            self.compare(&mut bank, input, (sensor_mps, source), holds, dt_s);
+        if settles {
+            self.follow_sensor(&mut bank);
+        } else if let Some(sensor) = input.sensor_mps
+            && (input.motion_is_known || self.doubt.is_some())
+        {
+            self.compare(&mut bank, input, sensor, holds, dt_s);
         }
         self.bank = Some(bank);
+    }
+
+    /// Whether the copies only follow the sensor, until the models have settled
+    /// after a time without known motion. They begin with those from before.
+    fn settle(&mut self, bank: &mut FilterBank, input: &MonitorInput, dt_s: f64) -> bool {
+        let settles = input.motion_is_known && self.settles_s > 0.0 && self.doubt.is_none();
+        let Some((sensor_mps, _)) = input.sensor_mps.filter(|_| settles) else {
+            return false;
+        };
+        if self.settles_s >= SETTLED_S {
+            bank.older.adopt(sensor_mps);
+            bank.older.restore_models();
+            bank.believing = bank.older;
+            (self.sum, self.sensor_sum_mps, self.sum_s) = (ForceSample::default(), 0.0, 0.0);
+        }
+        self.settles_s -= dt_s;
+        true
     }
 
     /// Thrust over that at full throttle, and its recent change.
