@@ -168,6 +168,26 @@ def test_half_a_second_without_any_sensor_is_flown_through() -> None:
     assert not [text for _, text in flight.events() if text.startswith("mode: ")]
 
 
+@pytest.mark.parametrize("period_s", [0.3, 0.5])
+def test_body_rates_that_come_and_go_are_left_out(period_s: float) -> None:
+    """With each return flown, the pitch rate's standard deviation is 58 deg/s."""
+    flight = Flight([], 0.0, aircraft="c172p")
+    begins_s = flight.began_s + LOST_AT_S
+    slow = SensorFault(
+        Kind.SLOW,
+        "body_rates",
+        SENSORS["body_rates"],
+        begins_s,
+        begins_s + LOST_FOR_S,
+        amount=period_s,
+    )
+    flight.rig.set_faults([slow])
+    flight.fly_to(LOST_AT_S + LOST_FOR_S + 3.0)
+    assert np.std(flight.between("pitch_rate_degps", LEVEL_AFTER_S, LOST_FOR_S)) < 2.0
+    assert len(flight.events()) < 15
+    assert flight.when("failsafe -> engaged") == pytest.approx(LOST_FOR_S + 2.0, abs=period_s)
+
+
 def test_without_attitude_and_rates_control_is_given_back() -> None:
     flight = Flight(["attitude", "body_rates"], 60.0)
     flight.fly_to(LOST_AT_S + 6.0)

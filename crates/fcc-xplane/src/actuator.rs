@@ -117,6 +117,7 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
         if held.pace.take(now, messages, link.frame_period_s()) {
             sent = sent.and(self.controls.set(outputs, write));
             held.confirmation.wrote(now, yoke_ratios(outputs));
+            link.sent_yoke.add(yoke_ratios(outputs));
         }
         let unconfirmed = held.confirmation.is_overdue(now, link);
         link.set_unconfirmed(unconfirmed);

@@ -84,6 +84,7 @@ mod reply_port;
 mod rows;
 mod sending_clock;
 mod sensor;
+mod sent_yoke;
 mod shared_address;
 mod silence;
 mod simulator;

@@ -14,6 +14,7 @@ use fcc_core::framework::TakeoverNotice;
 use crate::counters::Counters;
 use crate::missing::ValueSet;
 use crate::readbacks::Readbacks;
+use crate::sent_yoke::SentYoke;
 use crate::shared_address::SharedAddress;
 use crate::simulator::SimulatorState;
 
@@ -39,6 +40,8 @@ pub(crate) struct SharedState {
     local_port: AtomicU16,
     state: AtomicU8,
     control: AtomicU8,
+    /// A confirmed release of this program's may still be undone by a late write.
+    may_be_undone: AtomicBool,
     unconfirmed: AtomicBool,
     /// Another program writes the held controls, too.
     other_writer: AtomicBool,
@@ -55,6 +58,7 @@ pub(crate) struct SharedState {
     /// 0 not known, 1 in the air, 2 on the ground.
     ground: AtomicU8,
     pub(crate) read_back: Readbacks,
+    pub(crate) sent_yoke: SentYoke,
     /// Is told before control is taken.
     notice: OnceLock<&'static dyn TakeoverNotice>,
     pub(crate) counters: Counters,
@@ -68,6 +72,7 @@ impl SharedState {
             local_port: AtomicU16::new(0),
             state: AtomicU8::new(SimulatorState::Silent as u8),
             control: AtomicU8::new(Control::Free as u8),
+            may_be_undone: AtomicBool::new(false),
             unconfirmed: AtomicBool::new(false),
             other_writer: AtomicBool::new(false),
             left_overridden: AtomicBool::new(false),
@@ -79,6 +84,7 @@ impl SharedState {
             frame_period: AtomicU32::new(0),
             ground: AtomicU8::new(0),
             read_back: Readbacks::never(),
+            sent_yoke: SentYoke::new(),
             notice: OnceLock::new(),
             counters: Counters::default(),
         }
@@ -127,6 +133,16 @@ impl SharedState {
 
     pub(crate) fn set_control(&self, control: Control) {
         self.control.store(control as u8, Ordering::Release);
+    }
+
+    /// Whether a confirmed release of this program's may still be undone by a
+    /// late write of its own.
+    pub(crate) fn may_be_undone(&self) -> bool {
+        self.may_be_undone.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn set_may_be_undone(&self, may: bool) {
+        self.may_be_undone.store(may, Ordering::Relaxed);
     }
 
     /// `Free` becomes `ReleaseMonitor`: another program's overrides are cleared.

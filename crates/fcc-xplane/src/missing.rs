@@ -91,6 +91,8 @@ pub(crate) struct MissingValues {
     /// while it is silent.
     sending_since: Time,
     looked: Time,
+    /// At the last check.
+    missing: ValueSet,
 }
 
 impl MissingValues {
@@ -100,6 +102,7 @@ impl MissingValues {
             resubscribe,
             sending_since: Time::NEVER,
             looked: Time::NEVER,
+            missing: ValueSet::from_bits(0),
         }
     }
 
@@ -133,9 +136,16 @@ impl MissingValues {
                 // this time.
                 self.resubscribe + IN_VAIN
             };
-            now.since(arrived.max(self.sending_since)) >= patience
+            // What was missing before a silence has not arrived by its end.
+            let since = if self.missing.holds(expected.bit()) {
+                arrived
+            } else {
+                arrived.max(self.sending_since)
+            };
+            since.is_never() || now.since(since) >= patience
         });
-        Some(ValueSet(missing.fold(0, |set, value| set | value.bit())))
+        self.missing = ValueSet(missing.fold(0, |set, value| set | value.bit()));
+        Some(self.missing)
     }
 }
 
@@ -307,6 +317,34 @@ mod tests {
             let now = seconds(second);
             let set = missing_values.check(now, now, |_| Time::NEVER);
             assert_eq!(set, Some(ValueSet::default()), "{second}");
+        }
+    }
+
+    #[test]
+    fn what_never_arrived_stays_missing_after_a_silence() {
+        let mut missing_values = missing_values();
+        let mut last_received = seconds(0);
+        for second in 0..30 {
+            let now = seconds(second);
+            let silent = (10..15).contains(&second);
+            if !silent {
+                last_received = now;
+            }
+            let arrives = second >= 25;
+            let set = missing_values.check(now, last_received, |of| {
+                if of == SWITCH && !arrives {
+                    Time::NEVER
+                } else {
+                    last_received
+                }
+            });
+            let expected = if (4..25).contains(&second) {
+                SWITCH.bit()
+            } else {
+                0
+            };
+            let expected = (!silent).then_some(ValueSet::from_bits(expected));
+            assert_eq!(set, expected, "{second}");
         }
     }
 

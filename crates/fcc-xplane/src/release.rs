@@ -16,6 +16,9 @@ use crate::udp_port::any_address;
 
 /// The interval between two releases.
 const AGAIN_AFTER: Duration = Duration::from_millis(250);
+/// X-Plane confirms a release by overrides that stay clear for this long: a
+/// write from before it may arrive later.
+const CLEAR_FOR: Duration = Duration::from_millis(500);
 /// The receive timeout.
 const LISTEN_FOR: Duration = Duration::from_millis(20);
 /// After this many refusals in a row the simulator counts as unreachable.
@@ -202,11 +205,14 @@ fn retry_until_released(
     let mut refused = false;
     // The readback of each override since then.
     let mut readback: [Option<bool>; 2] = [None; 2];
+    let mut clear_since: Option<Instant> = None;
+    let mut answered = begun;
     while begun.elapsed() < timeout {
         if is_cancelled() {
             return Released::Cancelled;
         }
-        if sent.is_none_or(|at| at.elapsed() >= AGAIN_AFTER) {
+        let is_clear = readback == [Some(false); 2] && answered.elapsed() < AGAIN_AFTER;
+        if !is_clear && sent.is_none_or(|at| at.elapsed() >= AGAIN_AFTER) {
             sent = Some(Instant::now());
             readback = [None; 2];
             refused = !conversation.send_release(controls);
@@ -214,13 +220,18 @@ fn retry_until_released(
         }
         if conversation.receive(&mut readback) {
             refusals = 0;
+            answered = Instant::now();
+            if readback.contains(&Some(true)) {
+                clear_since = None;
+            } else if readback == [Some(false); 2]
+                && clear_since.get_or_insert(answered).elapsed() >= CLEAR_FOR
+            {
+                return Released::Confirmed;
+            }
         }
         if !refused && conversation.is_refused() {
             refused = true;
             refusals += 1;
-        }
-        if readback == [Some(false); 2] {
-            return Released::Confirmed;
         }
         if refusals >= REFUSALS {
             return Released::Unreachable;

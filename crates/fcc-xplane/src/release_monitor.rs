@@ -4,6 +4,11 @@
 //! again. If all three are lost, X-Plane keeps its yoke overridden. The sensor
 //! is still called and reads the overrides: while a released override is still
 //! set, it sends the release again.
+//!
+//! A write from before the release may arrive after it, late or doubled, and set
+//! an override again. So the overrides are read for [`LATE_WRITES`] after the
+//! release, and released again unless another program set them: the yoke of
+//! that one moves to where this program did not put it.
 
 use core::time::Duration;
 
@@ -21,6 +26,24 @@ const AGAIN_AFTER: Duration = Duration::from_millis(250);
 /// After this many releases (10 s) another program holds the override, and
 /// keeps it.
 const MOST_TIMES: u8 = 40;
+/// A write may arrive this long after it was sent. This is an assumption: a full
+/// queue in a home router delays by up to about 2 s, and this is twice as much
+/// and a reserve.
+const LATE_WRITES: Duration = Duration::from_secs(5);
+/// An override that is set again is released after this long, in which the yoke
+/// of another program moves, which writes it in each frame.
+const LOOKED_AT_FOR: Duration = Duration::from_millis(250);
+/// The yoke may still be read where it was before the override.
+const YOKE_AFTER: Duration = Duration::from_millis(100);
+/// A difference of the yoke that is no rounding error.
+const MOVED: f32 = 1e-6;
+
+const OVERRIDES: [Quantity; 2] = [Quantity::OverrideJoystick, Quantity::OverrideThrottles];
+const YOKE: [Quantity; 3] = [
+    Quantity::YokePitch,
+    Quantity::YokeRoll,
+    Quantity::YokeHeading,
+];
 
 /// Monitors the overrides after a release.
 #[derive(Debug)]
@@ -30,6 +53,12 @@ pub(crate) struct ReleaseMonitor {
     since: Time,
     sent: Time,
     times: u8,
+    /// Until when a release of this program's may be undone by a late write.
+    undone_until: Time,
+    /// Since when an override is set again; never while none is.
+    set_again: Time,
+    /// Where the yoke was then.
+    yoke: [Option<f32>; 3],
 }
 
 impl ReleaseMonitor {
@@ -39,29 +68,67 @@ impl ReleaseMonitor {
             since: Time::NEVER,
             sent: Time::NEVER,
             times: 0,
+            undone_until: Time::NEVER,
+            set_again: Time::NEVER,
+            yoke: [None; 3],
         }
     }
 
-    /// Checks the overrides, and sends the release again if one is still set.
+    /// Checks the overrides, and sends the release again if one is still set,
+    /// or set again.
     pub(crate) fn poll(
         &mut self,
         now: Time,
         link: &SharedState,
         send: impl FnMut(&[u8]) -> Result<(), Errno>,
     ) -> Result<(), Errno> {
-        if link.control() != Control::ReleaseMonitor {
-            self.since = Time::NEVER;
+        match link.control() {
+            Control::Held => {
+                self.since = Time::NEVER;
+                self.end_watch(link);
+            }
+            Control::ReleaseMonitor => return self.repeat(now, link, send),
+            Control::Free => {
+                self.since = Time::NEVER;
+                if !self.undone_until.is_never() && self.is_undone(now, link) {
+                    link.set_releasing_if_free();
+                    return self.repeat(now, link, send);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Sends the release again until it is confirmed.
+    fn repeat(
+        &mut self,
+        now: Time,
+        link: &SharedState,
+        send: impl FnMut(&[u8]) -> Result<(), Errno>,
+    ) -> Result<(), Errno> {
+        let again = !self.set_again.is_never();
+        if again && self.is_moved_by_another(now, link) {
+            self.end_watch(link);
+            link.set_free_if_releasing();
             return Ok(());
         }
         if self.since.is_never() {
             self.since = now;
             self.sent = now;
+            if again {
+                self.times += 1;
+                return self.controls.release(send);
+            }
             self.times = 0;
+            // What an earlier program left set was written by that one.
+            if !link.sent_yoke.is_empty() {
+                self.undone_until = now + LATE_WRITES;
+                link.set_may_be_undone(true);
+            }
         }
         let settled = self.since + SETTLED_AFTER;
         // An override without a readback does not exist in this simulator.
-        let readback = [Quantity::OverrideJoystick, Quantity::OverrideThrottles]
-            .map(|quantity| link.read_back.shown(quantity));
+        let readback = OVERRIDES.map(|quantity| link.read_back.shown(quantity));
         let readback = readback.iter().flatten();
         let still_set = readback
             .clone()
@@ -71,6 +138,7 @@ impl ReleaseMonitor {
                 .clone()
                 .all(|(value, at)| *value < 0.5 && *at > settled);
         if all_clear {
+            self.set_again = Time::NEVER;
             link.set_free_if_releasing();
         } else if still_set && now.since(self.sent) >= AGAIN_AFTER && self.times < MOST_TIMES {
             self.sent = now;
@@ -78,6 +146,50 @@ impl ReleaseMonitor {
             return self.controls.release(send);
         }
         Ok(())
+    }
+
+    /// Whether an override is set again, not by another program, after a
+    /// release that was confirmed.
+    fn is_undone(&mut self, now: Time, link: &SharedState) -> bool {
+        let is_set = OVERRIDES
+            .iter()
+            .filter_map(|quantity| link.read_back.shown(*quantity))
+            .any(|(value, at)| value >= 0.5 && now.since(at) < LOOKED_AT_FOR);
+        if !is_set {
+            self.set_again = Time::NEVER;
+            if now >= self.undone_until {
+                self.end_watch(link);
+            }
+            return false;
+        }
+        if self.set_again.is_never() {
+            self.set_again = now;
+        }
+        if self.times >= MOST_TIMES || self.is_moved_by_another(now, link) {
+            self.end_watch(link);
+            return false;
+        }
+        now.since(self.set_again) >= LOOKED_AT_FOR
+    }
+
+    /// Whether the yoke is where this program did not put it, and where it was
+    /// not when the override was set.
+    fn is_moved_by_another(&mut self, now: Time, link: &SharedState) -> bool {
+        let yoke = YOKE.map(|axis| link.read_back.shown(axis).map(|(value, _)| value));
+        if now.since(self.set_again) < YOKE_AFTER {
+            self.yoke = yoke;
+            return false;
+        }
+        let pairs = yoke.into_iter().zip(self.yoke).enumerate();
+        pairs
+            .filter_map(|(axis, (is, was))| Some((axis, is?, was?)))
+            .any(|(axis, is, was)| (is - was).abs() > MOVED && !link.sent_yoke.holds(axis, is))
+    }
+
+    fn end_watch(&mut self, link: &SharedState) {
+        self.undone_until = Time::NEVER;
+        self.set_again = Time::NEVER;
+        link.set_may_be_undone(false);
     }
 }
 

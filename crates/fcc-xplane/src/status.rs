@@ -126,10 +126,11 @@ impl XPlaneStatus {
         self.link.is_left_overridden()
     }
 
-    /// Where the controls are held, or their release is not yet confirmed.
+    /// Where the controls are held, or their release is not yet confirmed, or
+    /// may still be undone by a late write: for 5 s.
     pub fn held_at(&self) -> Option<SocketAddr> {
         let allowed = |at: &SocketAddr| self.link.address.is_allowed(*at);
-        let held = self.control() != Control::Free;
+        let held = self.control() != Control::Free || self.link.may_be_undone();
         self.simulator().filter(allowed).filter(|_| held)
     }
 

@@ -8,7 +8,7 @@ use std::net::SocketAddr;
 use std::time::Duration;
 
 use fcc_xplane::{Control, Output, Released, Trouble, XPlane};
-use support::bench::Bench;
+use support::bench::{Bench, SURFACES};
 use support::{
     FakeXPlane, OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, THROTTLE, YOKE_HEADING, YOKE_PITCH,
     YOKE_ROLL,
@@ -160,6 +160,50 @@ fn a_release_that_got_lost_is_sent_again_by_the_sensor() {
     bench.simulator.assert_shows(OVERRIDE_THROTTLES, 0.0);
     bench.simulator.assert_shows(YOKE_PITCH, 0.0);
     assert_eq!(bench.status.control(), Control::Free);
+}
+
+#[test]
+fn an_override_set_by_a_write_after_the_release_is_released_again() {
+    let mut bench = Bench::released();
+    for late in [OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, OVERRIDE_JOYSTICK] {
+        bench.simulator.set(late, 1.0);
+        // As it was last written.
+        bench.simulator.set(YOKE_PITCH, SURFACES.elevator as f32);
+        for _ in 0..20 {
+            bench.watch().unwrap();
+        }
+        bench.simulator.assert_shows(late, 0.0);
+        bench.simulator.assert_shows(YOKE_PITCH, 0.0);
+        for _ in 0..20 {
+            bench.watch().unwrap();
+        }
+        assert_eq!(bench.status.control(), Control::Free);
+    }
+    // 5 s after the release: another program's.
+    for _ in 0..60 {
+        bench.watch().unwrap();
+    }
+    assert_eq!(bench.status.held_at(), None);
+    bench.simulator.writes.clear();
+    bench.simulator.set(OVERRIDE_JOYSTICK, 1.0);
+    for _ in 0..40 {
+        bench.watch().unwrap();
+    }
+    assert_eq!(bench.simulator.writes, []);
+}
+
+#[test]
+fn an_override_of_a_program_that_takes_over_is_not_released() {
+    let mut bench = Bench::released();
+    bench.simulator.set(OVERRIDE_JOYSTICK, 1.0);
+    for tick in 0..100_u8 {
+        // In the middle of what was written, and moved by little.
+        let pitch = 0.05 + 0.001 * (f32::from(tick) * 0.2).sin();
+        bench.simulator.set(YOKE_PITCH, pitch);
+        bench.watch().unwrap();
+    }
+    assert_eq!(bench.simulator.writes, []);
+    assert_eq!(bench.status.held_at(), None);
 }
 
 #[test]

@@ -7,7 +7,7 @@
 
 use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Actuator, ActuatorFault, Sensor, SensorFault};
-use fcc_xplane::{XPlane, XPlaneActuator, XPlaneConfig, XPlaneSensor, XPlaneStatus};
+use fcc_xplane::{Control, XPlane, XPlaneActuator, XPlaneConfig, XPlaneSensor, XPlaneStatus};
 
 use super::{
     FakeXPlane, OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, Ticks, YOKE_HEADING, YOKE_PITCH, YOKE_ROLL,
@@ -80,6 +80,23 @@ impl Bench {
             let _ = self.watch();
         }
         self.watch().unwrap();
+    }
+
+    /// After a flight whose release X-Plane has confirmed.
+    pub fn released() -> Self {
+        let mut bench = Self::new();
+        bench.settle();
+        for _ in 0..40 {
+            bench.fly().unwrap();
+        }
+        bench.actuator.as_mut().unwrap().release().unwrap();
+        for _ in 0..40 {
+            bench.watch().unwrap();
+        }
+        assert_eq!(bench.status.control(), Control::Free);
+        assert!(bench.status.held_at().is_some(), "a write may be late");
+        bench.simulator.writes.clear();
+        bench
     }
 
     pub fn assert_released(&mut self) {

@@ -147,6 +147,48 @@ pub(super) fn held_without(lost: Flags) -> Held {
     })
 }
 
+/// A quantity that comes and goes is used again when it has been good for this
+/// time without interruption, s.
+const STEADY_S: f64 = 1.0;
+
+/// The quantities that come and go. One that is lost again in the same failsafe
+/// is left out, and flown without: a loop that changes several times a second
+/// between old readings and what replaces them oscillates.
+#[derive(Clone, Copy, Debug, Default)]
+struct Intermittent {
+    /// Lost at present; lost before, and good since.
+    lost: Flags,
+    returned: Flags,
+    left_out: Flags,
+    /// For how long each has been good, s.
+    good_s: [f64; 6],
+}
+
+impl Intermittent {
+    fn step(&mut self, old: Flags, dt_s: f64) {
+        self.returned |= self.lost.keeping(old, false);
+        self.left_out |= Flags::from_bits(old.bits() & self.returned.bits());
+        self.lost = old;
+        for (bit, good_s) in self.good_s.iter_mut().enumerate() {
+            let flag = Flags::bit(bit as u32);
+            *good_s = if old.contains(flag) {
+                0.0
+            } else {
+                *good_s + dt_s
+            };
+            self.left_out = self.left_out.keeping(flag, *good_s < STEADY_S);
+        }
+    }
+
+    /// What is left out while these are lost: what is flown without attitude and
+    /// body rates is worse than what comes and goes.
+    fn left_out_with(&self, lost: Flags) -> Flags {
+        const LAST: Flags = Flags::from_bits(flags::ATTITUDE.bits() | flags::BODY_RATES.bits());
+        let both = (self.left_out | lost).contains(LAST);
+        self.left_out.keeping(LAST, !both)
+    }
+}
+
 /// A failsafe because of faults: since when, and whether it can go on or end.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Degraded {
@@ -163,6 +205,7 @@ pub(super) struct Degraded {
     good_s: f64,
     is_sound: bool,
     pub(super) glides: bool,
+    intermittent: Intermittent,
     /// What happened in this tick, by the number of a notice, after how long, s.
     news: Option<(u8, f64)>,
     /// How long the failsafe lasted that the loop ended in the last tick because
@@ -192,7 +235,33 @@ impl Autopilot {
             .external(now, measured)
             .contains(flags::SUSPECT_AIRSPEED)
             || self.navigation.airspeed_doubt().is_some();
-        flags::unusable(self.stale(now), self.frozen()).with(flags::AIRSPEED, contradicted)
+        let unusable = flags::unusable(self.stale(now), self.frozen());
+        let left_out = self.degraded.intermittent.left_out_with(unusable);
+        (unusable | left_out).with(flags::AIRSPEED, contradicted)
+    }
+
+    /// The quantities that come and go in a failsafe.
+    pub(super) const fn intermittent(&self) -> Flags {
+        self.degraded.intermittent.left_out
+    }
+
+    /// Follows which quantities come and go in a failsafe.
+    pub(super) fn follow_intermittent(&mut self, dt_s: f64) {
+        if self.degraded.is_failsafe {
+            let old = self.too_old(&self.accepted);
+            self.degraded.intermittent.step(old, dt_s);
+        }
+    }
+
+    /// Whether all that the air data are held against is measured. A frozen
+    /// altimeter may be one whose static port is blocked.
+    pub(super) fn motion_is_known(&self, now: Time, lost: Flags) -> bool {
+        const MOTION: Flags = Flags::from_bits(
+            flags::ATTITUDE.bits() | flags::BODY_RATES.bits() | flags::SPECIFIC_FORCE.bits(),
+        );
+        let no_altitude = self.navigation.altitude_doubt().is_none()
+            && (self.stale(now) | self.intermittent()).contains(flags::ALTITUDE);
+        !lost.intersects(MOTION) && !no_altitude
     }
 
     /// What is lost and not replaced by what counts as measured: an airspeed by
@@ -215,8 +284,7 @@ impl Autopilot {
         if !self.degraded.is_failsafe {
             return;
         }
-        let faults =
-            self.unsafe_to_fly(tick.woke, measured) | self.not_flyable(tick.woke, measured);
+        let faults = self.unsafe_now(tick.woke, measured) | self.not_flyable(tick.woke, measured);
         let held = held_without(self.unreplaced(self.lost(tick.woke, measured)));
         let config = &self.config.failsafe;
         let degraded = &mut self.degraded;
@@ -267,7 +335,8 @@ impl Autopilot {
 
     /// Whether it flies on without a quantity.
     pub(super) const fn is_degraded(&self) -> bool {
-        self.degraded.is_sound && self.degraded.good_s == 0.0
+        let degraded = &self.degraded;
+        degraded.is_sound && (degraded.good_s == 0.0 || !degraded.intermittent.left_out.is_empty())
     }
 }
 

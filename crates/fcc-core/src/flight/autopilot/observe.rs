@@ -49,6 +49,7 @@ impl Autopilot {
         self.follow_ages(now, measured);
         let step_s = self.clock.step_s();
         self.note_throttle(now);
+        self.follow_intermittent(step_s);
         let doubted = self.doubts();
         self.navigate(now, measured, step_s);
         self.note_doubt(doubted);
@@ -66,7 +67,10 @@ impl Autopilot {
 
     /// Estimates the aircraft's state, in failsafe without what is lost.
     fn navigate(&mut self, now: Time, measured: &Measurements, step_s: f64) {
-        let lost = by_name(self.lost(now, measured));
+        let lost = self.lost(now, measured);
+        self.navigation
+            .knows_motion(self.motion_is_known(now, lost));
+        let lost = by_name(lost);
         let estimate = *self.navigation.estimate();
         self.replacement
             .follow(&self.accepted, lost, &estimate, step_s);

@@ -79,7 +79,7 @@ impl Autopilot {
 
     /// The readings that are too old, by the plant's time. Of a doubted sensor
     /// none is used: the airspeed and, for a time, the altitude are known without.
-    fn too_old(&self, measurements: &Measurements) -> Flags {
+    pub(super) fn too_old(&self, measurements: &Measurements) -> Flags {
         let judged = self.clock.judged();
         let taken = taken_of_needed(measurements);
         taken.into_iter().fold(Flags::NONE, |old, (flag, taken)| {
@@ -103,8 +103,13 @@ impl Autopilot {
         Flags::from_bits(self.too_old(&self.accepted).bits() & !raw.bits())
     }
 
-    /// The faults of an engaged flight. A silent plant is waited for.
+    /// The faults of an engaged flight, and what comes and goes in a failsafe.
     pub(super) fn unsafe_to_fly(&self, now: Time, measurements: &Measurements) -> Flags {
+        self.unsafe_now(now, measurements) | self.intermittent()
+    }
+
+    /// The faults of this tick. A silent plant is waited for.
+    pub(super) fn unsafe_now(&self, now: Time, measurements: &Measurements) -> Flags {
         let lost = self.silence(now) > self.max_silence();
         let stale = if lost {
             flags::NEEDED | flags::PLANT_SILENT

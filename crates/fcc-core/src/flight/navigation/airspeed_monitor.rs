@@ -53,6 +53,9 @@ const NEAR_STALL_RAD: f64 = 0.25;
 const NEAR_STALL_AFTER_S: f64 = 1.0;
 /// Doubt needs models that have learned the aircraft for this time, s.
 const LEARNED_S: f64 = 10.0;
+/// After attitude, rates, forces or altitude were not measured, the models learn
+/// for this time, s, before they are compared again.
+const SETTLED_S: f64 = 10.0;
 /// Below this share of the reference airspeed nothing is compared.
 const LEAST_RATIO: f64 = 0.4;
 /// Vertical gusts are the filter's vertical wind, over this time, s; at least
@@ -73,6 +76,8 @@ pub(super) struct MonitorInput {
     pub(super) sensor_mps: Option<(f64, u8)>,
     /// The altimeter is doubted, whose static port the sensor may share.
     pub(super) altimeter_is_doubted: bool,
+    /// Whether forces and motion are measured.
+    pub(super) motion_is_known: bool,
     /// Whether the sensor may be doubted: while engaged.
     pub(super) may_doubt: bool,
 }
@@ -103,6 +108,8 @@ pub(super) struct AirspeedMonitor {
     agrees_s: f64,
     /// For how long a doubted sensor has been lower than the forces, near the stall, s.
     near_stall_s: f64,
+    /// For how long the models still learn before they are compared, s.
+    settles_s: f64,
     reference: Reference,
     doubt: Option<Doubt>,
     /// While the cause of a doubt may be the static port.
@@ -142,6 +149,7 @@ impl AirspeedMonitor {
             wind_s: 0.0,
             agrees_s: 0.0,
             near_stall_s: 0.0,
+            settles_s: 0.0,
             reference: Reference::NONE,
             doubt: None,
             static_port: None,
@@ -214,6 +222,9 @@ impl AirspeedMonitor {
 
     /// Processes one tick.
     pub(super) fn step(&mut self, input: &MonitorInput, dt_s: f64) {
+        if !input.motion_is_known {
+            self.settles_s = SETTLED_S;
+        }
         if dt_s <= 0.0 {
             return;
         }
@@ -234,6 +245,7 @@ impl AirspeedMonitor {
             }
             return;
         };
+        let settles = self.settle(&mut bank, input, dt_s);
         let now_mps = bank.older.airspeed_mps();
         let acceleration = acceleration_mps2(&sample, now_mps);
         for filter in bank.each() {
@@ -246,10 +258,31 @@ impl AirspeedMonitor {
         }
         bank.younger_s += dt_s;
         bank.learned_s += dt_s;
-        if let Some((sensor_mps, source)) = input.sensor_mps {
-            self.compare(&mut bank, input, (sensor_mps, source), holds, dt_s);
+        if settles {
+            self.follow_sensor(&mut bank);
+        } else if let Some(sensor) = input.sensor_mps
+            && (input.motion_is_known || self.doubt.is_some())
+        {
+            self.compare(&mut bank, input, sensor, holds, dt_s);
         }
         self.bank = Some(bank);
+    }
+
+    /// Whether the copies only follow the sensor, until the models have settled
+    /// after a time without known motion. They begin with those from before.
+    fn settle(&mut self, bank: &mut FilterBank, input: &MonitorInput, dt_s: f64) -> bool {
+        let settles = input.motion_is_known && self.settles_s > 0.0 && self.doubt.is_none();
+        let Some((sensor_mps, _)) = input.sensor_mps.filter(|_| settles) else {
+            return false;
+        };
+        if self.settles_s >= SETTLED_S {
+            bank.older.adopt(sensor_mps);
+            bank.older.restore_models();
+            bank.believing = bank.older;
+            (self.sum, self.sensor_sum_mps, self.sum_s) = (ForceSample::default(), 0.0, 0.0);
+        }
+        self.settles_s -= dt_s;
+        true
     }
 
     /// Thrust over that at full throttle, and its recent change.

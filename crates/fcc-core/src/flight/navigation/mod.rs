@@ -90,6 +90,8 @@ pub struct Navigation {
     airframe: AirframePrior,
     throttle: Option<f64>,
     is_engaged: bool,
+    /// Whether what the air data monitors compare with is measured.
+    motion_is_known: bool,
     side_force: LowPass,
     estimate: Estimate,
 }
@@ -107,6 +109,7 @@ impl Navigation {
             airframe: CESSNA_172,
             throttle: None,
             is_engaged: false,
+            motion_is_known: true,
             side_force: LowPass::new(config.side_force_tau_s),
             estimate: Estimate::INITIAL,
         }
@@ -129,6 +132,13 @@ impl Navigation {
     pub(crate) const fn flown_with(&mut self, throttle: Option<f64>, is_engaged: bool) {
         self.throttle = throttle;
         self.is_engaged = is_engaged;
+    }
+
+    /// Whether attitude, body rates and forces are measured from now on, and the
+    /// altitude unless it is doubted: otherwise no sensor of air data is doubted,
+    /// and what it is held against begins anew afterwards.
+    pub(crate) const fn knows_motion(&mut self, motion_is_known: bool) {
+        self.motion_is_known = motion_is_known;
     }
 
     /// The doubt of the airspeed sensor, while it lasts.
@@ -247,6 +257,7 @@ impl Navigation {
             altitude_m: vertical.altitude_m,
             sensor_mps: is_current(&airspeed, now).then_some((airspeed.value, airspeed.source)),
             altimeter_is_doubted: self.altitude_monitor.is_doubted(),
+            motion_is_known: self.motion_is_known,
             may_doubt: self.is_engaged,
         }
     }

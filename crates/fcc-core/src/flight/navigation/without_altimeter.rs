@@ -50,7 +50,8 @@ impl Navigation {
             self.vertical.step(now, measurements, attitude, dt_s);
         }
         let (followed, bias_mps2) = self.vertical.state();
-        let is_felt = is_current(&measurements.specific_force, now);
+        let is_felt = is_current(&measurements.specific_force, now)
+            && (self.motion_is_known || self.altitude_monitor.is_doubted());
         let input = AltitudeInput {
             altitude_m: (is_felt && is_current(&altitude, now)).then_some(altitude.value),
             step_m: self.vertical.resolution().step(),
