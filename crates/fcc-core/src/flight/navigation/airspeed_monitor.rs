@@ -46,9 +46,8 @@ const BELIEVED_AFTER_S: f64 = 10.0;
 const ANOTHER_BELIEVED_AFTER_S: f64 = 1.0;
 /// A doubted sensor that is lower than the forces is believed at once if the aircraft
 /// meets the air at this angle or more by its attitude and the path at the airspeed of the
-/// forces, rad (14°: less than a wing
-/// stalls at, more than 1.2 times the stalling speed needs), for this time, s: in a stall the
-/// models do not hold, and too slow is more dangerous than too fast.
+/// forces, rad (14°: less than a wing stalls at, more than 1.2 times the stalling speed needs),
+/// for this time, s: in a stall the models do not hold, and too slow is more dangerous than too fast.
 const NEAR_STALL_RAD: f64 = 0.25;
 const NEAR_STALL_AFTER_S: f64 = 1.0;
 /// Doubt needs models that have learned the aircraft for this time, s.
@@ -56,6 +55,8 @@ const LEARNED_S: f64 = 10.0;
 /// After attitude, rates, forces or altitude were not measured, the models learn
 /// for this time, s, before they are compared again.
 const SETTLED_S: f64 = 10.0;
+/// The same after an upset of this time, s: meanwhile the airspeed was only integrated.
+const LONG_UPSET_S: f64 = 3.0;
 /// Below this share of the reference airspeed nothing is compared.
 const LEAST_RATIO: f64 = 0.4;
 /// Vertical gusts are the filter's vertical wind, over this time, s; at least
@@ -110,6 +111,8 @@ pub(super) struct AirspeedMonitor {
     near_stall_s: f64,
     /// For how long the models still learn before they are compared, s.
     settles_s: f64,
+    /// For how long the models have not held, s.
+    upset_s: f64,
     reference: Reference,
     doubt: Option<Doubt>,
     /// While the cause of a doubt may be the static port.
@@ -150,6 +153,7 @@ impl AirspeedMonitor {
             agrees_s: 0.0,
             near_stall_s: 0.0,
             settles_s: 0.0,
+            upset_s: 0.0,
             reference: Reference::NONE,
             doubt: None,
             static_port: None,
@@ -253,6 +257,14 @@ impl AirspeedMonitor {
         }
         self.add(&sample, input.sensor_mps, dt_s);
         let holds = sample.models_hold();
+        self.upset_s = if holds {
+            if self.upset_s > LONG_UPSET_S {
+                self.settles_s = SETTLED_S;
+            }
+            0.0
+        } else {
+            self.upset_s + dt_s
+        };
         if self.sum_s >= CORRECTED_S - 1e-6 {
             self.correct(&mut bank, &sample, holds);
         }
@@ -279,7 +291,8 @@ impl AirspeedMonitor {
             bank.older.adopt(sensor_mps);
             bank.older.restore_models();
             bank.believing = bank.older;
-            (self.sum, self.sensor_sum_mps, self.sum_s) = (ForceSample::default(), 0.0, 0.0);
+            self.sum = ForceSample::default();
+            (self.sensor_sum_mps, self.sum_s, self.sensor_s) = (0.0, 0.0, 0.0);
         }
         self.settles_s -= dt_s;
         true
