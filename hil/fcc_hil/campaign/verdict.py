@@ -158,13 +158,17 @@ def _unsettled(flight: Flight, truth: Truth, legs: Sequence[Leg]) -> list[str]:
     severity = flight.weather.turbulence_severity
     words = []
     scores: list[LegScore] = score(truth.trace(), legs)["legs"] if legs else []
+    fell_behind = False
     for leg, flown in zip(legs, scores, strict=True):
         number = round((leg.end_s - HOLD_S - start_s) / LEG_S)
         if not flown["heading_rms_deg"] <= HEADING_RMS_DEG[severity]:
             words.append(f"leg {number}: heading {flown['heading_rms_deg']:.1f}° RMS")
         is_high = not flown["altitude_rms_ft"] <= ALTITUDE_RMS_FT[severity]
-        if is_high and not _lacks_power(flight, truth, leg):
+        lacks_power = _lacks_power(flight, truth, leg)
+        if is_high and not lacks_power and not fell_behind:
             words.append(f"leg {number}: altitude {flown['altitude_rms_ft']:.0f} ft RMS")
+        # What the air took in this leg is regained in the next.
+        fell_behind = lacks_power
     return words
 
 
