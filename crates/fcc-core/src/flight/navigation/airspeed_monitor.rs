@@ -51,7 +51,7 @@ const ANOTHER_BELIEVED_AFTER_S: f64 = 1.0;
 const NEAR_STALL_RAD: f64 = 0.25;
 const NEAR_STALL_AFTER_S: f64 = 1.0;
 /// Doubt needs models that have learned the aircraft for this time, s.
-const LEARNED_S: f64 = 10.0;
+const LEARNED_S: f64 = 20.0;
 /// After attitude, rates, forces or altitude were not measured, the models learn
 /// for this time, s, before they are compared again.
 const SETTLED_S: f64 = 10.0;
