@@ -212,6 +212,7 @@ impl Controller for Autopilot {
         (self.external(tick.woke, measurements) | of_parts)
             .with(flags::RECOVERING, self.recovery.is_active())
             .with(flags::UNDERSPEED, self.altitude.gives_up_height())
+            .with(flags::STALLS_FASTER, self.recovery.found_stall_mps() > 0.0)
             .with(flags::AT_FLOOR, self.is_at_floor)
             .with(flags::RELEASING, self.release.is_some())
     }

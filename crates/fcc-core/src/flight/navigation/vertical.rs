@@ -86,6 +86,9 @@ pub struct VerticalChannel {
 /// would find a climb and a bias of the accelerometers that are none.
 const STEPPED_M: f64 = 8.0;
 const STEPPED_SAMPLES: i8 = 3;
+/// ... beyond so many standard deviations of what is expected: after a time in which
+/// nothing was measured the aircraft may be anywhere.
+const STEPPED_SDS: f64 = 4.0;
 
 /// The largest bias of an intact accelerometer, m/s².
 const MAX_BIAS_MPS2: f64 = 2.0;
@@ -167,7 +170,7 @@ impl VerticalChannel {
             NewSample::Next(since_s) => {
                 let gains = self.covariance.correct(since_s);
                 let error_m = measured.value - self.state.altitude_m;
-                if !self.may_have_stepped(error_m) {
+                if !self.may_have_stepped(error_m, &gains) {
                     self.correct(error_m, &gains);
                 } else if self.beyond.abs() >= STEPPED_SAMPLES {
                     self.beyond = 0;
@@ -183,9 +186,10 @@ impl VerticalChannel {
     }
 
     /// Whether the altimeter differs as after a step; counts such samples.
-    fn may_have_stepped(&mut self, error_m: f64) -> bool {
+    fn may_have_stepped(&mut self, error_m: f64, gains: &Gains) -> bool {
         let side = if error_m > 0.0 { 1 } else { -1 };
-        self.beyond = if error_m.abs() <= STEPPED_M {
+        let expected_m2 = STEPPED_SDS * STEPPED_SDS * gains.variance_m2();
+        self.beyond = if error_m * error_m <= STEPPED_M * STEPPED_M + expected_m2 {
             0
         } else if self.beyond.signum() == side {
             self.beyond + side
