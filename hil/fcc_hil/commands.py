@@ -11,6 +11,7 @@ from typing import Any
 
 from .aircraft import AIRCRAFT
 from .campaign import command as campaign
+from .printable import say
 from .progress import bar
 from .soak import Soak, soak
 
@@ -164,7 +165,7 @@ def _suite(options: argparse.Namespace) -> int:
     outcomes = [flown[case.name] for case in chosen]
     # Alone, after the other processes have ended.
     speed = measure(scenario_of("c172p"))
-    print(report.text(outcomes, speed))
+    say(report.text(outcomes, speed))
     if options.json:
         document = report.document(outcomes, speed)
         options.json.write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
@@ -192,7 +193,7 @@ def _margins(options: argparse.Namespace) -> int:
         for found in margins.measure_all(conditions, options.workers):
             measured.append(found)
             notify(len(measured), found.condition.aircraft)
-    print(report.text(measured))
+    say(report.text(measured))
     if options.json:
         document = [found.document() for found in measured]
         options.json.write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
@@ -232,13 +233,13 @@ def _tune(options: argparse.Namespace) -> int:
         f"{', '.join(map(str, task.seeds))}.\n\n"
     )
     options.output.write_text(head + found.config, encoding="utf-8")
-    print(
+    say(
         f"cost {found.before:.3f} as given, {found.guessed:.3f} by measured responses, "
         f"{found.after:.3f} found in {found.evaluations} candidates",
     )
     for key, value in found.values.items():
-        print(f"  {key} = {value:g}")
-    print(f"written: {options.output}", file=sys.stderr)
+        say(f"  {key} = {value:g}")
+    say(f"written: {options.output}", to=sys.stderr)
     return 0
 
 
@@ -270,10 +271,10 @@ def _soak(options: argparse.Namespace) -> int:
         ),
     }
     for name, figures in rows.items():
-        print(f"{name:12} {figures}")
+        say(f"{name:12} {figures}")
     failures = result.failures()
     for failure in failures:
-        print(f"failed: {failure}", file=sys.stderr)
+        say(f"failed: {failure}", to=sys.stderr)
     if options.json:
         options.json.write_text(json.dumps(result.document(), indent=2) + "\n", encoding="utf-8")
     return 1 if failures else 0

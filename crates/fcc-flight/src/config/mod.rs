@@ -116,11 +116,19 @@ fn checked(read: read::Read<'_>, file: &str) -> Result<Config, ConfigError> {
         mut problems,
         places,
     } = read;
-    let more = ranges::check(&config, &places, &problems);
-    problems.extend(more);
+    if problems.len() < read::MOST_PROBLEMS {
+        problems.extend(ranges::check(&config, &places, &problems));
+    }
     problems.sort_by_key(|problem| problem.line);
     if problems.is_empty() {
         return Ok(config);
+    }
+    if problems.len() >= read::MOST_PROBLEMS {
+        problems.truncate(read::MOST_PROBLEMS);
+        problems.push(Problem::and_more());
+    }
+    for problem in &mut problems {
+        problem.shorten();
     }
     Err(ConfigError::Invalid {
         file: file.to_owned(),

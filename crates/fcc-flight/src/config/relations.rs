@@ -8,10 +8,6 @@ use super::{AutopilotSection, Config, SensorEntry};
 /// Of `SCHED_FIFO` (sched(7)).
 const HIGHEST_PRIORITY: u8 = 99;
 
-/// The maximum number of entries of a list. A reading stores its sensor's
-/// number in a byte, and each entry costs time in every tick.
-const MOST_ENTRIES: usize = 16;
-
 /// Reports the key and the message of each violated constraint.
 pub(super) fn check(config: &Config, report: &mut impl FnMut(&str, String)) {
     let early = &config.tick.early_wake;
@@ -295,13 +291,6 @@ fn lists(config: &Config, report: &mut impl FnMut(&str, String)) {
         for (at, _) in entries.filter(|(_, is_simulator)| **is_simulator).skip(1) {
             let message = "is the simulator a second time: keep one".to_owned();
             report(&format!("{list}[{at}].kind"), message);
-        }
-        if simulators.len() > MOST_ENTRIES {
-            let message = format!(
-                "has {} entries: keep at most {MOST_ENTRIES}",
-                simulators.len()
-            );
-            report(list, message);
         }
     }
 }
