@@ -15,6 +15,7 @@ mod instance;
 mod message;
 #[cfg(feature = "flight")]
 mod pattern_scorer;
+mod printable;
 mod quantity;
 pub mod schema;
 #[cfg(feature = "flight")]
@@ -31,6 +32,7 @@ pub use message::describe_event;
 pub use message::{FlightEvent, FlightMessage, FlightRecord};
 #[cfg(feature = "flight")]
 pub use pattern_scorer::PatternScorer;
+pub use printable::{printable, printable_json};
 pub use quantity::RecordedQuantity;
 #[cfg(feature = "flight")]
 pub use score::{FlightScore, Leg, LegScore, Sample, ScoreError, ScoredBy, score};

@@ -36,7 +36,7 @@ use left_held::LeftHeld;
 pub(crate) use notice::Notice;
 pub(crate) use release_helper::{ReleaseHelper, run_release_helper};
 use signals::{BlockedSignals, Caught};
-pub(crate) use signals::{end_with_parent, tolerate};
+pub(crate) use signals::{end_with_parent, survive_file_size_limit, tolerate};
 
 /// While control is held, this is the interval of checks for a release helper
 /// of an earlier daemon, which would release it.
