@@ -146,7 +146,7 @@ impl VerticalChannel {
         orientation: &Orientation,
         dt_s: f64,
     ) -> VerticalState {
-        self.feel(now, measurements, orientation, dt_s);
+        self.integrate(now, measurements, orientation, dt_s);
         let measured = measurements.altitude_m;
         let sample = self.news.of(&measured, dt_s);
         let known = self.resolution.step();
@@ -209,7 +209,7 @@ impl VerticalChannel {
         reference: Option<Reference>,
         dt_s: f64,
     ) {
-        self.feel(now, measurements, orientation, dt_s);
+        self.integrate(now, measurements, orientation, dt_s);
         self.news.of(&measurements.altitude_m, dt_s);
         let state = &mut self.state;
         let towards = match reference {
@@ -230,7 +230,7 @@ impl VerticalChannel {
     }
 
     /// Integrates the vertical acceleration.
-    fn feel(
+    fn integrate(
         &mut self,
         now: Time,
         measurements: &Measurements,
