@@ -266,8 +266,7 @@ impl Controller for Autopilot {
             return self.last;
         }
         let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
-        self.actuation.knows_age(self.ages.rates_s());
-        self.actuation.follow(&self.last, &estimate, dt_s);
+        self.follow_outputs(&estimate);
         let (schedule, envelope) = (self.schedule(), self.envelope());
         if self.accepted.body_rates.value != self.kept_trims.found_with {
             self.keep_trims();
@@ -307,8 +306,12 @@ impl Controller for Autopilot {
 
     fn failsafe(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
         self.prepare_end_of_failsafe(tick.woke, measurements);
-        let outputs = self.safest(tick.woke, measurements);
         let lost = self.lost(tick.woke, measurements);
+        if !lost.contains(flags::BODY_RATES) && !lost.contains(flags::ATTITUDE) {
+            let estimate = *self.navigation.estimate();
+            self.follow_outputs(&estimate);
+        }
+        let outputs = self.safest(tick.woke, measurements);
         self.last = self.with_trim(tick.woke, outputs, lost);
         self.last
     }
