@@ -16,6 +16,7 @@ mod message;
 #[cfg(feature = "flight")]
 mod pattern_scorer;
 mod quantity;
+mod run_folder;
 pub mod schema;
 #[cfg(feature = "flight")]
 mod score;
@@ -32,6 +33,7 @@ pub use message::{FlightEvent, FlightMessage, FlightRecord};
 #[cfg(feature = "flight")]
 pub use pattern_scorer::PatternScorer;
 pub use quantity::RecordedQuantity;
+pub use run_folder::RunFolder;
 #[cfg(feature = "flight")]
 pub use score::{FlightScore, Leg, LegScore, Sample, ScoreError, ScoredBy, score};
 pub use telemetry::Telemetry;
