@@ -39,7 +39,7 @@ STAMPS   := .stamps
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: package-check wheels deb test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-flight campaign bench-live soak doc build clean
+.PHONY: package-check wheels deb test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -179,6 +179,9 @@ campaign: $(STAMPS)/rust $(STAMPS)/python-module ## Fly 300 flights at the edges
 bench-live: $(STAMPS)/rust build $(STAMPS)/python ## Fly with and without 1,000 watchers, alternately (50 minutes)
 	cargo build --locked --release -p fcc-live --features flight --example watch
 	$(PYTHON) -m fcc_hil bench-live --fccd $(FCCD) --watcher $(TARGET)/release/examples/watch $(LIVE)
+
+bench-flood: build $(STAMPS)/python ## Fly among 100,000 datagrams a second of another host (1 minute)
+	$(PYTHON) -m fcc_hil bench-flood --fccd $(FCCD)
 
 doc: $(STAMPS)/rust ## Build the API documentation
 	cargo doc --locked --workspace --exclude fcc-py --exclude pendulum --no-deps --all-features

@@ -1,4 +1,4 @@
-"""The commands `suite`, `margins`, `tune` and `soak`, and `campaign` of its package."""
+"""The commands `suite`, `margins`, `tune`, `soak` and `bench-flood`, and `campaign`."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from . import flood
 from .aircraft import AIRCRAFT
 from .campaign import command as campaign
 from .printable import say
@@ -140,6 +141,15 @@ def add(commands: Any) -> None:
     soaks.add_argument("--idle", action="store_true", help="without stress-ng")
     soaks.add_argument("--json", type=Path, metavar="FILE", help="write all figures here")
     soaks.set_defaults(run=_soak)
+
+    floods = commands.add_parser(
+        "bench-flood", help="fly without and with 100,000 datagrams a second of another host"
+    )
+    floods.add_argument("--fccd", type=Path, required=True, help="the daemon's program")
+    floods.add_argument(
+        "--seconds", type=float, default=30.0, metavar="S", help="of each (%(default)s)"
+    )
+    floods.set_defaults(run=_flood)
 
 
 def _suite(options: argparse.Namespace) -> int:
@@ -277,4 +287,18 @@ def _soak(options: argparse.Namespace) -> int:
         say(f"failed: {failure}", to=sys.stderr)
     if options.json:
         options.json.write_text(json.dumps(result.document(), indent=2) + "\n", encoding="utf-8")
+    return 1 if failures else 0
+
+
+def _flood(options: argparse.Namespace) -> int:
+    result = flood.fly(flood.Plan(options.fccd, options.seconds))
+    more = result.flooded_percent - result.quiet_percent
+    print(
+        f"{result.per_second:.0f} datagrams a second of others: the daemon takes "
+        f"{result.flooded_percent:.2f} % of a core, {more:+.2f} % against "
+        f"{result.quiet_percent:.2f} % without; {result.missed} ticks missed"
+    )
+    failures = result.failures()
+    for failure in failures:
+        print(f"failed: {failure}", file=sys.stderr)
     return 1 if failures else 0

@@ -33,13 +33,13 @@ use std::path::Path;
 use std::time::Duration;
 
 use fcc_core::flight::AutopilotConfig;
-use fcc_runtime::{Budget, LoopConfig};
+use fcc_runtime::{Budget, LoopConfig, Overload};
 use fcc_timer::RealtimeRequest;
 use serde::{Deserialize, Serialize};
 
 pub use altimeter::AltimeterSection;
 pub use autopilot::AutopilotSection;
-pub use budget::{BudgetSection, WatchdogSection};
+pub use budget::{BudgetSection, OverloadSection, WatchdogSection};
 pub use built_in::{BuiltInSection, GustsChoice};
 pub use cpu::CpuChoice;
 pub use devices::{ActuatorEntry, NoKeys, SensorEntry};
@@ -68,6 +68,8 @@ pub struct Config {
     pub realtime: RealtimeSection,
     /// How long ticks may take.
     pub budget: BudgetSection,
+    /// What is done if ticks leave no time to sleep.
+    pub overload: OverloadSection,
     /// When the loop counts as hung.
     pub watchdog: WatchdogSection,
     /// The engage switch.
@@ -291,6 +293,7 @@ impl Config {
             failsafe_hold: Duration::from_secs_f64(self.failsafe.hold_s),
             after_failsafe: self.failsafe.then.into(),
             budget: Budget::from(&self.budget),
+            overload: Overload::from(&self.overload),
             early_wake_needs_priority: self.tick.early_wake.enabled == EarlyWakeChoice::Auto,
             realtime: RealtimeRequest::from(&self.realtime),
             ..LoopConfig::default()

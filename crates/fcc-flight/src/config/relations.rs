@@ -37,6 +37,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&str, String)) {
     }
     ages(config, report);
     budgets(config, report);
+    overload(config, report);
     built_in(config, report);
     if config.x_plane.is_some() && config.built_in.is_some() {
         report(
@@ -230,6 +231,21 @@ fn built_in(config: &Config, report: &mut impl FnMut(&str, String)) {
         && let Some(message) = section.why_not_level()
     {
         report(airspeed, message);
+    }
+}
+
+fn overload(config: &Config, report: &mut impl FnMut(&str, String)) {
+    let section = &config.overload;
+    let skip_after_s = section.skip_after_ms as f64 * 1e-3;
+    if section.stop_after_s > 0.0 && section.stop_after_s < skip_after_s {
+        report(
+            "overload.stop_after_s",
+            format!(
+                "is {}, and deadlines are skipped after {skip_after_s} s (overload.skip_after_ms): \
+                 choose at least that, or 0 for never",
+                section.stop_after_s
+            ),
+        );
     }
 }
 

@@ -6,7 +6,8 @@
 //! - `FCCD_NAN_AT_S`: this many seconds after engaging, control commands NaN;
 //! - `FCCD_HANG_AT_S`: this many seconds after engaging, control never returns;
 //! - `FCCD_SLOW_AT_S`: this many seconds after engaging, control begins to take
-//!   `FCCD_SLOW_MS` longer, in `FCCD_SLOW_TICKS` ticks (all, if not given);
+//!   `FCCD_SLOW_MS` longer, in `FCCD_SLOW_TICKS` ticks (all, if not given); with
+//!   `FCCD_SLOW_SPINS` it computes for that long, otherwise it sleeps;
 //! - `FCCD_BLOCK_AT_S`: this many seconds after the first tick, a sensor
 //!   blocks;
 //! - `FCCD_PAUSE_AT_S`: this many seconds after the loop's start, its messages
@@ -35,6 +36,7 @@ pub(super) struct Faulty {
 struct Slow {
     at_s: Option<f64>,
     by: Duration,
+    spins: bool,
     ticks_left: u64,
 }
 
@@ -43,6 +45,7 @@ impl Slow {
         Self {
             at_s: number("FCCD_SLOW_AT_S"),
             by: Duration::from_secs_f64(number("FCCD_SLOW_MS").unwrap_or(0.0) * 1e-3),
+            spins: number("FCCD_SLOW_SPINS").is_some(),
             ticks_left: number("FCCD_SLOW_TICKS").map_or(u64::MAX, |ticks| ticks as u64),
         }
     }
@@ -50,7 +53,11 @@ impl Slow {
     fn take_longer(&mut self) {
         if self.ticks_left > 0 {
             self.ticks_left -= 1;
-            thread::sleep(self.by);
+            let begun = Instant::now();
+            while self.spins && begun.elapsed() < self.by {
+                std::hint::spin_loop();
+            }
+            thread::sleep(self.by.saturating_sub(begun.elapsed()));
         }
     }
 }
