@@ -7,6 +7,7 @@
 //! | `folder`, `plant_file` | files of this user alone: who may control a plant, and whether it was left held |
 //! | `instance_lock` | keeps two daemons from one plant |
 //! | `left_held` | releases what a killed daemon left held |
+//! | `rights` | gives up the rights of root before a flight |
 //! | `signals` | the signals that end a flight, and those that must not |
 
 mod folder;
@@ -16,6 +17,7 @@ mod notice;
 mod plant_file;
 mod release_handover;
 mod release_helper;
+mod rights;
 mod signals;
 
 use std::io;
@@ -35,6 +37,7 @@ use instance_lock::InstanceLock;
 use left_held::LeftHeld;
 pub(crate) use notice::Notice;
 pub(crate) use release_helper::{ReleaseHelper, run_release_helper};
+pub(crate) use rights::{RightsError, give_up};
 use signals::{BlockedSignals, Caught};
 pub(crate) use signals::{end_with_parent, survive_file_size_limit, tolerate};
 
