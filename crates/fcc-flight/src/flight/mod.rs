@@ -4,6 +4,7 @@
 //! module reads its messages, passes them to each [`Observer`], and collects
 //! the [`Outcome`]. What only the host program can do is done by its [`Host`].
 
+mod again;
 mod assemble;
 #[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
