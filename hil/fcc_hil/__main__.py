@@ -22,6 +22,7 @@ from .pattern import TimedPattern
 from .peer import fly_peer
 from .plant import TrimError
 from .plot import plot_flight
+from .printable import say
 from .process import StandInError, StandInProcess
 from .soak import SoakError
 from .standin import BEACON_GROUP
@@ -48,7 +49,7 @@ def _fly(options: argparse.Namespace) -> int:
     )
     flight = fly(plan, print_progress)
     peer = peer_row(plan)
-    print(
+    say(
         "\n"
         + table(
             [
@@ -58,7 +59,7 @@ def _fly(options: argparse.Namespace) -> int:
         )
     )
     frames = flight.standin["frames"]
-    print(
+    say(
         f"stand-in: {frames['frames']} frames, {frames['slipped']} slipped, "
         f"late {frames['lateness_us']['p99']:.0f} us at p99, "
         f"work {frames['work_us']['p99']:.0f} us at p99"
@@ -75,7 +76,7 @@ def _fly(options: argparse.Namespace) -> int:
             f"fccd flies JSBSim's {plan.settings.aircraft} through the timed pattern",
         )
     for failure in flight.failures:
-        print(f"failed: {failure}", file=sys.stderr)
+        say(f"failed: {failure}", to=sys.stderr)
     return 1 if flight.failures else 0
 
 
@@ -92,7 +93,7 @@ def _standin(options: argparse.Namespace) -> int:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
     with StandInProcess(settings) as simulator:
-        print(
+        say(
             f"{settings.aircraft} flies on UDP {settings.host}:{simulator.port} and sends from "
             f"port {simulator.reply_port}; Ctrl-C ends it"
         )
@@ -103,7 +104,7 @@ def _standin(options: argparse.Namespace) -> int:
             ran_s = time.monotonic() - began_s
             while todo and todo[0][0] <= ran_s:
                 action = todo.pop(0)[1]
-                print(f"{ran_s:.1f} s: {action}", flush=True)
+                say(f"{ran_s:.1f} s: {action}")
                 if action == "kill":
                     simulator.kill()
                     return 0
@@ -121,7 +122,7 @@ def _peer(options: argparse.Namespace) -> int:
     if options.json:
         print(json.dumps(figures, indent=2))
     else:
-        print(table([("JSBSim's c172x autopilot", figures)]))
+        say(table([("JSBSim's c172x autopilot", figures)]))
     if options.plot:
         title = "JSBSim's own c172x autopilot on the timed pattern"
         pattern = TimedPattern(climb_ft=climb_ft)
@@ -135,11 +136,11 @@ def _bench(options: argparse.Namespace) -> int:
     flights = []
     for name, figures in run(options.legs):
         flights.append((name, figures))
-        print(f"  flown: {name}", file=sys.stderr, flush=True)
+        say(f"  flown: {name}", to=sys.stderr)
     if options.json:
         print(json.dumps(dict(flights), indent=2))
     else:
-        print(table(flights))
+        say(table(flights))
     return 0
 
 
@@ -150,14 +151,13 @@ def _bench_live(options: argparse.Namespace) -> int:
     flights = []
     for flight in watcher_load.run(load):
         flights.append(flight)
-        print(
+        say(
             f"{flight.watchers:5} watchers: late {flight.p99_us:6.1f} us at p99, "
             f"{flight.p99_9_us:6.1f} us at p99.9, {flight.max_us:7.1f} us at most; "
             f"{flight.ticks} ticks, {flight.missed} missed, {flight.dropped} records lost",
-            flush=True,
         )
     ratio = watcher_load.ratio(flights)
-    print(f"median p99.9 with watchers over that without: {ratio:.2f}")
+    say(f"median p99.9 with watchers over that without: {ratio:.2f}")
     lost = any(flight.dropped or flight.exit_code for flight in flights)
     return 1 if lost else 0
 
@@ -266,7 +266,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _run(arguments: Sequence[str] | None) -> int:
     options = _parser().parse_args(arguments)
     if getattr(options, "legs", 1) < 1:
-        print("error: --legs: give at least 1", file=sys.stderr)
+        say("error: --legs: give at least 1", to=sys.stderr)
         return 2
     try:
         code: int = options.run(options)
@@ -282,10 +282,10 @@ def _run(arguments: Sequence[str] | None) -> int:
         ValueError,
         OSError,
     ) as error:
-        print(f"error: {error}", file=sys.stderr)
+        say(f"error: {error}", to=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        print("interrupted", file=sys.stderr)
+        say("interrupted", to=sys.stderr)
         return 130
     return code
 

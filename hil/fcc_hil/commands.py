@@ -1,4 +1,4 @@
-"""The commands `suite`, `margins`, `tune` and `soak`, and `campaign` of its package."""
+"""The commands `suite`, `margins`, `tune`, `soak` and `bench-flood`, and `campaign`."""
 
 from __future__ import annotations
 
@@ -9,8 +9,10 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from . import flood
 from .aircraft import AIRCRAFT
 from .campaign import command as campaign
+from .printable import say
 from .progress import bar
 from .soak import Soak, soak
 
@@ -140,6 +142,15 @@ def add(commands: Any) -> None:
     soaks.add_argument("--json", type=Path, metavar="FILE", help="write all figures here")
     soaks.set_defaults(run=_soak)
 
+    floods = commands.add_parser(
+        "bench-flood", help="fly without and with 100,000 datagrams a second of another host"
+    )
+    floods.add_argument("--fccd", type=Path, required=True, help="the daemon's program")
+    floods.add_argument(
+        "--seconds", type=float, default=30.0, metavar="S", help="of each (%(default)s)"
+    )
+    floods.set_defaults(run=_flood)
+
 
 def _suite(options: argparse.Namespace) -> int:
     from .suite import report  # noqa: PLC0415 - needs the module fcc, which others do not
@@ -164,7 +175,7 @@ def _suite(options: argparse.Namespace) -> int:
     outcomes = [flown[case.name] for case in chosen]
     # Alone, after the other processes have ended.
     speed = measure(scenario_of("c172p"))
-    print(report.text(outcomes, speed))
+    say(report.text(outcomes, speed))
     if options.json:
         document = report.document(outcomes, speed)
         options.json.write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
@@ -192,7 +203,7 @@ def _margins(options: argparse.Namespace) -> int:
         for found in margins.measure_all(conditions, options.workers):
             measured.append(found)
             notify(len(measured), found.condition.aircraft)
-    print(report.text(measured))
+    say(report.text(measured))
     if options.json:
         document = [found.document() for found in measured]
         options.json.write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
@@ -232,13 +243,13 @@ def _tune(options: argparse.Namespace) -> int:
         f"{', '.join(map(str, task.seeds))}.\n\n"
     )
     options.output.write_text(head + found.config, encoding="utf-8")
-    print(
+    say(
         f"cost {found.before:.3f} as given, {found.guessed:.3f} by measured responses, "
         f"{found.after:.3f} found in {found.evaluations} candidates",
     )
     for key, value in found.values.items():
-        print(f"  {key} = {value:g}")
-    print(f"written: {options.output}", file=sys.stderr)
+        say(f"  {key} = {value:g}")
+    say(f"written: {options.output}", to=sys.stderr)
     return 0
 
 
@@ -270,10 +281,24 @@ def _soak(options: argparse.Namespace) -> int:
         ),
     }
     for name, figures in rows.items():
-        print(f"{name:12} {figures}")
+        say(f"{name:12} {figures}")
+    failures = result.failures()
+    for failure in failures:
+        say(f"failed: {failure}", to=sys.stderr)
+    if options.json:
+        options.json.write_text(json.dumps(result.document(), indent=2) + "\n", encoding="utf-8")
+    return 1 if failures else 0
+
+
+def _flood(options: argparse.Namespace) -> int:
+    result = flood.fly(flood.Plan(options.fccd, options.seconds))
+    more = result.flooded_percent - result.quiet_percent
+    print(
+        f"{result.per_second:.0f} datagrams a second of others: the daemon takes "
+        f"{result.flooded_percent:.2f} % of a core, {more:+.2f} % against "
+        f"{result.quiet_percent:.2f} % without; {result.missed} ticks missed"
+    )
     failures = result.failures()
     for failure in failures:
         print(f"failed: {failure}", file=sys.stderr)
-    if options.json:
-        options.json.write_text(json.dumps(result.document(), indent=2) + "\n", encoding="utf-8")
     return 1 if failures else 0

@@ -19,6 +19,7 @@ from .cockpit import GENERIC_LIGHTS, OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES
 from .daemon import Daemon
 from .pattern import TimedPattern
 from .peer import fly_peer
+from .printable import say
 from .process import StandInProcess
 from .score import Score, score
 from .standin import Progress, Settings
@@ -237,4 +238,4 @@ def write_document(path: Path, document: dict[str, Any]) -> None:
 def print_progress(line: str) -> None:
     """Print a line of progress: over the last one on a terminal, otherwise below it."""
     end = "\r" if sys.stderr.isatty() else "\n"
-    print(line.ljust(100) if end == "\r" else line, end=end, file=sys.stderr, flush=True)
+    say(line.ljust(100) if end == "\r" else line, end=end, to=sys.stderr)

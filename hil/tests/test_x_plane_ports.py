@@ -6,9 +6,11 @@ import signal
 import socket
 import struct
 import threading
+import time
 from pathlib import Path
 
 from daemon_under_test import engage, flight, start, write_config
+from tampered_link import TamperedLink
 
 from fcc_hil.process import StandInProcess
 from fcc_hil.standin import Settings
@@ -66,6 +68,28 @@ def test_forged_values_of_another_port_are_not_read(fccd: Path, tmp_path: Path) 
         finally:
             over.set()
             forging.join()
+        ending = daemon.end(signal.SIGTERM)
+    assert ending.exit_code == SUCCESS
+    assert ending.states == ["standby -> engaged", "engaged -> stopped"]
+
+
+def test_one_forged_datagram_changes_nothing(fccd: Path, tmp_path: Path) -> None:
+    """From X-Plane's own port: the time alone, and every value at once."""
+    time_ahead = b"RREF," + struct.pack("<if", 0, 1e6)
+    everything = [
+        b"RREF," + b"".join(struct.pack("<if", index, value) for index in range(64))
+        for value in (0.0, FORGED, 1e6)
+    ]
+    with (
+        StandInProcess(Settings(port=0)) as simulator,
+        TamperedLink(simulator.port) as link,
+        start(fccd, tmp_path, write_config(tmp_path, link.port)) as daemon,
+    ):
+        engage(simulator, daemon)
+        for datagram in (time_ahead, *everything):
+            link.send(datagram)
+            time.sleep(0.5)
+        assert "engaged" in daemon.wait_for("heading")
         ending = daemon.end(signal.SIGTERM)
     assert ending.exit_code == SUCCESS
     assert ending.states == ["standby -> engaged", "engaged -> stopped"]

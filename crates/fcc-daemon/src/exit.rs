@@ -40,6 +40,7 @@ exits! {
     NotRecorded = 14, "the flight succeeded, but was not recorded completely";
     StepFailed = 15, "a step of the check against X-Plane failed or was skipped (x-plane check)";
     HitGround = 16, "the built-in aircraft hit the ground";
+    Overloaded = 17, "for too long the loop's ticks left no time to sleep; it released the controls and stopped";
 }
 
 impl From<Exit> for ExitCode {
@@ -58,6 +59,7 @@ impl From<Conclusion> for Exit {
             Conclusion::HitGround => Self::HitGround,
             Conclusion::Panicked => Self::Panicked,
             Conclusion::Hung => Self::Hung,
+            Conclusion::Overloaded => Self::Overloaded,
             Conclusion::NotReleased => Self::NotReleased,
         }
     }

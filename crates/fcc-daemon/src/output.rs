@@ -12,6 +12,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use fcc_telemetry::{printable, printable_json};
 use serde::Serialize;
 
 use crate::exit::Exit;
@@ -26,7 +27,7 @@ pub(crate) fn result(text: impl Display, exit: Exit) -> Exit {
 /// Prints a result as JSON.
 pub(crate) fn json<T: Serialize>(value: &T, exit: Exit) -> Exit {
     match serde_json::to_string_pretty(value) {
-        Ok(text) => result(text, exit),
+        Ok(text) => bytes(with_end(printable_json(&text)).as_bytes(), exit),
         Err(error) => not_printed(&error, exit),
     }
 }
@@ -58,19 +59,14 @@ pub(crate) fn message(text: impl Display) {
 }
 
 /// A text with its end of line. Names of files and keys in it may contain
-/// anything: other control characters, which a terminal obeys, are escaped.
+/// anything.
 fn line(text: impl Display) -> String {
-    let is_obeyed = |c: char| c.is_control() && c != '\n' && c != '\t';
-    let mut line = String::new();
-    for c in text.to_string().chars() {
-        if is_obeyed(c) {
-            line.extend(c.escape_default());
-        } else {
-            line.push(c);
-        }
-    }
-    line.push('\n');
-    line
+    with_end(printable(&text.to_string()))
+}
+
+fn with_end(mut text: String) -> String {
+    text.push('\n');
+    text
 }
 
 fn write(line: &str) {

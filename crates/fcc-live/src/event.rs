@@ -88,6 +88,13 @@ pub enum EventCode {
     SwitchedOnUnseen = 22,
     /// A command to engage was refused, because the engage switch is off.
     EngageRefusedBySwitch = 23,
+    /// Ticks leave no time to sleep, and deadlines are skipped (time used by a
+    /// tick, period).
+    Overloaded = 24,
+    /// For a second ticks have left time (how many did not, first and last tick).
+    OverloadOver = 25,
+    /// The loop stops, overloaded for too long.
+    StoppedByOverload = 26,
 }
 
 impl Event {
@@ -186,6 +193,13 @@ fn numbers<O: Copy>(event: &framework::Event<O>) -> (EventCode, u32, [u64; 3]) {
             (EventCode::ReleasedAtOnce, 0, [conditions.bits(), 0, 0])
         }
         EventKind::SwitchedOnUnseen => (EventCode::SwitchedOnUnseen, 0, NONE),
+        EventKind::Overloaded { used_ns, period_ns } => {
+            (EventCode::Overloaded, 0, [used_ns, period_ns, 0])
+        }
+        EventKind::OverloadOver { count, first, last } => {
+            (EventCode::OverloadOver, 0, [count, first, last])
+        }
+        EventKind::StoppedByOverload => (EventCode::StoppedByOverload, 0, NONE),
         EventKind::EngageRefusedBySwitch => (EventCode::EngageRefusedBySwitch, 0, NONE),
         // An event without a number in this version still has its text.
         _ => (EventCode::Remark, 0, NONE),

@@ -6,6 +6,7 @@
 
 use std::fmt::Display;
 
+use fcc_telemetry::printable;
 use pyo3::exceptions::{PyException, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -67,10 +68,10 @@ impl Exception {
         Ok(class.cast_into::<PyType>()?.unbind())
     }
 
-    /// An exception with this message.
+    /// An exception with this message, which Python prints on a terminal as it is.
     pub(crate) fn with(&self, message: impl Display) -> PyErr {
         Python::attach(|py| match self.class(py) {
-            Ok(class) => PyErr::from_type(class, message.to_string()),
+            Ok(class) => PyErr::from_type(class, printable(&message.to_string())),
             Err(error) => error,
         })
     }

@@ -84,6 +84,9 @@ fn kind_of<T>(kind: &EventKind<T>) -> &'static str {
         EventKind::SwitchedOnUnseen => "switched-on-unseen",
         EventKind::EngageRefusedBySwitch => "engage-refused-by-switch",
         EventKind::ConditionsChanged { .. } => "conditions-changed",
+        EventKind::Overloaded { .. } => "overloaded",
+        EventKind::OverloadOver { .. } => "overload-over",
+        EventKind::StoppedByOverload => "stopped-by-overload",
         _ => "other",
     }
 }

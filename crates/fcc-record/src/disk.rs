@@ -1,9 +1,11 @@
 //! Where recordings are written: a file system, or a failing disk in a test.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Read as _, Write};
+use std::io::{self, Write};
 use std::os::unix::fs::MetadataExt as _;
 use std::path::Path;
+
+use super::opening::{open, open_found};
 
 /// Where recordings are written.
 pub trait Disk: Send {
@@ -112,38 +114,6 @@ pub(super) fn sync_folder_of(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Opens a file to read it. A pipe or a device is refused: opening one may
-/// block without end, and it may have no end.
-///
-/// # Errors
-/// The system's error, or that it is not a regular file.
-pub(super) fn open(path: &Path) -> io::Result<File> {
-    let kind = fs::metadata(path)?;
-    let refused = |kind, why| Err(io::Error::new(kind, why));
-    if kind.is_dir() {
-        return refused(io::ErrorKind::IsADirectory, "it is a folder");
-    }
-    if !kind.is_file() {
-        let why = "it is not a regular file: it is a pipe or a device";
-        return refused(io::ErrorKind::InvalidInput, why);
-    }
-    File::open(path)
-}
-
-/// Reads a regular file of at most `most_bytes`.
-///
-/// # Errors
-/// The system's error, or that it is larger or not a regular file.
-pub fn read_file(path: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    open(path)?.take(most_bytes + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > most_bytes {
-        let why = format!("it has more than {most_bytes} bytes: choose another file");
-        return Err(io::Error::new(io::ErrorKind::FileTooLarge, why));
-    }
-    Ok(bytes)
-}
-
 /// Creates a file, or replaces its content, unless it is one of the files that
 /// are read, under whatever name.
 ///
@@ -175,5 +145,15 @@ pub(super) fn lock(path: &Path) -> io::Result<Option<File>> {
 
 /// Whether a program is writing the file now.
 pub fn is_being_written(path: &Path) -> bool {
-    open(path).is_ok_and(|file| matches!(file.try_lock_shared(), Err(fs::TryLockError::WouldBlock)))
+    open(path).is_ok_and(|file| is_locked(&file))
+}
+
+/// As [`is_being_written`], of a file that was found in a folder. What cannot be
+/// opened, such as a link, is none of this program's files.
+pub(super) fn may_be_deleted(path: &Path) -> bool {
+    open_found(path).is_ok_and(|file| !is_locked(&file))
+}
+
+fn is_locked(file: &File) -> bool {
+    matches!(file.try_lock_shared(), Err(fs::TryLockError::WouldBlock))
 }

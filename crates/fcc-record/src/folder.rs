@@ -12,7 +12,7 @@ use super::{disk, name};
 pub(super) fn recordings(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let mut found: Vec<PathBuf> = fs::read_dir(folder)?
         .filter_map(|entry| entry.ok().map(|entry| entry.path()))
-        .filter(|path| name::is_recording(path) && path.is_file())
+        .filter(|path| name::is_recording(path) && !path.is_symlink() && path.is_file())
         .collect();
     found.sort();
     Ok(found)
@@ -35,7 +35,7 @@ pub(super) fn keep_below(folder: &Path, keep_bytes: u64) -> Vec<PathBuf> {
         if total <= keep_bytes {
             break;
         }
-        if !disk::is_being_written(&path) && fs::remove_file(&path).is_ok() {
+        if disk::may_be_deleted(&path) && fs::remove_file(&path).is_ok() {
             total -= bytes;
             deleted.push(path);
         }
@@ -50,5 +50,5 @@ pub(super) fn delete_oldest(folder: &Path, kept: &[PathBuf]) -> Option<PathBuf> 
         .ok()?
         .into_iter()
         .filter(|path| !kept.contains(path))
-        .find(|path| !disk::is_being_written(path) && fs::remove_file(path).is_ok())
+        .find(|path| disk::may_be_deleted(path) && fs::remove_file(path).is_ok())
 }

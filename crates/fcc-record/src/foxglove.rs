@@ -36,7 +36,8 @@ pub(super) fn level<O>(event: &Event<O>) -> log::Level {
             ..
         }
         | EventKind::Released { ok: false }
-        | EventKind::TimerFailed => log::Level::Error,
+        | EventKind::TimerFailed
+        | EventKind::StoppedByOverload => log::Level::Error,
         EventKind::Panicked | EventKind::Hung { .. } => log::Level::Fatal,
         EventKind::EngageRefused { .. }
         | EventKind::EngageRefusedBySwitch
@@ -45,7 +46,8 @@ pub(super) fn level<O>(event: &Event<O>) -> log::Level {
         | EventKind::RecordsDropped { .. }
         | EventKind::EventsDropped { .. }
         | EventKind::NotRecorded { .. }
-        | EventKind::Overrun { .. } => log::Level::Warning,
+        | EventKind::Overrun { .. }
+        | EventKind::Overloaded { .. } => log::Level::Warning,
         _ => log::Level::Info,
     }
 }

@@ -27,6 +27,14 @@ impl Listed {
     /// Reads a file; a `quick` look reads only its beginning and its end, and
     /// does not detect damage between.
     pub fn of(path: PathBuf, quick: bool) -> Self {
+        // The user has named the folder and not the link.
+        if path.is_symlink() {
+            let error = format!(
+                "{}: is a symbolic link, which is not followed: list the folder of the file itself",
+                path.display()
+            );
+            return Self::Unreadable { path, error };
+        }
         let read = if quick { glance(&path) } else { entry(&path) };
         match read {
             Ok(entry) => Self::Recording(entry),

@@ -9,9 +9,9 @@ use mcap::records::Record;
 use super::about::{About, COLUMNS};
 use super::any_plant::AnyMessage;
 use super::damage::Damage;
-use super::disk;
 use super::end::{End, RunStatistics};
 use super::items::{Channels, Item, Items, Messages, RecordedMessage};
+use super::opening;
 use super::raw::{Next, RawReader};
 use super::schema::{self, Topic};
 use super::summary;
@@ -111,7 +111,7 @@ impl Recording {
             path: path.clone(),
             source,
         };
-        let mut file = disk::open(&path).map_err(refused)?;
+        let mut file = opening::open(&path).map_err(refused)?;
         let bytes = file.metadata().map_err(refused)?.len();
         let index = summary::read_footer(&mut file, bytes);
         let end = index.as_ref().and_then(|at| {
@@ -284,7 +284,7 @@ impl Recording {
     }
 
     fn raw(&self) -> Result<RawReader, OpenError> {
-        disk::open(&self.path)
+        opening::open(&self.path)
             .and_then(RawReader::new)
             .map_err(|source| OpenError::Io {
                 path: self.path.clone(),

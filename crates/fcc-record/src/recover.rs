@@ -14,7 +14,6 @@ use serde::Serialize;
 
 use super::any_plant::AnyMessage;
 use super::damage::Damage;
-use super::disk;
 use super::end::{END, End, RunStatistics};
 use super::file::options;
 use super::foxglove;
@@ -25,6 +24,7 @@ use super::reader::{OpenError, Recording, Verified};
 use super::schema::{ENCODING, encode_event, undeclared};
 use super::settings::Compression;
 use super::wire::log::Level;
+use super::{disk, opening};
 
 /// The result of recovering a file.
 #[derive(Clone, PartialEq, Debug, Serialize)]
@@ -192,8 +192,8 @@ fn rewrite(
     damages: &[Damage],
     mut go_on: impl FnMut(u64) -> bool,
 ) -> io::Result<Rewritten> {
-    let mut raw = RawReader::new(disk::open(from)?)?;
-    let mut copy = Copy::begin(File::create(to)?).map_err(to_io)?;
+    let mut raw = RawReader::new(opening::open(from)?)?;
+    let mut copy = Copy::begin(opening::create_anew(to)?).map_err(to_io)?;
     let mut damages = damages.iter().peekable();
     let ending = loop {
         let damaged_at = match raw.next(|record| copy.take(&record)) {

@@ -124,7 +124,7 @@ impl<R: Copy> Sequence<R> {
                 self.await_record(event.tick)?;
                 self.commands.push(command);
             }
-            EventKind::StopRequested => {
+            EventKind::StopRequested | EventKind::StoppedByOverload => {
                 self.await_record(event.tick)?;
                 self.stop_requested = true;
             }

@@ -85,6 +85,7 @@ fn weight<T>(kind: &EventKind<T>) -> Weight {
         EventKind::StateChanged { .. }
         | EventKind::Panicked
         | EventKind::TimerFailed
+        | EventKind::StoppedByOverload
         | EventKind::Hung { .. } => Weight::State,
         EventKind::SensorFault { .. }
         | EventKind::ActuatorFault { .. }
@@ -92,6 +93,7 @@ fn weight<T>(kind: &EventKind<T>) -> Weight {
         | EventKind::EventsDropped { .. }
         | EventKind::NotRecorded { .. }
         | EventKind::Overrun { .. }
+        | EventKind::Overloaded { .. }
         | EventKind::Released { ok: false } => Weight::Fault,
         EventKind::CommandReceived(_)
         | EventKind::EngageRefused { .. }

@@ -5,6 +5,7 @@ use std::time::Duration;
 use fcc_core::framework::{Actuator, AfterRelease, Controller, Sensor};
 use fcc_timer::{RealtimeRequest, Timer};
 
+use crate::overload::Overload;
 use crate::overruns::Budget;
 
 /// The parts of a loop.
@@ -40,6 +41,8 @@ pub struct LoopConfig {
     /// How long ticks may take. A period, and no budget for single stages, by
     /// default.
     pub budget: Budget,
+    /// What is done if ticks leave no time to sleep.
+    pub overload: Overload,
     /// How many commands may wait to be read; at least 1. 64 by default.
     pub commands_capacity: usize,
     /// How many ticks' records may wait to be fetched; at least 1. 4,096 by
@@ -63,6 +66,7 @@ impl Default for LoopConfig {
             failsafe_hold: Duration::from_secs(10),
             after_failsafe: AfterRelease::Standby,
             budget: Budget::default(),
+            overload: Overload::default(),
             commands_capacity: 64,
             messages_capacity: 4_096,
             early_wake_needs_priority: false,

@@ -32,6 +32,10 @@ impl<C: Controller> Machine<C> {
         if self.stop.is_set() {
             self.telemetry.events.push(tick, EventKind::StopRequested);
             self.stop_for(Ending::StopFlag, tick);
+        } else if self.load.is_too_long(tick) {
+            let kind = EventKind::StoppedByOverload;
+            self.telemetry.events.push(tick, kind);
+            self.stop_for(Ending::Overloaded, tick);
         } else if command == StateRequest::Stop {
             self.stop_by_command(tick);
         }

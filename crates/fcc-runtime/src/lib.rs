@@ -16,8 +16,9 @@
 //!   the end of failsafe, a command to stop, the stop flag, a timer failure, a
 //!   panic in a part, the loop being dropped.
 //! - A tick that overruns its [`Budget`] is counted and reported, and the
-//!   phase is kept; a configured number in a row leads to failsafe. A watchdog
-//!   detects a loop that hangs ([`watch`]).
+//!   phase is kept; a configured number in a row leads to failsafe. If ticks leave
+//!   no time to sleep, deadlines are skipped ([`Overload`]). A watchdog detects a
+//!   loop that hangs ([`watch`]).
 //! - Outputs that the controller itself calls invalid are never sent.
 //! - Its state changes only by
 //!   [`State::after`](fcc_core::framework::State::after), and each change is an
@@ -104,6 +105,7 @@ mod faults;
 mod heartbeat;
 mod link;
 mod machine;
+mod overload;
 mod overruns;
 mod panics;
 mod release;
@@ -125,6 +127,7 @@ pub use config::{LoopConfig, Parts};
 pub use heartbeat::{Heartbeat, HeartbeatReading};
 pub use link::{CommandSender, CommandsFull, Link, MessageReceiver, StopHandle};
 pub use machine::Machine;
+pub use overload::Overload;
 pub use overruns::Budget;
 pub use report::{Ending, LoopReport};
 pub use run::{Loop, LoopHandle, SpawnError, THREAD_NAME};

@@ -14,6 +14,7 @@ use crate::commands;
 use crate::config::{LoopConfig, Parts};
 use crate::heartbeat::Heartbeat;
 use crate::link::{CommandSender, Link, MessageReceiver, StopHandle};
+use crate::overload::Load;
 use crate::overruns::Overruns;
 use crate::panics;
 use crate::report::{Ending, LoopReport};
@@ -57,6 +58,7 @@ pub struct Machine<C: Controller> {
     pub(crate) stopping_since: Time,
     pub(crate) record: RecordOf<C>,
     pub(crate) overruns: Overruns,
+    pub(crate) load: Load,
 
     pub(crate) timing: TimingStats,
     pub(crate) ticks: u64,
@@ -110,6 +112,7 @@ impl<C: Controller> Machine<C> {
             stopping_since: Time::NEVER,
             record: Record::new(Tick::default(), State::Standby),
             overruns: Overruns::new(config.budget, period),
+            load: Load::new(config.overload, period),
             timing: TimingStats::new(period)?,
             ticks: 0,
             failsafes: 0,
@@ -164,6 +167,7 @@ impl<C: Controller> Machine<C> {
 
     /// Waits for the deadline, or returns `None` after a warm-up before it.
     fn wait(&mut self) -> Result<Option<Expiry>, TimerError> {
+        self.timer.relieve(self.load.relief())?;
         match self.timer.wait_or_warm_up()? {
             Wake::Deadline(expiry) => Ok(Some(expiry)),
             Wake::WarmUp(expiry) => {
@@ -217,6 +221,9 @@ impl<C: Controller> Machine<C> {
         let tick = self.tick_of(&expiry);
         self.record = Record::new(tick, self.state);
         self.overruns.begin(&tick, &mut self.telemetry.events);
+        if recorded.is_none() {
+            self.load.take(&tick, &expiry, &mut self.telemetry.events);
+        }
         if let Err(message) = panics::caught(|| self.run_stages(&tick)) {
             self.stop_with(Ending::Panicked(message));
         }
@@ -347,6 +354,7 @@ impl<C: Controller> Machine<C> {
             sensor_faults: self.sensors.faults(),
             actuator_faults: self.actuators.faults(),
             overruns: self.overruns.total(),
+            unslept: self.load.unslept(),
             records_dropped: self.telemetry.records_dropped(),
             events_dropped: self.telemetry.events_dropped(),
             cpu_time: Duration::from_nanos(u64::try_from(cpu_ns).unwrap_or(0)),

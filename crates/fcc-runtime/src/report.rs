@@ -30,6 +30,8 @@ pub struct LoopReport {
     pub actuator_faults: u64,
     /// Ticks that overran their budget.
     pub overruns: u64,
+    /// Ticks that left no time to sleep before the next.
+    pub unslept: u64,
     /// Records lost because they were not read in time.
     pub records_dropped: u64,
     /// Events lost because they were not read in time.
@@ -59,6 +61,8 @@ pub enum Ending {
     /// Control had to be given back at once, and that is configured to end the
     /// loop, as a failsafe is.
     ReleasedAtOnce,
+    /// For too long no tick left time to sleep: [`Overload`](crate::Overload).
+    Overloaded,
     /// A part panicked, with this message.
     Panicked(String),
     /// The timer failed.
@@ -80,6 +84,7 @@ impl fmt::Display for Ending {
             Self::SwitchedOff => f.write_str("switched off"),
             Self::FailsafeEnded => f.write_str("failsafe ended"),
             Self::ReleasedAtOnce => f.write_str("control was given back at once"),
+            Self::Overloaded => f.write_str("overloaded for too long"),
             Self::Panicked(message) => write!(f, "a part panicked: {message}"),
             Self::TimerFailed(error) => write!(f, "the timer failed: {error}"),
             Self::TimerEnded => f.write_str("the timer ended"),

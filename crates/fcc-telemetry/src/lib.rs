@@ -15,6 +15,7 @@ mod instance;
 mod message;
 #[cfg(feature = "flight")]
 mod pattern_scorer;
+mod printable;
 mod quantity;
 mod run_folder;
 pub mod schema;
@@ -32,6 +33,7 @@ pub use message::describe_event;
 pub use message::{FlightEvent, FlightMessage, FlightRecord};
 #[cfg(feature = "flight")]
 pub use pattern_scorer::PatternScorer;
+pub use printable::{printable, printable_json};
 pub use quantity::RecordedQuantity;
 pub use run_folder::RunFolder;
 #[cfg(feature = "flight")]

@@ -1,8 +1,8 @@
 //! The grid of deadlines and a timer's position on it.
 //!
 //! Every timer has the kernel wake it at [`Deadlines::alarm_ns`] and passes the
-//! wake-up to [`Deadlines::woken`] or [`Deadlines::woken_uncounted`]: numbers,
-//! due times and misses are calculated here only.
+//! wake-up to [`Deadlines::woken`]: numbers, due times and misses are calculated
+//! here only, from the clock.
 
 use nix::errno::Errno;
 use nix::sys::time::TimeValLike as _;
@@ -10,12 +10,15 @@ use nix::time::{ClockId, clock_gettime};
 use std::io;
 use std::time::Duration;
 
-use crate::{Expiry, TimerError};
+use crate::{Expiry, Relief, TimerError};
 
 /// Below this, the wake-up alone takes longer than the period.
 const SHORTEST_PERIOD: Duration = Duration::from_micros(10);
 /// Longer is not a control loop; also keeps nanoseconds far from overflow.
 const LONGEST_PERIOD: Duration = Duration::from_secs(3600);
+
+/// The time that a thread may be awake for each unit that it sleeps: 95 % to 5 %.
+const AWAKE_FOR_EACH_ASLEEP: u64 = 19;
 
 /// A period known to be within the range that timers serve.
 #[derive(Clone, Copy, Debug)]
@@ -80,10 +83,34 @@ impl Deadlines {
         self.due_ns(self.next()).saturating_sub(self.early_ns)
     }
 
-    /// Serves the latest deadline. To be called as soon as the kernel has woken
-    /// the thread, with the kernel's count of deadlines passed since the previous
-    /// one served.
-    pub(crate) fn woken(&mut self, passed: u64, woke_ns: i64) -> Expiry {
+    /// How much time since the last deadline served has been used at `now_ns`.
+    pub(crate) fn used_ns(&self, now_ns: i64) -> u64 {
+        let since_ns = now_ns.saturating_sub(self.due_ns(self.served));
+        since_ns.max(0).unsigned_abs()
+    }
+
+    /// When the deadline is due that a wait which begins now ends at: the next,
+    /// or the first that leaves enough time to others.
+    pub(crate) fn awaited_ns(&self, now_ns: i64, relief: Relief) -> i64 {
+        let next_ns = self.due_ns(self.next());
+        if relief != Relief::Skip {
+            return next_ns;
+        }
+        let rest_ns = (self.used_ns(now_ns) / AWAKE_FOR_EACH_ASLEEP) as i64;
+        let missing_ns = now_ns.saturating_add(rest_ns).saturating_sub(next_ns);
+        let skipped = missing_ns
+            .max(0)
+            .unsigned_abs()
+            .div_ceil(self.period_ns.unsigned_abs());
+        self.due_ns(self.next().saturating_add(skipped))
+    }
+
+    /// Serves the latest deadline, which the clock has reached. To be called as
+    /// soon as the kernel has woken the thread.
+    pub(crate) fn woken(&mut self, woke_ns: i64) -> Expiry {
+        let since_start = woke_ns.saturating_sub(self.start_ns).max(0).unsigned_abs();
+        let latest = since_start / self.period_ns.unsigned_abs();
+        let passed = latest.saturating_sub(self.served).max(1);
         self.served = self.served.saturating_add(passed);
         let scheduled_ns = self.due_ns(self.served);
         Expiry {
@@ -94,15 +121,8 @@ impl Deadlines {
             early_wake_ns: 0,
             spun_ns: 0,
             kernel_lateness_ns: woke_ns.saturating_sub(scheduled_ns),
+            used_ns: 0,
         }
-    }
-
-    /// The same without a count: the number of passed deadlines is calculated from
-    /// the clock, which has reached the next one.
-    pub(crate) fn woken_uncounted(&mut self, woke_ns: i64) -> Expiry {
-        let since_start = woke_ns.saturating_sub(self.start_ns).max(0).unsigned_abs();
-        let latest = since_start / self.period_ns.unsigned_abs();
-        self.woken(latest.saturating_sub(self.served).max(1), woke_ns)
     }
 }
 
@@ -144,7 +164,7 @@ mod tests {
     #[test]
     fn a_wake_up_three_and_a_half_periods_on_serves_the_third_deadline() {
         let mut deadlines = every_25_ms();
-        let expiry = deadlines.woken_uncounted(1_087_500_000);
+        let expiry = deadlines.woken(1_087_500_000);
         assert_eq!(expiry.number, 3);
         assert_eq!(expiry.missed, 2);
         assert_eq!(expiry.scheduled_ns, 1_075_000_000);
@@ -161,20 +181,41 @@ mod tests {
 
     #[test]
     fn a_wake_up_at_the_deadline_is_on_time() {
-        let on_time = every_25_ms().woken_uncounted(1_025_000_000);
+        let on_time = every_25_ms().woken(1_025_000_000);
         assert_eq!((on_time.number, on_time.missed), (1, 0));
         assert_eq!(on_time.lateness_ns(), 0);
     }
 
     #[test]
-    fn what_the_kernel_counted_is_served_but_for_one_missed() {
-        let mut deadlines = every_25_ms();
-        let expiry = deadlines.woken(5, 1_130_000_000);
-        assert_eq!((expiry.number, expiry.missed), (5, 4));
-        assert_eq!(expiry.scheduled_ns, 1_125_000_000);
-        assert_eq!(expiry.lateness_ns(), 5_000_000);
-        let expiry = deadlines.woken(1, 1_150_000_000);
-        assert_eq!((expiry.number, expiry.missed), (6, 0));
+    fn a_passed_deadline_is_skipped_only_to_relieve_others() {
+        // 1.2 periods after the deadline served, which is number 0.
+        let deadlines = every_25_ms();
+        let now_ns = 1_030_000_000;
+        assert_eq!(deadlines.used_ns(now_ns), 30_000_000);
+        for relief in [Relief::None, Relief::NoSpin] {
+            assert_eq!(deadlines.awaited_ns(now_ns, relief), 1_025_000_000);
+        }
+        assert_eq!(deadlines.awaited_ns(now_ns, Relief::Skip), 1_050_000_000);
+    }
+
+    #[test]
+    fn at_least_a_twentieth_of_the_time_is_slept() {
+        let deadlines = every_25_ms();
+        // 47.5 ms are 95 % of two periods; a millisecond more needs a third.
+        for (used_ns, periods) in [
+            (1_000_000, 1),
+            (23_750_000, 1),
+            (23_800_000, 2),
+            (47_500_000, 2),
+            (48_500_000, 3),
+            (237_500_000, 10),
+        ] {
+            assert_eq!(
+                deadlines.awaited_ns(1_000_000_000 + used_ns, Relief::Skip),
+                1_000_000_000 + 25_000_000 * periods,
+                "{used_ns}"
+            );
+        }
     }
 
     #[test]

@@ -50,5 +50,5 @@ pub use realtime::{
     CpuRequest, DeniedRequest, RealtimeDenied, RealtimeGranted, RealtimeRequest, Strictness,
 };
 pub use stats::{TimingStats, TimingSummary};
-pub use timer::{Expiry, Timer, TimerError, Wake};
+pub use timer::{Expiry, Relief, Timer, TimerError, Wake};
 pub use timerfd::TimerFd;

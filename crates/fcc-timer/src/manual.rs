@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::deadlines::{Deadlines, Period};
-use crate::{Expiry, Timer, TimerError, Wake};
+use crate::{Expiry, Relief, Timer, TimerError, Wake};
 
 /// A timer whose clock advances only in a wait, to the next deadline. The clock
 /// starts at 0.
@@ -34,6 +34,7 @@ pub struct ManualTimer {
     late: Vec<(u64, Duration)>,
     warms_up: bool,
     warmed_up: bool,
+    relief: Relief,
 }
 
 impl ManualTimer {
@@ -49,6 +50,7 @@ impl ManualTimer {
             late: Vec::new(),
             warms_up: false,
             warmed_up: false,
+            relief: Relief::None,
         })
     }
 
@@ -83,12 +85,17 @@ impl Timer for ManualTimer {
     fn wait(&mut self) -> Result<Expiry, TimerError> {
         let deadlines = self.deadlines.as_mut().ok_or(TimerError::NotStarted)?;
         self.warmed_up = false;
+        let used_ns = deadlines.used_ns(self.now_ns);
         let waited_for = deadlines.next();
-        self.now_ns = self.now_ns.max(deadlines.due_ns(waited_for));
+        let due_ns = deadlines.awaited_ns(self.now_ns, self.relief);
+        self.now_ns = self.now_ns.max(due_ns);
         for (_, by) in self.late.iter().filter(|(number, _)| *number == waited_for) {
             self.now_ns = self.now_ns.saturating_add(by.as_nanos() as i64);
         }
-        Ok(deadlines.woken_uncounted(self.now_ns))
+        Ok(Expiry {
+            used_ns,
+            ..deadlines.woken(self.now_ns)
+        })
     }
 
     fn wait_or_warm_up(&mut self) -> Result<Wake, TimerError> {
@@ -97,6 +104,11 @@ impl Timer for ManualTimer {
             return self.clone().wait().map(Wake::WarmUp);
         }
         self.wait().map(Wake::Deadline)
+    }
+
+    fn relieve(&mut self, relief: Relief) -> Result<(), TimerError> {
+        self.relief = relief;
+        Ok(())
     }
 
     fn period(&self) -> Duration {
@@ -169,5 +181,20 @@ mod tests {
         timer.advance(ms(35));
         assert_eq!(next(&mut timer), (4, 2, 40, 45));
         assert_eq!(next(&mut timer), (5, 0, 50, 50));
+    }
+
+    #[test]
+    fn a_relieved_timer_skips_what_has_passed_and_keeps_its_phase() {
+        let mut timer = ManualTimer::new(ms(10)).unwrap();
+        timer.start().unwrap();
+        timer.relieve(Relief::Skip).unwrap();
+        assert_eq!(next(&mut timer), (1, 0, 10, 10));
+        timer.advance(ms(12));
+        assert_eq!(next(&mut timer), (3, 1, 30, 30));
+        timer.advance(ms(3));
+        assert_eq!(next(&mut timer), (4, 0, 40, 40));
+        timer.relieve(Relief::None).unwrap();
+        timer.advance(ms(12));
+        assert_eq!(next(&mut timer), (5, 0, 50, 52));
     }
 }

@@ -6,13 +6,13 @@ use std::time::Duration;
 
 use crate::deadlines::{Deadlines, Period, monotonic_ns, os_error, timespec};
 use crate::early::{Alarm, Early};
-use crate::periodic::{Kernel, periodic};
-use crate::{EarlyWake, Expiry, Timer, TimerError, Wake};
+use crate::periodic::{self, Kernel, periodic};
+use crate::{EarlyWake, Expiry, Relief, Timer, TimerError, Wake};
 
 periodic! {
     /// A periodic timer made of sleeps. Nothing runs in the kernel between two
-    /// waits, so passed deadlines are calculated from the clock. It is the only
-    /// timer here that the timer slack delays if the thread is not real-time.
+    /// waits. It is the only timer here that the timer slack delays if the thread
+    /// is not real-time.
     Nanosleep, "nanosleep", Sleep
 }
 
@@ -23,17 +23,6 @@ struct Sleep;
 impl Kernel for Sleep {
     fn new(_: Period) -> Result<Self, TimerError> {
         Ok(Self)
-    }
-
-    fn wait(&mut self, deadlines: &mut Deadlines) -> Result<Expiry, TimerError> {
-        let alarm_ns = deadlines.alarm_ns();
-        loop {
-            self.sleep_until(alarm_ns)?;
-            let woke_ns = monotonic_ns();
-            if woke_ns >= alarm_ns {
-                return Ok(deadlines.woken_uncounted(woke_ns));
-            }
-        }
     }
 }
 

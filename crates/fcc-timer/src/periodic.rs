@@ -1,8 +1,8 @@
 //! What the timers of the kernel have in common: all but the calls.
 
-use crate::deadlines::{Deadlines, Period};
+use crate::deadlines::{Deadlines, Period, monotonic_ns};
 use crate::early::Alarm;
-use crate::{Expiry, TimerError};
+use crate::{Expiry, Relief, TimerError};
 
 /// One of the kernel's ways to wake a thread periodically.
 pub(crate) trait Kernel: Alarm + Sized {
@@ -13,9 +13,26 @@ pub(crate) trait Kernel: Alarm + Sized {
     fn check_thread(&self) -> Result<(), TimerError> {
         Ok(())
     }
+}
 
-    /// Waits for the next deadline and serves it.
-    fn wait(&mut self, deadlines: &mut Deadlines) -> Result<Expiry, TimerError>;
+/// Waits for a deadline and serves it, without early wake. An alarm may be one
+/// of a deadline that has been served or skipped, so the clock decides.
+pub(crate) fn wait(
+    deadlines: &mut Deadlines,
+    kernel: &mut impl Alarm,
+    relief: Relief,
+) -> Result<Expiry, TimerError> {
+    let mut now_ns = monotonic_ns();
+    let used_ns = deadlines.used_ns(now_ns);
+    let due_ns = deadlines.awaited_ns(now_ns, relief);
+    while now_ns < due_ns {
+        kernel.sleep_until(due_ns)?;
+        now_ns = monotonic_ns();
+    }
+    Ok(Expiry {
+        used_ns,
+        ..deadlines.woken(now_ns)
+    })
 }
 
 /// Declares a timer, its name, and the [`Kernel`] that it waits by.
@@ -27,6 +44,7 @@ macro_rules! periodic {
             period: Period,
             running: Option<(Deadlines, $kernel)>,
             early: Option<Early>,
+            relief: Relief,
         }
 
         impl $timer {
@@ -41,6 +59,7 @@ macro_rules! periodic {
                     period: Period::new(period)?,
                     running: None,
                     early: None,
+                    relief: Relief::None,
                 })
             }
 
@@ -58,6 +77,7 @@ macro_rules! periodic {
             fn start(&mut self) -> Result<(), TimerError> {
                 // What an earlier start made is given back first.
                 self.running = None;
+                self.relief = Relief::None;
                 let mut kernel = <$kernel>::new(self.period)?;
                 let deadlines = Early::grid(self.early.as_mut(), self.period);
                 kernel.move_to(deadlines.alarm_ns())?;
@@ -69,14 +89,14 @@ macro_rules! periodic {
                 let (deadlines, kernel) = self.running.as_mut().ok_or(TimerError::NotStarted)?;
                 kernel.check_thread()?;
                 match &mut self.early {
-                    Some(early) => early.wait(deadlines, kernel),
-                    None => kernel.wait(deadlines),
+                    Some(early) if self.relief == Relief::None => early.wait(deadlines, kernel),
+                    _ => periodic::wait(deadlines, kernel, self.relief),
                 }
             }
 
             fn wait_or_warm_up(&mut self) -> Result<Wake, TimerError> {
                 match (&mut self.early, &mut self.running) {
-                    (Some(early), Some((deadlines, kernel))) => {
+                    (Some(early), Some((deadlines, kernel))) if self.relief == Relief::None => {
                         kernel.check_thread()?;
                         early.wait_or_warm_up(deadlines, kernel)
                     }
@@ -86,6 +106,18 @@ macro_rules! periodic {
 
             fn disable_early_wake(&mut self) {
                 self.early = None;
+            }
+
+            fn relieve(&mut self, relief: Relief) -> Result<(), TimerError> {
+                let before = std::mem::replace(&mut self.relief, relief);
+                let spins = relief == Relief::None;
+                if let (Some(early), Some((deadlines, kernel))) = (&mut self.early, &mut self.running)
+                    && spins != (before == Relief::None)
+                {
+                    deadlines.wake_early(if spins { early.interrupted() } else { 0 });
+                    kernel.move_to(deadlines.alarm_ns())?;
+                }
+                Ok(())
             }
 
             fn period(&self) -> Duration {

@@ -44,6 +44,15 @@ pub trait Timer: Send {
     /// others interrupt its spin, so it costs CPU time and gains nothing.
     fn disable_early_wake(&mut self) {}
 
+    /// How much of the processor the next waits leave to other threads; without
+    /// effect on a timer that has none to leave. Allocates nothing.
+    ///
+    /// # Errors
+    /// When the operating system refuses.
+    fn relieve(&mut self, _: Relief) -> Result<(), TimerError> {
+        Ok(())
+    }
+
     /// The time between deadlines.
     fn period(&self) -> Duration;
 
@@ -52,6 +61,23 @@ pub trait Timer: Send {
 
     /// Its name in configuration and reports: `timerfd`, `posix`, ...
     fn name(&self) -> &'static str;
+}
+
+/// What a timer does so that a thread whose ticks take too long leaves time to
+/// others.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Relief {
+    /// Nothing: each deadline is served, late if it has passed.
+    #[default]
+    None,
+    /// It does not wake early: the time of the spin is slept.
+    NoSpin,
+    /// It also skips deadlines: those that have passed, and those before which
+    /// the thread would sleep for less than a nineteenth of the time that it was
+    /// awake. So at least 5 % of the time is left to others, as Linux itself
+    /// leaves by default (`sched_rt_runtime_us`, sched(7)). Skipped deadlines
+    /// count as missed, and the phase is kept.
+    Skip,
 }
 
 /// The result of a wait.
@@ -85,6 +111,9 @@ pub struct Expiry {
     /// lateness without early wake. If the thread did not sleep, its lateness
     /// after the deadline.
     pub kernel_lateness_ns: i64,
+    /// How much time since the deadline served before the thread had used when it
+    /// began to wait, ns. If it is a period or more, the next deadline had passed.
+    pub used_ns: u64,
 }
 
 impl Expiry {

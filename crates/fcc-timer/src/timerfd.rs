@@ -9,13 +9,12 @@ use std::time::Duration;
 
 use crate::deadlines::{Deadlines, Period, monotonic_ns, os_error, timespec};
 use crate::early::{Alarm, Early};
-use crate::periodic::{Kernel, periodic};
-use crate::{EarlyWake, Expiry, Timer, TimerError, Wake};
+use crate::periodic::{self, Kernel, periodic};
+use crate::{EarlyWake, Expiry, Relief, Timer, TimerError, Wake};
 
 periodic! {
-    /// A periodic timer on a timerfd. The kernel counts the expirations, and a
-    /// read of the descriptor gives the count since the read before: all but one
-    /// of them are missed deadlines.
+    /// A periodic timer on a timerfd: a read of its descriptor waits for the next
+    /// expiration.
     TimerFd, "timerfd", File
 }
 
@@ -26,30 +25,11 @@ struct File {
     period: Period,
 }
 
-impl File {
-    /// Waits for an expiration; how many there were since the last call.
-    fn expirations(&self) -> Result<u64, TimerError> {
-        let mut count = [0; size_of::<u64>()];
-        loop {
-            match read(&self.descriptor, &mut count) {
-                Ok(_) => return Ok(u64::from_ne_bytes(count)),
-                Err(Errno::EINTR) => {}
-                Err(errno) => return Err(os_error("read of a timerfd")(errno)),
-            }
-        }
-    }
-}
-
 impl Kernel for File {
     fn new(period: Period) -> Result<Self, TimerError> {
         let descriptor = Descriptor::new(ClockId::CLOCK_MONOTONIC, TimerFlags::TFD_CLOEXEC)
             .map_err(os_error("timerfd_create"))?;
         Ok(Self { descriptor, period })
-    }
-
-    fn wait(&mut self, deadlines: &mut Deadlines) -> Result<Expiry, TimerError> {
-        let passed = self.expirations()?;
-        Ok(deadlines.woken(passed, monotonic_ns()))
     }
 }
 
@@ -64,6 +44,13 @@ impl Alarm for File {
     }
 
     fn sleep_until(&mut self, _: i64) -> Result<(), TimerError> {
-        self.expirations().map(drop)
+        let mut count = [0; size_of::<u64>()];
+        loop {
+            match read(&self.descriptor, &mut count) {
+                Ok(_) => return Ok(()),
+                Err(Errno::EINTR) => {}
+                Err(errno) => return Err(os_error("read of a timerfd")(errno)),
+            }
+        }
     }
 }

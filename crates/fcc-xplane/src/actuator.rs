@@ -108,6 +108,10 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
                 .inspect_err(|_| count(&link.counters.refused))
         };
 
+        if link.is_maybe_reloaded() {
+            // What is written now would reach another aircraft.
+            return Ok(());
+        }
         let mut sent = Ok(());
         if now.since(held.asserted) >= ASSERT_EVERY {
             held.asserted = now;

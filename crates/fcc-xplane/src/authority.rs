@@ -93,6 +93,9 @@ impl ControlAuthority for XPlaneAuthority {
     }
 
     fn report(&self, report: &mut dyn FnMut(fmt::Arguments<'_>)) {
+        if let Some(status) = &self.status {
+            status.link().adapt_filter();
+        }
         let mut reported = self.reported.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(text) = self
             .status
@@ -154,6 +157,8 @@ struct Reported {
     /// What was reported about this silence.
     causes: Vec<Why>,
     last: LastReport,
+    /// Which X-Plane answered, and from which port.
+    answered: Option<(SocketAddr, u16)>,
     pace: SimulatorState,
     missing: Vec<Missing>,
     control: Control,
@@ -176,6 +181,7 @@ impl Default for Reported {
             silence: None,
             causes: Vec::new(),
             last: LastReport::Nothing,
+            answered: None,
             pace: SimulatorState::Running,
             missing: Vec::new(),
             control: Control::Free,
@@ -209,6 +215,7 @@ impl Reported {
             }
             None => self
                 .recovery(status)
+                .or_else(|| self.change_of_reply_port(status))
                 .or_else(|| self.change_of_control(status))
                 .or_else(|| self.change_of_overrides(status))
                 .or_else(|| self.change_of_pace(status))
@@ -269,6 +276,19 @@ impl Reported {
             }
             LastReport::Trouble(_) => Some(format!("X-Plane at {simulator} answers")),
         }
+    }
+
+    /// That it answers from another port than before.
+    fn change_of_reply_port(&mut self, status: &XPlaneStatus) -> Option<String> {
+        let (simulator, port) = status.simulator().zip(status.reply_port())?;
+        let (_, before) = self
+            .answered
+            .replace((simulator, port))
+            .filter(|(of, before)| *of == simulator && *before != port)?;
+        Some(format!(
+            "X-Plane at {simulator} answers from UDP port {port} now, before from {before}: it was \
+             started again, or another program on its machine answers in its place"
+        ))
     }
 
     /// Whether X-Plane is paused or slow, if that has changed.

@@ -37,6 +37,9 @@ use crate::values::{Group, Values};
 const SWITCH_ON: f64 = 0.75;
 const SWITCH_OFF: f64 = 0.25;
 
+/// How long a second reading of both overrides is waited for: some frames.
+const RELOADS_WITHIN: Duration = Duration::from_millis(250);
+
 /// Converts datagrams to measurements.
 #[derive(Clone, Debug)]
 pub(crate) struct Inbox {
@@ -53,6 +56,8 @@ pub(crate) struct Inbox {
     consistency: ConsistencyCheck,
     /// Whether both overrides were seen set since control was taken.
     overridden: bool,
+    /// When both were first read as cleared after that; never while they are not.
+    cleared: Time,
 }
 
 impl Inbox {
@@ -69,6 +74,7 @@ impl Inbox {
             other_control: OtherControlWatch::default(),
             consistency: ConsistencyCheck::default(),
             overridden: false,
+            cleared: Time::NEVER,
         }
     }
 
@@ -327,20 +333,30 @@ impl Inbox {
     }
 
     /// Notices that both overrides, which were set, are cleared although control
-    /// is held: X-Plane clears them when it loads an aircraft. One of them alone
-    /// may be another program's doing; it is set again.
-    fn notice_reload(&mut self, link: &SharedState) {
+    /// is held, in two ticks: X-Plane clears them when it loads an aircraft. One of
+    /// them alone may be another program's doing; it is set again.
+    fn notice_reload(&mut self, now: Time, link: &SharedState) {
         let overrides = [Quantity::OverrideJoystick, Quantity::OverrideThrottles];
-        let shown = overrides.map(|of| link.read_back.shown(of).map(|(value, _)| value >= 0.5));
-        match shown {
-            _ if link.control() != Control::Held => self.overridden = false,
-            [Some(true), Some(true)] => self.overridden = true,
-            [Some(false), Some(false)] if self.overridden => {
-                self.overridden = false;
-                self.clock.reload();
-            }
-            _ => {}
+        let shown = overrides.map(|of| link.read_back.shown(of));
+        let [first, second] = shown.map(|shown| shown.map(|(value, _)| value >= 0.5));
+        let is_cleared = first == Some(false) && second == Some(false);
+        if link.control() != Control::Held {
+            self.overridden = false;
+        } else if first == Some(true) && second == Some(true) {
+            self.overridden = true;
         }
+        if !is_cleared || !self.overridden {
+            self.cleared = Time::NEVER;
+        } else if self.cleared.is_never() {
+            self.cleared = now;
+        } else if shown.iter().flatten().all(|(_, at)| *at > self.cleared) {
+            self.overridden = false;
+            self.clock.reload();
+        }
+        // They must not be set again before the second reading.
+        link.set_maybe_reloaded(
+            !self.cleared.is_never() && now.since(self.cleared) < RELOADS_WITHIN,
+        );
     }
 
     /// The simulator's clock and state: written in every tick in which it sent its
@@ -351,7 +367,7 @@ impl Inbox {
         into: &mut Measurements,
         link: &SharedState,
     ) -> SimulatorState {
-        self.notice_reload(link);
+        self.notice_reload(now, link);
         let state = self.clock.state(now);
         if state == SimulatorState::Jumped {
             count(&link.counters.jumps);

@@ -30,7 +30,7 @@
 //! | `motion`, `specific_force` | attitude, specific force and velocity from the local axes |
 //! | `other_control` | what acts on the controls besides this program |
 //! | `consistency`, `axial_load` | values compared with each other |
-//! | `reply_port` | from which port of the simulator they are accepted |
+//! | `source_filter`, `reply_port` | from which address and port of the simulator they are accepted |
 //! | `subscriptions`, `missing` | what to request, when to repeat it, and what does not arrive |
 //! | `traffic` | how much is sent to X-Plane |
 //! | `engage_switch` | the dataref that engages |
@@ -46,7 +46,8 @@
 //! X-Plane may be paused, slowed, restarted or killed. Truncated and corrupted
 //! datagrams are left out and counted; duplicates change nothing; overtaken
 //! ones are dropped by the flight time in them; those from another IP address,
-//! or from another port than the one that has answered, are dropped; and at most a configured number is read in a tick. The flight
+//! or from another port than the one that has answered, are not even delivered
+//! by the kernel; and at most a configured number is read in a tick. The flight
 //! time is an f32: after 36 hours of one flight it counts in steps of 16 ms.
 //!
 //! In a tick nothing allocates, locks, logs or panics, and the only system
@@ -88,6 +89,7 @@ mod sent_yoke;
 mod shared_address;
 mod silence;
 mod simulator;
+mod source_filter;
 mod specific_force;
 mod status;
 mod subscriptions;

@@ -17,6 +17,7 @@ use crate::readbacks::Readbacks;
 use crate::sent_yoke::SentYoke;
 use crate::shared_address::SharedAddress;
 use crate::simulator::SimulatorState;
+use crate::source_filter::{Ports, SourceFilter};
 
 /// Who has the controls, as far as this program knows.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -38,10 +39,15 @@ pub(crate) struct SharedState {
     reply_port: AtomicU16,
     /// The port that is received on here, 0 while unknown.
     local_port: AtomicU16,
+    /// [`Ports`], of 16 bits each.
+    delivered_ports: AtomicU64,
+    filter: OnceLock<SourceFilter>,
     state: AtomicU8,
     control: AtomicU8,
     /// A confirmed release of this program's may still be undone by a late write.
     may_be_undone: AtomicBool,
+    /// Both overrides were read as cleared, once.
+    maybe_reloaded: AtomicBool,
     unconfirmed: AtomicBool,
     /// Another program writes the held controls, too.
     other_writer: AtomicBool,
@@ -70,9 +76,12 @@ impl SharedState {
             address: SharedAddress::new(simulator),
             reply_port: AtomicU16::new(0),
             local_port: AtomicU16::new(0),
+            delivered_ports: AtomicU64::new(0),
+            filter: OnceLock::new(),
             state: AtomicU8::new(SimulatorState::Silent as u8),
             control: AtomicU8::new(Control::Free as u8),
             may_be_undone: AtomicBool::new(false),
+            maybe_reloaded: AtomicBool::new(false),
             unconfirmed: AtomicBool::new(false),
             other_writer: AtomicBool::new(false),
             left_overridden: AtomicBool::new(false),
@@ -111,8 +120,33 @@ impl SharedState {
         known_port(&self.local_port)
     }
 
-    pub(crate) fn set_local_port(&self, port: u16) {
-        self.local_port.store(port, Ordering::Relaxed);
+    /// What is received on here; only the first filter counts.
+    pub(crate) fn set_socket(&self, local_port: u16, filter: Option<SourceFilter>) {
+        self.local_port.store(local_port, Ordering::Relaxed);
+        if let Some(filter) = filter {
+            let _ = self.filter.set(filter);
+        }
+    }
+
+    /// The simulator's ports from which the kernel is to deliver.
+    pub(crate) fn delivered_ports(&self) -> Ports {
+        let packed = self.delivered_ports.load(Ordering::Relaxed);
+        [0, 16, 32, 48].map(|shift| (packed >> shift) as u16)
+    }
+
+    pub(crate) fn set_delivered_ports(&self, ports: Ports) {
+        let packed = ports
+            .into_iter()
+            .rev()
+            .fold(0, |packed, port| (packed << 16) | u64::from(port));
+        self.delivered_ports.store(packed, Ordering::Relaxed);
+    }
+
+    /// Adapts the kernel's filter to what is known; not in a tick.
+    pub(crate) fn adapt_filter(&self) {
+        if let Some(filter) = self.filter.get() {
+            filter.follow(self);
+        }
     }
 
     pub(crate) fn state(&self) -> SimulatorState {
@@ -161,6 +195,15 @@ impl SharedState {
         let _ = self
             .control
             .compare_exchange(from, to, Ordering::AcqRel, Ordering::Acquire);
+    }
+
+    /// Whether both overrides were read as cleared, once.
+    pub(crate) fn is_maybe_reloaded(&self) -> bool {
+        self.maybe_reloaded.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn set_maybe_reloaded(&self, maybe: bool) {
+        self.maybe_reloaded.store(maybe, Ordering::Relaxed);
     }
 
     pub(crate) fn is_unconfirmed(&self) -> bool {

@@ -78,6 +78,7 @@ impl XPlane {
             UdpPort::bind(port, peer)
         })?;
         let local_port = port.local_port().unwrap_or(0);
+        let filter = port.filter().ok();
         let beacons = match config.simulator {
             Simulator::At(_) | Simulator::Named(_) => None,
             Simulator::Beacon => {
@@ -87,7 +88,7 @@ impl XPlane {
             }
         };
         let (sensor, actuator) = Self::join(config, simulator, port, beacons)?;
-        sensor.set_local_port(local_port);
+        sensor.set_socket(local_port, filter);
         Ok((sensor, actuator))
     }
 

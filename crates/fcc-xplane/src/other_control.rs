@@ -64,6 +64,9 @@ pub(crate) struct OtherControlWatch {
     moved: Time,
     writer: Lasting,
     left: Lasting,
+    /// When a reading first said that thrust is reversed; never if the last one
+    /// did not.
+    reversed: Time,
 }
 
 impl Default for OtherControlWatch {
@@ -74,6 +77,7 @@ impl Default for OtherControlWatch {
             moved: Time::NEVER,
             writer: Lasting::new(WRITER_BEGINS, WRITER_ENDS),
             left: Lasting::new(LEFT_AFTER, Duration::ZERO),
+            reversed: Time::NEVER,
         }
     }
 }
@@ -92,16 +96,32 @@ impl OtherControlWatch {
         let augmented = STABILITY
             .iter()
             .any(|axis| recent(*axis).is_some_and(|ratio| ratio.abs() >= STABILITY_RATIO));
-        let reversed = recent(Quantity::Throttle).is_some_and(|ratio| ratio < REVERSE_BELOW)
-            || recent(Quantity::EngineMode).is_some_and(|mode| mode == MODE_REVERSE);
         OtherControl {
             autopilot: SERVOS.into_iter().any(is_set),
             autothrottle: is_set(Quantity::Autothrottle),
             fly_by_wire: PLUGINS.into_iter().any(is_set),
             stability: self.stability.step(now, augmented),
             writer: self.is_written(now, values, writing) || writing.has_other_writer(),
-            reverse_thrust: reversed,
+            reverse_thrust: self.is_reversed(now, values),
         }
+    }
+
+    /// Whether thrust is reversed, by two readings in a row.
+    fn is_reversed(&mut self, now: Time, values: &Values) -> bool {
+        let since = |quantity, says: fn(f64) -> bool| {
+            let reading = values.recent(quantity, now).filter(|value| says(*value));
+            reading.map(|_| values.arrived(quantity))
+        };
+        let throttle = since(Quantity::Throttle, |ratio| ratio < REVERSE_BELOW);
+        let mode = since(Quantity::EngineMode, |mode| mode == MODE_REVERSE);
+        let Some(arrived) = throttle.max(mode) else {
+            self.reversed = Time::NEVER;
+            return false;
+        };
+        if self.reversed.is_never() {
+            self.reversed = arrived;
+        }
+        arrived > self.reversed
     }
 
     /// Whether another program writes the yoke while this one does not.
@@ -192,10 +212,17 @@ mod tests {
             reverse_thrust: true,
             ..alone
         };
-        assert_eq!(is(Quantity::Throttle, -0.4), reversed);
+        let twice = |quantity, value| {
+            let mut bench = Bench::new();
+            assert_eq!(bench.tick(&[(quantity, value)]), alone);
+            // Without a new reading.
+            assert_eq!(bench.tick(&[]), alone);
+            bench.tick(&[(quantity, value)])
+        };
+        assert_eq!(twice(Quantity::Throttle, -0.4), reversed);
         assert_eq!(is(Quantity::Throttle, 0.0), alone);
         assert_eq!(is(Quantity::Throttle, 1.2), alone);
-        assert_eq!(is(Quantity::EngineMode, 3.0), reversed);
+        assert_eq!(twice(Quantity::EngineMode, 3.0), reversed);
         assert_eq!(is(Quantity::EngineMode, 1.0), alone);
     }
 

@@ -12,7 +12,8 @@ use crate::controls::Controls;
 use crate::open::{OpenError, XPlane, bind, local_ports};
 use crate::protocol::rref;
 use crate::quantity::{OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES};
-use crate::udp_port::any_address;
+use crate::source_filter;
+use crate::udp_port::local_address;
 
 /// The interval between two releases.
 const AGAIN_AFTER: Duration = Duration::from_millis(250);
@@ -111,12 +112,14 @@ impl Conversation {
         let mut ports = local_ports(config.local_port, ip);
         // The daemon itself may still have its own.
         ports.push(0);
-        let answers = bind(&ports, |port| UdpSocket::bind((any_address(ip), port)))?;
+        let answers = bind(&ports, |port| UdpSocket::bind((local_address(ip), port)))?;
         let refused = |source| OpenError::Bind { port: 0, source };
+        // If this fails, what others send is left out below.
+        let _ = source_filter::attach(&answers, ip, [0; 4]);
         answers
             .set_read_timeout(Some(LISTEN_FOR))
             .map_err(refused)?;
-        let writes = UdpSocket::bind((any_address(ip), 0)).map_err(refused)?;
+        let writes = UdpSocket::bind((local_address(ip), 0)).map_err(refused)?;
         writes.connect(simulator).map_err(refused)?;
         let mut requests = [[0; rref::REQUEST_BYTES]; 2];
         let paths = [OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES];

@@ -19,6 +19,7 @@ use crate::protocol::{Kind, PathError, beacon};
 use crate::release_monitor::ReleaseMonitor;
 use crate::reply_port::ReplyPorts;
 use crate::simulator::SimulatorState;
+use crate::source_filter::SourceFilter;
 use crate::status::XPlaneStatus;
 use crate::subscriptions::Subscriptions;
 use crate::udp_port::UdpPort;
@@ -95,7 +96,7 @@ impl<P: Port> XPlaneSensor<P> {
             writing: Arc::clone(&link),
             link,
             inbox: Inbox::new(rows, config.silent_after),
-            reply_ports: ReplyPorts::default(),
+            reply_ports: ReplyPorts::new(config.reply_port, rows.is_some()),
             subscriptions: Subscriptions::new(config)?,
             expected_reply_port: config.reply_port,
             opened: Time::NEVER,
@@ -128,8 +129,8 @@ impl<P: Port> XPlaneSensor<P> {
         self
     }
 
-    pub(crate) fn set_local_port(&self, port: u16) {
-        self.link.set_local_port(port);
+    pub(crate) fn set_socket(&self, local_port: u16, filter: Option<SourceFilter>) {
+        self.link.set_socket(local_port, filter);
     }
 
     /// Reads beacons: connects to the first simulator that computes a flight,
@@ -186,7 +187,9 @@ impl<P: Port> XPlaneSensor<P> {
                 Ok(true) => {
                     if let Some(kind) = kind {
                         self.reply_ports.hold(kind, port, now);
-                        self.link.set_reply_port(port);
+                        if kind == Kind::Rref || self.link.reply_port().is_none() {
+                            self.link.set_reply_port(port);
+                        }
                     }
                 }
                 Ok(false) => {}
@@ -298,6 +301,8 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
         } else {
             self.receive(now, simulator)
         };
+        self.link
+            .set_delivered_ports(self.reply_ports.to_deliver(now));
         let state = self.inbox.publish(now, into, &self.link, &self.writing);
         self.link.set_state(state);
         if let Some(missing) = self.subscriptions.missing(now, &self.inbox) {

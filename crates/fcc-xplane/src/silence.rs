@@ -17,7 +17,7 @@ use crate::config::XPlaneConfig;
 use crate::no_answer::Why;
 use crate::protocol::{beacon, rref};
 use crate::status::XPlaneStatus;
-use crate::udp_port::{UdpPort, any_address, is_of_this_machine};
+use crate::udp_port::{UdpPort, is_of_this_machine, local_address};
 
 const PROBE_EVERY: Duration = Duration::from_secs(1);
 /// Then another socket is used, since a socket keeps its reports of errors in
@@ -148,7 +148,7 @@ impl Silence {
 }
 
 fn open_probe(simulator: SocketAddr) -> std::io::Result<UdpSocket> {
-    let probe = UdpSocket::bind((any_address(simulator.ip()), 0))?;
+    let probe = UdpSocket::bind((local_address(simulator.ip()), 0))?;
     probe.set_nonblocking(true)?;
     // Without it, only a closed port is reported, and no absent machine.
     let _ = match simulator {

@@ -12,7 +12,7 @@ mod state;
 use core::time::Duration;
 
 use fcc_core::framework::Time;
-use late::LateFilter;
+use late::{Claim, LateFilter};
 use pace::{Pace, PaceMeter};
 pub use state::SimulatorState;
 
@@ -69,6 +69,8 @@ pub(crate) struct SimulatorClock {
     /// The latest before this tick: in one tick many may arrive that waited.
     before: ClockSample,
     late: LateFilter,
+    /// Of a time that is far ahead.
+    ahead: Claim,
     /// The latest before the last gap, and when that ended.
     before_gap: ClockSample,
     gap_ended: Time,
@@ -89,6 +91,7 @@ impl SimulatorClock {
             latest: ClockSample::default(),
             before: ClockSample::default(),
             late: LateFilter::default(),
+            ahead: Claim::default(),
             before_gap: ClockSample::default(),
             gap_ended: Time::NEVER,
             advanced: Time::NEVER,
@@ -112,15 +115,37 @@ impl SimulatorClock {
         self.reloaded = true;
     }
 
-    /// Whether a datagram of this flight time was overtaken by a newer one and is to
-    /// be dropped; not if the time is equal: the same frame, or time stands still.
+    /// Whether a datagram of this flight time is to be dropped: it was overtaken by
+    /// a newer one, or it is the first one with a time far from the latest. Not if
+    /// the time is equal: the same frame, or time stands still.
     pub(crate) fn is_late(&mut self, now: Time, time_s: f64) -> bool {
         // A replay may go backwards.
         if self.replaying || self.latest.seen.is_never() {
             return false;
         }
-        self.late
-            .is_late(ClockSample { time_s, seen: now }, self.latest)
+        let sample = ClockSample { time_s, seen: now };
+        if self.is_ahead(sample) {
+            !self.ahead.is_continued_by(sample)
+        } else {
+            self.late.is_late(sample, self.latest)
+        }
+    }
+
+    /// The latest time before the last gap, and when that ended, if this is the
+    /// next time.
+    fn last_gap(&self, now: Time) -> (ClockSample, Time) {
+        if now.since(self.latest.seen) >= HELD_BACK {
+            (self.latest, now)
+        } else {
+            (self.before_gap, self.gap_ended)
+        }
+    }
+
+    /// Whether the clock cannot have run to this time: it was set forward.
+    fn is_ahead(&self, sample: ClockSample) -> bool {
+        let (before_gap, gap_ended) = self.last_gap(sample.seen);
+        sample.is_ahead_of(self.before)
+            && (sample.seen.since(gap_ended) >= HELD_BACK || sample.is_ahead_of(before_gap))
     }
 
     /// Evaluates the report of an accepted datagram.
@@ -157,19 +182,19 @@ impl SimulatorClock {
 
     fn read_clock(&mut self, now: Time, time_s: f64, was_silent: bool) {
         let (before, had_stopped) = (self.latest, self.has_stopped());
-        self.latest = ClockSample { time_s, seen: now };
+        let sample = ClockSample { time_s, seen: now };
+        let is_ahead = self.is_ahead(sample);
+        let gap = self.last_gap(now);
+        self.latest = sample;
         self.late = LateFilter::default();
+        self.ahead = Claim::default();
         if before.seen.is_never() {
             self.begin_pace(now);
             return;
         }
         let gained_s = time_s - before.time_s;
-        if now.since(before.seen) >= HELD_BACK {
-            (self.before_gap, self.gap_ended) = (before, now);
-        }
+        (self.before_gap, self.gap_ended) = gap;
         let gains = self.latest.is_ahead_of(self.before);
-        let is_ahead = gains
-            && (now.since(self.gap_ended) >= HELD_BACK || self.latest.is_ahead_of(self.before_gap));
         // Late datagrams were dropped, so a time that went back was set back.
         if gained_s < 0.0 || is_ahead {
             self.jumped = true;

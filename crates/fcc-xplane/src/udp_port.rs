@@ -9,6 +9,7 @@ use socket2::{Domain, Protocol, Socket, Type};
 
 use crate::port::{Errno, Port, send_one_by_one};
 use crate::protocol::dref;
+use crate::source_filter::{self, SourceFilter};
 
 /// Longer than what X-Plane sends.
 const PEEK_BYTES: usize = 2_048;
@@ -36,13 +37,19 @@ pub struct UdpPort {
 
 impl UdpPort {
     /// Binds to a local port, 0 for any that is free, to send to and receive
-    /// from addresses of the same kind as `peer`.
+    /// from `peer`: what comes from other addresses the kernel does not deliver,
+    /// unless `peer` is unspecified. If it is a loopback address, other machines
+    /// cannot send here.
     ///
     /// # Errors
     /// When the operating system refuses, for example because the port is
     /// taken.
     pub fn bind(port: u16, peer: IpAddr) -> io::Result<Self> {
-        let mut bound = Self::bind_to((any_address(peer), port).into())?;
+        let mut bound = Self::bind_to((local_address(peer), port).into())?;
+        if !peer.is_unspecified() {
+            // If this fails, the sensor leaves out what others send.
+            let _ = source_filter::attach(&bound.socket, peer, [0; 4]);
+        }
         bound.scratch = Self::open_scratch(peer).ok();
         Ok(bound)
     }
@@ -67,12 +74,10 @@ impl UdpPort {
     /// on the simulator's socket it cannot be run in advance without sending. So
     /// this one makes the same system calls without effect.
     fn open_scratch(peer: IpAddr) -> io::Result<(Box<Self>, SocketAddr)> {
-        let here: IpAddr = match peer {
-            IpAddr::V4(_) => Ipv4Addr::LOCALHOST.into(),
-            IpAddr::V6(_) => Ipv6Addr::LOCALHOST.into(),
-        };
-        let port = Self::bind_to((here, 0).into())?;
+        let port = Self::bind_to((loopback_address(peer), 0).into())?;
         let address = port.socket.local_addr()?;
+        // What others send would be received in place of its own.
+        source_filter::attach(&port.socket, address.ip(), [address.port(), 0, 0, 0])?;
         Ok((Box::new(port), address))
     }
 
@@ -108,6 +113,11 @@ impl UdpPort {
         self.socket.local_addr().map(|address| address.port())
     }
 
+    /// The filter of what is received.
+    pub(crate) fn filter(&self) -> io::Result<SourceFilter> {
+        SourceFilter::of(&self.socket)
+    }
+
     /// The socket, for set-up that may wait.
     pub(crate) const fn socket(&self) -> &UdpSocket {
         &self.socket
@@ -118,11 +128,20 @@ fn socket(domain: Domain) -> io::Result<Socket> {
     Socket::new(domain, Type::DGRAM, Some(Protocol::UDP))
 }
 
-/// The unspecified address of the same kind as `peer`, to bind to.
-pub(crate) const fn any_address(peer: IpAddr) -> IpAddr {
+/// The address to bind to for datagrams of `peer`: only this machine can send to
+/// a loopback address.
+pub(crate) const fn local_address(peer: IpAddr) -> IpAddr {
     match peer {
+        _ if peer.is_loopback() => loopback_address(peer),
         IpAddr::V4(_) => IpAddr::V4(Ipv4Addr::UNSPECIFIED),
         IpAddr::V6(_) => IpAddr::V6(Ipv6Addr::UNSPECIFIED),
+    }
+}
+
+const fn loopback_address(peer: IpAddr) -> IpAddr {
+    match peer {
+        IpAddr::V4(_) => IpAddr::V4(Ipv4Addr::LOCALHOST),
+        IpAddr::V6(_) => IpAddr::V6(Ipv6Addr::LOCALHOST),
     }
 }
 

@@ -28,7 +28,7 @@ use std::time::Duration;
 use clap::{Parser, Subcommand};
 use fcc_record::{RecorderOf, RecordingPace};
 use fcc_runtime::{Link, Loop, LoopCommand, LoopConfig, LoopReport, Message, Parts, RecordOf};
-use fcc_telemetry::Instance;
+use fcc_telemetry::{Instance, printable, printable_json};
 use fcc_timer::{RealtimeRequest, Timer, TimerKind};
 
 use room::{Heater, Thermometer};
@@ -81,7 +81,8 @@ enum Command {
 
 fn main() -> ExitCode {
     run(Arguments::parse()).unwrap_or_else(|error| {
-        let _ = writeln!(io::stderr(), "thermostat: {error}");
+        let text = printable(&error.to_string());
+        let _ = writeln!(io::stderr(), "thermostat: {text}");
         ExitCode::FAILURE
     })
 }
@@ -99,9 +100,9 @@ fn run(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         Some(Command::Report { file, html, json }) => {
             let report = show::report(&file, html.as_deref())?;
             let text = if json {
-                serde_json::to_string_pretty(&report)?
+                printable_json(&serde_json::to_string_pretty(&report)?)
             } else {
-                report.to_text()
+                printable(&report.to_text())
             };
             writeln!(out, "{text}")?;
         }

@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from ..printable import say
 from ..progress import bar
 from ..workers import local_workers, on_dask
 from .draw import Bounds
@@ -129,8 +130,8 @@ def _campaign(parser: argparse.ArgumentParser, options: argparse.Namespace) -> i
         for outcome in fly_all(tasks):
             outcomes.append(outcome)
             notify(len(outcomes), f"{100.0 * report.clean_share(outcomes):.0f} % clean")
-    print(report.text(outcomes))
-    print(f"took {time.monotonic() - began_s:.0f} s")
+    say(report.text(outcomes))
+    say(f"took {time.monotonic() - began_s:.0f} s")
     if options.json:
         document = report.document(outcomes, options.seed, bounds)
         options.json.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
@@ -152,12 +153,12 @@ def _one(options: argparse.Namespace, bounds: Bounds) -> int:
     from .flying import fly  # noqa: PLC0415
 
     outcome, truth = fly(draw(options.flight, options.seed, bounds), options.record)
-    print(report.failure(outcome))
+    say(report.failure(outcome))
     for event in outcome.events:
-        print(f"    {event.time_s:7.2f} s  {event.text}")
+        say(f"    {event.time_s:7.2f} s  {event.text}")
     for name, value in outcome.verdict.figures.items():
-        print(f"    {name:30} {value:8.2f}")
-    print(f"digest {outcome.digest}")
+        say(f"    {name:30} {value:8.2f}")
+    say(f"digest {outcome.digest}")
     if options.json:
         options.json.write_text(json.dumps(outcome.document(), indent=1) + "\n", encoding="utf-8")
     if options.picture:

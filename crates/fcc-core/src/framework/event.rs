@@ -268,5 +268,33 @@ schema! {
         /// A command to engage was refused, because the engage switch is off.
         #[field(33)]
         EngageRefusedBySwitch,
+        /// Ticks leave no time to sleep: from here on deadlines are skipped.
+        #[field(34)]
+        Overloaded {
+            /// The time that a tick used, from its deadline to the next wait, ns.
+            #[field(1)]
+            used_ns: u64,
+            /// A period, ns.
+            #[field(2)]
+            period_ns: u64,
+        },
+        /// For a second ticks have left time to sleep: no deadlines are skipped
+        /// any more.
+        #[field(35)]
+        OverloadOver {
+            /// How many ticks left none.
+            #[field(1)]
+            count: u64,
+            /// The first of them.
+            #[field(2)]
+            first: u64,
+            /// The last of them.
+            #[field(3)]
+            last: u64,
+        },
+        /// The loop stops because no tick has left time to sleep for too long. A
+        /// replay stops by it.
+        #[field(36)]
+        StoppedByOverload,
     }
 }

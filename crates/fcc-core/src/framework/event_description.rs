@@ -113,6 +113,12 @@ impl<C: Controller> fmt::Display for EventDescription<C> {
                 "not engaged: the engage switch was switched on while nothing arrived from it; \
                  switch it off and on again",
             ),
+            EventKind::Overloaded { used_ns, period_ns } => overload(f, used_ns, period_ns),
+            EventKind::OverloadOver { count, last, .. } => write!(
+                f,
+                "overload over: {count} ticks left no time to sleep, the last was {last}"
+            ),
+            EventKind::StoppedByOverload => f.write_str("overloaded for too long: the loop stops"),
             EventKind::EngageRefusedBySwitch => {
                 f.write_str("not engaged by the command: the engage switch is off")
             }
@@ -146,6 +152,16 @@ fn state_change<C: Controller>(f: &mut fmt::Formatter<'_>, from: State, to: Stat
 }
 
 /// The periods missed from the first deadline that was, to the tick after it.
+fn overload(f: &mut fmt::Formatter<'_>, used_ns: u64, period_ns: u64) -> fmt::Result {
+    write!(
+        f,
+        "overload: a tick took {:.3} ms of {:.3} ms, and none leaves time to sleep: deadlines \
+         are skipped",
+        ms(used_ns),
+        ms(period_ns)
+    )
+}
+
 fn late_timer(f: &mut fmt::Formatter<'_>, late_ns: u64, period_ns: u64) -> fmt::Result {
     let missed = late_ns.checked_div(period_ns).unwrap_or_default();
     let (periods, were) = if missed == 1 {

@@ -34,18 +34,17 @@ use failure::Failure;
 use crate::cli::{Action, Cli};
 use crate::exit::Exit;
 use crate::output;
+use crate::process::survive_file_size_limit;
 
 /// Runs the command of the command line.
 pub fn run() -> Exit {
     let json = std::env::args_os().any(|argument| argument == "--json");
+    if let Err(error) = survive_file_size_limit() {
+        output::message(format_args!("fccd: SIGXFSZ cannot be caught: {error}"));
+    }
     match Cli::try_parse() {
         Ok(cli) => carry_out(cli.command).unwrap_or_else(|failure| failure.print(json)),
-        Err(error) if error.use_stderr() && json => Failure::usage(error.render()).print(json),
-        // Only an error in the command line concerns the terminal.
-        Err(error) if error.use_stderr() => {
-            let _ = error.print();
-            Exit::Usage
-        }
+        Err(error) if error.use_stderr() => Failure::usage(error.render()).print(json),
         Err(help) => match help.print() {
             Err(error) if error.kind() != ErrorKind::BrokenPipe => {
                 Failure::new(format_args!("the help could not be printed: {error}")).print(false)

@@ -24,6 +24,9 @@ pub(super) fn text(outcome: &Outcome) -> String {
     if outcome.overruns > 0 {
         let _ = write!(text, "; {} ticks overran their budget", outcome.overruns);
     }
+    if outcome.unslept > 0 {
+        let _ = write!(text, "; {} ticks left no time to sleep", outcome.unslept);
+    }
     if !outcome.released {
         text.push_str("; CONTROL MAY STILL BE HELD: release the overrides in the simulator");
     }

@@ -10,7 +10,7 @@ use std::sync::mpsc::{self, SyncSender};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use fcc_core::framework::{Controller, Flags, RecordOf, State, StateCode};
+use fcc_core::framework::{Controller, EventKind, EventOf, Flags, RecordOf, State, StateCode};
 use fcc_flight::flight::{Access, FlightTime, Observer};
 use sd_notify::NotifyState;
 
@@ -26,6 +26,7 @@ pub(crate) struct Service {
     notifier: Option<Notifier>,
     alive_every: Option<Duration>,
     alive_sent: Option<Instant>,
+    overloaded: bool,
     /// From the newest record, if not sent yet.
     newest: Option<Condition>,
     sent: Option<Condition>,
@@ -36,6 +37,7 @@ pub(crate) struct Service {
 struct Condition {
     state: StateCode,
     engage_inhibits: Flags,
+    overloaded: bool,
 }
 
 impl Service {
@@ -45,6 +47,7 @@ impl Service {
             notifier: std::env::var_os("NOTIFY_SOCKET").and_then(|_| Notifier::start()),
             alive_every: sd_notify::watchdog_enabled().map(|within| within / ALIVE_PER_TIMEOUT),
             alive_sent: None,
+            overloaded: false,
             newest: None,
             sent: None,
         }
@@ -56,7 +59,16 @@ impl<C: Controller> Observer<C> for Service {
         self.newest = Some(Condition {
             state: record.state,
             engage_inhibits: record.engage_inhibits,
+            overloaded: self.overloaded,
         });
+    }
+
+    fn event(&mut self, event: &EventOf<C>, _: &str, _: &FlightTime) {
+        match event.kind {
+            EventKind::Overloaded { .. } => self.overloaded = true,
+            EventKind::OverloadOver { .. } => self.overloaded = false,
+            _ => {}
+        }
     }
 
     /// Sends what is new; nothing if no tick came since the last call.
@@ -137,6 +149,9 @@ impl Notifier {
 impl Condition {
     fn description(self, flag_name: fn(u32) -> &'static str) -> String {
         let mut text = self.state.to_string();
+        if self.overloaded {
+            text.push_str(" (overload)");
+        }
         let because = match self.state.state() {
             State::Failsafe(_) => self.state.flags(),
             State::Standby => self.engage_inhibits,

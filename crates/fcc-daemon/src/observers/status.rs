@@ -1,6 +1,6 @@
 //! A status line each second.
 
-use fcc_core::framework::{Controller, RecordOf, State};
+use fcc_core::framework::{Controller, EventKind, EventOf, RecordOf, State};
 use fcc_flight::flight::{FlightTime, Observer};
 
 use crate::output;
@@ -12,6 +12,7 @@ pub(crate) struct StatusLine<C: Controller> {
     printed_s: Option<f64>,
     worst_us: f64,
     missed: u64,
+    overloaded: bool,
 }
 
 impl<C: Controller> Observer<C> for StatusLine<C> {
@@ -30,6 +31,14 @@ impl<C: Controller> Observer<C> for StatusLine<C> {
             self.worst_us = 0.0;
         }
     }
+
+    fn event(&mut self, event: &EventOf<C>, _: &str, _: &FlightTime) {
+        match event.kind {
+            EventKind::Overloaded { .. } => self.overloaded = true,
+            EventKind::OverloadOver { .. } => self.overloaded = false,
+            _ => {}
+        }
+    }
 }
 
 impl<C: Controller> StatusLine<C> {
@@ -39,12 +48,17 @@ impl<C: Controller> StatusLine<C> {
             printed_s: None,
             worst_us: 0.0,
             missed: 0,
+            overloaded: false,
         }
     }
 
     fn line(&self, record: &RecordOf<C>, at: &FlightTime) -> String {
         let now_s = at.time_s;
-        let timing = format!("late ≤{:6.1} µs  missed {}", self.worst_us, self.missed);
+        let overload = if self.overloaded { "  overload" } else { "" };
+        let timing = format!(
+            "late ≤{:6.1} µs  missed {}{overload}",
+            self.worst_us, self.missed
+        );
         let Some(plant) = (self.describe)(record) else {
             return format!(
                 "{now_s:8.2} s  {:<8}  no measurements yet  {timing}",

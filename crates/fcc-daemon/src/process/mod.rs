@@ -8,6 +8,7 @@
 //! | `plant_file` | a file of this user alone: who may control a plant, and whether it was left held |
 //! | `instance_lock` | keeps two daemons from one plant |
 //! | `left_held` | releases what a killed daemon left held |
+//! | `rights` | gives up the rights of root before a flight |
 //! | `signals` | the signals that end a flight, and those that must not |
 
 mod instance_lock;
@@ -17,6 +18,7 @@ mod own_program;
 mod plant_file;
 mod release_handover;
 mod release_helper;
+mod rights;
 mod signals;
 
 use std::io;
@@ -37,8 +39,9 @@ use left_held::LeftHeld;
 pub(crate) use notice::Notice;
 pub(crate) use own_program::{begin_helper, outlive_signals, own_program};
 pub(crate) use release_helper::{ReleaseHelper, run_release_helper};
+pub(crate) use rights::{RightsError, give_up};
 use signals::{BlockedSignals, Caught};
-pub(crate) use signals::{end_with_parent, tolerate};
+pub(crate) use signals::{end_with_parent, survive_file_size_limit, tolerate};
 
 /// While control is held, this is the interval of checks for a release helper
 /// of an earlier daemon, which would release it.

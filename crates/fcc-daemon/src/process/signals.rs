@@ -29,14 +29,17 @@ const WITHOUT_EFFECT: [Signal; 5] = [
     Signal::SIGALRM,
 ];
 
-/// Prepares for a flight, before any thread is started: a process that is
-/// stopped holds the controls, and one that is killed for the size of a file
-/// does not release them itself.
-pub(crate) fn tolerate() -> io::Result<()> {
-    // A limit on file sizes must end the recording or the telemetry, not the
-    // flight: with this handler, the write beyond the limit fails with an
-    // error.
+/// From here on a write beyond a limit on file sizes (`RLIMIT_FSIZE`) fails with
+/// an error, instead of ending the process: it must end the recording or the
+/// telemetry, not the flight.
+pub(crate) fn survive_file_size_limit() -> io::Result<()> {
     signal_hook::flag::register(Signal::SIGXFSZ as i32, Arc::default())?;
+    Ok(())
+}
+
+/// Prepares for a flight, before any thread is started: a process that is
+/// stopped holds the controls.
+pub(crate) fn tolerate() -> io::Result<()> {
     // Blocked, in the threads started from here on too: the terminal then
     // accepts what is written. A handler would be called again and again.
     SigSet::from_iter(WITHOUT_EFFECT).thread_block()?;

@@ -178,6 +178,24 @@ fn a_fifo_and_a_device_are_refused() {
     assert!(said.contains("no recordings that can be read"), "{said}");
 }
 
+/// Another user of the folder could choose what is read, and when it changes.
+#[test]
+fn a_link_in_a_folder_is_not_followed_and_a_named_one_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let elsewhere = tempfile::tempdir().unwrap();
+    let file = recorded(elsewhere.path());
+    let link = folder.path().join("flight.mcap");
+    std::os::unix::fs::symlink(&file, &link).unwrap();
+    let output = fccd(&["list", text(folder.path())]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        said.contains("a symbolic link, which is not followed"),
+        "{said}"
+    );
+    assert_eq!(output.status.code(), INCOMPLETE);
+    assert!(fccd(&["report", text(&link)]).status.success());
+}
+
 /// Under any name: no output replaces what is read.
 #[test]
 fn an_input_is_not_overwritten() {

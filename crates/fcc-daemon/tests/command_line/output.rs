@@ -173,6 +173,40 @@ fn control_characters_in_names_are_escaped() {
     }
 }
 
+/// Also in JSON, which remains JSON, and in the parser's own messages.
+#[test]
+fn neither_c1_nor_the_direction_of_writing_reaches_the_terminal() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("c.toml");
+    let (csi, reversed) = ('\u{9b}', '\u{202e}');
+    std::fs::write(&file, format!("\"b{csi}32m\" = 1\n\"c{reversed}\" = 1\n")).unwrap();
+    let hostile = format!("x{csi}31m\x1b[31m{reversed}");
+    for words in [
+        &["check", "c.toml"][..],
+        &["check", "c.toml", "--json"],
+        &["check", "c.toml", &hostile],
+        &["check", &hostile, "--json"],
+    ] {
+        let ended = fccd(folder.path(), words).output().unwrap();
+        let said = String::from_utf8([ended.stdout.clone(), ended.stderr].concat()).unwrap();
+        let obeyed = |c: char| c.is_control() && c != '\n' || c == reversed;
+        assert!(!said.contains(obeyed), "{}", said.escape_default());
+        assert!(said.contains("202e"), "{said}");
+        if words.contains(&"--json") {
+            let found: Value = serde_json::from_slice(&ended.stdout).unwrap();
+            let problems = found["problems"].as_array().unwrap();
+            let keys: Vec<_> = problems
+                .iter()
+                .map(|problem| problem["key"].as_str())
+                .collect();
+            if words[1] == "c.toml" {
+                let given = [format!("b{csi}32m"), format!("c{reversed}")];
+                assert_eq!(keys, given.each_ref().map(|key| Some(key.as_str())));
+            }
+        }
+    }
+}
+
 /// As the README says: the key `error`, the text of standard error, and the exit
 /// codes of `fccd --help`.
 #[test]

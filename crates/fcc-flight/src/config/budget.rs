@@ -1,8 +1,9 @@
-//! `[budget]` and `[watchdog]`: how long a tick may take, and when it hangs.
+//! `[budget]`, `[overload]` and `[watchdog]`: how long a tick may take, what is
+//! done if ticks leave no time to sleep, and when the loop hangs.
 
 use std::time::Duration;
 
-use fcc_runtime::Budget;
+use fcc_runtime::{Budget, Overload};
 use serde::{Deserialize, Serialize};
 
 /// `[budget]`. An omitted budget means none, except for the tick's, which
@@ -45,6 +46,37 @@ impl From<&BudgetSection> for Budget {
             control: time(section.control_us),
             actuators: time(section.actuators_us),
             failsafe_after: section.failsafe_after,
+        }
+    }
+}
+
+/// `[overload]`.
+#[derive(Clone, PartialEq, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct OverloadSection {
+    /// After this long without time to sleep, deadlines are skipped; 0 for never.
+    pub skip_after_ms: u64,
+    /// After this long without time to sleep, the controls are released and the
+    /// program ends; 0 for never.
+    pub stop_after_s: f64,
+}
+
+impl Default for OverloadSection {
+    fn default() -> Self {
+        let core = Overload::default();
+        Self {
+            skip_after_ms: core.skip_after.map_or(0, |after| after.as_millis() as u64),
+            stop_after_s: core.stop_after.map_or(0.0, |after| after.as_secs_f64()),
+        }
+    }
+}
+
+impl From<&OverloadSection> for Overload {
+    fn from(section: &OverloadSection) -> Self {
+        let unless_never = |after: Duration| (!after.is_zero()).then_some(after);
+        Self {
+            skip_after: unless_never(Duration::from_millis(section.skip_after_ms)),
+            stop_after: unless_never(Duration::from_secs_f64(section.stop_after_s)),
         }
     }
 }

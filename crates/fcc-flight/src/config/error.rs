@@ -65,7 +65,35 @@ impl ConfigError {
     }
 }
 
+/// The longest quotation from a file, in characters.
+const LONGEST_KEY: usize = 200;
+const LONGEST_MESSAGE: usize = 1_000;
+
 impl Problem {
+    /// That further problems were not looked for.
+    pub(super) fn and_more() -> Self {
+        Self {
+            line: None,
+            key: None,
+            message: "has more problems: correct these first".to_owned(),
+        }
+    }
+
+    /// Shortens what it quotes from the file.
+    pub(super) fn shorten(&mut self) {
+        for (text, most) in [
+            (self.key.as_mut(), LONGEST_KEY),
+            (Some(&mut self.message), LONGEST_MESSAGE),
+        ] {
+            if let Some(text) = text
+                && let Some((end, _)) = text.char_indices().nth(most)
+            {
+                text.truncate(end);
+                text.push('…');
+            }
+        }
+    }
+
     /// Whether its key is in this section.
     pub(super) fn is_in(&self, section: &str) -> bool {
         let key = self.key.as_deref().unwrap_or_default();

@@ -21,6 +21,7 @@ mod read;
 mod recording;
 mod relations;
 mod restart;
+mod rights;
 mod runtime;
 mod similar;
 mod telemetry;
@@ -32,13 +33,13 @@ use std::path::Path;
 use std::time::Duration;
 
 use fcc_core::flight::AutopilotConfig;
-use fcc_runtime::{Budget, LoopConfig};
+use fcc_runtime::{Budget, LoopConfig, Overload};
 use fcc_timer::RealtimeRequest;
 use serde::{Deserialize, Serialize};
 
 pub use altimeter::AltimeterSection;
 pub use autopilot::AutopilotSection;
-pub use budget::{BudgetSection, WatchdogSection};
+pub use budget::{BudgetSection, OverloadSection, WatchdogSection};
 pub use built_in::{BuiltInSection, GustsChoice};
 pub use cpu::CpuChoice;
 pub use devices::{ActuatorEntry, NoKeys, SensorEntry};
@@ -47,6 +48,7 @@ pub use error::{ConfigError, Problem};
 pub use guidance::GuidanceSection;
 pub use recording::RecordingSection;
 pub use restart::{RestartMode, RestartSection};
+pub use rights::RightsSection;
 pub use runtime::{
     EarlyWakeSection, EngageSection, FailsafeSection, LoopSection, RealtimeSection, ReleaseSection,
     Then,
@@ -66,6 +68,8 @@ pub struct Config {
     pub realtime: RealtimeSection,
     /// How long ticks may take.
     pub budget: BudgetSection,
+    /// What is done if ticks leave no time to sleep.
+    pub overload: OverloadSection,
     /// When the loop counts as hung.
     pub watchdog: WatchdogSection,
     /// The engage switch.
@@ -78,6 +82,8 @@ pub struct Config {
     pub recording: RecordingSection,
     /// What to do about an interrupted flight.
     pub restart: RestartSection,
+    /// With whose rights a flight runs.
+    pub rights: RightsSection,
     /// Live telemetry.
     pub telemetry: TelemetrySection,
     /// The mode after engaging.
@@ -114,11 +120,19 @@ fn checked(read: read::Read<'_>, file: &str) -> Result<Config, ConfigError> {
         mut problems,
         places,
     } = read;
-    let more = ranges::check(&config, &places, &problems);
-    problems.extend(more);
+    if problems.len() < read::MOST_PROBLEMS {
+        problems.extend(ranges::check(&config, &places, &problems));
+    }
     problems.sort_by_key(|problem| problem.line);
     if problems.is_empty() {
         return Ok(config);
+    }
+    if problems.len() >= read::MOST_PROBLEMS {
+        problems.truncate(read::MOST_PROBLEMS);
+        problems.push(Problem::and_more());
+    }
+    for problem in &mut problems {
+        problem.shorten();
     }
     Err(ConfigError::Invalid {
         file: file.to_owned(),
@@ -279,6 +293,7 @@ impl Config {
             failsafe_hold: Duration::from_secs_f64(self.failsafe.hold_s),
             after_failsafe: self.failsafe.then.into(),
             budget: Budget::from(&self.budget),
+            overload: Overload::from(&self.overload),
             early_wake_needs_priority: self.tick.early_wake.enabled == EarlyWakeChoice::Auto,
             realtime: RealtimeRequest::from(&self.realtime),
             ..LoopConfig::default()

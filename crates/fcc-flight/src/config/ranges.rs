@@ -30,6 +30,8 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("budget.control_us", 1.0, 1e6),
     ("budget.actuators_us", 1.0, 1e6),
     ("budget.failsafe_after", 0.0, 1e6),
+    ("overload.skip_after_ms", 0.0, 60_000.0),
+    ("overload.stop_after_s", 0.0, 3_600.0),
     ("watchdog.hang_after_ms", 50.0, 60_000.0),
     ("failsafe.sensor_max_age_ms", 10.0, 10_000.0),
     ("failsafe.all_silent_s", 0.01, 600.0),

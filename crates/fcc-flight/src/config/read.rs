@@ -12,6 +12,13 @@ use super::places::{Places, line_of};
 use super::wording::reword;
 use super::{Config, Problem};
 
+/// No more problems are looked for: each costs a reading of the rest.
+pub(super) const MOST_PROBLEMS: usize = 100;
+
+/// The maximum number of entries of a list. A reading stores its sensor's
+/// number in a byte, and each entry costs time in every tick.
+const MOST_ENTRIES: usize = 16;
+
 /// A configuration as far as it could be read, and the errors in the rest.
 pub(super) struct Read<'t> {
     pub(super) config: Config,
@@ -23,9 +30,17 @@ pub(super) struct Read<'t> {
 pub(super) fn read(text: &str) -> Read<'_> {
     let (mut table, broken) = DeTable::parse_recoverable(text);
     let places = Places::new(text, table.clone());
-    let mut problems: Vec<Problem> = broken.iter().map(|error| syntax(text, error)).collect();
-    // An error in a line is often found twice.
-    problems.dedup_by_key(|problem| problem.line);
+    let mut problems: Vec<Problem> = Vec::new();
+    for error in &broken {
+        let found = syntax(text, error);
+        // An error in a line is often found twice.
+        if problems.last().is_none_or(|last| last.line != found.line) {
+            problems.push(found);
+        }
+        if problems.len() >= MOST_PROBLEMS {
+            break;
+        }
+    }
     let mut reader = Reader {
         text,
         places,
@@ -106,7 +121,7 @@ impl<'t> Reader<'t> {
         mut table: Spanned<DeTable<'t>>,
         depth: usize,
     ) -> Option<T> {
-        loop {
+        while self.problems.len() < MOST_PROBLEMS {
             let error = match T::deserialize(Deserializer::from(table.clone())) {
                 Ok(read) => return Some(read),
                 Err(error) => error,
@@ -129,6 +144,7 @@ impl<'t> Reader<'t> {
                 return None;
             }
         }
+        None
     }
 
     /// Takes a list out of a table and reads its entries; none if it is not
@@ -143,6 +159,12 @@ impl<'t> Reader<'t> {
                 return None;
             }
         };
+        if entries.len() > MOST_ENTRIES {
+            let message =
+                format_args!("has {} entries: keep at most {MOST_ENTRIES}", entries.len());
+            self.report(line, name.to_owned(), &Error::custom(message));
+            return None;
+        }
         let entries = entries.into_iter().enumerate();
         let read: Vec<Option<T>> = entries
             .map(|(at, entry)| self.entry(entry, &format!("{name}[{at}]")))
@@ -214,4 +236,52 @@ fn remove(table: &mut Spanned<DeTable<'_>>, path: &[String]) -> bool {
             .or_else(|| inner.remove(list))
             .is_some()
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::MOST_PROBLEMS;
+    use crate::config::{Config, Problem};
+
+    fn problems(text: &str) -> Vec<Problem> {
+        Config::parse(text, "f").unwrap_err().problems()
+    }
+
+    /// All of them took from 4 s to minutes: each is looked for in the whole text.
+    #[test]
+    fn a_text_of_nothing_but_problems_is_refused_after_the_first_hundred() {
+        let keys = (0..10_000).fold("[built-in]\n".to_owned(), |text, n| {
+            text + &format!("k{n} = 1\n")
+        });
+        for text in [keys, "=\n".repeat(100_000)] {
+            let found = problems(&text);
+            let (last, first) = found.split_last().unwrap();
+            assert!(first.len() <= MOST_PROBLEMS, "{}", first.len());
+            assert_eq!(last.message, "has more problems: correct these first");
+        }
+    }
+
+    #[test]
+    fn a_long_list_is_refused_as_a_whole() {
+        for entry in [
+            "[[sensor]]\nkind = \"no\"\n",
+            "[[actuator]]\nkind = \"simulator\"\n",
+        ] {
+            let found = problems(&format!("[x-plane]\n{}", entry.repeat(17)));
+            let messages: Vec<_> = found.iter().map(|problem| &*problem.message).collect();
+            assert_eq!(messages, ["has 17 entries: keep at most 16"]);
+        }
+    }
+
+    #[test]
+    fn only_the_beginning_of_a_long_key_and_value_is_quoted() {
+        let long = "k".repeat(900_000);
+        let found = problems(&format!("[built-in]\n{long} = 1\ngusts = \"{long}\"\n"));
+        assert_eq!(found.len(), 2);
+        for problem in found {
+            let key = problem.key.unwrap();
+            assert!(key.chars().count() <= 201, "{}", key.len());
+            assert!(problem.message.chars().count() <= 1_001);
+        }
+    }
 }

@@ -8,10 +8,6 @@ use super::{AutopilotSection, Config, SensorEntry};
 /// Of `SCHED_FIFO` (sched(7)).
 const HIGHEST_PRIORITY: u8 = 99;
 
-/// The maximum number of entries of a list. A reading stores its sensor's
-/// number in a byte, and each entry costs time in every tick.
-const MOST_ENTRIES: usize = 16;
-
 /// Reports the key and the message of each violated constraint.
 pub(super) fn check(config: &Config, report: &mut impl FnMut(&str, String)) {
     let early = &config.tick.early_wake;
@@ -41,6 +37,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&str, String)) {
     }
     ages(config, report);
     budgets(config, report);
+    overload(config, report);
     built_in(config, report);
     if config.x_plane.is_some() && config.built_in.is_some() {
         report(
@@ -50,6 +47,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&str, String)) {
         );
     }
     connections(config, report);
+    rights(config, report);
     lists(config, report);
 }
 
@@ -237,6 +235,21 @@ fn built_in(config: &Config, report: &mut impl FnMut(&str, String)) {
     }
 }
 
+fn overload(config: &Config, report: &mut impl FnMut(&str, String)) {
+    let section = &config.overload;
+    let skip_after_s = section.skip_after_ms as f64 * 1e-3;
+    if section.stop_after_s > 0.0 && section.stop_after_s < skip_after_s {
+        report(
+            "overload.stop_after_s",
+            format!(
+                "is {}, and deadlines are skipped after {skip_after_s} s (overload.skip_after_ms): \
+                 choose at least that, or 0 for never",
+                section.stop_after_s
+            ),
+        );
+    }
+}
+
 fn budgets(config: &Config, report: &mut impl FnMut(&str, String)) {
     let budget = &config.budget;
     let Some(tick_us) = budget.tick_us else {
@@ -267,6 +280,28 @@ fn budgets(config: &Config, report: &mut impl FnMut(&str, String)) {
     }
 }
 
+/// Of names of users and groups: a tenth of it is a large crew.
+const MOST_NAMES: usize = 100;
+
+fn rights(config: &Config, report: &mut impl FnMut(&str, String)) {
+    let rights = &config.rights;
+    for (key, names) in [
+        ("rights.commanders", &rights.commanders),
+        ("rights.commander_groups", &rights.commander_groups),
+    ] {
+        if names.len() > MOST_NAMES {
+            let message = format!("has {} names: keep at most {MOST_NAMES}", names.len());
+            report(key, message);
+        }
+        let may_command = config.telemetry.enabled && config.telemetry.commands;
+        if !names.is_empty() && !may_command {
+            let message = "has names, and telemetry.enabled or telemetry.commands is false, so \
+                           nobody may command: remove the names, or set it true";
+            report(key, message.to_owned());
+        }
+    }
+}
+
 fn lists(config: &Config, report: &mut impl FnMut(&str, String)) {
     let actuators = config.actuators().len();
     let sensors = config.sensor.iter().map(SensorEntry::is_simulator);
@@ -279,13 +314,6 @@ fn lists(config: &Config, report: &mut impl FnMut(&str, String)) {
         for (at, _) in entries.filter(|(_, is_simulator)| **is_simulator).skip(1) {
             let message = "is the simulator a second time: keep one".to_owned();
             report(&format!("{list}[{at}].kind"), message);
-        }
-        if simulators.len() > MOST_ENTRIES {
-            let message = format!(
-                "has {} entries: keep at most {MOST_ENTRIES}",
-                simulators.len()
-            );
-            report(list, message);
         }
     }
 }

@@ -254,6 +254,16 @@ fn events<R: Copy>(tick: u64) -> Vec<Event<R>> {
         EventKind::Panicked,
         EventKind::TimerFailed,
         EventKind::Hung { silent_ns: 1 },
+        EventKind::Overloaded {
+            used_ns: 12,
+            period_ns: 10,
+        },
+        EventKind::OverloadOver {
+            count: 3,
+            first: 1,
+            last: 3,
+        },
+        EventKind::StoppedByOverload,
     ]
     .map(|kind| Event {
         tick,

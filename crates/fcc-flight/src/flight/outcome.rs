@@ -31,6 +31,8 @@ pub struct Outcome {
     pub failsafes: u64,
     /// Ticks that overran their budget.
     pub overruns: u64,
+    /// Ticks that left no time to sleep before the next.
+    pub unslept: u64,
     /// Whether control was released.
     pub released: bool,
     /// Records that were not read in time.
@@ -66,6 +68,8 @@ pub enum Conclusion {
     Panicked,
     /// The loop hung; its watchdog released the controls.
     Hung,
+    /// For too long the loop's ticks left no time to sleep; it stopped.
+    Overloaded,
     /// The controls may still be held.
     NotReleased,
 }
@@ -106,6 +110,7 @@ impl Outcome {
             _ if !report.released => Conclusion::NotReleased,
             Ending::Panicked(_) => Conclusion::Panicked,
             Ending::Hung => Conclusion::Hung,
+            Ending::Overloaded => Conclusion::Overloaded,
             Ending::TimerFailed(_) | Ending::ReleasedAtOnce => Conclusion::Failed,
             _ if report.failsafes > 0 => Conclusion::Failsafe,
             _ => Conclusion::Completed,
@@ -124,6 +129,7 @@ impl Outcome {
             impact: None,
             failsafes: report.failsafes,
             overruns: report.overruns,
+            unslept: report.unslept,
             released: report.released,
             records_dropped: report.records_dropped,
             recording: None,

@@ -85,6 +85,7 @@ impl<C: Controller> RunStatistics<C> {
             sensor_faults: self.last.sensor_faults,
             actuator_faults: self.last.actuator_faults,
             overruns: self.last.overruns,
+            unslept: 0,
             records_dropped: self.last.records_dropped,
             events_dropped: 0,
             cpu_time: Duration::ZERO,

@@ -311,3 +311,46 @@ fn a_queue_in_the_network_is_failsafe_until_it_is_empty() {
         assert!(flight.true_bank_deg().abs() < 35.0);
     }
 }
+
+/// Each value that is subscribed, one datagram at a time: nothing of it may end
+/// the flight or set a clock.
+#[test]
+fn no_single_forged_datagram_ends_a_flight() {
+    let mut flight = Flight::engaged(60.0, 3);
+    let indices = flight.wire.world().indices();
+    assert!(indices.len() > 30, "{indices:?}");
+    let forged = |pairs: &[(i32, f32)]| {
+        let mut datagram = b"RREF,".to_vec();
+        for (index, value) in pairs {
+            datagram.extend(index.to_le_bytes());
+            datagram.extend(value.to_le_bytes());
+        }
+        datagram
+    };
+    let values = [-1e6, -1.0, 0.0, 1.0, 3.0, 100.0, 1e6];
+    let single = indices
+        .iter()
+        .flat_map(|index| values.map(|value| forged(&[(*index, value)])));
+    let all = values.map(|value| {
+        let pairs: Vec<_> = indices.iter().map(|index| (*index, value)).collect();
+        forged(&pairs)
+    });
+    let mut elsewhere = b"RPOS4".to_vec();
+    elsewhere.extend([0; 64]);
+    for datagram in single.chain(all).chain([elsewhere]) {
+        flight.wire.world().forge(datagram);
+        // Engaged in every tick of it.
+        for _ in 0..12 {
+            flight.fly(0.025);
+        }
+    }
+    assert!(flight.true_bank_deg().abs() < 35.0);
+    flight.fly(10.0);
+    let changed = flight.events().into_iter().find(|kind| {
+        matches!(
+            kind,
+            EventKind::StateChanged { .. } | EventKind::ReleasedAtOnce { .. }
+        )
+    });
+    assert_eq!(changed, None);
+}

@@ -294,6 +294,18 @@ impl World {
         }
     }
 
+    /// The indices that were subscribed.
+    pub(crate) fn indices(&self) -> Vec<i32> {
+        let mut indices: Vec<i32> = self.subscribed.keys().copied().collect();
+        indices.sort_unstable();
+        indices
+    }
+
+    /// A datagram of another program, from this simulator's address and port.
+    pub(crate) fn forge(&mut self, datagram: Vec<u8>) {
+        self.to_client.push_back((self.now_ns, datagram));
+    }
+
     fn queue(&mut self, datagram: Vec<u8>) {
         if self.to_client.len() < QUEUED {
             self.to_client

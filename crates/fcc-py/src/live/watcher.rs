@@ -220,7 +220,7 @@ fn event_of(event: &Event) -> PyEvent {
 
 /// The numbers of `fcc_live::EventCode`.
 fn kind_of(code: u32) -> &'static str {
-    const KINDS: [&str; 23] = [
+    const KINDS: [&str; 27] = [
         "remark",
         "state-changed",
         "command-received",
@@ -244,6 +244,10 @@ fn kind_of(code: u32) -> &'static str {
         "noticed",
         "released-at-once",
         "switched-on-unseen",
+        "engage-refused-by-switch",
+        "overloaded",
+        "overload-over",
+        "stopped-by-overload",
     ];
     KINDS.get(code as usize).copied().unwrap_or("other")
 }

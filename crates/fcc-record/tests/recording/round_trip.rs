@@ -129,6 +129,12 @@ fn every_event_is_restored() {
         EventKind::SwitchedOnUnseen,
         EventKind::EngageRefusedBySwitch,
         EventKind::OverrunsOver { count, first, last },
+        EventKind::Overloaded {
+            used_ns: u64::MAX,
+            period_ns: 1,
+        },
+        EventKind::OverloadOver { count, first, last },
+        EventKind::StoppedByOverload,
         EventKind::Hung {
             silent_ns: u64::MAX,
         },

@@ -49,6 +49,8 @@ pub(crate) struct Early {
 #[derive(Clone, Copy, Debug)]
 struct Awake {
     since_ns: i64,
+    /// [`Expiry::used_ns`].
+    used_ns: u64,
     /// How late the kernel woke it; `None` if it did not sleep.
     kernel_lateness_ns: Option<i64>,
 }
@@ -83,6 +85,12 @@ impl Early {
         deadlines
     }
 
+    /// Waits are continued after some without early wake; returns the margin.
+    pub(crate) const fn interrupted(&mut self) -> i64 {
+        self.awake = None;
+        self.margin.ns()
+    }
+
     /// Waits for the next deadline, without a warm-up.
     pub(crate) fn wait(
         &mut self,
@@ -103,9 +111,6 @@ impl Early {
         self.wait_or(true, deadlines, kernel)
     }
 
-    /// Passed deadlines are counted from the clock: an alarm is not a deadline,
-    /// so the kernel's count of alarms does not apply.
-    ///
     /// A warm-up returns by the same instructions as the deadline, so that these
     /// are in the caches as well.
     fn wait_or(
@@ -138,6 +143,7 @@ impl Early {
             kernel_lateness_ns: awake
                 .kernel_lateness_ns
                 .unwrap_or(expiry.kernel_lateness_ns),
+            used_ns: awake.used_ns,
             ..expiry
         };
         if warms_up {
@@ -168,6 +174,7 @@ impl Early {
         }
         let alarm_ns = deadlines.alarm_ns();
         let mut now_ns = monotonic_ns();
+        let used_ns = deadlines.used_ns(now_ns);
         let mut kernel_lateness_ns = None;
         if now_ns < alarm_ns {
             while now_ns < alarm_ns {
@@ -181,6 +188,7 @@ impl Early {
         }
         Ok(Awake {
             since_ns: now_ns,
+            used_ns,
             kernel_lateness_ns,
         })
     }
@@ -197,7 +205,7 @@ fn spin(deadlines: &mut Deadlines, until_ns: i64) -> Expiry {
     loop {
         let now_ns = monotonic_ns();
         if now_ns >= until_ns {
-            return deadlines.woken_uncounted(now_ns);
+            return deadlines.woken(now_ns);
         }
     }
 }

@@ -54,13 +54,6 @@ impl IntervalTimer {
         Errno::result(answer).map_err(os_error("timer_settime"))?;
         Ok(())
     }
-
-    /// Expiries that the signal just taken stands for beside its own.
-    pub(super) fn overruns(&self) -> Result<u64, TimerError> {
-        // SAFETY: the timer is this value's own until dropped.
-        let count = unsafe { libc::timer_getoverrun(self.0) };
-        u64::try_from(count).map_err(|_| os_error("timer_getoverrun")(Errno::last()))
-    }
 }
 
 impl Drop for IntervalTimer {

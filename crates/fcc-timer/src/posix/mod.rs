@@ -12,15 +12,14 @@ use std::time::Duration;
 
 use crate::deadlines::{Deadlines, Period, monotonic_ns};
 use crate::early::{Alarm, Early};
-use crate::periodic::{Kernel, periodic};
-use crate::{EarlyWake, Expiry, Timer, TimerError, Wake};
+use crate::periodic::{self, Kernel, periodic};
+use crate::{EarlyWake, Expiry, Relief, Timer, TimerError, Wake};
 use interval::IntervalTimer;
 use signal::TimerSignal;
 
 periodic! {
     /// A periodic timer on `timer_create`, with a real-time signal to the thread
-    /// that started it. The kernel keeps one signal queued and counts the
-    /// expiries that found it still there: those are the missed deadlines.
+    /// that started it, which waits for it.
     ///
     /// Each running timer has a real-time signal of its own, the highest that is
     /// free.
@@ -57,13 +56,6 @@ impl Kernel for Signals {
         } else {
             Err(TimerError::WrongThread)
         }
-    }
-
-    fn wait(&mut self, deadlines: &mut Deadlines) -> Result<Expiry, TimerError> {
-        self.signal.wait()?;
-        let woke_ns = monotonic_ns();
-        let passed = self.timer.overruns()?.saturating_add(1);
-        Ok(deadlines.woken(passed, woke_ns))
     }
 }
 

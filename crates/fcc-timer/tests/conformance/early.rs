@@ -3,7 +3,9 @@
 
 use std::time::Duration;
 
-use fcc_timer::{EarlyWake, Expiry, Nanosleep, PosixTimer, Timer, TimerError, TimerFd, Wake};
+use fcc_timer::{
+    EarlyWake, Expiry, Nanosleep, PosixTimer, Relief, Timer, TimerError, TimerFd, Wake,
+};
 
 use crate::{PERIOD, PERIOD_NS, Subject, assert_follows, started};
 
@@ -48,6 +50,10 @@ impl<T: Timer> Timer for Early<T> {
 
     fn disable_early_wake(&mut self) {
         self.0.disable_early_wake();
+    }
+
+    fn relieve(&mut self, relief: Relief) -> Result<(), TimerError> {
+        self.0.relieve(relief)
     }
 
     fn period(&self) -> Duration {

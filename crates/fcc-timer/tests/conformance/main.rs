@@ -18,7 +18,7 @@ use early::{
 };
 use fcc_conformance::allocator_calls;
 use fcc_timer::{
-    Expiry, ManualTimer, Nanosleep, PosixTimer, Timer, TimerError, TimerFd, TimingStats,
+    Expiry, ManualTimer, Nanosleep, PosixTimer, Relief, Timer, TimerError, TimerFd, TimingStats,
 };
 
 const PERIOD: Duration = Duration::from_millis(4);
@@ -94,6 +94,26 @@ fn numbers_follow_each_other_but_for_the_missed<T: Subject>() {
     let mut before = timer.wait().unwrap();
     assert_eq!(before.number, 1 + before.missed);
     for _ in 0..25 {
+        before = assert_follows(timer.wait().unwrap(), before, PERIOD_NS);
+    }
+}
+
+/// A tick of 1.2 periods: the deadline that passed in it is skipped, and none
+/// when that ends. A delayed machine misses more.
+fn a_relieved_timer_skips_deadlines_that_have_passed<T: Subject>() {
+    let mut timer = started::<T>();
+    let mut before = timer.wait().unwrap();
+    timer.relieve(Relief::Skip).unwrap();
+    for _ in 0..5 {
+        timer.work(PERIOD * 6 / 5);
+        let expiry = assert_follows(timer.wait().unwrap(), before, PERIOD_NS);
+        assert!(expiry.missed >= 1, "{expiry:?}");
+        assert!(expiry.used_ns >= PERIOD_NS as u64 * 6 / 5, "{expiry:?}");
+        assert_eq!(expiry.early_wake_ns, 0);
+        before = expiry;
+    }
+    timer.relieve(Relief::None).unwrap();
+    for _ in 0..5 {
         before = assert_follows(timer.wait().unwrap(), before, PERIOD_NS);
     }
 }
@@ -248,6 +268,7 @@ macro_rules! conformance {
             numbers_follow_each_other_but_for_the_missed
             no_wait_returns_before_its_deadline
             a_long_tick_misses_deadlines_and_keeps_the_phase
+            a_relieved_timer_skips_deadlines_that_have_passed
             waiting_before_the_start_is_an_error
             starting_again_begins_a_new_grid
             bad_periods_are_refused

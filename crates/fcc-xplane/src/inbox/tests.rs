@@ -310,7 +310,14 @@ fn without_true_angles_or_where_they_are_answered_by_zero_the_local_ones_are_use
 #[test]
 fn a_throttle_in_reverse_does_not_hide_the_controls() {
     let mut bench = Bench::new(None);
-    for (throttle, read) in [(-0.4, 0.0), (0.6, 0.6), (1.2, 1.0)] {
+    // Reversed with the second reading.
+    let throttles = [
+        (-0.4, 0.0, false),
+        (-0.4, 0.0, true),
+        (0.6, 0.6, false),
+        (1.2, 1.0, false),
+    ];
+    for (throttle, read, reversed) in throttles {
         bench.tick(&[values(&[
             (Quantity::Throttle, throttle),
             (Quantity::YokePitch, 0.1),
@@ -320,7 +327,7 @@ fn a_throttle_in_reverse_does_not_hide_the_controls() {
         let measured = bench.measurements;
         assert_eq!(measured.surfaces.taken, bench.now);
         assert!((measured.surfaces.value.throttle - read).abs() < 1e-6);
-        assert_eq!(measured.other_control.value.reverse_thrust, throttle < 0.0);
+        assert_eq!(measured.other_control.value.reverse_thrust, reversed);
     }
 }
 

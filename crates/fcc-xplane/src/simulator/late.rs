@@ -1,4 +1,4 @@
-//! Datagrams that a newer one overtook, and a clock that was set back.
+//! Datagrams that a newer one overtook, and a clock that was set.
 
 use core::time::Duration;
 
@@ -21,15 +21,31 @@ pub(super) struct LateFilter {
     /// When the first of the older times arrived that were taken for late ones
     /// since the latest; never if there was none.
     since: Time,
-    /// A time that is earlier by [`LATE_S`] or more, until a newer one arrives.
-    set_back: Option<ClockSample>,
+    /// Of a time that is earlier by [`LATE_S`] or more.
+    set_back: Claim,
+}
+
+/// A time that is far from the latest one. It is believed with a second
+/// datagram, in a later tick, that continues it: one alone was overtaken, or is
+/// not the simulator's. To be forgotten when another time is believed.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Claim(Option<ClockSample>);
+
+impl Claim {
+    /// Whether such a time continues one of an earlier tick.
+    pub(super) fn is_continued_by(&mut self, sample: ClockSample) -> bool {
+        let follows = |at: &ClockSample| sample.time_s >= at.time_s && !sample.is_ahead_of(*at);
+        let first = self.0.filter(follows);
+        self.0 = first.or(Some(sample));
+        first.is_some_and(|first| sample.seen > first.seen)
+    }
 }
 
 impl Default for LateFilter {
     fn default() -> Self {
         Self {
             since: Time::NEVER,
-            set_back: None,
+            set_back: Claim::default(),
         }
     }
 }
@@ -42,19 +58,11 @@ impl LateFilter {
             return false;
         }
         if back_s >= LATE_S {
-            return !self.is_set_back(sample);
+            return !self.set_back.is_continued_by(sample);
         }
         if self.since.is_never() {
             self.since = sample.seen;
         }
         sample.seen.since(self.since) < LATE
-    }
-
-    /// Whether a much earlier time continues one of an earlier tick.
-    fn is_set_back(&mut self, sample: ClockSample) -> bool {
-        let follows = |at: &ClockSample| sample.time_s >= at.time_s && !sample.is_ahead_of(*at);
-        let first = self.set_back.filter(follows);
-        self.set_back = first.or(Some(sample));
-        first.is_some_and(|first| sample.seen > first.seen)
     }
 }

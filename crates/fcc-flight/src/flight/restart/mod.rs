@@ -297,7 +297,7 @@ fn prepare(path: &Path) -> Result<File, String> {
         fs::create_dir_all(folder)
             .map_err(|error| message("its folder cannot be created", &error))?;
     }
-    let lock = File::create(path.with_extension("flight.lock"))
+    let lock = fcc_record::open_lock(&path.with_extension("flight.lock"))
         .map_err(|error| message("cannot be locked", &error))?;
     match lock.try_lock() {
         Ok(()) => Ok(lock),

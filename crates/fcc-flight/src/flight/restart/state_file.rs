@@ -35,7 +35,7 @@ pub(super) enum StateFileError {
 
 /// Reads a file; none if it does not exist.
 pub(super) fn read(path: &Path) -> Result<Option<Saved>, StateFileError> {
-    match fcc_record::read_file(path, MOST_BYTES) {
+    match fcc_record::read_own_file(path, MOST_BYTES) {
         Ok(bytes) => decode(&bytes).map(Some),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
         Err(error) => Err(error.into()),
@@ -45,7 +45,7 @@ pub(super) fn read(path: &Path) -> Result<Option<Saved>, StateFileError> {
 /// Writes a file; when this returns, it is on the disk.
 pub(super) fn write(path: &Path, saved: &Saved) -> io::Result<()> {
     let new = path.with_extension("flight.new");
-    let mut file = File::create(&new)?;
+    let mut file = fcc_record::create_anew(&new)?;
     file.write_all(&encode(saved)?)?;
     file.sync_data()?;
     fs::rename(&new, path)?;
@@ -192,13 +192,35 @@ mod tests {
         assert!(said(Path::new("/dev/zero")).contains("a pipe or a device"));
     }
 
+    #[test]
+    fn neither_a_link_nor_a_pipe_is_followed() {
+        let folder = tempfile::tempdir().unwrap();
+        let [path, victim] = ["fccd.flight", "victim"].map(|name| folder.path().join(name));
+        fs::write(&victim, "kept").unwrap();
+        // Another user of the folder waits for the file's next writing.
+        std::os::unix::fs::symlink(&victim, path.with_extension("flight.new")).unwrap();
+        write(&path, &saved(Mode::Hold, 3.5)).unwrap();
+        assert_eq!(read(&path).unwrap(), Some(saved(Mode::Hold, 3.5)));
+        assert_eq!(fs::read(&victim).unwrap(), b"kept");
+        let [moved, link] = ["moved", "link"].map(|name| folder.path().join(name));
+        fs::rename(&path, &moved).unwrap();
+        std::os::unix::fs::symlink(&moved, &link).unwrap();
+        let why = read(&link).unwrap_err().to_string();
+        assert!(why.contains("symbolic link"), "{why}");
+    }
+
     /// Of a file whose checksum is right.
     #[test]
     fn what_no_aircraft_flies_is_damaged() {
         type Change = fn(&mut Saved);
-        let changes: [Change; 6] = [
+        let changes: [Change; 11] = [
             |saved| saved.resume.progress.captured.heading_rad = 1e300,
             |saved| saved.resume.progress.captured.altitude_m = 1e6,
+            |saved| saved.resume.progress.captured.altitude_m = 1e308,
+            |saved| saved.resume.altimeter_setting_pa = Some(1e308),
+            |saved| saved.resume.altimeter_setting_pa = Some(0.0),
+            |saved| saved.resume.surfaces.throttle = 2.0,
+            |saved| saved.resume.surfaces.elevator = -1e308,
             |saved| saved.resume.progress.captured.altitude_m = -5_000.0,
             |saved| saved.resume.progress.captured.airspeed_mps = 1e9,
             |saved| saved.resume.progress.elapsed_s = 1e300,

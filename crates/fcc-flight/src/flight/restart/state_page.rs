@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use fcc_core::flight::guidance::{Mode, Progress, Targets};
 use fcc_core::flight::{AltitudeReference, Position, Resume, Surfaces};
-use fcc_telemetry::units::COMMANDED_HEADING_RAD;
+use fcc_telemetry::units::{COMMANDED_ALTIMETER_SETTING_PA, COMMANDED_HEADING_RAD};
 use serde::{Deserialize, Serialize};
 
 use super::boot_clock::BootInstant;
@@ -93,6 +93,7 @@ impl Page {
     /// The state; none if it cannot be that of a flight.
     pub(super) fn saved(self) -> Option<Saved> {
         let reference = AltitudeReference::from_number(self.altitude_reference);
+        let surfaces = self.surfaces();
         let mode = Mode::ALL.into_iter().find(|mode| mode.name() == self.mode);
         if !self.can_be_flown() {
             return None;
@@ -120,14 +121,7 @@ impl Page {
                     },
                     ..Progress::default()
                 },
-                surfaces: Surfaces {
-                    throttle: self.throttle,
-                    elevator: self.elevator,
-                    aileron: self.aileron,
-                    rudder: self.rudder,
-                    // It stays where it is, and is measured.
-                    elevator_trim: None,
-                },
+                surfaces,
                 altimeter_setting_pa: self.altimeter_setting_pa,
                 altitude_reference: reference?,
             },
@@ -140,6 +134,21 @@ impl Page {
             && (0.0..=FASTEST_MPS).contains(&self.airspeed_mps)
             && COMMANDED_HEADING_RAD.contains(&self.heading_rad)
             && CAPTURED_ALTITUDE_M.contains(&self.altitude_m)
+            && self
+                .altimeter_setting_pa
+                .is_none_or(|pa| COMMANDED_ALTIMETER_SETTING_PA.contains(&pa))
+            && self.surfaces().is_valid()
+    }
+
+    const fn surfaces(&self) -> Surfaces {
+        Surfaces {
+            throttle: self.throttle,
+            elevator: self.elevator,
+            aileron: self.aileron,
+            rudder: self.rudder,
+            // It stays where it is, and is measured.
+            elevator_trim: None,
+        }
     }
 
     fn place(&self) -> SavedPlace {

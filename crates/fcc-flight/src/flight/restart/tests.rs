@@ -17,6 +17,7 @@ use super::super::plan::Pace;
 use super::*;
 
 mod elsewhere;
+mod foreign_files;
 
 const FLOWN: Resume = Resume {
     progress: Progress {

@@ -1,0 +1,25 @@
+//! Files that another user has placed under the names of ours.
+
+use super::*;
+
+/// Opening a pipe would wait for its other end, and following a link would empty
+/// its target.
+#[test]
+fn a_pipe_or_a_link_in_place_of_the_lock_is_reported() {
+    let folder = Folder::new(RestartMode::Warm);
+    let lock = folder.request.path.with_extension("flight.lock");
+    let victim = folder.folder.path().join("victim");
+    fs::write(&victim, "kept").unwrap();
+    let refused = |word: &str| {
+        let (restart, said) = Restart::begin(folder.request.clone());
+        let said = said.unwrap();
+        assert!(restart.is_none() && said.contains(word), "{said}");
+    };
+    let made = std::process::Command::new("mkfifo").arg(&lock).status();
+    assert!(made.unwrap().success());
+    refused("a pipe or a device");
+    fs::remove_file(&lock).unwrap();
+    std::os::unix::fs::symlink(&victim, &lock).unwrap();
+    refused("symbolic link");
+    assert_eq!(fs::read(&victim).unwrap(), b"kept");
+}

@@ -1,0 +1,180 @@
+//! The kernel delivers only what the simulator sends.
+//!
+//! A socket receives from anywhere, into one buffer: datagrams of others fill
+//! it, and what the simulator sends is lost. So a filter in the kernel (classic
+//! BPF, `SO_ATTACH_FILTER`, socket(7)) drops them before they are queued: by the
+//! sender's address, and by its port once that is known. A connected socket
+//! would do the same, but of one port only, and X-Plane answers from another
+//! than the one that it listens on.
+//!
+//! The filter is attached when a connection is opened, and adapted by the thread
+//! that reports on the connection: never in a tick.
+
+use std::io;
+use std::net::IpAddr;
+use std::os::fd::AsFd;
+use std::sync::{Mutex, PoisonError};
+
+use nix::libc::{BPF_ABS, BPF_H, BPF_JEQ, BPF_JMP, BPF_K, BPF_LD, BPF_RET, BPF_W};
+use socket2::{SockFilter, SockRef, Socket};
+
+use crate::link::SharedState;
+
+/// Offsets from here on count from the network header, others from UDP's
+/// (linux/filter.h).
+const NETWORK_HEADER: u32 = (-0x0010_0000_i32).cast_unsigned();
+/// Where the sender's address is in the header (RFC 791, RFC 8200).
+const IPV4_SOURCE: u32 = 12;
+const IPV6_SOURCE: u32 = 8;
+/// Where the sender's port is in UDP's header (RFC 768).
+const SOURCE_PORT: u32 = 0;
+/// The whole datagram.
+const ALL_BYTES: u32 = u32::MAX;
+
+/// The sender's ports that are delivered; 0 for none. If all are 0, every port
+/// is.
+pub(crate) type Ports = [u16; 4];
+
+/// From where datagrams are delivered.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+struct Source {
+    ip: IpAddr,
+    ports: Ports,
+}
+
+/// The filter of a connection's socket.
+#[derive(Debug)]
+pub(crate) struct SourceFilter {
+    socket: Socket,
+    attached: Mutex<Option<Source>>,
+}
+
+impl SourceFilter {
+    /// For the socket with this descriptor, which is duplicated.
+    pub(crate) fn of(socket: &impl AsFd) -> io::Result<Self> {
+        Ok(Self {
+            socket: SockRef::from(socket).try_clone()?,
+            attached: Mutex::new(None),
+        })
+    }
+
+    /// Follows what is known about the simulator. Without a filter the sensor
+    /// still leaves out what others send, as long as the socket's buffer does
+    /// not overflow; so a failure is none of the connection.
+    pub(crate) fn follow(&self, link: &SharedState) {
+        let Some(simulator) = link.address.simulator() else {
+            return;
+        };
+        let wanted = Source {
+            ip: simulator.ip(),
+            ports: link.delivered_ports(),
+        };
+        let mut attached = self.attached.lock().unwrap_or_else(PoisonError::into_inner);
+        if *attached != Some(wanted) && attach(&self.socket, wanted.ip, wanted.ports).is_ok() {
+            *attached = Some(wanted);
+        }
+    }
+}
+
+/// From now on the kernel delivers to this UDP socket only what comes from this
+/// address and, if one is given, these ports. What is queued already stays.
+///
+/// # Errors
+/// When the operating system refuses.
+pub(crate) fn attach(socket: &impl AsFd, ip: IpAddr, ports: Ports) -> io::Result<()> {
+    SockRef::from(socket).attach_filter(&program(ip, ports))
+}
+
+/// A comparison of the value loaded last; `then` and `otherwise` are the numbers
+/// of instructions to leave out.
+const fn compare(with: u32, then: u8, otherwise: u8) -> SockFilter {
+    SockFilter::new((BPF_JMP | BPF_JEQ | BPF_K) as u16, then, otherwise, with)
+}
+
+const fn load(width: u32, offset: u32) -> SockFilter {
+    SockFilter::new((BPF_LD | BPF_ABS | width) as u16, 0, 0, offset)
+}
+
+const fn deliver(bytes: u32) -> SockFilter {
+    SockFilter::new((BPF_RET | BPF_K) as u16, 0, 0, bytes)
+}
+
+fn program(ip: IpAddr, ports: Ports) -> Vec<SockFilter> {
+    let (offset, words) = match ip {
+        IpAddr::V4(ip) => (IPV4_SOURCE, vec![ip.to_bits()]),
+        IpAddr::V6(ip) => {
+            let bits = ip.to_bits();
+            let words = [96, 64, 32, 0].map(|shift| (bits >> shift) as u32);
+            (IPV6_SOURCE, words.to_vec())
+        }
+    };
+    let mut program = Vec::new();
+    for (word, at) in words.into_iter().zip((offset..).step_by(4)) {
+        program.extend([
+            load(BPF_W, NETWORK_HEADER + at),
+            compare(word, 1, 0),
+            deliver(0),
+        ]);
+    }
+    let known = ports.into_iter().filter(|port| *port != 0);
+    if known.clone().count() > 0 {
+        program.push(load(BPF_H, SOURCE_PORT));
+        for port in known {
+            program.extend([compare(port.into(), 0, 1), deliver(ALL_BYTES)]);
+        }
+        program.push(deliver(0));
+    }
+    program.push(deliver(ALL_BYTES));
+    program
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::UdpSocket;
+
+    use super::*;
+
+    /// The datagrams that a socket receives of those that each of these sends.
+    fn received(receiver: &UdpSocket, senders: &[&UdpSocket]) -> Vec<u8> {
+        let to = receiver.local_addr().unwrap();
+        for (number, sender) in (0..).zip(senders) {
+            sender.send_to(&[number], to).unwrap();
+        }
+        receiver.set_nonblocking(true).unwrap();
+        let mut byte = [0];
+        std::iter::from_fn(|| receiver.recv(&mut byte).ok().map(|_| byte[0])).collect()
+    }
+
+    #[test]
+    fn only_the_simulators_address_and_ports_are_delivered() {
+        let bind = |ip| UdpSocket::bind((ip, 0)).unwrap();
+        let port = |socket: &UdpSocket| socket.local_addr().unwrap().port();
+        let receiver = bind("127.0.0.1");
+        let [first, second, third, other] =
+            ["127.0.0.2", "127.0.0.2", "127.0.0.2", "127.0.0.3"].map(bind);
+        let senders = [&first, &second, &third, &other];
+        assert_eq!(received(&receiver, &senders), [0, 1, 2, 3]);
+        let there = "127.0.0.2".parse().unwrap();
+        attach(&receiver, there, [0; 4]).unwrap();
+        assert_eq!(received(&receiver, &senders), [0, 1, 2]);
+        attach(&receiver, there, [port(&first), 0, port(&third), 0]).unwrap();
+        assert_eq!(received(&receiver, &senders), [0, 2]);
+        attach(&receiver, there, [0, 0, 0, port(&other)]).unwrap();
+        assert_eq!(received(&receiver, &senders), []);
+        attach(&receiver, "127.0.0.3".parse().unwrap(), [0; 4]).unwrap();
+        assert_eq!(received(&receiver, &senders), [3]);
+    }
+
+    #[test]
+    fn the_same_by_ipv6() {
+        let bind = || UdpSocket::bind("[::1]:0").unwrap();
+        let (receiver, first, second) = (bind(), bind(), bind());
+        let port = first.local_addr().unwrap().port();
+        attach(&receiver, "::1".parse().unwrap(), [port, 0, 0, 0]).unwrap();
+        assert_eq!(received(&receiver, &[&first, &second]), [0]);
+        for other in ["2001:db8::1", "::2", "1::1", "::1:0:1"] {
+            attach(&receiver, other.parse().unwrap(), [0; 4]).unwrap();
+            assert_eq!(received(&receiver, &[&first]), [], "{other}");
+        }
+    }
+}

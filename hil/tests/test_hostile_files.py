@@ -1,0 +1,65 @@
+"""Files that another user or a careless one gives to the daemon."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+STRANGER = 65534
+SUCCESS = 0
+USAGE = 2
+OLD = "2020-01-01T00-00-00.000Z-built-in-01.mcap"
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can act as another user")
+def test_what_another_user_places_is_neither_followed_nor_deleted(
+    fccd: Path, tmp_path: Path
+) -> None:
+    victim = tmp_path / "victim"
+    victim.write_bytes(b"x" * 2_000_000)
+    folder = tmp_path / "shared"
+    folder.mkdir()
+    folder.chmod(0o777)
+    link = folder / OLD
+    link.symlink_to(victim)
+    pipe = folder / OLD.replace("2020", "2021")
+    os.mkfifo(pipe)
+    for placed in (link, pipe):
+        os.chown(placed, STRANGER, STRANGER, follow_symlinks=False)
+    config = tmp_path / "c.toml"
+    config.write_text(f"[built-in]\n[recording]\nfolder = '{folder}'\nkeep_total_mb = 1\n")
+    words = ["fly", "--config", str(config), "--lockstep", "--seconds", "20", "--json"]
+    ended = subprocess.run([fccd, *words], capture_output=True, text=True, timeout=30, check=False)
+    assert ended.returncode == SUCCESS, ended.stderr
+    assert json.loads(ended.stdout)["timing"]["ticks"] > 20 * 40
+    assert "deleted" not in ended.stderr
+    assert victim.stat().st_size == 2_000_000
+    assert link.is_symlink()
+    assert pipe.is_fifo()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "[built-in]\n" + "".join(f"k{n} = 1\n" for n in range(10_000)),
+        "=\n" * 100_000,
+        "[x-plane]\n" + '[[sensor]]\nkind = "x-plane"\nlocal_port = 5\n' * 10_000,
+        "a = " + "[" * 400_000,
+        '"' + "k" * 900_000 + '" = 1\n',
+    ],
+    ids=["keys", "syntax", "sensors", "depth", "length"],
+)
+def test_a_configuration_of_errors_is_refused(fccd: Path, tmp_path: Path, text: str) -> None:
+    """Each took from 4 s to more than a minute, or printed a megabyte."""
+    config = tmp_path / "c.toml"
+    config.write_text(text)
+    ended = subprocess.run(
+        [fccd, "check", config], capture_output=True, text=True, timeout=20, check=False
+    )
+    assert ended.returncode == USAGE
+    assert len(ended.stderr) < 200_000
+    assert ended.stderr.startswith(f"{config}:")
