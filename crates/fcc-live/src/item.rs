@@ -5,10 +5,8 @@ use fcc_telemetry::Telemetry;
 
 use super::{Event, Info, RecorderStatus};
 
-/// Input of the publishing thread: plain data of a fixed size, which another
-/// process could take as well.
+/// Input of the publishing thread: data of a fixed size.
 #[derive(Clone, Copy, Debug)]
-#[repr(C)]
 #[expect(
     clippy::large_enum_variant,
     reason = "nearly all are records, and the ring's slots have their size"

@@ -9,7 +9,7 @@ use iceoryx2::service::builder::request_response::RequestResponseOpenError;
 use super::super::row_watcher::{check_layout, read_info};
 use super::super::services::{self, Access, Ipc};
 use super::super::{Info, WatchError};
-use super::wire::{Answer, CommandRequest};
+use super::{Answer, CommandRequest};
 use super::{COMMANDS_VERSION, Command, CommandError, InvalidCommand, Verdict, command_server};
 use fcc_telemetry::Instance;
 
