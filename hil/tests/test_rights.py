@@ -7,6 +7,7 @@ import json
 import os
 import re
 import signal
+import stat
 import subprocess
 import sys
 import tempfile
@@ -134,8 +135,10 @@ FORBIDDEN = (
     "clock_settime",
     "kexec_file_load",
 )
-"""With invalid arguments; reboot(2), setuid(2) and the like would act, and are not tried. Namespaces
-are denied by the unit's RestrictNamespaces."""
+"""With invalid arguments; reboot(2), setuid(2) and the like would act, and are not tried.
+
+Namespaces are denied by the unit's RestrictNamespaces.
+"""
 
 
 def test_the_units_filter_forbids_what_it_should_and_a_flight_needs_none_of_it(
@@ -164,3 +167,88 @@ def test_the_units_filter_forbids_what_it_should_and_a_flight_needs_none_of_it(
             ending = daemon.end(signal.SIGTERM)
         assert_released(simulator)
     assert ending.exit_code == SUCCESS, ending.log
+
+
+COMMANDS = """
+import socket, sys
+def connected():
+    s = socket.socket(socket.AF_UNIX)
+    s.settimeout(5)
+    s.connect(sys.argv[1])
+    return s
+def said(text):
+    s = connected()
+    try:
+        s.sendall(text)
+    except BrokenPipeError:
+        pass
+    return s.recv(600).decode().strip()
+silent = [connected() for _ in range(int(sys.argv[2]))]
+for text in sys.argv[3:]:
+    print(said(text.encode().decode("unicode_escape").encode("latin-1")))
+"""
+STRANGER = 54321
+
+
+def commanding(user: int, socket: Path, *texts: str, silent: int = 0) -> list[str]:
+    """Return what the daemon answers to a user's lines, beside silent connections."""
+    words = ["setpriv", f"--reuid={user}", f"--regid={user}", "--clear-groups", sys.executable]
+    done = subprocess.run(
+        [*words, "-I", "-c", COMMANDS, socket, str(silent), *texts],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd="/",
+    )
+    return done.stdout.splitlines() or [done.stderr]
+
+
+@needs_root
+def test_only_those_who_are_named_may_command(fccd: Path, scratch: Path) -> None:
+    instance = f"rights-{os.getpid()}"
+    others = (
+        f'[telemetry]\ninstance = "{instance}"\n[rights]\nuser = "root"\ncommanders = ["nobody"]\n'
+    )
+    socket = Path("/dev/shm/fccd-commands-0") / instance
+    with StandInProcess(Settings(port=0)) as simulator:
+        config = write_config(scratch, simulator.port, others=others)
+        with DaemonUnderTest([fccd, "run", "--config", config, "--json"], scratch) as daemon:
+            engage(simulator, daemon)
+            assert stat.S_IMODE(socket.parent.stat().st_mode) == 0o711
+            (refused,) = commanding(STRANGER, socket, "disengage\\n")
+            assert refused.startswith(f"refused user {STRANGER} may not command this fccd")
+            heading, unknown, bad, outside, long, binary = commanding(
+                NOBODY,
+                socket,
+                "set heading_rad=1.5\\n",
+                "set no_such=1\\n",
+                "dance\\n",
+                "set altitude_m=1e308\\n",
+                "x" * 600,
+                "\\xff\\n",
+                silent=10,
+            )
+            assert heading.startswith("carried-out ")
+            assert "there is no set point 'no_such'" in unknown
+            assert "there is no such command" in bad
+            assert "altitude is" in outside
+            assert (long, binary) == ("refused it is too long", "refused it is not a text")
+            # Silent ones of a user who is not permitted take no place.
+            commanding(STRANGER, socket, silent=40)
+            words: list[str | Path] = [
+                fccd,
+                "command",
+                "disengage",
+                "--instance",
+                instance,
+                "--of",
+                "root",
+            ]
+            user = ["setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}", "--clear-groups"]
+            done = subprocess.run([*user, *words], capture_output=True, text=True, check=False)
+            assert done.returncode == SUCCESS, done.stderr
+            daemon.wait_for("engaged -> standby")
+            assert_released(simulator)
+            ending = daemon.end(signal.SIGTERM)
+    assert ending.exit_code == SUCCESS, ending.log
+    assert not socket.exists()

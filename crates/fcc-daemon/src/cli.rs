@@ -242,6 +242,10 @@ pub struct CommandArgs {
     /// The daemon's name, as given by --instance or in its configuration
     #[arg(long, value_name = "NAME", default_value_t = Instance::default(), global = true)]
     pub instance: Instance,
+    /// The user of the daemon, if it is another's and no service; it has to
+    /// permit this one in rights.commanders
+    #[arg(long, value_name = "USER", global = true)]
+    pub of: Option<String>,
     /// Print the result as JSON
     #[arg(long, global = true)]
     pub json: bool,

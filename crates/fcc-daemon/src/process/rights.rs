@@ -11,7 +11,7 @@ use std::fs::{self, DirBuilder};
 use std::io::{self, ErrorKind};
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, chown};
 use std::os::unix::process::CommandExt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use fcc_flight::config::Config;
@@ -25,8 +25,8 @@ const SERVICE_USER: &str = "fccd";
 const HIGHEST_PRIORITY: u64 = 99;
 /// A nice value of -20, getrlimit(2).
 const LOWEST_NICE: u64 = 40;
-/// Where systemd has the service's folder.
-const RUN_FOLDER: &str = "/run/fccd";
+/// The folders that systemd makes for the service.
+const RUN_FOLDERS: [&str; 2] = ["/run/fccd", "/run/fccd-commands"];
 
 /// Why the rights of root could not be given up.
 #[derive(thiserror::Error, Debug)]
@@ -72,26 +72,23 @@ pub(crate) fn give_up(config: &Config) -> Result<(), RightsError> {
         }
     };
     raise_limits();
-    let run_folder = env::var_os("RUNTIME_DIRECTORY")
-        .is_none()
-        .then_some(RUN_FOLDER);
+    // Another user has folders of its own, which it makes itself.
+    let is_given = env::var_os("RUNTIME_DIRECTORY").is_some() || name != SERVICE_USER;
+    let run_folders: &[&str] = if is_given { &[] } else { &RUN_FOLDERS };
     let recordings = config.recording.enabled.then_some(&config.recording.folder);
-    for folder in run_folder
-        .map(Path::new)
-        .into_iter()
-        .chain(recordings.map(PathBuf::as_path))
-    {
-        own(folder, &user).map_err(|error| failed(&folder.display().to_string(), error))?;
+    let folders = run_folders.iter().map(|folder| (Path::new(folder), 0o700));
+    for (folder, mode) in folders.chain(recordings.map(|folder| (folder.as_path(), 0o750))) {
+        own(folder, mode, &user).map_err(|error| failed(&folder.display().to_string(), error))?;
     }
     become_user(&user).map_err(|error| failed(name, error))?;
     output::message(format_args!(
         "was started as root, continues as user {name} (rights.user)"
     ));
     if let Ok(program) = env::current_exe() {
-        run_anew(&program, &user, run_folder);
+        run_anew(&program, &user, run_folders);
     }
     // The file was replaced, or its folder is closed to the user.
-    let error = run_anew(Path::new("/proc/self/exe"), &user, run_folder);
+    let error = run_anew(Path::new("/proc/self/exe"), &user, run_folders);
     Err(failed("the program cannot be run anew", error))
 }
 
@@ -111,15 +108,10 @@ fn raise_limits() {
 
 /// Creates a folder of the user, if it is missing. One that exists is left as it
 /// is: whose it is was decided by somebody else.
-fn own(folder: &Path, user: &User) -> io::Result<()> {
+fn own(folder: &Path, mode: u32, user: &User) -> io::Result<()> {
     if let Some(parent) = folder.parent().filter(|of| !of.as_os_str().is_empty()) {
         fs::create_dir_all(parent)?;
     }
-    let mode = if folder == Path::new(RUN_FOLDER) {
-        0o700
-    } else {
-        0o750
-    };
     match DirBuilder::new().mode(mode).create(folder) {
         Ok(()) => chown(folder, Some(user.uid.as_raw()), Some(user.gid.as_raw())),
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {
@@ -151,7 +143,7 @@ fn become_user(user: &User) -> io::Result<()> {
 }
 
 /// Replaces this process; returns only if that fails.
-fn run_anew(program: &Path, user: &User, run_folder: Option<&str>) -> io::Error {
+fn run_anew(program: &Path, user: &User, run_folders: &[&str]) -> io::Error {
     let mut command = Command::new(program);
     command
         .arg0("fccd")
@@ -161,8 +153,8 @@ fn run_anew(program: &Path, user: &User, run_folder: Option<&str>) -> io::Error 
         .env("HOME", &user.dir)
         .env("USER", &user.name)
         .env("LOGNAME", &user.name);
-    if let Some(folder) = run_folder {
-        command.env("RUNTIME_DIRECTORY", folder);
+    if !run_folders.is_empty() {
+        command.env("RUNTIME_DIRECTORY", run_folders.join(":"));
     }
     command.exec()
 }

@@ -20,6 +20,8 @@ use super::limits::{altitudes_m, heights_m};
 #[cfg(feature = "live")]
 use super::live::Live;
 use super::observer::Observer;
+#[cfg(feature = "live")]
+use super::other_users::CommandSocket;
 use super::plan::Pace;
 use super::recording::{FlightRecorder, RecordingRequest};
 use super::restart::{RestartKeeper, RestartRequest};
@@ -214,6 +216,11 @@ impl Assembly {
                 config,
                 SentCommands::new(limits(autopilot)),
             )));
+            #[cfg(feature = "live")]
+            if config.telemetry.commands && config.rights.has_commanders() {
+                let socket = CommandSocket::<Autopilot>::new(config, limits(autopilot));
+                observers.push(Box::new(socket));
+            }
         }
         // The last, so that it receives what the others report at their end.
         observers.push(Box::new(EventLog::default()));
