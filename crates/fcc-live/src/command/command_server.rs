@@ -10,7 +10,7 @@ use iceoryx2::service::service_name::ServiceName;
 
 use super::super::PublishError;
 use super::super::services::{Access, Ipc, explained};
-use super::wire::{Answer, CommandRequest};
+use super::{Answer, CommandRequest};
 use super::{COMMANDS_VERSION, PendingCommand, Verdict};
 use fcc_telemetry::Instance;
 

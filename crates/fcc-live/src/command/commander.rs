@@ -11,7 +11,7 @@ use super::super::place::{FoundPlace, Presence};
 use super::super::row_watcher::{PATIENCE as FOUND_WITHIN, check_layout, read_info};
 use super::super::services::{self, Access, Ipc};
 use super::super::{Info, WatchError};
-use super::wire::{Answer, CommandRequest};
+use super::{Answer, CommandRequest};
 use super::{COMMANDS_VERSION, Command, CommandError, InvalidCommand, Verdict, command_server};
 use fcc_telemetry::Instance;
 

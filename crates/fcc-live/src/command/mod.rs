@@ -27,6 +27,7 @@ pub use commander::Commander;
 pub use error::{CommandError, InvalidCommand};
 pub use outside_limits::OutsideLimits;
 pub use sent_commands::SentCommands;
+pub(crate) use wire::{Answer, CommandRequest};
 
 /// The version of commands and answers, independent of the layouts'. Increase
 /// it, and the version in the types' names, with every change of one of them or
