@@ -6,7 +6,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use fcc_core::flight::Autopilot;
 use fcc_core::framework::{ControlAuthority, PlantId, Released, State};
-use fcc_runtime::{Ending, Link, Loop, LoopReport, Machine, Parts, SpawnError};
+use fcc_runtime::{Ending, Link, Loop, LoopReport, Machine, Parts, SpawnError, WatchdogConfig};
 use fcc_timer::{ManualTimer, RealtimeGranted, Timer, TimerError};
 
 use super::assemble::Assembly;
@@ -172,25 +172,22 @@ impl RealTime<'_> {
         observers: &mut Observers,
         host: &mut dyn Host,
     ) -> Result<LoopReport, FlyError> {
-        let watchdog = HangWatch::start(
-            self.watchdog
-                .enabled
-                .then(|| self.watchdog.hang_after(self.period)),
-            self.loop_priority,
-            &self.link,
-            self.authority.cloned(),
-            host.last_resort(),
-        )
-        .map_err(FlyError::Watchdog)?;
+        let (mut watchdog, watchdog_granted) = if self.watchdog.enabled {
+            let config = WatchdogConfig {
+                hang_after: self.watchdog.hang_after(self.period),
+                loop_priority: self.loop_priority,
+            };
+            HangWatch::start(config, &self.link, self.authority.cloned(), host)
+                .map(|(watchdog, granted)| (Some(watchdog), Some(granted)))
+                .map_err(FlyError::Watchdog)?
+        } else {
+            (None, None)
+        };
         let mut run_statistics = RunStatistics::<Pilot>::new(self.period)?;
         let handle = self.flight_loop.spawn()?;
         let granted = handle.granted().clone();
         // Reported at once, not only at the end of a flight that may take days.
-        report_denied(
-            &granted,
-            watchdog.as_ref().map(|(_, granted)| granted),
-            observers,
-        );
+        report_denied(&granted, watchdog_granted.as_ref(), observers);
         observers.begin(&Facts {
             granted: Some(&granted),
             ..facts
@@ -204,10 +201,7 @@ impl RealTime<'_> {
             length: self.length,
             ground: self.ground,
         }
-        .follow(
-            self.authority,
-            watchdog.as_ref().map(|(watchdog, _)| watchdog),
-        );
+        .follow(self.authority, watchdog.as_mut());
         observers.stopping();
         Ok(match hung {
             None => handle.join(),
