@@ -9,6 +9,7 @@ import threading
 import time
 from pathlib import Path
 
+import pytest
 from daemon_under_test import engage, flight, start, wait_until, write_config
 from tampered_link import TamperedLink
 
@@ -29,9 +30,11 @@ def bound() -> socket.socket:
     return opened
 
 
+@pytest.mark.usefixtures("beacon")
 def test_a_port_without_a_program_is_distinguished_from_one_that_does_not_answer(
     fccd: Path, tmp_path: Path
 ) -> None:
+    """Beacons of other tests would tell another port."""
     with bound() as nobody:
         port = nobody.getsockname()[1]
     with start(fccd, tmp_path, write_config(tmp_path, port)) as daemon:
