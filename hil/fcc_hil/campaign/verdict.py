@@ -40,6 +40,8 @@ ALTITUDE_RMS_FT = (20.0, 20.0, 25.0, 40.0, 80.0, 150.0, 200.0, 250.0)
 _FULL, _IDLE = 0.97, 0.03
 _RETURN_S = 5.0
 """What was lost is believed again, and flown by, within this time."""
+_LONGEST_TURN_S = 20.0
+"""120° at the bank limit, the largest order, with its beginning and end."""
 
 KINDS = (
     *("lost", "stall", "below Vs", "bank", "load", "oscillation"),
@@ -80,6 +82,7 @@ def judge(
         for leg in flown
         if not _is_gusty(flight, leg.end_s - legs[0].start_s)
         and not (flight.is_pattern and _is_degraded(flight, leg, legs[0].start_s))
+        and not _turns_back(flight, leg, legs[0].start_s)
     ]
     figures = motion(engaged, flown) | {
         "pitch_rate_sd_degps": max(
@@ -151,6 +154,15 @@ def _is_degraded(flight: Flight, leg: Leg, engaged_at_s: float) -> bool:
     begins_s = engaged_at_s + fault.begins_s
     over_s = math.inf if flight.is_pattern else begins_s + fault.lasts_s + _RETURN_S
     return leg.start_s < over_s and leg.end_s > begins_s
+
+
+def _turns_back(flight: Flight, leg: Leg, engaged_at_s: float) -> bool:
+    """Return whether it ends with the turn that a lost quantity had delayed."""
+    fault = flight.fault
+    if fault is None or fault.lasts_s is None:
+        return False
+    returns_s = engaged_at_s + fault.begins_s + fault.lasts_s
+    return leg.end_s - _LONGEST_TURN_S - _RETURN_S < returns_s < leg.end_s
 
 
 def _unsettled(flight: Flight, truth: Truth, legs: Sequence[Leg]) -> list[str]:

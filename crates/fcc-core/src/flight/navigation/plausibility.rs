@@ -87,6 +87,12 @@ const GROWS_FOR_S: f64 = 0.1;
 /// swings about the trimmed one, so a longer gap permits no larger change.
 const AIRSPEED_GROWS_FOR_S: f64 = 1.0;
 
+/// A rejected airspeed is accepted after this time, s, if it is this multiple of the
+/// last good one: the aircraft may have gained or lost as much meanwhile. A tube
+/// without total pressure, near 0, is not.
+const AIRSPEED_RETURNS_AFTER_S: f64 = 10.0;
+const AIRSPEED_RETURNS: core::ops::RangeInclusive<f64> = 0.6..=1.7;
+
 /// After this many times the age at which a reading is too old, a source's new
 /// value is accepted: either the old value was wrong, or the aircraft was
 /// repositioned. By then its loss was detected.
@@ -175,7 +181,10 @@ pub(crate) fn plausibility_gate(
         &new.airspeed_mps,
         convinced(4),
         |mps| within(*mps, MAX_AIRSPEED_MPS) && !airspeed_is_suspect(new),
-        |a, b, gap_s| AIRSPEED_MPS.holds(b - a, gap_s),
+        |a, b, gap_s| {
+            AIRSPEED_MPS.holds(b - a, gap_s)
+                || gap_s > AIRSPEED_RETURNS_AFTER_S && AIRSPEED_RETURNS.contains(&(b / a.max(1.0)))
+        },
     );
     let altitude = take(
         &mut good.altitude_m,
