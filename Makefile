@@ -39,7 +39,7 @@ STAMPS   := .stamps
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: package-check wheels deb test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
+.PHONY: advisories lock reproducible package-check wheels deb test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -96,6 +96,21 @@ lint-python: $(STAMPS)/python-module
 deny: $(STAMPS)/rust
 	@command -v cargo-deny >/dev/null || cargo install --locked --version 0.20.2 cargo-deny
 	cargo deny --log-level error check bans licenses sources
+	./scripts/advisories
+
+advisories: $(STAMPS)/rust ## Check the crates against RustSec's advisories; fails if that cannot be done
+	@command -v cargo-deny >/dev/null || cargo install --locked --version 0.20.2 cargo-deny
+	ADVISORIES=required ./scripts/advisories
+
+lock: ## Lock the versions and hashes of the Python packages anew (needs uv)
+	cd hil && $(LOCK) --extra build --extra test pyproject.toml -o locked.txt
+	cd hil && $(LOCK) packaging.in -o locked-packaging.txt
+
+# For every Python from 3.10 and every machine.
+LOCK := uv pip compile --quiet --upgrade --universal --generate-hashes --python-version 3.10 --custom-compile-command 'make lock'
+
+reproducible: $(STAMPS)/rust ## Build the daemon of this commit in two folders, and compare (10 minutes)
+	./scripts/reproducible $(TARGET)/reproducible
 
 fuzz: ## Fuzz every parser of outside data for a minute each (needs a nightly toolchain)
 	@command -v cargo-fuzz >/dev/null || cargo install --locked --version 0.13.2 cargo-fuzz
@@ -118,7 +133,7 @@ test-cross: $(STAMPS)/cross $(STAMPS)/qemu build ## Build for the boards, and ru
 DEB_TARGET ?=
 PACKAGE    := target/package
 
-deb: build $(if $(DEB_TARGET),$(STAMPS)/cross) ## Make a Debian package (DEB_TARGET=)
+deb: build $(if $(DEB_TARGET),$(STAMPS)/cross) ## Make a Debian package, and its bill of materials (DEB_TARGET=)
 	@command -v cargo-deb >/dev/null || cargo install --locked --version 3.8.0 cargo-deb
 	rm -rf $(PACKAGE) && mkdir -p $(PACKAGE)
 	$(FCCD) man $(PACKAGE)/man
@@ -127,6 +142,7 @@ deb: build $(if $(DEB_TARGET),$(STAMPS)/cross) ## Make a Debian package (DEB_TAR
 	$(FCCD) completions fish > $(PACKAGE)/fccd.fish
 	$(if $(DEB_TARGET),./scripts/cross $(DEB_TARGET),cargo) deb --locked -p fcc-daemon \
 	    $(if $(DEB_TARGET),--target $(DEB_TARGET)) --output $(PACKAGE)/
+	./scripts/sbom $(PACKAGE)/fccd.cdx.json $(DEB_TARGET)
 
 test-deb: deb $(STAMPS)/python $(if $(DEB_TARGET),$(STAMPS)/qemu) ## Test the content of the Debian package (DEB_TARGET=)
 	DEB=$$(ls $(abspath $(PACKAGE))/*.deb) $(PYTHON) -m pytest deploy/tests
@@ -200,10 +216,10 @@ package-check: $(STAMPS)/rust $(STAMPS)/python ## Build every crate from its pac
 	@for crate in $(PACKAGED)/package/*.crate; do \
 	    test "$$(tar tzf $$crate | grep -c '/LICENSE-')" = 2 || { echo "$$crate lacks a licence"; exit 1; }; \
 	done
-	$(PYTHON) -m pip install --quiet 'build>=1.2' 'twine>=6.1'
+	$(PYTHON) -m pip install --quiet --require-hashes -r hil/locked-packaging.txt
 	rm -rf $(TARGET)/package-check
 	cd crates/fcc-py && $(abspath $(VENV))/bin/maturin build --locked --quiet --out $(abspath $(TARGET))/package-check
-	$(PYTHON) -m build --outdir $(TARGET)/package-check hil
+	$(PYTHON) -m build --no-isolation --outdir $(TARGET)/package-check hil
 	$(PYTHON) -m twine check --strict $(TARGET)/package-check/*
 
 wheels: $(STAMPS)/rust $(STAMPS)/wheel-tools ## Build the Python module's wheels for x86-64 and ARM, and try one
@@ -223,10 +239,11 @@ $(STAMPS)/rust: rust-toolchain.toml scripts/has-libclang scripts/check-rust
 	@./scripts/has-libclang || ./scripts/apt-install libclang-dev
 	@mkdir -p $(STAMPS) && touch $@
 
-$(STAMPS)/python: hil/pyproject.toml
+$(STAMPS)/python: hil/pyproject.toml hil/locked.txt
 	@python3 -c 'import ensurepip, venv' 2>/dev/null || ./scripts/apt-install python3-venv
 	python3 -m venv $(VENV)
-	$(PYTHON) -m pip install --quiet --editable './hil[test]'
+	$(PYTHON) -m pip install --quiet --require-hashes -r hil/locked.txt
+	$(PYTHON) -m pip install --quiet --no-deps --no-build-isolation --editable ./hil
 	@mkdir -p $(STAMPS) && touch $@
 
 $(STAMPS)/strace:
@@ -235,7 +252,7 @@ $(STAMPS)/strace:
 
 $(STAMPS)/wheel-tools: $(STAMPS)/python
 	@command -v aarch64-linux-gnu-gcc >/dev/null || ./scripts/apt-install gcc-aarch64-linux-gnu libc6-dev-arm64-cross
-	$(PYTHON) -m pip install --quiet 'ziglang>=0.13'
+	$(PYTHON) -m pip install --quiet --require-hashes -r hil/locked-packaging.txt
 	@touch $@
 
 $(STAMPS)/valgrind:

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -187,3 +188,17 @@ def test_it_requires_a_new_enough_c_library(control: Path, files: Path) -> None:
         for found in re.findall(rb"GLIBC_(\d+\.\d+(?:\.\d+)?)", program)
     }
     assert max(needed)[:2] <= tuple(map(int, asked[1].split(".")))
+
+
+def test_the_bill_of_materials_has_every_crate_with_its_licence(package: Path) -> None:
+    text = (package.parent / "fccd.cdx.json").read_text()
+    assert str(Path(__file__).parents[2]) not in text
+    bill = json.loads(text)
+    assert (bill["bomFormat"], bill["metadata"]["component"]["name"]) == ("CycloneDX", "fcc-daemon")
+    lock = (Path(__file__).parents[2] / "Cargo.lock").read_text()
+    versions = set(re.findall(r'name = "(.+)"\nversion = "(.+)"', lock))
+    named = {(part["name"], part["version"]): part for part in bill["components"]}
+    assert named.keys() <= versions
+    assert {"iceoryx2", "mcap", "toml", "nix", "fcc-core"} <= {name for name, _ in named}
+    for name, part in named.items():
+        assert part["licenses"], name

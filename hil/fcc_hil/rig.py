@@ -15,7 +15,7 @@ from .truth import Truth
 
 ENGAGED = "standby -> engaged"
 FAILSAFE = "engaged -> failsafe"
-RELEASED = "actuators released"
+RELEASED = "release sent to the actuators"
 
 
 class FlightError(RuntimeError):

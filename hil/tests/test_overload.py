@@ -54,7 +54,7 @@ def test_an_overloaded_core_answers_sigterm(fccd: Path, faulty_fccd: Path, tmp_p
 
 def test_a_lasting_overload_ends_the_flight(fccd: Path, faulty_fccd: Path, tmp_path: Path) -> None:
     environment = {"FCCD_SLOW_AT_S": "1", "FCCD_SLOW_MS": "30"}
-    others = f"{NEVER_FAILSAFE}[overload]\nstop_after_s = 2.0\n"
+    others = f"{NEVER_FAILSAFE}[overload]\nstop_after_s = 1.0\n"
     with flight(faulty_fccd, tmp_path, others=others, environment=environment) as (
         simulator,
         daemon,

@@ -56,6 +56,10 @@ pub enum Action {
     /// daemon itself
     #[command(hide = true)]
     ReleaseHelper,
+    /// Publish live telemetry; started by the daemon itself
+    #[cfg(feature = "live")]
+    #[command(hide = true)]
+    Publisher,
     /// Print a completion script for a shell
     Completions {
         /// The shell
@@ -242,6 +246,10 @@ pub struct CommandArgs {
     /// The daemon's name, as given by --instance or in its configuration
     #[arg(long, value_name = "NAME", default_value_t = Instance::default(), global = true)]
     pub instance: Instance,
+    /// The user of the daemon, if it is another's and no service; it has to
+    /// permit this one in rights.commanders
+    #[arg(long, value_name = "USER", global = true)]
+    pub of: Option<String>,
     /// Print the result as JSON
     #[arg(long, global = true)]
     pub json: bool,

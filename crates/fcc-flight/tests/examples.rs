@@ -25,6 +25,7 @@ fn write_the_choices(config: &mut Config) {
     config.realtime.cpu_dma_latency_us = Some(0);
     config.engage.stick_takeover = Some(0.3);
     config.restart.state_file = Some("recordings/fccd.flight".into());
+    config.rights.user = Some("fccd".to_owned());
     config.altimeter.field_elevation_ft = Some(723.0);
     config.budget = BudgetSection {
         tick_us: Some(25_000),

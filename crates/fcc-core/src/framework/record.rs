@@ -7,8 +7,9 @@ schema! {
     /// The record of one tick of a loop with measurements `M`, estimate `E`,
     /// set points `S` and outputs `O`.
     ///
-    /// Plain `repr(C)` data of a fixed size: the same struct is used in the
-    /// loop's ring, in shared memory and in a recording.
+    /// Plain data of a fixed size. Other processes do not see the struct, which
+    /// has undefined bytes between its fields, but its values: as words in shared
+    /// memory, as messages in a recording.
     ///
     /// ```
     /// use fcc_core::framework::{Record, State, Tick};

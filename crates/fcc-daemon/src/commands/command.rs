@@ -2,6 +2,7 @@
 
 use fcc_core::flight::Autopilot;
 use fcc_core::units::{FOOT_M, HECTOPASCAL_PA, INHG_PA, KNOT_MPS};
+use fcc_flight::flight::{OtherUserError, command_another_users};
 use fcc_live::{Command, CommandError, Commander, PlantLimits};
 use fcc_telemetry::units::{AVIATION, Shown};
 use serde::Serialize;
@@ -29,17 +30,25 @@ pub(super) fn command(args: &CommandArgs) -> Result<Exit, Failure> {
     command
         .for_the_loop::<Autopilot>(&PlantLimits::new())
         .map_err(|error| Failure::of(Exit::Usage, error.text_in(&units)))?;
-    let result = Commander::open(&args.instance).and_then(|mut daemon| daemon.command(&command));
-    let exit = match &result {
-        Ok(_) => Exit::Success,
-        Err(CommandError::Refused(_) | CommandError::InvalidCommand(_)) => Exit::Refused,
-        Err(_) => Exit::Failure,
+    let (exit, result) = match send(args, &command) {
+        Ok(tick) => (Exit::Success, Ok(tick)),
+        Err(Refusal::OfAnother(error)) => {
+            let exit = match error {
+                OtherUserError::Refused(_) => Exit::Refused,
+                _ => Exit::Failure,
+            };
+            (exit, Err(error.to_string()))
+        }
+        // In the units of the command line.
+        Err(Refusal::OfOwn(CommandError::InvalidCommand(why))) => {
+            let why = why.text_in(&units);
+            (Exit::Refused, Err(format!("refused: {why}")))
+        }
+        Err(Refusal::OfOwn(error @ CommandError::Refused(_))) => {
+            (Exit::Refused, Err(error.to_string()))
+        }
+        Err(Refusal::OfOwn(error)) => (Exit::Failure, Err(error.to_string())),
     };
-    // In the units of the command line.
-    let result = result.map_err(|error| match error {
-        CommandError::InvalidCommand(why) => format!("refused: {}", why.text_in(&units)),
-        other => other.to_string(),
-    });
     if args.json {
         let result = Sent {
             instance: args.instance.to_string(),
@@ -59,6 +68,29 @@ pub(super) fn command(args: &CommandArgs) -> Result<Exit, Failure> {
     // A command that was carried out is a success, even if the result cannot be
     // printed.
     Ok(exit)
+}
+
+/// Why a command was not carried out, by a daemon of this user or of another.
+enum Refusal {
+    OfOwn(CommandError),
+    OfAnother(OtherUserError),
+}
+
+/// To the daemon of this user or, if there is none, of the service; or to that
+/// of the user who is given.
+fn send(args: &CommandArgs, command: &Command) -> Result<u64, Refusal> {
+    let another = |user| command_another_users(&args.instance, user, command);
+    if let Some(user) = &args.of {
+        return another(Some(user)).map_err(Refusal::OfAnother);
+    }
+    let opened = Commander::open(&args.instance);
+    match opened.and_then(|mut daemon| daemon.command(command)) {
+        Err(error @ CommandError::Unreachable(_)) => match another(None) {
+            Err(OtherUserError::NotThere(..)) => Err(Refusal::OfOwn(error)),
+            answered => answered.map_err(Refusal::OfAnother),
+        },
+        answered => answered.map_err(Refusal::OfOwn),
+    }
 }
 
 /// An altimeter setting in inches of mercury.

@@ -4,19 +4,27 @@ use super::failure::Failure;
 use super::fly::{conduct, direct};
 use crate::cli::RunArgs;
 use crate::exit::Exit;
-use crate::process::end_with_parent;
+use crate::process::{RightsError, end_with_parent, give_up};
 use fcc_flight::config::Config;
 use fcc_flight::flight::{Length, Pace, Plan};
 
 /// Flies a configuration until stopped.
 pub(super) fn run(args: &RunArgs) -> Result<Exit, Failure> {
+    let (mut config, text) = Config::load_with_text(&args.config)?;
+    direct(&mut config, &args.recording);
+    give_up(&config).map_err(|error| {
+        let exit = match error {
+            RightsError::NoUser(_) => Exit::Usage,
+            RightsError::System(..) => Exit::Failure,
+        };
+        Failure::of(exit, error)
+    })?;
+    // A change of the user ends such an agreement.
     if let Some(parent) = args.end_with {
         end_with_parent(parent).map_err(|error| {
             Failure::new(format_args!("cannot end with process {parent}: {error}"))
         })?;
     }
-    let (mut config, text) = Config::load_with_text(&args.config)?;
-    direct(&mut config, &args.recording);
     if let Some(instance) = &args.instance {
         config.telemetry.instance = instance.clone();
     }

@@ -21,6 +21,7 @@ mod read;
 mod recording;
 mod relations;
 mod restart;
+mod rights;
 mod runtime;
 mod similar;
 mod telemetry;
@@ -47,6 +48,7 @@ pub use error::{ConfigError, Problem};
 pub use guidance::GuidanceSection;
 pub use recording::RecordingSection;
 pub use restart::{RestartMode, RestartSection};
+pub use rights::RightsSection;
 pub use runtime::{
     EarlyWakeSection, EngageSection, FailsafeSection, LoopSection, RealtimeSection, ReleaseSection,
     Then,
@@ -80,6 +82,8 @@ pub struct Config {
     pub recording: RecordingSection,
     /// What to do about an interrupted flight.
     pub restart: RestartSection,
+    /// With whose rights a flight runs.
+    pub rights: RightsSection,
     /// Live telemetry.
     pub telemetry: TelemetrySection,
     /// The mode after engaging.

@@ -47,6 +47,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&str, String)) {
         );
     }
     connections(config, report);
+    rights(config, report);
     lists(config, report);
 }
 
@@ -275,6 +276,28 @@ fn budgets(config: &Config, report: &mut impl FnMut(&str, String)) {
         if let Some(stage_us) = stage_us.filter(|stage_us| *stage_us > tick_us) {
             let message = format!("is {stage_us}: choose no more than tick_us, {tick_us}");
             report(key, message);
+        }
+    }
+}
+
+/// Of names of users and groups: a tenth of it is a large crew.
+const MOST_NAMES: usize = 100;
+
+fn rights(config: &Config, report: &mut impl FnMut(&str, String)) {
+    let rights = &config.rights;
+    for (key, names) in [
+        ("rights.commanders", &rights.commanders),
+        ("rights.commander_groups", &rights.commander_groups),
+    ] {
+        if names.len() > MOST_NAMES {
+            let message = format!("has {} names: keep at most {MOST_NAMES}", names.len());
+            report(key, message);
+        }
+        let may_command = config.telemetry.enabled && config.telemetry.commands;
+        if !names.is_empty() && !may_command {
+            let message = "has names, and telemetry.enabled or telemetry.commands is false, so \
+                           nobody may command: remove the names, or set it true";
+            report(key, message.to_owned());
         }
     }
 }

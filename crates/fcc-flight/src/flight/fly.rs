@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use fcc_core::flight::Autopilot;
-use fcc_core::framework::{ControlAuthority, PlantId, State};
-use fcc_runtime::{Ending, Link, Loop, LoopReport, Machine, Parts, SpawnError};
+use fcc_core::framework::{ControlAuthority, PlantId, Released, State};
+use fcc_runtime::{Ending, Link, Loop, LoopReport, Machine, Parts, SpawnError, WatchdogConfig};
 use fcc_timer::{ManualTimer, RealtimeGranted, Timer, TimerError};
 
 use super::assemble::Assembly;
@@ -172,25 +172,22 @@ impl RealTime<'_> {
         observers: &mut Observers,
         host: &mut dyn Host,
     ) -> Result<LoopReport, FlyError> {
-        let watchdog = HangWatch::start(
-            self.watchdog
-                .enabled
-                .then(|| self.watchdog.hang_after(self.period)),
-            self.loop_priority,
-            &self.link,
-            self.authority.cloned(),
-            host.last_resort(),
-        )
-        .map_err(FlyError::Watchdog)?;
+        let (mut watchdog, watchdog_granted) = if self.watchdog.enabled {
+            let config = WatchdogConfig {
+                hang_after: self.watchdog.hang_after(self.period),
+                loop_priority: self.loop_priority,
+            };
+            HangWatch::start(config, &self.link, self.authority.cloned(), host)
+                .map(|(watchdog, granted)| (Some(watchdog), Some(granted)))
+                .map_err(FlyError::Watchdog)?
+        } else {
+            (None, None)
+        };
         let mut run_statistics = RunStatistics::<Pilot>::new(self.period)?;
         let handle = self.flight_loop.spawn()?;
         let granted = handle.granted().clone();
         // Reported at once, not only at the end of a flight that may take days.
-        report_denied(
-            &granted,
-            watchdog.as_ref().map(|(_, granted)| granted),
-            observers,
-        );
+        report_denied(&granted, watchdog_granted.as_ref(), observers);
         observers.begin(&Facts {
             granted: Some(&granted),
             ..facts
@@ -204,10 +201,7 @@ impl RealTime<'_> {
             length: self.length,
             ground: self.ground,
         }
-        .follow(
-            self.authority,
-            watchdog.as_ref().map(|(watchdog, _)| watchdog),
-        );
+        .follow(self.authority, watchdog.as_mut());
         observers.stopping();
         Ok(match hung {
             None => handle.join(),
@@ -282,14 +276,16 @@ fn await_release(
     let confirmed = held.is_none_or(|(authority, plant)| {
         let released = authority
             .release(&plant, GIVE_BACK_WITHIN, &mut || false)
-            .is_ok_and(fcc_core::framework::Released::is_over);
-        if !released {
-            observers.remark(format!(
+            .unwrap_or(Released::Unconfirmed);
+        observers.remark(match released {
+            Released::Confirmed => format!("{plant} confirmed the release of its controls"),
+            Released::Unreachable => format!("{plant} has ended, and nothing holds its controls"),
+            Released::Unconfirmed | Released::Cancelled => format!(
                 "{plant} did not confirm the release of its controls{}",
                 host.continues_release()
-            ));
-        }
-        released
+            ),
+        });
+        released.is_over()
     });
     host.end(confirmed);
     LoopReport {

@@ -53,7 +53,7 @@ impl Follower<'_> {
     pub(super) fn follow(
         &mut self,
         authority: Option<&Arc<dyn ControlAuthority>>,
-        watchdog: Option<&HangWatch>,
+        mut watchdog: Option<&mut HangWatch>,
     ) -> Option<Hung> {
         let mut hung = None;
         #[cfg(feature = "fault-injection")]
@@ -69,7 +69,11 @@ impl Follower<'_> {
             if let Some(authority) = authority {
                 authority.report(&mut |words| self.observers.remark(words.to_string()));
             }
-            hung = watchdog.and_then(HangWatch::hung);
+            hung = watchdog.as_mut().and_then(|watchdog| {
+                watchdog.look(self.link, self.host, &mut |words| {
+                    self.observers.remark(words);
+                })
+            });
             thread::sleep(FETCH_EVERY);
         }
         self.drain();

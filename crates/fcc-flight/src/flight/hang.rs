@@ -7,16 +7,23 @@
 //! main thread, for a limited time: if that one hangs too, on a terminal or a
 //! disk, the program ends without it.
 
-use std::io;
+//!
+//! The watchdog's thread may fail, too. If it ends before the loop does, another
+//! is started; if its release of the controls panics, it counts as not
+//! confirmed; if that never returns, a further thread ends the program.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
-use std::sync::mpsc::{self, Receiver};
-use std::thread;
+use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::time::Duration;
+use std::{io, thread};
 
 use fcc_core::framework::ControlAuthority;
-use fcc_runtime::{Hang, Link, WatchdogConfig, watch};
+use fcc_runtime::{Hang, HeartbeatReading, Link, WatchdogConfig, watch};
 use fcc_timer::RealtimeGranted;
 
+use super::again::StartsLeft;
+use super::host::Host;
 use super::pilot::Pilot;
 
 /// How long the watchdog waits for the plant to confirm the release of its
@@ -24,6 +31,10 @@ use super::pilot::Pilot;
 const GIVE_BACK_WITHIN: Duration = Duration::from_secs(1);
 /// How long the main thread may take to end orderly.
 const GRACE: Duration = Duration::from_secs(3);
+/// After this the program ends although the release does not return.
+const AT_LAST: Duration = Duration::from_secs(5);
+/// The stack of the thread that ends the program then.
+const STACK_BYTES: usize = 128 << 10;
 
 /// A hang of the loop, and the result of the release.
 #[derive(Clone, Copy, Debug)]
@@ -36,52 +47,121 @@ pub(super) struct Hung {
 
 /// Receives a hang of the loop from the watchdog.
 pub(super) struct HangWatch {
+    config: WatchdogConfig,
+    authority: Option<Arc<dyn ControlAuthority>>,
     receiver: Receiver<Hung>,
+    starts: StartsLeft,
+    is_over: bool,
 }
 
 impl HangWatch {
-    /// Starts the watchdog, if `hang_after` is given. Also returns what the
-    /// kernel granted it. `last_resort` ends the program if the main thread
-    /// does not.
+    /// Starts the watchdog. Also returns what the kernel granted it. The host's
+    /// last resort ends the program if the main thread does not.
     ///
     /// # Errors
     /// When no thread can be created.
     pub(super) fn start(
-        hang_after: Option<Duration>,
-        loop_priority: Option<u8>,
+        config: WatchdogConfig,
         link: &Link<Pilot>,
         authority: Option<Arc<dyn ControlAuthority>>,
-        last_resort: Box<dyn FnOnce(bool) + Send>,
-    ) -> io::Result<Option<(Self, RealtimeGranted)>> {
-        let Some(hang_after) = hang_after else {
-            return Ok(None);
+        host: &dyn Host,
+    ) -> io::Result<(Self, RealtimeGranted)> {
+        let (receiver, granted) = start(&config, link, authority.clone(), host)?;
+        let this = Self {
+            config,
+            authority,
+            receiver,
+            starts: StartsLeft::new(),
+            is_over: false,
         };
-        let config = WatchdogConfig {
-            hang_after,
-            loop_priority,
-        };
-        let stop = link.stop.clone();
-        let (sender, receiver) = mpsc::channel();
-        let granted = watch(link.heartbeat.clone(), &config, move |Hang { silent }| {
-            // If it wakes up once more, it releases by itself.
-            stop.stop();
-            let released = authority.is_none_or(|authority| release_controls(authority.as_ref()));
-            // If the receiver no longer exists, the program is about to end.
-            let _ = sender.send(Hung { silent, released });
-            thread::sleep(GRACE);
-            last_resort(released);
-        })?;
-        Ok(Some((Self { receiver }, granted)))
+        Ok((this, granted))
     }
 
-    /// The hang, after the release of the controls.
-    pub(super) fn hung(&self) -> Option<Hung> {
-        self.receiver.try_recv().ok()
+    /// The hang, after the release of the controls. Starts the watchdog again if
+    /// it has ended before the loop.
+    pub(super) fn look(
+        &mut self,
+        link: &Link<Pilot>,
+        host: &dyn Host,
+        report: &mut dyn FnMut(String),
+    ) -> Option<Hung> {
+        match self.receiver.try_recv() {
+            Ok(hung) => return Some(hung),
+            Err(TryRecvError::Empty) => {}
+            Err(TryRecvError::Disconnected) => self.replace(link, host, report),
+        }
+        None
     }
+
+    fn replace(&mut self, link: &Link<Pilot>, host: &dyn Host, report: &mut dyn FnMut(String)) {
+        // It ends with the loop.
+        if self.is_over || link.heartbeat.read() == HeartbeatReading::Ended {
+            return;
+        }
+        match self.starts.take() {
+            Some(false) => {}
+            Some(true) => match start(&self.config, link, self.authority.clone(), host) {
+                Ok((receiver, _)) => {
+                    self.receiver = receiver;
+                    report("the watchdog had ended, and was started again".to_owned());
+                }
+                Err(error) => {
+                    report(format!(
+                        "the watchdog has ended, and cannot be started: {error}"
+                    ));
+                }
+            },
+            None => {
+                self.is_over = true;
+                report(
+                    "the watchdog has ended again, and is not started any more: a loop that \
+                     hangs is not noticed"
+                        .to_owned(),
+                );
+            }
+        }
+    }
+}
+
+fn start(
+    config: &WatchdogConfig,
+    link: &Link<Pilot>,
+    authority: Option<Arc<dyn ControlAuthority>>,
+    host: &dyn Host,
+) -> io::Result<(Receiver<Hung>, RealtimeGranted)> {
+    let stop = link.stop.clone();
+    let (last_resort, at_last) = (host.last_resort(), host.last_resort());
+    let (sender, receiver) = mpsc::channel();
+    #[cfg(feature = "fault-injection")]
+    let fails = super::injection::watchdog_fails();
+    let granted = watch(link.heartbeat.clone(), config, move |Hang { silent }| {
+        #[cfg(feature = "fault-injection")]
+        assert!(!fails, "injected panic of the watchdog");
+        // If it wakes up once more, it releases by itself.
+        stop.stop();
+        // Without that thread the release has to return.
+        let _ = thread::Builder::new()
+            .name("fcc-end".to_owned())
+            .stack_size(STACK_BYTES)
+            .spawn(move || {
+                thread::sleep(AT_LAST);
+                at_last(false);
+            });
+        // A panic's message may wait for a full pipe; that thread does not.
+        let release = || authority.is_none_or(|authority| release_controls(authority.as_ref()));
+        let released = catch_unwind(AssertUnwindSafe(release)).unwrap_or(false);
+        // If the receiver no longer exists, the program is about to end.
+        let _ = sender.send(Hung { silent, released });
+        thread::sleep(GRACE);
+        last_resort(released);
+    })?;
+    Ok((receiver, granted))
 }
 
 /// Releases the controls; whether they are free now.
 fn release_controls(authority: &dyn ControlAuthority) -> bool {
+    #[cfg(feature = "fault-injection")]
+    super::injection::fail_release();
     authority.held().is_none_or(|plant| {
         authority
             .release(&plant, GIVE_BACK_WITHIN, &mut || false)

@@ -4,6 +4,7 @@
 //! module reads its messages, passes them to each [`Observer`], and collects
 //! the [`Outcome`]. What only the host program can do is done by its [`Host`].
 
+mod again;
 mod assemble;
 #[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
@@ -23,6 +24,8 @@ mod live;
 mod monitor;
 mod observer;
 mod observers;
+#[cfg(feature = "live")]
+mod other_users;
 mod outcome;
 mod pilot;
 mod plan;
@@ -41,6 +44,8 @@ pub use ground::Impact;
 pub use host::Host;
 pub use limits::{altitudes_m, heights_m};
 pub use observer::{Access, Facts, FlightTime, Observer, Report, Reports};
+#[cfg(feature = "live")]
+pub use other_users::{OtherUserError, command_another_users, command_of};
 pub use outcome::{Conclusion, EventEntry, Outcome, RecordingOutcome};
 pub use pilot::Pilot;
 pub use plan::{Length, Pace, Plan};

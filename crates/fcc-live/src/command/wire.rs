@@ -1,9 +1,5 @@
 //! Commands and answers in shared memory.
 
-#![expect(unsafe_code, reason = "iceoryx2 asks for a promise about layouts")]
-
-use iceoryx2::prelude::ZeroCopySend;
-
 use super::super::Text;
 use super::{COMMANDS_VERSION, Command, InvalidCommand, OutsideLimits, Verdict};
 
@@ -15,51 +11,37 @@ const NAME_BYTES: usize = 32;
 /// A command in shared memory.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub(super) struct CommandRequest {
+pub(crate) struct CommandRequest {
     /// [`COMMANDS_VERSION`].
-    pub(super) version: u32,
+    pub(crate) version: u32,
     /// 0 engage, 1 disengage, 2 stop, 3 set.
-    pub(super) code: u32,
+    pub(crate) code: u32,
     /// The names of set points; empty after the last.
-    pub(super) names: [Text<NAME_BYTES>; MOST_SETPOINTS],
+    pub(crate) names: [Text<NAME_BYTES>; MOST_SETPOINTS],
     /// Their values, in the units at the ends of their names.
-    pub(super) values: [f64; MOST_SETPOINTS],
+    pub(crate) values: [f64; MOST_SETPOINTS],
 }
 
 /// An answer in shared memory.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub(super) struct Answer {
+pub(crate) struct Answer {
     /// 0 carried out, 1 refused, 2 refused because of a set point's limits.
-    pub(super) code: u32,
+    pub(crate) code: u32,
     /// [`COMMANDS_VERSION`].
-    pub(super) version: u32,
+    pub(crate) version: u32,
     /// The tick that read the command; 0 if none did.
-    pub(super) tick: u64,
+    pub(crate) tick: u64,
     /// The value that is out of its limits; with code 2 only.
-    pub(super) value: f64,
+    pub(crate) value: f64,
     /// The smallest permitted value.
-    pub(super) least: f64,
+    pub(crate) least: f64,
     /// The largest permitted value.
-    pub(super) most: f64,
+    pub(crate) most: f64,
     /// The name of the set point.
-    pub(super) name: Text<NAME_BYTES>,
+    pub(crate) name: Text<NAME_BYTES>,
     /// The reason for refusing it.
-    pub(super) text: Text<224>,
-}
-
-// SAFETY: repr(C), numbers and bytes only.
-unsafe impl ZeroCopySend for CommandRequest {
-    unsafe fn type_name() -> &'static str {
-        "fcc.v2.Command"
-    }
-}
-
-// SAFETY: repr(C), numbers and bytes only.
-unsafe impl ZeroCopySend for Answer {
-    unsafe fn type_name() -> &'static str {
-        "fcc.v2.CommandAnswer"
-    }
+    pub(crate) text: Text<224>,
 }
 
 const ENGAGE: u32 = 0;

@@ -186,8 +186,8 @@ mod tests {
         }
     }
 
-    /// The row that a program without the types makes of a message is the struct's
-    /// own memory.
+    /// A program without the types makes the same row of a message as the loop of
+    /// the struct.
     #[test]
     fn a_message_is_read_by_its_description() {
         let text = RecordDescription::of::<TestRecord>().to_json();
@@ -211,6 +211,24 @@ mod tests {
             .unwrap()];
         assert_eq!((taken.layout(), &*taken.unit), (Some(('i', 8)), "ns"));
         assert_eq!(taken.numbers, [3, 2]);
+    }
+
+    /// Another process reads each byte of a row.
+    #[test]
+    fn what_is_no_value_is_zero_in_a_row() {
+        let description = RecordDescription::of::<TestRecord>();
+        let mut row = vec![0; description.row_bytes / 8];
+        let mut all_ones = record();
+        all_ones.tick.number = u64::MAX;
+        all_ones.measurements.source = u8::MAX;
+        write_words(&all_ones, &mut row);
+        let mut bytes: Vec<u8> = row.iter().flat_map(|word| word.to_ne_bytes()).collect();
+        assert!(bytes.iter().any(|byte| *byte != 0));
+        for column in &description.columns {
+            let (_, size) = column.layout().unwrap();
+            bytes[column.offset..column.offset + size].fill(0);
+        }
+        assert!(bytes.iter().all(|byte| *byte == 0), "{bytes:?}");
     }
 
     #[test]

@@ -1,11 +1,12 @@
 //! Writes the state file in a thread that may wait for the disk.
 
-use std::path::PathBuf;
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, TryRecvError};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use std::{io, thread};
 
+use super::super::again::StartsLeft;
 use super::saved::Saved;
 use super::state_file;
 
@@ -15,8 +16,11 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// Writes the state file. Of several requests while the disk is busy, only the
 /// last is executed.
 pub(super) struct Keeper {
+    path: PathBuf,
     desk: Arc<Requests>,
     trouble: Receiver<String>,
+    starts: StartsLeft,
+    is_over: bool,
 }
 
 #[derive(Default)]
@@ -28,12 +32,26 @@ struct Requests {
 #[derive(Default)]
 struct Slot {
     requested: Option<DiskRequest>,
+    /// Being executed.
+    in_hand: Option<DiskRequest>,
     is_over: bool,
 }
 
+#[derive(Clone)]
 enum DiskRequest {
-    Keep(Box<Saved>),
+    Keep(Arc<Saved>),
     Clear,
+}
+
+impl DiskRequest {
+    fn execute(&self, path: &Path) -> io::Result<()> {
+        #[cfg(feature = "fault-injection")]
+        super::super::injection::fail_state_file();
+        match self {
+            Self::Keep(saved) => state_file::write(path, saved),
+            Self::Clear => state_file::remove(path),
+        }
+    }
 }
 
 impl Keeper {
@@ -43,37 +61,19 @@ impl Keeper {
     /// When no thread can be created.
     pub(super) fn start(path: PathBuf) -> io::Result<Self> {
         let desk = Arc::<Requests>::default();
-        let theirs = Arc::clone(&desk);
-        // A lasting problem is reported once; the channel has no room for more.
-        let (say, trouble) = mpsc::sync_channel(1);
-        thread::Builder::new()
-            .name("fcc-state".to_owned())
-            .spawn(move || {
-                let mut failing = false;
-                while let Some(requested) = theirs.next() {
-                    let done = match requested {
-                        DiskRequest::Keep(saved) => state_file::write(&path, &saved),
-                        DiskRequest::Clear => state_file::remove(&path),
-                    };
-                    if let Err(error) = &done
-                        && !failing
-                    {
-                        let words = format!(
-                            "{}: cannot be written, so a restart would not know of this flight: \
-                             {error}",
-                            path.display()
-                        );
-                        let _ = say.try_send(words);
-                    }
-                    failing = done.is_err();
-                }
-            })?;
-        Ok(Self { desk, trouble })
+        let trouble = start_thread(path.clone(), Arc::clone(&desk))?;
+        Ok(Self {
+            path,
+            desk,
+            trouble,
+            starts: StartsLeft::new(),
+            is_over: false,
+        })
     }
 
     /// Stores this state, replacing the previous one.
     pub(super) fn keep(&self, saved: Saved) {
-        self.desk.request(DiskRequest::Keep(Box::new(saved)));
+        self.desk.request(DiskRequest::Keep(Arc::new(saved)));
     }
 
     /// Removes the stored state.
@@ -81,9 +81,38 @@ impl Keeper {
         self.desk.request(DiskRequest::Clear);
     }
 
-    /// A description of a new problem; none if there is none.
-    pub(super) fn trouble(&self) -> Option<String> {
-        self.trouble.try_recv().ok()
+    /// A description of a new problem; none if there is none. Starts the thread
+    /// again if it has ended.
+    pub(super) fn trouble(&mut self) -> Option<String> {
+        match self.trouble.try_recv() {
+            Ok(words) => Some(words),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => self.replace(),
+        }
+    }
+
+    fn replace(&mut self) -> Option<String> {
+        if self.is_over {
+            return None;
+        }
+        let words = match self.starts.take() {
+            Some(false) => return None,
+            Some(true) => {
+                self.desk.request_again();
+                match start_thread(self.path.clone(), Arc::clone(&self.desk)) {
+                    Ok(trouble) => {
+                        self.trouble = trouble;
+                        "its thread had ended, and was started again".to_owned()
+                    }
+                    Err(error) => format!("its thread has ended, and cannot be started: {error}"),
+                }
+            }
+            None => {
+                self.is_over = true;
+                "its thread has ended again, so a restart would not know of this flight".to_owned()
+            }
+        };
+        Some(format!("{}: {words}", self.path.display()))
     }
 
     /// Waits, for a limited time, until everything is on the disk.
@@ -98,6 +127,32 @@ impl Keeper {
     }
 }
 
+fn start_thread(path: PathBuf, desk: Arc<Requests>) -> io::Result<Receiver<String>> {
+    // A lasting problem is reported once; the channel has no room for more.
+    let (say, trouble) = mpsc::sync_channel(1);
+    thread::Builder::new()
+        .name("fcc-state".to_owned())
+        .spawn(move || {
+            let mut failing = false;
+            while let Some(requested) = desk.next() {
+                let done = requested.execute(&path);
+                desk.done();
+                if let Err(error) = &done
+                    && !failing
+                {
+                    let words = format!(
+                        "{}: cannot be written, so a restart would not know of this flight: \
+                         {error}",
+                        path.display()
+                    );
+                    let _ = say.try_send(words);
+                }
+                failing = done.is_err();
+            }
+        })?;
+    Ok(trouble)
+}
+
 impl Requests {
     fn slot(&self) -> MutexGuard<'_, Slot> {
         self.slot.lock().unwrap_or_else(PoisonError::into_inner)
@@ -108,11 +163,25 @@ impl Requests {
         self.filled.notify_one();
     }
 
+    /// Requests again what a thread that has ended did not finish, unless there is
+    /// a later request.
+    fn request_again(&self) {
+        let mut slot = self.slot();
+        let unfinished = slot.in_hand.take();
+        slot.requested = slot.requested.take().or(unfinished);
+    }
+
+    /// The request has been executed.
+    fn done(&self) {
+        self.slot().in_hand = None;
+    }
+
     /// Waits for the next request; none at the end.
     fn next(&self) -> Option<DiskRequest> {
         let mut slot = self.slot();
         loop {
             if let Some(requested) = slot.requested.take() {
+                slot.in_hand = Some(requested.clone());
                 return Some(requested);
             }
             if slot.is_over {

@@ -1,0 +1,93 @@
+//! Sends a command to a daemon of another user.
+
+use std::fs;
+use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
+use std::os::unix::fs::MetadataExt as _;
+use std::os::unix::net::UnixStream;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use fcc_live::Command;
+use fcc_telemetry::Instance;
+use nix::sys::socket::{getsockopt, sockopt::PeerCredentials};
+use nix::unistd::User;
+
+use super::wire::{MOST_BYTES, answer_of, line_of};
+use super::{FOLDER, folder_of};
+
+/// A stop takes up to 12 s: the plant is prepared for its release first.
+const PATIENCE: Duration = Duration::from_secs(15);
+
+/// Why a command to another user's daemon was not carried out.
+#[derive(thiserror::Error, Debug)]
+#[non_exhaustive]
+pub enum OtherUserError {
+    /// There is no such user.
+    #[error("there is no user {0}")]
+    NoUser(String),
+    /// None of that name accepts commands of others.
+    #[error(
+        "no fccd '{0}' accepts commands of other users at {1}: it does not run, or its \
+         configuration names nobody in rights.commanders"
+    )]
+    NotThere(Instance, PathBuf),
+    /// The program at the socket is not that user's.
+    #[error("{0} does not belong to the user of the daemon behind it: not trusted")]
+    Foreign(PathBuf),
+    /// The daemon refused it.
+    #[error("refused: {0}")]
+    Refused(String),
+    /// The connection failed.
+    #[error("the connection to fccd failed, so it is not known whether it was carried out: {0}")]
+    Io(#[from] io::Error),
+}
+
+/// Sends a command to the daemon of this name: that of `user`, or of the
+/// service. Returns the tick that carried it out.
+///
+/// # Errors
+/// When there is no such daemon, it refuses the command or does not answer
+/// within 15 s.
+pub fn command_another_users(
+    instance: &Instance,
+    user: Option<&str>,
+    command: &Command,
+) -> Result<u64, OtherUserError> {
+    let folder = match user {
+        None => Path::new("/run").join(FOLDER),
+        Some(name) => {
+            let found = User::from_name(name).ok().flatten();
+            let found = found.ok_or_else(|| OtherUserError::NoUser(name.to_owned()))?;
+            let of_user = folder_of(found.uid.as_raw());
+            // Others could have placed a folder of this name.
+            if !is_of(&of_user, found.uid.as_raw()) {
+                return Err(OtherUserError::NotThere(instance.clone(), of_user));
+            }
+            of_user
+        }
+    };
+    let path = folder.join(instance.to_string());
+    let mut stream = UnixStream::connect(&path)
+        .map_err(|_| OtherUserError::NotThere(instance.clone(), path.clone()))?;
+    let peer = getsockopt(&stream, PeerCredentials).map_err(io::Error::from)?;
+    if !is_of(&folder, peer.uid()) {
+        return Err(OtherUserError::Foreign(path));
+    }
+    stream.set_read_timeout(Some(PATIENCE))?;
+    stream.set_write_timeout(Some(PATIENCE))?;
+    let sent = stream.write_all((line_of(command) + "\n").as_bytes());
+    let mut line = String::new();
+    // A refusal may come before the command was read.
+    let read = BufReader::new(stream.take(MOST_BYTES as u64)).read_line(&mut line);
+    if let Some(answer) = answer_of(&line) {
+        return answer.map_err(OtherUserError::Refused);
+    }
+    sent?;
+    read?;
+    Err(OtherUserError::Io(io::ErrorKind::UnexpectedEof.into()))
+}
+
+/// Whether a folder, and no link, belongs to a user.
+fn is_of(folder: &Path, user: u32) -> bool {
+    fs::symlink_metadata(folder).is_ok_and(|found| found.is_dir() && found.uid() == user)
+}

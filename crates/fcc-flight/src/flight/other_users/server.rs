@@ -1,0 +1,235 @@
+//! The socket at which the daemon receives commands of other users.
+
+use std::fs::{self, DirBuilder, Permissions};
+use std::io::{self, ErrorKind, Read as _, Write as _};
+use std::os::unix::fs::{DirBuilderExt as _, MetadataExt as _, PermissionsExt as _};
+use std::os::unix::net::{UnixListener, UnixStream};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use fcc_core::framework::{EventOf, RecordOf};
+use fcc_live::{Commandable, PendingCommand, PlantLimits, SentCommands, Verdict};
+use nix::sys::socket::{getsockopt, sockopt::PeerCredentials};
+use nix::unistd::geteuid;
+
+use super::own_folder;
+use super::panel::Panel;
+use super::wire::{MOST_BYTES, command_of, line_of_answer};
+use crate::config::Config;
+use crate::flight::observer::{Access, FlightTime, Observer, Reports};
+use crate::flight::outcome::Outcome;
+
+/// Others may enter the folder, and see nothing in it.
+const FOLDER_MODE: u32 = 0o711;
+/// Everyone may connect; who is refused gets to know why.
+const SOCKET_MODE: u32 = 0o666;
+/// Programs that may wait for an answer.
+const MOST_PEERS: usize = 16;
+/// New connections in a fiftieth of a second.
+const MOST_NEW: usize = 16;
+/// After this a connection is closed: longer than any command takes.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// Receives commands of other users, and answers them; never waits.
+pub(in crate::flight) struct CommandSocket<C: Commandable> {
+    config: Config,
+    panel: Panel,
+    path: Option<PathBuf>,
+    listener: Option<UnixListener>,
+    peers: Vec<Peer>,
+    next_id: u64,
+    commands: SentCommands<C>,
+}
+
+struct Peer {
+    id: u64,
+    stream: UnixStream,
+    since: Instant,
+    received: Vec<u8>,
+    /// Its command was sent to the loop.
+    is_sent: bool,
+}
+
+impl<C: Commandable> CommandSocket<C> {
+    pub(in crate::flight) fn new(config: &Config, limits: PlantLimits) -> Self {
+        Self {
+            config: config.clone(),
+            panel: Panel::default(),
+            path: None,
+            listener: None,
+            peers: Vec::new(),
+            next_id: 0,
+            commands: SentCommands::new(limits),
+        }
+    }
+
+    fn open(&mut self) -> io::Result<()> {
+        let folder = own_folder(geteuid().as_raw());
+        prepare(&folder)?;
+        let path = folder.join(self.config.telemetry.instance.to_string());
+        match UnixStream::connect(&path) {
+            Ok(_) => return Err(io::Error::other("another fccd has this name")),
+            // Left by a daemon that was killed, in a folder of this user alone.
+            Err(_) => match fs::remove_file(&path) {
+                Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
+                _ => {}
+            },
+        }
+        let listener = UnixListener::bind(&path)?;
+        self.path = Some(path.clone());
+        fs::set_permissions(&path, Permissions::from_mode(SOCKET_MODE))?;
+        listener.set_nonblocking(true)?;
+        self.listener = Some(listener);
+        Ok(())
+    }
+
+    fn accept(&mut self) {
+        let Some(listener) = &self.listener else {
+            return;
+        };
+        for _ in 0..MOST_NEW {
+            let Ok((stream, _)) = listener.accept() else {
+                return;
+            };
+            let refusal = match getsockopt(&stream, PeerCredentials) {
+                Ok(peer) if !self.panel.permits(peer.uid(), peer.gid()) => Some(format!(
+                    "user {} may not command this fccd: add the name to rights.commanders in its \
+                     configuration",
+                    peer.uid()
+                )),
+                Ok(_) if self.peers.len() >= MOST_PEERS => {
+                    Some("too many programs wait for an answer: send it again".to_owned())
+                }
+                Ok(_) => None,
+                Err(error) => Some(format!("it is not known who sent it: {error}")),
+            };
+            // A new connection has room for a line.
+            if stream.set_nonblocking(true).is_err() {
+                continue;
+            }
+            self.next_id += 1;
+            let peer = Peer {
+                id: self.next_id,
+                stream,
+                since: Instant::now(),
+                received: Vec::new(),
+                is_sent: false,
+            };
+            match refusal {
+                Some(why) => peer.answer(&Verdict::Refused(why)),
+                None => self.peers.push(peer),
+            }
+        }
+    }
+
+    fn answer(&mut self, id: u64, verdict: &Verdict) {
+        if let Some(at) = self.peers.iter().position(|peer| peer.id == id) {
+            self.peers.swap_remove(at).answer(verdict);
+        }
+    }
+}
+
+/// Creates the folder if it is missing, and lets others enter it.
+fn prepare(folder: &Path) -> io::Result<()> {
+    match DirBuilder::new().mode(0o700).create(folder) {
+        Err(error) if error.kind() != ErrorKind::AlreadyExists => return Err(error),
+        _ => {}
+    }
+    let found = fs::symlink_metadata(folder)?;
+    if !found.is_dir() || found.uid() != geteuid().as_raw() {
+        let folder = folder.display();
+        let why = format!("{folder} is not a folder of this user: remove it");
+        return Err(io::Error::other(why));
+    }
+    fs::set_permissions(folder, Permissions::from_mode(FOLDER_MODE))
+}
+
+impl Peer {
+    /// The next line, or why there is none; none yet.
+    fn line(&mut self) -> Option<Result<String, &'static str>> {
+        let mut bytes = [0; MOST_BYTES];
+        match self.stream.read(&mut bytes) {
+            Ok(0) => return Some(Err("it was not sent completely")),
+            Ok(read) => self.received.extend(bytes.iter().take(read)),
+            Err(error) if error.kind() == ErrorKind::WouldBlock => return None,
+            Err(_) => return Some(Err("it could not be read")),
+        }
+        match self.received.iter().position(|byte| *byte == b'\n') {
+            Some(end) => {
+                self.received.truncate(end);
+                let line = String::from_utf8(std::mem::take(&mut self.received));
+                Some(line.map_err(|_| "it is not a text"))
+            }
+            None if self.received.len() > MOST_BYTES => Some(Err("it is too long")),
+            None => None,
+        }
+    }
+
+    /// Answers, without waiting: a program that does not read gets nothing.
+    fn answer(mut self, verdict: &Verdict) {
+        let _ = self.stream.write(line_of_answer(verdict).as_bytes());
+    }
+}
+
+impl<C: Commandable> Observer<C> for CommandSocket<C> {
+    /// Without the socket the flight continues, and this is reported.
+    fn prepare(&mut self, reports: &mut Reports) {
+        self.panel = Panel::of(&self.config.rights, &mut |report| reports.mention(report));
+        if let Err(error) = self.open() {
+            reports.mention(format!(
+                "other users (rights.commanders) cannot command this flight: {error}"
+            ));
+        }
+    }
+
+    fn record(&mut self, record: &RecordOf<C>, _: &FlightTime) {
+        let (tick, state) = (record.tick.number, record.state.state());
+        while let Some((id, verdict)) = self.commands.verdict(tick, state) {
+            self.answer(id, &verdict);
+        }
+    }
+
+    fn event(&mut self, event: &EventOf<C>, _: &str, _: &FlightTime) {
+        self.commands.event(event);
+    }
+
+    fn poll(&mut self, access: &mut Access<'_, C::Command>) {
+        self.accept();
+        let mut answers = Vec::new();
+        for peer in self.peers.iter_mut().filter(|peer| !peer.is_sent) {
+            let asked = match peer.line() {
+                Some(line) => line.and_then(|line| command_of(&line)),
+                None if peer.since.elapsed() > PATIENCE => Err("it did not come in time"),
+                None => continue,
+            };
+            peer.is_sent = true;
+            let verdict = match asked {
+                Err(why) => Some((peer.id, Verdict::Refused(why.to_owned()))),
+                Ok(command) => self.commands.send(
+                    PendingCommand {
+                        id: peer.id,
+                        command,
+                    },
+                    |command| {
+                        let sent = access.commands.send(command);
+                        sent.map_err(|error| error.to_string())
+                    },
+                ),
+            };
+            answers.extend(verdict);
+        }
+        for (id, verdict) in answers {
+            self.answer(id, &verdict);
+        }
+        self.peers.retain(|peer| peer.since.elapsed() <= PATIENCE);
+    }
+
+    fn end(&mut self, _: &str, _: &mut Outcome, _: &mut Reports) {
+        for peer in self.peers.drain(..) {
+            peer.answer(&Verdict::Refused("the flight has ended".to_owned()));
+        }
+        if let Some(path) = self.path.take() {
+            let _ = fs::remove_file(path);
+        }
+    }
+}

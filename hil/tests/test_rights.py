@@ -1,0 +1,254 @@
+"""With whose rights a flight runs, and what the service's unit denies."""
+
+from __future__ import annotations
+
+import ctypes.util
+import json
+import os
+import re
+import signal
+import stat
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from daemon_under_test import DaemonUnderTest, assert_released, engage, write_config
+from test_service_unit import allowed_calls
+
+from fcc_hil.process import StandInProcess
+from fcc_hil.standin import Settings
+
+SUCCESS = 0
+USAGE = 2
+NOBODY = 65534
+
+needs_root = pytest.mark.skipif(os.geteuid() != 0, reason="only root can give up its rights")
+
+
+@pytest.fixture
+def scratch() -> Iterator[Path]:
+    """Give a folder that other users can enter; those of pytest are closed to them."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        folder.chmod(0o755)
+        yield folder
+
+
+def status(pid: int, key: str) -> list[str]:
+    """Return the words of a line of proc(5)'s status."""
+    found = re.search(rf"^{key}:\s*(.*)$", Path(f"/proc/{pid}/status").read_text(), re.MULTILINE)
+    assert found is not None
+    return found[1].split()
+
+
+@needs_root
+def test_started_as_root_it_flies_as_the_user(fccd: Path, scratch: Path) -> None:
+    # Not in every container.
+    raises = ["prlimit", "--rtprio=99", "--memlock=unlimited", "true"]
+    may_raise_limits = subprocess.run(raises, capture_output=True, check=False).returncode == 0
+    with StandInProcess(Settings(port=0)) as simulator:
+        strict = str(may_raise_limits).lower()
+        rights = f'[rights]\nuser = "nobody"\n[realtime]\nstrict = {strict}\n'
+        config = write_config(scratch, simulator.port, others=rights)
+        words: list[str | Path] = [fccd, "run", "--config", config, "--json"]
+        with DaemonUnderTest(words, scratch) as daemon:
+            daemon.wait_for("was started as root, continues as user nobody (rights.user)")
+            engage(simulator, daemon)
+            for pid in (daemon.pid, *daemon.children()):
+                assert status(pid, "Uid") == [str(NOBODY)] * 4
+                assert status(pid, "Gid") == [str(NOBODY)] * 4
+                for capabilities in ("CapInh", "CapPrm", "CapEff", "CapAmb"):
+                    assert int(status(pid, capabilities)[0], 16) == 0
+            if may_raise_limits:
+                policies = {os.sched_getscheduler(int(task)) for task in tasks(daemon.pid)}
+                assert os.SCHED_FIFO in policies
+            ending = daemon.end(signal.SIGTERM)
+        assert_released(simulator)
+    assert ending.exit_code == SUCCESS, ending.log
+    (recording,) = (scratch / "recordings").glob("*.mcap")
+    assert recording.stat().st_uid == NOBODY
+
+
+def tasks(pid: int) -> list[str]:
+    """Return the numbers of a process's threads."""
+    return [task.name for task in Path(f"/proc/{pid}/task").iterdir()]
+
+
+@needs_root
+def test_a_user_who_does_not_exist_is_refused(fccd: Path, scratch: Path) -> None:
+    config = write_config(scratch, 49_000, others='[rights]\nuser = "no-such-user"\n')
+    ended = subprocess.run(
+        [fccd, "run", "--config", config], capture_output=True, text=True, check=False
+    )
+    assert ended.returncode == USAGE
+    assert 'rights.user is "no-such-user": there is no such user' in ended.stderr
+
+
+# Applies a filter as systemd does, by libseccomp: EPERM for every call that is not named. Then
+# it runs a program, or tries what the arguments name.
+FILTER = """
+import ctypes, errno, json, os, sys
+calls = json.load(open(sys.argv[1]))
+lib = ctypes.CDLL(sys.argv[2])
+libc = ctypes.CDLL(None, use_errno=True)
+lib.seccomp_init.restype = ctypes.c_void_p
+context = ctypes.c_void_p(lib.seccomp_init(0x00050000 | errno.EPERM))
+numbers = {}
+for name in calls["allowed"]:
+    number = lib.seccomp_syscall_resolve_name(name.encode())
+    if number >= 0:
+        assert lib.seccomp_rule_add(context, 0x7FFF0000, ctypes.c_int(number), 0) == 0, name
+for name in calls["tried"]:
+    numbers[name] = lib.seccomp_syscall_resolve_name(name.encode())
+tried = {}
+def attempt():
+    # With arguments that change nothing where a call is permitted.
+    for name, number in numbers.items():
+        ctypes.set_errno(0)
+        result = libc.syscall(ctypes.c_long(number), *[ctypes.c_long(-1)] * 5)
+        tried.setdefault(name, []).append(errno.errorcode.get(ctypes.get_errno(), str(result)))
+attempt()
+assert lib.seccomp_load(context) == 0
+attempt()
+if sys.argv[3:]:
+    os.execv(sys.argv[3], sys.argv[3:])
+print(json.dumps(tried))
+"""
+
+FORBIDDEN = (
+    "mount",
+    "umount2",
+    "pivot_root",
+    "init_module",
+    "finit_module",
+    "delete_module",
+    "bpf",
+    "perf_event_open",
+    "ptrace",
+    "add_key",
+    "keyctl",
+    "chroot",
+    "swapoff",
+    "clock_settime",
+    "kexec_file_load",
+)
+"""With invalid arguments; reboot(2), setuid(2) and the like would act, and are not tried.
+
+Namespaces are denied by the unit's RestrictNamespaces.
+"""
+
+
+def test_the_units_filter_forbids_what_it_should_and_a_flight_needs_none_of_it(
+    fccd: Path, tmp_path: Path
+) -> None:
+    library = ctypes.util.find_library("seccomp")
+    if library is None:
+        pytest.skip("there is no libseccomp, with which systemd applies the filter")
+    allowed = allowed_calls()
+    assert not {"reboot", "setuid", "setresuid", "setgid", "chown", "fchownat"} & allowed
+    calls = tmp_path / "calls.json"
+    # Python itself needs no more than a flight does.
+    calls.write_text(json.dumps({"allowed": sorted(allowed), "tried": FORBIDDEN}))
+    words: list[str | Path] = [sys.executable, "-I", "-c", FILTER, calls, library]
+    done = subprocess.run(words, capture_output=True, text=True, check=True, cwd="/")
+    for name, (before, after) in json.loads(done.stdout).items():
+        assert after == "EPERM", name
+        if os.geteuid() == 0:
+            assert before != "0", name
+    with StandInProcess(Settings(port=0)) as simulator:
+        config = write_config(tmp_path, simulator.port)
+        flies = [*words, fccd, "run", "--config", config, "--json"]
+        with DaemonUnderTest(flies, tmp_path) as daemon:
+            engage(simulator, daemon)
+            assert status(daemon.pid, "Seccomp") == ["2"]
+            ending = daemon.end(signal.SIGTERM)
+        assert_released(simulator)
+    assert ending.exit_code == SUCCESS, ending.log
+
+
+COMMANDS = """
+import socket, sys
+def connected():
+    s = socket.socket(socket.AF_UNIX)
+    s.settimeout(5)
+    s.connect(sys.argv[1])
+    return s
+def said(text):
+    s = connected()
+    try:
+        s.sendall(text)
+    except BrokenPipeError:
+        pass
+    return s.recv(600).decode().strip()
+silent = [connected() for _ in range(int(sys.argv[2]))]
+for text in sys.argv[3:]:
+    print(said(text.encode().decode("unicode_escape").encode("latin-1")))
+"""
+STRANGER = 54321
+
+
+def commanding(user: int, socket: Path, *texts: str, silent: int = 0) -> list[str]:
+    """Return what the daemon answers to a user's lines, beside silent connections."""
+    words = ["setpriv", f"--reuid={user}", f"--regid={user}", "--clear-groups", sys.executable]
+    done = subprocess.run(
+        [*words, "-I", "-c", COMMANDS, socket, str(silent), *texts],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd="/",
+    )
+    return done.stdout.splitlines() or [done.stderr]
+
+
+@needs_root
+def test_only_those_who_are_named_may_command(fccd: Path, scratch: Path) -> None:
+    instance = f"rights-{os.getpid()}"
+    others = (
+        f'[telemetry]\ninstance = "{instance}"\n[rights]\nuser = "root"\ncommanders = ["nobody"]\n'
+    )
+    socket = Path("/dev/shm/fccd-commands-0") / instance
+    with StandInProcess(Settings(port=0)) as simulator:
+        config = write_config(scratch, simulator.port, others=others)
+        with DaemonUnderTest([fccd, "run", "--config", config, "--json"], scratch) as daemon:
+            engage(simulator, daemon)
+            assert stat.S_IMODE(socket.parent.stat().st_mode) == 0o711
+            (refused,) = commanding(STRANGER, socket, "disengage\\n")
+            assert refused.startswith(f"refused user {STRANGER} may not command this fccd")
+            heading, unknown, bad, outside, long, binary = commanding(
+                NOBODY,
+                socket,
+                "set heading_rad=1.5\\n",
+                "set no_such=1\\n",
+                "dance\\n",
+                "set altitude_m=1e308\\n",
+                "x" * 600,
+                "\\xff\\n",
+                silent=10,
+            )
+            assert heading.startswith("carried-out ")
+            assert "there is no set point 'no_such'" in unknown
+            assert "there is no such command" in bad
+            assert "altitude is" in outside
+            assert (long, binary) == ("refused it is too long", "refused it is not a text")
+            # Silent ones of a user who is not permitted take no place.
+            commanding(STRANGER, socket, silent=40)
+            words: list[str | Path] = [
+                fccd,
+                "command",
+                "disengage",
+                "--instance",
+                instance,
+                "--of",
+                "root",
+            ]
+            user = ["setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}", "--clear-groups"]
+            done = subprocess.run([*user, *words], capture_output=True, text=True, check=False)
+            assert done.returncode == SUCCESS, done.stderr
+            daemon.wait_for("engaged -> standby")
+            assert_released(simulator)
+            ending = daemon.end(signal.SIGTERM)
+    assert ending.exit_code == SUCCESS, ending.log
+    assert not socket.exists()
