@@ -144,6 +144,16 @@ def test_right_sensors_are_never_refused(aircraft: str, turbulence: int, *, move
         assert _watch(fcc.Machine(HOLD), sensed) == []
 
 
+@pytest.mark.parametrize("seed", [1, 11, 26])
+def test_severe_gusts_are_no_contradiction(seed: int) -> None:
+    """Gusts that change the airspeed by 12 m/s in 4 s."""
+    aircraft = fcc.BuiltInAircraft(f'[built-in]\ngusts = "severe"\nseed = {seed}\n')
+    machine = fcc.Machine(HOLD)
+    for _ in range(2 * TICKS):
+        machine.step(aircraft.step(None, machine.period_s), switch=False, readback=READBACK)
+        assert not any(inhibit.startswith(OURS) for inhibit in machine.engage_inhibits)
+
+
 def test_right_sensors_are_engaged_when_navigation_has_settled() -> None:
     """After 1, 2 and 4 s in severe turbulence, as without these comparisons."""
     for seed in range(1, 6):

@@ -52,6 +52,8 @@ const LARGEST_FORCE_MPS2: f64 = 0.5;
 /// The slope of a random walk, as gusts are over seconds, has a standard deviation
 /// of 1.2 times the residual over the spread of time: 3.7 of them.
 const SLOPE_ERRORS: f64 = 4.5;
+/// With a larger error of the slope, m/s², the airspeed shows gusts.
+const LARGEST_ERROR_MPS2: f64 = 0.2;
 /// A residual of few degrees of freedom is uncertain itself (Student's t at 0.1 %:
 /// 8.6 of 4, 4.6 of 10): this over their square is added.
 const FEW_DEGREES: f64 = 20.0;
@@ -301,7 +303,8 @@ impl Forces {
         self.line.weight > FOUR_FORCES && {
             let (slope, error) = self.line.slope();
             let turning = ANGLE_OF_ATTACK_RAD * fabs(pitching) + SIDESLIP_RAD * fabs(yawing);
-            fabs(slope) > hypot(LARGEST_FORCE_MPS2, SLOPE_ERRORS * error) + turning
+            error < LARGEST_ERROR_MPS2
+                && fabs(slope) > hypot(LARGEST_FORCE_MPS2, SLOPE_ERRORS * error) + turning
         }
     }
 }
