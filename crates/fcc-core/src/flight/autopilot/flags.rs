@@ -105,6 +105,8 @@ pub const TRIM_NOT_FOLLOWED: Flags = Flags::bit(45);
 pub const UNTRIMMED: Flags = Flags::bit(46);
 /// The angle of attack contradicts lift and path, and is not used.
 pub const DOUBTED_ANGLE: Flags = Flags::bit(47);
+/// The wing has stalled above the configured stalling speed.
+pub const STALLS_FASTER: Flags = Flags::bit(48);
 /// The body rates are not the derivatives of pitch, roll and heading.
 pub const ATTITUDE_AGAINST_RATES: Flags = Flags::bit(49);
 /// The vertical acceleration is not that of flight.
@@ -196,8 +198,7 @@ pub(super) const NAMES: [&str; 52] = [
     "the elevator trim does not follow",
     "the release cannot trim: hold the elevator",
     "angle of attack contradicts lift and path and is not used",
-    // Not used.
-    "",
+    "the wing stalls above the configured speed: flying faster",
     "body rates contradict attitude or heading: check signs, axes, units and offsets of both",
     "vertical acceleration contradicts gravity: check its sign and unit, and those of pitch and roll",
     "forward acceleration contradicts pitch and airspeed: check signs and units, and the pitch's offset",
