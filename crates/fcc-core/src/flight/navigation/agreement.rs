@@ -27,6 +27,9 @@ const ROUNDING_S: f64 = 1e-6;
 
 /// Beyond these nothing is compared: bank and pitch, rad (60°).
 const STEEP_RAD: f64 = 1.05;
+/// Beyond this turn about the y and z axes no forces are compared: a spin, rad/s
+/// (40 °/s).
+const SPIN_RADPS: f64 = 0.7;
 /// Below this the airspeed sensor does not show an acceleration, m/s.
 const LEAST_AIRSPEED_MPS: f64 = 15.0;
 
@@ -118,7 +121,9 @@ impl Agreement {
         } else {
             self.heading.interrupt();
         }
-        if is_current(&sensed.specific_force, now) && is_current(&sensed.airspeed_mps, now) {
+        let has_forces =
+            is_current(&sensed.specific_force, now) && is_current(&sensed.airspeed_mps, now);
+        if has_forces && hypot(q, r) < SPIN_RADPS {
             let force = sensed.specific_force.value;
             let down = GRAVITY_MPS2 * cos(pitch) * cos(roll);
             let means = [
