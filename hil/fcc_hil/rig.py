@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from .sensor_faults import SensorFault
+from .faulty_sensors import SensorFault
 from .truth import Truth
 
 ENGAGED = "standby -> engaged"

@@ -28,10 +28,10 @@ from fault_flights import (
 )
 from tampered_link import TamperedLink
 
+from fcc_hil.faulty_sensors import Kind, SensorFault
 from fcc_hil.fly import ENGAGE_SWITCH
 from fcc_hil.process import StandInProcess
 from fcc_hil.quantities import SENSORS
-from fcc_hil.sensor_faults import Kind, SensorFault
 from fcc_hil.standin import Settings
 
 MAX_AGE_S = 0.6

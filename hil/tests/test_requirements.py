@@ -11,11 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fcc_hil import airspeed, altitude, attitude, bank, heading, throttle
+from fcc_hil.faulty_sensors import SensorFault
 from fcc_hil.flight import Flight, RequirementError
 from fcc_hil.pattern import TimedPattern
 from fcc_hil.quantities import QUANTITIES, Quantity
 from fcc_hil.rig import ENGAGED, FAILSAFE, RELEASED, Event, FlightError
-from fcc_hil.sensor_faults import SensorFault
 from fcc_hil.truth import COLUMNS, Row, Truth
 
 ENGAGED_AT_S = 1.0
