@@ -59,7 +59,11 @@ def test_it_engages_and_releases_by_the_switch(level: fcc.Measurements) -> None:
     assert machine.step(level, readback=READBACK, switch=False) is not None, "one may be wrong"
     assert machine.step(level, readback=READBACK, switch=False) is None
     assert (machine.state, machine.holds_control) == ("standby", False)
-    assert _texts(machine) == ["standby -> engaged", "engaged -> standby", "actuators released"]
+    assert _texts(machine) == [
+        "standby -> engaged",
+        "engaged -> standby",
+        "release sent to the actuators",
+    ]
     assert _texts(machine) == [], "each is told once"
 
 

@@ -22,7 +22,9 @@ const WAIT_MS: u8 = 20;
 /// Interval of its signs of life.
 const ALIVE_EVERY: Duration = Duration::from_millis(100);
 /// Interval of trying what a new watcher does.
-const TRY_EVERY: Duration = Duration::from_millis(250);
+const TRY_EVERY: Duration = Duration::from_millis(500);
+/// The next attempt after one that failed.
+const TRY_AGAIN_AFTER: Duration = Duration::from_millis(100);
 /// Attempts in a row that fail: shared memory was damaged.
 const MOST_FAILURES: u32 = 2;
 
@@ -183,9 +185,11 @@ impl Own {
     fn is_damaged(&mut self) -> bool {
         let now = Instant::now();
         if self.is_described && now >= self.next_try {
-            self.next_try = now + TRY_EVERY;
-            let is_offered = is_offered(&self.instance);
-            self.failures = if is_offered { 0 } else { self.failures + 1 };
+            (self.failures, self.next_try) = if is_offered(&self.instance) {
+                (0, now + TRY_EVERY)
+            } else {
+                (self.failures + 1, now + TRY_AGAIN_AFTER)
+            };
         }
         self.failures >= MOST_FAILURES
     }

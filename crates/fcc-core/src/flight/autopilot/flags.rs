@@ -105,6 +105,8 @@ pub const TRIM_NOT_FOLLOWED: Flags = Flags::bit(45);
 pub const UNTRIMMED: Flags = Flags::bit(46);
 /// The angle of attack contradicts lift and path, and is not used.
 pub const DOUBTED_ANGLE: Flags = Flags::bit(47);
+/// The wing has stalled above the configured stalling speed.
+pub const STALLS_FASTER: Flags = Flags::bit(48);
 
 /// The shift from the bit of a quantity that is too old to the bit of the same
 /// quantity being frozen.
@@ -141,7 +143,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
 }
 
 /// The text of each bit, lowest first.
-pub(super) const NAMES: [&str; 48] = [
+pub(super) const NAMES: [&str; 49] = [
     "attitude is missing or too old",
     "heading is missing or too old",
     "body rates are missing or too old",
@@ -190,6 +192,7 @@ pub(super) const NAMES: [&str; 48] = [
     "the elevator trim does not follow",
     "the release cannot trim: hold the elevator",
     "angle of attack contradicts lift and path and is not used",
+    "the wing stalls above the configured speed: flying faster",
 ];
 
 #[cfg(test)]
