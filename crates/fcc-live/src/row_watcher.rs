@@ -69,13 +69,13 @@ impl Opened {
             return Err(WatchError::NoSharedMemory(words));
         }
         let access = services::access(&place.root).map_err(WatchError::NoSharedMemory)?;
-        let info = read_info(&access, instance, PATIENCE)?;
+        let info = read_info(&access, place, instance, PATIENCE)?;
         check_layout(&info, instance)?;
         let opened = Self {
             records: subscribe(&RECORD.watch_slices(&access, instance)?, instance)?,
             events: subscribe(&EVENT.watch(&access, instance)?, instance)?,
             statuses: subscribe(&STATUS.watch(&access, instance)?, instance)?,
-            columns: read_columns(&access, instance)?,
+            columns: read_columns(&access, place, instance)?,
             info,
             _access: access,
         };
@@ -242,7 +242,7 @@ pub(super) fn is_offered(instance: &Instance) -> bool {
     let Ok(access) = services::access(&place.root) else {
         return false;
     };
-    let offered = read_info(&access, instance, OFFERED_WITHIN);
+    let offered = read_info(&access, &place, instance, OFFERED_WITHIN);
     match offered.and_then(|_| RECORD.watch_slices::<u64>(&access, instance)) {
         Ok(records) => records.dynamic_config().number_of_publishers() == 1,
         Err(WatchError::TooMany(_)) => true,
@@ -251,7 +251,7 @@ pub(super) fn is_offered(instance: &Instance) -> bool {
 }
 
 /// How long the publishing process' own thread may take to answer it.
-const OFFERED_WITHIN: Duration = Duration::from_secs(1);
+const OFFERED_WITHIN: Duration = Duration::from_millis(300);
 
 /// Whether this program can read what the daemon publishes.
 pub(super) fn check_layout(info: &Info, instance: &Instance) -> Result<(), WatchError> {
@@ -269,18 +269,23 @@ pub(super) fn check_layout(info: &Info, instance: &Instance) -> Result<(), Watch
 /// A daemon's information about itself.
 pub(super) fn read_info(
     access: &Access,
+    place: &FoundPlace,
     instance: &Instance,
     patience: Duration,
 ) -> Result<Info, WatchError> {
     let service = INFO.watch::<Info>(access, instance)?;
     let infos = subscribe(&service, instance)?;
-    first(&service, instance, patience, || newest(&infos))
+    first(&service, (place, instance), patience, || newest(&infos))
 }
 
-fn read_columns(access: &Access, instance: &Instance) -> Result<RecordDescription, WatchError> {
+fn read_columns(
+    access: &Access,
+    place: &FoundPlace,
+    instance: &Instance,
+) -> Result<RecordDescription, WatchError> {
     let service = COLUMNS.watch_slices::<u8>(access, instance)?;
     let texts = subscribe(&service, instance)?;
-    let text = first(&service, instance, PATIENCE, || {
+    let text = first(&service, (place, instance), PATIENCE, || {
         let found = texts.receive().map_err(failed)?;
         Ok(found.map(|sample| String::from_utf8_lossy(&sample).into_owned()))
     })?;
@@ -290,7 +295,7 @@ fn read_columns(access: &Access, instance: &Instance) -> Result<RecordDescriptio
 /// Waits for what a daemon publishes in its beginning.
 fn first<T: Debug + IceoryxSend + ?Sized, R>(
     service: &Service<T>,
-    instance: &Instance,
+    (place, instance): (&FoundPlace, &Instance),
     patience: Duration,
     look: impl Fn() -> Result<Option<R>, WatchError>,
 ) -> Result<R, WatchError> {
@@ -299,8 +304,10 @@ fn first<T: Debug + IceoryxSend + ?Sized, R>(
         if let Some(found) = look()? {
             return Ok(found);
         }
-        // Another watcher may have the service open after the daemon has ended.
-        if service.dynamic_config().number_of_publishers() == 0 {
+        // Another watcher may have the service open after the daemon has ended;
+        // and another process may publish elsewhere.
+        let is_there = place.now() == Presence::Here(place.clone());
+        if !is_there || service.dynamic_config().number_of_publishers() == 0 {
             return Err(WatchError::NotRunning(instance.clone()));
         }
         if Instant::now() > deadline {
@@ -357,7 +364,8 @@ mod tests {
             panic!("not here");
         };
         let access = services::access(&place.root).unwrap();
-        let find = || read_info(&access, &instance, Duration::from_millis(100)).unwrap_err();
+        let patience = Duration::from_millis(100);
+        let find = || read_info(&access, &place, &instance, patience).unwrap_err();
         let message = find().to_string();
         assert!(
             message.contains(&format!("fccd '{name}' runs, but did not answer within")),

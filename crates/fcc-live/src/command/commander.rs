@@ -54,7 +54,7 @@ struct Opened {
 impl Opened {
     fn at(place: &FoundPlace, instance: &Instance) -> Result<Self, CommandError> {
         let access = services::access(&place.root).map_err(WatchError::NoSharedMemory)?;
-        let info = read_info(&access, instance, FOUND_WITHIN)?;
+        let info = read_info(&access, place, instance, FOUND_WITHIN)?;
         check_layout(&info, instance)?;
         Ok(Self {
             info,

@@ -8,7 +8,7 @@ use nix::unistd::{Group, User, geteuid};
 use crate::config::RightsSection;
 
 /// The number of every user whom a user namespace does not have
-/// (user_namespaces(7)); the same as nobody's.
+/// (`user_namespaces(7)`); the same as nobody's.
 const UNMAPPED: u32 = 65_534;
 
 /// Who may command: looked up once, so that no later question waits for a
