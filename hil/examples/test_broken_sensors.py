@@ -27,10 +27,6 @@ def test_after_the_loss_of_any_sensor_the_wings_are_levelled_and_the_controls_re
     flight.never(abs(bank) > 20)
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="31 s after the step the static port is falsely said to be blocked (docs/envelope.md)",
-)
 def test_a_biased_altimeter_is_followed(flight: Flight, faults: Faults) -> None:
     """It reads 10 m too high, so the aircraft descends 10 m."""
     flight.engages(by=3)

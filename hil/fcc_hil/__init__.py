@@ -10,7 +10,7 @@ independent of the daemon's, so that the two check each other:
   flies it with JSBSim's own autopilot;
 - `fly` puts the daemon, the stand-in and the score together.
 - `pytest_plugin` makes a test of a flight: `flight` holds it against requirements on
-  what was flown, by `quantities`, with `sensor_faults` in the way, on one of the rigs
+  what was flown, by `quantities`, with `sensor_faults`, on one of the rigs
   (`lockstep_rig`, `daemon_rig`, `remote_rig`).
 """
 

@@ -19,11 +19,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .faulty_sensors import SensorFault
 from .pattern import SetPoints, TimedPattern
 from .quantities import Condition, Quantity, Samples, finite, quantity_of
 from .requirements import Stretch, Verdict, never, overshoots_less_than, settles, stays
 from .rig import ENGAGED, FAILSAFE, RELEASED, Event, FlightError, Rig
-from .sensor_faults import Faults, SensorFault
+from .sensor_faults import Faults
 from .truth import TRUTH_HZ, Truth
 
 STATES = ("standby", "engaged", "failsafe", "stopped")

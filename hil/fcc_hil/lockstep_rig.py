@@ -10,12 +10,12 @@ from pathlib import Path
 import fcc
 
 from .actuation import Actuation, Servos
+from .faulty_sensors import FaultySensors, SensorFault
 from .lockstep import as_controls, as_surfaces, measurements
 from .noise import NoiseLevels, SensorNoise
 from .plant import STEPS_PER_SECOND, Plant
 from .quantities import SENSORS
 from .rig import Event, FlightError
-from .sensor_faults import FaultySensors, SensorFault
 from .standin import Settings
 from .state import Controls, State
 from .truth import Row, Truth, row

@@ -23,8 +23,8 @@ from typing import Any, cast
 
 from . import actions
 from .cockpit import Release, Write
+from .faulty_sensors import SensorFault
 from .person import AttendedStandIn
-from .sensor_faults import SensorFault
 from .standin import Mode, Progress, Settings, StandIn
 from .state import Controls
 from .truth import Row, Truth

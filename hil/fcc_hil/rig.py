@@ -10,12 +10,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from .sensor_faults import SensorFault
+from .faulty_sensors import SensorFault
 from .truth import Truth
 
 ENGAGED = "standby -> engaged"
 FAILSAFE = "engaged -> failsafe"
-RELEASED = "actuators released"
+RELEASED = "release sent to the actuators"
 
 
 class FlightError(RuntimeError):

@@ -15,6 +15,7 @@ from typing import Any
 
 from .datarefs import withheld
 from .faults import Address, FaultyLink
+from .faulty_sensors import FaultySensors
 from .noise import SensorNoise
 from .protocol import (
     ProtocolError,
@@ -30,7 +31,6 @@ from .protocol import (
 )
 from .readout import Readout
 from .rows import row_values
-from .sensor_faults import FaultySensors
 from .settings import Mode, Settings
 from .subscriptions import Subscriptions
 from .truth import row

@@ -11,10 +11,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from .cockpit import OVERRIDE_JOYSTICK
+from .faulty_sensors import SensorFault
 from .fly import ENGAGE_SWITCH
 from .process import StandInProcess
 from .rig import Event, FlightError
-from .sensor_faults import SensorFault
 from .standin import Progress
 from .truth import Row, Truth
 

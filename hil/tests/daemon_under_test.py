@@ -101,6 +101,17 @@ class DaemonUnderTest:
         tasks = Path(f"/proc/{self.pid}/task").iterdir()
         return [int(pid) for task in tasks for pid in (task / "children").read_text().split()]
 
+    def helpers(self, command: str = "release-helper") -> list[int]:
+        """Return the process numbers of its helpers that run this command."""
+
+        def runs_it(pid: int) -> bool:
+            try:
+                return command.encode() in Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0")
+            except OSError:
+                return False
+
+        return [pid for pid in self.children() if runs_it(pid)]
+
     @property
     def log(self) -> str:
         """Return its messages so far."""

@@ -16,10 +16,11 @@ import numpy.typing as npt
 import pytest
 
 from fcc_hil import airspeed, altitude
+from fcc_hil.faulty_sensors import FaultySensors
 from fcc_hil.lockstep import measurements
 from fcc_hil.noise import SensorNoise
 from fcc_hil.plant import Plant, Weather
-from fcc_hil.sensor_faults import Faults, FaultySensors
+from fcc_hil.sensor_faults import Faults
 from fcc_hil.state import Controls
 from fcc_hil.units import FT_TO_M, KT_TO_MPS
 

@@ -8,10 +8,10 @@ import fcc
 import numpy as np
 import pytest
 
+from fcc_hil.faulty_sensors import Kind, SensorFault
 from fcc_hil.lockstep_rig import Conditions, LockstepRig
 from fcc_hil.plant import Plant
 from fcc_hil.quantities import SENSORS
-from fcc_hil.sensor_faults import Kind, SensorFault
 from fcc_hil.settings import Settings
 
 HOLD = '[guidance]\nmode = "hold"\n'

@@ -106,10 +106,10 @@ def test_a_killed_daemon_leaves_a_helper_that_centres_and_releases(
     with flight(fccd, tmp_path) as (simulator, daemon):
         engage(simulator, daemon)
         # A helper that is killed is replaced, and the new one knows what is held.
-        (helper,) = daemon.children()
+        (helper,) = daemon.helpers()
         os.kill(helper, signal.SIGKILL)
         daemon.wait_for("the release helper had ended, and was started again")
-        (again,) = daemon.children()
+        (again,) = daemon.helpers()
         assert again != helper
         killed_at_s = simulator.progress().time_s
         ending = daemon.end(signal.SIGKILL)

@@ -97,7 +97,7 @@ class Cockpit:
             if with_helper:
                 # Stopped, it does not replace the helper.
                 os.kill(daemon.pid, signal.SIGSTOP)
-                for helper in daemon.children():
+                for helper in daemon.helpers():
                     os.kill(helper, signal.SIGKILL)
             daemon.end(signal.SIGKILL)
         return aims

@@ -109,7 +109,7 @@ def test_a_killed_simulator_and_its_return(fccd: Path, tmp_path: Path) -> None:
         assert TOO_OLD in daemon.wait_for("engaged -> failsafe")
         daemon.wait_for("sensor X-Plane: nothing arrives")
         daemon.wait_for("failsafe -> standby")
-        daemon.wait_for("actuators released")
+        daemon.wait_for("release sent to the actuators")
         assert str(simulator.port) in daemon.wait_for("does not answer")
         assert TOO_OLD in daemon.wait_for("not ready")
         with StandInProcess(Settings(port=simulator.port)) as again:

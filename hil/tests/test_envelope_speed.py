@@ -157,3 +157,24 @@ def test_a_rate_that_the_loops_cannot_fly_is_refused() -> None:
     """At 5 Hz JSBSim's c172p reaches 5.5 g and an oscillation of 90 degrees a second."""
     with pytest.raises(ValueError, match=r"loop\.rate_hz: is 5: choose 20 to 2000"):
         fcc.Machine("[built-in]\n[loop]\nrate_hz = 5\n")
+
+
+def test_a_wing_that_stalls_above_the_configured_speed_is_flown_faster() -> None:
+    """As an iced or an overloaded one: 36 kt are configured, JSBSim's c172p stalls at 48 kt.
+
+    It glides with a failed engine. Without this, it stays at 46 to 51 kt with full up elevator
+    and 17 degrees of attack.
+    """
+    slow = "stall_airspeed_kt = 36\nmin_airspeed_kt = 42\nbest_glide_airspeed_kt = 46\n"
+    flight = _Flight("c172p", seed=7306, envelope=slow)
+    flight.rig.machine.command(airspeed_mps=50.0 * KT_TO_MPS)
+    flight.plant.fdm["propulsion/magneto_cmd"] = 0
+    flight.fly(60.0)
+    told = [text for text in flight.texts() if "stalls above the configured speed" in text]
+    assert told
+    flight.largest_alpha_deg = 0.0
+    flight.longest_stall_s = 0.0
+    flight.fly(40.0)
+    assert flight.longest_stall_s < 1.0
+    assert flight.airspeed_kt > 1.08 * 48.0
+    assert flight.plant.controls.elevator < 0.9

@@ -301,7 +301,8 @@ def test_a_limit_on_file_sizes_prevents_telemetry_and_not_the_flight(
     fccd: Path, tmp_path: Path
 ) -> None:
     limited = ("prlimit", "--fsize=100000", "--")
-    with fly(fccd, tmp_path, "", "--no-recording", before=limited) as daemon:
+    words = ("--no-recording", "--instance", f"limited-{os.getpid()}")
+    with fly(fccd, tmp_path, "", *words, before=limited) as daemon:
         assert "LimitFSIZE" in daemon.wait_for("no live telemetry")
         daemon.wait_for("standby -> engaged")
         ending = daemon.end(signal.SIGTERM)

@@ -13,9 +13,9 @@ from fault_flights import AT_ONCE_S, ENGAGED, NS, Flown, assert_flown_again, at_
 from tampered_link import TamperedLink
 
 from fcc_hil.cockpit import OVERRIDE_JOYSTICK
+from fcc_hil.faulty_sensors import Kind, SensorFault
 from fcc_hil.fly import ENGAGE_SWITCH
 from fcc_hil.process import StandInProcess
-from fcc_hil.sensor_faults import Kind, SensorFault
 from fcc_hil.standin import Mode, Settings
 from fcc_hil.truth import COLUMNS
 

@@ -101,7 +101,7 @@ def test_reverse_thrust_refuses_engaging(fccd: Path, tmp_path: Path) -> None:
         engage(simulator, daemon)
         simulator.act("reverse:1")
         assert "thrust is reversed" in daemon.wait_for("engaged -> failsafe")
-        daemon.wait_for("actuators released")
+        daemon.wait_for("release sent to the actuators")
         daemon.end(signal.SIGTERM)
         assert_released(simulator)
 
@@ -111,7 +111,7 @@ def test_pitot_ice_is_a_failsafe(fccd: Path, tmp_path: Path) -> None:
         engage(simulator, daemon)
         simulator.act(f"ice:{ICE}")
         assert CONTRADICTED in daemon.wait_for("engaged -> failsafe")
-        daemon.wait_for("actuators released")
+        daemon.wait_for("release sent to the actuators")
         refuse(simulator, daemon, CONTRADICTED)
         ending = daemon.end(signal.SIGTERM)
     assert ending.exit_code == FAILSAFE

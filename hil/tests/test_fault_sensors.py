@@ -28,10 +28,10 @@ from fault_flights import (
 )
 from tampered_link import TamperedLink
 
+from fcc_hil.faulty_sensors import Kind, SensorFault
 from fcc_hil.fly import ENGAGE_SWITCH
 from fcc_hil.process import StandInProcess
 from fcc_hil.quantities import SENSORS
-from fcc_hil.sensor_faults import Kind, SensorFault
 from fcc_hil.standin import Settings
 
 MAX_AGE_S = 0.6
@@ -367,7 +367,7 @@ def test_what_is_good_again_is_flown_on(flown: dict[str, Flown], name: str) -> N
 def test_every_failsafe_ends_in_a_release(flown: dict[str, Flown], name: str) -> None:
     flight = flown[name]
     assert flight.ending.report["released"] is True
-    assert flight.texts().count("actuators released") == len(FAULTS) + len(HARMLESS) + 1
+    assert flight.texts().count("release sent to the actuators") == len(FAULTS) + len(HARMLESS) + 1
 
 
 @pytest.mark.parametrize("name", SENSED)

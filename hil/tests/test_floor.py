@@ -11,10 +11,10 @@ import fcc
 import numpy as np
 import pytest
 
+from fcc_hil.faulty_sensors import Kind, SensorFault
 from fcc_hil.lockstep_rig import Conditions, LockstepRig
 from fcc_hil.plant import Plant, Weather
 from fcc_hil.quantities import SENSORS
-from fcc_hil.sensor_faults import Kind, SensorFault
 from fcc_hil.settings import Settings
 from fcc_hil.units import FT_TO_M
 

@@ -54,20 +54,6 @@ def snapshot(fccd: Path, instance: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(words, capture_output=True, text=True, check=False, timeout=PATIENCE_S)
 
 
-def test_removed_files_are_published_again(fccd: Path, tmp_path: Path, instance: str) -> None:
-    """As `rm -r /dev/shm/*` removes them; here of this flight alone, since others may fly."""
-    with fly(fccd, tmp_path, instance) as daemon:
-        watch(instance, daemon)
-        for file in Path(f"/dev/shm/fccd-{os.geteuid()}/services").iterdir():
-            if f"fcc/{instance}/".encode() in file.read_bytes():
-                file.unlink()
-        assert snapshot(fccd, instance).returncode == FAILURE
-        daemon.wait_for("were removed: it is published again")
-        assert json.loads(snapshot(fccd, instance).stdout)["process_id"] == daemon.pid
-        fcc.Commander(instance).disengage()
-        daemon.wait_for("engaged -> standby")
-
-
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root may become another user")
 def test_users_have_separate_shared_memory(fccd: Path, tmp_path: Path, instance: str) -> None:
     """Two daemons of one name, of two users: each is watched by its own."""
@@ -89,27 +75,26 @@ def test_users_have_separate_shared_memory(fccd: Path, tmp_path: Path, instance:
             )
 
         top = (str(program), "top", "--json", "--instance", instance)
+        short = ("--instance", instance, "--seconds", "0.5", "--quiet")
         with fly(fccd, tmp_path, instance) as daemon:
             daemon.wait_for("standby -> engaged")
             nobody = as_user(*top)
             assert nobody.returncode == FAILURE
             assert f"sudo -u root fccd top --instance {instance}" in nobody.stderr
-            flown = as_user(
-                *(str(program), "fly", "--instance", instance, "--seconds", "0.5", "--quiet")
-            )
+            flown = as_user(str(program), "fly", *short)
             assert flown.returncode == SUCCESS, flown.stderr
             assert "no live telemetry" not in flown.stderr
             assert json.loads(snapshot(fccd, instance).stdout)["process_id"] == daemon.pid
 
-        place = Path(f"/dev/shm/fccd-{uid}")
+        place = Path(f"/dev/shm/fccd-run-{uid}")
         assert (place.stat().st_uid, place.stat().st_mode & 0o777) == (uid, 0o700)
-        # A foreign file is reported, and the flight continues.
+        # One of another user is reported, and not used; the flight is flown.
         shutil.rmtree(place)
         place.mkdir()
-        flown = as_user(*(str(program), "fly", "--seconds", "0.5", "--quiet"))
+        flown = as_user(str(program), "fly", *short)
         place.rmdir()
         assert flown.returncode == SUCCESS
-        assert f"{place} belongs to user root and not to user #{uid}" in flown.stderr
+        assert f"{place} is not used: it belongs to user 0 and not to user {uid}" in flown.stderr
 
 
 def test_python_reads_the_flight(fccd: Path, tmp_path: Path, instance: str) -> None:

@@ -59,7 +59,11 @@ def test_it_engages_and_releases_by_the_switch(level: fcc.Measurements) -> None:
     assert machine.step(level, readback=READBACK, switch=False) is not None, "one may be wrong"
     assert machine.step(level, readback=READBACK, switch=False) is None
     assert (machine.state, machine.holds_control) == ("standby", False)
-    assert _texts(machine) == ["standby -> engaged", "engaged -> standby", "actuators released"]
+    assert _texts(machine) == [
+        "standby -> engaged",
+        "engaged -> standby",
+        "release sent to the actuators",
+    ]
     assert _texts(machine) == [], "each is told once"
 
 
@@ -69,6 +73,27 @@ def test_engage_inhibits_are_reported(level: fcc.Measurements) -> None:
     assert machine.step(level) is None
     assert _texts(machine) == ["command: engage", "not engaged: navigation is settling"]
     assert machine.engage_inhibits == ["navigation is settling"]
+
+
+@pytest.mark.parametrize(
+    ("quantity", "factor", "offset", "contradicted"),
+    [
+        pytest.param("specific_force_z_mps2", 1 / 9.80665, 0.0, "vertical", id="in g"),
+        pytest.param("specific_force_z_mps2", 1 / 0.3048, 0.0, "vertical", id="in ft/s2"),
+        pytest.param("specific_force_z_mps2", -1.0, 0.0, "vertical", id="upwards"),
+        pytest.param("pitch_rad", 1.0, math.radians(5.0), "forward", id="pitch + 5"),
+        pytest.param("pitch_rad", 1.0, math.radians(-5.0), "forward", id="pitch - 5"),
+    ],
+)
+def test_sensors_that_contradict_each_other_are_not_engaged(
+    quantity: str, factor: float, offset: float, contradicted: str
+) -> None:
+    aircraft, machine = fcc.BuiltInAircraft(), fcc.Machine(HOLD)
+    for _ in range(200):
+        measured = aircraft.step(None, machine.period_s)
+        setattr(measured, quantity, getattr(measured, quantity) * factor + offset)
+        machine.step(measured, switch=False, readback=READBACK)
+    assert [text.startswith(contradicted) for text in machine.engage_inhibits] == [True]
 
 
 @pytest.mark.parametrize("sensor", SENSORS)

@@ -114,7 +114,7 @@ def test_a_folder_of_another_user_is_refused_and_the_flight_is_flown(
 def test_no_exit_waits_for_a_helper_that_is_stopped(fccd: Path, tmp_path: Path) -> None:
     with flight(fccd, tmp_path) as (simulator, daemon):
         engage(simulator, daemon)
-        (helper,) = daemon.children()
+        (helper,) = daemon.helpers()
         os.kill(helper, signal.SIGSTOP)
         ending = daemon.end(signal.SIGTERM, within_s=8.0)
         assert_released(simulator)
@@ -125,7 +125,8 @@ def test_no_exit_waits_for_a_helper_that_is_stopped(fccd: Path, tmp_path: Path) 
 def test_a_helper_holds_nothing_of_others(fccd: Path, tmp_path: Path) -> None:
     """Neither a descriptor that the daemon inherited, nor the pipe that it prints into."""
     with StandInProcess(Settings(port=0)) as simulator:
-        config = write_config(tmp_path, simulator.port)
+        no_publisher = "[telemetry]\nenabled = false"
+        config = write_config(tmp_path, simulator.port, others=no_publisher)
         with (
             (tmp_path / "inherited").open("w") as inherited,
             subprocess.Popen(
@@ -156,7 +157,7 @@ def _daemon(daemon: DaemonUnderTest, _: random.Random) -> None:
 
 
 def _helper(daemon: DaemonUnderTest, _: random.Random) -> None:
-    for helper in daemon.children():
+    for helper in daemon.helpers():
         with contextlib.suppress(ProcessLookupError):
             os.kill(helper, signal.SIGKILL)
 
@@ -168,7 +169,7 @@ def _helper_then_daemon(daemon: DaemonUnderTest, dice: random.Random) -> None:
 
 
 def _daemon_then_helper(daemon: DaemonUnderTest, dice: random.Random) -> None:
-    helpers = daemon.children()
+    helpers = daemon.helpers()
     _daemon(daemon, dice)
     time.sleep(dice.choice([0.0, 0.002, 0.01]))
     for helper in helpers:

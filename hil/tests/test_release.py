@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from fcc_hil.aircraft import by_name
+from fcc_hil.faulty_sensors import Kind, SensorFault
 from fcc_hil.lockstep_rig import LockstepRig
 from fcc_hil.plant import Plant
 from fcc_hil.quantities import SENSORS
-from fcc_hil.sensor_faults import Kind, SensorFault
 from fcc_hil.standin import Settings
 from fcc_hil.state import Controls
 from fcc_hil.units import FT_TO_M, KT_TO_MPS

@@ -11,11 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fcc_hil import airspeed, altitude, attitude, bank, heading, throttle
+from fcc_hil.faulty_sensors import SensorFault
 from fcc_hil.flight import Flight, RequirementError
 from fcc_hil.pattern import TimedPattern
 from fcc_hil.quantities import QUANTITIES, Quantity
 from fcc_hil.rig import ENGAGED, FAILSAFE, RELEASED, Event, FlightError
-from fcc_hil.sensor_faults import SensorFault
 from fcc_hil.truth import COLUMNS, Row, Truth
 
 ENGAGED_AT_S = 1.0
@@ -184,7 +184,7 @@ def test_states_are_awaited_and_judged_by_their_time() -> None:
         "required: the autopilot enters failsafe by 0.4 s after loss of airspeed at 2.50 s",
         "flown:    engaged -> failsafe: airspeed is missing or too old, 0.50 s later",
         "events:   1.00 s standby -> engaged; 4.00 s engaged -> failsafe: airspeed is missing or "
-        "too old; 6.00 s failsafe -> standby; 6.00 s actuators released",
+        "too old; 6.00 s failsafe -> standby; 6.00 s release sent to the actuators",
     ]
     with pytest.raises(RequirementError, match=r"failsafe: airspeed .* at 3\.00 s"):
         flight.never("failsafe")

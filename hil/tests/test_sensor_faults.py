@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 
 from fcc_hil import airspeed, altitude, climb, heading
 from fcc_hil.datarefs import withheld
+from fcc_hil.faulty_sensors import FaultySensors
 from fcc_hil.plant import Plant
 from fcc_hil.quantities import QUANTITIES, SENSORS
-from fcc_hil.sensor_faults import Faults, FaultySensors
+from fcc_hil.sensor_faults import Faults
 from fcc_hil.state import State
 
 Break = Callable[[Faults], object]

@@ -88,8 +88,6 @@ def _calls(group: str) -> set[str]:
     ("name", "values"),
     [
         ("Type", ["notify"]),
-        # Watchers need the same shared memory.
-        ("RemoveIPC", ["no"]),
         ("LimitMEMLOCK", ["infinity"]),
         ("LimitRTPRIO", ["99"]),
         ("Restart", ["on-failure"]),

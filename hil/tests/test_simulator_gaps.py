@@ -69,7 +69,7 @@ def reloads(fccd: Path, scratch: Path, action: str) -> Flown:
         reloaded_ns = time.monotonic_ns()
         simulator.act(action)
         daemon.wait_for("control is given back at once")
-        daemon.wait_for("actuators released")
+        daemon.wait_for("release sent to the actuators")
         wait_until(lambda: not simulator.progress().overridden, "the overrides are released")
         daemon.wait_for("heading")
         writes = len(simulator.journal())

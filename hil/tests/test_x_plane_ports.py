@@ -9,13 +9,15 @@ import threading
 import time
 from pathlib import Path
 
-from daemon_under_test import engage, flight, start, write_config
+import pytest
+from daemon_under_test import engage, flight, start, wait_until, write_config
 from tampered_link import TamperedLink
 
 from fcc_hil.process import StandInProcess
 from fcc_hil.standin import Settings
 
 SUCCESS = 0
+NOT_RELEASED = 5
 FORGED_EVERY_S = 0.005
 FORGED = 1.0
 """In every quantity, also the simulator's time."""
@@ -28,9 +30,11 @@ def bound() -> socket.socket:
     return opened
 
 
+@pytest.mark.usefixtures("beacon")
 def test_a_port_without_a_program_is_distinguished_from_one_that_does_not_answer(
     fccd: Path, tmp_path: Path
 ) -> None:
+    """Beacons of other tests would tell another port."""
     with bound() as nobody:
         port = nobody.getsockname()[1]
     with start(fccd, tmp_path, write_config(tmp_path, port)) as daemon:
@@ -93,6 +97,34 @@ def test_one_forged_datagram_changes_nothing(fccd: Path, tmp_path: Path) -> None
         ending = daemon.end(signal.SIGTERM)
     assert ending.exit_code == SUCCESS
     assert ending.states == ["standby -> engaged", "engaged -> stopped"]
+
+
+def test_a_link_that_is_cut_towards_x_plane_is_named_and_its_release_not_confirmed(
+    fccd: Path, tmp_path: Path
+) -> None:
+    with (
+        StandInProcess(Settings(port=0)) as simulator,
+        TamperedLink(simulator.port) as link,
+    ):
+        with start(fccd, tmp_path, write_config(tmp_path, link.port)) as daemon:
+            engage(simulator, daemon)
+            # What is written is read back for a second before it is recognised.
+            for _ in range(3):
+                daemon.wait_for("heading")
+            link.cut(to_simulator=True)
+            assert "UDP port" in daemon.wait_for("nothing that is written to it arrives any more")
+            # Longer than it takes to find another program.
+            for _ in range(2):
+                assert "engaged" in daemon.wait_for("heading")
+            ending = daemon.end(signal.SIGTERM)
+        assert ending.exit_code == NOT_RELEASED
+        assert simulator.progress().overridden
+        assert "release sent to the actuators" in ending.events
+        assert f"X-Plane at 127.0.0.1:{link.port} did not confirm the release" in ending.log
+        assert "another program writes the controls" not in ending.log
+        assert "confirmed the release" not in ending.log
+        link.restore()
+        wait_until(lambda: not simulator.progress().overridden, "the helper releases")
 
 
 def test_a_generic_light_that_this_version_lacks_is_named(fccd: Path, tmp_path: Path) -> None:

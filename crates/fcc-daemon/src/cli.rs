@@ -56,6 +56,10 @@ pub enum Action {
     /// daemon itself
     #[command(hide = true)]
     ReleaseHelper,
+    /// Publish live telemetry; started by the daemon itself
+    #[cfg(feature = "live")]
+    #[command(hide = true)]
+    Publisher,
     /// Print a completion script for a shell
     Completions {
         /// The shell

@@ -1,10 +1,12 @@
 //! Why publishing or watching failed.
 
+use serde::{Deserialize, Serialize};
+
 use super::MAX_WATCHERS;
 use fcc_telemetry::Instance;
 
 /// Why nothing can be published. The flight continues without.
-#[derive(thiserror::Error, Clone, PartialEq, Eq, Debug)]
+#[derive(thiserror::Error, Clone, PartialEq, Eq, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum PublishError {
     /// Another daemon has this name.
@@ -86,6 +88,12 @@ pub enum WatchError {
     /// The daemon belongs to another user.
     #[error("fccd '{0}' belongs to another user: only the daemon's own user may watch it")]
     NotPermitted(Instance),
+    /// The watcher is of the process that forked this one.
+    #[error(
+        "this was opened before fork(), and belongs to the process that opened it: open another \
+         one in this process"
+    )]
+    Forked,
     /// The daemon has ended.
     #[error("fccd '{0}' has ended")]
     Ended(Instance),

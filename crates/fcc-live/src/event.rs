@@ -1,11 +1,12 @@
 //! Events in shared memory, as numbers and as text.
 
 use fcc_core::framework::{self, EventKind, LoopCommand, StateCode};
+use serde::{Deserialize, Serialize};
 
 use super::Text;
 
 /// An event, as numbers for programs and as text for users.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize)]
 #[repr(C)]
 pub struct Event {
     /// The tick it happened in.

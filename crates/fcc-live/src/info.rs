@@ -2,6 +2,7 @@
 
 use nix::sys::time::TimeValLike;
 use nix::time::{ClockId, clock_gettime};
+use serde::{Deserialize, Serialize};
 
 use super::{Event, LAYOUT, Status, Text};
 
@@ -9,7 +10,7 @@ use super::{Event, LAYOUT, Status, Text};
 ///
 /// This layout never changes: a program of any version reads it first to know
 /// whether it can read the rest.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
 #[repr(C)]
 pub struct Info {
     /// The version of all other layouts: [`LAYOUT`].

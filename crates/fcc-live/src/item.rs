@@ -1,16 +1,12 @@
-//! The input of the publishing thread.
+//! What is published.
 
 use fcc_core::framework::RecordOf;
 use fcc_telemetry::Telemetry;
 
-use super::{Event, Info, RecorderStatus};
+use super::{Event, Info, Status};
 
-/// Input of the publishing thread: data of a fixed size.
+/// What is published: plain data of a fixed size.
 #[derive(Clone, Copy, Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "nearly all are records, and the ring's slots have their size"
-)]
 pub(super) enum Item<C: Telemetry> {
     /// A tick.
     Record(RecordOf<C>),
@@ -18,6 +14,6 @@ pub(super) enum Item<C: Telemetry> {
     Event(Event),
     /// The publishing daemon; again if it changes.
     Info(Info),
-    /// The state of recording.
-    Recorder(RecorderStatus),
+    /// The status, without what only the publishing thread knows.
+    Status(Status),
 }

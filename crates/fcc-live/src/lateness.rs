@@ -26,6 +26,7 @@ pub const LATENESS_BOUNDS_NS: [u64; 13] = [
 pub type LatenessCounts = [u64; LATENESS_BOUNDS_NS.len() + 1];
 
 /// Lateness since the start of the loop.
+#[derive(Debug)]
 pub(super) struct Lateness {
     quantiles: Option<Histogram<u64>>,
     pub(super) counts: LatenessCounts,

@@ -1,8 +1,17 @@
 //! Live telemetry: each record and event in shared memory, for other programs.
 //!
-//! The daemon passes the loop's messages to a [`Publisher`], which never waits;
-//! its thread, `fcc-live`, puts them into shared memory with iceoryx2. Watchers
-//! that join, leave, hang or are killed have no effect on the loop's thread.
+//! The daemon passes the loop's messages to a [`Publisher`], which never waits.
+//! Another process, whose thread `fcc-live` puts them into shared memory with
+//! iceoryx2, receives them over a socket: whatever programs do to the shared
+//! memory ends at most that process, which is started again.
+//!
+//! ```text
+//! daemon ── socket ─► publisher's process ─► its thread ─► shared memory ─► watchers
+//!        ◄── commands ──
+//! ```
+//!
+//! Watchers that join, leave, hang or are killed have no effect on the loop's
+//! thread. A program that is no flight may publish in a thread of its own.
 //!
 //! A program opens a [`Watcher`], or for any plant a [`RowWatcher`]; programs in other languages read the same
 //! services by the layouts in `docs/telemetry.md`:
@@ -22,13 +31,20 @@
 //! report what it found. Everything else has a version: [`LAYOUT`].
 
 mod command;
+mod connected;
 mod error;
 mod event;
 mod info;
 mod item;
 mod lateness;
+mod marks;
+mod message;
 mod place;
+mod private_service;
 mod publisher;
+mod publisher_process;
+mod publishing_thread;
+mod relay;
 mod row_watcher;
 mod services;
 mod shared_types;
@@ -49,6 +65,8 @@ pub use lateness::{LATENESS_BOUNDS_NS, LatenessCounts};
 #[cfg(feature = "flight")]
 pub use publisher::Publisher;
 pub use publisher::PublisherOf;
+pub use publisher_process::StartPublisher;
+pub use relay::{RelayError, run_publisher};
 pub use row_watcher::RowWatcher;
 pub use services::{EVENT_HISTORY, MAX_WATCHERS, RECORD_BUFFER};
 pub use status::{RecorderState, RecorderStatus, Status};

@@ -1,249 +1,281 @@
-//! Where a user's shared memory is: a folder of that user alone, and a prefix
-//! for the names in `/dev/shm`.
+//! Where the shared memory of an instance is: a folder of its user alone.
 //!
-//! By default iceoryx2 puts the files of all users into one folder, which then
-//! belongs to the user who came first, and gives the shared memory of two
-//! services of one name the same name. Here each user has a folder that no
-//! other user can open. It is in `/dev/shm` and not in `/tmp`: it is removed
-//! together with the shared memory (a reboot, `RemoveIPC` of systemd-logind),
-//! and no cleaner of old files removes it while a daemon runs for weeks.
+//! ```text
+//! live-INSTANCE/current      locked by who publishes; contains a folder's name
+//! live-INSTANCE/PID-TIME/    all files of iceoryx2, new for each start
+//! ```
+//!
+//! Whoever publishes removes what earlier ones left, and never opens it.
 
-use std::fs::{self, DirBuilder, Metadata, Permissions};
-use std::io::ErrorKind;
-use std::os::unix::fs::{DirBuilderExt, MetadataExt, PermissionsExt};
+use std::fs::{self, File, Permissions};
+use std::os::unix::fs::{FileExt, MetadataExt, PermissionsExt};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use iceoryx2::config::Config;
-use iceoryx2::prelude::{FileName, SemanticString};
-use nix::unistd::{Uid, User, geteuid};
+use iceoryx2::prelude::SemanticString;
+use nix::fcntl::{FcntlArg, fcntl};
+use nix::libc;
 
-use super::space::SHARED_MEMORY;
+use super::PublishError;
+use fcc_telemetry::{Instance, RunFolder};
 
-/// The beginning of the name of a user's folder; the user's number follows.
-const FOLDER: &str = "fccd-";
-const OWNER_ONLY: u32 = 0o700;
+const CURRENT: &str = "current";
+/// How long the process of a daemon that was killed may take to end.
+const ENDS_WITHIN: Duration = Duration::from_secs(1);
+const LOOK_EVERY: Duration = Duration::from_millis(5);
+/// In a file's mode: the access of other users.
+const OTHERS: u32 = 0o077;
+/// The longest name of a start's folder.
+const NAME_BYTES: usize = 64;
 
-/// The folder and the file names of a user's shared memory.
-#[derive(Clone, PartialEq, Eq, Debug)]
+fn folder_of(instance: &Instance) -> String {
+    format!("live-{instance}")
+}
+
+/// The files of a program that publishes. Dropping it removes them.
+#[derive(Debug)]
 pub(super) struct Place {
-    /// The user.
-    user: Uid,
-    /// Where shared memory is mounted.
-    root: PathBuf,
+    folder: RunFolder,
+    current: File,
+    start: RunFolder,
+    name: String,
 }
 
 impl Place {
-    /// For the user who runs this program.
-    pub(super) fn of_this_user() -> Self {
-        Self {
-            user: geteuid(),
-            root: SHARED_MEMORY.into(),
-        }
-    }
-
-    /// The configuration of iceoryx2.
-    fn config(&self) -> Result<Config, String> {
-        let mut config = Config::default();
-        let root = self.folder();
-        let path = root.as_os_str().as_encoded_bytes();
-        let path = iceoryx2::prelude::Path::new(path).map_err(|error| format!("{error:?}"))?;
-        config.global.set_root_path(&path);
-        config.global.prefix =
-            FileName::new(self.prefix().as_bytes()).map_err(|error| format!("{error:?}"))?;
-        Ok(config)
-    }
-
-    fn folder(&self) -> PathBuf {
-        self.root.join(format!("{FOLDER}{}", self.user))
-    }
-
-    /// The beginning of the names of the user's files beside the folder.
-    fn prefix(&self) -> String {
-        format!("{FOLDER}{}_", self.user)
-    }
-
-    /// Creates the folder if it is missing, and makes it accessible to the user
-    /// only.
+    /// Takes the name, and makes a new folder. Other programs find it when it
+    /// is [announced](Self::announce).
     ///
     /// # Errors
-    /// Why it cannot be used, as text.
-    pub(super) fn prepare(&self) -> Result<Config, String> {
-        let folder = self.folder();
-        let made = DirBuilder::new().mode(OWNER_ONLY).create(&folder);
-        match made {
-            Err(error) if error.kind() != ErrorKind::AlreadyExists => {
-                return Err(format!("{} cannot be created: {error}", folder.display()));
+    /// When another program of this user publishes by this name, or no folder
+    /// can be used.
+    pub(super) fn take(instance: &Instance) -> Result<Self, PublishError> {
+        let deadline = Instant::now() + ENDS_WITHIN;
+        loop {
+            match Self::try_take(instance) {
+                Err(PublishError::NameTaken(_)) if Instant::now() < deadline => {
+                    std::thread::sleep(LOOK_EVERY);
+                }
+                result => return result,
             }
-            _ => {}
         }
-        // Not through a link that another user has placed there.
-        let found = fs::symlink_metadata(&folder)
-            .map_err(|error| format!("{}: {error}", folder.display()))?;
-        self.check(&folder, &found)?;
-        if found.permissions().mode() & 0o777 != OWNER_ONLY {
-            fs::set_permissions(&folder, Permissions::from_mode(OWNER_ONLY))
-                .map_err(|error| format!("{}: {error}", folder.display()))?;
-        }
-        self.config()
     }
 
-    fn check(&self, path: &Path, found: &Metadata) -> Result<(), String> {
-        let owner = Uid::from_raw(found.uid());
-        if owner != self.user {
-            return Err(format!(
-                "{} belongs to {} and not to {}: remove it (sudo rm -r {})",
-                path.display(),
-                name_of(owner),
-                name_of(self.user),
-                path.display()
-            ));
+    fn try_take(instance: &Instance) -> Result<Self, PublishError> {
+        let folder = folder_of(instance);
+        let taken = || PublishError::NameTaken(instance.clone());
+        let of_user = RunFolder::all_of_this_user();
+        let mut all = of_user.iter().filter_map(|all| all.existing(&folder));
+        if all.any(|folder| lock_of(&folder).is_some_and(|file| is_locked(&file))) {
+            return Err(taken());
         }
-        if path == self.folder() && !found.is_dir() {
-            return Err(format!("{} is not a folder: remove it", path.display()));
+        let mut refused = Vec::new();
+        let run = RunFolder::in_memory(&mut |why| refused.push(why))
+            .ok_or_else(|| PublishError::NoSharedMemory(refused.join("; ")))?;
+        let folder = run.inside(&folder).map_err(PublishError::NoSharedMemory)?;
+        let current = Self::lock(&folder)
+            .map_err(|error| failed(&folder.path(CURRENT), &error))?
+            .ok_or_else(taken)?;
+        remove_all_in(&folder);
+        let now = SystemTime::now().duration_since(UNIX_EPOCH);
+        let name = format!(
+            "{}-{}",
+            std::process::id(),
+            now.map_or(0, |now| now.as_nanos())
+        );
+        let start = folder.inside(&name).map_err(PublishError::NoSharedMemory)?;
+        Ok(Self {
+            folder,
+            current,
+            start,
+            name,
+        })
+    }
+
+    /// Opens and locks the file; none if another program has locked it.
+    fn lock(folder: &RunFolder) -> std::io::Result<Option<File>> {
+        loop {
+            let file = folder.open(CURRENT).or_else(|_| {
+                // Not a file as it should be: it is in the user's own folder.
+                fs::remove_file(folder.path(CURRENT))?;
+                folder.open(CURRENT)
+            })?;
+            if fcntl(&file, FcntlArg::F_OFD_SETLK(&whole())).is_err() {
+                return Ok(None);
+            }
+            // Otherwise the program that had locked it has removed it.
+            if is_at(&file, &folder.path(CURRENT)) {
+                return Ok(Some(file));
+            }
+        }
+    }
+
+    /// From here on other programs find the folder.
+    pub(super) fn announce(&self) -> Result<(), PublishError> {
+        self.close_to_others()
+            .and_then(|()| self.current.set_len(0))
+            .and_then(|()| self.current.write_all_at(self.name.as_bytes(), 0))
+            .map_err(|error| failed(&self.folder.path(CURRENT), &error))
+    }
+
+    /// The folder of this start.
+    pub(super) fn root(&self) -> &RunFolder {
+        &self.start
+    }
+
+    /// Takes from others the access that iceoryx2 gives to one file. The
+    /// folder keeps them out already.
+    fn close_to_others(&self) -> std::io::Result<()> {
+        for path in entries(self.start.as_path()) {
+            let found = fs::symlink_metadata(&path)?;
+            if found.is_file() && found.mode() & OTHERS != 0 {
+                let mode = found.mode() & !OTHERS;
+                fs::set_permissions(&path, Permissions::from_mode(mode))?;
+            }
         }
         Ok(())
     }
 
-    /// Explains a failure by the first of this user's files that belongs to
-    /// another user; none if all are the user's own.
-    pub(super) fn foreign_file(&self) -> Option<String> {
-        let beside = entries(&self.root).filter(|path| {
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            name.starts_with(&self.prefix())
-        });
-        let folder = self.folder();
-        let inside = ["nodes", "services"].map(|part| folder.join(part));
-        let inside = inside.iter().flat_map(|part| entries(part));
-        beside
-            .chain(entries(&folder))
-            .chain(inside)
-            .find_map(|path| {
-                let found = fs::symlink_metadata(&path).ok()?;
-                self.check(&path, &found).err()
-            })
-    }
-
-    /// This user's files with one of these texts in their names.
-    pub(super) fn files_of(&self, texts: &[String]) -> Vec<PathBuf> {
-        let files = entries(&self.root).chain(entries(&self.folder().join("services")));
-        let is_meant = |path: &PathBuf| {
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            name.starts_with(&self.prefix()) && texts.iter().any(|text| name.contains(text))
-        };
-        files.filter(is_meant).collect()
-    }
-
-    /// The other users who have a folder here, as text: the daemon may be
-    /// theirs.
-    pub(super) fn other_users(&self) -> Vec<String> {
-        let mut users: Vec<_> = entries(&self.root)
-            .filter_map(|path| {
-                let found = fs::symlink_metadata(&path).ok()?;
-                let owner = Uid::from_raw(found.uid());
-                let name = path.file_name()?.to_str()?.strip_prefix(FOLDER)?;
-                let is_theirs = found.is_dir() && owner != self.user && name == owner.to_string();
-                is_theirs.then(|| login(owner))
-            })
-            .collect();
-        users.sort();
-        users
+    /// Whether other programs can still find the folder.
+    pub(super) fn is_found(&self) -> bool {
+        is_at(&self.current, &self.folder.path(CURRENT))
+            && read_name(&self.current).is_some_and(|name| name == self.name)
     }
 }
 
-fn entries(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
+impl Drop for Place {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(self.start.as_path());
+        let current = self.folder.path(CURRENT);
+        if is_at(&self.current, &current) {
+            let _ = fs::remove_file(current);
+        }
+        // Only if it is empty.
+        let _ = fs::remove_dir(self.folder.as_path());
+    }
+}
+
+/// The folder of a program that publishes, as others find it.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) struct FoundPlace {
+    folder: RunFolder,
+    /// Of the start.
+    pub(super) root: RunFolder,
+    name: String,
+}
+
+/// What is known of an instance.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) enum Presence {
+    /// Nobody publishes by this name.
+    Absent,
+    /// Who published was killed or begins: perhaps it is published soon.
+    Between,
+    /// It is published.
+    Here(FoundPlace),
+}
+
+/// Looks for who publishes by this name, in all folders of this user.
+pub(super) fn look(instance: &Instance) -> Presence {
+    let name = folder_of(instance);
+    let of_user = RunFolder::all_of_this_user();
+    let mut presence = Presence::Absent;
+    for folder in of_user.iter().filter_map(|all| all.existing(&name)) {
+        match look_in(folder) {
+            Presence::Here(place) => return Presence::Here(place),
+            Presence::Between => presence = Presence::Between,
+            Presence::Absent => {}
+        }
+    }
+    presence
+}
+
+fn look_in(folder: RunFolder) -> Presence {
+    let Some(current) = lock_of(&folder) else {
+        return Presence::Absent;
+    };
+    if !is_locked(&current) {
+        return Presence::Between;
+    }
+    let root = read_name(&current).and_then(|name| folder.existing(&name).zip(Some(name)));
+    match root {
+        Some((root, name)) => Presence::Here(FoundPlace { folder, root, name }),
+        None => Presence::Between,
+    }
+}
+
+impl FoundPlace {
+    /// How it is now: the same place, another one, or none.
+    pub(super) fn now(&self) -> Presence {
+        look_in(self.folder.clone())
+    }
+}
+
+/// The configuration of iceoryx2 for this folder.
+pub(super) fn config(root: &RunFolder) -> Result<Config, String> {
+    let mut config = Config::default();
+    let path = root.as_path().as_os_str().as_encoded_bytes();
+    let path = iceoryx2::prelude::Path::new(path).map_err(|error| format!("{error:?}"))?;
+    config.global.set_root_path(&path);
+    // All is complete before it is announced. Only a file that was cut off is
+    // waited for longer.
+    config.global.creation_timeout = Duration::from_millis(200);
+    Ok(config)
+}
+
+fn lock_of(folder: &RunFolder) -> Option<File> {
+    folder.open_existing(CURRENT).ok()
+}
+
+/// A lock on all of a file, which belongs to the open file and not to the
+/// process (`F_OFD_SETLK`, fcntl(2)).
+fn whole() -> libc::flock {
+    libc::flock {
+        l_type: libc::F_WRLCK as libc::c_short,
+        l_whence: libc::SEEK_SET as libc::c_short,
+        l_start: 0,
+        l_len: 0,
+        l_pid: 0,
+    }
+}
+
+fn is_locked(file: &File) -> bool {
+    let mut lock = whole();
+    fcntl(file, FcntlArg::F_OFD_GETLK(&mut lock)).is_ok()
+        && lock.l_type != libc::F_UNLCK as libc::c_short
+}
+
+fn is_at(file: &File, path: &Path) -> bool {
+    let [ours, there] = [file.metadata(), fs::symlink_metadata(path)];
+    ours.is_ok_and(|ours| there.is_ok_and(|there| ours.ino() == there.ino()))
+}
+
+/// The name of a start's folder; none if it is not one.
+fn read_name(file: &File) -> Option<String> {
+    let mut bytes = [0; NAME_BYTES];
+    let length = file.read_at(&mut bytes, 0).ok()?;
+    let name = std::str::from_utf8(bytes.get(..length)?).ok()?;
+    let is_name = |byte: u8| byte.is_ascii_digit() || byte == b'-';
+    (!name.is_empty() && name.bytes().all(is_name)).then(|| name.to_owned())
+}
+
+/// What earlier starts have left. Nothing of it is opened.
+fn remove_all_in(folder: &RunFolder) {
+    for path in entries(folder.as_path()) {
+        if path.file_name().is_some_and(|name| name != CURRENT) {
+            let removed = fs::remove_dir_all(&path);
+            if removed.is_err() {
+                let _ = fs::remove_file(&path);
+            }
+        }
+    }
+}
+
+pub(super) fn entries(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
     let found = fs::read_dir(folder).into_iter().flatten();
     found.flatten().map(|entry| entry.path())
 }
 
-/// The user's name as `sudo -u` takes it.
-fn login(user: Uid) -> String {
-    match User::from_uid(user) {
-        Ok(Some(found)) => found.name,
-        _ => format!("#{user}"),
-    }
-}
-
-fn name_of(user: Uid) -> String {
-    format!("user {}", login(user))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn place(root: &Path, user: Uid) -> Place {
-        Place {
-            user,
-            root: root.to_owned(),
-        }
-    }
-
-    fn stranger() -> Uid {
-        Uid::from_raw(geteuid().as_raw() + 12_345)
-    }
-
-    fn mode(folder: &Path) -> u32 {
-        fs::metadata(folder).unwrap().permissions().mode() & 0o777
-    }
-
-    #[test]
-    fn two_users_share_neither_folder_nor_names() {
-        let root = tempfile::tempdir().unwrap();
-        let [ours, theirs] = [geteuid(), stranger()].map(|user| place(root.path(), user));
-        let [ours, theirs] = [&ours, &theirs].map(|place| place.config().unwrap().global);
-        assert_ne!(ours.root_path(), theirs.root_path());
-        assert_ne!(ours.prefix, theirs.prefix);
-        // Neither is a prefix of the other: user 1 has no file of user 11.
-        assert!(ours.prefix.as_bytes().ends_with(b"_"));
-    }
-
-    #[test]
-    fn the_folder_is_accessible_to_its_user_only() {
-        let root = tempfile::tempdir().unwrap();
-        let ours = place(root.path(), geteuid());
-        ours.prepare().unwrap();
-        assert_eq!(mode(&ours.folder()), 0o700);
-        fs::set_permissions(ours.folder(), Permissions::from_mode(0o777)).unwrap();
-        ours.prepare().unwrap();
-        assert_eq!(mode(&ours.folder()), 0o700);
-    }
-
-    #[test]
-    fn a_foreign_file_is_reported_with_both_users() {
-        let root = tempfile::tempdir().unwrap();
-        // For another user, the folder created here belongs to a stranger.
-        let theirs = place(root.path(), stranger());
-        fs::create_dir(theirs.folder()).unwrap();
-        let words = theirs.prepare().unwrap_err();
-        assert!(words.contains("belongs to user"), "{words}");
-        assert!(words.contains("sudo rm -r"), "{words}");
-        assert!(words.contains(&format!("#{}", stranger())), "{words}");
-
-        let ours = place(root.path(), geteuid());
-        assert_eq!(ours.foreign_file(), None);
-        fs::write(root.path().join(format!("{}x", theirs.prefix())), "").unwrap();
-        assert!(theirs.foreign_file().is_some());
-        assert_eq!(ours.foreign_file(), None);
-    }
-
-    #[test]
-    fn neither_a_file_nor_a_link_is_a_folder() {
-        let root = tempfile::tempdir().unwrap();
-        let ours = place(root.path(), geteuid());
-        fs::write(ours.folder(), "").unwrap();
-        assert!(ours.prepare().unwrap_err().contains("not a folder"));
-        fs::remove_file(ours.folder()).unwrap();
-        std::os::unix::fs::symlink(root.path(), ours.folder()).unwrap();
-        assert!(ours.prepare().unwrap_err().contains("not a folder"));
-    }
-
-    #[test]
-    fn other_users_are_found_by_their_folders() {
-        let root = tempfile::tempdir().unwrap();
-        let ours = place(root.path(), geteuid());
-        ours.prepare().unwrap();
-        assert_eq!(ours.other_users(), Vec::<String>::new());
-        let theirs = place(root.path(), stranger());
-        assert_eq!(theirs.other_users(), [login(geteuid())]);
-    }
+fn failed(path: &Path, error: &std::io::Error) -> PublishError {
+    PublishError::NoSharedMemory(format!("{}: {error}", path.display()))
 }

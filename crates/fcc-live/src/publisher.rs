@@ -1,24 +1,20 @@
 //! The daemon's side: takes messages to publish, without waiting.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
-use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use fcc_core::framework::RecordOf;
-use rtrb::{Producer, RingBuffer};
 
-use super::command::{CommandServer, Ends, PendingCommand, Verdict};
+use super::command::{PendingCommand, Verdict};
 use super::item::Item;
-use super::thread::{self, Started};
-use super::{Event, Info, PublishError, RecorderStatus};
+use super::lateness::Lateness;
+use super::publisher_process::{PublisherProcess, StartPublisher};
+use super::publishing_thread::{Order, PublishingThread};
+use super::{Event, Info, PublishError, RecorderStatus, Status};
 use fcc_telemetry::schema::words;
 use fcc_telemetry::{Instance, Telemetry};
 
-/// How long the start and the end of publishing may take. A flight waits no
-/// longer.
-const PATIENCE: Duration = Duration::from_secs(2);
+/// Interval of the status.
+const STATUS_EVERY: Duration = Duration::from_secs(1);
 
 /// Publishes a flight.
 #[cfg(feature = "flight")]
@@ -26,23 +22,37 @@ pub type Publisher = PublisherOf<fcc_core::flight::Autopilot>;
 
 /// Publishes the messages of a loop.
 ///
-/// Messages go through a ring to a separate thread. If the ring is full, they
-/// are dropped and counted. Dropping a publisher ends the services.
+/// Messages go to a thread of this process, or to another process, which does
+/// it: what other programs do to shared memory then cannot harm this one.
+/// Neither is waited for: what it does not take in time is dropped and counted.
+/// Dropping a publisher ends the services.
 #[derive(Debug)]
 pub struct PublisherOf<C: Telemetry> {
-    ring: Producer<Item<C>>,
-    /// Dropped records, for the next status.
-    left_out: Arc<AtomicU64>,
-    thread: JoinHandle<()>,
-    texts: Receiver<String>,
-    commands: Option<Ends>,
+    carrier: Carrier<C>,
+    lateness: Lateness,
+    recorder: RecorderStatus,
+    time_ns: i64,
+    /// Dropped records.
+    left_out: u64,
+    next_status: Instant,
     over: bool,
 }
 
+/// Who publishes.
+#[derive(Debug)]
+enum Carrier<C: Telemetry> {
+    Thread(PublishingThread<C>),
+    Process(Box<PublisherProcess>),
+}
+
 impl<C: Telemetry> PublisherOf<C> {
-    /// Starts to publish as `instance`, without commands. Up to `waiting` records
+    /// Starts to publish as `instance` in a thread of this process, without
+    /// commands. Up to `waiting` records
     /// wait to be published: two seconds of them are enough, because a watcher
     /// that joins or leaves may delay the publishing thread by one.
+    ///
+    /// A program of the same user that truncates the shared memory ends this
+    /// process: a flight publishes in [another](Self::start_process).
     ///
     /// # Errors
     /// When no shared memory is available, or the name is taken. The flight
@@ -65,43 +75,52 @@ impl<C: Telemetry> PublisherOf<C> {
         waiting: usize,
         takes_commands: bool,
     ) -> Result<Self, PublishError> {
-        let (ring, items) = RingBuffer::new(waiting.max(1));
-        let (started, start) = mpsc::sync_channel::<Started>(1);
-        // More than the thread ever reports between two polls.
-        let (reports, texts) = mpsc::sync_channel(16);
-        let (commands, rings) = takes_commands.then(CommandServer::rings).unzip();
-        let owned = instance.clone();
-        let left_out = Arc::new(AtomicU64::new(0));
-        let seen = Arc::clone(&left_out);
-        let thread = std::thread::Builder::new()
-            .name(thread::NAME.to_owned())
-            .stack_size(thread::STACK_BYTES)
-            .spawn(move || thread::publish(&owned, rings, items, &seen, &started, &reports))
-            .map_err(|error| PublishError::NoSharedMemory(error.to_string()))?;
-        match start.recv_timeout(PATIENCE) {
-            Ok(Ok(())) => Ok(Self {
-                ring,
-                left_out,
-                thread,
-                texts,
-                commands,
-                over: false,
-            }),
-            Ok(Err(error)) => Err(error),
-            Err(RecvTimeoutError::Timeout) => Err(PublishError::NoSharedMemory(
-                "it does not respond: end all programs of this user that fly or watch, then remove \
-                 their files, /dev/shm/fccd-*"
-                    .to_owned(),
-            )),
-            Err(RecvTimeoutError::Disconnected) => Err(PublishError::NoSharedMemory(
-                "iceoryx2 failed: see its message above".to_owned(),
-            )),
+        PublishingThread::start(Order {
+            instance: instance.clone(),
+            waiting,
+            first_command: takes_commands.then_some(0),
+            again: true,
+        })
+        .map(|thread| Self::by(Carrier::Thread(thread)))
+    }
+
+    /// Starts to publish in another process, which runs
+    /// [`run_publisher`](super::run_publisher) with its standard input. If that
+    /// process ends it is started again.
+    ///
+    /// # Errors
+    /// As [`start`](Self::start), and when the process cannot be started.
+    pub fn start_process(
+        program: StartPublisher,
+        instance: &Instance,
+        waiting: usize,
+        takes_commands: bool,
+    ) -> Result<Self, PublishError> {
+        PublisherProcess::start(program, instance, waiting, takes_commands)
+            .map(|process| Self::by(Carrier::Process(Box::new(process))))
+    }
+
+    fn by(carrier: Carrier<C>) -> Self {
+        Self {
+            carrier,
+            lateness: Lateness::new(),
+            recorder: RecorderStatus::default(),
+            time_ns: i64::MIN,
+            left_out: 0,
+            next_status: Instant::now(),
+            over: false,
         }
     }
 
     /// Publishes a tick.
     pub fn record(&mut self, record: &RecordOf<C>) {
-        self.put(Item::Record(*record));
+        self.lateness.take(&record.tick);
+        self.time_ns = record.tick.woke.as_nanos();
+        let was_taken = match &mut self.carrier {
+            Carrier::Thread(thread) => thread.put(Item::Record(*record)),
+            Carrier::Process(process) => process.record(record),
+        };
+        self.left_out += u64::from(!was_taken);
     }
 
     /// Publishes an event.
@@ -121,57 +140,97 @@ impl<C: Telemetry> PublisherOf<C> {
 
     /// Sets the state of recording, for the next status.
     pub fn recorder(&mut self, status: RecorderStatus) {
-        self.put(Item::Recorder(status));
+        self.recorder = status;
     }
 
     /// The next command from another program, if there is one. Give each an
     /// [`answer`](Self::answer).
     pub fn next_command(&mut self) -> Option<PendingCommand> {
-        self.commands.as_ref()?.commands.try_recv().ok()
+        match &mut self.carrier {
+            Carrier::Thread(thread) => thread.next_command(),
+            Carrier::Process(process) => process.next_command(),
+        }
     }
 
     /// Answers a command.
     pub fn answer(&mut self, id: u64, verdict: Verdict) {
-        if let Some(ends) = &self.commands {
-            // There is room for the answers to all queued commands. If the
-            // thread has ended, no program waits.
-            let _ = ends.verdicts.try_send((id, verdict));
+        match &mut self.carrier {
+            Carrier::Thread(thread) => thread.answer(id, verdict),
+            Carrier::Process(process) => process.answer(id, verdict),
         }
     }
 
-    /// Wakes the publishing thread: messages are published now and not within
-    /// the next 20 ms.
-    pub fn flush(&self) {
-        self.thread.thread().unpark();
+    /// Messages are published now and not within the next 20 ms; and each second
+    /// a status.
+    pub fn flush(&mut self) {
+        let now = Instant::now();
+        if now >= self.next_status {
+            // From now on: missed intervals are not made up for after a stall.
+            self.next_status = now + STATUS_EVERY;
+            self.put_status();
+        }
+        if let Carrier::Thread(thread) = &self.carrier {
+            thread.wake();
+        }
     }
 
-    /// A new failure, or its end, as text; none if there is nothing new.
+    /// A new failure, or its end, as text; none if there is nothing new. Starts
+    /// another process if it has ended: call it 50 times a second.
     pub fn poll(&mut self) -> Option<String> {
-        if let Ok(text) = self.texts.try_recv() {
-            return Some(text);
+        match &mut self.carrier {
+            Carrier::Thread(thread) => {
+                if let Some(text) = thread.text() {
+                    return Some(text);
+                }
+                if thread.has_ended() && !self.over {
+                    self.over = true;
+                    return Some(
+                        "live telemetry has failed: no program can watch any more".to_owned(),
+                    );
+                }
+                None
+            }
+            Carrier::Process(process) => process.poll(),
         }
-        if self.ring.is_abandoned() && !self.over {
-            self.over = true;
-            return Some("live telemetry has failed: no program can watch any more".to_owned());
-        }
-        None
     }
 
     fn put(&mut self, item: Item<C>) {
-        let is_record = matches!(item, Item::Record(_));
-        if self.ring.push(item).is_err() && is_record {
-            self.left_out.fetch_add(1, Ordering::Relaxed);
+        match &mut self.carrier {
+            Carrier::Thread(thread) => {
+                thread.put(item);
+            }
+            Carrier::Process(process) => process.put(&item),
         }
+    }
+
+    fn put_status(&mut self) {
+        let lost = match &self.carrier {
+            Carrier::Thread(_) => 0,
+            Carrier::Process(process) => process.lost(),
+        };
+        let (lateness, recorder) = (&self.lateness, &self.recorder);
+        self.put(Item::Status(Status {
+            time_ns: self.time_ns,
+            ticks: lateness.ticks,
+            missed: lateness.missed,
+            lateness_p50_ns: lateness.quantile_ns(0.5),
+            lateness_p99_ns: lateness.quantile_ns(0.99),
+            lateness_p99_9_ns: lateness.quantile_ns(0.999),
+            lateness_max_ns: lateness.max_ns,
+            lateness_counts: lateness.counts,
+            not_published: self.left_out + lost,
+            recorder_state: recorder.state as u32,
+            recorded: recorder.recorded,
+            not_recorded: recorder.not_recorded,
+            recording_bytes: recorder.bytes,
+            recording: recorder.name,
+            ..Status::default()
+        }));
     }
 }
 
 impl<C: Telemetry> Drop for PublisherOf<C> {
     fn drop(&mut self) {
-        // The thread finds the ring abandoned; what is in it is still
-        // published.
-        let (ring, _) = RingBuffer::new(1);
-        drop(std::mem::replace(&mut self.ring, ring));
-        self.flush();
-        thread::wait(&self.thread, PATIENCE);
+        self.put_status();
     }
 }

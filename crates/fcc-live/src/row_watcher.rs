@@ -1,39 +1,88 @@
 //! The reading side, for any plant.
 
+use std::collections::VecDeque;
 use std::fmt::Debug;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use iceoryx2::port::ReceiveError;
 use iceoryx2::port::subscriber::{Subscriber, SubscriberCreateError};
 use iceoryx2::prelude::{IceoryxSend, PortFactory, ZeroCopySend};
 
-use super::place::Place;
+use super::connected::Connected;
+use super::place::{FoundPlace, Presence, look};
 use super::services::{self, Access, COLUMNS, EVENT, INFO, Ipc, RECORD, STATUS, Service};
 use super::space;
-use super::{Event, Info, LAYOUT, Status, WatchError};
+use super::{EVENT_HISTORY, Event, Info, LAYOUT, Status, WatchError};
 use fcc_telemetry::Instance;
 use fcc_telemetry::schema::RecordDescription;
 
 /// How long a daemon may take to publish its information: long enough for a
 /// busy machine. A daemon that has ended is noticed at once.
-const PATIENCE: Duration = Duration::from_secs(5);
+pub(super) const PATIENCE: Duration = Duration::from_secs(5);
 const LOOK_EVERY: Duration = Duration::from_millis(5);
 
 type In<T> = Subscriber<Ipc, T, ()>;
 
+/// How often it is checked, while nothing arrives, whether another process
+/// publishes.
+const CHECK_EVERY: Duration = Duration::from_millis(100);
+
+/// How long a daemon that lives is waited for while nobody publishes for it.
+const LIVES: Duration = Duration::from_secs(5);
+
 /// Watches a loop of any plant on this machine, from this or another process:
 /// each record is a row of words, whose columns the loop describes.
+///
+/// If the process that publishes for a daemon was ended and another one has
+/// taken its place, the watcher continues with that.
 #[derive(Debug)]
 pub struct RowWatcher {
     instance: Instance,
+    connected: Connected<Opened>,
     info: Info,
     columns: RecordDescription,
+    checked: Instant,
+    /// When somebody published by this name the last time it was looked.
+    seen: Instant,
+    /// The last events; so many of the next may be among them.
+    last_events: VecDeque<Event>,
+    repeats: usize,
+}
+
+/// The services.
+#[derive(Debug)]
+struct Opened {
     records: In<[u64]>,
     events: In<Event>,
     statuses: In<Status>,
-    service: Service<[u64]>,
+    info: Info,
+    columns: RecordDescription,
     // Dropped last: it cleans up after the others.
-    access: Access,
+    _access: Access,
+}
+
+impl Opened {
+    fn at(place: &FoundPlace, instance: &Instance) -> Result<Self, WatchError> {
+        let root = place.root.as_path();
+        if let Some(words) = space::too_little(root, space::WATCHER_BYTES) {
+            return Err(WatchError::NoSharedMemory(words));
+        }
+        let access = services::access(&place.root).map_err(WatchError::NoSharedMemory)?;
+        let info = read_info(&access, place, instance, PATIENCE)?;
+        check_layout(&info, instance)?;
+        let opened = Self {
+            records: subscribe(&RECORD.watch_slices(&access, instance)?, instance)?,
+            events: subscribe(&EVENT.watch(&access, instance)?, instance)?,
+            statuses: subscribe(&STATUS.watch(&access, instance)?, instance)?,
+            columns: read_columns(&access, place, instance)?,
+            info,
+            _access: access,
+        };
+        // So that using it cannot fail when there is no more.
+        space::allocate_all_in(root).map_err(WatchError::NoSharedMemory)?;
+        Ok(opened)
+    }
 }
 
 impl RowWatcher {
@@ -44,22 +93,19 @@ impl RowWatcher {
     /// When no daemon of this name runs here, it publishes in another layout,
     /// or the maximum number of programs is watching.
     pub fn open(instance: &Instance) -> Result<Self, WatchError> {
-        if let Some(words) = space::too_little(space::WATCHER_BYTES) {
-            return Err(WatchError::NoSharedMemory(words));
-        }
-        let access = services::access().map_err(WatchError::NoSharedMemory)?;
-        let info = read_info(&access, instance)?;
-        check_layout(&info, instance)?;
-        let service = RECORD.watch_slices(&access, instance)?;
+        let connected = Connected::open(instance, |place| Opened::at(place, instance))?;
+        let opened = connected.ports()?;
+        let (info, columns) = (opened.info, opened.columns.clone());
+        let now = Instant::now();
         Ok(Self {
-            info,
-            columns: read_columns(&access, instance)?,
-            records: subscribe(&service, instance)?,
-            events: subscribe(&EVENT.watch(&access, instance)?, instance)?,
-            statuses: subscribe(&STATUS.watch(&access, instance)?, instance)?,
-            service,
-            access,
             instance: instance.clone(),
+            connected,
+            info,
+            columns,
+            checked: now,
+            seen: now,
+            last_events: VecDeque::with_capacity(EVENT_HISTORY),
+            repeats: 0,
         })
     }
 
@@ -83,8 +129,10 @@ impl RowWatcher {
     /// # Errors
     /// When it has another length, or shared memory fails.
     pub fn newest<T>(&mut self, read: impl FnOnce(&[u64]) -> T) -> Result<Option<T>, WatchError> {
+        self.follow()?;
+        let records = &self.connected.ports()?.records;
         let mut newest = None;
-        while let Some(sample) = self.records.receive().map_err(failed)? {
+        while let Some(sample) = records.receive().map_err(failed)? {
             newest = Some(sample);
         }
         newest.map(|sample| self.row(&sample, read)).transpose()
@@ -96,7 +144,8 @@ impl RowWatcher {
     /// # Errors
     /// When it has another length, or shared memory fails.
     pub fn next<T>(&mut self, read: impl FnOnce(&[u64]) -> T) -> Result<Option<T>, WatchError> {
-        let found = self.records.receive().map_err(failed)?;
+        self.follow()?;
+        let found = self.connected.ports()?.records.receive().map_err(failed)?;
         found.map(|sample| self.row(&sample, read)).transpose()
     }
 
@@ -112,7 +161,20 @@ impl RowWatcher {
     /// # Errors
     /// When shared memory fails.
     pub fn next_event(&mut self) -> Result<Option<Event>, WatchError> {
-        next(&self.events)
+        self.follow()?;
+        while let Some(event) = next(&self.connected.ports()?.events)? {
+            let may_repeat = self.repeats > 0;
+            self.repeats = self.repeats.saturating_sub(1);
+            if may_repeat && self.last_events.contains(&event) {
+                continue;
+            }
+            if self.last_events.len() == EVENT_HISTORY {
+                self.last_events.pop_front();
+            }
+            self.last_events.push_back(event);
+            return Ok(Some(event));
+        }
+        Ok(None)
     }
 
     /// The newest status not returned yet.
@@ -120,17 +182,76 @@ impl RowWatcher {
     /// # Errors
     /// When shared memory fails.
     pub fn latest_status(&mut self) -> Result<Option<Status>, WatchError> {
-        newest(&self.statuses)
+        self.follow()?;
+        newest(&self.connected.ports()?.statuses)
     }
 
-    /// Whether the daemon still publishes. It checks processes: call it only
+    /// Whether the daemon still publishes. It looks at files: call it only
     /// when no data has come for a while.
-    pub fn is_alive(&self) -> bool {
-        // A killed one stays in the list until it is cleaned up.
-        self.access.try_cleanup_dead_nodes();
-        self.service.dynamic_config().number_of_publishers() > 0
+    pub fn is_alive(&mut self) -> bool {
+        let is_ours = self.connected.ports().is_ok();
+        is_ours && (self.is_here() || self.is_between())
+    }
+
+    /// From time to time, continues where another process publishes now.
+    fn follow(&mut self) -> Result<(), WatchError> {
+        self.connected.ports()?;
+        if self.checked.elapsed() >= CHECK_EVERY {
+            self.is_here();
+        }
+        Ok(())
+    }
+
+    /// Whether somebody publishes for the daemon, and is watched now.
+    fn is_here(&mut self) -> bool {
+        self.checked = Instant::now();
+        let Presence::Here(place) = look(&self.instance) else {
+            return false;
+        };
+        if place != self.connected.place {
+            let Ok(opened) = Opened::at(&place, &self.instance) else {
+                return false;
+            };
+            // Otherwise it is the next daemon of this name.
+            if opened.info.process_id != self.info.process_id {
+                return false;
+            }
+            self.info = opened.info;
+            self.repeats = EVENT_HISTORY;
+            self.connected = Connected::at(place, opened);
+        }
+        self.seen = Instant::now();
+        true
+    }
+
+    /// Whether another process may publish soon: the daemon lives.
+    fn is_between(&self) -> bool {
+        let daemon = format!("/proc/{}", self.info.process_id);
+        self.seen.elapsed() < LIVES && Path::new(&daemon).exists()
     }
 }
+
+/// Whether a new watcher finds what is published, or there is no room for one.
+pub(super) fn is_offered(instance: &Instance) -> bool {
+    let Presence::Here(place) = look(instance) else {
+        return false;
+    };
+    if space::too_little(place.root.as_path(), space::NEEDED_BYTES).is_some() {
+        return true;
+    }
+    let Ok(access) = services::access(&place.root) else {
+        return false;
+    };
+    let offered = read_info(&access, &place, instance, OFFERED_WITHIN);
+    match offered.and_then(|_| RECORD.watch_slices::<u64>(&access, instance)) {
+        Ok(records) => records.dynamic_config().number_of_publishers() == 1,
+        Err(WatchError::TooMany(_)) => true,
+        Err(_) => false,
+    }
+}
+
+/// How long the publishing process' own thread may take to answer it.
+const OFFERED_WITHIN: Duration = Duration::from_millis(300);
 
 /// Whether this program can read what the daemon publishes.
 pub(super) fn check_layout(info: &Info, instance: &Instance) -> Result<(), WatchError> {
@@ -146,28 +267,25 @@ pub(super) fn check_layout(info: &Info, instance: &Instance) -> Result<(), Watch
 }
 
 /// A daemon's information about itself.
-pub(super) fn read_info(access: &Access, instance: &Instance) -> Result<Info, WatchError> {
-    find_info(access, instance, PATIENCE).map_err(|error| match error {
-        WatchError::NotRunning(instance) => {
-            match Place::of_this_user().other_users().into_iter().next() {
-                Some(user) => WatchError::PerhapsAnothers { instance, user },
-                None => WatchError::NotRunning(instance),
-            }
-        }
-        error => error,
-    })
-}
-
-fn find_info(access: &Access, instance: &Instance, patience: Duration) -> Result<Info, WatchError> {
+pub(super) fn read_info(
+    access: &Access,
+    place: &FoundPlace,
+    instance: &Instance,
+    patience: Duration,
+) -> Result<Info, WatchError> {
     let service = INFO.watch::<Info>(access, instance)?;
     let infos = subscribe(&service, instance)?;
-    first(&service, instance, patience, || newest(&infos))
+    first(&service, (place, instance), patience, || newest(&infos))
 }
 
-fn read_columns(access: &Access, instance: &Instance) -> Result<RecordDescription, WatchError> {
+fn read_columns(
+    access: &Access,
+    place: &FoundPlace,
+    instance: &Instance,
+) -> Result<RecordDescription, WatchError> {
     let service = COLUMNS.watch_slices::<u8>(access, instance)?;
     let texts = subscribe(&service, instance)?;
-    let text = first(&service, instance, PATIENCE, || {
+    let text = first(&service, (place, instance), PATIENCE, || {
         let found = texts.receive().map_err(failed)?;
         Ok(found.map(|sample| String::from_utf8_lossy(&sample).into_owned()))
     })?;
@@ -177,7 +295,7 @@ fn read_columns(access: &Access, instance: &Instance) -> Result<RecordDescriptio
 /// Waits for what a daemon publishes in its beginning.
 fn first<T: Debug + IceoryxSend + ?Sized, R>(
     service: &Service<T>,
-    instance: &Instance,
+    (place, instance): (&FoundPlace, &Instance),
     patience: Duration,
     look: impl Fn() -> Result<Option<R>, WatchError>,
 ) -> Result<R, WatchError> {
@@ -186,8 +304,10 @@ fn first<T: Debug + IceoryxSend + ?Sized, R>(
         if let Some(found) = look()? {
             return Ok(found);
         }
-        // Another watcher may have the service open after the daemon has ended.
-        if service.dynamic_config().number_of_publishers() == 0 {
+        // Another watcher may have the service open after the daemon has ended;
+        // and another process may publish elsewhere.
+        let is_there = place.now() == Presence::Here(place.clone());
+        if !is_there || service.dynamic_config().number_of_publishers() == 0 {
             return Err(WatchError::NotRunning(instance.clone()));
         }
         if Instant::now() > deadline {
@@ -239,14 +359,19 @@ mod tests {
     fn a_daemon_that_publishes_nothing_is_running_and_does_not_answer() {
         let name = format!("test-{}-hangs", std::process::id());
         let instance: Instance = name.parse().unwrap();
-        let access = services::access().unwrap();
-        let find = || find_info(&access, &instance, Duration::from_millis(100)).unwrap_err();
         let publisher = Publisher::start(&instance, 2_048).unwrap();
+        let Presence::Here(place) = look(&instance) else {
+            panic!("not here");
+        };
+        let access = services::access(&place.root).unwrap();
+        let patience = Duration::from_millis(100);
+        let find = || read_info(&access, &place, &instance, patience).unwrap_err();
         let message = find().to_string();
         assert!(
             message.contains(&format!("fccd '{name}' runs, but did not answer within")),
             "{message}"
         );
+        assert!(!is_offered(&instance));
         drop(publisher);
         assert_eq!(find(), WatchError::NotRunning(instance.clone()));
     }

@@ -4,9 +4,7 @@ use std::fmt::Debug;
 
 use iceoryx2::node::{Node, NodeBuilder};
 use iceoryx2::port::publisher::{Publisher, PublisherCreateError};
-use iceoryx2::prelude::{
-    BackpressureStrategy, IceoryxSend, SignalHandlingMode, ZeroCopySend, ipc_threadsafe,
-};
+use iceoryx2::prelude::{BackpressureStrategy, IceoryxSend, SignalHandlingMode, ZeroCopySend};
 use iceoryx2::service::builder::publish_subscribe::{
     Builder, PublishSubscribeOpenError, PublishSubscribeOpenOrCreateError,
 };
@@ -15,9 +13,10 @@ use iceoryx2::service::port_factory::publisher::PortFactoryPublisher;
 use iceoryx2::service::service_name::ServiceName;
 use nix::sys::resource::{Resource, getrlimit};
 
-use super::place::Place;
+use super::place;
+use super::private_service::PrivateService;
 use super::{LAYOUT, PublishError, WatchError};
-use fcc_telemetry::Instance;
+use fcc_telemetry::{Instance, RunFolder};
 
 /// The number of programs that may watch one daemon at the same time. One more
 /// is refused, without effect on the others and the daemon. The place of a
@@ -39,10 +38,8 @@ const MAX_NODES: usize = MAX_WATCHERS + 32;
 /// Samples that a watcher may hold at once.
 const BORROWED: usize = 2;
 
-/// Shared memory between processes. Both sides may move between threads, as a
-/// Python program's objects do; compatible with the services of iceoryx2's
-/// single-threaded kind.
-pub(super) type Ipc = ipc_threadsafe::Service;
+/// Shared memory between processes of one user.
+pub(super) type Ipc = PrivateService;
 /// A service of plain data, or of slices of it.
 pub(super) type Service<T> = PortFactory<Ipc, T, ()>;
 /// The writing side of a service.
@@ -251,12 +248,10 @@ fn refused(error: PublishSubscribeOpenOrCreateError, instance: &Instance) -> Pub
     }
 }
 
-/// A failure of iceoryx2 as text: either it is caused by another user's files,
-/// which iceoryx2 reports as an internal error, or it is iceoryx2's own error,
-/// with the limits of this process that are so low that they explain it.
+/// A failure of iceoryx2 as text, with the limits of this process that are so
+/// low that they explain it.
 pub(super) fn explained(error: &impl Debug) -> String {
-    let foreign = Place::of_this_user().foreign_file();
-    foreign.unwrap_or_else(|| format!("iceoryx2: {error:?}{}", low_limits()))
+    format!("iceoryx2: {error:?}{}", low_limits())
 }
 
 /// iceoryx2 does not say which limit it met.
@@ -281,15 +276,13 @@ fn low_limits() -> String {
     low.collect::<Vec<_>>().concat()
 }
 
-/// This process' access to the services of all daemons of its user. Cleans up
-/// after killed processes.
+/// This process' access to the services in a folder.
 ///
 /// # Errors
 /// Why there is no shared memory, as text.
-pub(super) fn access() -> Result<Access, String> {
-    let config = Place::of_this_user().prepare()?;
+pub(super) fn access(root: &RunFolder) -> Result<Access, String> {
     let access = NodeBuilder::new()
-        .config(&config)
+        .config(&place::config(root)?)
         // The daemon and its commands handle signals themselves.
         .signal_handling_mode(SignalHandlingMode::Disabled)
         .create::<Ipc>()

@@ -1,9 +1,11 @@
 //! The status of a run, each second.
 
+use serde::{Deserialize, Serialize};
+
 use super::{LatenessCounts, Text};
 
 /// The status of a run, published each second.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize)]
 #[repr(C)]
 pub struct Status {
     /// Wake-up of the last tick, ns on the loop's clock.

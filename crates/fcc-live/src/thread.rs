@@ -1,7 +1,6 @@
 //! The publishing thread.
 
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::Ordering;
 use std::sync::mpsc::SyncSender;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -14,11 +13,12 @@ use rtrb::Consumer;
 
 use super::command::{CommandServer, Rings};
 use super::item::Item;
-use super::lateness::Lateness;
+use super::marks::Marks;
 use super::place::Place;
+use super::publishing_thread::{Order, Progress};
 use super::services::{self, Access, COLUMNS, EVENT, INFO, Out, RECORD, STATUS, Service};
 use super::space;
-use super::{Event, Info, PublishError, RecorderStatus, Status};
+use super::{Event, Info, PublishError, Status};
 use fcc_core::framework::RecordOf;
 use fcc_core::framework::schema::Schema;
 use fcc_telemetry::schema::{RecordDescription, write_words};
@@ -37,8 +37,10 @@ pub(super) const STACK_BYTES: usize = if cfg!(debug_assertions) {
 
 /// How long it sleeps unless woken.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
-/// Interval of the status and of cleaning up after killed watchers.
-const STATUS_EVERY: Duration = Duration::from_secs(1);
+/// Interval of checking the files: they are published again within a second.
+const CHECK_EVERY: Duration = Duration::from_millis(200);
+/// Records in a row that cannot be published: shared memory was damaged.
+const MOST_FAILURES: u32 = 20;
 
 /// Whether publishing began.
 pub(super) type Started = Result<(), PublishError>;
@@ -46,15 +48,15 @@ pub(super) type Started = Result<(), PublishError>;
 /// Publishes what comes through the ring until the ring is abandoned, and
 /// receives commands if there are rings for them.
 pub(super) fn publish<C: Telemetry>(
-    instance: &Instance,
+    order: &Order,
     commands: Option<Rings>,
     mut items: Consumer<Item<C>>,
-    left_out: &AtomicU64,
+    progress: &Progress,
     started: &SyncSender<Started>,
     reports: &SyncSender<String>,
 ) {
     let columns = RecordDescription::of::<RecordOf<C>>();
-    let mut thread = match Publishing::open(instance, &columns, commands) {
+    let mut thread = match Publishing::open(&order.instance, &columns, commands) {
         Ok(thread) => thread,
         Err(error) => {
             // The daemon waits for this, unless it has given up.
@@ -65,7 +67,7 @@ pub(super) fn publish<C: Telemetry>(
     if started.send(Ok(())).is_err() {
         return;
     }
-    let mut next_status = Instant::now();
+    let mut next_check = Instant::now();
     loop {
         // In this order: the last messages in the ring are published, too.
         let over = items.is_abandoned();
@@ -74,30 +76,36 @@ pub(super) fn publish<C: Telemetry>(
             let _ = reports.try_send(words);
         }
         while let Ok(item) = items.pop() {
-            thread.take(&item);
+            thread.take(&item, progress);
         }
-        if next_status <= Instant::now() || over {
-            // From now on: missed intervals are not made up for after a stall.
-            next_status = Instant::now() + STATUS_EVERY;
-            if !over && thread.ports.is_removed() {
-                let (again, words) = thread.publish_again(instance, &columns);
+        if over {
+            thread.close();
+            return;
+        }
+        if next_check <= Instant::now() {
+            next_check = Instant::now() + CHECK_EVERY;
+            if thread.is_damaged() {
+                if !order.again {
+                    // Nothing of it is touched any more.
+                    std::mem::forget(thread);
+                    return;
+                }
+                let (again, words) = thread.publish_again(&order.instance, &columns);
                 let _ = reports.try_send(words);
                 let Some(again) = again else {
                     return;
                 };
                 thread = again;
             }
-            thread.publish_status(left_out.load(Ordering::Relaxed));
-        }
-        if over {
-            thread.close();
-            return;
         }
         thread.connect_watchers();
         thread.take_commands();
+        progress.beats.fetch_add(1, Ordering::Relaxed);
         std::thread::park_timeout(LOOK_EVERY);
     }
 }
+
+const CHANGED: &str = "the files of live telemetry were removed or changed";
 
 /// Waits for a thread to end, for a limited time.
 pub(super) fn wait(thread: &JoinHandle<()>, at_most: Duration) {
@@ -117,30 +125,28 @@ struct Ports {
     events: Out<Event>,
     statuses: Out<Status>,
     infos: Out<Info>,
-    /// Files that every watcher needs.
-    files: Vec<PathBuf>,
-    // Dropped last: it cleans up after the others.
+    /// Of the files that every watcher needs.
+    marks: Marks,
+    // Dropped last: they clean up after the others.
     access: Access,
+    place: Place,
 }
 
 impl Ports {
     fn open(instance: &Instance, described: &RecordDescription) -> Result<Self, PublishError> {
-        if let Some(words) = space::too_little(space::NEEDED_BYTES) {
+        let place = Place::take(instance)?;
+        let root = place.root().as_path();
+        if let Some(words) = space::too_little(root, space::NEEDED_BYTES) {
             return Err(PublishError::NoSharedMemory(words));
         }
-        let access = services::access().map_err(PublishError::NoSharedMemory)?;
-        // First, because its layout never changes: a name that is taken is
-        // found here.
-        let (info, infos) = INFO.publish(&access, instance)?;
+        let access = services::access(place.root()).map_err(PublishError::NoSharedMemory)?;
+        let (_, infos) = INFO.publish(&access, instance)?;
         let words = described.row_bytes / size_of::<u64>();
         let (service, records) = RECORD.publish_slices(&access, instance, words)?;
         let columns = publish_columns(&access, instance, described)?;
         let (_, events) = EVENT.publish(&access, instance)?;
         let (_, statuses) = STATUS.publish(&access, instance)?;
-        let names = [
-            info.service_hash().to_string(),
-            records.id().value().to_string(),
-        ];
+        space::allocate_all_in(root).map_err(PublishError::NoSharedMemory)?;
         Ok(Self {
             columns,
             records,
@@ -149,8 +155,9 @@ impl Ports {
             events,
             statuses,
             infos,
-            files: Place::of_this_user().files_of(&names),
+            marks: Marks::default(),
             access,
+            place,
         })
     }
 
@@ -163,9 +170,16 @@ impl Ports {
         })
     }
 
-    /// Whether somebody has removed the files, so that no program can watch.
-    fn is_removed(&self) -> bool {
-        self.files.iter().any(|file| !file.exists())
+    /// All services are complete: other programs may find them.
+    fn announce(&mut self) -> Result<(), PublishError> {
+        self.place.announce()?;
+        self.marks = Marks::of(self.place.root());
+        Ok(())
+    }
+
+    /// Whether somebody has removed or changed the files.
+    fn is_changed(&self) -> bool {
+        !self.place.is_found() || self.marks.differ()
     }
 }
 
@@ -192,10 +206,8 @@ struct Publishing {
     desk: Option<CommandServer>,
     ports: Ports,
     info: Option<Info>,
-    lateness: Lateness,
-    recorder: RecorderStatus,
-    time_ns: i64,
-    not_published: u64,
+    /// Records in a row that could not be published.
+    failures: u32,
     paused: bool,
 }
 
@@ -205,18 +217,16 @@ impl Publishing {
         described: &RecordDescription,
         commands: Option<Rings>,
     ) -> Result<Self, PublishError> {
-        let ports = Ports::open(instance, described)?;
+        let mut ports = Ports::open(instance, described)?;
         let desk = commands
             .map(|rings| CommandServer::open(&ports.access, instance, rings))
             .transpose()?;
+        ports.announce()?;
         Ok(Self {
             desk,
             ports,
             info: None,
-            lateness: Lateness::new(),
-            recorder: RecorderStatus::default(),
-            time_ns: i64::MIN,
-            not_published: 0,
+            failures: 0,
             paused: false,
         })
     }
@@ -228,7 +238,6 @@ impl Publishing {
         instance: &Instance,
         described: &RecordDescription,
     ) -> (Option<Self>, String) {
-        const REMOVED: &str = "the files of live telemetry in /dev/shm were removed";
         let rings = self.desk.map(CommandServer::into_rings);
         // They would remove the new ones of the same names.
         drop(self.ports);
@@ -240,13 +249,14 @@ impl Publishing {
                 let again = Self {
                     desk,
                     ports,
+                    failures: 0,
                     ..self
                 };
-                (Some(again), format!("{REMOVED}: it is published again"))
+                (Some(again), format!("{CHANGED}: it is published again"))
             }
             Err(error) => (
                 None,
-                format!("{REMOVED}, and it cannot be published again: {error}"),
+                format!("{CHANGED}, and it cannot be published again: {error}"),
             ),
         }
     }
@@ -269,7 +279,8 @@ impl Publishing {
     /// Pauses while shared memory is nearly full; returns a text when that
     /// changes.
     fn look_for_room(&mut self) -> Option<String> {
-        let too_little = space::too_little(space::LEAST_BYTES);
+        let root = self.ports.place.root().as_path();
+        let too_little = space::too_little(root, space::LEAST_BYTES);
         let was_paused = std::mem::replace(&mut self.paused, too_little.is_some());
         match too_little {
             Some(words) if !was_paused => Some(format!("live telemetry is paused: {words}")),
@@ -278,14 +289,14 @@ impl Publishing {
         }
     }
 
-    fn take<C: Telemetry>(&mut self, item: &Item<C>) {
+    fn take<C: Telemetry>(&mut self, item: &Item<C>, progress: &Progress) {
         match item {
             Item::Record(record) => {
-                self.lateness.take(&record.tick);
-                self.time_ns = record.tick.woke.as_nanos();
-                if self.paused || !self.ports.send(record) {
-                    self.not_published += 1;
-                }
+                let was_sent = !self.paused && self.ports.send(record);
+                let not_published = &progress.not_published;
+                not_published.fetch_add(u64::from(!was_sent), Ordering::Relaxed);
+                let has_failed = !was_sent && !self.paused;
+                self.failures = if has_failed { self.failures + 1 } else { 0 };
             }
             Item::Event(event) => {
                 if !self.paused {
@@ -299,7 +310,7 @@ impl Publishing {
                     let _ = self.ports.infos.send_copy(*info);
                 }
             }
-            Item::Recorder(status) => self.recorder = *status,
+            Item::Status(status) => self.publish_status(status, progress),
         }
     }
 
@@ -314,31 +325,25 @@ impl Publishing {
         }
     }
 
-    fn publish_status(&mut self, left_out: u64) {
+    /// Publishes the status, completed by what is known here.
+    fn publish_status(&mut self, status: &Status, progress: &Progress) {
         if self.paused {
             return;
         }
         // A killed watcher still occupies a place.
         self.ports.access.try_cleanup_dead_nodes();
         let status = Status {
-            time_ns: self.time_ns,
-            ticks: self.lateness.ticks,
-            missed: self.lateness.missed,
-            lateness_p50_ns: self.lateness.quantile_ns(0.5),
-            lateness_p99_ns: self.lateness.quantile_ns(0.99),
-            lateness_p99_9_ns: self.lateness.quantile_ns(0.999),
-            lateness_max_ns: self.lateness.max_ns,
-            lateness_counts: self.lateness.counts,
-            not_published: self.not_published + left_out,
+            not_published: progress.all_not_published() + status.not_published,
             cpu_ns: thread_cpu_ns(),
             watchers: self.ports.service.dynamic_config().number_of_subscribers() as u32,
-            recorder_state: self.recorder.state as u32,
-            recorded: self.recorder.recorded,
-            not_recorded: self.recorder.not_recorded,
-            recording_bytes: self.recorder.bytes,
-            recording: self.recorder.name,
+            ..*status
         };
         let _ = self.ports.statuses.send_copy(status);
+    }
+
+    /// Whether watchers no longer get what is published.
+    fn is_damaged(&self) -> bool {
+        self.failures >= MOST_FAILURES || self.ports.is_changed()
     }
 }
 

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use serde::{Deserialize, Serialize};
+
 /// The name of a daemon on its machine: 1 to 32 letters, digits, `-`, `_` and
 /// `.`. Two daemons on one machine need two names.
 ///
@@ -15,7 +17,8 @@ use std::str::FromStr;
 /// assert_eq!(Instance::default().to_string(), "fccd");
 /// # Ok::<(), fcc_telemetry::InstanceError>(())
 /// ```
-#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
 pub struct Instance(String);
 
 /// The longest name: it must fit into the name of a service.
@@ -41,6 +44,20 @@ impl FromStr for Instance {
         } else {
             Err(InstanceError(name.to_owned()))
         }
+    }
+}
+
+impl TryFrom<String> for Instance {
+    type Error = InstanceError;
+
+    fn try_from(name: String) -> Result<Self, InstanceError> {
+        name.parse()
+    }
+}
+
+impl From<Instance> for String {
+    fn from(instance: Instance) -> Self {
+        instance.0
     }
 }
 

@@ -17,6 +17,7 @@ mod message;
 mod pattern_scorer;
 mod printable;
 mod quantity;
+mod run_folder;
 pub mod schema;
 #[cfg(feature = "flight")]
 mod score;
@@ -34,6 +35,7 @@ pub use message::{FlightEvent, FlightMessage, FlightRecord};
 pub use pattern_scorer::PatternScorer;
 pub use printable::{printable, printable_json};
 pub use quantity::RecordedQuantity;
+pub use run_folder::RunFolder;
 #[cfg(feature = "flight")]
 pub use score::{FlightScore, Leg, LegScore, Sample, ScoreError, ScoredBy, score};
 pub use telemetry::Telemetry;

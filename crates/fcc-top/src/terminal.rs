@@ -130,7 +130,7 @@ fn show<C: Watched>(
         match watcher.as_mut().map(|watcher| picture.update(watcher)) {
             Some(Ok(true)) => received = Instant::now(),
             Some(Ok(false)) if received.elapsed() < SILENCE => {}
-            Some(Ok(false)) if watcher.as_ref().is_some_and(|watcher| watcher.is_alive()) => {
+            Some(Ok(false)) if watcher.as_mut().is_some_and(|watcher| watcher.is_alive()) => {
                 received = Instant::now();
             }
             Some(Ok(false) | Err(_)) => {

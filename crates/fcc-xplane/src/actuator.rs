@@ -123,9 +123,10 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
             held.confirmation.wrote(now, yoke_ratios(outputs));
             link.sent_yoke.add(yoke_ratios(outputs));
         }
-        let unconfirmed = held.confirmation.is_overdue(now, link);
-        link.set_unconfirmed(unconfirmed);
         link.set_other_writer(held.confirmation.is_contested(now, link));
+        link.set_cut(held.confirmation.is_cut());
+        let unconfirmed = held.confirmation.is_overdue(now, link) || link.is_cut();
+        link.set_unconfirmed(unconfirmed);
         match sent {
             Err(errno) => Err(ActuatorFault::Io { errno }),
             Ok(()) if unconfirmed => Err(ActuatorFault::Unconfirmed),
@@ -166,6 +167,7 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
         }
         link.set_unconfirmed(false);
         link.set_other_writer(false);
+        link.set_cut(false);
         link.set_control(Control::ReleaseMonitor);
         if released {
             self.held = None;

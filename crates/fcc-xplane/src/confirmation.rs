@@ -7,7 +7,9 @@
 //! not compared, since the engine model may change it, but its override is.
 //!
 //! Another program that writes the yoke is found by the same comparison: the
-//! override is set, and the yoke is again and again where it was not put.
+//! override is set, and the yoke is again and again where it was not put. A yoke
+//! that stands still where it was put before is nobody's: what is written does
+//! not arrive any more.
 
 use core::time::Duration;
 
@@ -22,6 +24,8 @@ use crate::written::Written;
 pub(crate) const CONFIRMED_WITHIN: Duration = Duration::from_secs(1);
 /// A readback counts as recent for this long.
 const LATELY: Duration = Duration::from_millis(500);
+/// A difference of the yoke that is no rounding error.
+const STILL: f32 = 1e-6;
 /// How far a readback may lie outside the recently sent values: rounding, if
 /// the simulator stores the ratio in another form.
 const TOLERANCE: f32 = 0.02;
@@ -80,6 +84,10 @@ pub(crate) struct Confirmation {
     extents: [[Extent; 3]; 3],
     turned: Time,
     written: Written,
+    /// Where each axis was last read as it was put.
+    ours: [Option<f32>; 3],
+    /// The yoke stands there although something else was put.
+    cut: Lasting,
     /// When the yoke was last read where it was not put.
     moved_by_another: Time,
     contested: Lasting,
@@ -94,6 +102,8 @@ impl Confirmation {
             extents: [[Extent::EMPTY; 3]; 3],
             turned: now,
             written: Written::new(),
+            ours: [None; 3],
+            cut: Lasting::new(CONTESTED_AFTER, LATELY),
             moved_by_another: Time::NEVER,
             contested: Lasting::new(CONTESTED_AFTER, CONTESTED_UNTIL),
         }
@@ -131,18 +141,40 @@ impl Confirmation {
         let overridden = self
             .recent(Quantity::OverrideJoystick, now, link)
             .is_some_and(|(value, _)| value >= 0.5);
-        let mut elsewhere = false;
-        for ((index, axis), put) in YOKE.into_iter().enumerate().zip(self.extents) {
-            if let Some((value, at)) = self.recent(axis, now, link) {
-                elsewhere |= !Extent::of(put).holds(value);
-                elsewhere |= self.written.is_foreign(index, value, at);
+        let (mut elsewhere, mut stands, mut moved) = (false, false, false);
+        let extents = self.extents;
+        for ((index, axis), put) in YOKE.into_iter().enumerate().zip(extents) {
+            let Some((value, at)) = self.recent(axis, now, link) else {
+                continue;
+            };
+            let is_foreign = self.written.is_foreign(index, value, at);
+            let Some(ours) = self.ours.get_mut(index) else {
+                continue;
+            };
+            let is_there = ours.is_some_and(|ours| (value - ours).abs() <= STILL);
+            moved |= !is_there;
+            if Extent::of(put).holds(value) && !is_foreign {
+                *ours = Some(value);
+            } else if is_there {
+                stands = true;
+            } else {
+                elsewhere = true;
             }
         }
+        // What is written may pass where the yoke stands.
+        stands |= self.cut.holds() && !moved;
+        self.cut.step(now, overridden && stands && !elsewhere);
         if overridden && elsewhere {
             self.moved_by_another = now;
         }
         let lately = !self.moved_by_another.is_never() && now.since(self.moved_by_another) < LATELY;
         self.contested.step(now, lately)
+    }
+
+    /// Whether the yoke stands still where it was put before: what is written does
+    /// not arrive.
+    pub(crate) const fn is_cut(&self) -> bool {
+        self.cut.holds()
     }
 
     /// The latest readback of a quantity, and its time.
@@ -300,6 +332,36 @@ mod tests {
             }
             assert!(!confirmation.is_contested(now, &link), "tick {tick}");
         }
+    }
+
+    /// From 2.5 s on nothing arrives any more, of small movements.
+    #[test]
+    fn a_yoke_that_stays_where_it_was_put_is_a_cut_link_and_not_another_program() {
+        let written = |tick: u32| (f64::from(tick) * 0.1).sin() as f32 * 0.01;
+        let link = SharedState::new(None);
+        let mut now = Time::from_nanos(1_000_000_000);
+        let mut confirmation = Confirmation::begin(now);
+        let mut cut = Vec::new();
+        for tick in 0..800 {
+            now = now + TICK;
+            confirmation.wrote(now, [Some(written(tick)), Some(0.0), Some(0.0)]);
+            link.read_back.show(Quantity::OverrideJoystick, 1.0, now);
+            let shown = match tick {
+                0..700 => written(tick.saturating_sub(4).min(100)),
+                _ => 0.7,
+            };
+            link.read_back.show(Quantity::YokePitch, shown.into(), now);
+            let contested = confirmation.is_contested(now, &link);
+            // Another program that moves it then is found.
+            assert_eq!(contested, tick >= 700 + 60, "tick {tick}");
+            cut.push(confirmation.is_cut());
+        }
+        // A second until the last value is too old, and one and a half; meanwhile
+        // what is written passes where the yoke stands.
+        let first = cut.iter().position(|cut| *cut).unwrap();
+        assert!((100 + 100..100 + 140).contains(&first), "{first}");
+        assert!(cut[first..700].iter().all(|cut| *cut));
+        assert!(!cut[720]);
     }
 
     #[test]

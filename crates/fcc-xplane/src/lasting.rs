@@ -26,6 +26,11 @@ impl Lasting {
         }
     }
 
+    /// Whether it held at the last evaluation.
+    pub(crate) const fn holds(&self) -> bool {
+        self.holds
+    }
+
     /// Evaluates the condition at `now`; returns whether it holds.
     pub(crate) fn step(&mut self, now: Time, condition: bool) -> bool {
         if condition == self.holds {

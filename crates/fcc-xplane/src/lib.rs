@@ -36,7 +36,7 @@
 //! | `engage_switch` | the dataref that engages |
 //! | `controls`, `deflections`, `readbacks`, `confirmation`, `release_monitor`, `release` | writing, confirmation that it takes effect, release |
 //! | `link`, `shared_address`, `counters` | what the sensor, the actuator and readers of the status share |
-//! | `authority`, `status` | who has control, and the state of the connection, seen from outside the loop |
+//! | `authority`, `status`, `reported` | who has control, and the state of the connection, seen from outside the loop |
 //! | `silence`, `no_answer` | why X-Plane does not answer |
 //! | `address`, `port`, `discovery` | where it is, sockets, the beacon |
 //!
@@ -82,6 +82,7 @@ mod readbacks;
 mod release;
 mod release_monitor;
 mod reply_port;
+mod reported;
 mod rows;
 mod sending_clock;
 mod sensor;

@@ -46,9 +46,13 @@ pub(crate) struct SharedState {
     control: AtomicU8,
     /// A confirmed release of this program's may still be undone by a late write.
     may_be_undone: AtomicBool,
+    /// Another simulator that announced itself while this one was held.
+    announced: SharedAddress,
     /// Both overrides were read as cleared, once.
     maybe_reloaded: AtomicBool,
     unconfirmed: AtomicBool,
+    /// What is written arrived before, and does not any more.
+    cut: AtomicBool,
     /// Another program writes the held controls, too.
     other_writer: AtomicBool,
     /// An override is set, not by this program, and nothing moves the yoke.
@@ -81,8 +85,10 @@ impl SharedState {
             state: AtomicU8::new(SimulatorState::Silent as u8),
             control: AtomicU8::new(Control::Free as u8),
             may_be_undone: AtomicBool::new(false),
+            announced: SharedAddress::new(None),
             maybe_reloaded: AtomicBool::new(false),
             unconfirmed: AtomicBool::new(false),
+            cut: AtomicBool::new(false),
             other_writer: AtomicBool::new(false),
             left_overridden: AtomicBool::new(false),
             loads_differ: AtomicBool::new(false),
@@ -179,6 +185,42 @@ impl SharedState {
         self.may_be_undone.store(may, Ordering::Relaxed);
     }
 
+    /// Whether the controls are held, or their release is not yet confirmed, or may
+    /// still be undone.
+    pub(crate) fn is_held(&self) -> bool {
+        self.control() != Control::Free || self.may_be_undone()
+    }
+
+    /// Another simulator that announced itself while this one is held.
+    pub(crate) fn announced(&self) -> Option<SocketAddr> {
+        self.announced.simulator()
+    }
+
+    pub(crate) fn set_announced(&self, address: SocketAddr) {
+        self.announced.set_simulator(address);
+    }
+
+    pub(crate) fn forget_announced(&self) {
+        self.announced.forget();
+    }
+
+    /// Another simulator takes the place of this one, whose controls are free.
+    pub(crate) fn change_simulator(&self, address: SocketAddr) {
+        self.reply_port.store(0, Ordering::Relaxed);
+        self.address.set_simulator(address);
+    }
+
+    /// The simulator no longer exists, and another one waits: what was released is
+    /// free. Returns whether it is.
+    pub(crate) fn free_if_gone(&self) -> bool {
+        let waits = self.announced().is_some() && self.control() != Control::Held;
+        if waits {
+            self.set_free_if_releasing();
+            self.set_may_be_undone(false);
+        }
+        waits
+    }
+
     /// `Free` becomes `ReleaseMonitor`: another program's overrides are cleared.
     pub(crate) fn set_releasing_if_free(&self) {
         self.change_control(Control::Free, Control::ReleaseMonitor);
@@ -212,6 +254,15 @@ impl SharedState {
 
     pub(crate) fn set_unconfirmed(&self, unconfirmed: bool) {
         self.unconfirmed.store(unconfirmed, Ordering::Relaxed);
+    }
+
+    /// Whether what is written arrived before, and does not any more.
+    pub(crate) fn is_cut(&self) -> bool {
+        self.cut.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn set_cut(&self, cut: bool) {
+        self.cut.store(cut, Ordering::Relaxed);
     }
 
     /// Whether another program writes the held controls, too.

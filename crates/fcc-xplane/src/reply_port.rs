@@ -35,6 +35,9 @@ pub(crate) struct ReplyPorts {
     expected: u16,
     /// Whether a datagram of each kind is expected.
     needed: [bool; 3],
+    /// The ports of another simulator at the same address that was left: not
+    /// accepted until this one has answered from one of its own.
+    left: [Option<u16>; 3],
 }
 
 const fn place(kind: Kind) -> Option<usize> {
@@ -54,14 +57,30 @@ impl ReplyPorts {
             held: [None; 3],
             expected,
             needed: [true, !with_rows, with_rows],
+            left: [None; 3],
         }
     }
 
     /// Whether a datagram of this kind is accepted from this port.
     pub(crate) fn accepts(&self, kind: Kind, port: u16, now: Time) -> bool {
-        self.held(kind).is_none_or(|held| {
-            held.port == port || port == self.expected || now.since(held.last) > KEPT_FOR
-        })
+        match self.held(kind) {
+            None => !self.left.contains(&Some(port)),
+            Some(held) => {
+                held.port == port || port == self.expected || now.since(held.last) > KEPT_FOR
+            }
+        }
+    }
+
+    /// Forgets the ports of a simulator that was left for another one.
+    pub(crate) fn leave(&mut self, is_at_same_address: bool) {
+        self.left = [None; 3];
+        if is_at_same_address {
+            self.left = self.held.map(|held| held.map(|held| held.port));
+        }
+        if self.left.contains(&Some(self.expected)) {
+            self.expected = 0;
+        }
+        self.held = [None; 3];
     }
 
     /// The ports from which anything is accepted; all 0 as long as it may come

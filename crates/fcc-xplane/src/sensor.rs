@@ -13,7 +13,7 @@ use crate::config::{DataRows, Input, XPlaneConfig};
 use crate::controls::Controls;
 use crate::counters::count;
 use crate::inbox::Inbox;
-use crate::link::{Control, SharedState};
+use crate::link::SharedState;
 use crate::port::{Errno, Port};
 use crate::protocol::{Kind, PathError, beacon};
 use crate::release_monitor::ReleaseMonitor;
@@ -133,13 +133,19 @@ impl<P: Port> XPlaneSensor<P> {
         self.link.set_socket(local_port, filter);
     }
 
-    /// Reads beacons: connects to the first simulator that computes a flight,
-    /// keeps to it while it sends or its controls are held, and subscribes
-    /// again when a silent one has returned.
+    /// Reads beacons: connects to the first simulator that computes a flight, and
+    /// keeps to it while it sends, and until the release of its controls is
+    /// confirmed.
     fn listen_for_beacons(&mut self, now: Time) {
         let Some(beacons) = &self.beacons else {
             return;
         };
+        let silent = now.since(self.inbox.last_received()) > self.silent_after;
+        let waits = silent && self.link.is_held();
+        if !waits {
+            self.link.forget_announced();
+        }
+        let mut next = None;
         for _ in 0..BEACONS_PER_TICK {
             let Ok(Some((length, from))) = beacons.receive(self.buffer.as_mut_slice()) else {
                 break;
@@ -150,16 +156,32 @@ impl<P: Port> XPlaneSensor<P> {
                 continue;
             };
             let known = self.link.address.simulator();
-            let silent = now.since(self.inbox.last_received()) > self.silent_after;
             let address = SocketAddr::new(from.ip(), beacon.port);
-            let keep = known.is_some_and(|known| {
-                known != address && (!silent || self.link.control() == Control::Held)
-            });
-            if !beacon.is_flyable() || keep {
+            if !beacon.is_flyable() || known == Some(address) {
                 continue;
             }
-            self.link.address.set_simulator(address);
+            match known {
+                None => self.link.address.set_simulator(address),
+                // It may hang, and return with its controls held.
+                Some(_) if waits => self.link.set_announced(address),
+                Some(known) if silent => next = Some((known, address)),
+                Some(_) => {}
+            }
         }
+        if let Some((known, other)) = next {
+            self.leave(known, other);
+        }
+    }
+
+    /// Another simulator takes the place of one that is silent. What that one
+    /// sends later is not the other's.
+    fn leave(&mut self, known: SocketAddr, other: SocketAddr) {
+        self.subscriptions.end(|request| {
+            // If it is lost, that one's datagrams are left out.
+            let _ = self.port.send(request, known);
+        });
+        self.reply_ports.leave(known.ip() == other.ip());
+        self.link.change_simulator(other);
     }
 
     fn receive(&mut self, now: Time, simulator: Option<SocketAddr>) -> Result<(), SensorFault> {

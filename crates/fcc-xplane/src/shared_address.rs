@@ -51,6 +51,11 @@ impl SharedAddress {
         self.simulator.store(self.pack(address), Ordering::Relaxed);
     }
 
+    /// It is not known any more.
+    pub(crate) fn forget(&self) {
+        self.simulator.store(NOWHERE, Ordering::Relaxed);
+    }
+
     /// An address as a number. Any address other than the configured one comes
     /// from a beacon, and beacons are sent over IPv4.
     fn pack(&self, address: SocketAddr) -> u64 {

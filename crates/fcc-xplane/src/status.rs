@@ -126,11 +126,20 @@ impl XPlaneStatus {
         self.link.is_left_overridden()
     }
 
+    /// Whether both overrides were last read as clear.
+    pub(crate) fn is_clear(&self) -> bool {
+        let overrides = [Quantity::OverrideJoystick, Quantity::OverrideThrottles];
+        overrides
+            .iter()
+            .filter_map(|of| self.link.read_back.shown(*of))
+            .all(|(value, _)| value < 0.5)
+    }
+
     /// Where the controls are held, or their release is not yet confirmed, or
     /// may still be undone by a late write: for 5 s.
     pub fn held_at(&self) -> Option<SocketAddr> {
         let allowed = |at: &SocketAddr| self.link.address.is_allowed(*at);
-        let held = self.control() != Control::Free || self.link.may_be_undone();
+        let held = self.link.is_held();
         self.simulator().filter(allowed).filter(|_| held)
     }
 
@@ -218,6 +227,7 @@ impl XPlaneStatus {
             Some(at) if self.rows.is_some() && self.link.missing().has_no_answer() => {
                 Some(Trouble::Unanswered(at))
             }
+            Some(at) if self.link.is_cut() => Some(Trouble::Cut(at)),
             Some(at) if self.is_unconfirmed() => Some(Trouble::Unconfirmed(at)),
             Some(_) => None,
         }
@@ -235,6 +245,9 @@ pub enum Trouble {
     Unanswered(SocketAddr),
     /// The simulator sends, but what is written to it has no effect.
     Unconfirmed(SocketAddr),
+    /// The simulator sends, and keeps the controls that were written before: what
+    /// is written now does not arrive.
+    Cut(SocketAddr),
 }
 
 impl fmt::Display for Trouble {
@@ -255,6 +268,14 @@ impl fmt::Display for Trouble {
                 "X-Plane at {at} sends Data Output, but answers no request: X-Plane does not hear \
                  this program. There, in X-Plane 12 switch on Settings > Network > Accept incoming \
                  connections, and let UDP port {} through the firewall of its machine.",
+                at.port()
+            ),
+            Self::Cut(at) => write!(
+                f,
+                "X-Plane at {at} sends its data, but nothing that is written to it arrives any \
+                 more, and it keeps the controls that arrived last: the network towards it is \
+                 interrupted. Check the network, and that a firewall on its machine lets UDP port \
+                 {} in; in X-Plane 12, Settings > Network > Accept incoming connections.",
                 at.port()
             ),
             Self::Unconfirmed(at) => write!(

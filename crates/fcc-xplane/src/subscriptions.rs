@@ -238,12 +238,13 @@ impl Subscriptions {
         outcome
     }
 
-    /// Ends all subscriptions, for shutting down.
-    pub(crate) fn end(&mut self, mut send: impl FnMut(&[u8])) {
-        for subscription in &mut self.list {
-            match &mut subscription.request {
+    /// Ends all subscriptions.
+    pub(crate) fn end(&self, mut send: impl FnMut(&[u8])) {
+        for subscription in &self.list {
+            match &subscription.request {
                 Request::Nonexistent(request) | Request::Value(_, request) => {
-                    rref::set_frequency(request, 0);
+                    let mut request = **request;
+                    rref::set_frequency(&mut request, 0);
                     send(request.as_slice());
                 }
                 Request::Position(..) => send(position_request(0).datagram()),

@@ -5,10 +5,12 @@ mod support;
 use std::net::{SocketAddrV4, UdpSocket};
 use std::time::Duration;
 
-use fcc_core::framework::{Actuator, ActuatorFault};
-use fcc_xplane::{DiscoverError, Simulator, Trouble, XPlane, XPlaneConfig, discover};
+use fcc_core::framework::{Actuator, ActuatorFault, ControlAuthority};
+use fcc_xplane::{
+    DiscoverError, Simulator, Trouble, XPlane, XPlaneAuthority, XPlaneConfig, discover,
+};
 use support::bench::{Bench, SURFACES};
-use support::free_port;
+use support::{FakeXPlane, P, free_port};
 
 /// A beacon, typed from the layout.
 fn beacon(port: u16, host: u8, role: u8) -> Vec<u8> {
@@ -92,6 +94,82 @@ fn a_beacon_finds_the_simulator_while_running() {
         let _ = bench.watch();
     }
     assert!(bench.measurements.attitude.taken > silent_since);
+}
+
+/// It may hang, and return with its controls held.
+#[test]
+fn another_simulator_is_not_flown_before_the_first_is_released() {
+    let group = beacon_address();
+    let mut bench = Bench::with(|config| {
+        config.simulator = Simulator::Beacon;
+        config.beacon = group;
+    });
+    let mut other = FakeXPlane::new();
+    let announcer = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let announce = |port| announcer.send_to(&beacon(port, 1, 1), group).unwrap();
+    let (flown, waits) = (bench.simulator.address(), other.address());
+    announce(flown.port());
+    bench.settle();
+    for _ in 0..40 {
+        bench.fly().unwrap();
+    }
+    let answers = bench.status.reply_port();
+    // It hangs; the loop releases, and that is not confirmed.
+    let _ = bench.actuator.as_mut().unwrap().release();
+    let authority = XPlaneAuthority::of(bench.status.clone(), &bench.simulator.config());
+    let mut reports = Vec::new();
+    for _ in 0..100 {
+        announce(waits.port());
+        let _ = bench.sample();
+        authority.report(&mut |text| reports.push(text.to_string()));
+        assert_eq!(bench.status.simulator(), Some(flown));
+        assert!(authority.held().is_some());
+    }
+    let kept = format!("at {waits}: X-Plane at {flown} is kept until it confirms the release");
+    let says = |text: &String| text.contains(&kept);
+    assert_eq!(
+        reports.iter().filter(|text| says(text)).count(),
+        1,
+        "{reports:?}"
+    );
+    // It returns, and confirms; for 5 s more a late write may undo that.
+    for _ in 0..240 {
+        bench.watch().unwrap();
+        authority.report(&mut |text| reports.push(text.to_string()));
+    }
+    assert!(
+        reports
+            .iter()
+            .any(|text| text.contains("confirmed the release")),
+        "{reports:?}"
+    );
+    assert_eq!(authority.held(), None);
+    // It hangs again: now the other one is flown, at the same address.
+    for _ in 0..40 {
+        let _ = bench.sample();
+    }
+    announce(waits.port());
+    let _ = bench.sample();
+    assert_eq!(bench.status.simulator(), Some(waits));
+    // What the first one sends when it returns is not the other's.
+    bench
+        .simulator
+        .set(&format!("{P}indicated_airspeed"), 400.0);
+    other.set(&format!("{P}indicated_airspeed"), 60.0);
+    for _ in 0..80 {
+        bench.simulator.send_frame();
+        let _ = bench.sample();
+    }
+    assert!(bench.measurements.airspeed_mps.value < 60.0);
+    for _ in 0..80 {
+        other.live(0.025);
+        bench.simulator.send_frame();
+        let _ = bench.sample();
+        // The kernel's filter follows.
+        authority.report(&mut |_| {});
+    }
+    assert!((bench.measurements.airspeed_mps.value - 60.0 * 1.852 / 3.6).abs() < 1e-6);
+    assert_ne!(bench.status.reply_port(), answers);
 }
 
 #[test]

@@ -63,12 +63,20 @@ fn a_release_says_where_the_throttle_s_lever_is() {
     lines(&authority);
     drop(bench.actuator.take());
     bench.watch().unwrap();
+    // Sent, not confirmed.
+    assert!(lines(&authority).is_empty());
+    for _ in 0..20 {
+        bench.watch().unwrap();
+    }
     let said = lines(&authority);
+    let [line] = &said[..] else {
+        panic!("one line: {said:?}")
+    };
     assert!(
-        said.iter()
-            .any(|line| line.contains("its lever again, which is at 35 %")),
-        "{said:?}"
+        line.contains("confirmed the release of its controls"),
+        "{line}"
     );
+    assert!(line.contains("its lever again, which is at 35 %"), "{line}");
 }
 
 /// Of a version that has none of these datarefs nothing is missing.

@@ -66,7 +66,7 @@ impl<C: Controller> fmt::Display for EventDescription<C> {
                 "{count} messages not recorded, ticks {first} to {last}: the disk was too slow or \
                  full"
             ),
-            EventKind::Released { ok: true } => f.write_str("actuators released"),
+            EventKind::Released { ok: true } => f.write_str("release sent to the actuators"),
             EventKind::Released { ok: false } => {
                 f.write_str("an actuator did not release: control may still be held")
             }

@@ -164,6 +164,7 @@ impl Cockpit {
             body_rates: Reading::new(self.rates, now),
             specific_force: Reading::new(
                 SpecificForce {
+                    x_mps2: 9.806_65 * feel.pitch_deg.to_radians().sin(),
                     z_mps2: -9.806_65,
                     ..SpecificForce::default()
                 },

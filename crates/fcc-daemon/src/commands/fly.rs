@@ -12,6 +12,8 @@ use crate::cli::{FlyArgs, RecordingArgs};
 use crate::exit::Exit;
 use crate::observers::{Announcer, Service, StatusLine, aircraft};
 use crate::output;
+#[cfg(feature = "live")]
+use crate::process::own_program;
 use crate::process::{Process, tolerate};
 use fcc_flight::config::{BuiltInSection, Config};
 use fcc_flight::flight::{
@@ -53,6 +55,10 @@ pub(super) fn conduct(
         };
         Failure::of(exit, error)
     })?;
+    #[cfg(feature = "live")]
+    {
+        assembly.publisher = Some(Box::new(|| Ok(own_program("publisher"))));
+    }
     let recording = RecordingRequest::of(config, as_given);
     let mut observers = assembly.observers(config, plan.pace, recording);
     observers.push(Box::new(Announcer::default()));

@@ -10,6 +10,8 @@ mod fly;
 mod list;
 mod outcome;
 mod progress;
+#[cfg(feature = "live")]
+mod publisher;
 mod recover;
 mod release_helper;
 mod replay;
@@ -68,6 +70,8 @@ fn carry_out(command: Action) -> Result<Exit, Failure> {
         Action::Doctor(args) => doctor::doctor(&args)?,
         Action::XPlane(args) => x_plane::x_plane(&args)?,
         Action::Report(args) => report::report(&args)?,
+        #[cfg(feature = "live")]
+        Action::Publisher => publisher::publisher()?,
         Action::ReleaseHelper => release_helper::release_helper()?,
         Action::Completions { shell } => completions(shell),
         Action::Man { folder } => man(&folder)?,

@@ -1,6 +1,6 @@
 //! `fccd release-helper`: releases the controls of a daemon that was killed.
 
-use std::fs::{self, OpenOptions};
+use std::fs::OpenOptions;
 use std::io;
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
@@ -8,28 +8,18 @@ use std::path::{Path, PathBuf};
 use fcc_core::framework::Released;
 use nix::libc::{O_NOCTTY, O_NOFOLLOW, O_NONBLOCK};
 use nix::unistd::{dup2_stderr, ttyname};
-use signal_hook::consts::{SIGABRT, SIGHUP, SIGINT, SIGQUIT, SIGTERM};
 
 use super::failure::Failure;
 use crate::exit::Exit;
 use crate::output;
-use crate::process::{run_release_helper, tolerate};
+use crate::process::{begin_helper, outlive_signals, run_release_helper};
 
 /// Waits until the daemon that started this has ended.
 pub(super) fn release_helper() -> Result<Exit, Failure> {
-    // First, while nothing of its own is open.
-    close_inherited();
+    begin_helper();
     let terminal = leave_terminal();
-    // A signal to all processes of the daemon must not end the helper before
-    // the controls are released: it ends only after the daemon's end. ABRT is
-    // sent by a service manager's watchdog.
-    let caught = [SIGTERM, SIGINT, SIGQUIT, SIGHUP, SIGABRT]
-        .into_iter()
-        .try_for_each(|signal| {
-            signal_hook::flag::register(signal, std::sync::Arc::default()).map(drop)
-        });
     let failure = |error| Failure::new(format_args!("release helper: {error}"));
-    caught.and_then(|()| tolerate()).map_err(|error| {
+    outlive_signals().map_err(|error| {
         Failure::new(format_args!(
             "release helper: signals cannot be caught: {error}"
         ))
@@ -56,23 +46,6 @@ pub(super) fn release_helper() -> Result<Exit, Failure> {
     }
     output::message(format!("fccd release-helper: the daemon has ended{text}"));
     Ok(exit)
-}
-
-/// Closes what this process inherited besides its standard streams, from the
-/// daemon or from the program that started that: nobody else's file or
-/// connection stays open for as long as this helper lives.
-fn close_inherited() {
-    let open: Vec<i32> = fs::read_dir("/proc/self/fd")
-        .into_iter()
-        .flatten()
-        .flatten()
-        .filter_map(|entry| entry.file_name().to_str()?.parse().ok())
-        .filter(|number| *number > 2)
-        .collect();
-    for number in open {
-        // The folder's own is closed already.
-        let _ = nix::unistd::close(number);
-    }
 }
 
 /// Closes the terminal, if messages go to one; returns its path.

@@ -13,8 +13,8 @@
 use std::sync::Arc;
 
 use fcc_core::framework::{ControlAuthority, PlantId};
+use fcc_telemetry::RunFolder;
 
-use super::folder::Folder;
 use super::notice::Notice;
 use super::plant_file::PlantFile;
 use super::release_handover;
@@ -23,7 +23,7 @@ use crate::output;
 /// The right to control a plant; released when dropped.
 pub(super) struct InstanceLock {
     authority: Arc<dyn ControlAuthority>,
-    folder: Option<Folder>,
+    folder: Option<RunFolder>,
     notice: &'static Notice,
     claim: Claim,
 }
@@ -45,7 +45,7 @@ impl InstanceLock {
     /// a locked plant.
     pub(super) fn of(
         authority: Arc<dyn ControlAuthority>,
-        folder: Option<Folder>,
+        folder: Option<RunFolder>,
         notice: &'static Notice,
     ) -> Self {
         authority.require_permission();

@@ -4,16 +4,17 @@
 //! |---|---|
 //! | `release_helper`, `release_handover` | a second process that releases the controls if this one is killed |
 //! | `notice` | tells that process, and the plant's file, before control is taken |
-//! | `folder`, `plant_file` | files of this user alone: who may control a plant, and whether it was left held |
+//! | `own_program` | starts this program again, as one of its helpers |
+//! | `plant_file` | a file of this user alone: who may control a plant, and whether it was left held |
 //! | `instance_lock` | keeps two daemons from one plant |
 //! | `left_held` | releases what a killed daemon left held |
 //! | `rights` | gives up the rights of root before a flight |
 //! | `signals` | the signals that end a flight, and those that must not |
 
-mod folder;
 mod instance_lock;
 mod left_held;
 mod notice;
+mod own_program;
 mod plant_file;
 mod release_handover;
 mod release_helper;
@@ -29,13 +30,14 @@ use fcc_core::framework::{ControlAuthority, PlantId, TakeoverNotice};
 use fcc_flight::config::Config;
 use fcc_flight::flight::Host;
 use fcc_runtime::StopHandle;
+use fcc_telemetry::RunFolder;
 
 use crate::exit::Exit;
 use crate::output;
-use folder::Folder;
 use instance_lock::InstanceLock;
 use left_held::LeftHeld;
 pub(crate) use notice::Notice;
+pub(crate) use own_program::{begin_helper, outlive_signals, own_program};
 pub(crate) use release_helper::{ReleaseHelper, run_release_helper};
 pub(crate) use rights::{RightsError, give_up};
 use signals::{BlockedSignals, Caught};
@@ -60,7 +62,7 @@ pub(crate) struct Process<'a> {
 /// What outlives the process, or is shared with other processes.
 struct Plant {
     authority: Arc<dyn ControlAuthority>,
-    folder: Option<Folder>,
+    folder: Option<RunFolder>,
     notice: &'static Notice,
     lock: InstanceLock,
     left_held: LeftHeld,
@@ -168,7 +170,7 @@ impl Host for Process<'_> {
 
 impl Plant {
     fn of(authority: Arc<dyn ControlAuthority>, config: &Config) -> Self {
-        let folder = Folder::of_this_process(&mut |why| output::message(why));
+        let folder = RunFolder::of_this_process(&mut |why| output::message(why));
         if folder.is_none() {
             output::message("without a folder of this user, a second fccd is not prevented");
         }

@@ -94,7 +94,7 @@ impl Notice {
         }
         // A takeover meanwhile is told twice, with different numbers.
         if let Some(plant) = held {
-            self.tell(format_args!("{HELD}{} {plant}\n", self.number()));
+            self.send(format_args!("{HELD}{} {plant}\n", self.number()));
         }
         Ok(())
     }
@@ -118,12 +118,12 @@ impl Notice {
         for (_, file) in self.files.iter() {
             file.release(number);
         }
-        self.tell(format_args!("{FREE}{number}\n"));
+        self.send(format_args!("{FREE}{number}\n"));
     }
 
     /// To the last helper: the others have ended. A pipe that is full belongs
     /// to one that is stopped.
-    fn tell(&self, line: std::fmt::Arguments<'_>) {
+    fn send(&self, line: std::fmt::Arguments<'_>) {
         let mut bytes = Cursor::new([0; LINE_BYTES]);
         if bytes.write_fmt(line).is_err() {
             return;
@@ -144,6 +144,6 @@ impl TakeoverNotice for Notice {
         if let Some((_, file)) = file {
             file.take(number);
         }
-        self.tell(format_args!("{HELD}{number} {plant}\n"));
+        self.send(format_args!("{HELD}{number} {plant}\n"));
     }
 }

@@ -11,8 +11,7 @@ use std::os::unix::fs::{FileExt, MetadataExt};
 use std::path::PathBuf;
 
 use fcc_core::framework::PlantId;
-
-use super::folder::Folder;
+use fcc_telemetry::RunFolder;
 
 /// Where the two numbers are in the file, each 8 bytes, little-endian.
 const TAKEN_AT: u64 = 0;
@@ -35,7 +34,7 @@ pub(super) struct PlantFile {
 
 impl PlantFile {
     /// Opens the file; creates it if it is missing.
-    pub(super) fn open(folder: &Folder, plant: &PlantId) -> io::Result<Self> {
+    pub(super) fn open(folder: &RunFolder, plant: &PlantId) -> io::Result<Self> {
         let name = name(plant);
         Ok(Self {
             path: folder.path(&name),
@@ -44,7 +43,7 @@ impl PlantFile {
     }
 
     /// Opens and locks the file; none if another daemon has locked it.
-    pub(super) fn locked(folder: &Folder, plant: &PlantId) -> io::Result<Option<Self>> {
+    pub(super) fn locked(folder: &RunFolder, plant: &PlantId) -> io::Result<Option<Self>> {
         loop {
             let this = Self::open(folder, plant)?;
             match this.file.try_lock() {
@@ -106,10 +105,16 @@ impl PlantFile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::process::folder::tests::folder;
 
     fn plant(which: &str) -> PlantId {
         PlantId::new(format_args!("{which} of a/test")).unwrap()
+    }
+
+    /// A folder of this user, removed with the returned value.
+    fn folder() -> (tempfile::TempDir, RunFolder) {
+        let root = tempfile::tempdir().unwrap();
+        let folder = RunFolder::at(root.path().join("fccd")).unwrap();
+        (root, folder)
     }
 
     #[test]

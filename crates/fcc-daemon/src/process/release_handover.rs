@@ -16,12 +16,12 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use fcc_core::framework::PlantId;
+use fcc_telemetry::RunFolder;
 use nix::fcntl::{FcntlArg, fcntl};
 use nix::libc;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
-use super::folder::Folder;
 use super::plant_file;
 
 /// How long the end of a killed helper is waited for.
@@ -40,7 +40,7 @@ pub(super) struct HelperLock {
 
 impl HelperLock {
     /// Opens the file; without it, this helper cannot be ended.
-    pub(super) fn of(folder: &Folder, plant: PlantId) -> Option<Self> {
+    pub(super) fn of(folder: &RunFolder, plant: PlantId) -> Option<Self> {
         let file = folder.open(&name(&plant)).ok()?;
         let this = Self { plant, file };
         this.lock();
@@ -85,7 +85,11 @@ fn helper_of(file: &File, except: Option<u32>) -> Option<Pid> {
 ///
 /// # Errors
 /// When it does not end: it may release the controls.
-pub(super) fn end_helper(folder: &Folder, plant: &PlantId, ours: Option<u32>) -> io::Result<bool> {
+pub(super) fn end_helper(
+    folder: &RunFolder,
+    plant: &PlantId,
+    ours: Option<u32>,
+) -> io::Result<bool> {
     let Ok(file) = folder.open(&name(plant)) else {
         return Ok(false);
     };
@@ -103,7 +107,7 @@ pub(super) fn end_helper(folder: &Folder, plant: &PlantId, ours: Option<u32>) ->
 }
 
 /// Removes the file of a plant, if no helper uses it.
-pub(super) fn remove_file(folder: &Folder, plant: &PlantId) {
+pub(super) fn remove_file(folder: &RunFolder, plant: &PlantId) {
     let name = name(plant);
     if folder
         .open(&name)

@@ -11,19 +11,17 @@
 //! [ends it](super::release_handover).
 
 use std::io::{self, BufRead, Write};
-use std::os::unix::process::CommandExt;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use fcc_core::framework::{ActuatorFault, PlantId, Released};
 use fcc_flight::config::{Config, ConfigError};
 use fcc_flight::flight::authority_without_connection;
+use fcc_telemetry::RunFolder;
 
-use nix::sys::stat::{SFlag, fstat};
-
-use super::folder::Folder;
 use super::notice::{FREE, HELD, Notice};
+use super::own_program::own_program;
 use super::plant_file::PlantFile;
 use super::release_handover::HelperLock;
 
@@ -51,14 +49,8 @@ impl ReleaseHelper {
         held: Option<PlantId>,
     ) -> io::Result<Self> {
         let line = in_one_line(config)?;
-        let mut child = Command::new(std::env::current_exe()?)
-            .arg("release-helper")
-            // A separate process group, so that Ctrl-C does not end it.
-            .process_group(0)
-            .current_dir("/")
+        let mut child = own_program("release-helper")
             .stdin(Stdio::piped())
-            .stdout(Stdio::null())
-            .stderr(messages())
             .spawn()?;
         let mut pipe = child.stdin.take().ok_or(io::ErrorKind::BrokenPipe)?;
         // The new pipe has room for it.
@@ -84,19 +76,6 @@ impl ReleaseHelper {
         while !self.has_ended() && Instant::now() < until {
             thread::sleep(Duration::from_millis(1));
         }
-    }
-}
-
-/// Where a helper prints. Not into a pipe: its reader would wait for the end of
-/// the helper.
-fn messages() -> Stdio {
-    let is_pipe = fstat(io::stderr()).is_ok_and(|found| {
-        SFlag::from_bits_truncate(found.st_mode & SFlag::S_IFMT.bits()) == SFlag::S_IFIFO
-    });
-    if is_pipe {
-        Stdio::null()
-    } else {
-        Stdio::inherit()
     }
 }
 
@@ -129,7 +108,7 @@ pub(crate) fn run_release_helper(
     let first = lines.next().ok_or(ReleaseHelperError::Nothing)??;
     let text: String = serde_json::from_str(&first)?;
     let config = Config::parse(&text, "standard input")?;
-    let folder = Folder::of_this_process(&mut drop);
+    let folder = RunFolder::of_this_process(&mut drop);
     let authority = authority_without_connection(&config);
     let mut held: Option<(u64, PlantId)> = None;
     let mut lock: Option<HelperLock> = None;

@@ -8,7 +8,7 @@ use fcc_core::flight::AutopilotConfig;
 use fcc_core::flight::{Autopilot, Measurements, Surfaces};
 use fcc_core::framework::{Actuator, ControlAuthority, Sensor};
 #[cfg(feature = "live")]
-use fcc_live::{PlantLimits, SentCommands};
+use fcc_live::{PlantLimits, SentCommands, StartPublisher};
 use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation, TruthHandle};
 use fcc_xplane::{OpenError, XPlane, XPlaneAuthority, XPlaneConfig, XPlaneStatus};
@@ -55,6 +55,10 @@ pub struct Assembly {
     pub true_now: Option<TruthHandle>,
     /// Who has control of it; none for an aircraft that ends with the program.
     pub(super) authority: Option<Arc<dyn ControlAuthority>>,
+    /// Starts the process that publishes live telemetry; without it, a thread of
+    /// this process does, which other programs of the user can end.
+    #[cfg(feature = "live")]
+    pub publisher: Option<StartPublisher>,
 }
 
 /// Why a flight could not be assembled.
@@ -135,6 +139,8 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
         truth: plant.truth,
         true_now: plant.true_now,
         authority: plant.authority,
+        #[cfg(feature = "live")]
+        publisher: None,
     })
 }
 
@@ -215,6 +221,7 @@ impl Assembly {
             observers.push(Box::new(Live::<Autopilot>::new(
                 config,
                 SentCommands::new(limits(autopilot)),
+                self.publisher.take(),
             )));
             #[cfg(feature = "live")]
             if config.telemetry.commands && config.rights.has_commanders() {

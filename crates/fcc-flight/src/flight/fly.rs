@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use fcc_core::flight::Autopilot;
-use fcc_core::framework::{ControlAuthority, PlantId, State};
+use fcc_core::framework::{ControlAuthority, PlantId, Released, State};
 use fcc_runtime::{Ending, Link, Loop, LoopReport, Machine, Parts, SpawnError, WatchdogConfig};
 use fcc_timer::{ManualTimer, RealtimeGranted, Timer, TimerError};
 
@@ -276,14 +276,16 @@ fn await_release(
     let confirmed = held.is_none_or(|(authority, plant)| {
         let released = authority
             .release(&plant, GIVE_BACK_WITHIN, &mut || false)
-            .is_ok_and(fcc_core::framework::Released::is_over);
-        if !released {
-            observers.remark(format!(
+            .unwrap_or(Released::Unconfirmed);
+        observers.remark(match released {
+            Released::Confirmed => format!("{plant} confirmed the release of its controls"),
+            Released::Unreachable => format!("{plant} has ended, and nothing holds its controls"),
+            Released::Unconfirmed | Released::Cancelled => format!(
                 "{plant} did not confirm the release of its controls{}",
                 host.continues_release()
-            ));
-        }
-        released
+            ),
+        });
+        released.is_over()
     });
     host.end(confirmed);
     LoopReport {

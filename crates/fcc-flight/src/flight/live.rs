@@ -2,7 +2,8 @@
 
 use fcc_core::framework::{EventOf, RecordOf};
 use fcc_live::{
-    Commandable, Event, Info, PublisherOf, RecorderState, RecorderStatus, SentCommands, Text,
+    Commandable, Event, Info, PublisherOf, RecorderState, RecorderStatus, SentCommands,
+    StartPublisher, Text,
 };
 use fcc_record as recording;
 use fcc_telemetry::Instance;
@@ -23,18 +24,28 @@ pub(super) struct Live<C: Commandable> {
     takes_commands: bool,
     /// The most records that wait to be published.
     waiting: usize,
+    /// Starts the process that publishes; a thread does without it.
+    process: Option<StartPublisher>,
     publisher: Option<PublisherOf<C>>,
     commands: SentCommands<C>,
+    /// The newest tick.
+    at: FlightTime,
 }
 
 impl<C: Commandable> Live<C> {
-    pub(super) fn new(config: &Config, commands: SentCommands<C>) -> Self {
+    pub(super) fn new(
+        config: &Config,
+        commands: SentCommands<C>,
+        process: Option<StartPublisher>,
+    ) -> Self {
         Self {
             instance: config.telemetry.instance.clone(),
             takes_commands: config.telemetry.commands,
             waiting: config.tick.ticks_in(PUBLISHED_WITHIN_S, MOST_WAITING),
+            process,
             publisher: None,
             commands,
+            at: FlightTime::default(),
         }
     }
 }
@@ -43,12 +54,15 @@ impl<C: Commandable> Observer<C> for Live<C> {
     /// Begins to publish. Without shared memory the flight continues, and this
     /// is reported.
     fn prepare(&mut self, reports: &mut Reports) {
-        let start = if self.takes_commands {
-            PublisherOf::start_with_commands
-        } else {
-            PublisherOf::start
+        let (instance, waiting) = (&self.instance, self.waiting);
+        let started = match self.process.take() {
+            Some(process) => {
+                PublisherOf::start_process(process, instance, waiting, self.takes_commands)
+            }
+            None if self.takes_commands => PublisherOf::start_with_commands(instance, waiting),
+            None => PublisherOf::start(instance, waiting),
         };
-        match start(&self.instance, self.waiting) {
+        match started {
             Ok(publisher) => self.publisher = Some(publisher),
             Err(error) => reports.mention(format!("no live telemetry for this flight: {error}")),
         }
@@ -76,7 +90,8 @@ impl<C: Commandable> Observer<C> for Live<C> {
         });
     }
 
-    fn record(&mut self, record: &RecordOf<C>, _: &FlightTime) {
+    fn record(&mut self, record: &RecordOf<C>, at: &FlightTime) {
+        self.at = *at;
         if let Some(publisher) = &mut self.publisher {
             publisher.record(record);
             let (tick, state) = (record.tick.number, record.state.state());
@@ -123,6 +138,8 @@ impl<C: Commandable> Observer<C> for Live<C> {
         }
         publisher.flush();
         if let Some(words) = publisher.poll() {
+            // Others receive it as a report.
+            publisher.event(Event::remark(self.at.tick, self.at.woke_ns, &words));
             access.reports.remark(words);
         }
     }

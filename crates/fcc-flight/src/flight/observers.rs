@@ -194,7 +194,7 @@ mod tests {
         #[cfg(feature = "live")]
         observer_conforms(|| {
             let commands = SentCommands::new(vec![("airspeed_mps", Ok(30.0..=80.0))]);
-            Box::new(Live::<Autopilot>::new(&config, commands))
+            Box::new(Live::<Autopilot>::new(&config, commands, None))
         });
     }
 }

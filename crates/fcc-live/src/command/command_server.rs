@@ -49,12 +49,16 @@ pub(super) fn service_name(instance: &Instance) -> Option<ServiceName> {
 }
 
 impl CommandServer {
-    /// The rings between the server and the flight.
-    pub(in super::super) fn rings() -> (Ends, Rings) {
+    /// The rings between the server and the flight; `first` is the first
+    /// command's identifier.
+    pub(in super::super) fn rings(first: u64) -> (Ends, Rings) {
         let room = MAX_COMMANDERS * MAX_WAITING;
         let (commands_in, commands) = sync_channel(room);
         let (verdicts, verdicts_out) = sync_channel(room);
-        (Ends { commands, verdicts }, (commands_in, verdicts_out, 0))
+        (
+            Ends { commands, verdicts },
+            (commands_in, verdicts_out, first),
+        )
     }
 
     /// Ends the service, for another one with the same rings. Who waits for an

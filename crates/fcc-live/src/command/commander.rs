@@ -6,7 +6,9 @@ use iceoryx2::port::client::Client;
 use iceoryx2::prelude::BackpressureStrategy;
 use iceoryx2::service::builder::request_response::RequestResponseOpenError;
 
-use super::super::row_watcher::{check_layout, read_info};
+use super::super::connected::Connected;
+use super::super::place::{FoundPlace, Presence};
+use super::super::row_watcher::{PATIENCE as FOUND_WITHIN, check_layout, read_info};
 use super::super::services::{self, Access, Ipc};
 use super::super::{Info, WatchError};
 use super::{Answer, CommandRequest};
@@ -38,9 +40,52 @@ const LOOK_EVERY: Duration = Duration::from_millis(2);
 pub struct Commander {
     instance: Instance,
     info: Info,
+    connected: Connected<Opened>,
+}
+
+#[derive(Debug)]
+struct Opened {
+    info: Info,
     client: Client<Ipc, CommandRequest, (), Answer, ()>,
     // Dropped last: it cleans up after the others.
     _access: Access,
+}
+
+impl Opened {
+    fn at(place: &FoundPlace, instance: &Instance) -> Result<Self, CommandError> {
+        let access = services::access(&place.root).map_err(WatchError::NoSharedMemory)?;
+        let info = read_info(&access, place, instance, FOUND_WITHIN)?;
+        check_layout(&info, instance)?;
+        Ok(Self {
+            info,
+            client: client(&access, instance, &info)?,
+            _access: access,
+        })
+    }
+}
+
+fn client(
+    access: &Access,
+    instance: &Instance,
+    info: &Info,
+) -> Result<Client<Ipc, CommandRequest, (), Answer, ()>, CommandError> {
+    let name = command_server::service_name(instance)
+        .ok_or_else(|| WatchError::NotRunning(instance.clone()))?;
+    let not_accepted = || CommandError::NotAccepted {
+        instance: instance.clone(),
+        software: info.software.as_str().to_owned(),
+        own: COMMANDS_VERSION,
+    };
+    let service = access
+        .service_builder(&name)
+        .request_response::<CommandRequest, Answer>()
+        .open()
+        .map_err(|error| refused(error, instance, not_accepted))?;
+    service
+        .client_builder()
+        .backpressure_strategy(BackpressureStrategy::DiscardData)
+        .create()
+        .map_err(|_| CommandError::TooMany(instance.clone()))
 }
 
 impl Commander {
@@ -50,32 +95,28 @@ impl Commander {
     /// When no daemon of this name runs here, it is another version, or it
     /// accepts no commands.
     pub fn open(instance: &Instance) -> Result<Self, CommandError> {
-        let access = services::access().map_err(WatchError::NoSharedMemory)?;
-        let info = read_info(&access, instance)?;
-        check_layout(&info, instance)?;
-        let name = command_server::service_name(instance)
-            .ok_or_else(|| WatchError::NotRunning(instance.clone()))?;
-        let not_accepted = || CommandError::NotAccepted {
-            instance: instance.clone(),
-            software: info.software.as_str().to_owned(),
-            own: COMMANDS_VERSION,
-        };
-        let service = access
-            .service_builder(&name)
-            .request_response::<CommandRequest, Answer>()
-            .open()
-            .map_err(|error| refused(error, instance, not_accepted))?;
-        let client = service
-            .client_builder()
-            .backpressure_strategy(BackpressureStrategy::DiscardData)
-            .create()
-            .map_err(|_| CommandError::TooMany(instance.clone()))?;
+        let connected = Connected::open(instance, |place| Opened::at(place, instance))?;
         Ok(Self {
             instance: instance.clone(),
-            info,
-            client,
-            _access: access,
+            info: connected.ports()?.info,
+            connected,
         })
+    }
+
+    /// Connects again if another process now receives commands for the same
+    /// daemon.
+    fn follow(&mut self) -> Result<(), CommandError> {
+        self.connected.ports()?;
+        if self.connected.place.now() == Presence::Here(self.connected.place.clone()) {
+            return Ok(());
+        }
+        let again = Self::open(&self.instance)?;
+        if again.info.process_id == self.info.process_id {
+            *self = again;
+            Ok(())
+        } else {
+            Err(WatchError::NotRunning(self.instance.clone()).into())
+        }
     }
 
     /// The daemon.
@@ -89,10 +130,14 @@ impl Commander {
     /// # Errors
     /// When the daemon refuses the command, has ended, or does not answer.
     pub fn command(&mut self, command: &Command) -> Result<u64, CommandError> {
+        let request = CommandRequest::try_from(command)?;
+        self.follow()?;
         let gone = || CommandError::Unreachable(WatchError::NotRunning(self.instance.clone()));
         let pending = self
+            .connected
+            .ports()?
             .client
-            .send_copy(CommandRequest::try_from(command)?)
+            .send_copy(request)
             .map_err(|error| WatchError::NoSharedMemory(services::explained(&error)))?;
         let patience = match command {
             Command::Stop => PATIENCE + STOPS_WITHIN,

@@ -19,6 +19,8 @@ mod outside_limits;
 mod sent_commands;
 mod wire;
 
+use serde::{Deserialize, Serialize};
+
 pub(super) use command_server::{CommandServer, Ends, Rings};
 pub use commandable::{Commandable, CommandableSetpoint, PlantLimits};
 pub use commander::Commander;
@@ -33,7 +35,7 @@ pub(crate) use wire::{Answer, CommandRequest};
 pub const COMMANDS_VERSION: u32 = 2;
 
 /// A command to a loop of any plant from another program.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 pub enum Command {
     /// Take control with the present state as set points, if nothing inhibits
     /// it.
@@ -67,7 +69,7 @@ impl Command {
 }
 
 /// A command from another program that waits for its answer.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 pub struct PendingCommand {
     /// Its identifier, for [`PublisherOf::answer`](super::PublisherOf::answer).
     pub id: u64,
@@ -76,7 +78,7 @@ pub struct PendingCommand {
 }
 
 /// The result of a command.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 pub enum Verdict {
     /// It was carried out in this tick.
     CarriedOut {

@@ -5,13 +5,14 @@ use std::ops::RangeInclusive;
 
 use fcc_core::framework::schema::unit;
 use fcc_telemetry::units::{Shown, number};
+use serde::{Deserialize, Serialize};
 
 /// A value this close to a limit counts as on it: a round limit in knots or
 /// feet is not round in SI units.
 const ROUNDING: f64 = 0.005;
 
 /// A set point out of its limits, in the unit at the end of its name.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 pub struct OutsideLimits {
     /// Its name: `airspeed_mps`.
     pub name: String,

@@ -113,6 +113,13 @@ impl Actuation {
 }
 
 impl Autopilot {
+    /// Follows how the aircraft responds to the last outputs.
+    pub(super) fn follow_outputs(&mut self, estimate: &Estimate) {
+        self.actuation.knows_age(self.ages.rates_s());
+        let dt_s = self.clock.step_s();
+        self.actuation.follow(&self.last, estimate, dt_s);
+    }
+
     /// The gains for the present airspeed and latency.
     pub(super) fn schedule(&self) -> Schedule {
         self.schedule_at(self.navigation.estimate().airspeed_mps)

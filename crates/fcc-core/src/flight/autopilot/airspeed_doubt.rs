@@ -52,6 +52,9 @@ const FIRST_OF_ANGLE: u8 = 0xc0;
 /// by this share of the range between them.
 const KEPT_SDS: f64 = 1.0;
 const MOST_SHARE: f64 = 0.15;
+/// The slowest glide over a stalling speed that was found in flight: 65 over 53 kt are
+/// a Cessna 172's best.
+const LEAST_GLIDE: f64 = 1.23;
 
 /// Writes the notice of a doubt.
 pub(super) fn write(kind: u8, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -133,15 +136,27 @@ impl Autopilot {
         airspeed.is_never() || self.navigation.permits_airspeed(airspeed.value)
     }
 
-    /// The envelope, with the distance that the airspeed's uncertainty needs.
+    /// The envelope, with the distance that the airspeed's uncertainty needs, and the
+    /// stalling speed that was found in this flight. Its lowest airspeed permits the
+    /// bank that the turn needs: one that is limited for want of speed would
+    /// otherwise stay limited.
     pub(super) fn envelope(&self) -> Envelope {
-        let envelope = self.config.envelope;
+        let (envelope, estimate) = (self.config.envelope, self.navigation.estimate());
         let range_mps = envelope.max_airspeed_mps - envelope.min_airspeed_mps;
-        let by_mps = (KEPT_SDS * self.navigation.estimate().airspeed_uncertainty_mps)
-            .min(MOST_SHARE * range_mps);
-        Envelope {
+        let by_mps = (KEPT_SDS * estimate.airspeed_uncertainty_mps).min(MOST_SHARE * range_mps);
+        let found_mps = self.recovery.found_stall_mps();
+        let envelope = Envelope {
             min_airspeed_mps: envelope.min_airspeed_mps + by_mps,
             max_airspeed_mps: envelope.max_airspeed_mps - by_mps,
+            stall_airspeed_mps: envelope.stall_airspeed_mps.max(found_mps),
+            best_glide_airspeed_mps: envelope
+                .best_glide_airspeed_mps
+                .max(LEAST_GLIDE * found_mps),
+            ..envelope
+        };
+        let bank_rad = self.heading.needed_bank_rad();
+        Envelope {
+            min_airspeed_mps: envelope.floor_in_turn_mps(bank_rad, estimate.gust_load),
             ..envelope
         }
     }

@@ -16,8 +16,15 @@ impl Autopilot {
     /// Why the autopilot does not engage.
     pub(super) fn inhibits(&self, now: Time, measurements: &Measurements) -> Flags {
         let estimate = self.navigation.estimate();
+        let contradictions = self.navigation.contradictions();
         (self.unsafe_with(self.stale(now), now, measurements)
             | self.not_permitted(now, measurements))
+        .with(
+            flags::ATTITUDE_AGAINST_RATES,
+            contradictions.attitude_and_rates,
+        )
+        .with(flags::LOAD_AGAINST_GRAVITY, contradictions.load)
+        .with(flags::PITCH_AGAINST_FORCE, contradictions.pitch_and_force)
         .with(flags::PLANT_REPLAYING, self.plant_is(PlantState::Replaying))
         .with(flags::PILOT_TAKES_OVER, self.pilot.is_moved())
         .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))

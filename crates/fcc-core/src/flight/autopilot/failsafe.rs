@@ -191,7 +191,7 @@ impl Autopilot {
         };
         Surfaces {
             throttle,
-            elevator: vertical.elevator,
+            elevator: self.actuation.elevator(vertical.elevator),
             aileron: lateral.aileron,
             rudder: lateral.rudder,
             elevator_trim: None,

@@ -105,6 +105,14 @@ pub const TRIM_NOT_FOLLOWED: Flags = Flags::bit(45);
 pub const UNTRIMMED: Flags = Flags::bit(46);
 /// The angle of attack contradicts lift and path, and is not used.
 pub const DOUBTED_ANGLE: Flags = Flags::bit(47);
+/// The wing has stalled above the configured stalling speed.
+pub const STALLS_FASTER: Flags = Flags::bit(48);
+/// The body rates are not the derivatives of pitch, roll and heading.
+pub const ATTITUDE_AGAINST_RATES: Flags = Flags::bit(49);
+/// The vertical acceleration is not that of flight.
+pub const LOAD_AGAINST_GRAVITY: Flags = Flags::bit(50);
+/// Forward acceleration and airspeed contradict the pitch.
+pub const PITCH_AGAINST_FORCE: Flags = Flags::bit(51);
 
 /// The shift from the bit of a quantity that is too old to the bit of the same
 /// quantity being frozen.
@@ -141,7 +149,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
 }
 
 /// The text of each bit, lowest first.
-pub(super) const NAMES: [&str; 48] = [
+pub(super) const NAMES: [&str; 52] = [
     "attitude is missing or too old",
     "heading is missing or too old",
     "body rates are missing or too old",
@@ -190,6 +198,10 @@ pub(super) const NAMES: [&str; 48] = [
     "the elevator trim does not follow",
     "the release cannot trim: hold the elevator",
     "angle of attack contradicts lift and path and is not used",
+    "the wing stalls above the configured speed: flying faster",
+    "body rates contradict attitude or heading: check signs, axes, units and offsets of both",
+    "vertical acceleration contradicts gravity: check its sign and unit, and those of pitch and roll",
+    "forward acceleration contradicts pitch and airspeed: check signs and units, and the pitch's offset",
 ];
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 mod actuation;
 mod airspeed_doubt;
+mod assembly;
 mod capture;
 mod command;
 mod config;
@@ -138,56 +139,6 @@ pub struct Autopilot {
     is_at_floor: bool,
 }
 
-impl Autopilot {
-    /// An autopilot that is not engaged.
-    pub fn new(config: AutopilotConfig) -> Self {
-        Self {
-            accepted: Measurements::default(),
-            navigation: Navigation::new(&config.navigation)
-                .for_stall_airspeed(config.envelope.stall_airspeed_mps)
-                .for_aircraft(
-                    config.reference_airspeed_mps,
-                    config.airspeed.throttle_per_mps2,
-                ),
-            replacement: Replacement::new(config.navigation.attitude_tau_s),
-            frozen: FrozenDetector::new(config.frozen_after.as_secs_f64()),
-            guidance: ActiveMode::None,
-            targets: Targets::default(),
-            capture: None,
-            altimeter: config.altimeter,
-            reference: AltitudeReference::PressureLevel,
-            heading: HeadingLoop::new(config.heading),
-            altitude: AltitudeLoop::new(config.altitude, &config.envelope),
-            airspeed: AirspeedLoop::new(config.airspeed),
-            actuation: Actuation::new(config.assumed_latency_s, config.pace),
-            recovery: Recovery::new(),
-            trim: ElevatorTrim::new(None),
-            pilot: PilotTakeover::new(config.stick_takeover),
-            release: None,
-            setpoints: Setpoints::default(),
-            clock: PlantClock::default(),
-            ages: ReadingAges::default(),
-            whereabouts: Whereabouts::default(),
-            before: Time::NEVER,
-            settled_s: None,
-            renewed_since: Time::NEVER,
-            last: Surfaces::default(),
-            kept_trims: KeptTrims::default(),
-            degraded: Degraded::default(),
-            following: Following::default(),
-            distrusted: Flags::NONE,
-            doubt_notice: None,
-            is_at_floor: false,
-            config,
-        }
-    }
-
-    /// The configuration.
-    pub const fn config(&self) -> &AutopilotConfig {
-        &self.config
-    }
-}
-
 impl Controller for Autopilot {
     type Measurements = Measurements;
     type Estimate = Estimate;
@@ -212,6 +163,7 @@ impl Controller for Autopilot {
         (self.external(tick.woke, measurements) | of_parts)
             .with(flags::RECOVERING, self.recovery.is_active())
             .with(flags::UNDERSPEED, self.altitude.gives_up_height())
+            .with(flags::STALLS_FASTER, self.recovery.found_stall_mps() > 0.0)
             .with(flags::AT_FLOOR, self.is_at_floor)
             .with(flags::RELEASING, self.release.is_some())
     }
@@ -314,8 +266,7 @@ impl Controller for Autopilot {
             return self.last;
         }
         let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
-        self.actuation.knows_age(self.ages.rates_s());
-        self.actuation.follow(&self.last, &estimate, dt_s);
+        self.follow_outputs(&estimate);
         let (schedule, envelope) = (self.schedule(), self.envelope());
         if self.accepted.body_rates.value != self.kept_trims.found_with {
             self.keep_trims();
@@ -355,8 +306,12 @@ impl Controller for Autopilot {
 
     fn failsafe(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
         self.prepare_end_of_failsafe(tick.woke, measurements);
-        let outputs = self.safest(tick.woke, measurements);
         let lost = self.lost(tick.woke, measurements);
+        if !lost.contains(flags::BODY_RATES) && !lost.contains(flags::ATTITUDE) {
+            let estimate = *self.navigation.estimate();
+            self.follow_outputs(&estimate);
+        }
+        let outputs = self.safest(tick.woke, measurements);
         self.last = self.with_trim(tick.woke, outputs, lost);
         self.last
     }

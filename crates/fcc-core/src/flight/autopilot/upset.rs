@@ -3,7 +3,7 @@
 use libm::sin;
 
 use super::{Autopilot, flags};
-use crate::flight::control::{Change, Recovery, RecoveryInputs};
+use crate::flight::control::{Change, Envelope, Recovery, RecoveryInputs};
 use crate::flight::navigation::Estimate;
 use crate::flight::{Setpoints, Surfaces};
 use crate::framework::{Flags, Time};
@@ -50,8 +50,12 @@ impl Autopilot {
         now: Time,
         estimate: &Estimate,
     ) -> Option<Surfaces> {
+        let envelope = Envelope {
+            stall_airspeed_mps: self.envelope().stall_airspeed_mps,
+            ..self.config.envelope
+        };
         let inputs = RecoveryInputs {
-            envelope: &self.config.envelope,
+            envelope: &envelope,
             schedule: self.schedule_at(estimate.airspeed_mps),
             heading: &self.heading,
             altitude: &self.altitude,

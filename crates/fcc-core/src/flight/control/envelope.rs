@@ -139,8 +139,13 @@ impl Envelope {
     /// present gusts, m/s: a wing stalls at the stalling speed times the root of
     /// the load (FAA-H-8083-3C, chapter 5).
     pub fn floor_mps(&self, estimate: &Estimate) -> f64 {
-        let bank = limit_abs(estimate.roll_rad, MAX_TURN_BANK_RAD);
-        let load = 1.0 / cos(bank) + GUST_DEVIATIONS * estimate.gust_load;
+        self.floor_in_turn_mps(estimate.roll_rad, estimate.gust_load)
+    }
+
+    /// The same for a bank, rad, and a load of gusts, g, one standard deviation.
+    pub(crate) fn floor_in_turn_mps(&self, bank_rad: f64, gust_load: f64) -> f64 {
+        let bank = limit_abs(bank_rad, MAX_TURN_BANK_RAD);
+        let load = 1.0 / cos(bank) + GUST_DEVIATIONS * gust_load;
         let stall = OVER_STALL * self.stall_airspeed_mps * sqrt(load.max(1.0));
         let middle = 0.5 * (self.min_airspeed_mps + self.max_airspeed_mps);
         limit(stall, self.min_airspeed_mps, middle)

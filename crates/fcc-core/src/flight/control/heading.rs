@@ -121,6 +121,8 @@ pub struct HeadingLoop {
     /// While the commanded bank is led from an earlier command to the present
     /// one.
     lead: Option<Lead>,
+    /// What the turn needs, before it is limited for want of speed, rad.
+    needed_rad: f64,
 }
 
 /// A bank command that follows another.
@@ -156,6 +158,7 @@ impl HeadingLoop {
             }),
             correction: HighPass::new(config.rudder_washout_s),
             lead: None,
+            needed_rad: 0.0,
         }
     }
 
@@ -173,6 +176,7 @@ impl HeadingLoop {
         let roll_rate = estimate.body_rates.roll_radps;
         let rolling = self.aileron_feed_forward(roll_rate, schedule);
         self.lead = None;
+        self.needed_rad = 0.0;
         self.roll_command.reset(roll_rate);
         self.roll_rate.engage(
             aileron,
@@ -208,12 +212,16 @@ impl HeadingLoop {
             deceleration: GRAVITY_MPS2 / speed * self.config.rollout_rate_radps,
         };
         // Coordinated turn: tan φ = V ψ̇ / g.
-        let roll_rad = limit_abs(
-            atan(speed / GRAVITY_MPS2 * profile.speed(error)),
-            envelope.bank_limit_at_rad(estimate),
-        );
+        let needed_rad = atan(speed / GRAVITY_MPS2 * profile.speed(error));
+        self.needed_rad = needed_rad.abs().min(envelope.bank_limit_rad());
+        let roll_rad = limit_abs(needed_rad, envelope.bank_limit_at_rad(estimate));
         let roll_rad = self.led(roll_rad, dt_s);
         self.hold_bank(roll_rad, estimate, schedule, dt_s)
+    }
+
+    /// The bank that the turn needs, rad, 0 or more: that of the last step.
+    pub(crate) const fn needed_bank_rad(&self) -> f64 {
+        self.needed_rad
     }
 
     /// The bank command on the way from an earlier one to `wanted_rad`.

@@ -7,7 +7,7 @@
 //! chapter 5, spin recovery; Bowman, NASA TN D-6575, 1971). Neither heading nor
 //! altitude is followed meanwhile.
 
-use libm::sin;
+use libm::{sin, sqrt};
 
 use super::load::LoadLoop;
 use super::upset::{Motion, UpsetDetector};
@@ -44,6 +44,11 @@ const SPIN_UNLOADED: f64 = 0.3;
 const SPIN_NOSE_DROPS_RADPS: f64 = 0.349;
 /// How fast the throttle moves, 1/s.
 const THROTTLE_RATE_PER_S: f64 = 1.0;
+/// A stalled wing has less lift than the largest, at which it stalled: it flies this
+/// many times faster. Each stall raises the stalling speed at least as much. With the
+/// least load for which this is computed, g.
+const STALLED_RATIO: f64 = 1.1;
+const LEAST_LOAD: f64 = 0.5;
 /// The time constant with which the trims of undisturbed flight are followed, s.
 const TRIM_TAU_S: f64 = 2.0;
 
@@ -73,6 +78,7 @@ pub(crate) struct Recovery {
     /// The side of the roll, 1 right and -1 left, while it is kept.
     side: f64,
     spinning_s: f64,
+    found_stall_mps: f64,
 }
 
 impl Recovery {
@@ -91,6 +97,7 @@ impl Recovery {
             throttle: RateLimit::new(THROTTLE_RATE_PER_S),
             side: 0.0,
             spinning_s: 0.0,
+            found_stall_mps: 0.0,
         }
     }
 
@@ -108,6 +115,13 @@ impl Recovery {
         self.upset.is_upset()
     }
 
+    /// The airspeed at which the wing has stalled without load, m/s: above the
+    /// configured one if it is iced, too heavy, or the airspeed is wrong; 0 if an
+    /// elevator that was fully up has always had an effect.
+    pub(crate) const fn found_stall_mps(&self) -> f64 {
+        self.found_stall_mps
+    }
+
     /// Ends a recovery that cannot go on.
     pub(crate) const fn end(&mut self) {
         self.upset = UpsetDetector::new();
@@ -122,8 +136,17 @@ impl Recovery {
         estimate: &Estimate,
         inputs: &RecoveryInputs<'_>,
     ) -> Change {
-        let was = self.upset.is_upset();
-        let is = self.upset.step(estimate, inputs.envelope, inputs.dt_s);
+        let (was, was_unanswered) = (self.upset.is_upset(), self.upset.is_unanswered());
+        let elevator = if inputs.followed { last.elevator } else { 0.0 };
+        let is = self
+            .upset
+            .step(estimate, elevator, inputs.envelope, inputs.dt_s);
+        if !was_unanswered && self.upset.is_unanswered() {
+            let load = estimate.load_factor.max(LEAST_LOAD);
+            let stall_mps = estimate.airspeed_mps / (STALLED_RATIO * sqrt(load));
+            let known_mps = inputs.envelope.stall_airspeed_mps;
+            self.found_stall_mps = stall_mps.max(STALLED_RATIO * known_mps);
+        }
         match (was, is) {
             (false, true) => {
                 self.load.begin(estimate);

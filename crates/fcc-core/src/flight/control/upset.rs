@@ -90,15 +90,15 @@ impl Motion {
 ///
 /// let (envelope, mut upset) = (Envelope::default(), UpsetDetector::default());
 /// let mut flown = Estimate { airspeed_mps: 51.4, true_airspeed_mps: 53.8, ..Estimate::default() };
-/// assert!(!upset.step(&flown, &envelope, 0.025));
+/// assert!(!upset.step(&flown, 0.0, &envelope, 0.025));
 /// flown.roll_rad = 80.0_f64.to_radians();
-/// assert!(upset.step(&flown, &envelope, 0.025));
+/// assert!(upset.step(&flown, 0.0, &envelope, 0.025));
 /// // At 50° it still is, ...
 /// flown.roll_rad = 50.0_f64.to_radians();
-/// assert!(upset.step(&flown, &envelope, 0.025));
+/// assert!(upset.step(&flown, 0.0, &envelope, 0.025));
 /// // ... and not with the wings level for half a second.
 /// flown.roll_rad = 0.0;
-/// assert!((0..30).any(|_| !upset.step(&flown, &envelope, 0.025)));
+/// assert!((0..30).any(|_| !upset.step(&flown, 0.0, &envelope, 0.025)));
 /// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct UpsetDetector {
@@ -106,6 +106,8 @@ pub struct UpsetDetector {
     is_spinning: bool,
     /// How long the wing has been stalled, s.
     stalled_s: f64,
+    /// How long the elevator has been fully up, and nothing has risen, s.
+    full_up_s: f64,
     /// How long the spin's signs have been there, s.
     spinning_s: f64,
     /// How long the flight has been normal again, s.
@@ -130,6 +132,16 @@ const STALLED_RAD: f64 = 0.349;
 /// difference of attitude and path is a downdraught's.
 const STALLED_BELOW: f64 = 1.0;
 const STALLED_FOR_S: f64 = 0.6;
+/// At any airspeed, since its sensor may be wrong, a wing is stalled that answers
+/// an elevator this far up neither with load, g, nor with a pitch rate, rad/s (5
+/// °/s), for this time, s, at an angle this far beyond the largest commanded one,
+/// rad (2°). "The stick fully back, a high sink rate and no pitch authority" are
+/// signs of a full stall (FAA-H-8083-3C, chapter 5).
+const FULL_UP: f64 = 0.95;
+const ANSWERS_LOAD: f64 = 1.3;
+const ANSWERS_RADPS: f64 = 0.087;
+const UNANSWERED_BEYOND_RAD: f64 = 0.035;
+const UNANSWERED_FOR_S: f64 = 2.0;
 /// The yaw rate of a spin and that at which its rotation has stopped, rad/s (40
 /// and 20 °/s). A light aircraft spins a turn in 3 s (FAA-H-8083-3C, chapter 5),
 /// about half of it in yaw; in a level turn at 60° and 60 kt yaw is 16 °/s.
@@ -154,19 +166,33 @@ impl UpsetDetector {
             is_upset: false,
             is_spinning: false,
             stalled_s: 0.0,
+            full_up_s: 0.0,
             spinning_s: 0.0,
             normal_s: 0.0,
         }
     }
 
-    /// Whether the aircraft is upset, after a step.
-    pub fn step(&mut self, estimate: &Estimate, envelope: &Envelope, dt_s: f64) -> bool {
+    /// Whether the aircraft is upset, after a step with the elevator where it was
+    /// commanded to; 0 if it does not follow.
+    pub fn step(
+        &mut self,
+        estimate: &Estimate,
+        elevator: f64,
+        envelope: &Envelope,
+        dt_s: f64,
+    ) -> bool {
         let motion = Motion::of(estimate);
         let stall_mps = envelope.stall_airspeed_mps;
         let rates = estimate.body_rates;
         let stalled = motion.angle_of_attack_rad > STALLED_RAD
             && estimate.airspeed_mps < STALLED_BELOW * stall_mps;
         self.stalled_s = lasting(self.stalled_s, stalled, dt_s);
+        let beyond_rad = motion.angle_of_attack_rad - envelope.max_angle_of_attack_rad;
+        let unanswered = elevator > FULL_UP
+            && beyond_rad > UNANSWERED_BEYOND_RAD
+            && estimate.load_factor < ANSWERS_LOAD
+            && rates.pitch_radps < ANSWERS_RADPS;
+        self.full_up_s = lasting(self.full_up_s, unanswered, dt_s);
         // In a spin the airspeed's estimate may be wrong, and the path with it: an
         // angle that is measured counts as well.
         let largest = motion.angle_of_attack_rad.max(estimate.angle_of_attack_rad);
@@ -187,6 +213,7 @@ impl UpsetDetector {
             || estimate.pitch_rad > most_pitch + PITCH_BEYOND_RAD
             || estimate.pitch_rad < least_pitch - PITCH_BEYOND_RAD
             || self.stalled_s > STALLED_FOR_S
+            || self.is_unanswered()
             || self.is_spinning;
         let normal = !begins
             && !stalled
@@ -213,7 +240,12 @@ impl UpsetDetector {
 
     /// Whether the wing is stalled.
     pub fn is_stalled(&self) -> bool {
-        self.stalled_s > 0.0
+        self.stalled_s > 0.0 || self.is_unanswered()
+    }
+
+    /// Whether an elevator that is fully up has no effect.
+    pub fn is_unanswered(&self) -> bool {
+        self.full_up_s > UNANSWERED_FOR_S
     }
 }
 

@@ -1,13 +1,12 @@
 //! Whether the airspeed sensor is believed, and the airspeed without it.
 
-use super::airspeed_filter::{
-    AirframePrior, AirspeedFilter, acceleration_mps2, angle_of_attack_rad, squared,
-};
+use super::airspeed_filter::{AirframePrior, acceleration_mps2, squared};
 use super::airspeed_reason::{Doubt, DoubtReason, Reference};
 use super::filter_bank::FilterBank;
 use super::force_sample::ForceSample;
 use crate::blocks::{LowPass, smoothing_factor};
 
+mod compare;
 mod static_port;
 
 pub(super) use static_port::Blocked;
@@ -23,35 +22,9 @@ const THRUST_LAG_S: f64 = 1.7;
 const THRUST_RECENT_S: f64 = 10.0;
 /// The time for which a filter runs without the sensor before it is compared, s.
 const ALONE_S: f64 = 20.0;
-/// A difference of 9 % of the reference airspeed (9 kt of 100 kt), of 3.5
-/// standard deviations and of 4.5 times the gusts must last for 2.5 s.
-const DIFFERS_RATIO: f64 = 0.09;
-const DIFFERS_SDS: f64 = 3.5;
-const DIFFERS_GUSTS: f64 = 4.5;
-const DOUBTED_AFTER_S: f64 = 2.5;
-/// With an altimeter that is doubted for its static port: the share of that
-/// limit, and the time.
-const STATIC_SHARE: f64 = 0.5;
-const STATIC_AFTER_S: f64 = 0.5;
-/// The forces vote for the sensor if they put the airspeed more than this share
-/// of the way towards it: then the wind has changed, after this time in s.
-const SENSOR_SHARE: f64 = 0.45;
-const WIND_CHANGED_AFTER_S: f64 = 2.0;
+/// The lags of the forces' vote and of the sensor's difference, s.
 const VOTE_LAG_S: f64 = 2.0;
 const DIFFERENCE_LAG_S: f64 = 0.5;
-/// A doubted sensor is believed again when it has agreed within 7 % of the
-/// reference airspeed for 10 s; another sensor of the same quantity for 1 s.
-const AGREES_RATIO: f64 = 0.07;
-const BELIEVED_AFTER_S: f64 = 10.0;
-const ANOTHER_BELIEVED_AFTER_S: f64 = 1.0;
-/// A doubted sensor that is lower than the forces is believed at once if the aircraft
-/// meets the air at this angle or more by its attitude and the path at the airspeed of the
-/// forces, rad (14°: less than a wing stalls at, more than 1.2 times the stalling speed needs),
-/// for this time, s: in a stall the models do not hold, and too slow is more dangerous than too fast.
-const NEAR_STALL_RAD: f64 = 0.25;
-const NEAR_STALL_AFTER_S: f64 = 1.0;
-/// Doubt needs models that have learned the aircraft for this time, s.
-const LEARNED_S: f64 = 20.0;
 /// After attitude, rates, forces or altitude were not measured, the models learn
 /// for this time, s, before they are compared again.
 const SETTLED_S: f64 = 10.0;
@@ -352,102 +325,5 @@ impl AirspeedMonitor {
             self.gusts_mps2 += smoothing_factor(passed_s, GUSTS_OVER_S)
                 * (seen + LEAST_GUSTS_MPS2 - self.gusts_mps2);
         }
-    }
-
-    fn limit_mps(&self, filter: &AirspeedFilter) -> f64 {
-        (DIFFERS_RATIO * self.prior.reference_mps)
-            .max(DIFFERS_SDS * filter.sd_mps())
-            .max(DIFFERS_GUSTS * libm::sqrt(self.gusts_mps2))
-    }
-
-    fn compare(
-        &mut self,
-        bank: &mut FilterBank,
-        input: &MonitorInput,
-        (sensor_mps, source): (f64, u8),
-        holds: bool,
-        dt_s: f64,
-    ) {
-        let filter_mps = bank.older.airspeed_mps();
-        let differs = self.difference.step(sensor_mps - filter_mps, dt_s);
-        let vote = self.vote.step(bank.older.vote_mps(), dt_s);
-        if let Some(doubt) = self.doubt {
-            self.look_at_static_port(bank, input, filter_mps + differs, holds, dt_s);
-            let is_static = doubt.reason == DoubtReason::BlockedStatic;
-            let agrees = differs.abs() < AGREES_RATIO * self.prior.reference_mps
-                && !(is_static && input.altimeter_is_doubted);
-            self.agrees_s = if agrees { self.agrees_s + dt_s } else { 0.0 };
-            let needed_s = if source == doubt.source {
-                BELIEVED_AFTER_S
-            } else {
-                ANOTHER_BELIEVED_AFTER_S
-            };
-            let is_near_stall =
-                differs < 0.0 && angle_of_attack_rad(&input.sample, filter_mps) > NEAR_STALL_RAD;
-            self.near_stall_s = if is_near_stall {
-                self.near_stall_s + dt_s
-            } else {
-                0.0
-            };
-            if self.agrees_s > needed_s || self.near_stall_s > NEAR_STALL_AFTER_S {
-                bank.believing = bank.older;
-                bank.believing.adopt(sensor_mps);
-                self.follow_sensor(bank);
-                (self.doubt, self.static_port, self.blocked) = (None, None, None);
-            }
-            return;
-        }
-        let (share, doubted_after_s) = if input.altimeter_is_doubted {
-            (STATIC_SHARE, STATIC_AFTER_S)
-        } else {
-            (1.0, DOUBTED_AFTER_S)
-        };
-        let limit_mps = share * self.limit_mps(&bank.older);
-        let is_large = holds && differs.abs() > limit_mps;
-        // Without an altimeter the lift does not tell the wind.
-        let for_sensor =
-            !input.altimeter_is_doubted && vote * differs.signum() > SENSOR_SHARE * differs.abs();
-        let count = |now: bool, s: f64| if now { s + dt_s } else { (s - dt_s).max(0.0) };
-        self.differs_s = count(is_large && !for_sensor, self.differs_s);
-        self.wind_s = count(is_large && for_sensor, self.wind_s);
-        if differs.abs() < 0.3 * limit_mps {
-            self.reference = Reference::new(input.altitude_m, sensor_mps);
-        }
-        if self.wind_s > WIND_CHANGED_AFTER_S {
-            self.follow_sensor(bank);
-        } else if self.differs_s > doubted_after_s {
-            if input.may_doubt && bank.learned_s > LEARNED_S {
-                let sigma = squared(input.sample.sqrt_density);
-                let reason = if input.altimeter_is_doubted {
-                    DoubtReason::BlockedStatic
-                } else {
-                    self.reference
-                        .reason(input.altitude_m, sensor_mps, sigma, differs)
-                };
-                self.doubt = Some(Doubt { source, reason });
-                let may_be_static = bank.older.is_copy()
-                    && bank.learned_s > 2.0 * ALONE_S
-                    && matches!(reason, DoubtReason::TooHigh | DoubtReason::TooLow);
-                self.static_port = may_be_static
-                    .then(|| StaticPort::new(self.port_input(bank, input, filter_mps + differs)));
-                self.was_doubted = true;
-                self.agrees_s = 0.0;
-            } else {
-                self.follow_sensor(bank);
-            }
-        } else if bank.younger_s >= ALONE_S && differs.abs() < 0.6 * limit_mps {
-            bank.older = bank.younger;
-            bank.younger = bank.believing.kept();
-            bank.younger_s = 0.0;
-        }
-    }
-
-    /// The filters follow the sensor from now on.
-    fn follow_sensor(&mut self, bank: &mut FilterBank) {
-        bank.follow_sensor();
-        self.difference.reset(0.0);
-        self.vote.reset(0.0);
-        self.differs_s = 0.0;
-        self.wind_s = 0.0;
     }
 }

@@ -55,6 +55,8 @@ pub(super) struct AltitudeInput {
     /// The altimeter's, m, if it is current, and the step of a coarse one.
     pub(super) altitude_m: Option<f64>,
     pub(super) step_m: f64,
+    /// It has just stepped, and the filter has adopted its altitude.
+    pub(super) has_stepped: bool,
     /// The filter's state with the altimeter, and its bias, m/s².
     pub(super) followed: VerticalState,
     pub(super) bias_mps2: f64,
@@ -273,6 +275,9 @@ impl AltitudeMonitor {
                 altitude_m: altitude_m + blocked.height_m,
                 climb_rate_mps: blocked.climb_rate_mps,
             });
+        }
+        if input.has_stepped {
+            (self.older, self.younger) = (None, None);
         }
         let (Some(altitude_m), Some(mut older), Some(mut younger)) =
             (input.altitude_m, self.older, self.younger)

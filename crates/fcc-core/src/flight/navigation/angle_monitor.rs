@@ -28,7 +28,7 @@ pub(super) struct OtherAngles {
 }
 
 impl OtherAngles {
-    fn tell(&self) -> bool {
+    fn are_valid(&self) -> bool {
         self.speed_ratio > TELLS_ABOVE && self.turning_radps < TELLS_BELOW_RADPS
     }
 
@@ -76,7 +76,7 @@ impl AngleMonitor {
             *self = Self::new();
         }
         let distance_rad = measured
-            .filter(|_| impossible.is_none() && others.tell())
+            .filter(|_| impossible.is_none() && others.are_valid())
             .map(|(rad, _)| others.distance_rad(rad));
         let (changes, after_s) = if self.doubt.is_some() {
             let agrees = distance_rad.is_some_and(|rad| rad < AGREES_RAD);

@@ -5,6 +5,7 @@
 //! times, the barometer over long times. Each channel here combines one such
 //! pair, and predicts through ticks in which nothing new arrived.
 
+mod agreement;
 mod air_data;
 mod airspeed_filter;
 mod airspeed_monitor;
@@ -37,12 +38,14 @@ use super::atmosphere::density_ratio;
 use crate::blocks::LowPass;
 use crate::framework::Time;
 use crate::units::{GRAVITY_MPS2, KNOT_MPS};
+use agreement::Agreement;
 use airspeed_filter::AirframePrior;
 use airspeed_monitor::{AirspeedMonitor, MonitorInput};
 use altitude_monitor::AltitudeMonitor;
 use force_sample::{ForceSample, in_g};
 use sample_tracker::is_current;
 
+pub(crate) use agreement::Contradictions;
 pub use air_data::AirspeedChannel;
 pub(crate) use airspeed_reason::{Doubt, DoubtReason};
 pub use attitude::AttitudeChannel;
@@ -87,6 +90,7 @@ pub struct Navigation {
     lift: LiftChannel,
     monitor: AirspeedMonitor,
     altitude_monitor: AltitudeMonitor,
+    agreement: Agreement,
     airframe: AirframePrior,
     throttle: Option<f64>,
     is_engaged: bool,
@@ -106,6 +110,7 @@ impl Navigation {
             lift: LiftChannel::new(STALL_AIRSPEED_MPS),
             monitor: AirspeedMonitor::new(CESSNA_172),
             altitude_monitor: AltitudeMonitor::new(),
+            agreement: Agreement::new(),
             airframe: CESSNA_172,
             throttle: None,
             is_engaged: false,
@@ -185,6 +190,7 @@ impl Navigation {
         let measured_mps = self
             .airspeed
             .step(now, measurements, &attitude, &vertical, dt_s);
+        self.compare(now, measurements, &vertical, dt_s);
         let input = self.monitor_input(now, measurements, &attitude, &vertical);
         let known = is_current(&force, now) && is_current(&measurements.attitude, now);
         self.monitor.step(&input, if known { dt_s } else { 0.0 });
@@ -228,6 +234,22 @@ impl Navigation {
             airspeed_uncertainty_mps,
             ..self.estimate
         };
+    }
+
+    /// Holds the sensors against each other before engaging.
+    fn compare(&mut self, now: Time, sensed: &Measurements, vertical: &VerticalState, dt_s: f64) {
+        if self.is_engaged {
+            self.agreement = Agreement::new();
+        } else {
+            let airspeed_mps = sensed.airspeed_mps.value;
+            let true_mps = super::atmosphere::true_airspeed_mps(airspeed_mps, vertical.altitude_m);
+            self.agreement.step(now, sensed, true_mps, dt_s);
+        }
+    }
+
+    /// Which sensors contradict each other, before engaging.
+    pub(crate) fn contradictions(&self) -> Contradictions {
+        self.agreement.contradictions()
     }
 
     fn monitor_input(
@@ -300,6 +322,7 @@ impl Navigation {
         self.attitude.adopt_next();
         self.vertical.coast(passed_s);
         self.airspeed.adopt_next();
+        self.agreement = Agreement::new();
         if self.monitor.doubt().is_none() {
             self.monitor = AirspeedMonitor::new(self.airframe);
         }

@@ -75,7 +75,20 @@ pub struct VerticalChannel {
     resolution: Resolution,
     /// The vertical acceleration that was integrated last, up, m/s².
     felt_mps2: f64,
+    /// Consecutive samples that are this far above or below, see [`STEPPED_M`].
+    beyond: i8,
+    has_stepped: bool,
 }
+
+/// An altimeter that differs by more than this, m, in so many consecutive samples,
+/// has stepped: no air moves an aircraft so far between samples, and it is
+/// many times a barometer's noise. Its altitude is adopted then: a correction
+/// would find a climb and a bias of the accelerometers that are none.
+const STEPPED_M: f64 = 8.0;
+const STEPPED_SAMPLES: i8 = 3;
+/// ... beyond so many standard deviations of what is expected: after a time in which
+/// nothing was measured the aircraft may be anywhere.
+const STEPPED_SDS: f64 = 4.0;
 
 /// The largest bias of an intact accelerometer, m/s².
 const MAX_BIAS_MPS2: f64 = 2.0;
@@ -100,7 +113,14 @@ impl VerticalChannel {
             news: SampleTracker::new(),
             resolution: Resolution::new(COARSEST_M),
             felt_mps2: 0.0,
+            beyond: 0,
+            has_stepped: false,
         }
+    }
+
+    /// Whether the altimeter's last sample was found to follow a step.
+    pub(super) const fn has_stepped(&self) -> bool {
+        self.has_stepped
     }
 
     /// The vertical acceleration by the accelerometers, up, m/s².
@@ -126,7 +146,7 @@ impl VerticalChannel {
         orientation: &Orientation,
         dt_s: f64,
     ) -> VerticalState {
-        self.feel(now, measurements, orientation, dt_s);
+        self.integrate(now, measurements, orientation, dt_s);
         let measured = measurements.altitude_m;
         let sample = self.news.of(&measured, dt_s);
         let known = self.resolution.step();
@@ -137,6 +157,7 @@ impl VerticalChannel {
             }
         };
         let step_m = self.resolution.step();
+        self.has_stepped = false;
         match sample {
             NewSample::None => {}
             NewSample::First => self.begin(measured.value),
@@ -148,10 +169,34 @@ impl VerticalChannel {
             }
             NewSample::Next(since_s) => {
                 let gains = self.covariance.correct(since_s);
-                self.correct(measured.value - self.state.altitude_m, &gains);
+                let error_m = measured.value - self.state.altitude_m;
+                if !self.may_have_stepped(error_m, &gains) {
+                    self.correct(error_m, &gains);
+                } else if self.beyond.abs() >= STEPPED_SAMPLES {
+                    self.beyond = 0;
+                    self.has_stepped = true;
+                    self.state.altitude_m = measured.value;
+                    if let Some(mark) = &mut self.mark {
+                        mark.keep();
+                    }
+                }
             }
         }
         self.state
+    }
+
+    /// Whether the altimeter differs as after a step; counts such samples.
+    fn may_have_stepped(&mut self, error_m: f64, gains: &Gains) -> bool {
+        let side = if error_m > 0.0 { 1 } else { -1 };
+        let expected_m2 = STEPPED_SDS * STEPPED_SDS * gains.variance_m2();
+        self.beyond = if error_m * error_m <= STEPPED_M * STEPPED_M + expected_m2 {
+            0
+        } else if self.beyond.signum() == side {
+            self.beyond + side
+        } else {
+            side
+        };
+        self.beyond != 0
     }
 
     /// The same without an altimeter: climb rate or altitude follow another one,
@@ -164,7 +209,7 @@ impl VerticalChannel {
         reference: Option<Reference>,
         dt_s: f64,
     ) {
-        self.feel(now, measurements, orientation, dt_s);
+        self.integrate(now, measurements, orientation, dt_s);
         self.news.of(&measurements.altitude_m, dt_s);
         let state = &mut self.state;
         let towards = match reference {
@@ -185,7 +230,7 @@ impl VerticalChannel {
     }
 
     /// Integrates the vertical acceleration.
-    fn feel(
+    fn integrate(
         &mut self,
         now: Time,
         measurements: &Measurements,

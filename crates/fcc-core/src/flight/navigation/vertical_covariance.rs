@@ -57,6 +57,13 @@ pub(super) struct Gains {
     per_variance: f64,
 }
 
+impl Gains {
+    /// The variance of the altitude error that was expected, m².
+    pub(super) fn variance_m2(&self) -> f64 {
+        1.0 / self.per_variance
+    }
+}
+
 impl VerticalCovariance {
     /// The initial covariance. In the steady state the barometer determines
     /// frequencies below `bandwidth_radps`, the accelerometer those above: for

@@ -55,6 +55,7 @@ impl Navigation {
         let input = AltitudeInput {
             altitude_m: (is_felt && is_current(&altitude, now)).then_some(altitude.value),
             step_m: self.vertical.resolution().step(),
+            has_stepped: self.vertical.has_stepped(),
             followed,
             bias_mps2,
             felt_mps2: self.vertical.felt_mps2() + bias_mps2,

@@ -101,3 +101,36 @@ fn the_bias_is_estimated() {
         state.altitude_m
     );
 }
+
+/// A shift of the altimeter by 10 m is a change of altitude and of nothing else: no
+/// climb, no bias. A single sample that is off by as much changes nothing.
+#[test]
+fn a_step_of_the_altimeter_is_no_climb() {
+    let mut channel = VerticalChannel::new(0.7);
+    for sample in 1..=2_400 {
+        let now = Time::from_nanos(sample * 25_000_000);
+        let force = SpecificForce {
+            z_mps2: -GRAVITY_MPS2,
+            ..SpecificForce::default()
+        };
+        let off_m = if sample == 600 || sample >= 1_200 {
+            10.0
+        } else {
+            0.0
+        };
+        let measurements = Measurements {
+            specific_force: Reading::new(force, now),
+            altitude_m: Reading::new(900.0 + off_m + (sample % 2) as f64 * 1e-6, now),
+            ..Measurements::default()
+        };
+        let state = channel.step(now, &measurements, &Orientation::default(), DT_S);
+        assert!(state.climb_rate_mps.abs() < 0.05, "{sample}: {state:?}");
+        assert!(channel.bias_mps2.abs() < 0.01);
+        let is_settling = (1_200..1_203).contains(&sample);
+        let shown_m = if sample < 1_200 { 900.0 } else { 910.0 };
+        assert!(
+            is_settling || (state.altitude_m - shown_m).abs() < 0.1,
+            "{sample}"
+        );
+    }
+}

@@ -1,0 +1,60 @@
+//! The autopilot's parts, put together by its configuration.
+
+use super::super::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop};
+use super::super::navigation::{FrozenDetector, Navigation, Replacement};
+use super::{
+    ActiveMode, Actuation, AltitudeReference, Autopilot, AutopilotConfig, Degraded, Following,
+    KeptTrims, Measurements, PilotTakeover, PlantClock, ReadingAges, Recovery, Setpoints, Surfaces,
+    Targets, Time, Whereabouts,
+};
+use crate::framework::Flags;
+
+impl Autopilot {
+    /// An autopilot that is not engaged.
+    pub fn new(config: AutopilotConfig) -> Self {
+        Self {
+            accepted: Measurements::default(),
+            navigation: Navigation::new(&config.navigation)
+                .for_stall_airspeed(config.envelope.stall_airspeed_mps)
+                .for_aircraft(
+                    config.reference_airspeed_mps,
+                    config.airspeed.throttle_per_mps2,
+                ),
+            replacement: Replacement::new(config.navigation.attitude_tau_s),
+            frozen: FrozenDetector::new(config.frozen_after.as_secs_f64()),
+            guidance: ActiveMode::None,
+            targets: Targets::default(),
+            capture: None,
+            altimeter: config.altimeter,
+            reference: AltitudeReference::PressureLevel,
+            heading: HeadingLoop::new(config.heading),
+            altitude: AltitudeLoop::new(config.altitude, &config.envelope),
+            airspeed: AirspeedLoop::new(config.airspeed),
+            actuation: Actuation::new(config.assumed_latency_s, config.pace),
+            recovery: Recovery::new(),
+            trim: ElevatorTrim::new(None),
+            pilot: PilotTakeover::new(config.stick_takeover),
+            release: None,
+            setpoints: Setpoints::default(),
+            clock: PlantClock::default(),
+            ages: ReadingAges::default(),
+            whereabouts: Whereabouts::default(),
+            before: Time::NEVER,
+            settled_s: None,
+            renewed_since: Time::NEVER,
+            last: Surfaces::default(),
+            kept_trims: KeptTrims::default(),
+            degraded: Degraded::default(),
+            following: Following::default(),
+            distrusted: Flags::NONE,
+            doubt_notice: None,
+            is_at_floor: false,
+            config,
+        }
+    }
+
+    /// The configuration.
+    pub const fn config(&self) -> &AutopilotConfig {
+        &self.config
+    }
+}

@@ -1,0 +1,74 @@
+"""Two simulators at one address announce themselves: who is held is not left for the other."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+
+from daemon_under_test import engage, start, wait_until
+
+from fcc_hil.fly import ENGAGE_SWITCH
+from fcc_hil.process import StandInProcess
+from fcc_hil.standin import Mode, Settings
+
+SUCCESS = 0
+NOT_RELEASED = 5
+
+
+def write_beacon_config(scratch: Path) -> Path:
+    """Write a configuration that enters failsafe soon after a simulator hangs."""
+    path = scratch / "fccd.toml"
+    path.write_text(
+        '[x-plane]\nsimulator = "beacon"\n[guidance]\nmode = "hold"\n'
+        "[failsafe]\nhold_s = 0.5\nsensor_max_age_ms = 600\nall_silent_s = 0.6\n"
+        f'[recording]\nfolder = "{scratch}/recordings"\n'
+    )
+    return path
+
+
+def test_a_simulator_that_hangs_is_kept_until_its_controls_are_released(
+    fccd: Path, tmp_path: Path, beacon: tuple[str, int]
+) -> None:
+    config = write_beacon_config(tmp_path)
+    with (
+        StandInProcess(Settings(port=0, beacon=beacon)) as first,
+        start(fccd, tmp_path, config) as daemon,
+    ):
+        engage(first, daemon)
+        first.set_mode(Mode.FROZEN)
+        with StandInProcess(Settings(port=0, beacon=beacon)) as second:
+            kept = daemon.wait_for("another X-Plane announced itself")
+            assert f"X-Plane at 127.0.0.1:{first.port} is kept until it confirms" in kept
+            daemon.wait_for("failsafe -> standby")
+            first.set_mode(Mode.RUNNING)
+            daemon.wait_for(f"X-Plane at 127.0.0.1:{first.port} confirmed the release")
+            assert not first.progress().overridden
+            # It ends, and the other one is flown.
+            first.kill()
+            daemon.wait_for(f"X-Plane at 127.0.0.1:{second.port} answers", 20.0)
+            engage(second, daemon)
+            ending = daemon.end(signal.SIGTERM)
+            assert not second.progress().overridden
+    assert f"X-Plane at 127.0.0.1:{second.port} confirmed the release" in ending.log
+    assert ending.report["released"] is True
+
+
+def test_an_exit_says_that_the_simulator_that_hangs_is_not_released(
+    fccd: Path, tmp_path: Path, beacon: tuple[str, int]
+) -> None:
+    config = write_beacon_config(tmp_path)
+    with StandInProcess(Settings(port=0, beacon=beacon)) as first:
+        with start(fccd, tmp_path, config) as daemon:
+            engage(first, daemon)
+            first.set_mode(Mode.FROZEN)
+            daemon.wait_for("release sent to the actuators")
+            with StandInProcess(Settings(port=0, beacon=beacon)):
+                daemon.wait_for("another X-Plane announced itself")
+                ending = daemon.end(signal.SIGTERM)
+        assert ending.exit_code == NOT_RELEASED
+        assert ending.report["released"] is False
+        assert f"X-Plane at 127.0.0.1:{first.port} did not confirm the release" in ending.log
+        # The helper releases it when it returns.
+        first.write(ENGAGE_SWITCH, 0.0)
+        first.set_mode(Mode.RUNNING)
+        wait_until(lambda: not first.progress().overridden, "the helper releases")
