@@ -39,7 +39,7 @@ STAMPS   := .stamps
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: advisories lock reproducible package-check wheels deb test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
+.PHONY: advisories lock reproducible package-check wheels deb test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -112,11 +112,17 @@ LOCK := uv pip compile --quiet --upgrade --universal --generate-hashes --python-
 reproducible: $(STAMPS)/rust ## Build the daemon of this commit in two folders, and compare (10 minutes)
 	./scripts/reproducible $(TARGET)/reproducible
 
-fuzz: ## Fuzz every parser of outside data for a minute each (needs a nightly toolchain)
+# Pinned, so that a new compiler does not change the result.
+NIGHTLY := nightly-2026-05-20
+# For fuzz: inputs for each target.
+INPUTS  ?= 1000000
+
+fuzz: ## Fuzz every parser of outside data, INPUTS= for each (needs a nightly toolchain)
 	@command -v cargo-fuzz >/dev/null || cargo install --locked --version 0.13.2 cargo-fuzz
-	for target in $$(cargo +nightly fuzz list); do \
-	    cargo +nightly fuzz run $$target -- -max_total_time=60 || exit 1; \
-	done
+	NIGHTLY=$(NIGHTLY) ./scripts/fuzz $(INPUTS)
+
+soundness: ## Run Miri over the timers' arithmetic and the layout of records (10 minutes)
+	NIGHTLY=$(NIGHTLY) ./scripts/soundness
 
 # The boards: a Raspberry Pi with 64 bits, and a BeagleBone or a Pi with 32.
 BOARDS := aarch64-unknown-linux-gnu armv7-unknown-linux-gnueabihf

@@ -50,4 +50,6 @@ pub use outcome::{Conclusion, EventEntry, Outcome, RecordingOutcome};
 pub use pilot::Pilot;
 pub use plan::{Length, Pace, Plan};
 pub use recording::{RecordingRequest, about};
+#[cfg(fuzzing)]
+pub use restart::read_state;
 pub use scorer::true_sample;

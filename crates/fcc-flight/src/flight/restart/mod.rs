@@ -34,6 +34,8 @@ use place::SavedPlace;
 use recovery::{Next, Recovery};
 use saved::{Saved, SavedSwitch};
 use state_file::StateFileError;
+#[cfg(fuzzing)]
+pub use state_file::read_state;
 
 /// The state is stored at least at this interval.
 const KEEP_EVERY: Duration = Duration::from_secs(1);

@@ -106,6 +106,18 @@ fn decode(bytes: &[u8]) -> Result<Saved, StateFileError> {
     page.saved().ok_or(StateFileError::Damaged)
 }
 
+/// Whether what a state file with this body contains is written so that it is
+/// read again; `None` if it is refused.
+#[cfg(fuzzing)]
+pub fn read_state(body: &[u8]) -> Option<bool> {
+    let mut bytes = format!("{NAME} {VERSION} {:08x}\n", crc32fast::hash(body)).into_bytes();
+    bytes.extend(body);
+    let _ = decode(body);
+    let saved = decode(&bytes).ok()?;
+    let again = encode(&saved).ok()?;
+    Some(decode(&again).is_ok_and(|again| again == saved))
+}
+
 #[cfg(test)]
 mod tests {
     use fcc_core::flight::guidance::{Mode, Progress, Targets};
