@@ -6,7 +6,8 @@
 //! its bits have stayed the same for some time *and* other quantities show a
 //! motion by which it must have changed: the gyroscopes for the attitude and
 //! the heading, attitude and heading for the gyroscopes, the climb for the
-//! altitude, a change of bank or pitch for airspeed and accelerometers. While
+//! altitude, a change of bank or pitch for airspeed and accelerometers, and for the
+//! airspeed an acceleration along the path or a gust, too. While
 //! nothing moves, a frozen sensor is not detected, and has no effect.
 //!
 //! The motion counts from the last change on, and must exceed the resolution of
@@ -49,6 +50,9 @@ const FINE_AIRSPEED_MPS: f64 = 0.06;
 /// The change of airspeed that a coarse sensor must show, m/s: an error of the
 /// accelerations by 0.15 m/s² (0.9° of pitch) never reaches it.
 const ACCELERATED_MPS: f64 = 1.5;
+/// A vertical acceleration that a fine airspeed sensor must show, m/s²: a gust that
+/// changes the lift by a fifth has a part along the path, and changes the drag.
+const GUST_MPS2: f64 = 2.0;
 /// Steps of a fine altimeter, m: less than the barometer's noise.
 const FINE_ALTITUDE_M: f64 = 0.5;
 /// Unchanged means the same to the last bit, ...
@@ -121,6 +125,8 @@ pub(crate) struct FrozenDetector {
     airspeed_at: Angles,
     /// The change of airspeed by the accelerometers since it changed.
     accelerated: LeakyIntegrator,
+    /// The largest vertical acceleration since it changed, m/s².
+    gust_mps2: f64,
     /// The measured attitude and heading of the previous tick.
     before: Option<Angles>,
 }
@@ -147,6 +153,7 @@ impl FrozenDetector {
             force_at: [0.0; 3],
             airspeed_at: [0.0; 3],
             accelerated: LeakyIntegrator::ZERO,
+            gust_mps2: 0.0,
             before: None,
         }
     }
@@ -207,16 +214,16 @@ impl FrozenDetector {
         {
             self.airspeed_at = angles;
             self.accelerated = LeakyIntegrator::default();
+            self.gust_mps2 = 0.0;
         } else {
+            self.gust_mps2 = self.gust_mps2.max(navigation.felt_up_mps2.abs());
             let gained_mps = navigation.felt_mps2 * dt_s;
             self.accelerated
                 .add(gained_mps, ACCELERATED_MPS, resolution, dt_s);
         }
-        let must_have_changed = if resolution < FINE_AIRSPEED_MPS {
-            manoeuvred(self.airspeed_at, angles)
-        } else {
-            self.accelerated.exceeds(ACCELERATED_MPS, resolution)
-        };
+        let must_have_changed = self.accelerated.exceeds(ACCELERATED_MPS, resolution)
+            || resolution < FINE_AIRSPEED_MPS
+                && (manoeuvred(self.airspeed_at, angles) || self.gust_mps2 > GUST_MPS2);
         self.airspeed.update(must_have_changed, self.after_s);
     }
 
