@@ -44,7 +44,6 @@ class Clock:
     """The call that returns at each tick."""
     waits_on: str
     """In that call's arguments."""
-    also: frozenset[str] = frozenset()
 
     moves_by: str = ""
     """The call that sets the timer anew, when the early wake's margin is another."""
@@ -63,7 +62,6 @@ POSIX = Clock(
     "posix",
     "rt_sigtimedwait",
     "SI_TIMER",
-    frozenset({"timer_getoverrun"}),
     moves_by="timer_settime",
 )
 NANOSLEEP = Clock("nanosleep", "clock_nanosleep", "TIMER_ABSTIME")
@@ -84,15 +82,18 @@ def test_only_the_timers_and_the_sockets_calls(
     counts.pop("clock_gettime", 0)
     allowed = {clock.waits_by, "recvfrom", "sendto", COUNTS_PAGE_FAULTS}
     assert [counts.pop(name) for name in TELLS_OF_CONTROL] == [1, 1]
-    assert set(counts) == allowed | clock.also
+    assert set(counts) == allowed
 
-    flown = counts[clock.waits_by]
+    flown = counts[COUNTS_PAGE_FAULTS]
     assert flown >= ticks
+    # A tick that took longer than its period, as the tracer makes some, is followed by the next at
+    # once.
+    assert 0.9 * flown <= counts[clock.waits_by] <= 1.01 * flown
     assert all(clock.waits_on in words for name, words in calls if name == clock.waits_by)
-    assert all(counts[name] == flown for name in clock.also | {COUNTS_PAGE_FAULTS})
     # Nothing of the tick is left to do when page faults are counted.
     following = [after for (name, _), (after, _) in itertools.pairwise(calls) if is_count(name)]
-    assert set(following) == {clock.waits_by}
+    assert clock.waits_by in following
+    assert set(following) <= {clock.waits_by, "recvfrom", "clock_gettime"}
     # Each tick reads until there is nothing left, and every third one writes all controls, the
     # trim among them, at one go once engaged (one by one where the kernel cannot cut them apart):
     # X-Plane could not take more in a long frame. At 60 in 50 ms, five are due every 4.2 ms.
@@ -135,7 +136,9 @@ def traced_flight(
     trace = scratch / "trace"
     tracer: list[str | Path] = [strace, "-ff", "-y", "-s", "0", "-o", trace]
     with StandInProcess(Settings(port=0)) as simulator:
-        loop = f'[loop]\nrate_hz = {RATE_HZ}\ntimer = "{clock.name}"\n{more}'
+        # The tracer takes longer than a period.
+        overload = "[overload]\nskip_after_ms = 0\nstop_after_s = 0.0\n"
+        loop = f'[loop]\nrate_hz = {RATE_HZ}\ntimer = "{clock.name}"\n{more}{overload}'
         config = write_config(scratch, simulator.port, others=loop)
         words = [*tracer, fccd, "run", "--config", config, "--json"]
         with DaemonUnderTest(words, scratch) as traced:

@@ -50,8 +50,10 @@ impl Autopilot {
         now: Time,
         estimate: &Estimate,
     ) -> Option<Surfaces> {
+        let flown = self.envelope();
         let envelope = Envelope {
-            stall_airspeed_mps: self.envelope().stall_airspeed_mps,
+            stall_airspeed_mps: flown.stall_airspeed_mps,
+            min_airspeed_mps: flown.min_airspeed_mps,
             ..self.config.envelope
         };
         let inputs = RecoveryInputs {
@@ -63,7 +65,12 @@ impl Autopilot {
             dt_s: self.clock.step_s(),
         };
         let trims = self.trims();
-        let change = self.recovery.observe(&self.last, &trims, estimate, &inputs);
+        // What is above the configured stalling speed is for the outer loops to regain.
+        let seen = RecoveryInputs {
+            envelope: &self.config.envelope,
+            ..inputs
+        };
+        let change = self.recovery.observe(&self.last, &trims, estimate, &seen);
         match change {
             Change::Ends => {
                 let last = self.last;

@@ -144,7 +144,7 @@ impl Recovery {
         if !was_unanswered && self.upset.is_unanswered() {
             let load = estimate.load_factor.max(LEAST_LOAD);
             let stall_mps = estimate.airspeed_mps / (STALLED_RATIO * sqrt(load));
-            let known_mps = inputs.envelope.stall_airspeed_mps;
+            let known_mps = inputs.envelope.stall_airspeed_mps.max(self.found_stall_mps);
             self.found_stall_mps = stall_mps.max(STALLED_RATIO * known_mps);
         }
         match (was, is) {
