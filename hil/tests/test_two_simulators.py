@@ -36,10 +36,10 @@ def test_a_simulator_that_hangs_is_kept_until_its_controls_are_released(
     ):
         engage(first, daemon)
         first.set_mode(Mode.FROZEN)
+        daemon.wait_for("failsafe -> standby")
         with StandInProcess(Settings(port=0, beacon=beacon)) as second:
             kept = daemon.wait_for("another X-Plane announced itself")
             assert f"X-Plane at 127.0.0.1:{first.port} is kept until it confirms" in kept
-            daemon.wait_for("failsafe -> standby")
             first.set_mode(Mode.RUNNING)
             daemon.wait_for(f"X-Plane at 127.0.0.1:{first.port} confirmed the release")
             assert not first.progress().overridden
