@@ -4,6 +4,7 @@ use std::fs::{File, OpenOptions};
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 
+use nix::errno::Errno;
 use nix::fcntl::{FallocateFlags, fallocate};
 use nix::sys::statvfs::statvfs;
 
@@ -67,7 +68,8 @@ fn allocate(file: &File) -> nix::Result<()> {
     if !found.is_file() || found.blocks().saturating_mul(BLOCK_BYTES) >= found.size() {
         return Ok(());
     }
-    let bytes = i64::try_from(found.size()).unwrap_or(i64::MAX);
+    // 32 bits on a 32-bit board.
+    let bytes = found.size().try_into().map_err(|_| Errno::EFBIG)?;
     fallocate(file, FallocateFlags::FALLOC_FL_KEEP_SIZE, 0, bytes)
 }
 

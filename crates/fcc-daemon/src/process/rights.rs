@@ -15,16 +15,16 @@ use std::path::Path;
 use std::process::Command;
 
 use fcc_flight::config::Config;
-use nix::sys::resource::{RLIM_INFINITY, Resource, getrlimit, setrlimit};
+use nix::sys::resource::{RLIM_INFINITY, Resource, getrlimit, rlim_t, setrlimit};
 use nix::unistd::{User, geteuid, initgroups, setresgid, setresuid};
 
 use crate::output;
 
 /// The user of the package's service.
 const SERVICE_USER: &str = "fccd";
-const HIGHEST_PRIORITY: u64 = 99;
+const HIGHEST_PRIORITY: rlim_t = 99;
 /// A nice value of -20, getrlimit(2).
-const LOWEST_NICE: u64 = 40;
+const LOWEST_NICE: rlim_t = 40;
 /// The folders that systemd makes for the service.
 const RUN_FOLDERS: [&str; 2] = ["/run/fccd", "/run/fccd-commands"];
 
