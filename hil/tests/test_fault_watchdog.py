@@ -16,7 +16,15 @@ NOT_RELEASED = 5
 HUNG = 9
 
 HANGS = {"FCCD_HANG_AT_S": "0.5"}
-QUICK_WATCHDOG = "[watchdog]\nhang_after_ms = 500\n[telemetry]\nenabled = false\n"
+QUICK_WATCHDOG = """
+[watchdog]
+hang_after_ms = 500
+[telemetry]
+enabled = false
+[realtime]
+priority = 0
+"""
+"""Without a real-time priority: loops that hang at the same time would stop each other's."""
 
 
 def hung(faulty_fccd: Path, scratch: Path, **environment: str) -> Ending:
