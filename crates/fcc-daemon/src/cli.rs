@@ -1,10 +1,10 @@
 //! The command line.
 
+mod values;
 pub mod x_plane;
 
 use std::path::PathBuf;
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use fcc_flight::config::{CpuChoice, EarlyWakeChoice, GustsChoice};
@@ -12,6 +12,7 @@ use fcc_telemetry::Instance;
 use fcc_timer::TimerKind;
 
 use crate::exit::exit_codes;
+use values::{cpu_cap_percent, early_wake, gusts, margin_us, positive_seconds, rate_hz};
 use x_plane::XPlaneArgs;
 
 /// A real-time flight control computer in software.
@@ -339,46 +340,6 @@ pub struct ReportArgs {
     /// Print all statistics as JSON
     #[arg(long)]
     pub json: bool,
-}
-
-fn gusts() -> impl TypedValueParser<Value = GustsChoice> {
-    PossibleValuesParser::new(GustsChoice::ALL.map(|(name, _)| name)).try_map(|given| {
-        GustsChoice::ALL
-            .into_iter()
-            .find_map(|(name, choice)| (name == given).then_some(choice))
-            .ok_or("unknown strength")
-    })
-}
-
-fn early_wake() -> impl TypedValueParser<Value = EarlyWakeChoice> {
-    PossibleValuesParser::new(["auto", "on", "off"]).map(|given| match given.as_str() {
-        "on" => EarlyWakeChoice::On,
-        "off" => EarlyWakeChoice::Off,
-        _ => EarlyWakeChoice::Auto,
-    })
-}
-
-fn positive_seconds(text: &str) -> Result<f64, String> {
-    number_within(text, 0.1, 1e6, "seconds")
-}
-
-fn margin_us(text: &str) -> Result<f64, String> {
-    number_within(text, 1.0, 10_000.0, "µs")
-}
-
-fn cpu_cap_percent(text: &str) -> Result<f64, String> {
-    number_within(text, 0.0, 50.0, "percent")
-}
-
-fn rate_hz(text: &str) -> Result<f64, String> {
-    number_within(text, 1.0, 2_000.0, "Hz")
-}
-
-fn number_within(text: &str, least: f64, most: f64, unit: &str) -> Result<f64, String> {
-    text.parse::<f64>()
-        .ok()
-        .filter(|number| (least..=most).contains(number))
-        .ok_or_else(|| format!("give {least} to {most} {unit}"))
 }
 
 #[cfg(test)]

@@ -1,0 +1,44 @@
+//! Values of options, as they are typed.
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use fcc_flight::config::{EarlyWakeChoice, GustsChoice};
+
+pub(super) fn gusts() -> impl TypedValueParser<Value = GustsChoice> {
+    PossibleValuesParser::new(GustsChoice::ALL.map(|(name, _)| name)).try_map(|given| {
+        GustsChoice::ALL
+            .into_iter()
+            .find_map(|(name, choice)| (name == given).then_some(choice))
+            .ok_or("unknown strength")
+    })
+}
+
+pub(super) fn early_wake() -> impl TypedValueParser<Value = EarlyWakeChoice> {
+    PossibleValuesParser::new(["auto", "on", "off"]).map(|given| match given.as_str() {
+        "on" => EarlyWakeChoice::On,
+        "off" => EarlyWakeChoice::Off,
+        _ => EarlyWakeChoice::Auto,
+    })
+}
+
+pub(super) fn positive_seconds(text: &str) -> Result<f64, String> {
+    number_within(text, 0.1, 1e6, "seconds")
+}
+
+pub(super) fn margin_us(text: &str) -> Result<f64, String> {
+    number_within(text, 1.0, 10_000.0, "µs")
+}
+
+pub(super) fn cpu_cap_percent(text: &str) -> Result<f64, String> {
+    number_within(text, 0.0, 50.0, "percent")
+}
+
+pub(super) fn rate_hz(text: &str) -> Result<f64, String> {
+    number_within(text, 1.0, 2_000.0, "Hz")
+}
+
+fn number_within(text: &str, least: f64, most: f64, unit: &str) -> Result<f64, String> {
+    text.parse::<f64>()
+        .ok()
+        .filter(|number| (least..=most).contains(number))
+        .ok_or_else(|| format!("give {least} to {most} {unit}"))
+}
