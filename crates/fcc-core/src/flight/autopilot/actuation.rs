@@ -60,11 +60,19 @@ impl Actuation {
         self.inverse = PlayInverse::new(standing.elevator);
     }
 
-    /// One step with what was sent before.
-    pub(super) fn follow(&mut self, sent: &Surfaces, estimate: &Estimate, dt_s: f64) {
+    /// One step with what was sent before, and the load along the body's z axis.
+    pub(super) fn follow(
+        &mut self,
+        sent: &Surfaces,
+        estimate: &Estimate,
+        load_mps2: f64,
+        dt_s: f64,
+    ) {
         self.oscillation.step(sent, estimate, dt_s);
         if self.unit <= SLOWEST_MEASURED {
-            self.elevator.step(sent.elevator, estimate, dt_s);
+            let rate_radps = estimate.body_rates.pitch_radps;
+            self.elevator
+                .step(sent.elevator, rate_radps, load_mps2, dt_s);
         }
         let (late_s, timely_s) = LATE_S;
         let latency_s = self.elevator.latency_s();
@@ -117,7 +125,8 @@ impl Autopilot {
     pub(super) fn follow_outputs(&mut self, estimate: &Estimate) {
         self.actuation.knows_age(self.ages.rates_s());
         let dt_s = self.clock.step_s();
-        self.actuation.follow(&self.last, estimate, dt_s);
+        let load_mps2 = -self.accepted.specific_force.value.z_mps2;
+        self.actuation.follow(&self.last, estimate, load_mps2, dt_s);
     }
 
     /// The gains for the present airspeed and latency.

@@ -1,8 +1,7 @@
 //! The latency and the play between the elevator command and its effect, from
 //! the flight itself.
 
-use crate::blocks::HighPass;
-use crate::flight::navigation::Estimate;
+use crate::blocks::{HighPass, LowPass};
 
 /// The number of delays compared, one sample each.
 const DELAYS: usize = 12;
@@ -14,6 +13,8 @@ const LEAST_PERIOD_S: f64 = 0.02;
 const LONGEST_PERIOD_S: f64 = 0.3;
 /// Slower changes are left out, s: they are trim.
 const SLOW_S: f64 = 2.0;
+/// Faster ones are smoothed, s: the difference of two noisy rates is mostly noise.
+const FAST_S: f64 = 0.05;
 /// The time over which is averaged, s.
 const MEMORY_S: f64 = 10.0;
 /// Samples between two comparisons.
@@ -21,7 +22,7 @@ const COMPARED_EVERY: u32 = 20;
 /// Samples before the first.
 const FIRST_AFTER: u32 = 120;
 /// A smaller mean square of the pitch acceleration, (rad/s²)², says nothing.
-const LEAST_MOTION: f64 = 1e-3;
+const LEAST_MOTION: f64 = 2e-4;
 /// The part of it that the elevator must explain.
 const LEAST_EXPLAINED: f64 = 0.15;
 /// Another model is believed if it leaves less than this part of what the
@@ -39,13 +40,34 @@ const NO_PLAY_AFTER_S: f64 = 2.0 * MEMORY_S;
 /// The part of a change that is adopted at each comparison.
 const ADOPTED: f64 = 0.25;
 
+/// The part of a signal between trim and noise. Of a linear model every signal may
+/// pass the same filter (Ljung 1999, section 7.4).
+#[derive(Clone, Copy, Debug)]
+struct BandPass {
+    fast: LowPass,
+    slow: HighPass,
+}
+
+impl BandPass {
+    const fn new() -> Self {
+        Self {
+            fast: LowPass::new(FAST_S),
+            slow: HighPass::new(SLOW_S),
+        }
+    }
+
+    fn step(&mut self, input: f64, dt_s: f64) -> f64 {
+        self.slow.step(self.fast.step(input, dt_s), dt_s)
+    }
+}
+
 /// A surface that moves only after its command has crossed the play.
 #[derive(Clone, Copy, Debug)]
 struct PlayedCommand {
     half_width: f64,
     position: f64,
-    slow: HighPass,
-    /// The last positions without their slow part, the latest first.
+    band: BandPass,
+    /// The last positions between trim and noise, the latest first.
     recent: [f64; DELAYS + 1],
     sums: [Sums; DELAYS],
 }
@@ -54,7 +76,7 @@ struct PlayedCommand {
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
     with_rate: f64,
-    with_angle: f64,
+    with_load: f64,
     with_acceleration: f64,
     square: f64,
 }
@@ -63,10 +85,10 @@ struct Sums {
 #[derive(Clone, Copy, Debug, Default)]
 struct Motion {
     rate_rate: f64,
-    rate_angle: f64,
-    angle_angle: f64,
+    rate_load: f64,
+    load_load: f64,
     rate_acceleration: f64,
-    angle_acceleration: f64,
+    load_acceleration: f64,
     acceleration_acceleration: f64,
 }
 
@@ -75,7 +97,7 @@ struct Explained {
     determinant: f64,
     motion: Motion,
     per_rate: f64,
-    per_angle: f64,
+    per_load: f64,
     left: f64,
 }
 
@@ -83,29 +105,28 @@ impl Motion {
     fn explains(&self) -> Explained {
         let motion = Self {
             rate_rate: self.rate_rate + TINY,
-            angle_angle: self.angle_angle + TINY,
+            load_load: self.load_load + TINY,
             ..*self
         };
-        let determinant =
-            motion.rate_rate * motion.angle_angle - motion.rate_angle * motion.rate_angle;
-        let (per_rate, per_angle) =
-            motion.solve(determinant, self.rate_acceleration, self.angle_acceleration);
+        let determinant = motion.rate_rate * motion.load_load - motion.rate_load * motion.rate_load;
+        let (per_rate, per_load) =
+            motion.solve(determinant, self.rate_acceleration, self.load_acceleration);
         let left = self.acceleration_acceleration
             - per_rate * self.rate_acceleration
-            - per_angle * self.angle_acceleration;
+            - per_load * self.load_acceleration;
         Explained {
             determinant,
             motion,
             per_rate,
-            per_angle,
+            per_load,
             left,
         }
     }
 
-    fn solve(&self, determinant: f64, with_rate: f64, with_angle: f64) -> (f64, f64) {
+    fn solve(&self, determinant: f64, with_rate: f64, with_load: f64) -> (f64, f64) {
         (
-            (self.angle_angle * with_rate - self.rate_angle * with_angle) / determinant,
-            (self.rate_rate * with_angle - self.rate_angle * with_rate) / determinant,
+            (self.load_load * with_rate - self.rate_load * with_load) / determinant,
+            (self.rate_rate * with_load - self.rate_load * with_rate) / determinant,
         )
     }
 }
@@ -117,13 +138,13 @@ impl Explained {
     /// What is left unexplained with this surface position; all of it if the
     /// elevator would act the wrong way.
     fn left_with(&self, sums: &Sums) -> f64 {
-        let (rate, angle) = self
+        let (rate, load) = self
             .motion
-            .solve(self.determinant, sums.with_rate, sums.with_angle);
-        let own = sums.square + TINY - sums.with_rate * rate - sums.with_angle * angle;
+            .solve(self.determinant, sums.with_rate, sums.with_load);
+        let own = sums.square + TINY - sums.with_rate * rate - sums.with_load * load;
         let effect = sums.with_acceleration
             - sums.with_rate * self.per_rate
-            - sums.with_angle * self.per_angle;
+            - sums.with_load * self.per_load;
         if effect > 0.0 && own > 0.0 {
             self.left - effect * effect / own
         } else {
@@ -136,11 +157,12 @@ impl Explained {
 /// effect: of a small bank of models, each with a delay and a width of play,
 /// the one whose elevator explains the pitch acceleration best.
 ///
-/// A model is q̇ = a q + b (θ - γ) + c δ, the short period (Etkin and Reid 1996,
-/// section 6.3), fitted by least squares with exponential forgetting (Åström
-/// and Wittenmark 1995, section 2.2). A servo's lag appears as delay. Flight in
-/// which the elevator has no visible effect, calm or in turbulence, changes
-/// nothing. A play is 0.12 at most, a delay eleven samples.
+/// A model is q̇ = a q + b n + c δ, the short period (Etkin and Reid 1996, section
+/// 6.3) with the load n for the angle of attack: it is proportional to it in gusts,
+/// too. It is fitted by least squares with exponential forgetting (Åström and
+/// Wittenmark 1995, section 2.2). A servo's lag appears as delay. Flight in which
+/// the elevator has no visible effect, calm or in turbulence, changes nothing. A
+/// play is 0.12 at most, a delay eleven samples.
 ///
 /// ```
 /// use fcc_core::flight::control::ElevatorResponse;
@@ -164,9 +186,9 @@ pub struct ElevatorResponse {
     period_s: f64,
     samples: u32,
     before: (f64, f64),
-    rate: HighPass,
-    angle: HighPass,
-    acceleration: HighPass,
+    rate: BandPass,
+    load: BandPass,
+    acceleration: BandPass,
     motion: Motion,
     plays: [PlayedCommand; PLAYS.len()],
 }
@@ -184,14 +206,14 @@ impl ElevatorResponse {
             period_s: LEAST_PERIOD_S,
             samples: 0,
             before: (0.0, 0.0),
-            rate: HighPass::new(SLOW_S),
-            angle: HighPass::new(SLOW_S),
-            acceleration: HighPass::new(SLOW_S),
+            rate: BandPass::new(),
+            load: BandPass::new(),
+            acceleration: BandPass::new(),
             motion: Motion::default(),
             plays: PLAYS.map(|width| PlayedCommand {
                 half_width: 0.5 * width,
                 position: 0.0,
-                slow: HighPass::new(SLOW_S),
+                band: BandPass::new(),
                 recent: [0.0; DELAYS + 1],
                 sums: [Sums::default(); DELAYS],
             }),
@@ -213,17 +235,15 @@ impl ElevatorResponse {
         self.play
     }
 
-    /// One step with the elevator command of the previous step.
-    pub fn step(&mut self, elevator: f64, estimate: &Estimate, dt_s: f64) {
+    /// One step with the elevator command of the previous step, and the pitch rate
+    /// (rad/s) and the load (m/s² or g) that were measured.
+    pub fn step(&mut self, elevator: f64, rate: f64, load: f64, dt_s: f64) {
         self.elapsed_s += dt_s;
-        let rate = estimate.body_rates.pitch_radps;
         if self.elapsed_s < LEAST_PERIOD_S - 1e-6 || rate.to_bits() == self.before.0.to_bits() {
             return;
         }
         let period_s = core::mem::take(&mut self.elapsed_s);
-        let path = estimate.climb_rate_mps / estimate.true_airspeed_mps.max(1.0);
-        let angle = estimate.pitch_rad - path;
-        let (rate_before, angle_before) = core::mem::replace(&mut self.before, (rate, angle));
+        let (rate_before, load_before) = core::mem::replace(&mut self.before, (rate, load));
         if self.samples == 0 || period_s > LONGEST_PERIOD_S {
             *self = Self {
                 latency_s: self.latency_s,
@@ -231,7 +251,7 @@ impl ElevatorResponse {
                 believed: self.believed,
                 period_s,
                 samples: 1,
-                before: (rate, angle),
+                before: (rate, load),
                 ..Self::new(self.assumed_s)
             };
             for play in &mut self.plays {
@@ -243,25 +263,25 @@ impl ElevatorResponse {
         self.period_s += 0.1 * (period_s - self.period_s);
         let acceleration = (rate - rate_before) / period_s;
         let acceleration = self.acceleration.step(acceleration, period_s);
-        let (rate, angle) = (
-            self.rate.step(rate_before, period_s),
-            self.angle.step(angle_before, period_s),
-        );
-        self.remember(elevator, rate, angle, acceleration, period_s);
+        // The rate's noise is in the difference, too: with the later one it would
+        // seem to explain it.
+        let rate = self.rate.step(rate_before, period_s);
+        let load = self.load.step(0.5 * (load_before + load), period_s);
+        self.remember(elevator, rate, load, acceleration, period_s);
         if self.samples >= FIRST_AFTER && self.samples.is_multiple_of(COMPARED_EVERY) {
             self.compare();
         }
     }
 
-    fn remember(&mut self, elevator: f64, rate: f64, angle: f64, acceleration: f64, period_s: f64) {
+    fn remember(&mut self, elevator: f64, rate: f64, load: f64, acceleration: f64, period_s: f64) {
         let new = period_s / MEMORY_S;
         let mean = |old: &mut f64, product: f64| *old += new * (product - *old);
         let motion = &mut self.motion;
         mean(&mut motion.rate_rate, rate * rate);
-        mean(&mut motion.rate_angle, rate * angle);
-        mean(&mut motion.angle_angle, angle * angle);
+        mean(&mut motion.rate_load, rate * load);
+        mean(&mut motion.load_load, load * load);
         mean(&mut motion.rate_acceleration, rate * acceleration);
-        mean(&mut motion.angle_acceleration, angle * acceleration);
+        mean(&mut motion.load_acceleration, load * acceleration);
         mean(
             &mut motion.acceleration_acceleration,
             acceleration * acceleration,
@@ -269,7 +289,7 @@ impl ElevatorResponse {
         for play in &mut self.plays {
             let (least, most) = (elevator - play.half_width, elevator + play.half_width);
             play.position = play.position.max(least).min(most);
-            let latest = play.slow.step(play.position, period_s);
+            let latest = play.band.step(play.position, period_s);
             play.recent.rotate_right(1);
             if let Some(first) = play.recent.first_mut() {
                 *first = latest;
@@ -279,7 +299,7 @@ impl ElevatorResponse {
             let late = play.recent.iter().skip(1);
             for (sums, position) in play.sums.iter_mut().zip(late) {
                 mean(&mut sums.with_rate, position * rate);
-                mean(&mut sums.with_angle, position * angle);
+                mean(&mut sums.with_load, position * load);
                 mean(&mut sums.with_acceleration, position * acceleration);
                 mean(&mut sums.square, position * position);
             }
