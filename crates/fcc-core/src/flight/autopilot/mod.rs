@@ -277,6 +277,8 @@ impl Controller for Autopilot {
             return self.last;
         }
         let to = self.targets;
+        let ordered_mps = self.flyable_airspeed_mps(to.airspeed_mps);
+        self.altitude.order_airspeed(ordered_mps);
         let (heading, altitude) = (&mut self.heading, &mut self.altitude);
         let lateral = heading.step(to.heading_rad, &estimate, &envelope, schedule, dt_s);
         let vertical = altitude.step(to.altitude_m, &estimate, &envelope, schedule, dt_s);

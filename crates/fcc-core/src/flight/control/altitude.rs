@@ -115,6 +115,8 @@ pub struct AltitudeLoop {
 
 /// How fast the angle of attack approaches its limit, 1/s.
 const ANGLE_OF_ATTACK_GAIN_PER_S: f64 = 2.0;
+/// Nearer to its limit, rad (1°), the angle of attack is at it.
+const NO_SPARE_RAD: f64 = 0.017;
 
 impl AltitudeLoop {
     /// A loop that is not engaged.
@@ -164,6 +166,12 @@ impl AltitudeLoop {
     pub const fn pull_out(&mut self, least_mps2: f64) {
         let usual_mps2 = self.config.climb_acceleration_mps2;
         self.climb_rate.set_rate(usual_mps2.max(least_mps2));
+    }
+
+    /// The airspeed that is ordered, m/s: it goes before the altitude if the lowest
+    /// airspeed needs more power than there is.
+    pub const fn order_airspeed(&mut self, airspeed_mps: f64) {
+        self.speed.order(airspeed_mps);
     }
 
     /// One step towards an altitude (m).
@@ -305,7 +313,9 @@ impl AltitudeLoop {
         schedule: Schedule,
         dt_s: f64,
     ) -> PitchCommand {
-        self.speed.commanded(pitch_rad, dt_s);
+        let spare_rad = envelope.max_angle_of_attack_rad - estimate.angle_of_attack_rad;
+        self.speed
+            .commanded(pitch_rad, spare_rad < NO_SPARE_RAD, dt_s);
         let config = &self.config;
         let speed = estimate.true_airspeed_mps.max(1.0);
         let bank = limit_abs(estimate.roll_rad, MAX_TURN_BANK_RAD);
@@ -323,7 +333,6 @@ impl AltitudeLoop {
         let wanted = limit_abs(theta_rate * cos(bank) + turn_pitch_rate, most);
         // α̇ = q - (n - cos φ) g/V: the pitch rate at which the angle of attack
         // approaches its limit and does not exceed it.
-        let spare_rad = envelope.max_angle_of_attack_rad - estimate.angle_of_attack_rad;
         let kept = per_load * (estimate.load_factor - cos(bank));
         let most_rate = 2.0 * config.max_pitch_rate_radps;
         let kept_rate = limit_abs(ANGLE_OF_ATTACK_GAIN_PER_S * spare_rad + kept, most_rate);

@@ -1,7 +1,7 @@
 //! The pitch at which the airspeed stays within its limits.
 
 use super::Envelope;
-use crate::blocks::{LowPass, RateLimit, limit};
+use crate::blocks::{LowPass, limit, limit_abs};
 use crate::flight::navigation::Estimate;
 use crate::units::GRAVITY_MPS2;
 
@@ -63,13 +63,23 @@ pub struct SpeedLimits {
     path: LowPass,
     /// The pitch of constant airspeed, rad.
     constant: LowPass,
-    /// How far the lowest airspeed is raised to that of the best glide, m/s.
-    glide: RateLimit,
+    /// The angle of the path at constant airspeed, rad: relative to the air, and to
+    /// the ground.
+    in_air: LowPass,
+    over_ground: LowPass,
+    /// How far the lowest airspeed is raised, m/s.
+    raised_mps: f64,
+    /// The airspeed that is ordered, m/s.
+    ordered_mps: f64,
     /// The last upper limit, rad.
     max_rad: f64,
-    /// For how long the pitch was at its upper limit, less the time since, s.
+    /// For how long the pitch or the angle of attack was at its upper limit, less the time since, s.
     held_s: f64,
     is_short: bool,
+    /// For how long energy has been short, s.
+    short_s: f64,
+    /// For how long the angle of attack was at its limit, less the time since, s.
+    at_largest_angle_s: f64,
 }
 
 /// How fast the airspeed approaches its limit, 1/s.
@@ -85,21 +95,38 @@ const SMOOTHED_S: f64 = 0.7;
 const SHORT_S: f64 = 2.0;
 /// A path of constant airspeed that descends more steeply, rad (3°), is a glide.
 const GLIDE_RAD: f64 = -0.05;
-/// How fast the airspeed of the best glide is approached, m/s².
-const TO_GLIDE_MPS2: f64 = 0.5;
+/// An aircraft that does not climb over the ground with all of the thrust is flown
+/// faster: on the back side of the power curve a higher airspeed needs less power.
+/// At the largest angle of attack at once, otherwise after this time, s: most
+/// sinking air is left before.
+const NO_CLIMB_AFTER_S: f64 = 10.0;
+/// The angles of that path are smoothed by these, s: in the air, and over the
+/// ground, where turbulence and a turn are no lack of power.
+const IN_AIR_S: f64 = 3.0;
+const OVER_GROUND_S: f64 = 10.0;
+/// The airspeed of the best climb over that of the best glide: 1.14 by the handbook
+/// of the Cessna 172N (74 and 65 KIAS), 1.2 if it is heavier than was configured.
+const CLIMB_OVER_GLIDE: f64 = 1.2;
+/// How fast the lowest airspeed is raised, m/s².
+const RAISED_MPS2: f64 = 0.5;
+/// How fast it is lowered once energy is no longer short, m/s².
+const LOWERED_MPS2: f64 = 0.1;
 
 impl SpeedLimits {
     /// Without a past.
     pub const fn new() -> Self {
-        let mut glide = RateLimit::new(TO_GLIDE_MPS2);
-        glide.reset(0.0);
         Self {
             path: LowPass::new(PATH_LAG_S),
             constant: LowPass::new(SMOOTHED_S),
-            glide,
+            in_air: LowPass::new(IN_AIR_S),
+            over_ground: LowPass::new(OVER_GROUND_S),
+            raised_mps: 0.0,
+            ordered_mps: 0.0,
             max_rad: f64::INFINITY,
             held_s: 0.0,
             is_short: false,
+            short_s: 0.0,
+            at_largest_angle_s: 0.0,
         }
     }
 
@@ -110,14 +137,17 @@ impl SpeedLimits {
             .constant
             .step(path + estimate.acceleration_mps2 / GRAVITY_MPS2, dt_s);
         let floor_mps = envelope.floor_mps(estimate);
-        // With all of the thrust and too little energy: a glide.
-        let glides = self.is_short && constant - estimate.angle_of_attack_rad < GLIDE_RAD;
-        let raised_mps = if glides {
-            (envelope.best_glide_airspeed_mps - floor_mps).max(0.0)
+        let climbs = estimate.climb_rate_mps / estimate.true_airspeed_mps.max(1.0)
+            + estimate.acceleration_mps2 / GRAVITY_MPS2;
+        self.in_air
+            .step(constant - estimate.angle_of_attack_rad, dt_s);
+        self.over_ground.step(climbs, dt_s);
+        self.short_s = if self.is_short {
+            self.short_s + dt_s
         } else {
             0.0
         };
-        let floor_mps = floor_mps + self.glide.step(raised_mps, dt_s);
+        let floor_mps = floor_mps + self.raise(floor_mps, envelope, dt_s);
         let at = |airspeed_mps: f64| {
             constant + GAIN_PER_S * (estimate.airspeed_mps - airspeed_mps) / GRAVITY_MPS2
         };
@@ -128,14 +158,40 @@ impl SpeedLimits {
         }
     }
 
-    /// The pitch that is commanded, rad, after [`SpeedLimits::step`].
-    pub fn commanded(&mut self, pitch_rad: f64, dt_s: f64) {
-        let step_s = if pitch_rad < self.max_rad {
-            -dt_s
+    /// The airspeed that is ordered, m/s: if height cannot be held at the lowest one,
+    /// this one goes first.
+    pub const fn order(&mut self, airspeed_mps: f64) {
+        self.ordered_mps = airspeed_mps;
+    }
+
+    /// How far the lowest airspeed is raised, m/s. With too little energy all of the
+    /// thrust is given.
+    fn raise(&mut self, floor_mps: f64, envelope: &Envelope, dt_s: f64) -> f64 {
+        let glide_mps = envelope.best_glide_airspeed_mps;
+        let is_persistent = self.short_s > NO_CLIMB_AFTER_S || self.at_largest_angle_s >= SHORT_S;
+        let (to_mps, most_mps2) = if !self.is_short {
+            (floor_mps, LOWERED_MPS2)
+        } else if self.in_air.output() < GLIDE_RAD {
+            (glide_mps.max(floor_mps + self.raised_mps), RAISED_MPS2)
+        } else if is_persistent && self.over_ground.output() < 0.0 {
+            let most_mps = CLIMB_OVER_GLIDE * glide_mps;
+            (self.ordered_mps.min(most_mps), RAISED_MPS2)
         } else {
-            dt_s
+            (floor_mps + self.raised_mps, 0.0)
         };
+        let more_mps = (to_mps - floor_mps).max(0.0) - self.raised_mps;
+        self.raised_mps += limit_abs(more_mps, most_mps2 * dt_s);
+        self.raised_mps
+    }
+
+    /// The pitch that is commanded, rad, after [`SpeedLimits::step`], and whether the
+    /// angle of attack is at its limit, so that it is not flown.
+    pub fn commanded(&mut self, pitch_rad: f64, is_at_largest_angle: bool, dt_s: f64) {
+        let is_held = pitch_rad >= self.max_rad || is_at_largest_angle;
+        let step_s = if is_held { dt_s } else { -dt_s };
         self.held_s = limit(self.held_s + step_s, 0.0, SHORT_S);
+        let step_s = if is_at_largest_angle { dt_s } else { -dt_s };
+        self.at_largest_angle_s = limit(self.at_largest_angle_s + step_s, 0.0, SHORT_S);
         if self.held_s >= SHORT_S {
             self.is_short = true;
         } else if self.held_s <= 0.0 {
@@ -189,7 +245,7 @@ mod tests {
                 ..Estimate::default()
             };
             pitch_rad = speed.step(&estimate, &envelope, 0.025).of(0.2);
-            speed.commanded(pitch_rad, 0.025);
+            speed.commanded(pitch_rad, false, 0.025);
             least_mps = least_mps.min(airspeed_mps);
         }
         let knots = |mps: f64| mps / 0.514_444;
@@ -211,7 +267,7 @@ mod tests {
             ..Estimate::default()
         };
         let limits = speed.step(&cruise, &Envelope::default(), 0.025);
-        speed.commanded(limits.of(0.1), 10.0);
+        speed.commanded(limits.of(0.1), false, 10.0);
         assert_eq!(limits.of(0.1), 0.1);
         assert_eq!(limits.of(-0.1), -0.1);
         assert!(!speed.is_short());
