@@ -108,7 +108,7 @@ pub(crate) fn run_release_helper(
     let first = lines.next().ok_or(ReleaseHelperError::Nothing)??;
     let text: String = serde_json::from_str(&first)?;
     let config = Config::parse(&text, "standard input")?;
-    let folder = RunFolder::of_this_process(&mut drop);
+    let mut folder = None;
     let authority = authority_without_connection(&config);
     let mut held: Option<(u64, PlantId)> = None;
     let mut lock: Option<HelperLock> = None;
@@ -117,12 +117,12 @@ pub(crate) fn run_release_helper(
         if let Some((number, plant)) = takeover(&line) {
             held = Some((number, plant));
             let unique = authority.as_ref().map(|this| this.unique(&plant));
-            if !lock
-                .as_ref()
-                .is_some_and(|lock| Some(lock.plant()) == unique)
-            {
+            let is_locked = lock.as_ref().zip(unique);
+            if !is_locked.is_some_and(|(lock, plant)| lock.is_of(plant)) {
                 // One of another plant is unlocked first.
                 drop(lock.take());
+                // It may have been removed.
+                folder = RunFolder::of_this_process(&mut drop);
                 lock = folder
                     .as_ref()
                     .zip(unique)
