@@ -263,7 +263,7 @@ impl PublisherProcess {
         let Some(running) = self.running.take() else {
             return;
         };
-        self.lost += running.not_published;
+        self.lost = self.lost.saturating_add(running.not_published);
         self.later(running.began.elapsed() < SHORT_LIFE);
         self.ended_because(why);
     }

@@ -3,6 +3,7 @@
 //! | module | what it does |
 //! |---|---|
 //! | `release_helper`, `release_handover` | a second process that releases the controls if this one is killed |
+//! | `told` | what that process is told, line by line |
 //! | `notice` | tells that process, and the plant's file, before control is taken |
 //! | `own_program` | starts this program again, as one of its helpers |
 //! | `plant_file` | a file of this user alone: who may control a plant, and whether it was left held |
@@ -20,6 +21,7 @@ mod release_handover;
 mod release_helper;
 mod rights;
 mod signals;
+mod told;
 
 use std::io;
 use std::sync::Arc;
@@ -37,11 +39,17 @@ use crate::output;
 use instance_lock::InstanceLock;
 use left_held::LeftHeld;
 pub(crate) use notice::Notice;
-pub(crate) use own_program::{begin_helper, outlive_signals, own_program};
+#[cfg(fuzzing)]
+pub use notice::use_plant_file;
+#[cfg(feature = "live")]
+pub(crate) use own_program::own_program;
+pub(crate) use own_program::{begin_helper, outlive_signals};
 pub(crate) use release_helper::{ReleaseHelper, run_release_helper};
 pub(crate) use rights::{RightsError, give_up};
 use signals::{BlockedSignals, Caught};
 pub(crate) use signals::{end_with_parent, survive_file_size_limit, tolerate};
+#[cfg(fuzzing)]
+pub use told::held_after;
 
 /// The interval of checks of the lock's file and, while control is held, for a
 /// release helper of an earlier daemon, which would release it.

@@ -12,7 +12,8 @@ use fcc_telemetry::Instance;
 use nix::sys::socket::{getsockopt, sockopt::PeerCredentials};
 use nix::unistd::User;
 
-use super::wire::{MOST_BYTES, answer_of, line_of};
+use super::line::MOST_BYTES;
+use super::wire::{answer_of, line_of};
 use super::{FOLDER, folder_of};
 
 /// A stop takes up to 12 s: the plant is prepared for its release first.

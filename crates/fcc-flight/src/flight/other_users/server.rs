@@ -12,9 +12,10 @@ use fcc_live::{Commandable, PendingCommand, PlantLimits, SentCommands, Verdict};
 use nix::sys::socket::{getsockopt, sockopt::PeerCredentials};
 use nix::unistd::geteuid;
 
+use super::line::{Line, MOST_BYTES};
 use super::own_folder;
 use super::panel::Panel;
-use super::wire::{MOST_BYTES, command_of, line_of_answer};
+use super::wire::{command_of, line_of_answer};
 use crate::config::Config;
 use crate::flight::observer::{Access, FlightTime, Observer, Reports};
 use crate::flight::outcome::Outcome;
@@ -45,7 +46,7 @@ struct Peer {
     id: u64,
     stream: UnixStream,
     since: Instant,
-    received: Vec<u8>,
+    received: Line,
     /// Its command was sent to the loop.
     is_sent: bool,
 }
@@ -112,7 +113,7 @@ impl<C: Commandable> CommandSocket<C> {
                 id: self.next_id,
                 stream,
                 since: Instant::now(),
-                received: Vec::new(),
+                received: Line::default(),
                 is_sent: false,
             };
             match refusal {
@@ -149,19 +150,10 @@ impl Peer {
     fn line(&mut self) -> Option<Result<String, &'static str>> {
         let mut bytes = [0; MOST_BYTES];
         match self.stream.read(&mut bytes) {
-            Ok(0) => return Some(Err("it was not sent completely")),
-            Ok(read) => self.received.extend(bytes.iter().take(read)),
-            Err(error) if error.kind() == ErrorKind::WouldBlock => return None,
-            Err(_) => return Some(Err("it could not be read")),
-        }
-        match self.received.iter().position(|byte| *byte == b'\n') {
-            Some(end) => {
-                self.received.truncate(end);
-                let line = String::from_utf8(std::mem::take(&mut self.received));
-                Some(line.map_err(|_| "it is not a text"))
-            }
-            None if self.received.len() > MOST_BYTES => Some(Err("it is too long")),
-            None => None,
+            Ok(0) => Some(Err("it was not sent completely")),
+            Ok(read) => self.received.add(bytes.get(..read)?),
+            Err(error) if error.kind() == ErrorKind::WouldBlock => None,
+            Err(_) => Some(Err("it could not be read")),
         }
     }
 
