@@ -45,7 +45,7 @@ pub use notice::use_plant_file;
 pub(crate) use own_program::own_program;
 pub(crate) use own_program::{begin_helper, outlive_signals};
 pub(crate) use release_helper::{ReleaseHelper, run_release_helper};
-pub(crate) use rights::{RightsError, give_up};
+pub(crate) use rights::{RightsError, give_up, unknown_names};
 use signals::{BlockedSignals, Caught};
 pub(crate) use signals::{end_with_parent, survive_file_size_limit, tolerate};
 #[cfg(fuzzing)]

@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 use fcc_core::framework::{ActuatorFault, PlantId, Released};
 use fcc_flight::config::{Config, ConfigError};
 use fcc_flight::flight::authority_without_connection;
-use fcc_telemetry::RunFolder;
+use fcc_telemetry::{RunFolder, not_started};
 
 use super::notice::Notice;
 use super::own_program::own_program;
@@ -52,7 +52,8 @@ impl ReleaseHelper {
         let line = in_one_line(config)?;
         let mut child = own_program("release-helper")
             .stdin(Stdio::piped())
-            .spawn()?;
+            .spawn()
+            .map_err(not_started)?;
         let mut pipe = child.stdin.take().ok_or(io::ErrorKind::BrokenPipe)?;
         // The new pipe has room for it.
         writeln!(pipe, "{line}")?;

@@ -64,11 +64,11 @@ pub fn command_another_users(
     let folder = match user {
         None => Path::new("/run").join(FOLDER),
         Some(name) => {
-            let found = User::from_name(name).ok().flatten();
-            let found = found.ok_or_else(|| OtherUserError::NoUser(name.to_owned()))?;
-            let of_user = folder_of(found.uid.as_raw());
+            let found = number_of(name);
+            let user = found.ok_or_else(|| OtherUserError::NoUser(name.to_owned()))?;
+            let of_user = folder_of(user);
             // Others could have placed a folder of this name.
-            if !is_of(&of_user, found.uid.as_raw()) {
+            if !is_of(&of_user, user) {
                 return Err(OtherUserError::NotThere(instance.clone(), of_user));
             }
             of_user
@@ -97,6 +97,14 @@ pub fn command_another_users(
     sent?;
     read?;
     Err(OtherUserError::Io(io::ErrorKind::UnexpectedEof.into()))
+}
+
+/// The number of a user, who is given by name or, as sudo takes it, as `#1000`.
+fn number_of(name: &str) -> Option<u32> {
+    match name.strip_prefix('#') {
+        Some(number) => number.parse().ok(),
+        None => Some(User::from_name(name).ok()??.uid.as_raw()),
+    }
 }
 
 /// Whether a folder, and no link, belongs to a user.
