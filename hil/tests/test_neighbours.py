@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import fcntl
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -30,6 +32,7 @@ from fcc_hil.process import StandInProcess
 from fcc_hil.standin import Settings
 
 SUCCESS = 0
+TAKEN = 12
 STRANGER = 65534
 CUT_OFF = "an earlier flight was cut off and may have left the controls held"
 KILLS = int(os.environ.get("FCCD_KILLS", "4"))
@@ -250,3 +253,50 @@ def test_what_is_left_held_is_only_reported_if_configured(fccd: Path, tmp_path: 
             assert "they are released" in again.wait_for(CUT_OFF)
             wait_until(lambda: not simulator.progress().overridden, "they are")
             assert again.end(signal.SIGTERM).exit_code == SUCCESS
+
+
+def test_a_run_folder_that_is_removed_in_flight_is_made_anew(fccd: Path, tmp_path: Path) -> None:
+    """With lock and mark, and the lock of the helper: nobody else can fly, and both may die."""
+    run = tmp_path / "run"
+    run.mkdir(mode=0o700)
+    environment = {"RUNTIME_DIRECTORY": str(run)}
+    with flight(fccd, tmp_path, environment=environment) as (simulator, daemon):
+        engage(simulator, daemon)
+        (helper,) = daemon.helpers()
+        shutil.rmtree(run)
+        words = daemon.wait_for("was removed in flight, and was made anew")
+        assert f"locks X-Plane at 127.0.0.1:{simulator.port}" in words
+        wait_until(lambda: any(run.glob("*.helper")), "the helper's lock")
+        (tmp_path / "second").mkdir()
+        config = write_config(tmp_path / "second", simulator.port)
+        with start(fccd, tmp_path / "second", config, environment) as second:
+            assert second.end().exit_code == TAKEN
+        assert "engaged" in daemon.wait_for("heading")
+        os.kill(helper, signal.SIGSTOP)
+        daemon.end(signal.SIGKILL)
+        os.kill(helper, signal.SIGKILL)
+        simulator.write(ENGAGE_SWITCH, 0.0)
+        with start(fccd, tmp_path / "second", config, environment) as again:
+            assert "they are released" in again.wait_for(CUT_OFF)
+            wait_until(lambda: not simulator.progress().overridden, "they are")
+            assert again.end(signal.SIGTERM).exit_code == SUCCESS
+
+
+def test_a_place_that_another_daemon_took_meanwhile_is_said(fccd: Path, tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    run.mkdir(mode=0o700)
+    environment = {"RUNTIME_DIRECTORY": str(run)}
+    with flight(fccd, tmp_path, environment=environment) as (simulator, daemon):
+        engage(simulator, daemon)
+        (lock,) = (path for path in run.glob("X-Plane*") if path.suffix != ".helper")
+        # As another daemon that locks it does.
+        with (run / "theirs").open("w") as theirs:
+            (run / "theirs").chmod(0o600)
+            fcntl.flock(theirs, fcntl.LOCK_EX)
+            (run / "theirs").rename(lock)
+            words = daemon.wait_for("was removed in flight, and cannot be made anew")
+            assert "another fccd locked it meanwhile" in words
+        daemon.wait_for("was removed in flight, and was made anew")
+        ending = daemon.end(signal.SIGTERM)
+    assert ending.exit_code == SUCCESS
+    assert sum("cannot be made anew" in text for text in ending.events) == 1

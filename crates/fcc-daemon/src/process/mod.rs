@@ -51,8 +51,8 @@ pub(crate) use signals::{end_with_parent, survive_file_size_limit, tolerate};
 #[cfg(fuzzing)]
 pub use told::held_after;
 
-/// While control is held, this is the interval of checks for a release helper
-/// of an earlier daemon, which would release it.
+/// The interval of checks of the lock's file and, while control is held, for a
+/// release helper of an earlier daemon, which would release it.
 const CHECK_EVERY: Duration = Duration::from_secs(1);
 /// A helper that has just been started is not started again before this.
 const HELPER_AGAIN_AFTER: Duration = Duration::from_secs(1);
@@ -70,7 +70,6 @@ pub(crate) struct Process<'a> {
 /// What outlives the process, or is shared with other processes.
 struct Plant {
     authority: Arc<dyn ControlAuthority>,
-    folder: Option<RunFolder>,
     notice: &'static Notice,
     lock: InstanceLock,
     left_held: LeftHeld,
@@ -81,6 +80,8 @@ struct Plant {
     was_held: bool,
     /// When an earlier daemon's helper was last looked for.
     checked: Instant,
+    /// When the lock was last looked at.
+    lock_checked: Instant,
 }
 
 impl<'a> Process<'a> {
@@ -186,9 +187,8 @@ impl Plant {
         authority.notify(notice);
         let now = Instant::now();
         let mut this = Self {
-            lock: InstanceLock::of(Arc::clone(&authority), folder.clone(), notice),
+            lock: InstanceLock::of(Arc::clone(&authority), folder, notice),
             authority,
-            folder,
             notice,
             left_held: LeftHeld::new(&config.restart),
             helper: None,
@@ -196,6 +196,7 @@ impl Plant {
             helpers_again: HELPERS_AGAIN,
             was_held: false,
             checked: now,
+            lock_checked: now,
         };
         this.follow();
         this
@@ -218,6 +219,12 @@ impl Plant {
             Some(_) => {}
             None => self.notice.release(number),
         }
+        if self.lock_checked.elapsed() >= CHECK_EVERY {
+            self.lock_checked = Instant::now();
+            if let Some(removed) = self.lock.make_anew_if_removed(held) {
+                report(removed.to_string());
+            }
+        }
         self.left_held.poll(self.authority.as_ref(), held, report);
         let begins = held.is_some() && !self.was_held;
         self.was_held = held.is_some();
@@ -231,7 +238,7 @@ impl Plant {
     /// Ends the helper of a daemon that was killed, if it still releases the
     /// controls that are, or are to be, held here.
     fn end_earlier_helper(&self) {
-        let Some((plant, folder)) = self.authority.plant().zip(self.folder.as_ref()) else {
+        let Some((plant, folder)) = self.authority.plant().zip(self.lock.folder()) else {
             return;
         };
         let ours = self.helper.as_ref().map(ReleaseHelper::id);

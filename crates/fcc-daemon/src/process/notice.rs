@@ -14,7 +14,8 @@ use nix::fcntl::{FcntlArg, OFlag, fcntl};
 use super::plant_file::PlantFile;
 use super::told::Line;
 
-/// Room for helpers that are started again, and for plants that beacons name.
+/// Room for helpers that are started again, for plants that beacons name, and
+/// for files that were removed.
 const ROOM: usize = 8;
 /// Room for a line with a plant's name.
 const LINE_BYTES: usize = 128;
@@ -72,6 +73,38 @@ impl Notice {
         if !self.files.iter().any(|(known, _)| *known == plant) {
             self.files.add((plant, file));
         }
+    }
+
+    /// A plant's file in place of one that was removed, with the same content;
+    /// `held` is what is held. Returns whether there was room.
+    pub(super) fn replace_file(
+        &self,
+        plant: PlantId,
+        file: PlantFile,
+        held: Option<PlantId>,
+    ) -> bool {
+        if !self.files.add((plant, file)) {
+            return false;
+        }
+        let Some((_, file)) = self.files.iter().next_back() else {
+            return false;
+        };
+        // A takeover meanwhile writes to it, too.
+        loop {
+            let (number, is_released) = (self.number(), self.is_released());
+            file.take(number);
+            if is_released {
+                file.release(number);
+            }
+            if number == self.number() {
+                break;
+            }
+        }
+        if let Some(plant) = held {
+            // The helper makes its lock anew.
+            self.send(&Line::Held(self.number(), plant));
+        }
+        true
     }
 
     /// From now on this helper is told, whose pipe never waits.
@@ -132,7 +165,8 @@ impl Notice {
 impl TakeoverNotice for Notice {
     fn taking(&self, plant: &PlantId) {
         let number = self.taken.fetch_add(1, Ordering::SeqCst).wrapping_add(1);
-        let file = self.files.iter().find(|(known, _)| known == plant);
+        let mut files = self.files.iter();
+        let file = files.rfind(|(known, _)| known == plant);
         if let Some((_, file)) = file {
             file.take(number);
         }

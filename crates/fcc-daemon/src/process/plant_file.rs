@@ -8,7 +8,7 @@
 use std::fs::{self, File, TryLockError};
 use std::io;
 use std::os::unix::fs::{FileExt, MetadataExt};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use fcc_core::framework::PlantId;
 use fcc_telemetry::RunFolder;
@@ -56,9 +56,9 @@ impl PlantFile {
         }
     }
 
-    fn is_in_place(&self) -> bool {
-        let [ours, there] = [self.file.metadata(), fs::symlink_metadata(&self.path)];
-        ours.is_ok_and(|ours| there.is_ok_and(|there| ours.ino() == there.ino()))
+    /// Whether the file is still where the next daemon looks for it.
+    pub(super) fn is_in_place(&self) -> bool {
+        is_in_place(&self.file, &self.path)
     }
 
     fn number(&self, at: u64) -> u64 {
@@ -109,6 +109,13 @@ impl PlantFile {
             let _ = fs::remove_file(&self.path);
         }
     }
+}
+
+/// Whether this open file is the one of this name.
+pub(super) fn is_in_place(file: &File, path: &Path) -> bool {
+    let [ours, there] = [file.metadata(), fs::symlink_metadata(path)]
+        .map(|found| found.map(|found| (found.dev(), found.ino())).ok());
+    ours.is_some() && ours == there
 }
 
 #[cfg(test)]

@@ -109,7 +109,7 @@ pub(crate) fn run_release_helper(
     let first = lines.next().ok_or(ReleaseHelperError::Nothing)??;
     let text: String = serde_json::from_str(&first)?;
     let config = Config::parse(&text, "standard input")?;
-    let folder = RunFolder::of_this_process(&mut drop);
+    let mut folder = None;
     let authority = authority_without_connection(&config);
     let mut told = Told::default();
     let mut lock: Option<HelperLock> = None;
@@ -118,9 +118,15 @@ pub(crate) fn run_release_helper(
         told.line(&line);
         let held = told.held().zip(authority.as_ref());
         let unique = held.map(|((_, plant), authority)| authority.unique(&plant));
-        if lock.as_ref().map(HelperLock::plant) != unique {
+        let is_locked = match (&lock, unique) {
+            (Some(lock), Some(plant)) => lock.is_of(plant),
+            (lock, _) => lock.is_none() && unique.is_none(),
+        };
+        if !is_locked {
             // One of another plant is unlocked first.
             drop(lock.take());
+            // It may have been removed.
+            folder = RunFolder::of_this_process(&mut drop);
             lock = folder
                 .as_ref()
                 .zip(unique)

@@ -38,6 +38,13 @@ pub enum OtherUserError {
     /// The daemon refused it.
     #[error("refused: {0}")]
     Refused(String),
+    /// The daemon is stopped, or hangs.
+    #[error(
+        "fccd did not answer within {} s, so it is not known whether it was carried out; it will \
+         not be any more",
+        PATIENCE.as_secs()
+    )]
+    NoAnswer,
     /// The connection failed.
     #[error("the connection to fccd failed, so it is not known whether it was carried out: {0}")]
     Io(#[from] io::Error),
@@ -82,6 +89,10 @@ pub fn command_another_users(
     let read = BufReader::new(stream.take(MOST_BYTES as u64)).read_line(&mut line);
     if let Some(answer) = answer_of(&line) {
         return answer.map_err(OtherUserError::Refused);
+    }
+    let is_late = |error: &io::Error| error.kind() == io::ErrorKind::WouldBlock;
+    if sent.as_ref().is_err_and(is_late) || read.as_ref().is_err_and(is_late) {
+        return Err(OtherUserError::NoAnswer);
     }
     sent?;
     read?;
