@@ -19,6 +19,6 @@ libfuzzer_sys::fuzz_target!(|input: &[u8]| {
         return;
     };
     let (content, steps) = rest.split_at(usize::from(length % 25).min(rest.len()));
-    let steps = &steps[..steps.len().min(12)];
+    let steps = &steps[..steps.len().min(8)];
     fcc_daemon::use_plant_file(&FOLDER, content, steps);
 });

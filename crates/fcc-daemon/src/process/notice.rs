@@ -190,7 +190,7 @@ pub fn use_plant_file(folder: &fcc_telemetry::RunFolder, content: &[u8], steps: 
         (locked.expect("the one before has ended"), notice)
     };
     let (mut locked, mut notice) = start();
-    let mut held = open().is_held();
+    let mut held = locked.is_held();
     for step in steps {
         match step % 5 {
             0 => {
@@ -213,6 +213,6 @@ pub fn use_plant_file(folder: &fcc_telemetry::RunFolder, content: &[u8], steps: 
             }
             _ => open().remove_if_released(),
         }
-        assert_eq!(open().is_held(), held);
+        assert_eq!(locked.is_held(), held);
     }
 }
