@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use fcc_core::framework::Released;
 
+use crate::address::XPLANE_PORT;
 use crate::config::XPlaneConfig;
 use crate::controls::Controls;
 use crate::open::{OpenError, XPlane, bind, local_ports};
@@ -35,7 +36,8 @@ const INDICES: [i32; 2] = [9_001, 9_002];
 /// What is known of the simulator that was flown.
 #[derive(Clone, Copy, Default, Debug)]
 pub(crate) struct Expected {
-    /// The port that answered: only it can confirm, unless it is gone.
+    /// The port that answered, or the usual one: only it can confirm, unless it is
+    /// gone.
     pub(crate) port: Option<u16>,
     /// Whose socket that is, of a simulator on this machine.
     pub(crate) user: Option<u32>,
@@ -135,6 +137,13 @@ impl Conversation {
         for ((request, index), path) in requests.iter_mut().zip(INDICES).zip(paths) {
             rref::request(request, READ_BACK_HZ, index, path)?;
         }
+        // A helper does not know the port, but X-Plane's usual pair.
+        let usual = (simulator.port() == XPLANE_PORT && config.reply_port != 0)
+            .then_some(config.reply_port);
+        let expected = Expected {
+            port: expected.port.or(usual),
+            ..expected
+        };
         let opened = expected.port.unwrap_or(config.reply_port);
         let opens = opened != 0 && opened != simulator.port() && !ip.is_loopback();
         let asked = expected.port.map(|port| SocketAddr::new(ip, port));

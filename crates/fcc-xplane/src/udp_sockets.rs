@@ -1,5 +1,6 @@
 //! The UDP sockets of this machine, and whose they are, as the kernel shows them
-//! in `/proc/net/udp` and `/proc/net/udp6` (proc(5)).
+//! in `/proc/net/udp` and `/proc/net/udp6` (proc(5)), read in the process's own
+//! folder, which a service with `ProcSubset=pid` has, too.
 //!
 //! Any user may read these files. In a namespace of users that contains no
 //! others, as in a service with `PrivateUsers=yes`, every other user has the
@@ -40,12 +41,12 @@ impl UdpSockets {
         };
         match ip {
             IpAddr::V4(_) => {
-                let v4 = read("/proc/net/udp")?;
+                let v4 = read("/proc/self/net/udp")?;
                 // A kernel without IPv6 does not have it.
-                let v6 = read("/proc/net/udp6").unwrap_or_default();
+                let v6 = read("/proc/self/net/udp6").unwrap_or_default();
                 Ok(Self::of(&[&v4, &v6], ip))
             }
-            IpAddr::V6(_) => Ok(Self::of(&[&read("/proc/net/udp6")?], ip)),
+            IpAddr::V6(_) => Ok(Self::of(&[&read("/proc/self/net/udp6")?], ip)),
         }
     }
 
