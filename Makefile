@@ -39,7 +39,7 @@ STAMPS   := .stamps
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: advisories lock reproducible package-check wheels deb test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
+.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -73,6 +73,12 @@ test-python: faulty build $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/sys
 
 test-x-plane: build $(STAMPS)/python-module ## Run all steps of `fccd x-plane check` in full against the stand-in (3 minutes)
 	FCCD_FULL_CHECK=1 FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil/tests/test_x_plane_check.py
+
+ATTACKS := hil/tests/test_neighbours.py::test_whoever_is_killed_the_controls_are_released_in_the_end \
+           hil/tests/test_shared_memory.py::test_whoever_damages_shared_memory_the_flight_goes_on
+
+test-attacks: build $(STAMPS)/python-module ## Kill daemon and helper 100 times, and damage shared memory 100 times, in flight (15 minutes)
+	FCCD_KILLS=100 FCCD_ATTACKS=100 FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest --capture=no $(ATTACKS)
 
 faulty: $(STAMPS)/rust
 	cargo build --locked --release -p fcc-daemon --features fault-injection
@@ -121,7 +127,7 @@ fuzz: ## Fuzz every parser of outside data, INPUTS= for each (needs a nightly to
 	@command -v cargo-fuzz >/dev/null || cargo install --locked --version 0.13.2 cargo-fuzz
 	NIGHTLY=$(NIGHTLY) ./scripts/fuzz $(INPUTS)
 
-soundness: ## Run Miri over the timers' arithmetic and the layout of records (10 minutes)
+soundness: ## Run Miri and ThreadSanitizer over timers, loop, records and live telemetry (30 minutes)
 	NIGHTLY=$(NIGHTLY) ./scripts/soundness
 
 # The boards: a Raspberry Pi with 64 bits, and a BeagleBone or a Pi with 32.

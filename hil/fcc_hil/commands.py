@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from . import flood
+from . import flood, ranges
 from .aircraft import AIRCRAFT
 from .campaign import command as campaign
 from .printable import say
@@ -37,19 +37,6 @@ def seeds(text: str) -> tuple[int, ...]:
     return tuple(found)
 
 
-def _positive(text: str) -> int:
-    if not text.isdigit() or not 0 < int(text) <= 1_000_000:
-        raise argparse.ArgumentTypeError(f"'{text}': give a number from 1 up")
-    return int(text)
-
-
-def _numbers(text: str) -> tuple[float, ...]:
-    try:
-        return tuple(float(part) for part in text.split(","))
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"'{text}': give numbers, as in 70,85,100") from None
-
-
 def add(commands: Any) -> None:
     """Add these commands to a parser's."""
     suite = commands.add_parser(
@@ -59,7 +46,9 @@ def add(commands: Any) -> None:
         "--only", metavar="PATTERN", help="cases whose name matches, as in 'c172*noise*'"
     )
     suite.add_argument("--quick", action="store_true", help="only those flown as a test")
-    suite.add_argument("--workers", type=_positive, metavar="N", help="processes (all processors)")
+    suite.add_argument(
+        "--workers", type=ranges.workers, metavar="N", help="processes (all processors)"
+    )
     suite.add_argument("--json", type=Path, metavar="FILE", help="write all figures here")
     suite.add_argument("--picture", type=Path, metavar="FILE", help="write a picture here")
     suite.set_defaults(run=_suite)
@@ -68,24 +57,37 @@ def add(commands: Any) -> None:
         "margins", help="measure gain and phase margins with the loop broken at each actuator"
     )
     margins.add_argument(
-        "--aircraft", default="c172p", metavar="NAME,NAME", help="(default %(default)s)"
+        "--aircraft",
+        type=ranges.names(tuple(AIRCRAFT)),
+        default=("c172p",),
+        metavar="NAME,NAME",
+        help="(default c172p)",
     )
     margins.add_argument(
         "--airspeeds",
-        type=_numbers,
+        type=ranges.numbers(20.0, 500.0, "kt"),
         metavar="KT,KT",
         help="(default: 1.3 Vs, cruise and the greatest)",
     )
-    margins.add_argument("--axes", default=",".join(_AXES), metavar="AXIS,AXIS")
-    margins.add_argument("--delays", type=_numbers, default=(25.0,), metavar="MS,MS")
-    margins.add_argument("--servo", type=float, default=3.0, metavar="HZ", help="0 for none")
+    margins.add_argument("--axes", type=ranges.names(_AXES), default=_AXES, metavar="AXIS,AXIS")
+    margins.add_argument(
+        "--delays", type=ranges.numbers(0.0, 1_000.0, "ms"), default=(25.0,), metavar="MS,MS"
+    )
+    margins.add_argument(
+        "--servo",
+        type=ranges.number(0.0, 100.0, "Hz"),
+        default=3.0,
+        metavar="HZ",
+        help="0 for none",
+    )
     margins.add_argument(
         "--weights",
-        default="",
+        type=ranges.names(("light", "heavy", "file")),
+        default=("file",),
         metavar="NAME,NAME",
         help="light and heavy as in the campaign, or file (default: file)",
     )
-    margins.add_argument("--workers", type=_positive, metavar="N", help="processes")
+    margins.add_argument("--workers", type=ranges.workers, metavar="N", help="processes")
     margins.add_argument("--json", type=Path, metavar="FILE", help="write all figures here")
     margins.add_argument("--picture", type=Path, metavar="FILE", help="write a picture here")
     margins.set_defaults(run=_margins)
@@ -119,14 +121,20 @@ def add(commands: Any) -> None:
         help="numbers of the configuration to search (the five of autopilot.scale)",
     )
     tune.add_argument("--seeds", type=seeds, default=(1, 2), metavar="1,2,7-9")
-    tune.add_argument("--legs", type=_positive, default=2, help="of each flight (%(default)s)")
+    tune.add_argument("--legs", type=ranges.count, default=2, help="of each flight (%(default)s)")
     tune.add_argument(
         "--turbulence", type=int, default=0, choices=range(8), metavar="0..7", help="severity"
     )
     tune.add_argument(
-        "--evaluations", type=_positive, default=120, metavar="N", help="candidates (%(default)s)"
+        "--evaluations",
+        type=ranges.count,
+        default=120,
+        metavar="N",
+        help="candidates (%(default)s)",
     )
-    tune.add_argument("--workers", type=_positive, metavar="N", help="processes (all processors)")
+    tune.add_argument(
+        "--workers", type=ranges.workers, metavar="N", help="processes (all processors)"
+    )
     tune.add_argument(
         "--dask", metavar="ADDRESS", help="fly on a Dask cluster, as in tcp://10.0.0.5:8786"
     )
@@ -136,8 +144,13 @@ def add(commands: Any) -> None:
         "soak", help="fly for a long time under stress, and compare with the machine's own delays"
     )
     soaks.add_argument("--fccd", type=Path, required=True, help="the daemon's program")
-    soaks.add_argument("--minutes", type=float, default=30.0, help="(default %(default)s)")
-    soaks.add_argument("--rate", type=_positive, default=100, metavar="HZ", help="(%(default)s)")
+    soaks.add_argument(
+        "--minutes",
+        type=ranges.number(0.01, 100_000.0, "min"),
+        default=30.0,
+        help="(default %(default)s)",
+    )
+    soaks.add_argument("--rate", type=ranges.count, default=100, metavar="HZ", help="(%(default)s)")
     soaks.add_argument("--idle", action="store_true", help="without stress-ng")
     soaks.add_argument("--json", type=Path, metavar="FILE", help="write all figures here")
     soaks.set_defaults(run=_soak)
@@ -192,11 +205,11 @@ def _margins(options: argparse.Namespace) -> int:
 
     conditions = [
         margins.Condition(name, airspeed_kt, axis, delay_ms / 1e3, options.servo, weight)
-        for name in options.aircraft.split(",")
-        for weight in (("" if each == "file" else each) for each in options.weights.split(","))
+        for name in options.aircraft
+        for weight in (("" if each == "file" else each) for each in options.weights)
         for delay_ms in options.delays
         for airspeed_kt in options.airspeeds or margins.airspeeds_kt(name, weight)
-        for axis in options.axes.split(",")
+        for axis in options.axes
     ]
     measured = []
     with bar("measuring", len(conditions)) as notify:

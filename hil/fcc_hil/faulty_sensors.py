@@ -172,9 +172,11 @@ class _Running:
 
     def _drift(self, time_s: float, values: _Values) -> _Values:
         by = self.fault.amount * (time_s - self.fault.begins_s)
-        return {
-            name: None if value is None else max(0.0, value + by) for name, value in values.items()
-        }
+        drifted = {name: _add(name, value, by) for name, value in values.items()}
+        airspeed_mps = drifted.get("airspeed_mps")
+        return (
+            drifted if airspeed_mps is None else drifted | {"airspeed_mps": max(0.0, airspeed_mps)}
+        )
 
     def _blocked_tube(self, _time_s: float, values: _Values) -> _Values:
         return self._by_pressures(values, tube_s=math.inf, static=False)

@@ -115,7 +115,7 @@ class Faults:
         after: float = 0.0,
         lasts: float | None = None,
     ) -> SensorFault:
-        """Add a bias that grows by so much each second, in its unit; not below 0."""
+        """Add a bias that grows by so much each second, in its unit; no airspeed falls below 0."""
         return self._add(Kind.DRIFT, sensor, after, lasts, by=finite("per_s", per_s))
 
     def blocked_tube(

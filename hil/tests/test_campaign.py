@@ -189,6 +189,13 @@ def test_the_command_names_what_flies_a_flight_again(
     [
         (["--seed", "-1"], "--seed"),
         (["--seed", "one"], "--seed"),
+        (["--seed", "9" * 5_000], "from 0 to 4294967295"),
+        (["--flights", "\u00b2"], "from 1 to 1000000"),
+        (["--workers", "999999"], "from 1 to 1024"),
+        (["--least-clean", "nan"], "from 0 to 100 %"),
+        (["--least-clean", "101"], "from 0 to 100 %"),
+        (["--delay-ms", "-1"], "from 0 to 1000 ms"),
+        (["--delay-ms", "nan"], "from 0 to 1000 ms"),
         (["--flight", "-2"], "--flight"),
         (["--record", "flight.mcap"], "--flight"),
         (["--flight", "1", "--record", "/none/x.mcap"], "there is no folder '/none'"),
@@ -204,6 +211,28 @@ def test_wrong_arguments_are_refused_before_flying(
     assert ended.value.code == USAGE
     assert match in capsys.readouterr().err
     assert not Path("/none").exists()
+
+
+@pytest.mark.parametrize(
+    ("wrong", "match"),
+    [
+        (["--airspeeds", "85,nan"], "'nan': give a number from 20 to 500 kt"),
+        (["--airspeeds", "-70"], "from 20 to 500 kt"),
+        (["--airspeeds", ""], "from 20 to 500 kt"),
+        (["--delays", "25,inf"], "from 0 to 1000 ms"),
+        (["--servo", "-3"], "from 0 to 100 Hz"),
+        (["--axes", "elevator,flaps"], "'flaps': choose of elevator, aileron, rudder, throttle"),
+        (["--weights", "light,empty"], "'empty': choose of light, heavy, file"),
+        (["--aircraft", "c172p,c999"], "'c999': choose of c172p"),
+    ],
+)
+def test_margins_are_not_measured_where_there_are_none(
+    wrong: list[str], match: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        commands.main(["margins", *wrong])
+    assert ended.value.code == USAGE
+    assert match in capsys.readouterr().err
 
 
 def test_a_reader_that_leaves_ends_it_silently() -> None:

@@ -203,6 +203,85 @@ def commanding(user: int, socket: Path, *texts: str, silent: int = 0) -> list[st
     return done.stdout.splitlines() or [done.stderr]
 
 
+def one_of_them(user: int, script: str, socket: Path) -> str:
+    """Return what a program of a user prints."""
+    words = ["setpriv", f"--reuid={user}", f"--regid={user}", "--clear-groups", sys.executable]
+    done = subprocess.run(
+        [*words, "-I", "-c", script, socket], capture_output=True, text=True, check=True, cwd="/"
+    )
+    return done.stdout
+
+
+# Opens as many connections as it may, at most 600, and keeps them until its input ends.
+CROWD = """
+import socket, sys
+kept = []
+for _ in range(600):
+    s = socket.socket(socket.AF_UNIX)
+    s.setblocking(False)
+    try:
+        s.connect(sys.argv[1])
+    except BlockingIOError:
+        break
+    kept.append(s)
+print(len(kept), flush=True)
+for s in kept:
+    s.settimeout(5)
+    print(s.recv(600).decode().strip())
+"""
+HOLDS_PLACES = """
+import socket, sys
+kept = []
+for _ in range(3):
+    s = socket.socket(socket.AF_UNIX)
+    s.settimeout(5)
+    s.connect(sys.argv[1])
+    kept.append(s)
+print(kept[2].recv(600).decode().strip())
+print(kept[0].recv(600).decode().strip())
+"""
+GIVES_UP = """
+import socket, sys
+s = socket.socket(socket.AF_UNIX)
+s.settimeout(5)
+s.connect(sys.argv[1])
+s.sendall(b"stop\\n")
+"""
+
+
+@needs_root
+def test_commanders_do_not_delay_each_other_and_old_commands_are_dropped(
+    fccd: Path, scratch: Path
+) -> None:
+    instance = f"crowd-{os.getpid()}"
+    others = (
+        f'[telemetry]\ninstance = "{instance}"\n[rights]\nuser = "root"\ncommanders = ["nobody"]\n'
+    )
+    socket = Path("/dev/shm/fccd-commands-0") / instance
+    with StandInProcess(Settings(port=0)) as simulator:
+        config = write_config(scratch, simulator.port, others=others)
+        with DaemonUnderTest([fccd, "run", "--config", config, "--json"], scratch) as daemon:
+            daemon.wait_until_ready()
+            daemon.send(signal.SIGSTOP)
+            one_of_them(NOBODY, GIVES_UP, socket)
+            daemon.send(signal.SIGCONT)
+            dropped = f"a command of user {NOBODY} was not carried out, for its sender has given up"
+            assert dropped in daemon.wait_for("was not carried out")
+            # A user has two places, and a place is free again when no line comes.
+            third, first = one_of_them(NOBODY, HOLDS_PLACES, socket).splitlines()
+            assert third == f"refused 2 programs of user {NOBODY} wait for an answer already: " + (
+                "send it again"
+            )
+            assert first == "refused it did not come in time"
+            count, *answers = one_of_them(STRANGER, CROWD, socket).splitlines()
+            assert len(answers) == int(count) > 100
+            assert all("may not command this fccd" in answer for answer in answers)
+            (engaged,) = commanding(NOBODY, socket, "set altimeter_setting_pa=101325\\n")
+            assert engaged.startswith("carried-out ")
+            ending = daemon.end(signal.SIGTERM)
+    assert ending.exit_code == SUCCESS, ending.log
+
+
 @needs_root
 def test_only_those_who_are_named_may_command(fccd: Path, scratch: Path) -> None:
     instance = f"rights-{os.getpid()}"
@@ -226,7 +305,7 @@ def test_only_those_who_are_named_may_command(fccd: Path, scratch: Path) -> None
                 "set altitude_m=1e308\\n",
                 "x" * 600,
                 "\\xff\\n",
-                silent=10,
+                silent=1,
             )
             assert heading.startswith("carried-out ")
             assert "there is no set point 'no_such'" in unknown

@@ -25,7 +25,7 @@ STRANGER = 65534
 PATIENCE_S = 15.0
 BACK_WITHIN_S = 1.0
 ATTACKS = int(os.environ.get("FCCD_ATTACKS", "5"))
-"""How often shared memory is damaged; 100 takes two minutes."""
+"""How often shared memory is damaged; 100 take two minutes: `make test-attacks`."""
 
 ENDED = "the process that publishes live telemetry"
 

@@ -16,3 +16,6 @@ pub mod exit;
 mod observers;
 mod output;
 mod process;
+
+#[cfg(fuzzing)]
+pub use process::{held_after, use_plant_file};

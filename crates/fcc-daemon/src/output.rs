@@ -6,20 +6,24 @@
 //! code, and a message that cannot be printed is dropped.
 
 use std::fmt::Display;
+use std::fs::File;
 use std::io::{self, ErrorKind, Write};
+use std::os::fd::AsFd as _;
+use std::os::unix::fs::FileTypeExt as _;
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use fcc_telemetry::{printable, printable_json};
+use nix::errno::Errno;
 use serde::Serialize;
 
 use crate::exit::Exit;
 
 /// Prints a result. Returns `exit`, or a failure if that was a success and the
-/// result could not be printed. A reader that has left (`| head -1`) is no
-/// failure.
+/// result could not be printed. A reader that has left (`| head -1`, or a closed
+/// terminal) is no failure.
 pub(crate) fn result(text: impl Display, exit: Exit) -> Exit {
     bytes(line(text).as_bytes(), exit)
 }
@@ -36,9 +40,21 @@ pub(crate) fn json<T: Serialize>(value: &T, exit: Exit) -> Exit {
 pub(crate) fn bytes(bytes: &[u8], exit: Exit) -> Exit {
     let mut out = io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => not_printed(&error, exit),
+        Err(error) if !has_left(&error) => not_printed(&error, exit),
         _ => exit,
     }
+}
+
+/// Whether nobody reads the output any more: the other end of the pipe was
+/// closed, or the terminal was (EIO of a device, and not of a disk).
+fn has_left(error: &io::Error) -> bool {
+    let is_device = || {
+        let output = io::stdout().as_fd().try_clone_to_owned().map(File::from);
+        let found = output.and_then(|output| output.metadata());
+        found.is_ok_and(|found| found.file_type().is_char_device())
+    };
+    error.kind() == ErrorKind::BrokenPipe
+        || (error.raw_os_error() == Some(Errno::EIO as i32) && is_device())
 }
 
 fn not_printed(error: &dyn Display, exit: Exit) -> Exit {

@@ -58,10 +58,14 @@ pub use command::{
     COMMANDS_VERSION, Command, CommandError, Commandable, CommandableSetpoint, Commander,
     InvalidCommand, OutsideLimits, PendingCommand, PlantLimits, SentCommands, Verdict,
 };
+#[cfg(fuzzing)]
+pub use command::{read_answer, read_request};
 pub use error::{PublishError, WatchError};
 pub use event::{Event, EventCode};
 pub use info::Info;
 pub use lateness::{LATENESS_BOUNDS_NS, LatenessCounts};
+#[cfg(fuzzing)]
+pub use message::read_message;
 #[cfg(feature = "flight")]
 pub use publisher::Publisher;
 pub use publisher::PublisherOf;

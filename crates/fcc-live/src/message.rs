@@ -146,7 +146,13 @@ pub(super) fn take<T: DeserializeOwned>(socket: &impl AsFd, room: &mut [u8]) -> 
         Err(Errno::EAGAIN | Errno::EINTR) => return Received::Nothing,
         Err(_) => return Received::Closed,
     };
-    match room.get(..length).and_then(<[u8]>::split_first) {
+    room.get(..length).map_or(Received::Invalid, read)
+}
+
+/// The message in these bytes: another program may have made the sender write
+/// anything.
+fn read<T: DeserializeOwned>(message: &[u8]) -> Received<T> {
+    match message.split_first() {
         Some((&RECORD, bytes)) => {
             let words = bytes.chunks_exact(size_of::<u64>());
             let word = |bytes: &[u8]| bytes.try_into().map_or(0, u64::from_ne_bytes);
@@ -157,4 +163,24 @@ pub(super) fn take<T: DeserializeOwned>(socket: &impl AsFd, room: &mut [u8]) -> 
         }
         _ => Received::Invalid,
     }
+}
+
+/// Reads a message as the daemon does, and as the process that publishes does.
+///
+/// # Panics
+/// When one that is read is sent as another one.
+#[cfg(fuzzing)]
+pub fn read_message(message: &[u8]) {
+    fn read_again<T: DeserializeOwned + Serialize>(message: &[u8]) {
+        let Received::Other(first) = read::<T>(message) else {
+            return;
+        };
+        let (mut once, mut twice) = (Encoded::default(), Encoded::default());
+        let Received::Other(second) = read::<T>(once.other(&first)) else {
+            panic!("what was sent is not read");
+        };
+        assert_eq!(once.bytes, twice.other(&second));
+    }
+    read_again::<ToPublisher>(message);
+    read_again::<FromPublisher>(message);
 }

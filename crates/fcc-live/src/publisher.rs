@@ -218,7 +218,7 @@ impl<C: Telemetry> PublisherOf<C> {
             lateness_p99_9_ns: lateness.quantile_ns(0.999),
             lateness_max_ns: lateness.max_ns,
             lateness_counts: lateness.counts,
-            not_published: self.left_out + lost,
+            not_published: self.left_out.saturating_add(lost),
             recorder_state: recorder.state as u32,
             recorded: recorder.recorded,
             not_recorded: recorder.not_recorded,

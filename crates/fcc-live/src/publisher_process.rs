@@ -20,7 +20,7 @@ use super::item::Item;
 use super::message::{self, Encoded, FromPublisher, Received, ToPublisher, pair, put, take};
 use super::publishing_thread::{NO_RESPONSE, PATIENCE};
 use super::{EVENT_HISTORY, Event, Info, PublishError};
-use fcc_telemetry::{Instance, Telemetry};
+use fcc_telemetry::{Instance, Telemetry, not_started};
 
 /// Makes the command that starts the process; its standard input is given to
 /// it here.
@@ -115,8 +115,10 @@ impl PublisherProcess {
             room: message::room(),
         };
         let failed = |words: String| PublishError::NoSharedMemory(words);
-        this.run()
-            .map_err(|error| failed(format!("its process cannot be started: {error}")))?;
+        this.run().map_err(|error| {
+            let why = not_started(error);
+            failed(format!("its process cannot be started: {why}"))
+        })?;
         let deadline = now + PATIENCE;
         while let Some(running) = &this.running {
             match take(&running.socket, &mut this.room) {
@@ -222,7 +224,7 @@ impl PublisherProcess {
             && let Err(error) = self.run()
         {
             self.later(true);
-            self.ended_because(&format!("cannot be started: {error}"));
+            self.ended_because(&format!("cannot be started: {}", not_started(error)));
         }
         self.texts.pop_front()
     }
@@ -263,7 +265,7 @@ impl PublisherProcess {
         let Some(running) = self.running.take() else {
             return;
         };
-        self.lost += running.not_published;
+        self.lost = self.lost.saturating_add(running.not_published);
         self.later(running.began.elapsed() < SHORT_LIFE);
         self.ended_because(why);
     }

@@ -12,7 +12,7 @@ use super::PublishError;
 use super::command::{CommandServer, Ends, PendingCommand, Verdict};
 use super::item::Item;
 use super::thread::{self, Started};
-use fcc_telemetry::{Instance, Telemetry};
+use fcc_telemetry::{Instance, Telemetry, not_started};
 
 /// How long the start and the end of publishing may take. A flight waits no
 /// longer.
@@ -74,7 +74,7 @@ impl<C: Telemetry> PublishingThread<C> {
             .name(thread::NAME.to_owned())
             .stack_size(thread::STACK_BYTES)
             .spawn(move || thread::publish(&order, rings, items, &told, &started, &reports))
-            .map_err(|error| PublishError::NoSharedMemory(error.to_string()))?;
+            .map_err(|error| PublishError::NoSharedMemory(not_started(error).to_string()))?;
         match start.recv_timeout(PATIENCE) {
             Ok(Ok(())) => Ok(Self {
                 ring,

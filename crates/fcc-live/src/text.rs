@@ -25,6 +25,12 @@ impl<const N: usize> Text<N> {
         Self(bytes)
     }
 
+    /// These bytes, as another program may have written them.
+    #[cfg(fuzzing)]
+    pub(crate) const fn of_bytes(bytes: [u8; N]) -> Self {
+        Self(bytes)
+    }
+
     /// The text. Another program may have written anything: it ends at the
     /// first byte that is zero or invalid UTF-8.
     pub fn as_str(&self) -> &str {

@@ -38,7 +38,9 @@ fn is_known(bytes: &[u8], position: u64, file_bytes: u64) -> bool {
     let Some((opcode, length)) = head(bytes) else {
         return false;
     };
-    let end = position.saturating_add(HEAD_BYTES as u64 + length);
+    // Damaged lengths are any number.
+    let record_bytes = length.saturating_add(HEAD_BYTES as u64);
+    let end = position.saturating_add(record_bytes);
     if length > MAX_RECORD_BYTES || end > file_bytes {
         return false;
     }
@@ -58,8 +60,8 @@ fn is_known(bytes: &[u8], position: u64, file_bytes: u64) -> bool {
         // Two times, a name, a media type, the data and a checksum.
         op::ATTACHMENT => u32_at(16)
             .and_then(|name| {
-                let media = u32_at(20 + usize::try_from(name).ok()?)?;
-                let data_at = 24 + usize::try_from(name + media).ok()?;
+                let media = u32_at(usize::try_from(20 + name).ok()?)?;
+                let data_at = usize::try_from(24 + name + media).ok()?;
                 let data = u64::from_le_bytes(*body.get(data_at..)?.first_chunk()?);
                 (data_at as u64 + 12).checked_add(data)
             })
@@ -104,4 +106,20 @@ fn read_at(file: &mut File, position: u64, length: usize, into: &mut Vec<u8>) ->
     file.seek(SeekFrom::Start(position))?;
     file.take(length as u64).read_to_end(into)?;
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Found by fuzzing: the sum overflowed.
+    #[test]
+    fn a_length_may_be_any_number() {
+        for length in [u64::MAX, u64::MAX - 8, MAX_RECORD_BYTES + 1, 992] {
+            for opcode in 0..=u8::MAX {
+                let record = [&[opcode][..], &length.to_le_bytes(), &[255; 40]].concat();
+                assert!(!is_known(&record, 0, 1_000), "{opcode}, {length}");
+            }
+        }
+    }
 }

@@ -271,14 +271,15 @@ impl Recording {
     }
 
     fn has_plant_of<M: RecordedMessage>(&self) -> Result<(), OpenError> {
-        match (&self.columns, M::columns()) {
-            (Some(columns), Some(own)) if columns.is_of_another_plant(&own) => {
-                Err(OpenError::AnotherPlant {
-                    path: self.path.clone(),
-                    plant: self.about.plant.clone(),
-                    software: self.about.software.clone(),
-                })
-            }
+        let Some(columns) = &self.columns else {
+            return Ok(());
+        };
+        match M::columns() {
+            Some(own) if columns.is_of_another_plant(&own) => Err(OpenError::AnotherPlant {
+                path: self.path.clone(),
+                plant: self.about.plant.clone(),
+                software: self.about.software.clone(),
+            }),
             _ => Ok(()),
         }
     }

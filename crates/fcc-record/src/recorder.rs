@@ -7,6 +7,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use fcc_core::framework::MessageOf;
+use fcc_telemetry::not_started;
 
 use super::about::About;
 use super::disk::{Disk, FileSystem};
@@ -77,7 +78,8 @@ impl<C: Recorded> RecorderOf<C> {
         };
         let thread = thread::Builder::new()
             .name(THREAD_NAME.to_owned())
-            .spawn(write)?;
+            .spawn(write)
+            .map_err(not_started)?;
         Ok(Self {
             feed,
             pace,

@@ -5,7 +5,9 @@ use std::thread::{self, JoinHandle};
 use std::{io, panic};
 
 use fcc_core::framework::{Controller, State};
-use fcc_timer::{DeniedRequest, RealtimeDenied, RealtimeGranted, RealtimeRequest, TimerError};
+use fcc_timer::{
+    DeniedRequest, RealtimeDenied, RealtimeGranted, RealtimeRequest, TimerError, not_started,
+};
 
 use crate::config::{LoopConfig, Parts};
 use crate::link::{Link, StopHandle};
@@ -61,7 +63,7 @@ impl<C: Controller> Loop<C> {
         let thread = thread::Builder::new()
             .name(THREAD_NAME.to_owned())
             .spawn(move || self.run_there(&started))
-            .map_err(SpawnError::Thread)?;
+            .map_err(|error| SpawnError::Thread(not_started(error)))?;
         match start.recv() {
             Ok(Ok(granted)) => Ok(LoopHandle {
                 granted,

@@ -11,7 +11,7 @@ use std::sync::mpsc;
 use std::time::{Duration, Instant};
 use std::{io, thread};
 
-use fcc_timer::{RealtimeGranted, RealtimeRequest, realtime};
+use fcc_timer::{RealtimeGranted, RealtimeRequest, not_started, realtime};
 
 use crate::heartbeat::{Heartbeat, HeartbeatReading};
 
@@ -80,7 +80,8 @@ pub fn watch(
                 let _ = realtime::take_priority_from(heartbeat.thread());
                 on_hang(hang);
             }
-        })?;
+        })
+        .map_err(not_started)?;
     receiver
         .recv()
         .map_err(|_| io::Error::other("the watchdog's thread ended before it began to watch"))

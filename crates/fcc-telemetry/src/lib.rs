@@ -27,6 +27,7 @@ pub mod units;
 
 #[cfg(feature = "flight")]
 pub use altitude::ShownAltitude;
+pub use fcc_timer::not_started;
 pub use instance::{Instance, InstanceError};
 pub use message::describe_event;
 #[cfg(feature = "flight")]

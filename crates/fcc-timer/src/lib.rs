@@ -36,6 +36,7 @@ mod nanosleep;
 mod periodic;
 mod posix;
 pub mod realtime;
+mod started;
 mod stats;
 mod timer;
 mod timerfd;
@@ -49,6 +50,7 @@ pub use posix::PosixTimer;
 pub use realtime::{
     CpuRequest, DeniedRequest, RealtimeDenied, RealtimeGranted, RealtimeRequest, Strictness,
 };
+pub use started::not_started;
 pub use stats::{TimingStats, TimingSummary};
 pub use timer::{Expiry, Relief, Timer, TimerError, Wake};
 pub use timerfd::TimerFd;

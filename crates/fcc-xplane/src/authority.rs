@@ -2,13 +2,15 @@
 
 use core::fmt;
 use std::net::{Ipv4Addr, SocketAddr};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use fcc_core::framework::{ActuatorFault, ControlAuthority, PlantId, Released, TakeoverNotice};
 
 use crate::config::XPlaneConfig;
 use crate::open::{OpenError, XPlane};
+use crate::port_watch::PortWatch;
+use crate::release::Expected;
 use crate::reported::Reported;
 use crate::status::XPlaneStatus;
 use crate::udp_port::is_of_this_machine;
@@ -22,6 +24,8 @@ pub struct XPlaneAuthority {
     config: XPlaneConfig,
     status: Option<XPlaneStatus>,
     reported: Mutex<Reported>,
+    /// Of the connection that is flown, and of those beside it.
+    watches: Mutex<Vec<PortWatch>>,
 }
 
 impl XPlaneAuthority {
@@ -41,8 +45,26 @@ impl XPlaneAuthority {
             config: config.clone(),
             status: None,
             reported: Mutex::default(),
+            watches: Mutex::default(),
         }
     }
+}
+
+impl XPlaneAuthority {
+    fn watch_ports(&self, status: &XPlaneStatus) {
+        let flown = status.link();
+        let beside = flown.beside();
+        let mut watches = locked(&self.watches);
+        watches.resize_with(1 + beside.len(), PortWatch::default);
+        let links = std::iter::once(&flown).chain(&beside);
+        for (watch, link) in watches.iter_mut().zip(links) {
+            watch.look(link, &flown);
+        }
+    }
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl ControlAuthority for XPlaneAuthority {
@@ -83,9 +105,9 @@ impl ControlAuthority for XPlaneAuthority {
 
     fn report(&self, report: &mut dyn FnMut(fmt::Arguments<'_>)) {
         if let Some(status) = &self.status {
-            status.link().adapt_filter();
+            self.watch_ports(status);
         }
-        let mut reported = self.reported.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut reported = locked(&self.reported);
         if let Some(text) = self
             .status
             .as_ref()
@@ -103,18 +125,26 @@ impl ControlAuthority for XPlaneAuthority {
     ) -> Result<Released, ActuatorFault> {
         let simulator = address(plant).ok_or(ActuatorFault::NotConnected)?;
         // Of the one that is flown; a helper learns it from the first answer.
-        let reply_port = self
+        let flown = self
             .status
             .as_ref()
-            .filter(|status| status.simulator() == Some(simulator))
-            .and_then(XPlaneStatus::reply_port);
-        XPlane::release_expecting(&self.config, simulator, reply_port, within, is_cancelled)
-            .map_err(|error| match error {
+            .filter(|status| status.simulator() == Some(simulator));
+        // A thread that hangs may have locked it.
+        let watches = self.watches.try_lock().ok();
+        let expected = Expected {
+            port: flown.and_then(|status| status.link().flown_port().or(status.reply_port())),
+            user: flown
+                .and(watches)
+                .and_then(|watches| watches.first().and_then(PortWatch::user)),
+        };
+        XPlane::release_expecting(&self.config, simulator, expected, within, is_cancelled).map_err(
+            |error| match error {
                 OpenError::Bind { source, .. } => ActuatorFault::Io {
                     errno: source.raw_os_error().unwrap_or(0),
                 },
                 _ => ActuatorFault::NotConnected,
-            })
+            },
+        )
     }
 
     fn release_left(&self) {

@@ -31,9 +31,10 @@ pub struct XPlaneConfig {
     /// X-Plane, so [`Input::Data`] needs one.
     pub local_port: u16,
     /// The port from which X-Plane is expected to answer, 0 if that is not
-    /// known: it is preferred to one that was learned. While it is silent, a datagram without effect is sent there each
-    /// second, so that a firewall on this side lets the replies in; afterwards
-    /// to the port that answers, every 20 s. Default: 49001, X-Plane's own.
+    /// known: while nothing is held, it is preferred to one that was learned.
+    /// While it is silent, a datagram without effect is sent there each second,
+    /// so that a firewall on this side lets the replies in; afterwards to the
+    /// port that answers, every 20 s. Default: 49001, X-Plane's own.
     pub reply_port: u16,
     /// How measurements are received. Default: [`Input::Rref`].
     pub input: Input,

@@ -30,7 +30,7 @@
 //! | `motion`, `specific_force` | attitude, specific force and velocity from the local axes |
 //! | `other_control` | what acts on the controls besides this program |
 //! | `consistency`, `axial_load` | values compared with each other |
-//! | `source_filter`, `reply_port` | from which address and port of the simulator they are accepted |
+//! | `source_filter`, `reply_port`, `port_watch`, `udp_sockets` | from which address and port of the simulator they are accepted |
 //! | `subscriptions`, `missing` | what to request, when to repeat it, and what does not arrive |
 //! | `traffic` | how much is sent to X-Plane |
 //! | `engage_switch` | the dataref that engages |
@@ -75,6 +75,7 @@ mod no_answer;
 mod open;
 mod other_control;
 mod port;
+mod port_watch;
 mod pressure_altitude;
 pub mod protocol;
 mod quantity;
@@ -96,6 +97,7 @@ mod status;
 mod subscriptions;
 mod traffic;
 mod udp_port;
+mod udp_sockets;
 mod units;
 mod values;
 mod written;

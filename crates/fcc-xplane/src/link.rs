@@ -7,7 +7,7 @@
 
 use core::sync::atomic::{AtomicBool, AtomicU8, AtomicU16, AtomicU32, AtomicU64, Ordering};
 use std::net::SocketAddr;
-use std::sync::OnceLock;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use fcc_core::framework::TakeoverNotice;
 
@@ -37,11 +37,23 @@ pub(crate) struct SharedState {
     pub(crate) address: SharedAddress,
     /// The simulator's port that answered last, 0 while unknown.
     reply_port: AtomicU16,
+    /// The port that answered when control was taken, or in its place one of
+    /// the simulator started again; 0 while nothing is held.
+    flown_port: AtomicU16,
     /// The port that is received on here, 0 while unknown.
     local_port: AtomicU16,
-    /// [`Ports`], of 16 bits each.
+    /// Each [`Ports`], of 16 bits each.
     delivered_ports: AtomicU64,
+    held_ports: AtomicU64,
+    gone_ports: AtomicU64,
+    /// Whether all ports that are gone are known.
+    is_gone_known: AtomicBool,
+    /// Nothing comes from a port any more, or none is known.
+    is_port_silent: AtomicBool,
     filter: OnceLock<SourceFilter>,
+    /// Further connections to read, without a watch of their own; not used in a
+    /// tick.
+    beside: Mutex<Vec<Arc<Self>>>,
     state: AtomicU8,
     control: AtomicU8,
     /// A confirmed release of this program's may still be undone by a late write.
@@ -79,9 +91,15 @@ impl SharedState {
         Self {
             address: SharedAddress::new(simulator),
             reply_port: AtomicU16::new(0),
+            flown_port: AtomicU16::new(0),
             local_port: AtomicU16::new(0),
             delivered_ports: AtomicU64::new(0),
+            held_ports: AtomicU64::new(0),
+            gone_ports: AtomicU64::new(0),
+            is_gone_known: AtomicBool::new(false),
+            is_port_silent: AtomicBool::new(true),
             filter: OnceLock::new(),
+            beside: Mutex::new(Vec::new()),
             state: AtomicU8::new(SimulatorState::Silent as u8),
             control: AtomicU8::new(Control::Free as u8),
             may_be_undone: AtomicBool::new(false),
@@ -134,25 +152,75 @@ impl SharedState {
         }
     }
 
-    /// The simulator's ports from which the kernel is to deliver.
+    /// The port that was flown, while controls are held.
+    pub(crate) fn flown_port(&self) -> Option<u16> {
+        known_port(&self.flown_port)
+    }
+
+    pub(crate) fn set_flown_port(&self, port: Option<u16>) {
+        self.flown_port
+            .store(port.unwrap_or_default(), Ordering::Relaxed);
+    }
+
+    /// Whether what is received now can confirm a release: not what comes from
+    /// another port than the one that was flown.
+    pub(crate) fn is_answer_of_flown(&self) -> bool {
+        let flown = self.flown_port();
+        flown.is_none() || flown == self.reply_port()
+    }
+
+    /// The simulator's ports from which the kernel is to deliver; all 0 for any.
     pub(crate) fn delivered_ports(&self) -> Ports {
-        let packed = self.delivered_ports.load(Ordering::Relaxed);
-        [0, 16, 32, 48].map(|shift| (packed >> shift) as u16)
+        unpack(&self.delivered_ports)
     }
 
     pub(crate) fn set_delivered_ports(&self, ports: Ports) {
-        let packed = ports
-            .into_iter()
-            .rev()
-            .fold(0, |packed, port| (packed << 16) | u64::from(port));
-        self.delivered_ports.store(packed, Ordering::Relaxed);
+        pack(&self.delivered_ports, ports);
+    }
+
+    /// The ports that the simulator's datagrams come from, of replies first.
+    pub(crate) fn held_ports(&self) -> Ports {
+        unpack(&self.held_ports)
+    }
+
+    pub(crate) fn set_held_ports(&self, ports: Ports, is_silent: bool) {
+        pack(&self.held_ports, ports);
+        self.is_port_silent.store(is_silent, Ordering::Relaxed);
+    }
+
+    /// Whether nothing comes from one of them any more, or none is known.
+    pub(crate) fn is_port_silent(&self) -> bool {
+        self.is_port_silent.load(Ordering::Relaxed)
+    }
+
+    /// Those of them that are closed, or another user's; whether others are
+    /// known not to be.
+    pub(crate) fn gone_ports(&self) -> (Ports, bool) {
+        let is_known = self.is_gone_known.load(Ordering::Relaxed);
+        (unpack(&self.gone_ports), is_known)
+    }
+
+    pub(crate) fn set_gone_ports(&self, ports: Ports, is_known: bool) {
+        pack(&self.gone_ports, ports);
+        self.is_gone_known.store(is_known, Ordering::Relaxed);
     }
 
     /// Adapts the kernel's filter to what is known; not in a tick.
-    pub(crate) fn adapt_filter(&self) {
+    pub(crate) fn adapt_filter(&self, owned: Option<&[u16]>) {
         if let Some(filter) = self.filter.get() {
-            filter.follow(self);
+            filter.follow(self, owned);
         }
+    }
+
+    /// Another connection is watched together with this one.
+    pub(crate) fn add_beside(&self, link: Arc<Self>) {
+        let mut beside = self.beside.lock().unwrap_or_else(PoisonError::into_inner);
+        beside.push(link);
+    }
+
+    pub(crate) fn beside(&self) -> Vec<Arc<Self>> {
+        let beside = self.beside.lock().unwrap_or_else(PoisonError::into_inner);
+        beside.clone()
     }
 
     pub(crate) fn state(&self) -> SimulatorState {
@@ -351,6 +419,19 @@ impl SharedState {
         self.ground
             .store(1 + u8::from(on_ground), Ordering::Relaxed);
     }
+}
+
+fn pack(into: &AtomicU64, ports: Ports) {
+    let packed = ports
+        .into_iter()
+        .rev()
+        .fold(0, |packed, port| (packed << 16) | u64::from(port));
+    into.store(packed, Ordering::Relaxed);
+}
+
+fn unpack(ports: &AtomicU64) -> Ports {
+    let packed = ports.load(Ordering::Relaxed);
+    [0, 16, 32, 48].map(|shift| (packed >> shift) as u16)
 }
 
 fn known_port(port: &AtomicU16) -> Option<u16> {

@@ -7,13 +7,16 @@ use std::time::{Duration, Instant};
 
 use fcc_core::framework::Released;
 
+use crate::address::XPLANE_PORT;
 use crate::config::XPlaneConfig;
 use crate::controls::Controls;
 use crate::open::{OpenError, XPlane, bind, local_ports};
+use crate::port_watch::ClosedPort;
 use crate::protocol::rref;
 use crate::quantity::{OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES};
 use crate::source_filter;
-use crate::udp_port::local_address;
+use crate::udp_port::{is_of_this_machine, local_address};
+use crate::udp_sockets::UdpSockets;
 
 /// The interval between two releases.
 const AGAIN_AFTER: Duration = Duration::from_millis(250);
@@ -24,14 +27,21 @@ const CLEAR_FOR: Duration = Duration::from_millis(500);
 const LISTEN_FOR: Duration = Duration::from_millis(20);
 /// After this many refusals in a row the simulator counts as unreachable.
 const REFUSALS: u32 = 4;
-/// If no answer comes from the expected port for this long, one from another
-/// port is accepted: X-Plane was started again.
-const OTHER_PORT_AFTER: Duration = Duration::from_millis(500);
 /// The rate at which the readback is requested, Hz.
 const READ_BACK_HZ: u16 = 20;
 /// The indices of the readback, distinct from those of a sensor's
 /// subscriptions.
 const INDICES: [i32; 2] = [9_001, 9_002];
+
+/// What is known of the simulator that was flown.
+#[derive(Clone, Copy, Default, Debug)]
+pub(crate) struct Expected {
+    /// The port that answered, or the usual one: only it can confirm, unless it is
+    /// gone.
+    pub(crate) port: Option<u16>,
+    /// Whose socket that is, of a simulator on this machine.
+    pub(crate) user: Option<u32>,
+}
 
 impl XPlane {
     /// Centres the surfaces and clears the overrides at `simulator`, whichever
@@ -63,19 +73,19 @@ impl XPlane {
         is_cancelled: impl FnMut() -> bool,
     ) -> Result<Released, OpenError> {
         config.validate()?;
-        Self::release_expecting(config, simulator, None, timeout, is_cancelled)
+        let expected = Expected::default();
+        Self::release_expecting(config, simulator, expected, timeout, is_cancelled)
     }
 
-    /// The same; only answers from `reply_port` are accepted, if it is known,
-    /// unless none comes from there.
+    /// The same; only answers of what is expected are accepted.
     pub(crate) fn release_expecting(
         config: &XPlaneConfig,
         simulator: SocketAddr,
-        reply_port: Option<u16>,
+        expected: Expected,
         timeout: Duration,
         is_cancelled: impl FnMut() -> bool,
     ) -> Result<Released, OpenError> {
-        let mut conversation = Conversation::open(config, simulator, reply_port)?;
+        let mut conversation = Conversation::open(config, simulator, expected)?;
         let mut controls = Controls::new(config)?;
         let outcome = retry_until_released(&mut conversation, &mut controls, timeout, is_cancelled);
         conversation.end();
@@ -96,9 +106,10 @@ struct Conversation {
     /// A request without effect, to the port that is expected to answer: it
     /// lets the answers through a firewall on this side.
     opening: Option<SocketAddr>,
-    /// The port that answers.
-    reply_port: Option<u16>,
-    began: Instant,
+    expected: Expected,
+    is_of_this_machine: bool,
+    /// Asks whether the expected port is closed, of another machine's.
+    closed: Option<ClosedPort>,
     has_answered: bool,
 }
 
@@ -106,7 +117,7 @@ impl Conversation {
     fn open(
         config: &XPlaneConfig,
         simulator: SocketAddr,
-        reply_port: Option<u16>,
+        expected: Expected,
     ) -> Result<Self, OpenError> {
         let ip = simulator.ip();
         let mut ports = local_ports(config.local_port, ip);
@@ -115,7 +126,7 @@ impl Conversation {
         let answers = bind(&ports, |port| UdpSocket::bind((local_address(ip), port)))?;
         let refused = |source| OpenError::Bind { port: 0, source };
         // If this fails, what others send is left out below.
-        let _ = source_filter::attach(&answers, ip, [0; 4]);
+        let _ = source_filter::attach(&answers, ip, None);
         answers
             .set_read_timeout(Some(LISTEN_FOR))
             .map_err(refused)?;
@@ -126,18 +137,52 @@ impl Conversation {
         for ((request, index), path) in requests.iter_mut().zip(INDICES).zip(paths) {
             rref::request(request, READ_BACK_HZ, index, path)?;
         }
-        let expected = reply_port.unwrap_or(config.reply_port);
-        let opens = expected != 0 && expected != simulator.port() && !ip.is_loopback();
+        // A helper does not know the port, but X-Plane's usual pair.
+        let usual = (simulator.port() == XPLANE_PORT && config.reply_port != 0)
+            .then_some(config.reply_port);
+        let expected = Expected {
+            port: expected.port.or(usual),
+            ..expected
+        };
+        let opened = expected.port.unwrap_or(config.reply_port);
+        let opens = opened != 0 && opened != simulator.port() && !ip.is_loopback();
+        let asked = expected.port.map(|port| SocketAddr::new(ip, port));
         Ok(Self {
             simulator,
             writes,
             answers,
             requests,
-            opening: opens.then(|| SocketAddr::new(ip, expected)),
-            reply_port,
-            began: Instant::now(),
+            opening: opens.then(|| SocketAddr::new(ip, opened)),
+            expected,
+            is_of_this_machine: is_of_this_machine(simulator),
+            closed: asked.and_then(ClosedPort::of),
             has_answered: false,
         })
+    }
+
+    /// Finds out from which ports an answer counts: if the expected one is gone,
+    /// as of a simulator that was started again, from any other one of the same
+    /// user, or of the same machine.
+    fn look_at_ports(&mut self) {
+        let ip = self.simulator.ip();
+        let sockets = self
+            .is_of_this_machine
+            .then(|| UdpSockets::sending_from(ip).ok())
+            .flatten();
+        let listens = || sockets.as_ref()?.user_of(self.simulator.port());
+        let owned = self.expected.user.or_else(listens).zip(sockets.as_ref());
+        let owned = owned.map(|(user, sockets)| sockets.ports_of(user));
+        let is_gone = |port: u16| match (&owned, &mut self.closed) {
+            (Some(owned), _) => !owned.contains(&port),
+            (None, Some(closed)) => closed.is_closed(self.has_answered),
+            (None, None) => false,
+        };
+        if self.expected.port.is_some_and(is_gone) {
+            self.expected.port = None;
+        }
+        let expected = self.expected.port.map(|port| vec![port]);
+        // If this fails, any answer of that machine counts.
+        let _ = source_filter::attach(&self.answers, ip, expected.or(owned).as_deref());
     }
 
     /// Sends the release and the requests; whether a program listens there, as
@@ -169,13 +214,12 @@ impl Conversation {
         let Ok((length, from)) = self.answers.recv_from(&mut datagram) else {
             return false;
         };
-        let is_expected = self.reply_port.is_none_or(|port| port == from.port())
-            || (!self.has_answered && self.began.elapsed() > OTHER_PORT_AFTER);
+        let is_expected = self.expected.port.is_none_or(|port| port == from.port());
         let is_answer = from.ip() == self.simulator.ip()
             && is_expected
             && read_back(datagram.get(..length).unwrap_or_default(), readback);
         if is_answer {
-            self.reply_port = Some(from.port());
+            self.expected.port = Some(from.port());
             self.has_answered = true;
         }
         is_answer
@@ -217,6 +261,7 @@ fn retry_until_released(
         let is_clear = readback == [Some(false); 2] && answered.elapsed() < AGAIN_AFTER;
         if !is_clear && sent.is_none_or(|at| at.elapsed() >= AGAIN_AFTER) {
             sent = Some(Instant::now());
+            conversation.look_at_ports();
             readback = [None; 2];
             refused = !conversation.send_release(controls);
             refusals += u32::from(refused);

@@ -133,7 +133,8 @@ impl ReleaseMonitor {
         let still_set = readback
             .clone()
             .any(|(value, at)| *value >= 0.5 && *at > settled && *at > self.sent);
-        let all_clear = readback.clone().count() > 0
+        let all_clear = link.is_answer_of_flown()
+            && readback.clone().count() > 0
             && readback
                 .clone()
                 .all(|(value, at)| *value < 0.5 && *at > settled);

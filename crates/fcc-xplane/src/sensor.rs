@@ -13,11 +13,11 @@ use crate::config::{DataRows, Input, XPlaneConfig};
 use crate::controls::Controls;
 use crate::counters::count;
 use crate::inbox::Inbox;
-use crate::link::SharedState;
+use crate::link::{Control, SharedState};
 use crate::port::{Errno, Port};
 use crate::protocol::{Kind, PathError, beacon};
 use crate::release_monitor::ReleaseMonitor;
-use crate::reply_port::ReplyPorts;
+use crate::reply_port::{ReplyPorts, Situation};
 use crate::simulator::SimulatorState;
 use crate::source_filter::SourceFilter;
 use crate::status::XPlaneStatus;
@@ -126,6 +126,7 @@ impl<P: Port> XPlaneSensor<P> {
     #[must_use]
     pub fn beside(mut self, flown: &XPlaneStatus) -> Self {
         self.writing = flown.link();
+        self.writing.add_beside(Arc::clone(&self.link));
         self
     }
 
@@ -208,9 +209,12 @@ impl<P: Port> XPlaneSensor<P> {
             match self.inbox.accept(datagram, now, &self.link) {
                 Ok(true) => {
                     if let Some(kind) = kind {
-                        self.reply_ports.hold(kind, port, now);
+                        let is_restarted = self.reply_ports.hold(kind, port, now);
                         if kind == Kind::Rref || self.link.reply_port().is_none() {
                             self.link.set_reply_port(port);
+                            if is_restarted {
+                                self.link.set_flown_port(Some(port));
+                            }
                         }
                     }
                 }
@@ -259,6 +263,25 @@ impl<P: Port> XPlaneSensor<P> {
             }
         }
         newest
+    }
+
+    /// Which ports may be adopted depends on whether controls are held.
+    fn follow_control(&mut self) {
+        let link = &self.link;
+        let is_held = self.writing.is_held();
+        if !link.is_held() {
+            link.set_flown_port(None);
+        } else if link.flown_port().is_none() {
+            link.set_flown_port(link.reply_port());
+        }
+        let (gone, is_gone_known) = link.gone_ports();
+        self.reply_ports.situation = Situation {
+            is_held,
+            is_written: self.writing.control() == Control::Held,
+            flown: link.flown_port(),
+            gone,
+            is_gone_known,
+        };
     }
 
     fn send_requests(&mut self, now: Time, simulator: SocketAddr) -> Result<(), Errno> {
@@ -315,6 +338,7 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
         self.listen_for_beacons(now);
         let simulator = self.link.address.simulator();
 
+        self.follow_control();
         self.inbox.begin();
         let missed_s = tick.dt_s - tick.dt_s / tick.missed.saturating_add(1) as f64;
         let received = if missed_s > OLD_AFTER_S {
@@ -323,8 +347,10 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
         } else {
             self.receive(now, simulator)
         };
+        let ports = &self.reply_ports;
+        self.link.set_delivered_ports(ports.to_deliver(now));
         self.link
-            .set_delivered_ports(self.reply_ports.to_deliver(now));
+            .set_held_ports(ports.known(), ports.is_silent(now));
         let state = self.inbox.publish(now, into, &self.link, &self.writing);
         self.link.set_state(state);
         if let Some(missing) = self.subscriptions.missing(now, &self.inbox) {

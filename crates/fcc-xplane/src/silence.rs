@@ -54,15 +54,12 @@ impl Silence {
         status: &XPlaneStatus,
         simulator: SocketAddr,
     ) -> Self {
-        let mut request = [0; rref::REQUEST_BYTES];
-        // The path is a valid one.
-        let _ = rref::request(&mut request, 0, INDEX, "sim/time/paused");
         let group = Some(config.beacon).filter(|group| group.ip().is_multicast());
         Self {
             simulator,
             had_answered: status.reply_port().is_some(),
             received_before: status.counts().received,
-            request,
+            request: without_effect(INDEX),
             probe: None,
             probes: 0,
             probed: None,
@@ -147,7 +144,21 @@ impl Silence {
     }
 }
 
-fn open_probe(simulator: SocketAddr) -> std::io::Result<UdpSocket> {
+/// A request that ends what was not requested.
+pub(crate) fn without_effect(index: i32) -> [u8; rref::REQUEST_BYTES] {
+    let mut request = [0; rref::REQUEST_BYTES];
+    // The path is a valid one.
+    let _ = rref::request(&mut request, 0, index, "sim/time/paused");
+    request
+}
+
+/// Whether the machine there reported that no program has the port.
+pub(crate) fn is_refused(error: &std::io::Error) -> bool {
+    error.kind() == ErrorKind::ConnectionRefused
+}
+
+/// A socket to which the kernel reports what is wrong with this port.
+pub(crate) fn open_probe(simulator: SocketAddr) -> std::io::Result<UdpSocket> {
     let probe = UdpSocket::bind((local_address(simulator.ip()), 0))?;
     probe.set_nonblocking(true)?;
     // Without it, only a closed port is reported, and no absent machine.

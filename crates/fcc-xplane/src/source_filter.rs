@@ -36,10 +36,11 @@ const ALL_BYTES: u32 = u32::MAX;
 pub(crate) type Ports = [u16; 4];
 
 /// From where datagrams are delivered.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Eq, Debug)]
 struct Source {
     ip: IpAddr,
-    ports: Ports,
+    /// None for every port.
+    ports: Option<Vec<u16>>,
 }
 
 /// The filter of a connection's socket.
@@ -58,30 +59,46 @@ impl SourceFilter {
         })
     }
 
-    /// Follows what is known about the simulator. Without a filter the sensor
+    /// Follows what is known about the simulator; `owned` are the ports that are
+    /// the simulator's user's, if that is known. Without a filter the sensor
     /// still leaves out what others send, as long as the socket's buffer does
     /// not overflow; so a failure is none of the connection.
-    pub(crate) fn follow(&self, link: &SharedState) {
+    pub(crate) fn follow(&self, link: &SharedState, owned: Option<&[u16]>) {
         let Some(simulator) = link.address.simulator() else {
             return;
         };
         let wanted = Source {
             ip: simulator.ip(),
-            ports: link.delivered_ports(),
+            ports: permitted(link.delivered_ports(), owned),
         };
         let mut attached = self.attached.lock().unwrap_or_else(PoisonError::into_inner);
-        if *attached != Some(wanted) && attach(&self.socket, wanted.ip, wanted.ports).is_ok() {
+        if attached.as_ref() != Some(&wanted)
+            && attach(&self.socket, wanted.ip, wanted.ports.as_deref()).is_ok()
+        {
             *attached = Some(wanted);
         }
     }
 }
 
+/// The ports to deliver from; none if from every port. If none of those that are
+/// known is the user's, another one of the user's may answer.
+fn permitted(known: Ports, owned: Option<&[u16]>) -> Option<Vec<u16>> {
+    let is_owned = |port: &u16| owned.is_none_or(|owned| owned.contains(port));
+    let known = known.into_iter().filter(|port| *port != 0);
+    let known: Vec<u16> = known.filter(is_owned).collect();
+    if known.is_empty() {
+        owned.map(<[u16]>::to_vec)
+    } else {
+        Some(known)
+    }
+}
+
 /// From now on the kernel delivers to this UDP socket only what comes from this
-/// address and, if one is given, these ports. What is queued already stays.
+/// address and, if they are given, these ports. What is queued already stays.
 ///
 /// # Errors
 /// When the operating system refuses.
-pub(crate) fn attach(socket: &impl AsFd, ip: IpAddr, ports: Ports) -> io::Result<()> {
+pub(crate) fn attach(socket: &impl AsFd, ip: IpAddr, ports: Option<&[u16]>) -> io::Result<()> {
     SockRef::from(socket).attach_filter(&program(ip, ports))
 }
 
@@ -99,7 +116,7 @@ const fn deliver(bytes: u32) -> SockFilter {
     SockFilter::new((BPF_RET | BPF_K) as u16, 0, 0, bytes)
 }
 
-fn program(ip: IpAddr, ports: Ports) -> Vec<SockFilter> {
+fn program(ip: IpAddr, ports: Option<&[u16]>) -> Vec<SockFilter> {
     let (offset, words) = match ip {
         IpAddr::V4(ip) => (IPV4_SOURCE, vec![ip.to_bits()]),
         IpAddr::V6(ip) => {
@@ -116,11 +133,10 @@ fn program(ip: IpAddr, ports: Ports) -> Vec<SockFilter> {
             deliver(0),
         ]);
     }
-    let known = ports.into_iter().filter(|port| *port != 0);
-    if known.clone().count() > 0 {
+    if let Some(ports) = ports {
         program.push(load(BPF_H, SOURCE_PORT));
-        for port in known {
-            program.extend([compare(port.into(), 0, 1), deliver(ALL_BYTES)]);
+        for port in ports {
+            program.extend([compare((*port).into(), 0, 1), deliver(ALL_BYTES)]);
         }
         program.push(deliver(0));
     }
@@ -155,14 +171,36 @@ mod tests {
         let senders = [&first, &second, &third, &other];
         assert_eq!(received(&receiver, &senders), [0, 1, 2, 3]);
         let there = "127.0.0.2".parse().unwrap();
-        attach(&receiver, there, [0; 4]).unwrap();
+        attach(&receiver, there, None).unwrap();
         assert_eq!(received(&receiver, &senders), [0, 1, 2]);
-        attach(&receiver, there, [port(&first), 0, port(&third), 0]).unwrap();
+        attach(&receiver, there, Some(&[port(&first), port(&third)])).unwrap();
         assert_eq!(received(&receiver, &senders), [0, 2]);
-        attach(&receiver, there, [0, 0, 0, port(&other)]).unwrap();
+        attach(&receiver, there, Some(&[port(&other)])).unwrap();
         assert_eq!(received(&receiver, &senders), []);
-        attach(&receiver, "127.0.0.3".parse().unwrap(), [0; 4]).unwrap();
+        attach(&receiver, "127.0.0.3".parse().unwrap(), None).unwrap();
         assert_eq!(received(&receiver, &senders), [3]);
+        attach(&receiver, there, Some(&[])).unwrap();
+        assert_eq!(received(&receiver, &senders), []);
+    }
+
+    #[test]
+    fn only_ports_of_the_simulators_user_are_delivered() {
+        assert_eq!(permitted([0; 4], None), None);
+        assert_eq!(permitted([5, 0, 0, 7], None), Some(vec![5, 7]));
+        assert_eq!(permitted([0; 4], Some(&[7, 8])), Some(vec![7, 8]));
+        assert_eq!(permitted([5, 0, 0, 7], Some(&[7, 8])), Some(vec![7]));
+        // The one that was known is another user's now.
+        assert_eq!(permitted([5; 4], Some(&[7, 8])), Some(vec![7, 8]));
+    }
+
+    #[test]
+    fn as_many_ports_as_a_user_may_have_are_delivered() {
+        let receiver = UdpSocket::bind("127.0.0.1:0").unwrap();
+        let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
+        let mut ports: Vec<u16> = (1..200).collect();
+        ports.push(sender.local_addr().unwrap().port());
+        attach(&receiver, "127.0.0.1".parse().unwrap(), Some(&ports)).unwrap();
+        assert_eq!(received(&receiver, &[&sender]), [0]);
     }
 
     #[test]
@@ -170,10 +208,10 @@ mod tests {
         let bind = || UdpSocket::bind("[::1]:0").unwrap();
         let (receiver, first, second) = (bind(), bind(), bind());
         let port = first.local_addr().unwrap().port();
-        attach(&receiver, "::1".parse().unwrap(), [port, 0, 0, 0]).unwrap();
+        attach(&receiver, "::1".parse().unwrap(), Some(&[port])).unwrap();
         assert_eq!(received(&receiver, &[&first, &second]), [0]);
         for other in ["2001:db8::1", "::2", "1::1", "::1:0:1"] {
-            attach(&receiver, other.parse().unwrap(), [0; 4]).unwrap();
+            attach(&receiver, other.parse().unwrap(), None).unwrap();
             assert_eq!(received(&receiver, &[&first]), [], "{other}");
         }
     }

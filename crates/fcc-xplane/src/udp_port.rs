@@ -48,7 +48,7 @@ impl UdpPort {
         let mut bound = Self::bind_to((local_address(peer), port).into())?;
         if !peer.is_unspecified() {
             // If this fails, the sensor leaves out what others send.
-            let _ = source_filter::attach(&bound.socket, peer, [0; 4]);
+            let _ = source_filter::attach(&bound.socket, peer, None);
         }
         bound.scratch = Self::open_scratch(peer).ok();
         Ok(bound)
@@ -77,7 +77,7 @@ impl UdpPort {
         let port = Self::bind_to((loopback_address(peer), 0).into())?;
         let address = port.socket.local_addr()?;
         // What others send would be received in place of its own.
-        source_filter::attach(&port.socket, address.ip(), [address.port(), 0, 0, 0])?;
+        source_filter::attach(&port.socket, address.ip(), Some(&[address.port()]))?;
         Ok((Box::new(port), address))
     }
 

@@ -3,12 +3,13 @@
 mod support;
 
 use std::net::{SocketAddr, UdpSocket};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use fcc_core::flight::Measurements;
-use fcc_core::framework::{ControlAuthority, PlantId, Released, Sensor};
+use fcc_core::framework::{Actuator, ControlAuthority, PlantId, Released, Sensor};
 use fcc_xplane::{
-    DataRows, Input, RowsVersion, Simulator, Trouble, XPlane, XPlaneAuthority, XPlaneConfig,
+    Control, DataRows, Input, RowsVersion, Simulator, Trouble, XPlane, XPlaneAuthority,
+    XPlaneConfig,
 };
 use support::bench::{Bench, close};
 use support::{
@@ -62,6 +63,69 @@ fn an_x_plane_that_returns_with_another_port_is_accepted_after_two_seconds() {
     bench.watch().unwrap();
     close(airspeed_kt(&bench), 50.0);
     assert_eq!(bench.status.reply_port(), Some(answers));
+}
+
+/// In flight, with X-Plane's replies from a port that is not the configured one.
+fn flown() -> (Bench, XPlaneAuthority) {
+    let mut bench = Bench::new();
+    bench.settle();
+    let authority = XPlaneAuthority::of(bench.status.clone(), &bench.simulator.config());
+    for _ in 0..10 {
+        assert_eq!(bench.fly(), Ok(()));
+        authority.report(&mut |_| {});
+    }
+    bench.simulator.set(&format!("{P}indicated_airspeed"), 50.0);
+    (bench, authority)
+}
+
+/// As many ticks as X-Plane may be silent for before another one answers, and
+/// ten times as many, with X-Plane's own port open all the time.
+#[test]
+fn while_controls_are_held_another_port_never_takes_the_place_of_one_that_is_open() {
+    let (mut bench, authority) = flown();
+    let flown = bench.status.reply_port();
+    let impostor = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let client = bench.simulator.client.unwrap();
+    for tick in 0..800 {
+        impostor.send_to(&bench.simulator.frame(), client).unwrap();
+        let _ = bench.sample();
+        authority.report(&mut |_| {});
+        close(airspeed_kt(&bench), 100.0);
+        // It hangs, and the loop gives back control after a while.
+        if tick == 400 {
+            bench.actuator.as_mut().unwrap().release().unwrap();
+        }
+    }
+    assert_eq!(bench.status.reply_port(), flown);
+    assert_eq!(bench.status.control(), Control::ReleaseMonitor);
+    // The known one is used as soon as it answers.
+    for _ in 0..20 {
+        let _ = bench.watch();
+    }
+    close(airspeed_kt(&bench), 50.0);
+    assert_eq!(bench.status.control(), Control::Free);
+}
+
+/// The kernel tells that the old port is closed, in this machine's own time.
+#[test]
+fn an_x_plane_that_was_started_again_in_flight_is_found_with_its_new_port() {
+    let (mut bench, authority) = flown();
+    bench.simulator.listen();
+    bench.simulator.sender = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let answers = bench.simulator.sender.local_addr().unwrap().port();
+    let began = Instant::now();
+    while bench.status.reply_port() != Some(answers) {
+        assert!(began.elapsed() < Duration::from_secs(10));
+        let _ = bench.watch();
+        authority.report(&mut |_| {});
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    // Its release counts.
+    bench.actuator.as_mut().unwrap().release().unwrap();
+    for _ in 0..40 {
+        bench.watch().unwrap();
+    }
+    assert_eq!(bench.status.control(), Control::Free);
 }
 
 /// Another program on X-Plane's machine claims that the overrides are clear.

@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from .. import ranges
 from ..printable import say
 from ..progress import bar
 from ..workers import local_workers, on_dask
@@ -25,21 +26,24 @@ def add(commands: Any) -> None:
         "campaign", help="fly at the edges of the envelope by chance, and say what failed and how"
     )
     campaign.add_argument(
-        "--flights", type=_number, default=300, metavar="N", help="how many (%(default)s)"
+        "--flights", type=ranges.count, default=300, metavar="N", help="how many (%(default)s)"
     )
     campaign.add_argument(
         "--seed",
-        type=_from_zero,
+        type=ranges.whole(0, ranges.LARGEST_SEED),
         default=1,
         metavar="N",
         help="of all that is drawn (%(default)s); see docs/campaign.md",
     )
     campaign.add_argument(
-        "--flight", type=_from_zero, metavar="N", help="fly only this one, and show it"
+        "--flight",
+        type=ranges.whole(0, 999_999),
+        metavar="N",
+        help="fly only this one, and show it",
     )
     campaign.add_argument(
         "--delay-ms",
-        type=_delay,
+        type=ranges.number(0.0, _MOST_LATE_MS, "ms"),
         default=usual.delay_ms,
         metavar="MS",
         help="the longest delay from a measurement to the effect of the command (%(default)g)",
@@ -54,12 +58,14 @@ def add(commands: Any) -> None:
     )
     campaign.add_argument(
         "--least-clean",
-        type=float,
+        type=ranges.number(0.0, 100.0, "%"),
         default=98.0,
         metavar="PERCENT",
         help="exit with 1 if less of the flights are clean (%(default)g)",
     )
-    campaign.add_argument("--workers", type=_number, metavar="N", help="processes (all processors)")
+    campaign.add_argument(
+        "--workers", type=ranges.workers, metavar="N", help="processes (all processors)"
+    )
     campaign.add_argument(
         "--scheduler", metavar="ADDRESS", help="fly on a Dask cluster, as in tcp://10.0.0.5:8786"
     )
@@ -74,18 +80,6 @@ def add(commands: Any) -> None:
     campaign.set_defaults(run=partial(_campaign, campaign))
 
 
-def _number(text: str) -> int:
-    if not text.isdigit() or not 0 < int(text) <= 1_000_000:
-        raise argparse.ArgumentTypeError(f"'{text}': give a number from 1 up")
-    return int(text)
-
-
-def _from_zero(text: str) -> int:
-    if not text.isdecimal():
-        raise argparse.ArgumentTypeError(f"'{text}': give a number from 0 up")
-    return int(text)
-
-
 def _file(text: str) -> Path:
     """Check before flying that a file can be written there."""
     path = Path(text)
@@ -97,16 +91,6 @@ def _file(text: str) -> Path:
     if not os.access(path if path.exists() else folder, os.W_OK):
         raise argparse.ArgumentTypeError(f"'{text}' may not be written: give another file")
     return path
-
-
-def _delay(text: str) -> float:
-    try:
-        late_ms = float(text)
-    except ValueError:
-        late_ms = -1.0
-    if not 0.0 <= late_ms <= _MOST_LATE_MS:
-        raise argparse.ArgumentTypeError(f"'{text}': give 0 to {_MOST_LATE_MS:g} ms")
-    return late_ms
 
 
 def _campaign(parser: argparse.ArgumentParser, options: argparse.Namespace) -> int:

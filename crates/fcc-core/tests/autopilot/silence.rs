@@ -3,7 +3,7 @@
 use core::time::Duration;
 
 use fcc_core::flight::guidance::GuidanceConfig;
-use fcc_core::flight::{Autopilot, AutopilotConfig, PlantState, flags};
+use fcc_core::flight::{Autopilot, AutopilotConfig, BodyRates, PlantState, flags};
 use fcc_core::framework::{Controller, Flags, Notice};
 
 use crate::cockpit::{Cockpit, DT_S, SENSORS};
@@ -27,7 +27,14 @@ pub(crate) fn fly(cockpit: &mut Cockpit, ticks: u32) {
 }
 
 pub(crate) fn move_on(cockpit: &mut Cockpit) {
-    cockpit.feel.roll_deg += (20.0 - cockpit.feel.roll_deg) * DT_S;
+    let rolling_degps = 20.0 - cockpit.feel.roll_deg;
+    cockpit.feel.roll_deg += rolling_degps * DT_S;
+    let (roll_rad, turning_radps) = (cockpit.feel.roll_deg.to_radians(), 5.0_f64.to_radians());
+    cockpit.rates = BodyRates {
+        roll_radps: rolling_degps.to_radians(),
+        pitch_radps: turning_radps * roll_rad.sin(),
+        yaw_radps: turning_radps * roll_rad.cos(),
+    };
     cockpit.feel.heading_deg += 5.0 * DT_S;
     cockpit.feel.altitude_m += 3.0 * DT_S;
     cockpit.north_deg += 50.0 * DT_S / 111_120.0;

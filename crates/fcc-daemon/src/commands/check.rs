@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::cli::CheckArgs;
 use crate::exit::Exit;
 use crate::output;
+use crate::process::unknown_names;
 use fcc_flight::config::{Aircraft, Config, Problem};
 
 #[derive(Serialize)]
@@ -22,7 +23,8 @@ struct Checked {
 pub(super) fn check(args: &CheckArgs) -> Exit {
     let (checked, remarks) = match Config::load_with_text(&args.file) {
         Ok((config, text)) => {
-            let remarks = config.remarks(&text);
+            let mut remarks = config.remarks(&text);
+            remarks.extend(unknown_names(&config.rights));
             (Ok(config), remarks)
         }
         Err(error) => (Err(error), Vec::new()),

@@ -3,7 +3,7 @@
 use fcc_core::flight::Autopilot;
 use fcc_core::units::{FOOT_M, HECTOPASCAL_PA, INHG_PA, KNOT_MPS};
 use fcc_flight::flight::{OtherUserError, command_another_users};
-use fcc_live::{Command, CommandError, Commander, PlantLimits};
+use fcc_live::{Command, CommandError, Commander, PlantLimits, WatchError};
 use fcc_telemetry::units::{AVIATION, Shown};
 use serde::Serialize;
 
@@ -47,6 +47,18 @@ pub(super) fn command(args: &CommandArgs) -> Result<Exit, Failure> {
         Err(Refusal::OfOwn(error @ CommandError::Refused(_))) => {
             (Exit::Refused, Err(error.to_string()))
         }
+        Err(Refusal::OfOwn(CommandError::Unreachable(WatchError::PerhapsAnothers {
+            instance,
+            user,
+        }))) => (
+            Exit::Failure,
+            // A number, as #1000, would begin a comment.
+            Err(format!(
+                "no fccd named '{instance}' runs here for this user. One of another user is \
+                 commanded with fccd command --of '{user}', if its configuration names you in \
+                 rights.commanders, or by sudo -u '{user}' fccd command"
+            )),
+        ),
         Err(Refusal::OfOwn(error)) => (Exit::Failure, Err(error.to_string())),
     };
     if args.json {
@@ -56,18 +68,12 @@ pub(super) fn command(args: &CommandArgs) -> Result<Exit, Failure> {
             tick: result.as_ref().ok().copied(),
             why: result.err(),
         };
-        output::json(&result, exit);
-    } else {
-        match result {
-            Ok(tick) => {
-                output::result(format!("carried out in tick {tick}"), exit);
-            }
-            Err(text) => return Err(Failure::of(exit, text)),
-        }
+        return Ok(output::json(&result, exit));
     }
-    // A command that was carried out is a success, even if the result cannot be
-    // printed.
-    Ok(exit)
+    match result {
+        Ok(tick) => Ok(output::result(format!("carried out in tick {tick}"), exit)),
+        Err(text) => Err(Failure::of(exit, text)),
+    }
 }
 
 /// Why a command was not carried out, by a daemon of this user or of another.

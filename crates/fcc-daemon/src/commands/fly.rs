@@ -98,9 +98,7 @@ fn report(outcome: &Outcome, json: bool) -> Exit {
     if json {
         return output::json(outcome, exit);
     }
-    output::result(outcome::text(outcome), exit);
-    // Who reads only the exit code wants that of the flight.
-    exit
+    output::result(outcome::text(outcome), exit)
 }
 
 /// The command line has priority over the file.

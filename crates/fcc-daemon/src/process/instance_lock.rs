@@ -10,6 +10,7 @@
 //! follows a beacon locks after it has received the address, and takes no
 //! control before.
 
+use std::fmt;
 use std::sync::Arc;
 
 use fcc_core::framework::{ControlAuthority, PlantId};
@@ -20,12 +21,37 @@ use super::plant_file::PlantFile;
 use super::release_handover;
 use crate::output;
 
+/// What became of a lock whose file, or folder, was removed.
+#[derive(Debug)]
+pub(super) enum Removed {
+    MadeAnew(PlantId),
+    /// It is tried again.
+    Not(PlantId, String),
+}
+
+impl fmt::Display for Removed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::MadeAnew(plant) => write!(
+                f,
+                "the file that locks {plant} was removed in flight, and was made anew"
+            ),
+            Self::Not(plant, why) => write!(
+                f,
+                "the file that locks {plant} was removed in flight, and cannot be made anew: {why}"
+            ),
+        }
+    }
+}
+
 /// The right to control a plant; released when dropped.
 pub(super) struct InstanceLock {
     authority: Arc<dyn ControlAuthority>,
     folder: Option<RunFolder>,
     notice: &'static Notice,
     claim: Claim,
+    /// The last attempt to make a removed file anew has failed.
+    is_missing: bool,
 }
 
 enum Claim {
@@ -54,6 +80,7 @@ impl InstanceLock {
             folder,
             notice,
             claim: Claim::NoPlant,
+            is_missing: false,
         }
     }
 
@@ -99,6 +126,55 @@ impl InstanceLock {
                 without
             }
         }
+    }
+
+    /// The folder of the locks.
+    pub(super) const fn folder(&self) -> Option<&RunFolder> {
+        self.folder.as_ref()
+    }
+
+    /// Makes the lock anew if its file or folder was removed; `held` is what is
+    /// held. Says it once.
+    pub(super) fn make_anew_if_removed(&mut self, held: Option<PlantId>) -> Option<Removed> {
+        let Claim::Locked {
+            plant,
+            file: Some(file),
+        } = &self.claim
+        else {
+            return None;
+        };
+        if file.is_in_place() {
+            return None;
+        }
+        let plant = *plant;
+        match self.make_anew(plant, held) {
+            Ok(file) => {
+                let file = Some(file);
+                self.claim = Claim::Locked { plant, file };
+                self.is_missing = false;
+                Some(Removed::MadeAnew(plant))
+            }
+            Err(why) => {
+                let is_new = !std::mem::replace(&mut self.is_missing, true);
+                is_new.then_some(Removed::Not(plant, why))
+            }
+        }
+    }
+
+    fn make_anew(&mut self, plant: PlantId, held: Option<PlantId>) -> Result<PlantFile, String> {
+        let mut refused = Vec::new();
+        let folder = RunFolder::of_this_process(&mut |why| refused.push(why));
+        let folder = folder.ok_or_else(|| refused.join("; "))?;
+        let unique = self.authority.unique(&plant);
+        let locked = PlantFile::locked(&folder, &unique).map_err(|error| error.to_string())?;
+        let locked = locked
+            .ok_or("another fccd locked it meanwhile; end one of them, or both write to it")?;
+        let told = PlantFile::open(&folder, &unique).map_err(|error| error.to_string())?;
+        if !self.notice.replace_file(plant, told, held) {
+            return Err("that happened too often".to_owned());
+        }
+        self.folder = Some(folder);
+        Ok(locked)
     }
 
     /// The plant, if another daemon controls it.

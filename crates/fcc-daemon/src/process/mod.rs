@@ -3,6 +3,7 @@
 //! | module | what it does |
 //! |---|---|
 //! | `release_helper`, `release_handover` | a second process that releases the controls if this one is killed |
+//! | `told` | what that process is told, line by line |
 //! | `notice` | tells that process, and the plant's file, before control is taken |
 //! | `own_program` | starts this program again, as one of its helpers |
 //! | `plant_file` | a file of this user alone: who may control a plant, and whether it was left held |
@@ -20,6 +21,7 @@ mod release_handover;
 mod release_helper;
 mod rights;
 mod signals;
+mod told;
 
 use std::io;
 use std::sync::Arc;
@@ -37,14 +39,20 @@ use crate::output;
 use instance_lock::InstanceLock;
 use left_held::LeftHeld;
 pub(crate) use notice::Notice;
-pub(crate) use own_program::{begin_helper, outlive_signals, own_program};
+#[cfg(fuzzing)]
+pub use notice::use_plant_file;
+#[cfg(feature = "live")]
+pub(crate) use own_program::own_program;
+pub(crate) use own_program::{begin_helper, outlive_signals};
 pub(crate) use release_helper::{ReleaseHelper, run_release_helper};
-pub(crate) use rights::{RightsError, give_up};
+pub(crate) use rights::{RightsError, give_up, unknown_names};
 use signals::{BlockedSignals, Caught};
 pub(crate) use signals::{end_with_parent, survive_file_size_limit, tolerate};
+#[cfg(fuzzing)]
+pub use told::held_after;
 
-/// While control is held, this is the interval of checks for a release helper
-/// of an earlier daemon, which would release it.
+/// The interval of checks of the lock's file and, while control is held, for a
+/// release helper of an earlier daemon, which would release it.
 const CHECK_EVERY: Duration = Duration::from_secs(1);
 /// A helper that has just been started is not started again before this.
 const HELPER_AGAIN_AFTER: Duration = Duration::from_secs(1);
@@ -62,7 +70,6 @@ pub(crate) struct Process<'a> {
 /// What outlives the process, or is shared with other processes.
 struct Plant {
     authority: Arc<dyn ControlAuthority>,
-    folder: Option<RunFolder>,
     notice: &'static Notice,
     lock: InstanceLock,
     left_held: LeftHeld,
@@ -73,6 +80,8 @@ struct Plant {
     was_held: bool,
     /// When an earlier daemon's helper was last looked for.
     checked: Instant,
+    /// When the lock was last looked at.
+    lock_checked: Instant,
 }
 
 impl<'a> Process<'a> {
@@ -178,9 +187,8 @@ impl Plant {
         authority.notify(notice);
         let now = Instant::now();
         let mut this = Self {
-            lock: InstanceLock::of(Arc::clone(&authority), folder.clone(), notice),
+            lock: InstanceLock::of(Arc::clone(&authority), folder, notice),
             authority,
-            folder,
             notice,
             left_held: LeftHeld::new(&config.restart),
             helper: None,
@@ -188,6 +196,7 @@ impl Plant {
             helpers_again: HELPERS_AGAIN,
             was_held: false,
             checked: now,
+            lock_checked: now,
         };
         this.follow();
         this
@@ -210,6 +219,12 @@ impl Plant {
             Some(_) => {}
             None => self.notice.release(number),
         }
+        if self.lock_checked.elapsed() >= CHECK_EVERY {
+            self.lock_checked = Instant::now();
+            if let Some(removed) = self.lock.make_anew_if_removed(held) {
+                report(removed.to_string());
+            }
+        }
         self.left_held.poll(self.authority.as_ref(), held, report);
         let begins = held.is_some() && !self.was_held;
         self.was_held = held.is_some();
@@ -223,7 +238,7 @@ impl Plant {
     /// Ends the helper of a daemon that was killed, if it still releases the
     /// controls that are, or are to be, held here.
     fn end_earlier_helper(&self) {
-        let Some((plant, folder)) = self.authority.plant().zip(self.folder.as_ref()) else {
+        let Some((plant, folder)) = self.authority.plant().zip(self.lock.folder()) else {
             return;
         };
         let ours = self.helper.as_ref().map(ReleaseHelper::id);

@@ -12,14 +12,10 @@ use fcc_core::framework::{PlantId, TakeoverNotice};
 use nix::fcntl::{FcntlArg, OFlag, fcntl};
 
 use super::plant_file::PlantFile;
+use super::told::Line;
 
-/// Begins a line that gives the number of a takeover and the plant.
-pub(super) const HELD: &str = "held ";
-/// Begins a line that gives the number of a takeover whose release is
-/// confirmed.
-pub(super) const FREE: &str = "free ";
-
-/// Room for helpers that are started again, and for plants that beacons name.
+/// Room for helpers that are started again, for plants that beacons name, and
+/// for files that were removed.
 const ROOM: usize = 8;
 /// Room for a line with a plant's name.
 const LINE_BYTES: usize = 128;
@@ -28,11 +24,13 @@ const LINE_BYTES: usize = 128;
 #[derive(Debug)]
 struct Growing<T>([OnceLock<T>; ROOM]);
 
-impl<T> Growing<T> {
-    const fn new() -> Self {
+impl<T> Default for Growing<T> {
+    fn default() -> Self {
         Self([const { OnceLock::new() }; ROOM])
     }
+}
 
+impl<T> Growing<T> {
     /// Whether there was room.
     fn add(&self, mut value: T) -> bool {
         for place in &self.0 {
@@ -52,7 +50,7 @@ impl<T> Growing<T> {
 /// Passes on that control is taken, from the loop's thread, and that it was
 /// released, from the main thread. Each takeover has a number, so that a
 /// release which is passed on late does not cover the next takeover.
-#[derive(Debug)]
+#[derive(Default, Debug)]
 pub(crate) struct Notice {
     taken: AtomicU64,
     /// The last takeover whose release is confirmed.
@@ -64,12 +62,7 @@ pub(crate) struct Notice {
 impl Notice {
     /// For the rest of the process: the loop's thread may outlive a flight.
     pub(crate) fn of_this_process() -> &'static Self {
-        Box::leak(Box::new(Self {
-            taken: AtomicU64::new(0),
-            released: AtomicU64::new(0),
-            helpers: Growing::new(),
-            files: Growing::new(),
-        }))
+        Box::leak(Box::default())
     }
 
     /// Adds a plant's file. Not while control is held.
@@ -80,6 +73,38 @@ impl Notice {
         if !self.files.iter().any(|(known, _)| *known == plant) {
             self.files.add((plant, file));
         }
+    }
+
+    /// A plant's file in place of one that was removed, with the same content;
+    /// `held` is what is held. Returns whether there was room.
+    pub(super) fn replace_file(
+        &self,
+        plant: PlantId,
+        file: PlantFile,
+        held: Option<PlantId>,
+    ) -> bool {
+        if !self.files.add((plant, file)) {
+            return false;
+        }
+        let Some((_, file)) = self.files.iter().next_back() else {
+            return false;
+        };
+        // A takeover meanwhile writes to it, too.
+        loop {
+            let (number, is_released) = (self.number(), self.is_released());
+            file.take(number);
+            if is_released {
+                file.release(number);
+            }
+            if number == self.number() {
+                break;
+            }
+        }
+        if let Some(plant) = held {
+            // The helper makes its lock anew.
+            self.send(&Line::Held(self.number(), plant));
+        }
+        true
     }
 
     /// From now on this helper is told, whose pipe never waits.
@@ -94,7 +119,7 @@ impl Notice {
         }
         // A takeover meanwhile is told twice, with different numbers.
         if let Some(plant) = held {
-            self.send(format_args!("{HELD}{} {plant}\n", self.number()));
+            self.send(&Line::Held(self.number(), plant));
         }
         Ok(())
     }
@@ -118,14 +143,14 @@ impl Notice {
         for (_, file) in self.files.iter() {
             file.release(number);
         }
-        self.send(format_args!("{FREE}{number}\n"));
+        self.send(&Line::Free(number));
     }
 
     /// To the last helper: the others have ended. A pipe that is full belongs
     /// to one that is stopped.
-    fn send(&self, line: std::fmt::Arguments<'_>) {
+    fn send(&self, line: &Line) {
         let mut bytes = Cursor::new([0; LINE_BYTES]);
-        if bytes.write_fmt(line).is_err() {
+        if writeln!(bytes, "{line}").is_err() {
             return;
         }
         let length = bytes.position() as usize;
@@ -139,11 +164,55 @@ impl Notice {
 
 impl TakeoverNotice for Notice {
     fn taking(&self, plant: &PlantId) {
-        let number = self.taken.fetch_add(1, Ordering::SeqCst) + 1;
-        let file = self.files.iter().find(|(known, _)| known == plant);
+        let number = self.taken.fetch_add(1, Ordering::SeqCst).wrapping_add(1);
+        let mut files = self.files.iter();
+        let file = files.rfind(|(known, _)| known == plant);
         if let Some((_, file)) = file {
             file.take(number);
         }
-        self.send(format_args!("{HELD}{number} {plant}\n"));
+        self.send(&Line::Held(number, *plant));
+    }
+}
+
+/// Uses a plant's file with this content as daemons do, one after another.
+///
+/// # Panics
+/// When what is taken does not count as held, or what is released does.
+#[cfg(fuzzing)]
+pub fn use_plant_file(folder: &fcc_telemetry::RunFolder, content: &[u8], steps: &[u8]) {
+    let plant = PlantId::new(format_args!("fuzz")).expect("it is short");
+    let open = || PlantFile::open(folder, &plant).expect("a folder of this user");
+    open().contain(content).expect("a folder of this user");
+    let start = || {
+        let locked = PlantFile::locked(folder, &plant).expect("a folder of this user");
+        let notice = Notice::default();
+        notice.add_file(plant, open());
+        (locked.expect("the one before has ended"), notice)
+    };
+    let (mut locked, mut notice) = start();
+    let mut held = locked.is_held();
+    for step in steps {
+        match step % 5 {
+            0 => {
+                notice.taking(&plant);
+                held = true;
+            }
+            1 => {
+                // As while a daemon releases what an earlier one has left held.
+                if held && notice.is_released() {
+                    notice.taking(&plant);
+                }
+                notice.release(notice.number());
+                held = false;
+            }
+            2 if !notice.is_released() => notice.release(notice.number().wrapping_sub(1)),
+            3 => {
+                locked.remove_if_released();
+                drop(locked);
+                (locked, notice) = start();
+            }
+            _ => open().remove_if_released(),
+        }
+        assert_eq!(locked.is_held(), held);
     }
 }

@@ -1,14 +1,14 @@
 //! The file of a plant: the lock of the daemon that may control it, and whether
 //! a daemon holds, or has left held, its controls.
 //!
-//! It contains two numbers: that of the last takeover, and that of the last
-//! takeover whose release was confirmed. They differ while the controls are
-//! held. A daemon that is killed leaves the file, and the lock to the next.
+//! It contains two numbers: that of the last takeover, and that of the takeover
+//! whose release was confirmed. They differ while the controls are held. A
+//! daemon that is killed leaves the file, and the lock to the next.
 
 use std::fs::{self, File, TryLockError};
 use std::io;
 use std::os::unix::fs::{FileExt, MetadataExt};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use fcc_core::framework::PlantId;
 use fcc_telemetry::RunFolder;
@@ -56,9 +56,9 @@ impl PlantFile {
         }
     }
 
-    fn is_in_place(&self) -> bool {
-        let [ours, there] = [self.file.metadata(), fs::symlink_metadata(&self.path)];
-        ours.is_ok_and(|ours| there.is_ok_and(|there| ours.ino() == there.ino()))
+    /// Whether the file is still where the next daemon looks for it.
+    pub(super) fn is_in_place(&self) -> bool {
+        is_in_place(&self.file, &self.path)
     }
 
     fn number(&self, at: u64) -> u64 {
@@ -81,8 +81,10 @@ impl PlantFile {
 
     /// Stores that control is taken.
     pub(super) fn take(&self, number: u64) {
+        // In one call, and held whatever the file contained before.
+        let numbers = [number, number.wrapping_sub(1)].map(u64::to_le_bytes);
         // Without the file, the release helper knows.
-        let _ = self.file.write_all_at(&number.to_le_bytes(), TAKEN_AT);
+        let _ = self.file.write_all_at(numbers.as_flattened(), TAKEN_AT);
     }
 
     /// Stores that the release after this takeover is confirmed, if it is the
@@ -91,6 +93,13 @@ impl PlantFile {
         if self.taken() == number {
             let _ = self.file.write_all_at(&number.to_le_bytes(), RELEASED_AT);
         }
+    }
+
+    /// Replaces its content, as another program of the user could.
+    #[cfg(any(test, fuzzing))]
+    pub(super) fn contain(&self, content: &[u8]) -> io::Result<()> {
+        self.file.set_len(0)?;
+        self.file.write_all_at(content, 0)
     }
 
     /// Removes the file, unless another daemon has locked it, or it is needed
@@ -102,12 +111,43 @@ impl PlantFile {
     }
 }
 
+/// Whether this open file is the one of this name.
+pub(super) fn is_in_place(file: &File, path: &Path) -> bool {
+    let [ours, there] = [file.metadata(), fs::symlink_metadata(path)]
+        .map(|found| found.map(|found| (found.dev(), found.ino())).ok());
+    ours.is_some() && ours == there
+}
+
 #[cfg(test)]
 mod tests {
+    use fcc_core::framework::TakeoverNotice as _;
+
+    use super::super::Notice;
     use super::*;
 
     fn plant(which: &str) -> PlantId {
         PlantId::new(format_args!("{which} of a/test")).unwrap()
+    }
+
+    /// Another program of the user may have written anything.
+    #[test]
+    fn what_is_taken_is_held_whatever_the_file_contained() {
+        let (_root, folder) = folder();
+        // Numbers of a takeover and of a later release; the largest; half of one.
+        for content in [
+            [4_u64, 5].map(u64::to_le_bytes).as_flattened(),
+            &[255; 8],
+            &[7; 12],
+        ] {
+            let open = || PlantFile::open(&folder, &plant("one")).unwrap();
+            open().contain(content).unwrap();
+            let notice = Notice::default();
+            notice.add_file(plant("one"), open());
+            notice.taking(&plant("one"));
+            assert!(open().is_held(), "{content:?}");
+            notice.release(notice.number());
+            assert!(!open().is_held(), "{content:?}");
+        }
     }
 
     /// A folder of this user, removed with the returned value.

@@ -12,6 +12,7 @@
 
 use std::fs::{self, File};
 use std::io;
+use std::path::PathBuf;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -36,19 +37,23 @@ fn name(plant: &PlantId) -> String {
 pub(super) struct HelperLock {
     plant: PlantId,
     file: File,
+    path: PathBuf,
 }
 
 impl HelperLock {
     /// Opens the file; without it, this helper cannot be ended.
     pub(super) fn of(folder: &RunFolder, plant: PlantId) -> Option<Self> {
-        let file = folder.open(&name(&plant)).ok()?;
-        let this = Self { plant, file };
+        let name = name(&plant);
+        let file = folder.open(&name).ok()?;
+        let path = folder.path(&name);
+        let this = Self { plant, file, path };
         this.lock();
         Some(this)
     }
 
-    pub(super) const fn plant(&self) -> PlantId {
-        self.plant
+    /// Whether this is the lock for a plant, where the next daemon looks for it.
+    pub(super) fn is_of(&self, plant: PlantId) -> bool {
+        self.plant == plant && plant_file::is_in_place(&self.file, &self.path)
     }
 
     /// Locks the file, unless another helper has locked it: that one is ended

@@ -18,12 +18,13 @@ use std::time::{Duration, Instant};
 use fcc_core::framework::{ActuatorFault, PlantId, Released};
 use fcc_flight::config::{Config, ConfigError};
 use fcc_flight::flight::authority_without_connection;
-use fcc_telemetry::RunFolder;
+use fcc_telemetry::{RunFolder, not_started};
 
-use super::notice::{FREE, HELD, Notice};
+use super::notice::Notice;
 use super::own_program::own_program;
 use super::plant_file::PlantFile;
 use super::release_handover::HelperLock;
+use super::told::Told;
 
 /// How long a helper repeats the release: a simulator that loads scenery hangs
 /// for some time.
@@ -51,7 +52,8 @@ impl ReleaseHelper {
         let line = in_one_line(config)?;
         let mut child = own_program("release-helper")
             .stdin(Stdio::piped())
-            .spawn()?;
+            .spawn()
+            .map_err(not_started)?;
         let mut pipe = child.stdin.take().ok_or(io::ErrorKind::BrokenPipe)?;
         // The new pipe has room for it.
         writeln!(pipe, "{line}")?;
@@ -108,34 +110,31 @@ pub(crate) fn run_release_helper(
     let first = lines.next().ok_or(ReleaseHelperError::Nothing)??;
     let text: String = serde_json::from_str(&first)?;
     let config = Config::parse(&text, "standard input")?;
-    let folder = RunFolder::of_this_process(&mut drop);
+    let mut folder = None;
     let authority = authority_without_connection(&config);
-    let mut held: Option<(u64, PlantId)> = None;
+    let mut told = Told::default();
     let mut lock: Option<HelperLock> = None;
     // A broken pipe counts as its end.
     for line in lines.map_while(Result::ok) {
-        if let Some((number, plant)) = takeover(&line) {
-            held = Some((number, plant));
-            let unique = authority.as_ref().map(|this| this.unique(&plant));
-            if !lock
+        told.line(&line);
+        let held = told.held().zip(authority.as_ref());
+        let unique = held.map(|((_, plant), authority)| authority.unique(&plant));
+        let is_locked = match (&lock, unique) {
+            (Some(lock), Some(plant)) => lock.is_of(plant),
+            (lock, _) => lock.is_none() && unique.is_none(),
+        };
+        if !is_locked {
+            // One of another plant is unlocked first.
+            drop(lock.take());
+            // It may have been removed.
+            folder = RunFolder::of_this_process(&mut drop);
+            lock = folder
                 .as_ref()
-                .is_some_and(|lock| Some(lock.plant()) == unique)
-            {
-                // One of another plant is unlocked first.
-                drop(lock.take());
-                lock = folder
-                    .as_ref()
-                    .zip(unique)
-                    .and_then(|(folder, plant)| HelperLock::of(folder, plant));
-            }
-        } else if let Some(freed) = line.strip_prefix(FREE).and_then(|text| text.parse().ok())
-            && held.is_some_and(|(number, _)| number <= freed)
-        {
-            held = None;
-            lock = None;
+                .zip(unique)
+                .and_then(|(folder, plant)| HelperLock::of(folder, plant));
         }
     }
-    let Some(((number, plant), authority)) = held.zip(authority) else {
+    let Some(((number, plant), authority)) = told.held().zip(authority) else {
         return Ok(None);
     };
     if let Some(lock) = &lock {
@@ -155,13 +154,6 @@ pub(crate) fn run_release_helper(
         released,
         by_hand: authority.by_hand(),
     }))
-}
-
-/// The number and the plant of a takeover, if the line is of one.
-fn takeover(line: &str) -> Option<(u64, PlantId)> {
-    let (number, plant) = line.strip_prefix(HELD)?.split_once(' ')?;
-    let plant = PlantId::new(format_args!("{plant}"))?;
-    Some((number.parse().ok()?, plant))
 }
 
 /// Why a helper could not do its work.

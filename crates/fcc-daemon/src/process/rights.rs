@@ -14,9 +14,9 @@ use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::Command;
 
-use fcc_flight::config::Config;
+use fcc_flight::config::{Config, RightsSection};
 use nix::sys::resource::{RLIM_INFINITY, Resource, getrlimit, rlim_t, setrlimit};
-use nix::unistd::{User, geteuid, initgroups, setresgid, setresuid};
+use nix::unistd::{Group, User, geteuid, initgroups, setresgid, setresuid};
 
 use crate::output;
 
@@ -90,6 +90,27 @@ pub(crate) fn give_up(config: &Config) -> Result<(), RightsError> {
     // The file was replaced, or its folder is closed to the user.
     let error = run_anew(Path::new("/proc/self/exe"), &user, run_folders);
     Err(failed("the program cannot be run anew", error))
+}
+
+/// The users and groups of a configuration that this machine does not have, each
+/// as a remark: it may be for another machine.
+pub(crate) fn unknown_names(rights: &RightsSection) -> Vec<String> {
+    let is_no_user = |name: &&String| !matches!(User::from_name(name), Ok(Some(_)));
+    let is_no_group = |name: &&String| !matches!(Group::from_name(name), Ok(Some(_)));
+    let own = rights.user.iter().filter(is_no_user).map(|name| {
+        format!(
+            "rights.user is {name:?}: there is no such user on this machine: a flight that root \
+             starts here is refused"
+        )
+    });
+    let here = "on this machine: nobody commands by it here";
+    let users = rights.commanders.iter().filter(is_no_user);
+    let users =
+        users.map(|name| format!("rights.commanders has {name:?}: there is no such user {here}"));
+    let groups = rights.commander_groups.iter().filter(is_no_group);
+    let groups = groups
+        .map(|name| format!("rights.commander_groups has {name:?}: there is no such group {here}"));
+    own.chain(users).chain(groups).collect()
 }
 
 /// Raises limits that are lower. A container's root may not: then the flight

@@ -94,10 +94,10 @@ fn the_exit_code_is_that_of_the_findings() {
 }
 
 #[test]
-fn a_flight_ends_with_its_own_exit_code_unless_its_result_was_wanted_and_is_lost() {
+fn a_flight_whose_result_cannot_be_printed_is_a_failure_and_a_reader_that_left_none() {
     let folder = tempfile::tempdir().unwrap();
-    for (json, if_full) in [(&["--json"][..], 1), (&[], 0)] {
-        for (output, code) in [(full as fn() -> Stdio, if_full), (left, 0)] {
+    for json in [&["--json"][..], &[]] {
+        for (output, code) in [(full as fn() -> Stdio, 1), (left, 0)] {
             let ended = fccd(
                 folder.path(),
                 &["fly", "--lockstep", "--seconds", "2", "--quiet"],
@@ -109,6 +109,25 @@ fn a_flight_ends_with_its_own_exit_code_unless_its_result_was_wanted_and_is_lost
             assert_eq!(ended.code(), Some(code), "{json:?}");
         }
     }
+}
+
+#[test]
+fn a_flight_that_is_not_engaged_says_why_at_its_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let slow = "[built-in]\nairspeed_kt = 60.0\nengage_at_s = 1.2\n";
+    std::fs::write(folder.path().join("slow.toml"), slow).unwrap();
+    let words = [
+        "fly",
+        "--config",
+        "slow.toml",
+        "--lockstep",
+        "--json",
+        "--quiet",
+    ];
+    let ended = fccd(folder.path(), &words).output().unwrap();
+    let found: Value = serde_json::from_slice(&ended.stdout).unwrap();
+    let ending = found["ending"].as_str().unwrap();
+    assert_eq!(ending, "not engaged: airspeed is below the floor");
 }
 
 /// A flight that touches the ground ends there, with a code of its own; its

@@ -50,3 +50,22 @@ fn a_machine_without_a_folder_is_not_checked() {
         "{words}"
     );
 }
+
+/// A configuration may be for another machine.
+#[test]
+fn users_and_groups_that_this_machine_does_not_have_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let rights = "[built-in]\n[rights]\nuser = \"no-such-user\"\ncommanders = [\"root\", \
+                  \"no-such-one\"]\ncommander_groups = [\"no-such-group\"]\n";
+    std::fs::write(folder.path().join("f.toml"), rights).unwrap();
+    let (exit, checked) = printed(folder.path(), &["check", "f.toml"]);
+    assert_eq!(exit, Some(0), "{checked}");
+    for words in [
+        "rights.user is \"no-such-user\": there is no such user on this machine",
+        "rights.commanders has \"no-such-one\": there is no such user on this machine",
+        "rights.commander_groups has \"no-such-group\": there is no such group on this machine",
+    ] {
+        assert!(checked.contains(words), "{checked}");
+    }
+    assert!(!checked.contains("\"root\""), "{checked}");
+}

@@ -136,7 +136,8 @@ pub fn fly(
     if let Some(impact) = ground.impact {
         outcome.hit_ground(impact);
     } else if matches!(report.ending, Ending::StopFlag) {
-        outcome.explain(host.interrupted_by(), observers.monitor.over(plan.length));
+        let over = observers.monitor.over(plan.length);
+        outcome.explain(host.interrupted_by(), over, observers.refusal.as_deref());
     }
     // The controls have been released; writing to the disk may take time now.
     let ending = outcome.ending.clone();

@@ -46,6 +46,8 @@ pub use limits::{altitudes_m, heights_m};
 pub use observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 #[cfg(feature = "live")]
 pub use other_users::{OtherUserError, command_another_users, command_of};
+#[cfg(all(fuzzing, feature = "live"))]
+pub use other_users::{answer_as_received, line_of_parts};
 pub use outcome::{Conclusion, EventEntry, Outcome, RecordingOutcome};
 pub use pilot::Pilot;
 pub use plan::{Length, Pace, Plan};

@@ -1,7 +1,7 @@
 //! All observers of a flight.
 
 use fcc_core::flight::{Autopilot, AutopilotCommand};
-use fcc_core::framework::Message;
+use fcc_core::framework::{EventKind, Message};
 use fcc_runtime::CommandSender;
 use fcc_telemetry::{FlightMessage, describe_event};
 
@@ -17,6 +17,8 @@ pub(super) struct Observers {
     all: Vec<Box<dyn Observer<Autopilot>>>,
     names: Names,
     pub(super) monitor: Monitor,
+    /// Why engaging was refused last.
+    pub(super) refusal: Option<String>,
     reports: Reports,
 }
 
@@ -26,6 +28,7 @@ impl Observers {
             all,
             names,
             monitor: Monitor::default(),
+            refusal: None,
             reports: Reports::default(),
         }
     }
@@ -55,6 +58,12 @@ impl Observers {
                     describe_event::<Autopilot>(event, &self.names.sensors, &self.names.actuators);
                 for observer in &mut self.all {
                     observer.event(event, &words, &at);
+                }
+                if matches!(
+                    event.kind,
+                    EventKind::EngageRefused { .. } | EventKind::EngageRefusedBySwitch
+                ) {
+                    self.refusal = Some(words);
                 }
             }
         }

@@ -160,7 +160,13 @@ impl Outcome {
     }
 
     /// Says who stopped a loop that was stopped from outside.
-    pub(super) fn explain(&mut self, interrupted_by: Option<&str>, over: Option<Over>) {
+    /// `refusal` is why engaging was refused last, if it was.
+    pub(super) fn explain(
+        &mut self,
+        interrupted_by: Option<&str>,
+        over: Option<Over>,
+        refusal: Option<&str>,
+    ) {
         self.interrupted = interrupted_by.is_some();
         self.ending = match (interrupted_by, over) {
             (Some(by), _) => format!("interrupted by {by}"),
@@ -172,7 +178,7 @@ impl Outcome {
                 if self.conclusion == Conclusion::Completed {
                     self.conclusion = Conclusion::Failed;
                 }
-                "engaging was refused; see the last event".to_owned()
+                refusal.unwrap_or("engaging was refused").to_owned()
             }
             (None, None) => return,
         };

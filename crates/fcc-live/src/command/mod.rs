@@ -28,6 +28,8 @@ pub use error::{CommandError, InvalidCommand};
 pub use outside_limits::OutsideLimits;
 pub use sent_commands::SentCommands;
 pub(crate) use wire::{Answer, CommandRequest};
+#[cfg(fuzzing)]
+pub use wire::{read_answer, read_request};
 
 /// The version of commands and answers, independent of the layouts'. Increase
 /// it, and the version in the types' names, with every change of one of them or

@@ -155,6 +155,45 @@ impl Answer {
     }
 }
 
+/// The command in shared memory with these bytes; those that are missing are
+/// zero.
+///
+/// # Errors
+/// Why it is not a command.
+#[cfg(fuzzing)]
+pub fn read_request(bytes: &[u8]) -> Result<Command, String> {
+    let mut bytes = bytes.iter().copied().chain(std::iter::repeat(0));
+    let request = CommandRequest {
+        version: u32::from_ne_bytes(next(&mut bytes)),
+        code: u32::from_ne_bytes(next(&mut bytes)),
+        names: std::array::from_fn(|_| Text::of_bytes(next(&mut bytes))),
+        values: std::array::from_fn(|_| f64::from_ne_bytes(next(&mut bytes))),
+    };
+    request.command()
+}
+
+/// The answer in shared memory with these bytes, as [`read_request`].
+#[cfg(fuzzing)]
+pub fn read_answer(bytes: &[u8]) -> Verdict {
+    let mut bytes = bytes.iter().copied().chain(std::iter::repeat(0));
+    let answer = Answer {
+        code: u32::from_ne_bytes(next(&mut bytes)),
+        version: u32::from_ne_bytes(next(&mut bytes)),
+        tick: u64::from_ne_bytes(next(&mut bytes)),
+        value: f64::from_ne_bytes(next(&mut bytes)),
+        least: f64::from_ne_bytes(next(&mut bytes)),
+        most: f64::from_ne_bytes(next(&mut bytes)),
+        name: Text::of_bytes(next(&mut bytes)),
+        text: Text::of_bytes(next(&mut bytes)),
+    };
+    answer.verdict()
+}
+
+#[cfg(fuzzing)]
+fn next<const N: usize>(bytes: &mut impl Iterator<Item = u8>) -> [u8; N] {
+    std::array::from_fn(|_| bytes.next().unwrap_or(0))
+}
+
 #[cfg(test)]
 mod tests {
     use std::mem::offset_of;

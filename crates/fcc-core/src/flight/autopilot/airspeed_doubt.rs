@@ -7,7 +7,7 @@ use super::{Autopilot, flags};
 use crate::flight::Measurements;
 use crate::flight::control::Envelope;
 use crate::flight::guidance::Mode;
-use crate::flight::navigation::{Doubt, DoubtReason};
+use crate::flight::navigation::{Doubt, DoubtReason, MotionDoubt};
 use crate::framework::{Flags, Notice, Time};
 
 /// The numbers of notices: one for each reason, with the sensor's number in the
@@ -127,6 +127,20 @@ impl Autopilot {
             .with(
                 flags::DOUBTED_ANGLE,
                 self.navigation.angle_doubt().is_some(),
+            )
+    }
+
+    /// The faults that attitude or body rates are doubted.
+    pub(super) fn doubted_motion(&self) -> Flags {
+        let doubt = self.navigation.motion_doubt();
+        Flags::NONE
+            .with(
+                flags::DOUBTED_ATTITUDE,
+                doubt == Some(MotionDoubt::Attitude),
+            )
+            .with(
+                flags::DOUBTED_BODY_RATES,
+                doubt == Some(MotionDoubt::BodyRates),
             )
     }
 

@@ -4,7 +4,7 @@ use core::time::Duration;
 
 use super::{Autopilot, FailsafeEnd, flags};
 use crate::flight::Measurements;
-use crate::flight::navigation::{AirspeedSource, Lost};
+use crate::flight::navigation::{AirspeedSource, Lost, MotionDoubt};
 use crate::framework::{Flags, Notice, Tick, Time};
 
 /// The kinds of notices.
@@ -235,9 +235,18 @@ impl Autopilot {
             .external(now, measured)
             .contains(flags::SUSPECT_AIRSPEED)
             || self.navigation.airspeed_doubt().is_some();
-        let unusable = flags::unusable(self.stale(now), self.frozen());
+        let doubt = self.navigation.motion_doubt();
+        let unusable = self
+            .silent_or_frozen(now)
+            .with(flags::ATTITUDE, doubt == Some(MotionDoubt::Attitude))
+            .with(flags::BODY_RATES, doubt == Some(MotionDoubt::BodyRates));
         let left_out = self.degraded.intermittent.left_out_with(unusable);
         (unusable | left_out).with(flags::AIRSPEED, contradicted)
+    }
+
+    /// The quantities that are too old or frozen.
+    pub(super) fn silent_or_frozen(&self, now: Time) -> Flags {
+        flags::unusable(self.stale(now), self.frozen())
     }
 
     /// The quantities that come and go in a failsafe.
@@ -261,7 +270,7 @@ impl Autopilot {
         );
         let no_altitude = self.navigation.altitude_doubt().is_none()
             && (self.stale(now) | self.intermittent()).contains(flags::ALTITUDE);
-        !lost.intersects(MOTION) && !no_altitude
+        !lost.intersects(MOTION) && !no_altitude && !self.navigation.suspects_motion()
     }
 
     /// What is lost and not replaced by what counts as measured: an airspeed by

@@ -114,6 +114,14 @@ pub const LOAD_AGAINST_GRAVITY: Flags = Flags::bit(50);
 /// Forward acceleration and airspeed contradict the pitch.
 pub const PITCH_AGAINST_FORCE: Flags = Flags::bit(51);
 
+/// The attitude contradicts the body rates and the other sensors, and is not used.
+pub const DOUBTED_ATTITUDE: Flags = Flags::bit(52);
+/// The body rates contradict the attitude and the other sensors, and are not used.
+pub const DOUBTED_BODY_RATES: Flags = Flags::bit(53);
+/// What of attitude and body rates is doubted.
+pub(super) const DOUBTED_MOTION: Flags =
+    Flags::from_bits(DOUBTED_ATTITUDE.bits() | DOUBTED_BODY_RATES.bits());
+
 /// The shift from the bit of a quantity that is too old to the bit of the same
 /// quantity being frozen.
 const FROZEN_SHIFT: u32 = 13;
@@ -133,6 +141,7 @@ pub(super) const NOT_SENSED: Flags = Flags::from_bits(
         | DOUBTED_AIRSPEED.bits()
         | DOUBTED_ALTITUDE.bits()
         | DOUBTED_ANGLE.bits()
+        | DOUBTED_MOTION.bits()
         | FROM_THE_FUTURE.bits()
         | SOURCE_CLOCK.bits()),
 );
@@ -149,7 +158,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
 }
 
 /// The text of each bit, lowest first.
-pub(super) const NAMES: [&str; 52] = [
+pub(super) const NAMES: [&str; 54] = [
     "attitude is missing or too old",
     "heading is missing or too old",
     "body rates are missing or too old",
@@ -202,6 +211,8 @@ pub(super) const NAMES: [&str; 52] = [
     "body rates contradict attitude or heading: check signs, axes, units and offsets of both",
     "vertical acceleration contradicts gravity: check its sign and unit, and those of pitch and roll",
     "forward acceleration contradicts pitch and airspeed: check signs and units, and the pitch's offset",
+    "attitude contradicts body rates, forces and heading and is not used",
+    "body rates contradict attitude, forces and heading and are not used",
 ];
 
 #[cfg(test)]

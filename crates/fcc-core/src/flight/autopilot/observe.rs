@@ -67,6 +67,13 @@ impl Autopilot {
 
     /// Estimates the aircraft's state, in failsafe without what is lost.
     fn navigate(&mut self, now: Time, measured: &Measurements, step_s: f64) {
+        let silent = by_name(self.silent_or_frozen(now));
+        let doubt = self.navigation.motion_doubt();
+        self.navigation
+            .compare_motion(now, &self.accepted, silent, step_s);
+        if doubt != self.navigation.motion_doubt() {
+            self.replacement.forget_offsets();
+        }
         let lost = self.lost(now, measured);
         self.navigation
             .knows_motion(self.motion_is_known(now, lost));

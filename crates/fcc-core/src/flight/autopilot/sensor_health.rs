@@ -131,7 +131,7 @@ impl Autopilot {
         let rejected = !self.rejected(measurements).is_empty();
         let is_lost_to_the_future = !stale.is_empty() && is_from_the_future(measurements, now);
         let is_lost_on_the_way = !stale.is_empty() && !self.ages.late().is_empty();
-        (stale | self.frozen() | self.is_elsewhere())
+        (stale | self.frozen() | self.is_elsewhere() | self.doubted_motion())
             .with(flags::REJECTED, rejected)
             .with(flags::FROM_THE_FUTURE, is_lost_to_the_future)
             .with(flags::SOURCE_CLOCK, is_lost_on_the_way)

@@ -107,6 +107,14 @@ impl AttitudeChannel {
         self.heading_news.adopts_next = true;
     }
 
+    /// Adopts roll and pitch of a rotation, and keeps the heading.
+    pub(super) fn adopt_gravity(&mut self, rotation: [f64; 4]) {
+        self.rotation = quaternion_from_euler(EulerAngles {
+            heading_rad: euler_from_quaternion(self.rotation).heading_rad,
+            ..euler_from_quaternion(rotation)
+        });
+    }
+
     /// Counts full turns so that the heading is the nearest to `near_rad`;
     /// returns it.
     pub(super) fn count_near(&mut self, near_rad: f64) -> f64 {
@@ -179,7 +187,7 @@ impl AttitudeChannel {
 }
 
 /// The rotation of body rates in a time.
-fn turn(rates: &BodyRates, dt_s: f64) -> [f64; 4] {
+pub(super) fn turn(rates: &BodyRates, dt_s: f64) -> [f64; 4] {
     let axis = [rates.roll_radps, rates.pitch_radps, rates.yaw_radps];
     let [x, y, z] = axis;
     let rate = sqrt(x * x + y * y + z * z);
@@ -191,7 +199,7 @@ fn turn(rates: &BodyRates, dt_s: f64) -> [f64; 4] {
 }
 
 /// The rotation about an axis of a length.
-fn rotation_about([x, y, z]: [f64; 3], length: f64, angle_rad: f64) -> [f64; 4] {
+pub(super) fn rotation_about([x, y, z]: [f64; 3], length: f64, angle_rad: f64) -> [f64; 4] {
     let share = sin(0.5 * angle_rad) / length;
     [cos(0.5 * angle_rad), share * x, share * y, share * z]
 }

@@ -20,6 +20,9 @@ mod force_sample;
 mod frozen;
 mod lift;
 mod marked_altitude;
+mod motion;
+mod motion_monitor;
+mod motion_witness;
 mod plausibility;
 mod replacement;
 mod resolution;
@@ -43,6 +46,7 @@ use airspeed_filter::AirframePrior;
 use airspeed_monitor::{AirspeedMonitor, MonitorInput};
 use altitude_monitor::AltitudeMonitor;
 use force_sample::{ForceSample, in_g};
+use motion_monitor::MotionMonitor;
 use sample_tracker::is_current;
 
 pub(crate) use agreement::Contradictions;
@@ -54,6 +58,7 @@ pub use config::NavigationConfig;
 pub use estimate::{AirspeedSource, Estimate};
 pub(crate) use frozen::{Frozen, FrozenDetector, Known};
 pub use lift::{Lift, LiftChannel};
+pub(crate) use motion_monitor::MotionDoubt;
 pub(crate) use plausibility::{
     ANGLE_OF_ATTACK, ATTITUDE_RAD, GateLimits, HEADING_RAD, HEIGHT_M, PlausibilityLimit,
     airspeed_can_follow, airspeed_is_suspect, plausibility_gate,
@@ -91,6 +96,7 @@ pub struct Navigation {
     monitor: AirspeedMonitor,
     altitude_monitor: AltitudeMonitor,
     agreement: Agreement,
+    motion: MotionMonitor,
     airframe: AirframePrior,
     throttle: Option<f64>,
     is_engaged: bool,
@@ -111,6 +117,7 @@ impl Navigation {
             monitor: AirspeedMonitor::new(CESSNA_172),
             altitude_monitor: AltitudeMonitor::new(),
             agreement: Agreement::new(),
+            motion: MotionMonitor::new(),
             airframe: CESSNA_172,
             throttle: None,
             is_engaged: false,
@@ -323,6 +330,7 @@ impl Navigation {
         self.vertical.coast(passed_s);
         self.airspeed.adopt_next();
         self.agreement = Agreement::new();
+        self.motion = MotionMonitor::new();
         if self.monitor.doubt().is_none() {
             self.monitor = AirspeedMonitor::new(self.airframe);
         }

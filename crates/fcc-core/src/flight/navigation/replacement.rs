@@ -150,6 +150,12 @@ impl Replacement {
         }
     }
 
+    /// The attitude was wrong while the difference to it was learned.
+    pub(crate) const fn forget_offsets(&mut self) {
+        self.roll_offset.reset(0.0);
+        self.pitch_offset.reset(0.0);
+    }
+
     /// The measurements without those that are lost, some of them replaced.
     pub(crate) fn without(
         &self,

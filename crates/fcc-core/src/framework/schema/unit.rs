@@ -49,8 +49,11 @@ pub const fn of(name: &str) -> Named<'_> {
     while let [(end, unit), others @ ..] = rest {
         let whole = name.as_bytes();
         if whole.len() > end.len() {
-            let (quantity, found) = name.split_at(whole.len() - end.len());
-            if is_same(found.as_bytes(), end.as_bytes()) {
+            let at = whole.len() - end.len();
+            let (_, found) = whole.split_at(at);
+            if is_same(found, end.as_bytes()) {
+                // An underscore begins there: not within a character.
+                let (quantity, _) = name.split_at(at);
                 return Named { quantity, unit };
             }
         }
@@ -82,5 +85,18 @@ mod tests {
             let first = UNITS.iter().find(|(known, _)| end.ends_with(known));
             assert_eq!(first.map(|(_, unit)| *unit), Some(unit), "{end}");
         }
+    }
+
+    /// Found by fuzzing: the name in an answer to a command may be any text.
+    #[test]
+    fn a_name_of_other_letters_has_no_unit() {
+        for name in ["°", "ü\u{98}", "\u{98}mps", "é_m\u{301}"] {
+            let expected = Named {
+                quantity: name,
+                unit: "",
+            };
+            assert_eq!(of(name), expected);
+        }
+        assert_eq!(of("höhe_m").quantity, "höhe");
     }
 }

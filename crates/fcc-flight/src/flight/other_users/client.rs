@@ -12,7 +12,8 @@ use fcc_telemetry::Instance;
 use nix::sys::socket::{getsockopt, sockopt::PeerCredentials};
 use nix::unistd::User;
 
-use super::wire::{MOST_BYTES, answer_of, line_of};
+use super::line::MOST_BYTES;
+use super::wire::{answer_of, line_of};
 use super::{FOLDER, folder_of};
 
 /// A stop takes up to 12 s: the plant is prepared for its release first.
@@ -37,6 +38,13 @@ pub enum OtherUserError {
     /// The daemon refused it.
     #[error("refused: {0}")]
     Refused(String),
+    /// The daemon is stopped, or hangs.
+    #[error(
+        "fccd did not answer within {} s, so it is not known whether it was carried out; it will \
+         not be any more",
+        PATIENCE.as_secs()
+    )]
+    NoAnswer,
     /// The connection failed.
     #[error("the connection to fccd failed, so it is not known whether it was carried out: {0}")]
     Io(#[from] io::Error),
@@ -56,11 +64,11 @@ pub fn command_another_users(
     let folder = match user {
         None => Path::new("/run").join(FOLDER),
         Some(name) => {
-            let found = User::from_name(name).ok().flatten();
-            let found = found.ok_or_else(|| OtherUserError::NoUser(name.to_owned()))?;
-            let of_user = folder_of(found.uid.as_raw());
+            let found = number_of(name);
+            let user = found.ok_or_else(|| OtherUserError::NoUser(name.to_owned()))?;
+            let of_user = folder_of(user);
             // Others could have placed a folder of this name.
-            if !is_of(&of_user, found.uid.as_raw()) {
+            if !is_of(&of_user, user) {
                 return Err(OtherUserError::NotThere(instance.clone(), of_user));
             }
             of_user
@@ -82,9 +90,21 @@ pub fn command_another_users(
     if let Some(answer) = answer_of(&line) {
         return answer.map_err(OtherUserError::Refused);
     }
+    let is_late = |error: &io::Error| error.kind() == io::ErrorKind::WouldBlock;
+    if sent.as_ref().is_err_and(is_late) || read.as_ref().is_err_and(is_late) {
+        return Err(OtherUserError::NoAnswer);
+    }
     sent?;
     read?;
     Err(OtherUserError::Io(io::ErrorKind::UnexpectedEof.into()))
+}
+
+/// The number of a user, who is given by name or, as sudo takes it, as `#1000`.
+fn number_of(name: &str) -> Option<u32> {
+    match name.strip_prefix('#') {
+        Some(number) => number.parse().ok(),
+        None => Some(User::from_name(name).ok()??.uid.as_raw()),
+    }
 }
 
 /// Whether a folder, and no link, belongs to a user.

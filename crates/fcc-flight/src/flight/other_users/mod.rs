@@ -6,6 +6,7 @@
 //! end is (`SO_PEERCRED`, unix(7)).
 
 mod client;
+mod line;
 mod panel;
 mod server;
 mod wire;
@@ -15,7 +16,11 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 pub use client::{OtherUserError, command_another_users};
+#[cfg(fuzzing)]
+pub use line::line_of_parts;
 pub(super) use server::CommandSocket;
+#[cfg(fuzzing)]
+pub use wire::answer_as_received;
 pub use wire::command_of;
 
 /// The name of the folder that systemd, or root, makes for the service.

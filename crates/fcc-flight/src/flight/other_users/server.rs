@@ -2,6 +2,7 @@
 
 use std::fs::{self, DirBuilder, Permissions};
 use std::io::{self, ErrorKind, Read as _, Write as _};
+use std::os::fd::AsFd as _;
 use std::os::unix::fs::{DirBuilderExt as _, MetadataExt as _, PermissionsExt as _};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
@@ -9,12 +10,14 @@ use std::time::{Duration, Instant};
 
 use fcc_core::framework::{EventOf, RecordOf};
 use fcc_live::{Commandable, PendingCommand, PlantLimits, SentCommands, Verdict};
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::socket::{getsockopt, sockopt::PeerCredentials};
 use nix::unistd::geteuid;
 
+use super::line::{Line, MOST_BYTES};
 use super::own_folder;
 use super::panel::Panel;
-use super::wire::{MOST_BYTES, command_of, line_of_answer};
+use super::wire::{command_of, line_of_answer};
 use crate::config::Config;
 use crate::flight::observer::{Access, FlightTime, Observer, Reports};
 use crate::flight::outcome::Outcome;
@@ -25,8 +28,13 @@ const FOLDER_MODE: u32 = 0o711;
 const SOCKET_MODE: u32 = 0o666;
 /// Programs that may wait for an answer.
 const MOST_PEERS: usize = 16;
-/// New connections in a fiftieth of a second.
-const MOST_NEW: usize = 16;
+/// Of one user: nobody keeps the others from commanding.
+const MOST_OF_A_USER: usize = 2;
+/// For how long new connections are taken, each fiftieth of a second: hundreds
+/// that are refused, so that those who are not named delay nobody.
+const ACCEPT_FOR: Duration = Duration::from_millis(5);
+/// A line is sent at once.
+const LINE_WITHIN: Duration = Duration::from_secs(2);
 /// After this a connection is closed: longer than any command takes.
 const PATIENCE: Duration = Duration::from_secs(20);
 
@@ -43,9 +51,10 @@ pub(in crate::flight) struct CommandSocket<C: Commandable> {
 
 struct Peer {
     id: u64,
+    user: u32,
     stream: UnixStream,
     since: Instant,
-    received: Vec<u8>,
+    received: Line,
     /// Its command was sent to the loop.
     is_sent: bool,
 }
@@ -87,15 +96,22 @@ impl<C: Commandable> CommandSocket<C> {
         let Some(listener) = &self.listener else {
             return;
         };
-        for _ in 0..MOST_NEW {
+        let began = Instant::now();
+        while began.elapsed() < ACCEPT_FOR {
             let Ok((stream, _)) = listener.accept() else {
                 return;
             };
-            let refusal = match getsockopt(&stream, PeerCredentials) {
-                Ok(peer) if !self.panel.permits(peer.uid(), peer.gid()) => Some(format!(
-                    "user {} may not command this fccd: add the name to rights.commanders in its \
-                     configuration",
-                    peer.uid()
+            let peer = getsockopt(&stream, PeerCredentials);
+            let user = peer.map_or(u32::MAX, |peer| peer.uid());
+            let of_user = self.peers.iter().filter(|peer| peer.user == user).count();
+            let refusal = match peer {
+                Ok(peer) if !self.panel.permits(user, peer.gid()) => Some(format!(
+                    "user {user} may not command this fccd: add the name to rights.commanders in \
+                     its configuration"
+                )),
+                Ok(_) if of_user >= MOST_OF_A_USER => Some(format!(
+                    "{MOST_OF_A_USER} programs of user {user} wait for an answer already: send it \
+                     again"
                 )),
                 Ok(_) if self.peers.len() >= MOST_PEERS => {
                     Some("too many programs wait for an answer: send it again".to_owned())
@@ -110,9 +126,10 @@ impl<C: Commandable> CommandSocket<C> {
             self.next_id += 1;
             let peer = Peer {
                 id: self.next_id,
+                user,
                 stream,
                 since: Instant::now(),
-                received: Vec::new(),
+                received: Line::default(),
                 is_sent: false,
             };
             match refusal {
@@ -149,20 +166,21 @@ impl Peer {
     fn line(&mut self) -> Option<Result<String, &'static str>> {
         let mut bytes = [0; MOST_BYTES];
         match self.stream.read(&mut bytes) {
-            Ok(0) => return Some(Err("it was not sent completely")),
-            Ok(read) => self.received.extend(bytes.iter().take(read)),
-            Err(error) if error.kind() == ErrorKind::WouldBlock => return None,
-            Err(_) => return Some(Err("it could not be read")),
+            Ok(0) => Some(Err("it was not sent completely")),
+            Ok(read) => self.received.add(bytes.get(..read)?),
+            Err(error) if error.kind() == ErrorKind::WouldBlock => None,
+            Err(_) => Some(Err("it could not be read")),
         }
-        match self.received.iter().position(|byte| *byte == b'\n') {
-            Some(end) => {
-                self.received.truncate(end);
-                let line = String::from_utf8(std::mem::take(&mut self.received));
-                Some(line.map_err(|_| "it is not a text"))
-            }
-            None if self.received.len() > MOST_BYTES => Some(Err("it is too long")),
-            None => None,
-        }
+    }
+
+    /// Whether the program has closed the connection: it waits for no answer,
+    /// and does not expect that its command is still carried out.
+    fn is_gone(&self) -> bool {
+        let mut asked = [PollFd::new(self.stream.as_fd(), PollFlags::empty())];
+        let looked = poll(&mut asked, PollTimeout::ZERO);
+        let [found] = asked;
+        let closed = PollFlags::POLLHUP | PollFlags::POLLERR;
+        looked.is_err() || found.revents().is_none_or(|found| found.intersects(closed))
     }
 
     /// Answers, without waiting: a program that does not read gets nothing.
@@ -198,8 +216,17 @@ impl<C: Commandable> Observer<C> for CommandSocket<C> {
         let mut answers = Vec::new();
         for peer in self.peers.iter_mut().filter(|peer| !peer.is_sent) {
             let asked = match peer.line() {
+                // It may have waited for long: this process was stopped, or hung.
+                Some(Ok(line)) if peer.is_gone() => {
+                    access.reports.mention(format!(
+                        "a command of user {} was not carried out, for its sender has given up: {}",
+                        peer.user,
+                        line.escape_default()
+                    ));
+                    Err("its sender has given up")
+                }
                 Some(line) => line.and_then(|line| command_of(&line)),
-                None if peer.since.elapsed() > PATIENCE => Err("it did not come in time"),
+                None if peer.since.elapsed() > LINE_WITHIN => Err("it did not come in time"),
                 None => continue,
             };
             peer.is_sent = true;

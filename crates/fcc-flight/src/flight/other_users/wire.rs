@@ -8,9 +8,6 @@
 use fcc_live::{Command, Verdict};
 use fcc_telemetry::units::AVIATION;
 
-/// The longest line, with its end.
-pub(super) const MOST_BYTES: usize = 512;
-
 /// A command as a line, without its end.
 pub(super) fn line_of(command: &Command) -> String {
     match command {
@@ -66,6 +63,19 @@ pub(super) fn answer_of(line: &str) -> Option<Result<u64, String>> {
         "carried-out" => rest.parse().ok().map(Ok),
         "refused" => Some(Err(rest.to_owned())),
         _ => None,
+    }
+}
+
+/// The answer of a line, and the line of an answer as its receiver reads it.
+#[cfg(fuzzing)]
+pub fn answer_as_received(answer: Result<&str, &Verdict>) -> Option<Result<u64, String>> {
+    match answer {
+        Ok(line) => answer_of(line),
+        Err(verdict) => {
+            let line = line_of_answer(verdict);
+            assert_eq!(line.find('\n'), Some(line.len() - 1));
+            answer_of(&line)
+        }
     }
 }
 

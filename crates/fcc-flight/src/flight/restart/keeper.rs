@@ -6,6 +6,8 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use std::{io, thread};
 
+use fcc_timer::not_started;
+
 use super::super::again::StartsLeft;
 use super::saved::Saved;
 use super::state_file;
@@ -104,7 +106,10 @@ impl Keeper {
                         self.trouble = trouble;
                         "its thread had ended, and was started again".to_owned()
                     }
-                    Err(error) => format!("its thread has ended, and cannot be started: {error}"),
+                    Err(error) => format!(
+                        "its thread has ended, and cannot be started: {}",
+                        not_started(error)
+                    ),
                 }
             }
             None => {

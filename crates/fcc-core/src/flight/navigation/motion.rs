@@ -1,0 +1,67 @@
+//! Attitude and body rates in flight, and which of them is doubted.
+
+use core::time::Duration;
+
+use super::motion_monitor::{MotionDoubt, MotionInput};
+use super::motion_witness::WitnessInput;
+use super::{Lost, Navigation};
+use crate::flight::Measurements;
+use crate::flight::atmosphere::true_airspeed_mps;
+use crate::flight::orientation::EulerAngles;
+use crate::framework::Time;
+
+/// Attitude and body rates are compared if they are not older: of rates that are held for
+/// longer the integral is too wrong.
+const COMPARED: Duration = Duration::from_millis(200);
+
+impl Navigation {
+    /// Holds attitude and body rates against each other in flight, before the tick's step;
+    /// `lost` are the quantities that are lost for other reasons.
+    pub(crate) fn compare_motion(
+        &mut self,
+        now: Time,
+        sensed: &Measurements,
+        lost: Lost,
+        dt_s: f64,
+    ) {
+        let estimate = &self.estimate;
+        let airspeed_mps = (!lost.airspeed && self.monitor.doubt().is_none()).then_some(
+            true_airspeed_mps(sensed.airspeed_mps.value, estimate.altitude_m),
+        );
+        let is_measured = !lost.attitude
+            && !lost.body_rates
+            && sensed.attitude.is_fresh(now, COMPARED)
+            && sensed.body_rates.is_fresh(now, COMPARED);
+        let knows_climb = !lost.altitude && !self.altitude_monitor.is_doubted();
+        let input = MotionInput {
+            measured: is_measured.then_some((sensed.attitude.value, sensed.body_rates.value)),
+            flown: EulerAngles {
+                roll_rad: estimate.roll_rad,
+                pitch_rad: estimate.pitch_rad,
+                heading_rad: estimate.heading_rad,
+            },
+            witness: WitnessInput {
+                forward_mps2: (!lost.specific_force).then_some(sensed.specific_force.value.x_mps2),
+                heading_rad: (!lost.heading).then_some(sensed.heading_rad.value),
+                airspeed_mps,
+                climb_rate_mps: knows_climb.then_some(estimate.climb_rate_mps),
+                angle_of_attack_rad: estimate.angle_of_attack_rad,
+                gusts_mps: self.monitor.gusts_mps(),
+            },
+            may_doubt: self.is_engaged,
+        };
+        if let Some(rotation) = self.motion.step(&input, dt_s) {
+            self.attitude.adopt_gravity(rotation);
+        }
+    }
+
+    /// What is doubted of attitude and body rates, while it lasts.
+    pub(crate) const fn motion_doubt(&self) -> Option<MotionDoubt> {
+        self.motion.doubt()
+    }
+
+    /// Whether attitude and body rates contradict each other, and it is not decided yet.
+    pub(crate) const fn suspects_motion(&self) -> bool {
+        self.motion.suspects()
+    }
+}

@@ -1,0 +1,291 @@
+//! Whether attitude and body rates agree in flight, and which of them is believed.
+
+use libm::{atan2, hypot, sqrt};
+
+use super::attitude::{rotation_about, turn};
+use super::motion_witness::{MotionWitness, WitnessInput};
+use crate::blocks::{LowPass, limit_abs, wrap_pi};
+use crate::flight::orientation::{
+    EulerAngles, earth_to_body, euler_from_quaternion, product, quaternion_from_euler,
+};
+use crate::flight::{Attitude, BodyRates};
+
+/// The integrated rates follow the attitude with this bandwidth, rad/s, and learn
+/// their offset, at most this one, rad/s (0.4 °/s).
+const FOLLOWS_RADPS: f64 = 0.04;
+const MOST_LEARNED_RADPS: f64 = 0.007;
+/// The same while the rates are doubted: they agree when their offset is that of
+/// some seconds.
+const FOLLOWS_DOUBTED_RADPS: f64 = 1.0;
+/// They contradict each other beyond this angle, rad (3.5°), after this lag, s: more
+/// than noise and an attitude that is 0.1 s late make of a fast roll.
+const DIFFERS_RAD: f64 = 0.061;
+const DIFFERENCE_LAG_S: f64 = 0.3;
+/// The odds of one against the other at which it is decided, 20 to 1, and those that are
+/// enough beyond this angle, rad (15°), 3 to 1.
+const CERTAIN: f64 = 3.0;
+const LARGE_RAD: f64 = 0.26;
+const CERTAIN_IF_LARGE: f64 = 1.1;
+/// An offset of the rates up to this is flown, as the attitude corrects it, rad/s (4 °/s);
+/// doubted rates agree below this one (1.5 °/s).
+const FLOWN_RADPS: f64 = 0.07;
+const RATES_AGREE_RADPS: f64 = 0.026;
+/// A doubted attitude agrees within this angle, rad (3°).
+const ATTITUDE_AGREES_RAD: f64 = 0.052;
+/// What is doubted is believed again when it has agreed for this time, s.
+const BELIEVED_AFTER_S: f64 = 5.0;
+
+/// They are compared so often, s; the rates are integrated in each tick.
+const COMPARED_EACH_S: f64 = 0.09;
+
+/// What is doubted.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum MotionDoubt {
+    /// The attitude turns as the rates do not show, and neither do forces, path and
+    /// heading.
+    Attitude,
+    /// The rates turn as neither attitude nor the others show.
+    BodyRates,
+}
+
+/// One tick's inputs.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MotionInput {
+    /// Attitude and body rates, if both are measured.
+    pub(super) measured: Option<(Attitude, BodyRates)>,
+    /// What navigation makes of them.
+    pub(super) flown: EulerAngles,
+    pub(super) witness: WitnessInput,
+    /// Whether one may be doubted: while engaged.
+    pub(super) may_doubt: bool,
+}
+
+/// A contradiction that is not decided yet.
+#[derive(Clone, Copy, Debug)]
+struct Suspicion {
+    lasted_s: f64,
+    /// The difference at its beginning, rad.
+    began_rad: [f64; 2],
+    /// Logarithm of the odds that the attitude is right.
+    odds: f64,
+}
+
+/// Holds the attitude against the integrated body rates.
+///
+/// The integral follows the attitude so slowly that a step or a drift of either shows as a
+/// difference. Which of the two is wrong is told by what comes from neither, in a
+/// sequential test of two hypotheses (Wald 1945).
+#[derive(Clone, Debug)]
+pub(super) struct MotionMonitor {
+    /// The integrated rates: from body axes to earth axes.
+    rotation: Option<[f64; 4]>,
+    /// The learned offset of the rates about x and y, rad/s.
+    offset_radps: [f64; 2],
+    /// About x and y: attitude less integrated rates, rad.
+    difference: [LowPass; 2],
+    witness: MotionWitness,
+    suspicion: Option<Suspicion>,
+    doubt: Option<MotionDoubt>,
+    agrees_s: f64,
+    /// The time since they were compared last, s.
+    passed_s: f64,
+}
+
+impl MotionMonitor {
+    pub(super) const fn new() -> Self {
+        Self {
+            rotation: None,
+            offset_radps: [0.0; 2],
+            difference: [LowPass::new(DIFFERENCE_LAG_S); 2],
+            witness: MotionWitness::new(),
+            suspicion: None,
+            doubt: None,
+            agrees_s: 0.0,
+            passed_s: 0.0,
+        }
+    }
+
+    pub(super) const fn doubt(&self) -> Option<MotionDoubt> {
+        self.doubt
+    }
+
+    /// Whether one of them may be wrong.
+    pub(super) const fn suspects(&self) -> bool {
+        self.suspicion.is_some()
+    }
+
+    /// Processes one tick; the rotation by the rates when the attitude begins to be doubted.
+    pub(super) fn step(&mut self, input: &MotionInput, dt_s: f64) -> Option<[f64; 4]> {
+        if !input.may_doubt {
+            self.doubt = None;
+        }
+        let Some((attitude, rates)) = input.measured else {
+            self.rotation = None;
+            self.suspicion = None;
+            self.agrees_s = 0.0;
+            return None;
+        };
+        self.integrate(rates, dt_s);
+        self.passed_s += dt_s;
+        if self.passed_s < COMPARED_EACH_S {
+            return None;
+        }
+        let passed_s = core::mem::take(&mut self.passed_s);
+        self.compare(attitude, input, passed_s)
+    }
+
+    /// Integrates the rates without their offset.
+    fn integrate(&mut self, rates: BodyRates, dt_s: f64) {
+        let [x, y] = self.offset_radps;
+        let rates = BodyRates {
+            roll_radps: rates.roll_radps - x,
+            pitch_radps: rates.pitch_radps - y,
+            ..rates
+        };
+        self.rotation = self
+            .rotation
+            .map(|before| product(before, turn(&rates, dt_s)));
+    }
+
+    fn compare(&mut self, attitude: Attitude, input: &MotionInput, dt_s: f64) -> Option<[f64; 4]> {
+        let measured = quaternion_from_euler(EulerAngles {
+            roll_rad: attitude.roll_rad,
+            pitch_rad: attitude.pitch_rad,
+            heading_rad: input.flown.heading_rad,
+        });
+        let apart = self.rotation.map_or([0.0; 2], |rotation| {
+            let by_rates = euler_from_quaternion(rotation);
+            [
+                wrap_pi(attitude.roll_rad - by_rates.roll_rad),
+                attitude.pitch_rad - by_rates.pitch_rad,
+            ]
+        });
+        let learns = self.doubt.is_none() && self.suspicion.is_none();
+        self.witness
+            .step(&input.witness, attitude, apart, learns, dt_s);
+        if self.doubt == Some(MotionDoubt::Attitude) {
+            self.rotation = None;
+            let [x, y] = between(quaternion_from_euler(input.flown), measured);
+            self.follow_doubted(hypot(x, y) < ATTITUDE_AGREES_RAD, measured, dt_s);
+            return None;
+        }
+        let Some(rotation) = self.rotation else {
+            self.follow(measured);
+            return None;
+        };
+        let off = between(rotation, measured);
+        let [x, y] = off;
+        let [lag_x, lag_y] = &mut self.difference;
+        let difference = [lag_x.step(x, dt_s), lag_y.step(y, dt_s)];
+        if self.doubt.is_some() {
+            self.correct(off, FOLLOWS_DOUBTED_RADPS, f64::INFINITY, dt_s);
+            let [x, y] = self.offset_radps;
+            self.follow_doubted(hypot(x, y) < RATES_AGREE_RADPS, measured, dt_s);
+            return None;
+        }
+        let [x, y] = difference;
+        if hypot(x, y) < DIFFERS_RAD {
+            self.suspicion = None;
+            self.correct(off, FOLLOWS_RADPS, MOST_LEARNED_RADPS, dt_s);
+            return None;
+        }
+        self.judge(difference, measured, input, dt_s)
+    }
+
+    /// Collects evidence for attitude or rates, and decides when it is enough.
+    fn judge(
+        &mut self,
+        difference: [f64; 2],
+        measured: [f64; 4],
+        input: &MotionInput,
+        dt_s: f64,
+    ) -> Option<[f64; 4]> {
+        let mut suspicion = self.suspicion.unwrap_or(Suspicion {
+            lasted_s: 0.0,
+            began_rad: difference,
+            odds: 0.0,
+        });
+        suspicion.lasted_s += dt_s;
+        suspicion.odds += self.witness.odds(&input.witness, dt_s);
+        self.suspicion = Some(suspicion);
+        let [x, y] = difference;
+        let needed = if hypot(x, y) > LARGE_RAD {
+            CERTAIN_IF_LARGE
+        } else {
+            CERTAIN
+        };
+        if suspicion.odds.abs() < needed {
+            return None;
+        }
+        let by_rates = self.rotation;
+        self.follow(measured);
+        if suspicion.odds < 0.0 {
+            self.doubt = input.may_doubt.then_some(MotionDoubt::Attitude);
+            return by_rates.filter(|_| input.may_doubt);
+        }
+        let [began_x, began_y] = suspicion.began_rad;
+        let [offset_x, offset_y] = &mut self.offset_radps;
+        *offset_x -= (x - began_x) / suspicion.lasted_s;
+        *offset_y -= (y - began_y) / suspicion.lasted_s;
+        let is_large = hypot(*offset_x, *offset_y) > FLOWN_RADPS;
+        self.doubt = (input.may_doubt && is_large).then_some(MotionDoubt::BodyRates);
+        None
+    }
+
+    /// The integral continues from the attitude.
+    fn follow(&mut self, measured: [f64; 4]) {
+        self.rotation = Some(measured);
+        self.witness.agree();
+        self.suspicion = None;
+        self.difference = [LowPass::new(DIFFERENCE_LAG_S); 2];
+        self.agrees_s = 0.0;
+    }
+
+    /// Believes what is doubted again when it has agreed for some time.
+    fn follow_doubted(&mut self, agrees: bool, measured: [f64; 4], dt_s: f64) {
+        let agrees_s = if agrees { self.agrees_s + dt_s } else { 0.0 };
+        if agrees_s > BELIEVED_AFTER_S {
+            self.doubt = None;
+            self.follow(measured);
+        } else {
+            self.agrees_s = agrees_s;
+        }
+    }
+
+    /// Corrects the integral, critically damped, and its offset up to a limit.
+    fn correct(&mut self, off: [f64; 2], bandwidth_radps: f64, most_radps: f64, dt_s: f64) {
+        let [x, y] = off;
+        let length = hypot(x, y);
+        if let Some(rotation) = self.rotation
+            && length > 0.0
+        {
+            let angle = (2.0 * bandwidth_radps * dt_s).min(1.0) * length;
+            self.rotation = Some(product(
+                rotation,
+                rotation_about([x, y, 0.0], length, angle),
+            ));
+        }
+        for (offset, off) in self.offset_radps.iter_mut().zip(off) {
+            let learned = *offset - bandwidth_radps * bandwidth_radps * off * dt_s;
+            // One that is larger was measured when it was decided.
+            let most_radps = most_radps.max(offset.abs());
+            *offset = limit_abs(learned, most_radps);
+        }
+    }
+}
+
+/// The rotation about x and y that brings gravity from one direction in body axes to another,
+/// rad.
+fn between(from: [f64; 4], to: [f64; 4]) -> [f64; 2] {
+    const DOWN: [f64; 3] = [0.0, 0.0, 1.0];
+    let [ax, ay, az] = earth_to_body(to, DOWN);
+    let [bx, by, bz] = earth_to_body(from, DOWN);
+    let [x, y, z] = [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx];
+    let length = sqrt(x * x + y * y + z * z);
+    if length > 0.0 {
+        let angle = atan2(length, ax * bx + ay * by + az * bz);
+        [x * angle / length, y * angle / length]
+    } else {
+        [0.0; 2]
+    }
+}

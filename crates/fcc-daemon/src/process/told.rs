@@ -1,0 +1,107 @@
+//! What a release helper is told through its pipe: one line for each takeover,
+//! and for each release that the plant has confirmed.
+//!
+//! ```text
+//! held NUMBER PLANT | free NUMBER
+//! ```
+
+use std::fmt;
+
+use fcc_core::framework::PlantId;
+
+const HELD: &str = "held ";
+const FREE: &str = "free ";
+
+/// A line, without its end.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Line {
+    /// The number of a takeover, and the plant.
+    Held(u64, PlantId),
+    /// The number of a takeover whose release is confirmed.
+    Free(u64),
+}
+
+impl fmt::Display for Line {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Held(number, plant) => write!(f, "{HELD}{number} {plant}"),
+            Self::Free(number) => write!(f, "{FREE}{number}"),
+        }
+    }
+}
+
+impl Line {
+    /// None if it is none of these.
+    fn read(line: &str) -> Option<Self> {
+        if let Some(number) = line.strip_prefix(FREE) {
+            return Some(Self::Free(number.parse().ok()?));
+        }
+        let (number, plant) = line.strip_prefix(HELD)?.split_once(' ')?;
+        let plant = PlantId::new(format_args!("{plant}"))?;
+        Some(Self::Held(number.parse().ok()?, plant))
+    }
+}
+
+/// What the lines up to now mean.
+#[derive(Default, Debug)]
+pub(super) struct Told(Option<(u64, PlantId)>);
+
+impl Told {
+    /// Takes the next line; one that is not understood changes nothing.
+    pub(super) fn line(&mut self, line: &str) {
+        match Line::read(line) {
+            Some(Line::Held(number, plant)) => self.0 = Some((number, plant)),
+            // A release that is told late does not cover the next takeover.
+            Some(Line::Free(freed)) => self.0 = self.0.filter(|(number, _)| *number > freed),
+            None => {}
+        }
+    }
+
+    /// The takeover, by its number, after which the plant is held.
+    pub(super) const fn held(&self) -> Option<(u64, PlantId)> {
+        self.0
+    }
+}
+
+/// Reads lines as a release helper does: the takeover after which a plant is
+/// held, and the plant.
+#[cfg(fuzzing)]
+pub fn held_after<'a>(lines: impl Iterator<Item = &'a str>) -> Option<(u64, PlantId)> {
+    let mut told = Told::default();
+    for line in lines {
+        if let Some(read) = Line::read(line) {
+            assert_eq!(Line::read(&read.to_string()), Some(read));
+        }
+        told.line(line);
+    }
+    told.held()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plant(which: &str) -> PlantId {
+        PlantId::new(format_args!("{which}")).unwrap()
+    }
+
+    #[test]
+    fn the_last_takeover_is_held_until_its_own_release() {
+        let mut told = Told::default();
+        let mut after = |line: &str| {
+            told.line(line);
+            told.held()
+        };
+        assert_eq!(after("free 7"), None);
+        let first = Some((3, plant("X-Plane at 127.0.0.1:49000")));
+        assert_eq!(after("held 3 X-Plane at 127.0.0.1:49000"), first);
+        for other in [
+            "", "held", "held 4", "held x y", "free", "free -1", "free 2",
+        ] {
+            assert_eq!(after(other), first, "{other}");
+        }
+        assert_eq!(after("held 4 b"), Some((4, plant("b"))));
+        assert_eq!(after("free 3"), Some((4, plant("b"))));
+        assert_eq!(after("free 4"), None);
+    }
+}

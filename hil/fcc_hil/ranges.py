@@ -1,0 +1,65 @@
+"""Numbers on a command line: each within its range, or refused with it."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+
+LARGEST_SEED = 2**32 - 1
+_MOST_PROCESSES = 1_024
+
+
+def whole(least: int, most: int) -> Callable[[str], int]:
+    """Return the reader of a whole number; it raises argparse.ArgumentTypeError."""
+
+    def read(text: str) -> int:
+        # No number here has more digits.
+        is_number = text.isascii() and text.isdigit() and len(text) <= len(str(most)) + 4
+        if not is_number or not least <= int(text) <= most:
+            raise argparse.ArgumentTypeError(
+                f"'{text}': give a whole number from {least} to {most}"
+            )
+        return int(text)
+
+    return read
+
+
+def number(least: float, most: float, unit: str = "") -> Callable[[str], float]:
+    """Return the reader of a number; it raises argparse.ArgumentTypeError."""
+
+    def read(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = least - 1.0
+        # Not a number is in no range.
+        if not least <= value <= most:
+            raise argparse.ArgumentTypeError(
+                f"'{text}': give a number from {least:g} to {most:g} {unit}".rstrip()
+            )
+        return value
+
+    return read
+
+
+def numbers(least: float, most: float, unit: str = "") -> Callable[[str], tuple[float, ...]]:
+    """Return the reader of numbers with commas in between, each in the range."""
+    one = number(least, most, unit)
+    return lambda text: tuple(one(part) for part in text.split(","))
+
+
+def names(of: tuple[str, ...]) -> Callable[[str], tuple[str, ...]]:
+    """Return the reader of names with commas in between; it raises argparse.ArgumentTypeError."""
+
+    def read(text: str) -> tuple[str, ...]:
+        given = tuple(text.split(","))
+        for name in given:
+            if name not in of:
+                raise argparse.ArgumentTypeError(f"'{name}': choose of {', '.join(of)}")
+        return given
+
+    return read
+
+
+count = whole(1, 1_000_000)
+workers = whole(1, _MOST_PROCESSES)
