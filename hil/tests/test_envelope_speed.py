@@ -7,10 +7,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import fcc
 import pytest
 
+from fcc_hil.aircraft import Aircraft, by_name
+from fcc_hil.campaign.aircraft import AIRCRAFT
 from fcc_hil.lockstep_rig import LockstepRig
 from fcc_hil.plant import Plant, Weather
 from fcc_hil.settings import Settings
@@ -25,10 +28,12 @@ _STALL_DEG = 16.5
 class _Flight:
     """A flight, and what it reached."""
 
-    def __init__(self, aircraft: str, seed: int, turbulence: int = 0, envelope: str = "") -> None:
+    def __init__(
+        self, aircraft: str | Aircraft, seed: int, turbulence: int = 0, envelope: str = ""
+    ) -> None:
         self.plant = Plant(aircraft, seed=seed, weather=Weather(turbulence_severity=turbulence))
         machine = fcc.Machine(f"{_HOLD}[autopilot.envelope]\n{envelope}")
-        settings = Settings(aircraft=aircraft, noise=True, seed=seed)
+        settings = Settings(aircraft=self.plant.aircraft.name, noise=True, seed=seed)
         self.rig = LockstepRig(settings, self.plant, machine)
         self.rig.prepare()
         self.rig.set_switch(on=True)
@@ -84,6 +89,29 @@ def test_a_best_glide_above_the_lowest_airspeed_is_flown() -> None:
     flight.fly(60.0)
     assert abs(flight.airspeed_kt - 75.0) <= 2.0
     assert flight.least_kt >= 64.0
+
+
+def test_on_the_back_side_of_the_power_curve_the_ordered_airspeed_goes_first() -> None:
+    """A c182 that is 25 % too heavy, with the gains and limits of a Cessna 172, ordered to 74 kt.
+
+    Before: 67 kt with full throttle, 750 ft down after four minutes and sinking, though 100 kt
+    had been ordered.
+    """
+    heavy = replace(by_name("c182"), loading=AIRCRAFT["c182"].loading("heavy"))
+    flight = _Flight(heavy, seed=1)
+    fdm = flight.plant.fdm
+    fdm["inertia/pointmass-weight-lbs"] += 0.25 * fdm["inertia/weight-lbs"]
+    before_m = flight.plant.state().altitude_m
+    flight.rig.machine.command(airspeed_mps=74.0 * KT_TO_MPS)
+    flight.fly(90.0)
+    flight.rig.machine.command(airspeed_mps=100.0 * KT_TO_MPS)
+    flight.fly(90.0)
+    middle_m = flight.plant.state().altitude_m
+    assert middle_m > before_m - 300.0 * FT_TO_M
+    flight.fly(60.0)
+    assert flight.airspeed_kt > 72.0
+    assert flight.longest_stall_s < 1.0
+    assert flight.plant.state().altitude_m > middle_m
 
 
 def test_the_highest_airspeed_is_held_in_air_that_rises() -> None:
