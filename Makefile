@@ -127,7 +127,7 @@ fuzz: ## Fuzz every parser of outside data, INPUTS= for each (needs a nightly to
 	@command -v cargo-fuzz >/dev/null || cargo install --locked --version 0.13.2 cargo-fuzz
 	NIGHTLY=$(NIGHTLY) ./scripts/fuzz $(INPUTS)
 
-soundness: ## Run Miri and ThreadSanitizer over timers, loop, records and live telemetry (30 minutes)
+soundness: ## Run Miri and ThreadSanitizer over timers, loop, records and live telemetry (15 minutes)
 	NIGHTLY=$(NIGHTLY) ./scripts/soundness
 
 # The boards: a Raspberry Pi with 64 bits, and a BeagleBone or a Pi with 32.
