@@ -51,6 +51,16 @@ class Limits:
         return self.floor_kt + self._configured("airspeed_margin_kt")
 
     @property
+    def most_climb_fpm(self) -> float:
+        """The largest climb rate that its configuration permits."""
+        return self._configured("max_climb_fpm")
+
+    @property
+    def most_sink_fpm(self) -> float:
+        """The largest rate of descent that its configuration permits."""
+        return self._configured("max_sink_fpm")
+
+    @property
     def stall_setting_kt(self) -> float:
         """The stalling speed for the configuration: whole, at the greatest weight."""
         return max(

@@ -177,11 +177,20 @@ def _unsettled(flight: Flight, truth: Truth, legs: Sequence[Leg]) -> list[str]:
             words.append(f"leg {number}: heading {flown['heading_rms_deg']:.1f}° RMS")
         is_high = not flown["altitude_rms_ft"] <= ALTITUDE_RMS_FT[severity]
         lacks_power = _lacks_power(flight, truth, leg)
-        if is_high and not lacks_power and not fell_behind:
+        has_time = _has_time(flight, truth, leg)
+        if is_high and has_time and not lacks_power and not fell_behind:
             words.append(f"leg {number}: altitude {flown['altitude_rms_ft']:.0f} ft RMS")
         # What the air took in this leg is regained in the next.
         fell_behind = lacks_power
     return words
+
+
+def _has_time(flight: Flight, truth: Truth, leg: Leg) -> bool:
+    """Return whether the altitude can be reached before it is judged, as fast as configured."""
+    begins = int(np.searchsorted(truth["time_s"], leg.start_s))
+    change_ft = leg.altitude_ft - float(truth["altitude_ft"][begins])
+    most_fpm = flight.limits.most_climb_fpm if change_ft > 0.0 else flight.limits.most_sink_fpm
+    return abs(change_ft) <= most_fpm * (leg.end_s - leg.start_s - ALTITUDE_RMS_WINDOW_S) / 60.0
 
 
 def _lacks_power(flight: Flight, truth: Truth, leg: Leg) -> bool:
