@@ -99,7 +99,7 @@ def test_three_times_the_gain_oscillates_until_the_monitor_takes_gain_out() -> N
 @pytest.mark.parametrize("airspeed_kt", [80, 100, 120])
 def test_play_in_the_elevator_is_found_and_inverted(airspeed_kt: float) -> None:
     """JSBSim's c172x: hysteresis of 0.05 rad, of 0.40 to 0.49 rad of travel."""
-    flown = _fly("c172x", airspeed_kt)
+    flown = _fly("c172x", airspeed_kt, seconds=30.0, judged_after_s=20.0)
     assert np.max(np.abs(np.array(flown.load_g) - 1.0)) <= 0.1
     assert 0.05 / 0.49 - 0.02 <= flown.play <= 0.05 / 0.40
 

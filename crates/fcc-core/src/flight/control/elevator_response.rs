@@ -22,7 +22,7 @@ const COMPARED_EVERY: u32 = 20;
 /// Samples before the first.
 const FIRST_AFTER: u32 = 120;
 /// A smaller mean square of the pitch acceleration, (rad/s²)², says nothing.
-const LEAST_MOTION: f64 = 2e-4;
+const LEAST_MOTION: f64 = 4e-4;
 /// The part of it that the elevator must explain.
 const LEAST_EXPLAINED: f64 = 0.15;
 /// Another model is believed if it leaves less than this part of what the
@@ -32,6 +32,8 @@ const BETTER: f64 = 0.94;
 /// play does, and the elevator explains at least this part of all.
 const PLAY_IS_BETTER: f64 = 0.94;
 const PLAY_EXPLAINS: f64 = 0.25;
+/// And does so for as long, s: one manoeuvre may be explained by chance.
+const PLAY_AFTER_S: f64 = 1.0;
 /// Play is no longer believed if a model without it leaves less than this part.
 const NO_PLAY_IS_BETTER: f64 = 0.9;
 /// And does so for as long, s: a gust moves the aircraft without the elevator,
@@ -180,6 +182,8 @@ pub struct ElevatorResponse {
     believed: (f64, f64),
     /// For how long a model without play has been better than the believed one with it, s.
     without_play_s: f64,
+    /// For how long a model with play has been better than one without, s.
+    with_play_s: f64,
     /// Since the last sample, s.
     elapsed_s: f64,
     /// Mean time between samples, s.
@@ -202,6 +206,7 @@ impl ElevatorResponse {
             play: 0.0,
             believed: (0.0, 0.0),
             without_play_s: 0.0,
+            with_play_s: 0.0,
             elapsed_s: 0.0,
             period_s: LEAST_PERIOD_S,
             samples: 0,
@@ -333,13 +338,19 @@ impl ElevatorResponse {
         }
         let has_play = with_play.0 < PLAY_IS_BETTER * without.0
             && with_play.0 < (1.0 - PLAY_EXPLAINS) * explained.left;
+        let between_s = f64::from(COMPARED_EVERY) * self.period_s;
+        self.with_play_s = if has_play {
+            self.with_play_s + between_s
+        } else {
+            0.0
+        };
         self.without_play_s = if without.0 < NO_PLAY_IS_BETTER * present {
-            self.without_play_s + f64::from(COMPARED_EVERY) * self.period_s
+            self.without_play_s + between_s
         } else {
             0.0
         };
         let had_play = believed_width > 0.0 && self.without_play_s < NO_PLAY_AFTER_S;
-        let (left, width, delay) = if has_play || had_play {
+        let (left, width, delay) = if self.with_play_s >= PLAY_AFTER_S || had_play {
             with_play
         } else {
             without

@@ -107,10 +107,8 @@ const OVER_GROUND_S: f64 = 10.0;
 /// The airspeed of the best climb over that of the best glide: 1.14 by the handbook
 /// of the Cessna 172N (74 and 65 KIAS), 1.2 if it is heavier than was configured.
 const CLIMB_OVER_GLIDE: f64 = 1.2;
-/// How fast the lowest airspeed is raised, m/s².
+/// How fast the lowest airspeed is raised, and lowered again, m/s².
 const RAISED_MPS2: f64 = 0.5;
-/// How fast it is lowered once energy is no longer short, m/s².
-const LOWERED_MPS2: f64 = 0.1;
 
 impl SpeedLimits {
     /// Without a past.
@@ -170,7 +168,7 @@ impl SpeedLimits {
         let glide_mps = envelope.best_glide_airspeed_mps;
         let is_persistent = self.short_s > NO_CLIMB_AFTER_S || self.at_largest_angle_s >= SHORT_S;
         let (to_mps, most_mps2) = if !self.is_short {
-            (floor_mps, LOWERED_MPS2)
+            (floor_mps, RAISED_MPS2)
         } else if self.in_air.output() < GLIDE_RAD {
             (glide_mps.max(floor_mps + self.raised_mps), RAISED_MPS2)
         } else if is_persistent && self.over_ground.output() < 0.0 {

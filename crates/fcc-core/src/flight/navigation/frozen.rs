@@ -102,14 +102,14 @@ pub(crate) struct FrozenDetector {
     roll: StuckDetector<1>,
     pitch: StuckDetector<1>,
     heading: StuckDetector<1>,
-    rates: StuckDetector<3>,
+    rates: [StuckDetector<1>; 3],
     force: StuckDetector<3>,
     airspeed: StuckDetector<1>,
     altitude: StuckDetector<1>,
     /// Rotation by the gyroscopes since roll, pitch and heading changed.
     turned: [LeakyIntegrator; 3],
     /// Rotation by attitude and heading minus that by the gyroscopes, since the
-    /// gyroscopes changed.
+    /// gyroscope of that axis changed.
     unsaid: [LeakyIntegrator; 3],
     /// Climb since the altitude changed, by the velocity or the pitch, and by the
     /// vertical acceleration.
@@ -140,7 +140,7 @@ impl FrozenDetector {
             roll: StuckDetector::new([0.0], Time::NEVER),
             pitch: StuckDetector::new([0.0], Time::NEVER),
             heading: StuckDetector::new([0.0], Time::NEVER),
-            rates: StuckDetector::new([0.0; 3], Time::NEVER),
+            rates: [StuckDetector::new([0.0], Time::NEVER); 3],
             force: StuckDetector::new([0.0; 3], Time::NEVER),
             airspeed: StuckDetector::new([0.0], Time::NEVER),
             altitude: StuckDetector::new([0.0], Time::NEVER),
@@ -270,17 +270,18 @@ impl FrozenDetector {
             rates.value.pitch_radps,
             rates.value.yaw_radps,
         ];
-        if self.rates.has_changed(values, EXACTLY, rates.taken, dt_s) {
-            self.unsaid = [LeakyIntegrator::default(); 3];
-            return;
+        // Of angles that stand still nothing follows.
+        let is_said = !(self.roll.is_frozen || self.pitch.is_frozen || self.heading.is_frozen);
+        let stuck = self.rates.iter_mut().zip(&mut self.unsaid).zip(values);
+        let turned = angles.into_iter().zip(before).zip(said);
+        for (((stuck, unsaid), value), ((is, was), said)) in stuck.zip(turned) {
+            if stuck.has_changed([value], EXACTLY, rates.taken, dt_s) || !is_said {
+                *unsaid = LeakyIntegrator::default();
+            } else {
+                unsaid.add(wrap_pi(is - was) - said * dt_s, TURNED_RAD, 0.0, dt_s);
+            }
+            stuck.update(unsaid.exceeds(TURNED_RAD, 0.0), self.after_s);
         }
-        let mut exceeds = false;
-        for (((unsaid, is), was), said) in self.unsaid.iter_mut().zip(angles).zip(before).zip(said)
-        {
-            unsaid.add(wrap_pi(is - was) - said * dt_s, TURNED_RAD, 0.0, dt_s);
-            exceeds |= unsaid.exceeds(TURNED_RAD, 0.0);
-        }
-        self.rates.update(exceeds, self.after_s);
     }
 
     fn step_altitude(
@@ -325,7 +326,10 @@ impl FrozenDetector {
         Frozen {
             attitude: self.roll.is_frozen || self.pitch.is_frozen,
             heading: self.heading.is_frozen,
-            body_rates: self.rates.is_frozen,
+            body_rates: {
+                let [roll, pitch, yaw] = &self.rates;
+                roll.is_frozen || pitch.is_frozen || yaw.is_frozen
+            },
             specific_force: self.force.is_frozen,
             airspeed: self.airspeed.is_frozen,
             altitude: self.altitude.is_frozen,

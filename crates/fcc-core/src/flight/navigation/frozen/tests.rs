@@ -96,6 +96,22 @@ fn changing_values_are_not_frozen() {
     assert_eq!(watch(flying), [(0.0, Frozen::default())]);
 }
 
+/// The others live: it shows 10 °/s where the aircraft does not roll.
+#[test]
+fn a_single_gyroscope_is_detected() {
+    let seen = with_frozen(|m, start| {
+        m.body_rates.value.roll_radps = start.body_rates.value.roll_radps;
+    });
+    let expected = Frozen {
+        body_rates: true,
+        ..Frozen::default()
+    };
+    assert!(
+        matches!(seen[..], [_, (3.0..4.0, frozen)] if frozen == expected),
+        "{seen:?}"
+    );
+}
+
 #[test]
 fn each_is_detected_when_the_aircraft_moves_and_no_other() {
     type Case = (fn(&mut Measurements, &Measurements), Frozen, f64);
