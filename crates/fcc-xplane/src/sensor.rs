@@ -1,5 +1,7 @@
 //! X-Plane as a sensor.
 
+mod beacons;
+
 use core::hint::black_box;
 use core::mem;
 use core::time::Duration;
@@ -15,7 +17,7 @@ use crate::counters::count;
 use crate::inbox::Inbox;
 use crate::link::{Control, SharedState};
 use crate::port::{Errno, Port};
-use crate::protocol::{Kind, PathError, beacon};
+use crate::protocol::{Kind, PathError};
 use crate::release_monitor::ReleaseMonitor;
 use crate::reply_port::{ReplyPorts, Situation};
 use crate::simulator::SimulatorState;
@@ -36,8 +38,6 @@ const OLD_AFTER_S: f64 = 0.1;
 /// which nothing is sent, although datagrams arrive from it (Windows':
 /// github.com/microsoft/WSL, issue 8369).
 const OPEN_EVERY: Duration = Duration::from_secs(20);
-/// X-Plane sends about one beacon a second.
-const BEACONS_PER_TICK: usize = 4;
 
 /// X-Plane as a sensor: reads the values that arrived and requests those that
 /// did not.
@@ -132,57 +132,6 @@ impl<P: Port> XPlaneSensor<P> {
 
     pub(crate) fn set_socket(&self, local_port: u16, filter: Option<SourceFilter>) {
         self.link.set_socket(local_port, filter);
-    }
-
-    /// Reads beacons: connects to the first simulator that computes a flight, and
-    /// keeps to it while it sends, and until the release of its controls is
-    /// confirmed.
-    fn listen_for_beacons(&mut self, now: Time) {
-        let Some(beacons) = &self.beacons else {
-            return;
-        };
-        let silent = now.since(self.inbox.last_received()) > self.silent_after;
-        let waits = silent && self.link.is_held();
-        if !waits {
-            self.link.forget_announced();
-        }
-        let mut next = None;
-        for _ in 0..BEACONS_PER_TICK {
-            let Ok(Some((length, from))) = beacons.receive(self.buffer.as_mut_slice()) else {
-                break;
-            };
-            let datagram = self.buffer.get(..length).unwrap_or_default();
-            let Ok(beacon) = beacon::parse(datagram) else {
-                count(&self.link.counters.malformed);
-                continue;
-            };
-            let known = self.link.address.simulator();
-            let address = SocketAddr::new(from.ip(), beacon.port);
-            if !beacon.is_flyable() || known == Some(address) {
-                continue;
-            }
-            match known {
-                None => self.link.address.set_simulator(address),
-                // It may hang, and return with its controls held.
-                Some(_) if waits => self.link.set_announced(address),
-                Some(known) if silent => next = Some((known, address)),
-                Some(_) => {}
-            }
-        }
-        if let Some((known, other)) = next {
-            self.leave(known, other);
-        }
-    }
-
-    /// Another simulator takes the place of one that is silent. What that one
-    /// sends later is not the other's.
-    fn leave(&mut self, known: SocketAddr, other: SocketAddr) {
-        self.subscriptions.end(|request| {
-            // If it is lost, that one's datagrams are left out.
-            let _ = self.port.send(request, known);
-        });
-        self.reply_ports.leave(known.ip() == other.ip());
-        self.link.change_simulator(other);
     }
 
     fn receive(&mut self, now: Time, simulator: Option<SocketAddr>) -> Result<(), SensorFault> {
