@@ -8,14 +8,14 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from other_user import NOBODY, needs_two_users
 
-STRANGER = 65534
 SUCCESS = 0
 USAGE = 2
 OLD = "2020-01-01T00-00-00.000Z-built-in-01.mcap"
 
 
-@pytest.mark.skipif(os.geteuid() != 0, reason="only root can act as another user")
+@needs_two_users
 def test_what_another_user_places_is_neither_followed_nor_deleted(
     fccd: Path, tmp_path: Path
 ) -> None:
@@ -29,7 +29,7 @@ def test_what_another_user_places_is_neither_followed_nor_deleted(
     pipe = folder / OLD.replace("2020", "2021")
     os.mkfifo(pipe)
     for placed in (link, pipe):
-        os.chown(placed, STRANGER, STRANGER, follow_symlinks=False)
+        os.chown(placed, NOBODY, NOBODY, follow_symlinks=False)
     config = tmp_path / "c.toml"
     config.write_text(f"[built-in]\n[recording]\nfolder = '{folder}'\nkeep_total_mb = 1\n")
     words = ["fly", "--config", str(config), "--lockstep", "--seconds", "20", "--json"]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -12,8 +11,8 @@ import threading
 from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
 from daemon_under_test import DaemonUnderTest, engage, flight, wait_until
+from other_user import NOBODY, as_user, needs_two_users
 
 from fcc_hil.fly import ENGAGE_SWITCH
 from fcc_hil.process import StandInProcess
@@ -21,11 +20,10 @@ from fcc_hil.standin import Mode, Settings
 
 SUCCESS = 0
 NOT_RELEASED = 5
-STRANGER = 65534
 ADOPTED_AFTER_S = 2.0
 """After such a silence another port is used while nothing is held."""
 
-pytestmark = pytest.mark.skipif(os.geteuid() != 0, reason="only root can act as another user")
+pytestmark = needs_two_users
 
 # Sends to the ports of each line every 5 ms: 0 in every value that is requested, so a switch
 # that is off, and overrides that are cleared, also to who only releases (9001, 9002).
@@ -63,7 +61,7 @@ def ports_of(*processes: int) -> list[int]:
 def impostor(daemon: DaemonUnderTest) -> Iterator[None]:
     """Let another user send to every port of the daemon and of its helper, also to new ones."""
     helpers = daemon.helpers()
-    words = ["setpriv", f"--reuid={STRANGER}", f"--regid={STRANGER}", "--clear-groups"]
+    words = as_user(NOBODY)
     over = threading.Event()
     with subprocess.Popen(
         [*words, sys.executable, "-I", "-u", "-c", IMPOSTOR],

@@ -19,6 +19,7 @@ import fcc
 import numpy as np
 import pytest
 from daemon_under_test import DaemonUnderTest, wait_until
+from other_user import as_user, needs_two_users
 
 SUCCESS = 0
 FAILURE = 1
@@ -54,7 +55,7 @@ def snapshot(fccd: Path, instance: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(words, capture_output=True, text=True, check=False, timeout=PATIENCE_S)
 
 
-@pytest.mark.skipif(os.geteuid() != 0, reason="only root may become another user")
+@needs_two_users
 def test_users_have_separate_shared_memory(fccd: Path, tmp_path: Path, instance: str) -> None:
     """Two daemons of one name, of two users: each is watched by its own."""
     uid = 65_534 - os.getpid() % 1_000
@@ -64,9 +65,9 @@ def test_users_have_separate_shared_memory(fccd: Path, tmp_path: Path, instance:
         shutil.copy(fccd, program)
         os.chown(theirs, uid, uid)
 
-        def as_user(*words: str) -> subprocess.CompletedProcess[str]:
+        def as_them(*words: str) -> subprocess.CompletedProcess[str]:
             return subprocess.run(
-                ["setpriv", f"--reuid={uid}", f"--regid={uid}", "--clear-groups", *words],
+                [*as_user(uid), *words],
                 cwd=theirs,
                 capture_output=True,
                 text=True,
@@ -78,10 +79,10 @@ def test_users_have_separate_shared_memory(fccd: Path, tmp_path: Path, instance:
         short = ("--instance", instance, "--seconds", "0.5", "--quiet")
         with fly(fccd, tmp_path, instance) as daemon:
             daemon.wait_for("standby -> engaged")
-            nobody = as_user(*top)
+            nobody = as_them(*top)
             assert nobody.returncode == FAILURE
             assert f"sudo -u root fccd top --instance {instance}" in nobody.stderr
-            flown = as_user(str(program), "fly", *short)
+            flown = as_them(str(program), "fly", *short)
             assert flown.returncode == SUCCESS, flown.stderr
             assert "no live telemetry" not in flown.stderr
             assert json.loads(snapshot(fccd, instance).stdout)["process_id"] == daemon.pid
@@ -91,7 +92,7 @@ def test_users_have_separate_shared_memory(fccd: Path, tmp_path: Path, instance:
         # One of another user is reported, and not used; the flight is flown.
         shutil.rmtree(place)
         place.mkdir()
-        flown = as_user(str(program), "fly", *short)
+        flown = as_them(str(program), "fly", *short)
         place.rmdir()
         assert flown.returncode == SUCCESS
         assert f"{place} is not used: it belongs to user 0 and not to user {uid}" in flown.stderr

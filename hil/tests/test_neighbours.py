@@ -14,7 +14,6 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-import pytest
 from daemon_under_test import (
     DaemonUnderTest,
     Ending,
@@ -25,6 +24,7 @@ from daemon_under_test import (
     wait_until,
     write_config,
 )
+from other_user import NOBODY, as_user, needs_two_users
 
 from fcc_hil.cockpit import OVERRIDE_JOYSTICK
 from fcc_hil.fly import ENGAGE_SWITCH
@@ -33,12 +33,9 @@ from fcc_hil.standin import Settings
 
 SUCCESS = 0
 TAKEN = 12
-STRANGER = 65534
 CUT_OFF = "an earlier flight was cut off and may have left the controls held"
 KILLS = int(os.environ.get("FCCD_KILLS", "4"))
 """How many flights are killed; 100 take ten minutes: `make test-attacks`."""
-
-needs_two_users = pytest.mark.skipif(os.geteuid() != 0, reason="only root can act as another user")
 
 # Listens at abstract names with queues that are full: whoever connects waits.
 SQUATTER = """
@@ -65,7 +62,7 @@ time.sleep(600)
 @contextlib.contextmanager
 def squatter(*names: str) -> Iterator[None]:
     """Let another user take names of the abstract namespace."""
-    words = ["setpriv", f"--reuid={STRANGER}", f"--regid={STRANGER}", "--clear-groups"]
+    words = as_user(NOBODY)
     with subprocess.Popen(
         [*words, sys.executable, "-I", "-c", SQUATTER, *names], stdout=subprocess.PIPE, cwd="/"
     ) as process:
@@ -102,12 +99,12 @@ def test_a_folder_of_another_user_is_refused_and_the_flight_is_flown(
 ) -> None:
     theirs = tmp_path / "theirs"
     theirs.mkdir(mode=0o700)
-    os.chown(theirs, STRANGER, STRANGER)
+    os.chown(theirs, NOBODY, NOBODY)
     with flight(fccd, tmp_path, environment={"RUNTIME_DIRECTORY": str(theirs)}) as (
         simulator,
         daemon,
     ):
-        daemon.wait_for(f"the folder {theirs} is not used: it belongs to user {STRANGER}")
+        daemon.wait_for(f"the folder {theirs} is not used: it belongs to user {NOBODY}")
         engage(simulator, daemon)
         assert daemon.end(signal.SIGTERM).exit_code == SUCCESS
         assert_released(simulator)

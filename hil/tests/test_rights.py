@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes.util
 import json
 import os
@@ -16,6 +17,7 @@ from pathlib import Path
 
 import pytest
 from daemon_under_test import DaemonUnderTest, assert_released, engage, write_config
+from other_user import NOBODY, as_user, needs_two_users
 from test_service_unit import allowed_calls
 
 from fcc_hil.process import StandInProcess
@@ -23,9 +25,6 @@ from fcc_hil.standin import Settings
 
 SUCCESS = 0
 USAGE = 2
-NOBODY = 65534
-
-needs_root = pytest.mark.skipif(os.geteuid() != 0, reason="only root can give up its rights")
 
 
 @pytest.fixture
@@ -44,7 +43,7 @@ def status(pid: int, key: str) -> list[str]:
     return found[1].split()
 
 
-@needs_root
+@needs_two_users
 def test_started_as_root_it_flies_as_the_user(fccd: Path, scratch: Path) -> None:
     # Not in every container.
     raises = ["prlimit", "--rtprio=99", "--memlock=unlimited", "true"]
@@ -77,7 +76,7 @@ def tasks(pid: int) -> list[str]:
     return [task.name for task in Path(f"/proc/{pid}/task").iterdir()]
 
 
-@needs_root
+@needs_two_users
 def test_a_user_who_does_not_exist_is_refused(fccd: Path, scratch: Path) -> None:
     config = write_config(scratch, 49_000, others='[rights]\nuser = "no-such-user"\n')
     ended = subprocess.run(
@@ -192,7 +191,7 @@ STRANGER = 54321
 
 def commanding(user: int, socket: Path, *texts: str, silent: int = 0) -> list[str]:
     """Return what the daemon answers to a user's lines, beside silent connections."""
-    words = ["setpriv", f"--reuid={user}", f"--regid={user}", "--clear-groups", sys.executable]
+    words = [*as_user(user), sys.executable]
     done = subprocess.run(
         [*words, "-I", "-c", COMMANDS, socket, str(silent), *texts],
         capture_output=True,
@@ -205,7 +204,7 @@ def commanding(user: int, socket: Path, *texts: str, silent: int = 0) -> list[st
 
 def one_of_them(user: int, script: str, socket: Path) -> str:
     """Return what a program of a user prints."""
-    words = ["setpriv", f"--reuid={user}", f"--regid={user}", "--clear-groups", sys.executable]
+    words = [*as_user(user), sys.executable]
     done = subprocess.run(
         [*words, "-I", "-c", script, socket], capture_output=True, text=True, check=True, cwd="/"
     )
@@ -249,85 +248,86 @@ s.sendall(b"stop\\n")
 """
 
 
-@needs_root
+@contextlib.contextmanager
+def commanded_by_nobody(
+    fccd: Path, scratch: Path, name: str
+) -> Iterator[tuple[StandInProcess, DaemonUnderTest, Path]]:
+    """Run a daemon of root's that the user nobody may command; give the command socket, too."""
+    instance = f"{name}-{os.getpid()}"
+    others = (
+        f'[telemetry]\ninstance = "{instance}"\n[rights]\nuser = "root"\ncommanders = ["nobody"]\n'
+    )
+    with StandInProcess(Settings(port=0)) as simulator:
+        config = write_config(scratch, simulator.port, others=others)
+        with DaemonUnderTest([fccd, "run", "--config", config, "--json"], scratch) as daemon:
+            yield simulator, daemon, Path("/dev/shm/fccd-commands-0") / instance
+
+
+@needs_two_users
 def test_commanders_do_not_delay_each_other_and_old_commands_are_dropped(
     fccd: Path, scratch: Path
 ) -> None:
-    instance = f"crowd-{os.getpid()}"
-    others = (
-        f'[telemetry]\ninstance = "{instance}"\n[rights]\nuser = "root"\ncommanders = ["nobody"]\n'
-    )
-    socket = Path("/dev/shm/fccd-commands-0") / instance
-    with StandInProcess(Settings(port=0)) as simulator:
-        config = write_config(scratch, simulator.port, others=others)
-        with DaemonUnderTest([fccd, "run", "--config", config, "--json"], scratch) as daemon:
-            daemon.wait_until_ready()
-            daemon.send(signal.SIGSTOP)
-            one_of_them(NOBODY, GIVES_UP, socket)
-            daemon.send(signal.SIGCONT)
-            dropped = f"a command of user {NOBODY} was not carried out, for its sender has given up"
-            assert dropped in daemon.wait_for("was not carried out")
-            # A user has two places, and a place is free again when no line comes.
-            third, first = one_of_them(NOBODY, HOLDS_PLACES, socket).splitlines()
-            assert third == f"refused 2 programs of user {NOBODY} wait for an answer already: " + (
-                "send it again"
-            )
-            assert first == "refused it did not come in time"
-            count, *answers = one_of_them(STRANGER, CROWD, socket).splitlines()
-            assert len(answers) == int(count) > 100
-            assert all("may not command this fccd" in answer for answer in answers)
-            (engaged,) = commanding(NOBODY, socket, "set altimeter_setting_pa=101325\\n")
-            assert engaged.startswith("carried-out ")
-            ending = daemon.end(signal.SIGTERM)
+    with commanded_by_nobody(fccd, scratch, "crowd") as (_, daemon, socket):
+        daemon.wait_until_ready()
+        daemon.send(signal.SIGSTOP)
+        one_of_them(NOBODY, GIVES_UP, socket)
+        daemon.send(signal.SIGCONT)
+        dropped = f"a command of user {NOBODY} was not carried out, for its sender has given up"
+        assert dropped in daemon.wait_for("was not carried out")
+        # A user has two places, and a place is free again when no line comes.
+        third, first = one_of_them(NOBODY, HOLDS_PLACES, socket).splitlines()
+        assert third == f"refused 2 programs of user {NOBODY} wait for an answer already: " + (
+            "send it again"
+        )
+        assert first == "refused it did not come in time"
+        count, *answers = one_of_them(STRANGER, CROWD, socket).splitlines()
+        assert len(answers) == int(count) > 100
+        assert all("may not command this fccd" in answer for answer in answers)
+        (engaged,) = commanding(NOBODY, socket, "set altimeter_setting_pa=101325\\n")
+        assert engaged.startswith("carried-out ")
+        ending = daemon.end(signal.SIGTERM)
     assert ending.exit_code == SUCCESS, ending.log
 
 
-@needs_root
+@needs_two_users
 def test_only_those_who_are_named_may_command(fccd: Path, scratch: Path) -> None:
-    instance = f"rights-{os.getpid()}"
-    others = (
-        f'[telemetry]\ninstance = "{instance}"\n[rights]\nuser = "root"\ncommanders = ["nobody"]\n'
-    )
-    socket = Path("/dev/shm/fccd-commands-0") / instance
-    with StandInProcess(Settings(port=0)) as simulator:
-        config = write_config(scratch, simulator.port, others=others)
-        with DaemonUnderTest([fccd, "run", "--config", config, "--json"], scratch) as daemon:
-            engage(simulator, daemon)
-            assert stat.S_IMODE(socket.parent.stat().st_mode) == 0o711
-            (refused,) = commanding(STRANGER, socket, "disengage\\n")
-            assert refused.startswith(f"refused user {STRANGER} may not command this fccd")
-            heading, unknown, bad, outside, long, binary = commanding(
-                NOBODY,
-                socket,
-                "set heading_rad=1.5\\n",
-                "set no_such=1\\n",
-                "dance\\n",
-                "set altitude_m=1e308\\n",
-                "x" * 600,
-                "\\xff\\n",
-                silent=1,
-            )
-            assert heading.startswith("carried-out ")
-            assert "there is no set point 'no_such'" in unknown
-            assert "there is no such command" in bad
-            assert "altitude is" in outside
-            assert (long, binary) == ("refused it is too long", "refused it is not a text")
-            # Silent ones of a user who is not permitted take no place.
-            commanding(STRANGER, socket, silent=40)
-            words: list[str | Path] = [
-                fccd,
-                "command",
-                "disengage",
-                "--instance",
-                instance,
-                "--of",
-                "root",
-            ]
-            user = ["setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}", "--clear-groups"]
-            done = subprocess.run([*user, *words], capture_output=True, text=True, check=False)
-            assert done.returncode == SUCCESS, done.stderr
-            daemon.wait_for("engaged -> standby")
-            assert_released(simulator)
-            ending = daemon.end(signal.SIGTERM)
+    with commanded_by_nobody(fccd, scratch, "rights") as (simulator, daemon, socket):
+        engage(simulator, daemon)
+        assert stat.S_IMODE(socket.parent.stat().st_mode) == 0o711
+        (refused,) = commanding(STRANGER, socket, "disengage\\n")
+        assert refused.startswith(f"refused user {STRANGER} may not command this fccd")
+        heading, unknown, bad, outside, long, binary = commanding(
+            NOBODY,
+            socket,
+            "set heading_rad=1.5\\n",
+            "set no_such=1\\n",
+            "dance\\n",
+            "set altitude_m=1e308\\n",
+            "x" * 600,
+            "\\xff\\n",
+            silent=1,
+        )
+        assert heading.startswith("carried-out ")
+        assert "there is no set point 'no_such'" in unknown
+        assert "there is no such command" in bad
+        assert "altitude is" in outside
+        assert (long, binary) == ("refused it is too long", "refused it is not a text")
+        # Silent ones of a user who is not permitted take no place.
+        commanding(STRANGER, socket, silent=40)
+        words: list[str | Path] = [
+            fccd,
+            "command",
+            "disengage",
+            "--instance",
+            socket.name,
+            "--of",
+            "root",
+        ]
+        user = as_user(NOBODY)
+        done = subprocess.run([*user, *words], capture_output=True, text=True, check=False)
+        assert done.returncode == SUCCESS, done.stderr
+        daemon.wait_for("engaged -> standby")
+        assert_released(simulator)
+        ending = daemon.end(signal.SIGTERM)
     assert ending.exit_code == SUCCESS, ending.log
     assert not socket.exists()

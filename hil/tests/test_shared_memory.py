@@ -19,19 +19,14 @@ from pathlib import Path
 import fcc
 import pytest
 from daemon_under_test import DaemonUnderTest, wait_until
+from other_user import NOBODY, as_user, needs_two_users
 
 SUCCESS = 0
-STRANGER = 65534
 PATIENCE_S = 15.0
-BACK_WITHIN_S = 1.0
 ATTACKS = int(os.environ.get("FCCD_ATTACKS", "5"))
 """How often shared memory is damaged; 100 take two minutes: `make test-attacks`."""
 
 ENDED = "the process that publishes live telemetry"
-
-needs_root = pytest.mark.skipif(
-    os.geteuid() != 0, reason="only root can act as another user, and mount"
-)
 
 
 @pytest.fixture
@@ -330,13 +325,10 @@ for name in ("global_mgmt", "dynamic", "data"):
 """
 
 
-@needs_root
+@needs_two_users
 def test_another_user_who_comes_first_prevents_nothing(fccd: Path, instance: str) -> None:
     """It has made the folders and files that any version uses, for a user without a run folder."""
     uid = 65_533 - os.getpid() % 1_000
-
-    def setpriv(user: int) -> list[str]:
-        return ["setpriv", f"--reuid={user}", f"--regid={user}", "--clear-groups"]
 
     bare = {"PATH": os.environ["PATH"]}
     with tempfile.TemporaryDirectory(dir="/var/tmp") as scratch:
@@ -345,13 +337,13 @@ def test_another_user_who_comes_first_prevents_nothing(fccd: Path, instance: str
         shutil.copy(fccd, program)
         os.chown(place, uid, uid)
         taken = [sys.executable, "-I", "-c", TAKES, str(uid), instance]
-        subprocess.run([*setpriv(STRANGER), *taken], check=True, cwd="/", env=bare)
+        subprocess.run([*as_user(NOBODY), *taken], check=True, cwd="/", env=bare)
         try:
             path = place / "fccd.toml"
             path.write_text('[built-in]\nengage_at_s = 1.5\n[guidance]\nmode = "hold"\n')
             words = [str(program), "fly", "--config", str(path), "--instance", instance, "--json"]
             done = subprocess.run(
-                [*setpriv(uid), *words, "--seconds", "0.5"],
+                [*as_user(uid), *words, "--seconds", "0.5"],
                 cwd=place,
                 env=bare,
                 capture_output=True,
@@ -365,7 +357,7 @@ def test_another_user_who_comes_first_prevents_nothing(fccd: Path, instance: str
             for file in Path("/dev/shm").glob(f"fccd-{uid}_iox2.*"):
                 file.unlink()
     assert done.returncode == SUCCESS, done.stderr
-    refused = f"/dev/shm/fccd-run-{uid} is not used: it belongs to user {STRANGER}"
+    refused = f"/dev/shm/fccd-run-{uid} is not used: it belongs to user {NOBODY}"
     assert refused in done.stderr
     report = json.loads(done.stdout)
     assert report["failsafes"] == 0

@@ -62,7 +62,7 @@ impl PortWatch {
             self.looked = Some(Instant::now());
             self.look_at_sockets(link, flown.is_held());
             if self.user.is_none() {
-                self.ask_for_closed(link, flown.is_held());
+                self.probe_port(link, flown.is_held());
             }
         }
         link.adapt_filter(self.owned.as_deref());
@@ -96,7 +96,7 @@ impl PortWatch {
         }
     }
 
-    fn ask_for_closed(&mut self, link: &SharedState, is_held: bool) {
+    fn probe_port(&mut self, link: &SharedState, is_held: bool) {
         let held = link.held_ports();
         let [port, ..] = held;
         let to = self
