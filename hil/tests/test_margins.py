@@ -19,6 +19,7 @@ from fcc_hil.state import Controls
 
 _SEED = 2012
 _HOLD = '[guidance]\nmode = "hold"\n'
+_LOST_AFTER_TICKS = 7 * 40
 
 
 @dataclass
@@ -40,6 +41,7 @@ def _fly(
     servo_hz: float = 0.0,
     elevator_gain: float = 1.0,
     noise: bool = False,
+    loses: tuple[str, ...] = (),
     seconds: float = 25.0,
     judged_after_s: float = 15.0,
 ) -> _Flight:
@@ -53,6 +55,7 @@ def _fly(
         stand = plant.controls
         surfaces = machine.step(
             measurements(sensors.apply(state) if sensors else state),
+            missing=loses if tick > _LOST_AFTER_TICKS else (),
             readback=(stand.throttle, stand.elevator, stand.aileron, stand.rudder),
             switch=tick > 80,
         )
@@ -93,6 +96,15 @@ def test_three_times_the_gain_oscillates_until_the_monitor_takes_gain_out() -> N
         "c172p", 100, delay_s=0.025, servo_hz=3, elevator_gain=3, seconds=40, judged_after_s=25
     )
     assert "now: oscillation: gain is reduced" in flown.events
+    assert np.std(flown.pitch_rate_degps) <= 2.0
+
+
+@pytest.mark.parametrize("airspeed_kt", [73, 100])
+def test_late_commands_without_a_gyroscope_do_not_oscillate(airspeed_kt: float) -> None:
+    """40 and 50 degrees per second before: the derivative of the attitude is late, too."""
+    flown = _fly(
+        "c172p", airspeed_kt, delay_s=0.075, servo_hz=3, noise=True, loses=("body_rates",)
+    )
     assert np.std(flown.pitch_rate_degps) <= 2.0
 
 

@@ -4,7 +4,7 @@ use super::{Autopilot, flags};
 use crate::blocks::limit;
 use crate::flight::Surfaces;
 use crate::flight::control::{ElevatorResponse, OscillationMonitor, PlayInverse, Schedule};
-use crate::flight::navigation::Estimate;
+use crate::flight::navigation::{DERIVED_RATES_LATE_S, Estimate};
 use crate::framework::Flags;
 
 /// The pitch loops keep 6 dB and 45° up to this latency, s: 25 ms and a servo
@@ -34,6 +34,9 @@ pub(super) struct Actuation {
     /// The latency that the age of the readings shows, s.
     known_s: f64,
     assumed_s: f64,
+    /// How much later the body rates are than those with which the latency was
+    /// measured, s.
+    replaced_s: f64,
     /// The loops' own unit of time: 1 over the pace of the configuration.
     unit: f64,
 }
@@ -48,6 +51,7 @@ impl Actuation {
             is_late: false,
             known_s: 0.0,
             assumed_s: assumed_latency_s,
+            replaced_s: 0.0,
             unit: 1.0 / configured_pace,
         }
     }
@@ -68,7 +72,7 @@ impl Actuation {
         load_mps2: f64,
         dt_s: f64,
     ) {
-        self.oscillation.step(sent, estimate, dt_s);
+        self.watch(sent, estimate, dt_s);
         if self.unit <= SLOWEST_MEASURED {
             let rate_radps = estimate.body_rates.pitch_radps;
             self.elevator
@@ -79,9 +83,25 @@ impl Actuation {
         self.is_late = latency_s > if self.is_late { timely_s } else { late_s };
     }
 
+    /// Watches for oscillations, with body rates that need not be measured.
+    pub(super) fn watch(&mut self, sent: &Surfaces, estimate: &Estimate, dt_s: f64) {
+        self.oscillation.step(sent, estimate, dt_s);
+    }
+
     /// The mean age of the body rates, s: measured or not, the latency is not less.
     pub(super) const fn knows_age(&mut self, age_s: f64) {
         self.known_s = self.assumed_s + age_s;
+    }
+
+    /// Whether the body rates are the derivative of the attitude, which is late.
+    /// Nothing measures the latency then, and the one found before may be too
+    /// small: that of the derivative counts twice.
+    pub(super) const fn derives_rates(&mut self, derives: bool) {
+        self.replaced_s = if derives {
+            2.0 * DERIVED_RATES_LATE_S
+        } else {
+            0.0
+        };
     }
 
     /// The schedule with the part of the loops' bandwidth that latency and
@@ -91,7 +111,7 @@ impl Actuation {
     }
 
     fn pace(&self, tuned_for_s: f64) -> f64 {
-        let latency_s = self.elevator.latency_s().max(self.known_s);
+        let latency_s = self.elevator.latency_s().max(self.known_s) + self.replaced_s;
         let excess_s = (latency_s - tuned_for_s * self.unit).max(0.0);
         let own_s = OWN_S * self.unit;
         let pace = own_s / (own_s + excess_s) * self.oscillation.pace();

@@ -309,9 +309,12 @@ impl Controller for Autopilot {
     fn failsafe(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
         self.prepare_end_of_failsafe(tick.woke, measurements);
         let lost = self.lost(tick.woke, measurements);
-        if !lost.contains(flags::BODY_RATES) && !lost.contains(flags::ATTITUDE) {
-            let estimate = *self.navigation.estimate();
+        let estimate = *self.navigation.estimate();
+        if !lost.intersects(flags::BODY_RATES | flags::ATTITUDE) {
             self.follow_outputs(&estimate);
+        } else if !lost.contains(flags::ATTITUDE) {
+            self.actuation
+                .watch(&self.last, &estimate, self.clock.step_s());
         }
         let outputs = self.safest(tick.woke, measurements);
         self.last = self.with_trim(tick.woke, outputs, lost);

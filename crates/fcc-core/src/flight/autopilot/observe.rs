@@ -78,6 +78,8 @@ impl Autopilot {
         self.navigation
             .knows_motion(self.motion_is_known(now, lost));
         let lost = by_name(lost);
+        let replaces = self.degraded.is_failsafe && lost.body_rates && !lost.attitude;
+        self.actuation.derives_rates(replaces);
         let estimate = *self.navigation.estimate();
         self.replacement
             .follow(&self.accepted, lost, &estimate, step_s);

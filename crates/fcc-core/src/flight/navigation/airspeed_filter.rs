@@ -269,13 +269,29 @@ impl AirspeedFilter {
         };
         let by = sample.forward - self.axial_of(self.x, thrust, sample.up);
         if by.abs() > ENGINE_CHANGE {
-            self.covariance[2][2] += by * by * dt_s;
+            let (place, per_force) = self.changed_by_engine(by, thrust * slower);
+            if let Some(own) = self.covariance.get_mut(place).and_then(|row| row.get_mut(place)) {
+                *own += squared(by * per_force) * dt_s;
+            }
         }
         self.update(
             [per_mps, 0.0, 1.0, thrust * slower, 0.0, induced],
             by,
             squared(AXIAL_SD) + THRUST_NOISE * unexplained,
         );
+    }
+
+    /// What a sudden difference of force, in weights, is the change of: the place
+    /// in the state, and its change per force. An engine that fails loses its
+    /// thrust at every airspeed and throttle alike, so it is the thrust ratio, as
+    /// far as that stays between none and 1.5 times the expected one.
+    fn changed_by_engine(&self, by: f64, per_ratio: f64) -> (usize, f64) {
+        let ratio = self.x[3] + by / per_ratio.max(1e-3);
+        if (-0.02..1.5 * self.prior.full_thrust_ratio).contains(&ratio) {
+            (3, 1.0 / per_ratio.max(1e-3))
+        } else {
+            (2, 1.0)
+        }
     }
 
     /// Force along x over weight, with the models of `by` and the present

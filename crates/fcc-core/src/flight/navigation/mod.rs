@@ -63,7 +63,7 @@ pub(crate) use plausibility::{
     ANGLE_OF_ATTACK, ATTITUDE_RAD, GateLimits, HEADING_RAD, HEIGHT_M, PlausibilityLimit,
     airspeed_can_follow, airspeed_is_suspect, plausibility_gate,
 };
-pub(crate) use replacement::{Lost, Replacement};
+pub(crate) use replacement::{DERIVED_RATES_LATE_S, Lost, Replacement};
 pub(crate) use resolution::Resolutions;
 pub use vertical::VerticalChannel;
 use vertical::VerticalState;

@@ -14,6 +14,8 @@ use crate::units::GRAVITY_MPS2;
 /// of the pitch loop's time constant, and the noise of 0.1° in 40 samples a
 /// second becomes 1 °/s.
 const ANGLE_RADPS: f64 = 25.0;
+/// How late body rates are that replace a lost gyroscope, s.
+pub(crate) const DERIVED_RATES_LATE_S: f64 = 2.0 / ANGLE_RADPS;
 /// The bandwidth of the acceleration along the path, rad/s: that of a gust is
 /// not one of the aircraft.
 const PATH_RADPS: f64 = 1.0;
