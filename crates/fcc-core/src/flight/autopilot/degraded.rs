@@ -265,9 +265,8 @@ impl Autopilot {
     /// Whether all that the air data are held against is measured. A frozen
     /// altimeter may be one whose static port is blocked.
     pub(super) fn motion_is_known(&self, now: Time, lost: Flags) -> bool {
-        const MOTION: Flags = Flags::from_bits(
-            flags::ATTITUDE.bits() | flags::BODY_RATES.bits() | flags::SPECIFIC_FORCE.bits(),
-        );
+        const MOTION: Flags =
+            Flags::from_bits(flags::ATTITUDE.bits() | flags::SPECIFIC_FORCE.bits());
         let no_altitude = self.navigation.altitude_doubt().is_none()
             && (self.stale(now) | self.intermittent()).contains(flags::ALTITUDE);
         !lost.intersects(MOTION) && !no_altitude && !self.navigation.suspects_motion()

@@ -96,8 +96,9 @@ impl Autopilot {
     }
 
     /// The same in a failsafe, with what takes the place of the lost quantities.
-    /// Attitude, body rates and accelerations are needed; without altitude the path
-    /// is taken to be along the pitch. With the throttle `idle` or as it needs it.
+    /// Accelerations are needed, and attitude or body rates, of which one takes the
+    /// place of the other; without altitude the path is taken to be along the pitch.
+    /// With the throttle `idle` or as it needs it.
     pub(super) fn recover_degraded(
         &mut self,
         now: Time,
@@ -105,8 +106,8 @@ impl Autopilot {
         estimate: &Estimate,
         idle: bool,
     ) -> Option<Surfaces> {
-        let needed = [flags::ATTITUDE, flags::BODY_RATES, flags::SPECIFIC_FORCE];
-        if needed.iter().any(|quantity| lost.contains(*quantity)) {
+        let no_motion = lost.contains(flags::ATTITUDE) && lost.contains(flags::BODY_RATES);
+        if no_motion || lost.contains(flags::SPECIFIC_FORCE) {
             self.recovery.end();
             return None;
         }

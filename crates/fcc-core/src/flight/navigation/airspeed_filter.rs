@@ -1,11 +1,10 @@
 //! Airspeed from the forces on the aircraft and its motion.
 
-use libm::{cos, exp, sin};
+use libm::exp;
 
 use super::force_sample::ForceSample;
 use super::upward::Upward;
 use crate::blocks::limit_abs;
-use crate::units::GRAVITY_MPS2;
 
 /// What an [`AirspeedFilter`] must know of the aircraft beforehand.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -32,6 +31,8 @@ const SENSOR_SD_MPS: f64 = 0.514;
 const LIFT_BY_ITSELF: f64 = 3.0;
 /// That of an airspeed whose models were wrong for some seconds, m/s.
 const RESTORED_SD_MPS: f64 = 2.0;
+/// That of one which the sensor had before it stepped, m/s.
+const KNOWN_SD_MPS: f64 = 1.0;
 /// The share of a change of thrust that the model does not explain, ...
 const THRUST_ERROR: f64 = 0.15;
 /// ... the time in which that counts as a lasting offset, s, and its weights in
@@ -58,7 +59,7 @@ const THRUST_WALK: f64 = 0.003;
 const ANGLE_WALK_RAD: f64 = 0.000_87;
 /// The share of the gusts' variance that acts along the path.
 const GUSTS_ALONG: f64 = 0.3;
-const MIN_AIRSPEED_MPS: f64 = 5.0;
+pub(super) const MIN_AIRSPEED_MPS: f64 = 5.0;
 
 /// The state: indicated airspeed V in m/s, vertical wind w in m/s, offset of
 /// the axial force, thrust ratio, angle of attack of zero lift in rad, angle of
@@ -158,6 +159,16 @@ impl AirspeedFilter {
     /// Sets the airspeed.
     pub(super) const fn adopt(&mut self, airspeed_mps: f64) {
         self.x[0] = airspeed_mps;
+    }
+
+    /// Sets the airspeed to one that was right a moment ago.
+    pub(super) fn adopt_known(&mut self, airspeed_mps: f64) {
+        self.x[0] = airspeed_mps;
+        for [with_airspeed, ..] in &mut self.covariance {
+            *with_airspeed = 0.0;
+        }
+        self.covariance[0] = [0.0; N];
+        self.covariance[0][0] = squared(KNOWN_SD_MPS);
     }
 
     /// Takes the models that it remembers, without vertical wind: what was
@@ -270,7 +281,11 @@ impl AirspeedFilter {
         let by = sample.forward - self.axial_of(self.x, thrust, sample.up);
         if by.abs() > ENGINE_CHANGE {
             let (place, per_force) = self.changed_by_engine(by, thrust * slower);
-            if let Some(own) = self.covariance.get_mut(place).and_then(|row| row.get_mut(place)) {
+            if let Some(own) = self
+                .covariance
+                .get_mut(place)
+                .and_then(|row| row.get_mut(place))
+            {
                 *own += squared(by * per_force) * dt_s;
             }
         }
@@ -368,25 +383,6 @@ impl AirspeedFilter {
             }
         }
     }
-}
-
-/// Acceleration of the indicated airspeed along the path, m/s², from the forces
-/// in g; without vertical wind, whose effect is of second order.
-pub(super) fn acceleration_mps2(sample: &ForceSample, airspeed_mps: f64) -> f64 {
-    let sin_path = sin_path(sample, airspeed_mps);
-    let alpha = limit_abs(Upward::of(sample).angle_of_attack_rad(sin_path), 0.3);
-    let along = sample.forward * cos(alpha) - sample.up * sin(alpha) - sin_path;
-    GRAVITY_MPS2 * along * sample.sqrt_density
-}
-
-/// The angle between the body and the path at an airspeed, rad; without vertical wind.
-pub(super) fn angle_of_attack_rad(sample: &ForceSample, airspeed_mps: f64) -> f64 {
-    Upward::of(sample).angle_of_attack_rad(sin_path(sample, airspeed_mps))
-}
-
-fn sin_path(sample: &ForceSample, airspeed_mps: f64) -> f64 {
-    let true_mps = airspeed_mps.max(MIN_AIRSPEED_MPS) / sample.sqrt_density;
-    limit_abs(sample.climb_rate_mps / true_mps, 1.0)
 }
 
 pub(super) fn squared(x: f64) -> f64 {

@@ -1,16 +1,18 @@
 //! Whether the airspeed sensor is believed, and the airspeed without it.
 
-use super::airspeed_filter::{AirframePrior, acceleration_mps2, squared};
+use super::airspeed_filter::{AirframePrior, squared};
 use super::airspeed_reason::{Doubt, DoubtReason, Reference};
 use super::filter_bank::FilterBank;
-use super::force_sample::ForceSample;
+use super::force_sample::{ForceSample, acceleration_mps2};
 use crate::blocks::{LowPass, smoothing_factor};
 
 mod compare;
 mod static_port;
+mod step;
 
 pub(super) use static_port::Blocked;
 use static_port::StaticPort;
+use step::StepDetector;
 
 /// The time between two corrections of the filters, s.
 const CORRECTED_S: f64 = 0.1;
@@ -77,6 +79,7 @@ pub(super) struct AirspeedMonitor {
     gusts_mps2: f64,
     difference: LowPass,
     vote: LowPass,
+    step: StepDetector,
     differs_s: f64,
     wind_s: f64,
     agrees_s: f64,
@@ -121,6 +124,7 @@ impl AirspeedMonitor {
             gusts_mps2: 1.0,
             difference: LowPass::new(DIFFERENCE_LAG_S),
             vote: LowPass::new(VOTE_LAG_S),
+            step: StepDetector::new(prior.reference_mps),
             differs_s: 0.0,
             wind_s: 0.0,
             agrees_s: 0.0,
@@ -243,7 +247,9 @@ impl AirspeedMonitor {
         }
         bank.younger_s += dt_s;
         bank.learned_s += dt_s;
-        if settles {
+        if self.doubt_step(&mut bank, input, dt_s) {
+            // Nothing else is compared in this tick.
+        } else if settles {
             self.follow_sensor(&mut bank);
         } else if let Some(sensor) = input.sensor_mps
             && (input.motion_is_known || self.doubt.is_some())

@@ -1,5 +1,10 @@
 //! The forces on the aircraft and its motion, as models of its airspeed use them.
 
+use libm::{cos, sin};
+
+use super::airspeed_filter::MIN_AIRSPEED_MPS;
+use super::upward::Upward;
+use crate::blocks::limit_abs;
 use crate::units::GRAVITY_MPS2;
 
 /// Beyond these the models of the forces do not hold: bank and pitch in rad
@@ -41,4 +46,23 @@ impl ForceSample {
 /// Specific force in m/s² to weights, forward and up.
 pub(super) fn in_g(x_mps2: f64, z_mps2: f64) -> (f64, f64) {
     (x_mps2 / GRAVITY_MPS2, -z_mps2 / GRAVITY_MPS2)
+}
+
+/// Acceleration of the indicated airspeed along the path, m/s², from the forces
+/// in g; without vertical wind, whose effect is of second order.
+pub(super) fn acceleration_mps2(sample: &ForceSample, airspeed_mps: f64) -> f64 {
+    let sin_path = sin_path(sample, airspeed_mps);
+    let alpha = limit_abs(Upward::of(sample).angle_of_attack_rad(sin_path), 0.3);
+    let along = sample.forward * cos(alpha) - sample.up * sin(alpha) - sin_path;
+    GRAVITY_MPS2 * along * sample.sqrt_density
+}
+
+/// The angle between the body and the path at an airspeed, rad; without vertical wind.
+pub(super) fn angle_of_attack_rad(sample: &ForceSample, airspeed_mps: f64) -> f64 {
+    Upward::of(sample).angle_of_attack_rad(sin_path(sample, airspeed_mps))
+}
+
+fn sin_path(sample: &ForceSample, airspeed_mps: f64) -> f64 {
+    let true_mps = airspeed_mps.max(MIN_AIRSPEED_MPS) / sample.sqrt_density;
+    limit_abs(sample.climb_rate_mps / true_mps, 1.0)
 }

@@ -1,3 +1,6 @@
+use libm::{cos, sin};
+
+use super::super::force_sample::acceleration_mps2;
 use super::*;
 
 const PRIOR: AirframePrior = AirframePrior {

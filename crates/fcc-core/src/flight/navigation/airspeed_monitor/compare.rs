@@ -1,8 +1,9 @@
 //! Comparison of the airspeed sensor with forces and motion.
 
-use super::super::airspeed_filter::{AirspeedFilter, angle_of_attack_rad, squared};
+use super::super::airspeed_filter::{AirspeedFilter, squared};
 use super::super::airspeed_reason::{Doubt, DoubtReason, Reference};
 use super::super::filter_bank::FilterBank;
+use super::super::force_sample::angle_of_attack_rad;
 use super::static_port::StaticPort;
 use super::{ALONE_S, AirspeedMonitor, MonitorInput};
 
@@ -31,8 +32,10 @@ const ANOTHER_BELIEVED_AFTER_S: f64 = 1.0;
 /// for this time, s: in a stall the models do not hold, and too slow is more dangerous than too fast.
 const NEAR_STALL_RAD: f64 = 0.25;
 const NEAR_STALL_AFTER_S: f64 = 1.0;
-/// Doubt needs models that have learned the aircraft for this time, s.
+/// Doubt needs models that have learned the aircraft for this time, s; for this
+/// one if the sensor has stepped, which they need not tell.
 const LEARNED_S: f64 = 20.0;
+const LEARNED_FOR_STEP_S: f64 = 5.0;
 
 impl AirspeedMonitor {
     pub(super) fn limit_mps(&self, filter: &AirspeedFilter) -> f64 {
@@ -78,21 +81,7 @@ impl AirspeedMonitor {
             self.follow_sensor(bank);
         } else if self.differs_s > doubted_after_s {
             if input.may_doubt && bank.learned_s > LEARNED_S {
-                let sigma = squared(input.sample.sqrt_density);
-                let reason = if input.altimeter_is_doubted {
-                    DoubtReason::BlockedStatic
-                } else {
-                    self.reference
-                        .reason(input.altitude_m, sensor_mps, sigma, differs)
-                };
-                self.doubt = Some(Doubt { source, reason });
-                self.was_doubted = true;
-                self.agrees_s = 0.0;
-                let may_be_static = bank.older.is_copy()
-                    && bank.learned_s > 2.0 * ALONE_S
-                    && matches!(reason, DoubtReason::TooHigh | DoubtReason::TooLow);
-                self.static_port = may_be_static
-                    .then(|| StaticPort::new(self.port_input(bank, input, filter_mps + differs)));
+                self.begin_doubt(bank, input, (sensor_mps, source), differs);
             } else {
                 self.follow_sensor(bank);
             }
@@ -101,6 +90,60 @@ impl AirspeedMonitor {
             bank.younger = bank.believing.kept();
             bank.younger_s = 0.0;
         }
+    }
+
+    /// Doubts the sensor, `(m/s, number)`, which differs by this from the older copy.
+    fn begin_doubt(
+        &mut self,
+        bank: &FilterBank,
+        input: &MonitorInput,
+        (sensor_mps, source): (f64, u8),
+        differs_mps: f64,
+    ) {
+        let reason = if input.altimeter_is_doubted {
+            DoubtReason::BlockedStatic
+        } else {
+            let sigma = squared(input.sample.sqrt_density);
+            self.reference
+                .reason(input.altitude_m, sensor_mps, sigma, differs_mps)
+        };
+        self.doubt = Some(Doubt { source, reason });
+        self.was_doubted = true;
+        self.agrees_s = 0.0;
+        let may_be_static = bank.older.is_copy()
+            && bank.learned_s > 2.0 * ALONE_S
+            && matches!(reason, DoubtReason::TooHigh | DoubtReason::TooLow);
+        let shown_mps = bank.older.airspeed_mps() + differs_mps;
+        self.static_port =
+            may_be_static.then(|| StaticPort::new(self.port_input(bank, input, shown_mps)));
+    }
+
+    /// Doubts a sensor that has stepped, whatever else is measured: its airspeed
+    /// before is the one that is known. Not if it has returned from an airspeed that
+    /// could have been doubted to that of the older copy.
+    pub(super) fn doubt_step(
+        &mut self,
+        bank: &mut FilterBank,
+        input: &MonitorInput,
+        dt_s: f64,
+    ) -> bool {
+        let Some((sensor_mps, source)) = input.sensor_mps.filter(|_| self.doubt.is_none()) else {
+            self.step.reset();
+            return false;
+        };
+        let Some(before_mps) = self.step.step(sensor_mps, dt_s) else {
+            return false;
+        };
+        let likely_mps = bank.older.airspeed_mps();
+        let was_wrong_mps = (before_mps - likely_mps).abs();
+        let returns = was_wrong_mps > self.limit_mps(&bank.older)
+            && (sensor_mps - likely_mps).abs() < was_wrong_mps;
+        let doubts = !returns && input.may_doubt && bank.learned_s > LEARNED_FOR_STEP_S;
+        if doubts {
+            bank.older.adopt_known(before_mps);
+            self.begin_doubt(bank, input, (sensor_mps, source), sensor_mps - before_mps);
+        }
+        doubts
     }
 
     /// Looks whether a doubted sensor, `(m/s, number, difference)`, is right again.
