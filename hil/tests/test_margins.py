@@ -102,9 +102,7 @@ def test_three_times_the_gain_oscillates_until_the_monitor_takes_gain_out() -> N
 @pytest.mark.parametrize("airspeed_kt", [73, 100])
 def test_late_commands_without_a_gyroscope_do_not_oscillate(airspeed_kt: float) -> None:
     """40 and 50 degrees per second before: the derivative of the attitude is late, too."""
-    flown = _fly(
-        "c172p", airspeed_kt, delay_s=0.075, servo_hz=3, noise=True, loses=("body_rates",)
-    )
+    flown = _fly("c172p", airspeed_kt, delay_s=0.075, servo_hz=3, noise=True, loses=("body_rates",))
     assert np.std(flown.pitch_rate_degps) <= 2.0
 
 
