@@ -5,6 +5,7 @@
 //! | module | computes |
 //! |---|---|
 //! | [`navigation`] | position, attitude and motion |
+//! | [`inertial`] | position, attitude and motion from raw sensors |
 //! | [`guidance`] | set points |
 //! | [`control`] | surfaces and throttle |
 
@@ -13,6 +14,7 @@ pub mod atmosphere;
 mod autopilot;
 pub mod control;
 pub mod guidance;
+pub mod inertial;
 mod measurements;
 pub mod navigation;
 pub mod orientation;

@@ -1,0 +1,247 @@
+//! The state of the filter, its covariance, and how both move on.
+
+use nalgebra::{Matrix3, SMatrix, SVector, Vector2, Vector3};
+
+use super::innovations::Innovations;
+use super::motion::{Increment, Inertial, Motion, turn};
+use super::parameters as p;
+use super::track::Tracks;
+use crate::framework::Time;
+
+/// Number of states.
+pub(super) const STATES: usize = 24;
+pub(super) type Covariance = SMatrix<f64, STATES, STATES>;
+pub(super) type StateVector = SVector<f64, STATES>;
+
+/// Where each part of the error begins: the attitude's is a rotation vector in
+/// north, east, down.
+pub(super) const ATTITUDE: usize = 0;
+pub(super) const VELOCITY: usize = 3;
+pub(super) const POSITION: usize = 6;
+pub(super) const RATE_BIAS: usize = 9;
+pub(super) const FORCE_BIAS: usize = 12;
+pub(super) const BAROMETER_BIAS: usize = 15;
+pub(super) const EARTH_FIELD: usize = 16;
+pub(super) const BODY_FIELD: usize = 19;
+pub(super) const WIND: usize = 22;
+
+/// The covariance moves on in steps of at least this, s.
+const COVARIANCE_S: f64 = 0.008;
+/// Inertial samples further apart than this are not connected, s.
+pub(super) const GAP_S: f64 = 0.2;
+/// An angle is never less certain than one of which nothing is known: the
+/// variance of a uniform one, π²/3.
+pub(super) const UNKNOWN_ANGLE: f64 = 3.29;
+/// Corrections below this turn the covariance by nothing, rad.
+const SMALL_TURN: f64 = 1e-3;
+
+/// What the filter knows.
+#[derive(Clone, Debug)]
+pub(super) struct Filter {
+    pub(super) time: Time,
+    pub(super) motion: Motion,
+    pub(super) rate_bias: Vector3<f64>,
+    pub(super) force_bias: Vector3<f64>,
+    pub(super) barometer_bias: f64,
+    pub(super) earth_field: Vector3<f64>,
+    pub(super) body_field: Vector3<f64>,
+    pub(super) wind: Vector2<f64>,
+    pub(super) covariance: Covariance,
+    pub(super) tracks: Tracks,
+    pub(super) innovations: Innovations,
+    /// The acceleration over the ground and the rates of the last step, without
+    /// their biases.
+    pub(super) acceleration: Vector3<f64>,
+    pub(super) rates: Vector3<f64>,
+    /// The mean square of the horizontal velocity, m²/s².
+    pub(super) mean_square_velocity: f64,
+    pending: Pending,
+}
+
+/// What has happened since the covariance moved on.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pending {
+    dt_s: f64,
+    turned_s: Matrix3<f64>,
+    velocity: Vector3<f64>,
+    attitude_variance: f64,
+    velocity_variance: f64,
+}
+
+impl Filter {
+    pub(super) fn new() -> Self {
+        Self {
+            time: Time::NEVER,
+            motion: Motion::new(),
+            rate_bias: Vector3::zeros(),
+            force_bias: Vector3::zeros(),
+            barometer_bias: 0.0,
+            earth_field: Vector3::zeros(),
+            body_field: Vector3::zeros(),
+            wind: Vector2::zeros(),
+            covariance: Covariance::zeros(),
+            tracks: Tracks::default(),
+            innovations: Innovations::default(),
+            acceleration: Vector3::zeros(),
+            rates: Vector3::zeros(),
+            mean_square_velocity: 0.0,
+            pending: Pending::default(),
+        }
+    }
+
+    /// Moves on by `dt_s` with an inertial reading whose biases are still in it.
+    pub(super) fn advance(&mut self, raw: &Raw, dt_s: f64) {
+        let reading = self.without_bias(raw);
+        self.rates = reading.rates;
+        let increment = self.motion.advance(&reading, dt_s);
+        self.acceleration = increment.acceleration;
+        self.accumulate(&increment, raw, dt_s);
+        let horizontal = self.motion.velocity.xy().norm_squared();
+        let share = crate::blocks::smoothing_factor(dt_s, p::VELOCITY_S);
+        self.mean_square_velocity += share * (horizontal - self.mean_square_velocity);
+        if self.pending.dt_s >= COVARIANCE_S {
+            self.settle();
+        }
+    }
+
+    pub(super) fn without_bias(&self, raw: &Raw) -> Inertial {
+        Inertial {
+            rates: raw
+                .rates
+                .map_or(Vector3::zeros(), |rates| rates - self.rate_bias),
+            force: raw.force.map(|force| force - self.force_bias),
+        }
+    }
+
+    fn accumulate(&mut self, by: &Increment, raw: &Raw, dt_s: f64) {
+        let pending = &mut self.pending;
+        pending.dt_s += dt_s;
+        pending.turned_s += self.motion.attitude.to_rotation_matrix().matrix() * dt_s;
+        pending.velocity += by.velocity;
+        let rate_density = if raw.rates.is_some() {
+            let per_radian = 2.0 * p::RATE_SCALE * p::RATE_SCALE * p::ONE_WAY_RAD;
+            p::RATE_NOISE * p::RATE_NOISE + per_radian * self.rates.norm()
+        } else {
+            2.0 * p::UNKNOWN_RATE * p::UNKNOWN_RATE * p::UNKNOWN_RATE_S
+        };
+        let force_density = if raw.force.is_some() {
+            let scale = p::FORCE_SCALE * by.acceleration.norm();
+            p::FORCE_NOISE * p::FORCE_NOISE + 2.0 * scale * scale * p::FORCE_SCALE_S
+        } else {
+            2.0 * p::UNKNOWN_FORCE * p::UNKNOWN_FORCE * p::UNKNOWN_FORCE_S
+        };
+        pending.attitude_variance += rate_density * dt_s;
+        pending.velocity_variance += force_density * dt_s;
+    }
+
+    /// Moves the covariance on to the time of the state: F P Fᵀ + Q (Solà 2017,
+    /// section 7.2 with the attitude's error in earth axes), F being the identity
+    /// but for three blocks: the biases act on attitude and velocity, attitude on
+    /// velocity, velocity on position.
+    pub(super) fn settle(&mut self) {
+        let pending = core::mem::take(&mut self.pending);
+        let dt_s = pending.dt_s;
+        if dt_s <= 0.0 {
+            return;
+        }
+        let from_biases = -pending.turned_s;
+        let from_attitude = -pending.velocity.cross_matrix();
+        let covariance = &mut self.covariance;
+        let rows = |covariance: &Covariance, at: usize| covariance.fixed_rows::<3>(at).into_owned();
+        for _ in 0..2 {
+            let velocity = rows(covariance, VELOCITY);
+            let attitude = rows(covariance, ATTITUDE);
+            let rate_bias = rows(covariance, RATE_BIAS);
+            let force_bias = rows(covariance, FORCE_BIAS);
+            let mut position = covariance.fixed_rows_mut::<3>(POSITION);
+            position += velocity * dt_s;
+            let mut velocity = covariance.fixed_rows_mut::<3>(VELOCITY);
+            velocity += from_attitude * attitude + from_biases * force_bias;
+            let mut attitude = covariance.fixed_rows_mut::<3>(ATTITUDE);
+            attitude += from_biases * rate_bias;
+            // The covariance is symmetric: its columns are the rows of this.
+            covariance.transpose_mut();
+        }
+        let walk = |sigma: f64| sigma * sigma * dt_s;
+        self.add_variance(ATTITUDE, 3, pending.attitude_variance);
+        self.add_variance(VELOCITY, 3, pending.velocity_variance);
+        self.add_variance(RATE_BIAS, 3, walk(p::RATE_BIAS_WALK));
+        self.add_variance(FORCE_BIAS, 3, walk(p::FORCE_BIAS_WALK));
+        self.add_variance(BAROMETER_BIAS, 1, walk(p::BAROMETER_WALK));
+        self.add_variance(EARTH_FIELD, 3, walk(p::EARTH_FIELD_WALK));
+        self.add_variance(BODY_FIELD, 3, walk(p::BODY_FIELD_WALK));
+        self.add_variance(WIND, 2, walk(p::WIND_WALK));
+        for axis in ATTITUDE..ATTITUDE + 3 {
+            self.limit_variance(axis, UNKNOWN_ANGLE);
+        }
+    }
+
+    pub(super) fn add_variance(&mut self, from: usize, count: usize, variance: f64) {
+        for at in from..from + count {
+            self.covariance[(at, at)] += variance;
+        }
+    }
+
+    /// Limits a variance; correlations stay.
+    fn limit_variance(&mut self, at: usize, largest: f64) {
+        let variance = self.covariance[(at, at)];
+        if variance > largest {
+            let factor = libm::sqrt(largest / variance);
+            self.covariance.row_mut(at).scale_mut(factor);
+            self.covariance.column_mut(at).scale_mut(factor);
+        }
+    }
+
+    /// Forgets what was known of some states: variances instead.
+    pub(super) fn reset_covariance(&mut self, from: usize, count: usize, variance: f64) {
+        for at in from..from + count {
+            self.covariance.row_mut(at).fill(0.0);
+            self.covariance.column_mut(at).fill(0.0);
+            self.covariance[(at, at)] = variance;
+        }
+    }
+
+    /// Corrects the state by an error, and turns the attitude's part of the
+    /// covariance with it (Solà 2017, section 7.3: I + ½ [δθ]×).
+    pub(super) fn inject(&mut self, error: &StateVector) {
+        let part = |at: usize| error.fixed_rows::<3>(at).into_owned();
+        let angle = part(ATTITUDE);
+        self.motion.attitude = turn(angle) * self.motion.attitude;
+        self.motion.attitude.renormalize_fast();
+        self.motion.velocity += part(VELOCITY);
+        self.motion.shift(part(POSITION));
+        self.rate_bias += part(RATE_BIAS);
+        self.force_bias += part(FORCE_BIAS);
+        self.barometer_bias += error[BAROMETER_BIAS];
+        self.earth_field += part(EARTH_FIELD);
+        self.body_field += part(BODY_FIELD);
+        self.wind += error.fixed_rows::<2>(WIND);
+        if angle.norm() > SMALL_TURN {
+            let reset = Matrix3::identity() + 0.5 * angle.cross_matrix();
+            for _ in 0..2 {
+                let rows = reset * self.covariance.fixed_rows::<3>(ATTITUDE);
+                self.covariance
+                    .fixed_rows_mut::<3>(ATTITUDE)
+                    .copy_from(&rows);
+                self.covariance.transpose_mut();
+            }
+        }
+    }
+
+    /// Rotation from body to earth axes.
+    pub(super) fn rotation(&self) -> Matrix3<f64> {
+        *self.motion.attitude.to_rotation_matrix().matrix()
+    }
+
+    /// The standard deviation of a state.
+    pub(super) fn sigma(&self, at: usize) -> f64 {
+        libm::sqrt(self.covariance[(at, at)].max(0.0))
+    }
+}
+
+/// One reading of the inertial sensors as it came.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Raw {
+    pub(super) rates: Option<Vector3<f64>>,
+    pub(super) force: Option<Vector3<f64>>,
+}

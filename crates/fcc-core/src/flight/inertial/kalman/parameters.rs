@@ -1,0 +1,118 @@
+//! The filter's parameters: one set for every aircraft, and for a hand.
+//!
+//! Each follows from the physics of a sensor of the consumer class (the
+//! datasheets of ICM-42688-P, BMI270, MPU-6050, BMP388, NEO-M8/M9 and phones'
+//! magnetometers give the orders of magnitude) or of motion. Most errors are not
+//! white: they are a standard deviation and a correlation time
+//! ([`Noise`](super::noise::Noise)).
+
+use super::noise::Noise;
+
+/// White noise of gyroscopes, rad/√s: 0.03 °/√s. Datasheets say 0.003 to
+/// 0.005 °/s/√Hz at rest; vibration and the time stamps of real recordings add
+/// more than that.
+pub(super) const RATE_NOISE: f64 = 5e-4;
+/// Error of a gyroscope's scale and of its axes, a share of the rate (datasheets
+/// say 0.4 to 3 % of scale and 1 to 2 % across axes, uncalibrated), and how far
+/// something turns before it turns about another axis, rad.
+pub(super) const RATE_SCALE: f64 = 0.01;
+pub(super) const ONE_WAY_RAD: f64 = 1.0;
+/// Rates without gyroscopes, rad/s, and their correlation time, s.
+pub(super) const UNKNOWN_RATE: f64 = 0.5;
+pub(super) const UNKNOWN_RATE_S: f64 = 0.3;
+/// White noise of accelerometers, m/s/√s: 100 to 200 µg/√Hz at rest, vibration
+/// adds the rest.
+pub(super) const FORCE_NOISE: f64 = 0.02;
+/// Error of an accelerometer's scale and axes, of what differs from gravity, and
+/// how long that lasts, s.
+pub(super) const FORCE_SCALE: f64 = 0.01;
+pub(super) const FORCE_SCALE_S: f64 = 0.2;
+/// Acceleration without accelerometers, m/s², and its correlation time, s.
+pub(super) const UNKNOWN_FORCE: f64 = 2.0;
+pub(super) const UNKNOWN_FORCE_S: f64 = 2.0;
+
+/// Bias of gyroscopes when they are switched on, rad/s (1.1 °/s), and its random
+/// walk, rad/s/√s: some 0.1 °/s in ten minutes of warming up.
+pub(super) const RATE_BIAS: f64 = 0.02;
+pub(super) const RATE_BIAS_WALK: f64 = 5e-5;
+/// Bias of accelerometers, m/s² (5 mg, calibrated), and its random walk, m/s²/√s.
+pub(super) const FORCE_BIAS: f64 = 0.05;
+pub(super) const FORCE_BIAS_WALK: f64 = 5e-4;
+/// The random walk of pressure altitude against altitude, m/√s: weather and the
+/// static port, 2 m in ten minutes.
+pub(super) const BAROMETER_WALK: f64 = 0.08;
+/// Pressure altitude, m.
+pub(super) const BAROMETER: Noise = Noise::new(1.0, 0.5);
+
+/// The field as a calibrated magnetometer shows it, µT, plus a share of its
+/// strength: soft iron, and the field of a room.
+pub(super) const FIELD: Noise = Noise::new(1.0, 10.0);
+pub(super) const FIELD_SHARE: f64 = 0.05;
+/// The same error lasts for this long at rest, s.
+pub(super) const FIELD_AT_REST_S: f64 = 60.0;
+/// The aircraft's own field that calibration has left, µT, and its random walk,
+/// µT/√s: currents.
+pub(super) const BODY_FIELD: f64 = 2.0;
+pub(super) const BODY_FIELD_WALK: f64 = 0.02;
+/// The random walk of the earth's field, µT/√s, by moving over the earth.
+pub(super) const EARTH_FIELD_WALK: f64 = 0.01;
+/// The error of the World Magnetic Model: of each part, µT (its report: 0.15,
+/// and magnetic rocks), and of the declination or of what is called north, rad.
+pub(super) const MODEL_FIELD: f64 = 0.5;
+pub(super) const DECLINATION: f64 = 0.009;
+/// Anywhere on earth a field is at most this strong, µT.
+pub(super) const STRONGEST_FIELD: f64 = 70.0;
+
+/// A receiver's position, m, horizontal and vertical; its errors last.
+pub(super) const POSITION_HORIZONTAL: Noise = Noise::new(1.5, 1.0);
+pub(super) const POSITION_VERTICAL: Noise = Noise::new(3.0, 1.0);
+/// A receiver's velocity, m/s.
+pub(super) const VELOCITY_HORIZONTAL: Noise = Noise::new(0.3, 0.2);
+pub(super) const VELOCITY_VERTICAL: Noise = Noise::new(0.5, 0.2);
+
+/// Airspeed, m/s: the tube's place, and gusts that are shorter than the wind's
+/// walk; a share of the airspeed (calibration), and the sensor's own noise and
+/// offset, Pa, which at a low airspeed are most of it.
+pub(super) const AIRSPEED: Noise = Noise::new(0.7, 1.0);
+pub(super) const AIRSPEED_SHARE: f64 = 0.03;
+pub(super) const DIFFERENTIAL_PRESSURE_PA: f64 = 10.0;
+/// The air comes from ahead: across the nose, and from below it, each a part
+/// that does not depend on the airspeed, m/s, and a share of it (rad). The angle
+/// of attack lasts longer than a sideslip.
+pub(super) const SIDESLIP: Noise = Noise::new(0.7, 1.0);
+pub(super) const SIDESLIP_SHARE: f64 = 0.06;
+pub(super) const ATTACK: Noise = Noise::new(1.0, 5.0);
+pub(super) const ATTACK_SHARE: f64 = 0.12;
+/// Below this airspeed, m/s, nothing flies, and the sensor shows its offset.
+pub(super) const LEAST_AIRSPEED: f64 = 7.0;
+/// Wind of which nothing is known, each axis, m/s, and its random walk, m/s/√s.
+pub(super) const WIND: f64 = 7.0;
+pub(super) const WIND_WALK: f64 = 0.1;
+
+/// The velocity of something of which only the inertial sensors are known: a
+/// hand's, m/s; the acceleration with which velocities end, m/s²: a hand turns
+/// back within a second, an aircraft after half a minute.
+pub(super) const HAND_VELOCITY: f64 = 0.5;
+pub(super) const TYPICAL_ACCELERATION: f64 = 3.0;
+/// The largest that it is believed to be, m/s.
+pub(super) const LARGEST_VELOCITY: f64 = 40.0;
+/// The time over which the velocity is averaged for that, s.
+pub(super) const VELOCITY_S: f64 = 10.0;
+/// Without a velocity for this long, s, nothing else is known of it.
+pub(super) const UNAIDED_S: f64 = 3.0;
+
+/// At rest: rates, rad/s, and velocity, m/s.
+pub(super) const REST_RATE: Noise = Noise::new(0.002, 0.5);
+pub(super) const REST_VELOCITY: Noise = Noise::new(0.05, 0.5);
+
+/// The square of the number of standard deviations up to which an innovation is
+/// believed.
+pub(super) const GATE: f64 = 25.0;
+/// The same of the magnetic field, whose disturbances are frequent and not large.
+pub(super) const FIELD_GATE: f64 = 11.3;
+/// How long a sensor is refused, s, before the filter doubts itself: a receiver,
+/// a barometer, an airspeed sensor, a magnetometer.
+pub(super) const RECEIVER_REFUSED_S: f64 = 3.0;
+pub(super) const BAROMETER_REFUSED_S: f64 = 5.0;
+pub(super) const AIRSPEED_REFUSED_S: f64 = 30.0;
+pub(super) const FIELD_REFUSED_S: f64 = 20.0;

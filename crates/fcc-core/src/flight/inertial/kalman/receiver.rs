@@ -1,0 +1,161 @@
+//! Positions and velocities of a satellite receiver.
+
+use nalgebra::{SMatrix, Vector3};
+
+use super::filter::{ATTITUDE, BAROMETER_BIAS, Filter, POSITION, STATES, VELOCITY};
+use super::noise::{Noise, variances};
+use super::parameters as p;
+use super::update::{Corrects, Measurement};
+use crate::flight::inertial::{GeodeticPosition, ObservationKind};
+use crate::framework::Time;
+
+/// A velocity that was refused for seconds may mean a wrong attitude, rad².
+const DOUBTED_ATTITUDE: f64 = 0.03;
+
+/// A heading less certain than this is none, rad.
+pub(super) const UNKNOWN_HEADING: f64 = 0.7;
+/// A course says where the nose points from this speed on, m/s, and how far that
+/// is from it, rad².
+const MOVING_MPS: f64 = 5.0;
+const CRAB: f64 = 0.15;
+
+impl Filter {
+    /// A position, taken `after_s` after the time of the state.
+    pub(super) fn position(&mut self, taken: Time, place: GeodeticPosition, after_s: f64) {
+        let (horizontal, vertical) = (p::POSITION_HORIZONTAL, p::POSITION_VERTICAL);
+        if !self.motion.is_located {
+            self.settle();
+            self.locate(place);
+            self.tracks.position.judged(taken, true);
+            return;
+        }
+        let difference = self.motion.to_place(place) - self.motion.velocity * after_s;
+        let since_s = self.tracks.position.since_tried_s(taken);
+        let measurement = on(
+            POSITION,
+            difference,
+            [horizontal, horizontal, vertical],
+            since_s,
+        );
+        if self.fuse(
+            ObservationKind::Position,
+            taken,
+            &measurement,
+            p::GATE,
+            Corrects::All,
+        ) {
+            return;
+        }
+        if self.tracks.position.refused_s(taken) >= p::RECEIVER_REFUSED_S {
+            self.motion.shift(difference);
+            self.forget(POSITION, &measurement);
+            self.tracks.position.judged(taken, true);
+        }
+    }
+
+    /// The first position: altitude is the receiver's from here on, and the
+    /// barometer's difference to it becomes its bias.
+    fn locate(&mut self, place: GeodeticPosition) {
+        let climbed = place.altitude_m - self.motion.place.altitude_m;
+        self.motion.place = place;
+        self.motion.is_located = true;
+        let (horizontal, vertical) = (p::POSITION_HORIZONTAL, p::POSITION_VERTICAL);
+        self.reset_covariance(POSITION, 2, horizontal.variance());
+        self.reset_covariance(POSITION + 2, 1, vertical.variance());
+        if !self.tracks.barometer.used.is_never() {
+            self.barometer_bias -= climbed;
+            self.take_barometer_bias_from_altitude();
+        }
+    }
+
+    /// The barometer's bias is the difference of what it shows from the altitude,
+    /// and as uncertain as both.
+    pub(super) fn take_barometer_bias_from_altitude(&mut self) {
+        let mut row = self.covariance.row(POSITION + 2).into_owned();
+        let variance = row[POSITION + 2] + p::BAROMETER.variance();
+        row[BAROMETER_BIAS] = variance;
+        self.covariance.set_row(BAROMETER_BIAS, &row);
+        self.covariance.set_column(BAROMETER_BIAS, &row.transpose());
+    }
+
+    /// A velocity over the ground, taken `after_s` after the time of the state.
+    pub(super) fn velocity(&mut self, taken: Time, velocity: [f64; 3], after_s: f64) {
+        let velocity = Vector3::from(velocity);
+        let (horizontal, vertical) = (p::VELOCITY_HORIZONTAL, p::VELOCITY_VERTICAL);
+        let difference = velocity - self.motion.velocity - self.acceleration * after_s;
+        let since_s = self.tracks.velocity.since_tried_s(taken);
+        let measurement = on(
+            VELOCITY,
+            difference,
+            [horizontal, horizontal, vertical],
+            since_s,
+        );
+        let has_heading = self.sigma(ATTITUDE + 2) < UNKNOWN_HEADING;
+        let is_first = self.tracks.velocity.used.is_never()
+            && (self.tracks.airspeed.used.is_never() || !has_heading);
+        if is_first {
+            self.settle();
+        } else if self.fuse(
+            ObservationKind::Velocity,
+            taken,
+            &measurement,
+            p::GATE,
+            Corrects::All,
+        ) {
+            return;
+        }
+        if is_first || self.tracks.velocity.refused_s(taken) >= p::RECEIVER_REFUSED_S {
+            self.motion.velocity += difference;
+            self.forget(VELOCITY, &measurement);
+            if !is_first {
+                self.add_variance(ATTITUDE, 3, DOUBTED_ATTITUDE);
+            }
+            self.tracks.velocity.judged(taken, true);
+        }
+        if !has_heading && velocity.xy().norm() > MOVING_MPS {
+            self.take_heading_from_course();
+        }
+    }
+
+    /// Without a compass: most of what moves, moves ahead.
+    fn take_heading_from_course(&mut self) {
+        let (course, nose) = (self.motion.velocity, self.rotation().column(0).into_owned());
+        let across = nose.x * course.y - nose.y * course.x;
+        let along = nose.x * course.x + nose.y * course.y;
+        self.turn_heading(libm::atan2(across, along));
+        self.reset_covariance(ATTITUDE + 2, 1, CRAB);
+        // What was correlated with the heading that it had is not known either.
+        self.forget_wind();
+    }
+
+    fn forget(&mut self, at: usize, measurement: &Measurement<3>) {
+        for axis in 0..3 {
+            self.reset_covariance(at + axis, 1, measurement.variance[axis]);
+        }
+    }
+
+    /// Whether a receiver has said lately how this moves.
+    pub(super) fn has_receiver(&self) -> bool {
+        self.tracks.velocity.since_used_s(self.time) < p::UNAIDED_S
+            || self.tracks.position.since_used_s(self.time) < p::UNAIDED_S
+    }
+}
+
+/// A measurement of three states themselves.
+pub(super) fn on(
+    at: usize,
+    difference: Vector3<f64>,
+    noises: [Noise; 3],
+    since_s: f64,
+) -> Measurement<3> {
+    let mut jacobian = SMatrix::<f64, 3, STATES>::zeros();
+    for axis in 0..3 {
+        jacobian[(axis, at + axis)] = 1.0;
+    }
+    Measurement {
+        difference,
+        jacobian,
+        variance: variances(noises),
+        excess: Vector3::from(noises.map(|noise| noise.excess(since_s))),
+    }
+}

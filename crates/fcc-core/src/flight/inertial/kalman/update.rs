@@ -1,0 +1,142 @@
+//! How a measurement corrects the state: gate, gain, covariance.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::filter::{ATTITUDE, BODY_FIELD, EARTH_FIELD, Filter, RATE_BIAS, STATES, StateVector};
+use super::innovations::Innovation;
+use crate::flight::inertial::ObservationKind;
+use crate::framework::Time;
+
+/// What is measured of `N` axes, and how it depends on the error of the state.
+pub(super) struct Measurement<const N: usize> {
+    /// Measured minus expected.
+    pub(super) difference: SVector<f64, N>,
+    /// The derivative of the measurement by the error of the state.
+    pub(super) jacobian: SMatrix<f64, N, STATES>,
+    /// Of one sample.
+    pub(super) variance: SVector<f64, N>,
+    /// By how much that is larger for the filter, because errors last.
+    pub(super) excess: SVector<f64, N>,
+}
+
+/// Which states a measurement corrects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Corrects {
+    All,
+    /// A compass says nothing of the horizon: near iron it would tip it. The
+    /// other states are considered with their uncertainty, and stay (Schmidt
+    /// 1966).
+    Heading,
+}
+
+impl Corrects {
+    fn mask(self, gain: &mut StateVector) {
+        if self == Self::All {
+            return;
+        }
+        for at in 0..STATES {
+            let is_free = at == ATTITUDE + 2
+                || (RATE_BIAS..RATE_BIAS + 3).contains(&at)
+                || (EARTH_FIELD..BODY_FIELD + 3).contains(&at);
+            if !is_free {
+                gain[at] = 0.0;
+            }
+        }
+    }
+}
+
+impl Filter {
+    /// How far a measurement is from what is expected, as the square of a number
+    /// of standard deviations, for each of its axes: a consistent one has a mean
+    /// of `N`, and is distributed as χ². Infinite if it cannot be said.
+    pub(super) fn distance<const N: usize>(&self, measurement: &Measurement<N>) -> f64 {
+        let difference = measurement.difference;
+        self.innovation_covariance(measurement)
+            .try_inverse()
+            .map_or(f64::INFINITY, |inverse| {
+                difference.dot(&(inverse * difference))
+            })
+    }
+
+    fn innovation_covariance<const N: usize>(
+        &self,
+        measurement: &Measurement<N>,
+    ) -> SMatrix<f64, N, N> {
+        let jacobian = &measurement.jacobian;
+        let mut covariance = jacobian * self.covariance * jacobian.transpose();
+        for axis in 0..N {
+            covariance[(axis, axis)] += measurement.variance[axis];
+        }
+        covariance
+    }
+
+    /// Corrects the state, axis after axis.
+    pub(super) fn correct<const N: usize>(
+        &mut self,
+        measurement: &Measurement<N>,
+        corrects: Corrects,
+    ) {
+        let mut error = StateVector::zeros();
+        for axis in 0..N {
+            let row = measurement.jacobian.row(axis).transpose();
+            let variance = measurement.variance[axis] * measurement.excess[axis];
+            let with_states = self.covariance * row;
+            let total = row.dot(&with_states) + variance;
+            if total <= 0.0 {
+                continue;
+            }
+            let mut gain = with_states / total;
+            corrects.mask(&mut gain);
+            let left = measurement.difference[axis] - row.dot(&error);
+            error += gain * left;
+            // (I - K H) P (I - K H)ᵀ + K R Kᵀ, for any gain (Joseph's form).
+            self.covariance.ger(-1.0, &gain, &with_states, 1.0);
+            self.covariance.ger(-1.0, &with_states, &gain, 1.0);
+            self.covariance.ger(total, &gain, &gain, 1.0);
+        }
+        self.inject(&error);
+    }
+
+    /// Judges a measurement of a sensor, corrects the state with a plausible one,
+    /// and notes the innovation. False if it is refused.
+    pub(super) fn fuse<const N: usize>(
+        &mut self,
+        kind: ObservationKind,
+        taken: Time,
+        measurement: &Measurement<N>,
+        gate: f64,
+        corrects: Corrects,
+    ) -> bool {
+        self.settle();
+        let accepted = self.distance(measurement) <= gate;
+        self.note(kind, taken, measurement, accepted);
+        self.tracks.of(kind).judged(taken, accepted);
+        if accepted {
+            self.correct(measurement, corrects);
+        }
+        accepted
+    }
+
+    fn note<const N: usize>(
+        &mut self,
+        kind: ObservationKind,
+        taken: Time,
+        measurement: &Measurement<N>,
+        accepted: bool,
+    ) {
+        let covariance = self.innovation_covariance(measurement);
+        let (mut difference, mut sigma) = ([0.0; 3], [0.0; 3]);
+        for (axis, (difference, sigma)) in difference.iter_mut().zip(&mut sigma).take(N).enumerate()
+        {
+            *difference = measurement.difference[axis];
+            *sigma = libm::sqrt(covariance[(axis, axis)]);
+        }
+        self.innovations.push(Innovation {
+            time: taken,
+            kind,
+            difference,
+            sigma,
+            accepted,
+        });
+    }
+}

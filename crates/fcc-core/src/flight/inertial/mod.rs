@@ -1,0 +1,38 @@
+//! Navigation from raw sensors: attitude, velocity, position, wind and the
+//! sensors' biases from gyroscopes, accelerometers, magnetometers, pressures
+//! and a satellite receiver.
+//!
+//! One interface, [`InertialNavigation`], and two methods:
+//!
+//! | method | is |
+//! |---|---|
+//! | [`KalmanNavigation`] | an error-state Kalman filter, which uses what arrives and says how sure it is |
+//! | [`ThesisNavigation`] | the way of the thesis (section 5.6): gravity by a low pass, orientation from gravity and the magnetic field. The reference |
+//!
+//! Both compute from samples alone: no clock, no heap, the same bits on every
+//! machine.
+
+mod earth;
+mod kalman;
+mod observation;
+mod thesis;
+
+pub use earth::{gravity_mps2, metres_per_radian};
+pub use kalman::{Innovation, KalmanConfig, KalmanNavigation};
+pub use observation::{GeodeticPosition, Observation, ObservationKind, Sigma, Solution};
+pub use thesis::{PHONE_BELOW, ThesisNavigation};
+
+use crate::framework::Time;
+
+/// A method that computes where an aircraft is and how it moves from samples of
+/// its sensors.
+pub trait InertialNavigation {
+    /// Takes a sample, and the time at which it was taken: that of its arrival
+    /// minus its known delay. Samples of one sensor come in the order in which
+    /// they were taken; those of different sensors in any. What is not finite
+    /// is ignored.
+    fn observe(&mut self, taken: Time, observation: Observation);
+
+    /// The estimate at `now`, which never goes back, from the samples so far.
+    fn step(&mut self, now: Time) -> Solution;
+}

@@ -1,0 +1,149 @@
+//! What navigation has to hold in flight. The limits are those that autopilots
+//! for aircraft are tested against, not what was measured here.
+
+use fcc_core::blocks::wrap_pi;
+use fcc_core::flight::inertial::Solution;
+use fcc_core::flight::orientation::euler_from_quaternion;
+use fcc_core::units::KNOT_MPS;
+
+use super::flight::{Flight, Truth};
+use super::sensors::{Fitted, Run};
+
+/// Stands for 10 s, accelerates, climbs, and then turns to and fro at 30 m/s.
+fn pattern(time_s: f64) -> (f64, f64, f64) {
+    let airspeed = ((time_s - 10.0) * 3.0).clamp(0.0, 30.0);
+    let climb = 0.1 * smooth((time_s - 25.0) / 5.0) * smooth((60.0 - time_s) / 5.0);
+    let turning = (0.1 * (time_s - 25.0)).sin().clamp(-0.5, 0.5) / 0.5;
+    let bank = 0.5 * turning * smooth((time_s - 25.0) / 5.0);
+    (bank, climb, airspeed)
+}
+
+/// Ten minutes at 30° of bank, after a minute of the same.
+fn long_turn(time_s: f64) -> (f64, f64, f64) {
+    let (bank, climb, airspeed) = pattern(time_s);
+    let share = smooth((time_s - 80.0) / 4.0);
+    let steady = 30.0_f64.to_radians();
+    (bank + share * (steady - bank), climb, airspeed)
+}
+
+/// From 0 to 1.
+fn smooth(share: f64) -> f64 {
+    let share = share.clamp(0.0, 1.0);
+    share * share * (3.0 - 2.0 * share)
+}
+
+/// Errors of roll, pitch and heading, °.
+fn angle_errors(truth: &Truth, solution: &Solution) -> [f64; 3] {
+    let found = euler_from_quaternion(solution.quaternion);
+    let expected = truth.angles;
+    [
+        found.roll_rad - expected.roll_rad,
+        found.pitch_rad - expected.pitch_rad,
+        found.heading_rad - expected.heading_rad,
+    ]
+    .map(|angle| wrap_pi(angle).to_degrees().abs())
+}
+
+/// The largest errors of roll, pitch and heading in a time, °.
+fn largest(run: &mut Run, from_s: f64, to_s: f64) -> [f64; 3] {
+    let mut largest = [0.0_f64; 3];
+    run.until(from_s, |_, _| {});
+    run.until(to_s, |truth, solution| {
+        for (largest, error) in largest.iter_mut().zip(angle_errors(truth, solution)) {
+            *largest = largest.max(error);
+        }
+    });
+    largest
+}
+
+fn wind_20_kt() -> [f64; 2] {
+    [-12.0 * KNOT_MPS, 16.0 * KNOT_MPS]
+}
+
+#[test]
+fn ten_minutes_of_turn_do_not_tip_the_horizon() {
+    for (airspeed, receiver) in [(true, true), (true, false), (false, true)] {
+        let fitted = Fitted {
+            airspeed,
+            receiver,
+            ..Fitted::default()
+        };
+        let mut run = Run::new(Flight::new(long_turn, 1.0, wind_20_kt()), fitted, 3);
+        let [roll, pitch, heading] = largest(&mut run, 90.0, 690.0);
+        assert!(roll <= 1.0, "{roll}° with {fitted:?}");
+        assert!(pitch <= 1.0, "{pitch}° with {fitted:?}");
+        // ArduPilot's tests allow no more of any angle; a compass with 1 µT of
+        // the aircraft's own field is wrong by 2.7°.
+        assert!(heading <= 5.0, "{heading}° with {fitted:?}");
+    }
+}
+
+#[test]
+fn a_minute_without_a_receiver_in_20_kt_of_wind_leads_less_than_150_m_away() {
+    for airspeed in [true, false] {
+        let fitted = Fitted {
+            airspeed,
+            receiver_lost_s: (180.0, 240.0),
+            ..Fitted::default()
+        };
+        let mut run = Run::new(Flight::new(pattern, 2.0, wind_20_kt()), fitted, 5);
+        run.until(240.0, |_, _| {});
+        let (truth, solution) = (run.flight.now, run.solution);
+        let off = |axis: usize| solution.displacement_m[axis] - truth.path[axis];
+        let away_m = off(0).hypot(off(1));
+        // The 150 m of ArduPilot's test with an airspeed sensor, 300 m without.
+        let limit_m = if airspeed { 150.0 } else { 300.0 };
+        assert!(away_m <= limit_m, "{away_m} m, airspeed {airspeed}");
+    }
+}
+
+#[test]
+fn a_compass_that_is_wrong_by_30_degrees_does_not_turn_the_heading() {
+    for (angle_deg, airspeed) in [(30.0_f64, true), (-30.0, false)] {
+        let fitted = Fitted {
+            airspeed,
+            compass_turned: (angle_deg.to_radians(), 120.0),
+            ..Fitted::default()
+        };
+        let mut run = Run::new(Flight::new(pattern, 4.0, wind_20_kt()), fitted, 7);
+        let [.., heading] = largest(&mut run, 120.0, 300.0);
+        assert!(heading <= 5.0, "{heading}°, airspeed {airspeed}");
+    }
+}
+
+/// What `ArduPilot` tests its estimate of the wind against: 1 m/s and 5°.
+#[test]
+fn airspeed_and_a_receiver_give_the_wind() {
+    let [north, east] = wind_20_kt();
+    let mut run = Run::new(
+        Flight::new(pattern, 0.5, [north, east]),
+        Fitted::default(),
+        9,
+    );
+    run.until(200.0, |_, _| {});
+    let [found_north, found_east] = run.solution.wind_mps;
+    let speed = found_north.hypot(found_east) - north.hypot(east);
+    let direction = wrap_pi(found_east.atan2(found_north) - east.atan2(north)).to_degrees();
+    assert!(speed.abs() <= 1.0, "{speed} m/s");
+    assert!(direction.abs() <= 5.0, "{direction}°");
+}
+
+/// It begins in a turn, without a compass: GNSS and airspeed give the heading.
+#[test]
+fn it_aligns_in_flight() {
+    fn circling(_: f64) -> (f64, f64, f64) {
+        (0.4, 0.0, 30.0)
+    }
+    for (compass, airspeed) in [(true, true), (true, false), (false, true)] {
+        let fitted = Fitted {
+            compass,
+            airspeed,
+            ..Fitted::default()
+        };
+        let mut run = Run::new(Flight::new(circling, 3.0, [4.0, 1.0]), fitted, 11);
+        let [roll, pitch, heading] = largest(&mut run, 60.0, 120.0);
+        // 3°, as ArduPilot's tests of attitude have it.
+        assert!(roll <= 3.0 && pitch <= 3.0, "{roll}° {pitch}° {fitted:?}");
+        assert!(heading <= 5.0, "{heading}° {fitted:?}");
+    }
+}
