@@ -86,6 +86,8 @@ pub(super) struct MotionMonitor {
     witness: MotionWitness,
     suspicion: Option<Suspicion>,
     doubt: Option<MotionDoubt>,
+    /// Logarithm of the odds that a doubted attitude is right.
+    odds_since_doubt: f64,
     agrees_s: f64,
     /// The time since they were compared last, s.
     passed_s: f64,
@@ -100,6 +102,7 @@ impl MotionMonitor {
             witness: MotionWitness::new(),
             suspicion: None,
             doubt: None,
+            odds_since_doubt: 0.0,
             agrees_s: 0.0,
             passed_s: 0.0,
         }
@@ -153,21 +156,22 @@ impl MotionMonitor {
             pitch_rad: attitude.pitch_rad,
             heading_rad: input.flown.heading_rad,
         });
-        let apart = self.rotation.map_or([0.0; 2], |rotation| {
-            let by_rates = euler_from_quaternion(rotation);
+        let without_attitude = if self.doubt == Some(MotionDoubt::Attitude) {
+            Some(input.flown)
+        } else {
+            self.rotation.map(euler_from_quaternion)
+        };
+        let apart = without_attitude.map_or([0.0; 2], |other| {
             [
-                wrap_pi(attitude.roll_rad - by_rates.roll_rad),
-                attitude.pitch_rad - by_rates.pitch_rad,
+                wrap_pi(attitude.roll_rad - other.roll_rad),
+                attitude.pitch_rad - other.pitch_rad,
             ]
         });
         let learns = self.doubt.is_none() && self.suspicion.is_none();
         self.witness
             .step(&input.witness, attitude, apart, learns, dt_s);
         if self.doubt == Some(MotionDoubt::Attitude) {
-            self.rotation = None;
-            let [x, y] = between(quaternion_from_euler(input.flown), measured);
-            self.follow_doubted(hypot(x, y) < ATTITUDE_AGREES_RAD, measured, dt_s);
-            return None;
+            return self.judge_doubted_attitude(measured, input, dt_s);
         }
         let Some(rotation) = self.rotation else {
             self.follow(measured);
@@ -220,6 +224,7 @@ impl MotionMonitor {
         let by_rates = self.rotation;
         self.follow(measured);
         if suspicion.odds < 0.0 {
+            self.odds_since_doubt = 0.0;
             self.doubt = input.may_doubt.then_some(MotionDoubt::Attitude);
             return by_rates.filter(|_| input.may_doubt);
         }
@@ -230,6 +235,29 @@ impl MotionMonitor {
         let is_large = hypot(*offset_x, *offset_y) > FLOWN_RADPS;
         self.doubt = (input.may_doubt && is_large).then_some(MotionDoubt::BodyRates);
         None
+    }
+
+    /// Goes on collecting evidence while the attitude is doubted: if the one that is flown
+    /// without it turns out to be the wrong one, the rates from which that comes are doubted
+    /// instead, and the attitude is adopted.
+    fn judge_doubted_attitude(
+        &mut self,
+        measured: [f64; 4],
+        input: &MotionInput,
+        dt_s: f64,
+    ) -> Option<[f64; 4]> {
+        self.rotation = None;
+        let [x, y] = between(quaternion_from_euler(input.flown), measured);
+        let agrees = hypot(x, y) < ATTITUDE_AGREES_RAD;
+        let odds = (self.odds_since_doubt + self.witness.odds(&input.witness, dt_s)).max(-CERTAIN);
+        self.odds_since_doubt = odds;
+        if odds < CERTAIN || hypot(x, y) < DIFFERS_RAD {
+            self.follow_doubted(agrees, measured, dt_s);
+            return None;
+        }
+        self.follow(measured);
+        self.doubt = Some(MotionDoubt::BodyRates);
+        Some(measured)
     }
 
     /// The integral continues from the attitude.
