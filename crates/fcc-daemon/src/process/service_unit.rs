@@ -54,8 +54,8 @@ fn hides_users(root: &Path) -> bool {
         .filter_map(|(_, path)| fs::read_to_string(path).ok());
     let texts: Vec<_> = std::iter::once(unit).chain(added).collect();
     let given = texts.iter().flat_map(|text| text.lines());
-    let given = given.filter_map(|line| line.trim().split_once('='));
-    let last = given.filter(|(key, _)| key.trim() == "PrivateUsers").last();
+    let mut given = given.filter_map(|line| line.trim().split_once('='));
+    let last = given.rfind(|(key, _)| key.trim() == "PrivateUsers");
     let values = ["yes", "true", "on", "1", "self", "identity"];
     last.is_some_and(|(_, value)| values.contains(&value.trim()))
 }
