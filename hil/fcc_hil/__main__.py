@@ -12,7 +12,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import actions, simulator_options, watcher_load
 from . import commands as flights
@@ -27,6 +27,9 @@ from .process import StandInError, StandInProcess
 from .soak import SoakError
 from .standin import BEACON_GROUP
 from .table import table
+
+if TYPE_CHECKING:
+    from _typeshed import SupportsWrite
 
 _LOOK_S = 0.05
 # 128 and the number of SIGPIPE, as a shell reports it.
@@ -162,8 +165,19 @@ def _bench_live(options: argparse.Namespace) -> int:
     return 1 if lost else 0
 
 
+class _Parser(argparse.ArgumentParser):
+    """A parser whose help is printed, or not printed with an error.
+
+    ``argparse`` ignores that its help could not be written.
+    """
+
+    def print_help(self, file: SupportsWrite[str] | None = None) -> None:
+        """Print the help."""
+        (sys.stdout if file is None else file).write(self.format_help())
+
+
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="fcc", description=__doc__)
+    parser = _Parser(prog="fcc", description=__doc__)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     flies = commands.add_parser(
@@ -258,9 +272,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
             # Here, and not when Python ends: a closed pipe is found by writing to it.
             sys.stdout.flush()
     except BrokenPipeError:
-        # What was not written must not be tried again when Python ends.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()
         return _PIPE_CLOSED
+    except OSError as error:
+        _drop_output()
+        say(f"error: the output could not be written: {error}", to=sys.stderr)
+        return 1
+
+
+def _drop_output() -> None:
+    """Do not try again, when Python ends, to write what could not be written."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _run(arguments: Sequence[str] | None) -> int:

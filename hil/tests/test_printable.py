@@ -1,8 +1,13 @@
-"""What comes from outside does not reach the terminal as an escape sequence."""
+"""What is printed: what comes from outside as text, and not without being written."""
 
 from __future__ import annotations
 
 import io
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
 
 from fcc_hil.printable import printable, say
 
@@ -17,3 +22,17 @@ def test_what_a_terminal_obeys_is_escaped_as_the_daemon_does_it() -> None:
     printed = io.StringIO()
     say(HOSTILE, to=printed)
     assert printed.getvalue() == SHOWN + "\n"
+
+
+@pytest.mark.parametrize("words", [["--help"], ["fly", "--help"]])
+def test_help_that_cannot_be_written_is_an_error(words: list[str]) -> None:
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "fcc_hil", *words],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert done.returncode == 1
+    assert "the output could not be written: " in done.stderr

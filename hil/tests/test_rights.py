@@ -12,6 +12,7 @@ import stat
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -24,6 +25,7 @@ from fcc_hil.process import StandInProcess
 from fcc_hil.standin import Settings
 
 SUCCESS = 0
+FAILURE = 1
 USAGE = 2
 
 
@@ -228,6 +230,23 @@ for s in kept:
     s.settimeout(5)
     print(s.recv(600).decode().strip())
 """
+# Fills the queue of a daemon that is stopped, until its input ends.
+FILLS = """
+import resource, socket, sys
+most = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
+resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
+kept = []
+while True:
+    s = socket.socket(socket.AF_UNIX)
+    s.setblocking(False)
+    try:
+        s.connect(sys.argv[1])
+    except BlockingIOError:
+        break
+    kept.append(s)
+print(len(kept), flush=True)
+sys.stdin.read()
+"""
 HOLDS_PLACES = """
 import socket, sys
 kept = []
@@ -287,6 +306,42 @@ def test_commanders_do_not_delay_each_other_and_old_commands_are_dropped(
         assert engaged.startswith("carried-out ")
         ending = daemon.end(signal.SIGTERM)
     assert ending.exit_code == SUCCESS, ending.log
+
+
+@needs_two_users
+def test_who_commands_a_daemon_that_is_stopped_is_told_so(fccd: Path, scratch: Path) -> None:
+    """Its queue has room at first; then another user has filled it."""
+    with commanded_by_nobody(fccd, scratch, "stopped") as (_, daemon, socket):
+        daemon.wait_until_ready()
+        daemon.send(signal.SIGSTOP)
+        words: list[str | Path] = [*as_user(NOBODY), fccd, "command", "disengage"]
+        words += ["--instance", socket.name, "--of", "root"]
+
+        def sends() -> subprocess.Popen[str]:
+            return subprocess.Popen(words, stderr=subprocess.PIPE, text=True, cwd="/")
+
+        with sends() as first:
+            # It waits in the queue.
+            time.sleep(1.0)
+            fills: list[str | Path] = [*as_user(STRANGER), sys.executable, "-I", "-c", FILLS]
+            fills.append(socket)
+            with subprocess.Popen(
+                fills, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd="/"
+            ) as crowd:
+                assert crowd.stdin is not None
+                assert crowd.stdout is not None
+                assert int(crowd.stdout.readline()) > 100
+                with sends() as second:
+                    _, said = second.communicate(timeout=60.0)
+                assert second.returncode == FAILURE
+                assert "fccd did not accept the connection within 5 s: it is stopped" in said
+                crowd.stdin.close()
+            _, said = first.communicate(timeout=60.0)
+            assert first.returncode == FAILURE
+            assert "fccd did not answer within 15 s" in said
+        daemon.send(signal.SIGCONT)
+        daemon.wait_for("was not carried out, for its sender has given up")
+        assert daemon.end(signal.SIGTERM).exit_code == SUCCESS
 
 
 @needs_two_users

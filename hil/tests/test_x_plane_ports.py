@@ -10,9 +10,10 @@ import time
 from pathlib import Path
 
 import pytest
-from daemon_under_test import engage, flight, start, wait_until, write_config
+from daemon_under_test import assert_released, engage, flight, start, wait_until, write_config
 from tampered_link import TamperedLink
 
+from fcc_hil.fly import ENGAGE_SWITCH
 from fcc_hil.process import StandInProcess
 from fcc_hil.standin import Settings
 
@@ -125,6 +126,28 @@ def test_a_link_that_is_cut_towards_x_plane_is_named_and_its_release_not_confirm
         assert "confirmed the release" not in ending.log
         link.restore()
         wait_until(lambda: not simulator.progress().overridden, "the helper releases")
+
+
+def test_a_release_helper_believes_the_port_that_was_flown(fccd: Path, tmp_path: Path) -> None:
+    """Another program has the port from which X-Plane usually answers."""
+    host, usual, flown = "127.73.0.1", 49_001, 49_005
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind((host, usual))
+        settings = Settings(host=host, port=49_000, reply_port=flown)
+        with StandInProcess(settings) as simulator:
+            config = write_config(tmp_path, 49_000)
+            config.write_text(config.read_text().replace("127.0.0.1", host))
+            with start(fccd, tmp_path, config) as daemon:
+                engage(simulator, daemon)
+                assert simulator.reply_port == flown
+                (helper,) = daemon.helpers()
+                daemon.send(signal.SIGKILL)
+                simulator.write(ENGAGE_SWITCH, 0.0)
+                assert_released(simulator)
+                # It repeats the release until it is confirmed, for two minutes.
+                said = f"the daemon has ended; X-Plane at {host}:49000 was released"
+                wait_until(lambda: said in daemon.log, said)
+                wait_until(lambda: not Path(f"/proc/{helper}").exists(), "the helper ends")
 
 
 def test_a_generic_light_that_this_version_lacks_is_named(fccd: Path, tmp_path: Path) -> None:

@@ -24,6 +24,8 @@ pub struct XPlaneAuthority {
     config: XPlaneConfig,
     status: Option<XPlaneStatus>,
     reported: Mutex<Reported>,
+    /// The port that a simulator answers from, as another program told it.
+    expected: Mutex<Option<(SocketAddr, u16)>>,
     /// Of the connection that is flown, and of those beside it.
     watches: Mutex<Vec<PortWatch>>,
 }
@@ -45,6 +47,7 @@ impl XPlaneAuthority {
             config: config.clone(),
             status: None,
             reported: Mutex::default(),
+            expected: Mutex::default(),
             watches: Mutex::default(),
         }
     }
@@ -59,6 +62,25 @@ impl XPlaneAuthority {
         let links = std::iter::once(&flown).chain(&beside);
         for (watch, link) in watches.iter_mut().zip(links) {
             watch.look(link, &flown);
+        }
+    }
+
+    /// What is known of this simulator, for its release.
+    fn expected(&self, simulator: SocketAddr) -> Expected {
+        let flown = self
+            .status
+            .as_ref()
+            .filter(|status| status.simulator() == Some(simulator));
+        // A thread that hangs may have locked it.
+        let watches = self.watches.try_lock().ok();
+        let told = locked(&self.expected).filter(|(told, _)| *told == simulator);
+        Expected {
+            port: flown.map_or(told.map(|(_, port)| port), |status| {
+                status.link().flown_port().or(status.reply_port())
+            }),
+            user: flown
+                .and(watches)
+                .and_then(|watches| watches.first().and_then(PortWatch::user)),
         }
     }
 }
@@ -103,6 +125,17 @@ impl ControlAuthority for XPlaneAuthority {
             .unwrap_or(*plant)
     }
 
+    fn answers_from(&self) -> Option<u16> {
+        let status = self.status.as_ref()?;
+        status.link().flown_port().or(status.reply_port())
+    }
+
+    fn expect(&self, plant: &PlantId, answers_from: u16) {
+        if let Some(simulator) = address(plant) {
+            *locked(&self.expected) = Some((simulator, answers_from));
+        }
+    }
+
     fn report(&self, report: &mut dyn FnMut(fmt::Arguments<'_>)) {
         if let Some(status) = &self.status {
             self.watch_ports(status);
@@ -124,19 +157,7 @@ impl ControlAuthority for XPlaneAuthority {
         is_cancelled: &mut dyn FnMut() -> bool,
     ) -> Result<Released, ActuatorFault> {
         let simulator = address(plant).ok_or(ActuatorFault::NotConnected)?;
-        // Of the one that is flown; a helper learns it from the first answer.
-        let flown = self
-            .status
-            .as_ref()
-            .filter(|status| status.simulator() == Some(simulator));
-        // A thread that hangs may have locked it.
-        let watches = self.watches.try_lock().ok();
-        let expected = Expected {
-            port: flown.and_then(|status| status.link().flown_port().or(status.reply_port())),
-            user: flown
-                .and(watches)
-                .and_then(|watches| watches.first().and_then(PortWatch::user)),
-        };
+        let expected = self.expected(simulator);
         XPlane::release_expecting(&self.config, simulator, expected, within, is_cancelled).map_err(
             |error| match error {
                 OpenError::Bind { source, .. } => ActuatorFault::Io {

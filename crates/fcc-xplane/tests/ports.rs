@@ -6,7 +6,7 @@ use std::net::{SocketAddr, UdpSocket};
 use std::time::{Duration, Instant};
 
 use fcc_core::flight::Measurements;
-use fcc_core::framework::{Actuator, ControlAuthority, PlantId, Released, Sensor};
+use fcc_core::framework::{Actuator, ActuatorFault, ControlAuthority, PlantId, Released, Sensor};
 use fcc_xplane::{
     Control, DataRows, Input, RowsVersion, Simulator, Trouble, XPlane, XPlaneAuthority,
     XPlaneConfig,
@@ -128,43 +128,63 @@ fn an_x_plane_that_was_started_again_in_flight_is_found_with_its_new_port() {
     assert_eq!(bench.status.control(), Control::Free);
 }
 
-/// Another program on X-Plane's machine claims that the overrides are clear.
+/// Another program on X-Plane's machine claims that the overrides are clear, to
+/// the daemon, and to a release helper that was told the port.
 #[test]
 fn a_release_is_confirmed_only_by_the_port_that_answered() {
-    let mut bench = Bench::new();
-    bench.settle();
-    bench.fly().unwrap();
-    bench.simulator.listen();
-    bench.simulator.assert_shows(OVERRIDE_JOYSTICK, 1.0);
-    bench.simulator.accepts_writes = false;
-    let authority = XPlaneAuthority::of(bench.status.clone(), &bench.simulator.config());
-    let plant = authority.held().unwrap();
+    let (bench, daemon) = flown();
+    let mut simulator = bench.simulator;
+    let plant = daemon.held().unwrap();
+    let helper = XPlaneAuthority::without_connection(&simulator.config());
+    helper.expect(&plant, daemon.answers_from().unwrap());
+    simulator.listen();
+    simulator.assert_shows(OVERRIDE_JOYSTICK, 1.0);
+    for authority in [daemon, helper] {
+        simulator.accepts_writes = false;
+        let (authority, released) = released_among_lies(authority, plant, &mut simulator);
+        assert_eq!(released, Ok(Released::Unconfirmed));
+        simulator.accepts_writes = true;
+        let (_, released) = released_among_lies(authority, plant, &mut simulator);
+        assert_eq!(released, Ok(Released::Confirmed));
+        simulator.assert_shows(OVERRIDE_JOYSTICK, 0.0);
+        simulator.set(OVERRIDE_JOYSTICK, 1.0);
+    }
+}
+
+/// What a release gives while another program says that the overrides are clear.
+fn released_among_lies(
+    authority: XPlaneAuthority,
+    plant: PlantId,
+    simulator: &mut FakeXPlane,
+) -> (XPlaneAuthority, Result<Released, ActuatorFault>) {
+    let overrides = [OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES];
     let impostor = UdpSocket::bind("127.0.0.1:0").unwrap();
     let releasing = std::thread::spawn(move || {
         let within = Duration::from_millis(1_500);
-        authority.release(&plant, within, &mut || false)
+        let released = authority.release(&plant, within, &mut || false);
+        (authority, released)
     });
     let mut lies = 0;
     while !releasing.is_finished() {
-        bench.simulator.live(0.0);
-        if let Some(client) = bench.simulator.client {
-            for path in [OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES] {
-                bench.simulator.set(path, 0.0);
+        simulator.live(0.0);
+        if let Some(client) = simulator.client {
+            let shown = overrides.map(|path| simulator.value(path));
+            for path in overrides {
+                simulator.set(path, 0.0);
             }
-            impostor.send_to(&bench.simulator.frame(), client).unwrap();
-            for path in [OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES] {
-                bench.simulator.set(path, 1.0);
+            impostor.send_to(&simulator.frame(), client).unwrap();
+            for (path, shown) in overrides.into_iter().zip(shown) {
+                simulator.set(path, shown);
             }
             lies += 1;
         }
         std::thread::sleep(Duration::from_millis(5));
     }
     assert!(lies > 0);
-    let released = releasing.join().unwrap();
-    assert_eq!(released, Ok(Released::Unconfirmed));
+    releasing.join().unwrap()
 }
 
-/// Like the release helper: nothing is known of the killed daemon's connection.
+/// Like a release helper that was not told the port.
 #[test]
 fn a_release_without_a_connection_learns_the_port() {
     let mut simulator = FakeXPlane::new();

@@ -35,6 +35,18 @@ pub trait ControlAuthority: Send + Sync {
         *plant
     }
 
+    /// By what the answers of the plant are told from others', for
+    /// [`expect`](Self::expect) in another process; none while it is not known, or
+    /// if there is nothing of the kind. Of X-Plane it is the UDP port that they
+    /// come from.
+    fn answers_from(&self) -> Option<u16> {
+        None
+    }
+
+    /// From now on a [`release`](Self::release) of this plant is confirmed only by
+    /// answers from there, unless that is gone.
+    fn expect(&self, _plant: &PlantId, _answers_from: u16) {}
+
     /// Reports what has changed since the last call, as text for users: what is
     /// wrong and what to do about it, and when it is resolved.
     fn report(&self, report: &mut dyn FnMut(fmt::Arguments<'_>));

@@ -5,8 +5,10 @@
     reason = "axes of vectors of three, in what only tests use"
 )]
 
+mod consistency;
 mod flight;
 mod flights;
+mod hand;
 mod noise;
 mod sensors;
 mod thesis;

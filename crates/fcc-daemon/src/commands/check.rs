@@ -1,13 +1,14 @@
 //! `fccd check FILE`.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use serde::Serialize;
 
 use crate::cli::CheckArgs;
 use crate::exit::Exit;
 use crate::output;
-use crate::process::unknown_names;
+use crate::process::{commanders_refused, unknown_names};
 use fcc_flight::config::{Aircraft, Config, Problem};
 
 #[derive(Serialize)]
@@ -25,6 +26,7 @@ pub(super) fn check(args: &CheckArgs) -> Exit {
         Ok((config, text)) => {
             let mut remarks = config.remarks(&text);
             remarks.extend(unknown_names(&config.rights));
+            remarks.extend(commanders_refused(&config.rights, Path::new("/")));
             (Ok(config), remarks)
         }
         Err(error) => (Err(error), Vec::new()),

@@ -10,6 +10,7 @@
 //! | `instance_lock` | keeps two daemons from one plant |
 //! | `left_held` | releases what a killed daemon left held |
 //! | `rights` | gives up the rights of root before a flight |
+//! | `service_unit` | what the installed service's unit prevents |
 //! | `signals` | the signals that end a flight, and those that must not |
 
 mod instance_lock;
@@ -20,6 +21,7 @@ mod plant_file;
 mod release_handover;
 mod release_helper;
 mod rights;
+mod service_unit;
 mod signals;
 mod told;
 
@@ -46,6 +48,7 @@ pub(crate) use own_program::own_program;
 pub(crate) use own_program::{begin_helper, outlive_signals};
 pub(crate) use release_helper::{ReleaseHelper, run_release_helper};
 pub(crate) use rights::{RightsError, give_up, unknown_names};
+pub(crate) use service_unit::commanders_refused;
 use signals::{BlockedSignals, Caught};
 pub(crate) use signals::{end_with_parent, survive_file_size_limit, tolerate};
 #[cfg(fuzzing)]
@@ -78,6 +81,8 @@ struct Plant {
     /// How often it may still be started again.
     helpers_again: u32,
     was_held: bool,
+    /// Where a plant's answers come from, as the helper knows it.
+    answers: Option<(PlantId, u16)>,
     /// When an earlier daemon's helper was last looked for.
     checked: Instant,
     /// When the lock was last looked at.
@@ -195,6 +200,7 @@ impl Plant {
             helper_started: now,
             helpers_again: HELPERS_AGAIN,
             was_held: false,
+            answers: None,
             checked: now,
             lock_checked: now,
         };
@@ -233,6 +239,17 @@ impl Plant {
             self.end_earlier_helper();
         }
         self.replace_helper(config, held, report);
+        self.tell_answers(held);
+    }
+
+    /// Tells the helper by what it knows the plant that it may have to release.
+    fn tell_answers(&mut self, held: Option<PlantId>) {
+        let plant = held.or_else(|| self.authority.plant());
+        let found = plant.zip(self.authority.answers_from());
+        if let Some((plant, from)) = found.filter(|_| found != self.answers) {
+            self.answers = found;
+            self.notice.answers(plant, from);
+        }
     }
 
     /// Ends the helper of a daemon that was killed, if it still releases the
@@ -274,6 +291,7 @@ impl Plant {
         self.helpers_again -= 1;
         self.helper_started = Instant::now();
         self.helper = start_helper(config, self.notice, held);
+        self.answers = None;
         if self.helper.is_some() {
             report("the release helper had ended, and was started again".to_owned());
         }

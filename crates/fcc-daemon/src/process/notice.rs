@@ -146,6 +146,12 @@ impl Notice {
         self.send(&Line::Free(number));
     }
 
+    /// Passes on by what the answers of a plant are known. A helper that was
+    /// started again does not know it.
+    pub(super) fn answers(&self, plant: PlantId, from: u16) {
+        self.send(&Line::Answers(from, plant));
+    }
+
     /// To the last helper: the others have ended. A pipe that is full belongs
     /// to one that is stopped.
     fn send(&self, line: &Line) {

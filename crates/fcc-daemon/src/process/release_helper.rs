@@ -140,6 +140,9 @@ pub(crate) fn run_release_helper(
     if let Some(lock) = &lock {
         lock.lock();
     }
+    if let Some(from) = told.answers_from() {
+        authority.expect(&plant, from);
+    }
     let released = authority.release(&plant, RELEASE_FOR, &mut || false)?;
     // The next start need not release it.
     if released.is_over()

@@ -1,8 +1,9 @@
 //! What a release helper is told through its pipe: one line for each takeover,
-//! and for each release that the plant has confirmed.
+//! for each release that the plant has confirmed, and for each change of where
+//! the plant's answers come from.
 //!
 //! ```text
-//! held NUMBER PLANT | free NUMBER
+//! held NUMBER PLANT | free NUMBER | answers FROM PLANT
 //! ```
 
 use std::fmt;
@@ -11,6 +12,7 @@ use fcc_core::framework::PlantId;
 
 const HELD: &str = "held ";
 const FREE: &str = "free ";
+const ANSWERS: &str = "answers ";
 
 /// A line, without its end.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -19,6 +21,9 @@ pub(super) enum Line {
     Held(u64, PlantId),
     /// The number of a takeover whose release is confirmed.
     Free(u64),
+    /// By what the answers of a plant are known
+    /// ([`answers_from`](fcc_core::framework::ControlAuthority::answers_from)).
+    Answers(u16, PlantId),
 }
 
 impl fmt::Display for Line {
@@ -26,6 +31,7 @@ impl fmt::Display for Line {
         match self {
             Self::Held(number, plant) => write!(f, "{HELD}{number} {plant}"),
             Self::Free(number) => write!(f, "{FREE}{number}"),
+            Self::Answers(from, plant) => write!(f, "{ANSWERS}{from} {plant}"),
         }
     }
 }
@@ -36,30 +42,45 @@ impl Line {
         if let Some(number) = line.strip_prefix(FREE) {
             return Some(Self::Free(number.parse().ok()?));
         }
-        let (number, plant) = line.strip_prefix(HELD)?.split_once(' ')?;
-        let plant = PlantId::new(format_args!("{plant}"))?;
-        Some(Self::Held(number.parse().ok()?, plant))
+        let plant = |given: &str| PlantId::new(format_args!("{given}"));
+        if let Some(answers) = line.strip_prefix(ANSWERS) {
+            let (from, of) = answers.split_once(' ')?;
+            return Some(Self::Answers(from.parse().ok()?, plant(of)?));
+        }
+        let (number, of) = line.strip_prefix(HELD)?.split_once(' ')?;
+        Some(Self::Held(number.parse().ok()?, plant(of)?))
     }
 }
 
 /// What the lines up to now mean.
 #[derive(Default, Debug)]
-pub(super) struct Told(Option<(u64, PlantId)>);
+pub(super) struct Told {
+    held: Option<(u64, PlantId)>,
+    answers: Option<(u16, PlantId)>,
+}
 
 impl Told {
     /// Takes the next line; one that is not understood changes nothing.
     pub(super) fn line(&mut self, line: &str) {
         match Line::read(line) {
-            Some(Line::Held(number, plant)) => self.0 = Some((number, plant)),
+            Some(Line::Held(number, plant)) => self.held = Some((number, plant)),
             // A release that is told late does not cover the next takeover.
-            Some(Line::Free(freed)) => self.0 = self.0.filter(|(number, _)| *number > freed),
+            Some(Line::Free(freed)) => self.held = self.held.filter(|(number, _)| *number > freed),
+            Some(Line::Answers(from, plant)) => self.answers = Some((from, plant)),
             None => {}
         }
     }
 
     /// The takeover, by its number, after which the plant is held.
     pub(super) const fn held(&self) -> Option<(u64, PlantId)> {
-        self.0
+        self.held
+    }
+
+    /// By what the answers of the plant that is held are known.
+    pub(super) fn answers_from(&self) -> Option<u16> {
+        let (_, held) = self.held?;
+        let (from, plant) = self.answers?;
+        (plant == held).then_some(from)
     }
 }
 
@@ -103,5 +124,23 @@ mod tests {
         assert_eq!(after("held 4 b"), Some((4, plant("b"))));
         assert_eq!(after("free 3"), Some((4, plant("b"))));
         assert_eq!(after("free 4"), None);
+    }
+
+    #[test]
+    fn where_the_answers_of_what_is_held_come_from_is_the_last_that_was_told() {
+        let mut told = Told::default();
+        let mut after = |line: &str| {
+            told.line(line);
+            told.answers_from()
+        };
+        assert_eq!(after("answers 49005 a b"), None);
+        assert_eq!(after("held 1 a b"), Some(49_005));
+        for other in ["answers 65536 a b", "answers -1 a b", "answers 7", "free 0"] {
+            assert_eq!(after(other), Some(49_005), "{other}");
+        }
+        assert_eq!(after("answers 49007 a b"), Some(49_007));
+        // Of another plant.
+        assert_eq!(after("answers 49005 c"), None);
+        assert_eq!(after("held 2 c"), Some(49_005));
     }
 }

@@ -18,8 +18,7 @@ pub struct RightsSection {
 
 impl RightsSection {
     /// Whether any other user may command.
-    #[cfg(feature = "live")]
-    pub(crate) const fn has_commanders(&self) -> bool {
+    pub const fn has_commanders(&self) -> bool {
         !self.commanders.is_empty() || !self.commander_groups.is_empty()
     }
 }

@@ -1,5 +1,7 @@
 //! Suggestions for mistyped names.
 
+use std::sync::LazyLock;
+
 use super::Config;
 use super::values::keyed;
 
@@ -20,14 +22,20 @@ pub(super) fn most_alike<'k>(
         .map(|(_, name)| name)
 }
 
-/// The key of this name in another section, with its sections.
-pub(super) fn elsewhere(name: &str) -> Option<String> {
+/// All keys, with their sections.
+static KEYS: LazyLock<Vec<String>> = LazyLock::new(|| {
     let config = Config {
         x_plane: Some(super::XPlaneSection::default()),
         built_in: Some(super::BuiltInSection::default()),
         ..Config::default()
     };
-    let values = config.values().ok()?;
-    let mut keys = keyed(&values).into_iter().map(|(key, _)| key);
-    keys.find(|key| key.rsplit('.').next() == Some(name))
+    let values = config.values().ok();
+    let keyed = values.iter().flat_map(keyed);
+    keyed.map(|(key, _)| key).collect()
+});
+
+/// The key of this name in another section, with its sections.
+pub(super) fn elsewhere(name: &str) -> Option<String> {
+    let is_it = |key: &&String| key.rsplit('.').next() == Some(name);
+    KEYS.iter().find(is_it).cloned()
 }

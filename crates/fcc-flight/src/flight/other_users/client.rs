@@ -1,23 +1,27 @@
 //! Sends a command to a daemon of another user.
 
 use std::fs;
-use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
+use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::os::unix::fs::MetadataExt as _;
 use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use fcc_live::Command;
 use fcc_telemetry::Instance;
 use nix::sys::socket::{getsockopt, sockopt::PeerCredentials};
 use nix::unistd::User;
 
-use super::line::MOST_BYTES;
+use super::connect::connect_within;
+use super::line::Line;
 use super::wire::{answer_of, line_of};
 use super::{FOLDER, folder_of};
 
 /// A stop takes up to 12 s: the plant is prepared for its release first.
 const PATIENCE: Duration = Duration::from_secs(15);
+/// The kernel accepts a connection at once, unless the daemon's queue is full:
+/// that of one that lives is emptied 50 times a second.
+const CONNECTED_WITHIN: Duration = Duration::from_secs(5);
 
 /// Why a command to another user's daemon was not carried out.
 #[derive(thiserror::Error, Debug)]
@@ -38,6 +42,13 @@ pub enum OtherUserError {
     /// The daemon refused it.
     #[error("refused: {0}")]
     Refused(String),
+    /// The daemon is stopped, or hangs, and its queue is full.
+    #[error(
+        "fccd did not accept the connection within {} s: it is stopped, or hangs; the command was \
+         not carried out",
+        CONNECTED_WITHIN.as_secs()
+    )]
+    NotAccepted,
     /// The daemon is stopped, or hangs.
     #[error(
         "fccd did not answer within {} s, so it is not known whether it was carried out; it will \
@@ -75,28 +86,58 @@ pub fn command_another_users(
         }
     };
     let path = folder.join(instance.to_string());
-    let mut stream = UnixStream::connect(&path)
-        .map_err(|_| OtherUserError::NotThere(instance.clone(), path.clone()))?;
+    let mut stream =
+        connect_within(&path, CONNECTED_WITHIN).map_err(|error| match error.kind() {
+            ErrorKind::WouldBlock => OtherUserError::NotAccepted,
+            _ => OtherUserError::NotThere(instance.clone(), path.clone()),
+        })?;
     let peer = getsockopt(&stream, PeerCredentials).map_err(io::Error::from)?;
     if !is_of(&folder, peer.uid()) {
         return Err(OtherUserError::Foreign(path));
     }
-    stream.set_read_timeout(Some(PATIENCE))?;
+    let until = Instant::now() + PATIENCE;
     stream.set_write_timeout(Some(PATIENCE))?;
-    let sent = stream.write_all((line_of(command) + "\n").as_bytes());
-    let mut line = String::new();
     // A refusal may come before the command was read.
-    let read = BufReader::new(stream.take(MOST_BYTES as u64)).read_line(&mut line);
-    if let Some(answer) = answer_of(&line) {
+    let sent = stream.write_all((line_of(command) + "\n").as_bytes());
+    let received = receive_line(&mut stream, until);
+    if let Ok(line) = &received
+        && let Some(answer) = answer_of(line)
+    {
         return answer.map_err(OtherUserError::Refused);
     }
-    let is_late = |error: &io::Error| error.kind() == io::ErrorKind::WouldBlock;
-    if sent.as_ref().is_err_and(is_late) || read.as_ref().is_err_and(is_late) {
+    let is_late = |error: &io::Error| error.kind() == ErrorKind::WouldBlock;
+    if sent.as_ref().is_err_and(is_late) || received.as_ref().is_err_and(is_late) {
         return Err(OtherUserError::NoAnswer);
     }
     sent?;
-    read?;
-    Err(OtherUserError::Io(io::ErrorKind::UnexpectedEof.into()))
+    received?;
+    Err(OtherUserError::Io(ErrorKind::UnexpectedEof.into()))
+}
+
+/// The line that comes until then, however slowly.
+///
+/// # Errors
+/// `WouldBlock` if it is not complete by then; `UnexpectedEof` if it never will
+/// be; `InvalidData` if it is none.
+fn receive_line(stream: &mut UnixStream, until: Instant) -> io::Result<String> {
+    let mut line = Line::default();
+    let mut part = [0; 64];
+    loop {
+        let left = until.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            return Err(ErrorKind::WouldBlock.into());
+        }
+        stream.set_read_timeout(Some(left))?;
+        let read = match stream.read(&mut part) {
+            Ok(0) => return Err(ErrorKind::UnexpectedEof.into()),
+            Ok(read) => read,
+            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+            Err(error) => return Err(error),
+        };
+        if let Some(line) = line.add(part.get(..read).unwrap_or_default()) {
+            return line.map_err(|why| io::Error::new(ErrorKind::InvalidData, why));
+        }
+    }
 }
 
 /// The number of a user, who is given by name or, as sudo takes it, as `#1000`.

@@ -6,6 +6,7 @@
 //! end is (`SO_PEERCRED`, unix(7)).
 
 mod client;
+mod connect;
 mod line;
 mod panel;
 mod server;

@@ -14,6 +14,7 @@ use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::socket::{getsockopt, sockopt::PeerCredentials};
 use nix::unistd::geteuid;
 
+use super::connect::connect_within;
 use super::line::{Line, MOST_BYTES};
 use super::own_folder;
 use super::panel::Panel;
@@ -73,11 +74,14 @@ impl<C: Commandable> CommandSocket<C> {
     }
 
     fn open(&mut self) -> io::Result<()> {
+        let taken = || io::Error::other("another fccd has this name");
         let folder = own_folder(geteuid().as_raw());
         prepare(&folder)?;
         let path = folder.join(self.config.telemetry.instance.to_string());
-        match UnixStream::connect(&path) {
-            Ok(_) => return Err(io::Error::other("another fccd has this name")),
+        match connect_within(&path, Duration::ZERO) {
+            Ok(_) => return Err(taken()),
+            // It is stopped, and its queue is full.
+            Err(error) if error.kind() == ErrorKind::WouldBlock => return Err(taken()),
             // Left by a daemon that was killed, in a folder of this user alone.
             Err(_) => match fs::remove_file(&path) {
                 Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
