@@ -68,6 +68,60 @@ pub fn true_airspeed_mps(equivalent_mps: f64, altitude_m: f64) -> f64 {
     equivalent_mps / sqrt(density_ratio(altitude_m))
 }
 
+/// The ratio of the specific heats of air.
+const HEAT_RATIO: f64 = 1.4;
+
+/// Calibrated airspeed in m/s from total minus static pressure in Pa: the speed
+/// of that impact pressure at sea level, in subsonic flow (ICAO Doc 7488). What
+/// an indicator without error shows, and so the indicated airspeed of a pitot
+/// tube whose position error is not known. 0 for a pressure that is not
+/// positive.
+///
+/// ```
+/// use fcc_core::flight::atmosphere::calibrated_airspeed_mps;
+/// // At low speed √(2 q/ρ), 1.225 kg/m³: 612.5 Pa for 31.6 m/s.
+/// assert!((calibrated_airspeed_mps(612.5) - 31.6).abs() < 0.1);
+/// ```
+pub fn calibrated_airspeed_mps(differential_pa: f64) -> f64 {
+    mach(differential_pa, SEA_LEVEL_PRESSURE_PA) * speed_of_sound_mps(SEA_LEVEL_TEMPERATURE_K)
+}
+
+/// Total minus static pressure in Pa at a calibrated airspeed in m/s: the
+/// inverse of [`calibrated_airspeed_mps`].
+pub fn differential_pressure_pa(calibrated_mps: f64) -> f64 {
+    let mach = calibrated_mps / speed_of_sound_mps(SEA_LEVEL_TEMPERATURE_K);
+    SEA_LEVEL_PRESSURE_PA * (pow(1.0 + 0.2 * mach * mach, 3.5) - 1.0)
+}
+
+/// The Mach number from total minus static, and static pressure, both Pa:
+/// isentropic, subsonic (NACA Report 1135, 1953, equation 44). 0 for a
+/// differential pressure that is not positive.
+pub fn mach(differential_pa: f64, static_pa: f64) -> f64 {
+    sqrt(5.0 * (pow(differential_pa.max(0.0) / static_pa + 1.0, 2.0 / 7.0) - 1.0))
+}
+
+/// True airspeed in m/s from total minus static pressure and static pressure in
+/// Pa, and the temperature of the undisturbed air in K.
+///
+/// ```
+/// use fcc_core::flight::atmosphere::true_airspeed_from_pressures_mps;
+/// // At sea level in the standard atmosphere it is the calibrated one.
+/// let mps = true_airspeed_from_pressures_mps(1_632.0, 101_325.0, 288.15);
+/// assert!((mps - 51.44).abs() < 0.05);
+/// ```
+pub fn true_airspeed_from_pressures_mps(
+    differential_pa: f64,
+    static_pa: f64,
+    temperature_k: f64,
+) -> f64 {
+    mach(differential_pa, static_pa) * speed_of_sound_mps(temperature_k)
+}
+
+/// The speed of sound in m/s in air of a temperature in K.
+fn speed_of_sound_mps(temperature_k: f64) -> f64 {
+    sqrt(HEAT_RATIO * GAS_CONSTANT_J_PER_KG_K * temperature_k)
+}
+
 fn temperature_ratio(altitude_m: f64) -> f64 {
     1.0 + LAPSE_RATE_K_PER_M / SEA_LEVEL_TEMPERATURE_K * altitude_m.min(TROPOPAUSE_M)
 }
@@ -99,6 +153,45 @@ mod tests {
     fn an_inch_of_mercury_is_about_a_thousand_feet() {
         let feet = pressure_altitude_m(101_325.0 - 3_386.39) / 0.304_8;
         assert!((feet - 1_000.0).abs() < 100.0, "{feet}");
+    }
+
+    /// NACA Report 1135 (1953), table I: static over total pressure by Mach
+    /// number.
+    const ISENTROPIC: [(f64, f64); 4] = [
+        (0.1, 0.993_03),
+        (0.3, 0.939_47),
+        (0.5, 0.843_02),
+        (0.8, 0.656_02),
+    ];
+
+    /// ISO 2533:1975: speed of sound 340.294 m/s at sea level, 320.545 m/s at
+    /// 5,000 m geometric altitude, 255.676 K and 54,048.3 Pa.
+    #[test]
+    fn airspeeds_agree_with_the_tables_of_compressible_flow() {
+        for (number, ratio) in ISENTROPIC {
+            let at = |static_pa: f64| static_pa / ratio - static_pa;
+            // Five digits of the table: at low speed its last one is 1e-3 of q.
+            let within = 0.5e-5 / (1.0 - ratio);
+            let calibrated = calibrated_airspeed_mps(at(101_325.0));
+            assert!(
+                (calibrated / (340.294 * number) - 1.0).abs() < within,
+                "{number}"
+            );
+            let high = true_airspeed_from_pressures_mps(at(54_048.3), 54_048.3, 255.676);
+            assert!((high / (320.545 * number) - 1.0).abs() < within, "{number}");
+            let back = differential_pressure_pa(340.294 * number);
+            assert!(
+                (back / at(101_325.0) - 1.0).abs() < 2.0 * within,
+                "{number}"
+            );
+        }
+    }
+
+    /// Blown from behind, or a zero that drifted.
+    #[test]
+    fn a_negative_differential_pressure_is_no_airspeed() {
+        assert_eq!(calibrated_airspeed_mps(-3.0), 0.0);
+        assert_eq!(mach(-3.0, 90_000.0), 0.0);
     }
 
     #[test]

@@ -12,6 +12,7 @@
 mod altimeter;
 pub mod atmosphere;
 mod autopilot;
+pub mod calibration;
 pub mod control;
 pub mod guidance;
 pub mod inertial;

@@ -1,0 +1,80 @@
+use super::*;
+use crate::flight::orientation::EulerAngles;
+
+fn near(found: [f64; 3], expected: [f64; 3], within: f64) {
+    for (found, expected) in found.into_iter().zip(expected) {
+        assert!(
+            (found - expected).abs() < within,
+            "{found} is not {expected}"
+        );
+    }
+}
+
+/// The faults of a sensor are made here by themselves, axis by axis.
+#[test]
+fn a_calibration_undoes_what_the_sensor_did() {
+    let bias = [0.4, -0.2, 0.1];
+    // What 1 is shown as, and how far each axis points beside its own: y 1° and
+    // 2° towards x and z.
+    let gain = [1.02, 0.98, 1.01];
+    let calibration = AxesCalibration::new(&Axes {
+        bias,
+        scale: gain.map(|gain| 1.0 / gain),
+        ..Axes::default()
+    });
+    let truth = [1.5, -2.5, -9.81];
+    let given = [0, 1, 2].map(|at: usize| truth[at] * gain[at] + bias[at]);
+    near(calibration.applied(given), truth, 1e-12);
+}
+
+/// A sensor whose y axis points 1° towards x gives cos 1° of y and sin 1° of x:
+/// T is the inverse of that, to the first order.
+#[test]
+fn misalignment_is_that_of_small_angles() {
+    let angle = 1.0_f64.to_radians();
+    let calibration = AxesCalibration::new(&Axes {
+        misalignment: [0.0, 0.0, -angle, 0.0, 0.0, 0.0],
+        ..Axes::default()
+    });
+    let (x, y) = (9.81, 0.0);
+    let given = [x, y * angle.cos() + x * angle.sin(), 0.0];
+    near(
+        calibration.applied(given),
+        [x, y, 0.0],
+        9.81 * angle * angle,
+    );
+}
+
+/// An accelerometer on a shelf that rises by 5° forward: level, it measures
+/// g sin 5° forward and g cos 5° up.
+#[test]
+fn a_free_rotation_turns_the_sensor_back() {
+    let pitch_rad = 5.0_f64.to_radians();
+    let calibration = AxesCalibration::new(&Axes {
+        rotation: Rotation::of_angles(EulerAngles {
+            pitch_rad,
+            ..EulerAngles::default()
+        }),
+        ..Axes::default()
+    });
+    let given = [9.81 * pitch_rad.sin(), 0.0, -9.81 * pitch_rad.cos()];
+    near(calibration.applied(given), [0.0, 0.0, -9.81], 1e-12);
+}
+
+/// First the faults of the sensor in its own axes, then the mounting, then the
+/// free rotation in those of the aircraft.
+#[test]
+fn the_order_is_that_of_the_documentation() {
+    let calibration = AxesCalibration::new(&Axes {
+        mounting: "right-backward-down".parse().unwrap(),
+        rotation: Rotation::of_angles(EulerAngles {
+            roll_rad: core::f64::consts::FRAC_PI_2,
+            ..EulerAngles::default()
+        }),
+        bias: [1.0, 0.0, 0.0],
+        scale: [2.0, 1.0, 1.0],
+        ..Axes::default()
+    });
+    // 3 along x: (3 - 1) · 2 to the right, which the roll turns down.
+    near(calibration.applied([3.0, 0.0, 0.0]), [0.0, 0.0, 4.0], 1e-12);
+}
