@@ -14,7 +14,12 @@ libfuzzer_sys::fuzz_target!(|input: &[u8]| {
         return;
     };
     let before = fs::read(path).expect("just written");
-    if recover(path, |_| {}).is_ok() {
+    if let Ok(recovered) = recover(path, |_| {}) {
+        // Or the next one would be kept beside it, under the next free name.
+        if let Some(kept) = recovered.kept {
+            assert_eq!(fs::read(&kept).expect("it was kept"), before);
+            fs::remove_file(kept).expect("it was kept");
+        }
         let whole = entry(path).expect("it was recovered");
         assert_eq!(whole.file, Wholeness::Whole);
     } else {

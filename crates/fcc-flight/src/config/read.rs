@@ -261,6 +261,16 @@ mod tests {
         }
     }
 
+    /// The adapter's own checks follow those of the ranges.
+    #[test]
+    fn a_number_that_is_no_duration_is_a_problem() {
+        for value in ["-1", "nan", "1e300"] {
+            let found = problems(&format!("[x-plane]\nresubscribe_s = {value}\n"));
+            let keys: Vec<_> = found.iter().map(|problem| problem.key.as_deref()).collect();
+            assert_eq!(keys, [Some("x-plane.resubscribe_s")], "{value}");
+        }
+    }
+
     #[test]
     fn a_long_list_is_refused_as_a_whole() {
         for entry in [

@@ -129,7 +129,8 @@ impl From<&XPlaneSection> for XPlaneConfig {
             rate_hz: section.rate_hz,
             engines: section.engines,
             engage_switch: section.engage_switch.clone(),
-            resubscribe: Duration::from_secs_f64(section.resubscribe_s),
+            // One that is out of its range is reported; here it must not panic.
+            resubscribe: Duration::try_from_secs_f64(section.resubscribe_s).unwrap_or_default(),
             silent_after: Duration::from_millis(section.silent_after_ms),
             datagrams_per_tick: section.datagrams_per_tick,
             fallback_after: Duration::from_millis(section.fallback_after_ms),
