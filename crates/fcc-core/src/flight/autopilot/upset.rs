@@ -50,6 +50,8 @@ impl Autopilot {
         now: Time,
         estimate: &Estimate,
     ) -> Option<Surfaces> {
+        let dt_s = self.clock.step_s();
+        let estimate = &self.recovery.with_gained_airspeed(estimate, dt_s);
         let flown = self.envelope();
         let envelope = Envelope {
             stall_airspeed_mps: flown.stall_airspeed_mps,
@@ -62,7 +64,7 @@ impl Autopilot {
             heading: &self.heading,
             altitude: &self.altitude,
             followed: self.is_followed(now),
-            dt_s: self.clock.step_s(),
+            dt_s,
         };
         let trims = self.trims();
         // What is above the configured stalling speed is for the outer loops to regain.
@@ -87,7 +89,7 @@ impl Autopilot {
             self.heading.lead_from(self.setpoints.roll_rad);
         }
         self.setpoints = Setpoints {
-            roll_rad: self.heading.led(0.0, self.clock.step_s()),
+            roll_rad: self.heading.led(0.0, dt_s),
             climb_rate_mps: 0.0,
             pitch_rad: 0.0,
             ..self.setpoints

@@ -65,6 +65,10 @@ pub(crate) struct RecoveryInputs<'a> {
     pub(crate) dt_s: f64,
 }
 
+/// The share of the acceleration that counts as gained airspeed: the rest is for a wind
+/// that changes and the error of the angle of attack.
+const GAINED_SHARE: f64 = 0.8;
+
 /// Flies the aircraft out of an upset.
 #[derive(Clone, Debug)]
 pub(crate) struct Recovery {
@@ -79,6 +83,8 @@ pub(crate) struct Recovery {
     side: f64,
     spinning_s: f64,
     found_stall_mps: f64,
+    /// The airspeed since the upset by what accelerates the aircraft, m/s.
+    gained_mps: f64,
 }
 
 impl Recovery {
@@ -98,6 +104,7 @@ impl Recovery {
             side: 0.0,
             spinning_s: 0.0,
             found_stall_mps: 0.0,
+            gained_mps: 0.0,
         }
     }
 
@@ -120,6 +127,27 @@ impl Recovery {
     /// elevator that was fully up has always had an effect.
     pub(crate) const fn found_stall_mps(&self) -> f64 {
         self.found_stall_mps
+    }
+
+    /// The estimate with an airspeed that is at least what the acceleration along the
+    /// path has made of it since the upset began: one that reads too little, and ever
+    /// less in a dive, would unload the wing until the ground.
+    pub(crate) fn with_gained_airspeed(&mut self, estimate: &Estimate, dt_s: f64) -> Estimate {
+        if !self.upset.is_upset() || self.upset.is_spinning() {
+            self.gained_mps = estimate.airspeed_mps;
+            return *estimate;
+        }
+        let gains = estimate.acceleration_mps2;
+        self.gained_mps += if gains > 0.0 { GAINED_SHARE } else { 1.0 } * gains * dt_s;
+        if self.gained_mps <= estimate.airspeed_mps {
+            return *estimate;
+        }
+        let true_per_shown = estimate.true_airspeed_mps / estimate.airspeed_mps.max(1.0);
+        Estimate {
+            airspeed_mps: self.gained_mps,
+            true_airspeed_mps: self.gained_mps * limit(true_per_shown, 1.0, 1.5),
+            ..*estimate
+        }
     }
 
     /// Ends a recovery that cannot go on.

@@ -131,6 +131,9 @@ const STALLED_RAD: f64 = 0.349;
 /// ... at no more than this multiple of the stalling airspeed: faster, such a
 /// difference of attitude and path is a downdraught's.
 const STALLED_BELOW: f64 = 1.0;
+/// ... and with no more load than this multiple of what the wing has there, (V/Vs)²: half as
+/// much again for an aircraft lighter than was configured. With more the airspeed is wrong.
+const STALLED_LOAD: f64 = 1.5;
 const STALLED_FOR_S: f64 = 0.6;
 /// At any airspeed, since its sensor may be wrong, a wing is stalled that answers
 /// an elevator this far up neither with load, g, nor with a pitch rate, rad/s (5
@@ -185,7 +188,11 @@ impl UpsetDetector {
         let stall_mps = envelope.stall_airspeed_mps;
         let rates = estimate.body_rates;
         let stalled = motion.angle_of_attack_rad > STALLED_RAD
-            && estimate.airspeed_mps < STALLED_BELOW * stall_mps;
+            && estimate.airspeed_mps < STALLED_BELOW * stall_mps
+            && estimate.load_factor
+                < STALLED_LOAD
+                    * (estimate.airspeed_mps / stall_mps)
+                    * (estimate.airspeed_mps / stall_mps);
         self.stalled_s = lasting(self.stalled_s, stalled, dt_s);
         let beyond_rad = motion.angle_of_attack_rad - envelope.max_angle_of_attack_rad;
         let unanswered = elevator > FULL_UP

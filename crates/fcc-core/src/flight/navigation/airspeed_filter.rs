@@ -146,6 +146,12 @@ impl AirspeedFilter {
         self.climb_rate_by(self.kept, sample)
     }
 
+    /// The angle of attack that the lift needs at an airspeed, rad.
+    pub(super) fn lift_angle_rad(&self, sample: &ForceSample, airspeed_mps: f64) -> f64 {
+        let slower = self.prior.reference_mps / airspeed_mps.max(MIN_AIRSPEED_MPS);
+        self.x[4] + self.x[5] * sample.up * squared(slower)
+    }
+
     fn climb_rate_by(&self, [.., zero, angle]: State, sample: &ForceSample) -> f64 {
         let alpha = zero + angle * sample.up * squared(self.slower());
         self.at_mps() / sample.sqrt_density * Upward::of(sample).sin_path(alpha)

@@ -85,6 +85,8 @@ pub(super) struct AirspeedMonitor {
     agrees_s: f64,
     /// For how long a doubted sensor has been lower than the forces, near the stall, s.
     near_stall_s: f64,
+    /// It was believed for that, and has not agreed since.
+    was_near_stall: bool,
     /// For how long the models still learn before they are compared, s.
     settles_s: f64,
     /// For how long the models have not held, s.
@@ -129,6 +131,7 @@ impl AirspeedMonitor {
             wind_s: 0.0,
             agrees_s: 0.0,
             near_stall_s: 0.0,
+            was_near_stall: false,
             settles_s: 0.0,
             upset_s: 0.0,
             reference: Reference::NONE,

@@ -32,6 +32,10 @@ const ANOTHER_BELIEVED_AFTER_S: f64 = 1.0;
 /// for this time, s: in a stall the models do not hold, and too slow is more dangerous than too fast.
 const NEAR_STALL_RAD: f64 = 0.25;
 const NEAR_STALL_AFTER_S: f64 = 1.0;
+/// ... but once only until it has agreed, and with at least this load, g, for which the lift
+/// needs no more than this angle at the sensor's airspeed, rad (24°): no wing has more.
+const NEAR_STALL_LOAD: f64 = 0.5;
+const NO_WING_RAD: f64 = 0.42;
 /// Doubt needs models that have learned the aircraft for this time, s; for this
 /// one if the sensor has stepped, which they need not tell.
 const LEARNED_S: f64 = 20.0;
@@ -119,7 +123,7 @@ impl AirspeedMonitor {
     }
 
     /// Doubts a sensor that has stepped, whatever else is measured: its airspeed
-    /// before is the one that is known. Not if it has returned from an airspeed that
+    /// before is the one that is known, unless that could have been doubted. Not if it has returned from an airspeed that
     /// could have been doubted to that of the older copy.
     pub(super) fn doubt_step(
         &mut self,
@@ -135,12 +139,14 @@ impl AirspeedMonitor {
             return false;
         };
         let likely_mps = bank.older.airspeed_mps();
-        let was_wrong_mps = (before_mps - likely_mps).abs();
-        let returns = was_wrong_mps > self.limit_mps(&bank.older)
-            && (sensor_mps - likely_mps).abs() < was_wrong_mps;
+        let differed_mps = (before_mps - likely_mps).abs();
+        let was_wrong = differed_mps > self.limit_mps(&bank.older);
+        let returns = was_wrong && (sensor_mps - likely_mps).abs() < differed_mps;
         let doubts = !returns && input.may_doubt && bank.learned_s > LEARNED_FOR_STEP_S;
         if doubts {
-            bank.older.adopt_known(before_mps);
+            if !was_wrong {
+                bank.older.adopt_known(before_mps);
+            }
             self.begin_doubt(bank, input, (sensor_mps, source), sensor_mps - before_mps);
         }
         doubts
@@ -167,14 +173,19 @@ impl AirspeedMonitor {
         } else {
             ANOTHER_BELIEVED_AFTER_S
         };
-        let is_near_stall =
-            differs < 0.0 && angle_of_attack_rad(&input.sample, filter_mps) > NEAR_STALL_RAD;
+        let is_near_stall = differs < 0.0
+            && !self.was_near_stall
+            && input.sample.up > NEAR_STALL_LOAD
+            && angle_of_attack_rad(&input.sample, filter_mps) > NEAR_STALL_RAD
+            && bank.older.lift_angle_rad(&input.sample, sensor_mps) < NO_WING_RAD;
         self.near_stall_s = if is_near_stall {
             self.near_stall_s + dt_s
         } else {
             0.0
         };
-        if self.agrees_s > needed_s || self.near_stall_s > NEAR_STALL_AFTER_S {
+        let agrees = self.agrees_s > needed_s;
+        if agrees || self.near_stall_s > NEAR_STALL_AFTER_S {
+            self.was_near_stall = !agrees;
             bank.believing = bank.older;
             bank.believing.adopt(sensor_mps);
             self.follow_sensor(bank);
