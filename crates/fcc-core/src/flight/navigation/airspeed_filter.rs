@@ -302,17 +302,14 @@ impl AirspeedFilter {
         );
     }
 
-    /// What a sudden difference of force, in weights, is the change of: the place
-    /// in the state, and its change per force. An engine that fails loses its
-    /// thrust at every airspeed and throttle alike, so it is the thrust ratio, as
-    /// far as that stays between none and 1.5 times the expected one.
+    /// The place in the state of what has changed with a difference of force, in weights, and
+    /// its change per force: an engine that fails loses its thrust at every airspeed alike, so
+    /// the thrust ratio, as far as that stays between none and 1.5 times the expected one.
     fn changed_by_engine(&self, by: f64, per_ratio: f64) -> (usize, f64) {
-        let ratio = self.x[3] + by / per_ratio.max(1e-3);
-        if (-0.02..1.5 * self.prior.full_thrust_ratio).contains(&ratio) {
-            (3, 1.0 / per_ratio.max(1e-3))
-        } else {
-            (2, 1.0)
-        }
+        let per_force = 1.0 / per_ratio.max(1e-3);
+        let ratio = self.x[3] + by * per_force;
+        let is_thrust = (-0.02..1.5 * self.prior.full_thrust_ratio).contains(&ratio);
+        if is_thrust { (3, per_force) } else { (2, 1.0) }
     }
 
     /// Force along x over weight, with the models of `by` and the present
