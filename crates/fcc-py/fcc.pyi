@@ -18,6 +18,7 @@ import numpy.typing as npt
 _Array: TypeAlias = npt.NDArray[np.float64]
 _Records: TypeAlias = npt.NDArray[np.void]
 _Path: TypeAlias = str | PathLike[str]
+_Source: TypeAlias = Sequence[npt.ArrayLike]
 
 __version__: Final[str]
 MEASUREMENTS: Final[tuple[str, ...]]
@@ -828,6 +829,22 @@ def quaternion_from_euler(roll_rad: float, pitch_rad: float, heading_rad: float)
 def euler_from_quaternion(quaternion: npt.ArrayLike) -> tuple[float, float, float]: ...
 def body_to_earth(quaternion: npt.ArrayLike, vector: npt.ArrayLike) -> _Array: ...
 def earth_to_body(quaternion: npt.ArrayLike, vector: npt.ArrayLike) -> _Array: ...
+def navigate(
+    *,
+    gyroscope: _Source | None = None,
+    accelerometer: _Source | None = None,
+    magnetometer: _Source | None = None,
+    static_pressure: _Source | None = None,
+    differential_pressure: _Source | None = None,
+    airspeed: _Source | None = None,
+    gnss_position: _Source | None = None,
+    gnss_velocity: _Source | None = None,
+    delays_s: dict[str, float] | None = None,
+    mounting: npt.ArrayLike | dict[str, npt.ArrayLike] | None = None,
+    method: str = "kalman",
+    year: float | None = None,
+) -> dict[str, Any]:
+    """Compute attitude, velocity, position and wind from raw samples: arrays with sigmas."""
 
 @final
 class Expiry:

@@ -39,6 +39,7 @@ mod item;
 mod lateness;
 mod marks;
 mod message;
+mod offered;
 mod place;
 mod private_service;
 mod publisher;

@@ -1,15 +1,33 @@
 //! Notices that files were removed, replaced or written by another program.
 
-use std::fs::{self, Metadata};
-use std::os::unix::fs::MetadataExt;
-use std::path::PathBuf;
+use std::fs::{self, File, Metadata};
+use std::os::unix::fs::{FileExt, MetadataExt};
+use std::path::{Path, PathBuf};
 
 use super::place::entries;
 use fcc_telemetry::RunFolder;
 
 /// The marks of a set of files.
 #[derive(Default, Debug)]
-pub(super) struct Marks(Vec<(PathBuf, Mark)>);
+pub(super) struct Marks(Vec<Marked>);
+
+#[derive(Debug)]
+struct Marked {
+    path: PathBuf,
+    mark: Mark,
+    mapped: Option<Mapped>,
+}
+
+/// A file that programs map and write. iceoryx2 begins it with its version, once.
+/// Who overwrites it through a mapping changes nothing else that can be seen
+/// without reading all of it.
+#[derive(Debug)]
+struct Mapped {
+    file: File,
+    begins: [u8; BEGINNING_BYTES],
+}
+
+const BEGINNING_BYTES: usize = 8;
 
 /// Changes when a file is replaced, cut off or extended, when its mode changes,
 /// and when one that nobody should write is written.
@@ -35,23 +53,62 @@ impl Mark {
     }
 }
 
+impl Marked {
+    fn of(path: PathBuf) -> Option<Self> {
+        let found = fs::symlink_metadata(&path).ok()?;
+        found.is_file().then(|| Self {
+            mark: Mark::of(&found),
+            mapped: Mapped::of(&path, &found),
+            path,
+        })
+    }
+
+    fn differs(&self) -> bool {
+        let found = fs::symlink_metadata(&self.path);
+        found.map_or(true, |found| Mark::of(&found) != self.mark)
+            || self.mapped.as_ref().is_some_and(Mapped::differs)
+    }
+}
+
+impl Mapped {
+    /// None of a file that is empty: it is locked by its process, and a process
+    /// that closes it unlocks it (fcntl(2)).
+    fn of(path: &Path, found: &Metadata) -> Option<Self> {
+        if found.mode() & 0o222 == 0 || found.size() == 0 {
+            return None;
+        }
+        let file = File::open(path).ok()?;
+        Some(Self {
+            begins: beginning(&file),
+            file,
+        })
+    }
+
+    fn differs(&self) -> bool {
+        beginning(&self.file) != self.begins
+    }
+}
+
+/// Zeros in place of what a shorter file lacks. Read, not mapped: a file that is
+/// cut off meanwhile does no harm.
+fn beginning(file: &File) -> [u8; BEGINNING_BYTES] {
+    let mut bytes = [0; BEGINNING_BYTES];
+    let _ = file.read_at(&mut bytes, 0);
+    bytes
+}
+
 impl Marks {
     /// Of all files that are now in a folder and in those in it.
     pub(super) fn of(folder: &RunFolder) -> Self {
         let outer: Vec<_> = entries(folder.as_path()).collect();
         let inner = outer.iter().flat_map(|path| entries(path));
-        let files = outer.iter().cloned().chain(inner).filter_map(|path| {
-            let found = fs::symlink_metadata(&path).ok()?;
-            found.is_file().then(|| (path, Mark::of(&found)))
-        });
-        Self(files.collect())
+        let files = outer.iter().cloned().chain(inner);
+        Self(files.filter_map(Marked::of).collect())
     }
 
     /// Whether a file is no longer as it was.
     pub(super) fn differ(&self) -> bool {
-        self.0.iter().any(|(path, mark)| {
-            fs::symlink_metadata(path).map_or(true, |found| Mark::of(&found) != *mark)
-        })
+        self.0.iter().any(Marked::differs)
     }
 }
 
@@ -74,11 +131,15 @@ mod tests {
             assert!(marks.0.len() == 1 && !marks.differ());
             marks
         };
-        // Of the same length: watchers write as well.
+        // Of the same length: watchers write as well, but not the version.
+        fs::write(&path, "version.words").unwrap();
         let marks = before();
-        fs::write(&path, "other").unwrap();
+        fs::write(&path, "version.other").unwrap();
         assert!(!marks.differ());
-        fs::write(&path, "w").unwrap();
+        fs::write(&path, "another.other").unwrap();
+        assert!(marks.differ());
+        let marks = before();
+        fs::write(&path, "another").unwrap();
         assert!(marks.differ());
         let marks = before();
         fs::set_permissions(&path, Permissions::from_mode(0o400)).unwrap();
@@ -86,7 +147,7 @@ mod tests {
         // Nobody writes one that is only read.
         let marks = before();
         let later = SystemTime::now() + Duration::from_secs(1);
-        fs::File::open(&path).unwrap().set_modified(later).unwrap();
+        File::open(&path).unwrap().set_modified(later).unwrap();
         assert!(marks.differ());
         let marks = before();
         fs::remove_file(&path).unwrap();

@@ -8,12 +8,13 @@ use std::time::{Duration, Instant};
 use fcc_core::framework::RecordOf;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::resource::{Resource, setrlimit};
+use nix::time::{ClockId, clock_gettime};
 
 use super::PublishError;
 use super::item::Item;
 use super::message::{self, Encoded, FromPublisher, Received, ToPublisher, put, take};
+use super::offered::is_offered;
 use super::publishing_thread::{Order, PublishingThread};
-use super::row_watcher::is_offered;
 use fcc_telemetry::schema::read_words;
 use fcc_telemetry::{Instance, Telemetry};
 
@@ -27,6 +28,14 @@ const TRY_EVERY: Duration = Duration::from_millis(500);
 const TRY_AGAIN_AFTER: Duration = Duration::from_millis(100);
 /// Attempts in a row that fail: shared memory was damaged.
 const MOST_FAILURES: u32 = 2;
+/// The thread serves a new watcher each time that it makes progress: one that
+/// gets nothing after so many times gets nothing any more. The first may have
+/// begun before it watched.
+const SERVED_AFTER: u64 = 3;
+/// A thread that makes no progress in so much of the processor's time reads
+/// damaged memory without end. One that waits, or gets no time on the processor,
+/// is waited for: the daemon ends this process if that lasts.
+const SPINS_FOR: Duration = Duration::from_millis(150);
 
 /// Why it ended before the daemon did.
 #[derive(thiserror::Error, Debug)]
@@ -81,7 +90,7 @@ pub fn run_publisher<C: Telemetry>(socket: &impl AsFd) -> Result<(), RelayError>
         while let Some(text) = thread.text() {
             put(socket, encoded.other(&FromPublisher::Text(text)));
         }
-        if ended || own.is_damaged() {
+        if ended || own.is_damaged(&thread) {
             // Its ends would touch shared memory.
             std::mem::forget(thread);
             return Err(RelayError::Damaged);
@@ -182,10 +191,18 @@ impl Own {
 
     /// Whether a new watcher would find nothing. Finds what other programs
     /// write through their mappings, unless it ends this process.
-    fn is_damaged(&mut self) -> bool {
+    fn is_damaged<C: Telemetry>(&mut self, thread: &PublishingThread<C>) -> bool {
         let now = Instant::now();
         if self.is_described && now >= self.next_try {
-            (self.failures, self.next_try) = if is_offered(&self.instance) {
+            let beats = || thread.progress().beats.load(Ordering::Relaxed);
+            let mut last = None;
+            let goes_on = || {
+                thread.wake();
+                let (served, began) =
+                    *last.get_or_insert_with(|| (beats() + SERVED_AFTER, cpu_time()));
+                beats() < served && cpu_time().saturating_sub(began) < SPINS_FOR
+            };
+            (self.failures, self.next_try) = if is_offered(&self.instance, goes_on) {
                 (0, now + TRY_EVERY)
             } else {
                 (self.failures + 1, now + TRY_AGAIN_AFTER)
@@ -205,4 +222,9 @@ impl Own {
         (self.beats, self.next_sign) = (beats, now + ALIVE_EVERY);
         true
     }
+}
+
+/// The processor's time that all threads of this process have used.
+fn cpu_time() -> Duration {
+    clock_gettime(ClockId::CLOCK_PROCESS_CPUTIME_ID).map_or(Duration::ZERO, Duration::from)
 }

@@ -22,7 +22,7 @@ use fcc_telemetry::schema::RecordDescription;
 pub(super) const PATIENCE: Duration = Duration::from_secs(5);
 const LOOK_EVERY: Duration = Duration::from_millis(5);
 
-type In<T> = Subscriber<Ipc, T, ()>;
+pub(super) type In<T> = Subscriber<Ipc, T, ()>;
 
 /// How often it is checked, while nothing arrives, whether another process
 /// publishes.
@@ -69,13 +69,26 @@ impl Opened {
             return Err(WatchError::NoSharedMemory(words));
         }
         let access = services::access(&place.root).map_err(WatchError::NoSharedMemory)?;
-        let info = read_info(&access, place, instance, PATIENCE)?;
+        // All at once: who publishes serves them together, each 20 ms. Those of
+        // another version have other names.
+        let info = INFO.watch::<Info>(&access, instance)?;
+        let infos = subscribe(&info, instance)?;
+        let records = RECORD.watch_slices(&access, instance);
+        let records = records.and_then(|service| subscribe(&service, instance));
+        let columns = COLUMNS.watch_slices::<u8>(&access, instance);
+        let texts = columns.and_then(|service| Ok((subscribe(&service, instance)?, service)));
+        let events = EVENT.watch(&access, instance);
+        let events = events.and_then(|service| subscribe(&service, instance));
+        let statuses = STATUS.watch(&access, instance);
+        let statuses = statuses.and_then(|service| subscribe(&service, instance));
+        let info = first(&info, (place, instance), PATIENCE, || newest(&infos))?;
         check_layout(&info, instance)?;
+        let (texts, columns) = texts?;
         let opened = Self {
-            records: subscribe(&RECORD.watch_slices(&access, instance)?, instance)?,
-            events: subscribe(&EVENT.watch(&access, instance)?, instance)?,
-            statuses: subscribe(&STATUS.watch(&access, instance)?, instance)?,
-            columns: read_columns(&access, place, instance)?,
+            records: records?,
+            events: events?,
+            statuses: statuses?,
+            columns: read_columns(&texts, &columns, place, instance)?,
             info,
             _access: access,
         };
@@ -231,28 +244,6 @@ impl RowWatcher {
     }
 }
 
-/// Whether a new watcher finds what is published, or there is no room for one.
-pub(super) fn is_offered(instance: &Instance) -> bool {
-    let Presence::Here(place) = look(instance) else {
-        return false;
-    };
-    if space::too_little(place.root.as_path(), space::NEEDED_BYTES).is_some() {
-        return true;
-    }
-    let Ok(access) = services::access(&place.root) else {
-        return false;
-    };
-    let offered = read_info(&access, &place, instance, OFFERED_WITHIN);
-    match offered.and_then(|_| RECORD.watch_slices::<u64>(&access, instance)) {
-        Ok(records) => records.dynamic_config().number_of_publishers() == 1,
-        Err(WatchError::TooMany(_)) => true,
-        Err(_) => false,
-    }
-}
-
-/// How long the publishing process' own thread may take to answer it.
-const OFFERED_WITHIN: Duration = Duration::from_millis(300);
-
 /// Whether this program can read what the daemon publishes.
 pub(super) fn check_layout(info: &Info, instance: &Instance) -> Result<(), WatchError> {
     if info.is_understood() {
@@ -279,13 +270,12 @@ pub(super) fn read_info(
 }
 
 fn read_columns(
-    access: &Access,
+    texts: &In<[u8]>,
+    service: &Service<[u8]>,
     place: &FoundPlace,
     instance: &Instance,
 ) -> Result<RecordDescription, WatchError> {
-    let service = COLUMNS.watch_slices::<u8>(access, instance)?;
-    let texts = subscribe(&service, instance)?;
-    let text = first(&service, (place, instance), PATIENCE, || {
+    let text = first(service, (place, instance), PATIENCE, || {
         let found = texts.receive().map_err(failed)?;
         Ok(found.map(|sample| String::from_utf8_lossy(&sample).into_owned()))
     })?;
@@ -317,7 +307,7 @@ fn first<T: Debug + IceoryxSend + ?Sized, R>(
     }
 }
 
-fn subscribe<T: Debug + IceoryxSend + ?Sized>(
+pub(super) fn subscribe<T: Debug + IceoryxSend + ?Sized>(
     service: &Service<T>,
     instance: &Instance,
 ) -> Result<In<T>, WatchError> {
@@ -337,7 +327,9 @@ fn next<T: Debug + ZeroCopySend + Copy>(from: &In<T>) -> Result<Option<T>, Watch
     Ok(found.map(|sample| *sample))
 }
 
-fn newest<T: Debug + ZeroCopySend + Copy>(from: &In<T>) -> Result<Option<T>, WatchError> {
+pub(super) fn newest<T: Debug + ZeroCopySend + Copy>(
+    from: &In<T>,
+) -> Result<Option<T>, WatchError> {
     let mut newest = None;
     while let Some(found) = next(from)? {
         newest = Some(found);
@@ -353,6 +345,7 @@ fn failed(error: ReceiveError) -> WatchError {
 mod tests {
     use super::*;
     use crate::Publisher;
+    use crate::offered::is_offered;
 
     /// As of a daemon that is stopped: what it publishes does not arrive.
     #[test]
@@ -371,7 +364,8 @@ mod tests {
             message.contains(&format!("fccd '{name}' runs, but did not answer within")),
             "{message}"
         );
-        assert!(!is_offered(&instance));
+        let mut looks = 0..3;
+        assert!(!is_offered(&instance, || looks.next().is_some()));
         drop(publisher);
         assert_eq!(find(), WatchError::NotRunning(instance.clone()));
     }

@@ -9,6 +9,7 @@
 //! | `aircraft` | the built-in aircraft alone |
 //! | `config` | configurations, by key |
 //! | `blocks`, `formulas` | the core's blocks and formulas |
+//! | `navigate` | navigation from arrays of raw samples |
 //! | `timers` | the kernel's timers |
 //! | `recordings` | recordings of any plant as numpy arrays; list, recover, report, replay |
 //! | `live` | a running loop of any plant, watched and given commands |
@@ -54,6 +55,8 @@ mod json;
 pub mod live;
 #[macro_use]
 pub mod machine;
+#[cfg(feature = "flight")]
+mod navigate;
 pub mod recordings;
 #[cfg(feature = "flight")]
 mod stepped;

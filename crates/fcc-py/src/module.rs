@@ -9,7 +9,7 @@ use pyo3::types::PyTuple;
 use crate::live;
 use crate::{
     aircraft, autopilot, blocks, config, errors, events, fleet, flight, formulas, machine,
-    recordings, structured, timers, values,
+    navigate, recordings, structured, timers, values,
 };
 
 /// The flight control computer: its autopilot and aircraft in lockstep, its
@@ -60,6 +60,8 @@ fn fcc(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(formulas::euler_from_quaternion, module)?)?;
     module.add_function(wrap_pyfunction!(formulas::body_to_earth, module)?)?;
     module.add_function(wrap_pyfunction!(formulas::earth_to_body, module)?)?;
+
+    module.add_function(wrap_pyfunction!(navigate::navigate, module)?)?;
 
     module.add_class::<timers::PyTimer>()?;
     module.add_class::<timers::PyExpiry>()?;

@@ -1,0 +1,170 @@
+//! Navigation from arrays of raw samples.
+
+mod magnetism;
+mod mounting;
+mod result;
+mod sources;
+
+use std::time::Duration;
+
+use fcc_core::flight::inertial::{
+    InertialNavigation, Innovation, KalmanConfig, KalmanNavigation, Observation, Solution,
+    ThesisNavigation,
+};
+use fcc_core::framework::Time;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use magnetism::earth_field_ut;
+use mounting::Mounting;
+use sources::{Event, Given, Sources};
+
+/// Steps between two looks for Ctrl-C.
+const PIECE: usize = 16_384;
+/// An accelerometer slower than this is not waited for, s.
+const LONGEST_WAIT_S: f64 = 0.05;
+
+/// Attitude, velocity, position, wind and biases from arrays of raw samples of
+/// sensors: each source is a tuple of its times in s and its values, which are
+/// n × 3 or three arrays of n for a vector. Any may be left out, but not both
+/// gyroscope and accelerometer; rates and times are as they are. Body axes
+/// forward, right, down; the accelerometer shows specific force, (0, 0, -9.8) at
+/// rest. Samples that are not finite or not possible are ignored.
+#[pyfunction]
+#[pyo3(signature = (
+    *,
+    gyroscope = None,
+    accelerometer = None,
+    magnetometer = None,
+    static_pressure = None,
+    differential_pressure = None,
+    airspeed = None,
+    gnss_position = None,
+    gnss_velocity = None,
+    delays_s = None,
+    mounting = None,
+    method = "kalman",
+    year = None,
+))]
+#[allow(clippy::too_many_arguments, reason = "named arguments of Python")]
+pub(crate) fn navigate<'py>(
+    py: Python<'py>,
+    gyroscope: Option<Bound<'py, PyAny>>,
+    accelerometer: Option<Bound<'py, PyAny>>,
+    magnetometer: Option<Bound<'py, PyAny>>,
+    static_pressure: Option<Bound<'py, PyAny>>,
+    differential_pressure: Option<Bound<'py, PyAny>>,
+    airspeed: Option<Bound<'py, PyAny>>,
+    gnss_position: Option<Bound<'py, PyAny>>,
+    gnss_velocity: Option<Bound<'py, PyAny>>,
+    delays_s: Option<&Bound<'py, PyAny>>,
+    mounting: Option<&Bound<'py, PyAny>>,
+    method: &str,
+    year: Option<f64>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let is_thesis = match method {
+        "kalman" => false,
+        "thesis" => true,
+        other => {
+            return Err(PyValueError::new_err(format!(
+                "method is {other:?}: choose \"kalman\" or \"thesis\""
+            )));
+        }
+    };
+    let mounting = Mounting::read(mounting)?;
+    let given = Given {
+        gyroscope,
+        accelerometer,
+        magnetometer,
+        static_pressure,
+        differential_pressure,
+        airspeed,
+        gnss_position,
+        gnss_velocity,
+    };
+    let sources = Sources::read(&given, delays_s, &mounting)?;
+    let field = match sources.first_place() {
+        Some(place) if sources.has_field() && !is_thesis => Some(earth_field_ut(place, year)?),
+        _ => {
+            magnetism::check(year)?;
+            None
+        }
+    };
+    let reference = match (sources.has_field(), field.is_some(), sources.has_receiver()) {
+        (true, true, _) => "true",
+        (false, _, true) if !is_thesis => "true",
+        (true, ..) => "magnetic",
+        _ => "none",
+    };
+    let config = KalmanConfig {
+        delay: Duration::from_secs_f64(sources.delay_s(LONGEST_WAIT_S)),
+        earth_field_ut: field,
+    };
+    let mut run = if is_thesis {
+        Run::new(Method::Thesis(ThesisNavigation::new()))
+    } else {
+        Run::new(Method::Kalman(Box::new(KalmanNavigation::new(config))))
+    };
+    for piece in sources.steps.chunks(PIECE) {
+        py.detach(|| run.steps(&sources.events, piece));
+        py.check_signals()?;
+    }
+    result::dict(
+        py,
+        &sources,
+        &run.solutions,
+        &run.innovations,
+        method,
+        reference,
+    )
+}
+
+enum Method {
+    Kalman(Box<KalmanNavigation>),
+    Thesis(ThesisNavigation),
+}
+
+struct Run {
+    method: Method,
+    next: usize,
+    solutions: Vec<Solution>,
+    innovations: Vec<Innovation>,
+}
+
+impl Run {
+    fn new(method: Method) -> Self {
+        Self {
+            method,
+            next: 0,
+            solutions: Vec::new(),
+            innovations: Vec::new(),
+        }
+    }
+
+    /// Steps at each of these times, with the samples that have arrived.
+    fn steps(&mut self, events: &[Event], times: &[Time]) {
+        for now in times {
+            while let Some(event) = events.get(self.next).filter(|event| event.arrived <= *now) {
+                self.observe(event.taken, event.observation);
+                self.next += 1;
+            }
+            let solution = match &mut self.method {
+                Method::Kalman(navigation) => {
+                    let solution = navigation.step(*now);
+                    self.innovations.extend_from_slice(navigation.innovations());
+                    solution
+                }
+                Method::Thesis(navigation) => navigation.step(*now),
+            };
+            self.solutions.push(solution);
+        }
+    }
+
+    fn observe(&mut self, taken: Time, observation: Observation) {
+        match &mut self.method {
+            Method::Kalman(navigation) => navigation.observe(taken, observation),
+            Method::Thesis(navigation) => navigation.observe(taken, observation),
+        }
+    }
+}

@@ -1,0 +1,384 @@
+//! The sources: arrays of times and of values, checked, as one series.
+
+use fcc_core::flight::inertial::{GeodeticPosition, Observation};
+use fcc_core::framework::Time;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use super::mounting::Mounting;
+use crate::arguments::{numbers, shape_words, within};
+
+/// The longest delay, s: the filter keeps half a second of samples.
+const LONGEST_DELAY_S: f64 = 0.5;
+/// Times in s, from that of the first sample.
+const LONGEST_S: f64 = 1e9;
+
+/// One source: its name, the number of its values, what it is at most (a larger
+/// one is not possible), and in what.
+struct Kind {
+    name: &'static str,
+    width: usize,
+    range: (f64, f64),
+    unit: &'static str,
+}
+
+const fn kind(name: &'static str, width: usize, range: (f64, f64), unit: &'static str) -> Kind {
+    Kind {
+        name,
+        width,
+        range,
+        unit,
+    }
+}
+
+const KINDS: [Kind; 8] = [
+    kind("gyroscope", 3, (-150.0, 150.0), "rad/s"),
+    kind("accelerometer", 3, (-2_000.0, 2_000.0), "m/s²"),
+    kind("magnetometer", 3, (-5_000.0, 5_000.0), "µT"),
+    kind("static_pressure", 1, (1_000.0, 120_000.0), "Pa"),
+    kind("differential_pressure", 1, (-20_000.0, 20_000.0), "Pa"),
+    kind("airspeed", 1, (-50.0, 200.0), "m/s"),
+    kind("gnss_position", 3, (-100_000.0, 100_000.0), "rad, rad, m"),
+    kind("gnss_velocity", 3, (-1_000.0, 1_000.0), "m/s"),
+];
+
+/// What was given, in the order of `KINDS`.
+pub(super) struct Given<'py> {
+    pub(super) gyroscope: Option<Bound<'py, PyAny>>,
+    pub(super) accelerometer: Option<Bound<'py, PyAny>>,
+    pub(super) magnetometer: Option<Bound<'py, PyAny>>,
+    pub(super) static_pressure: Option<Bound<'py, PyAny>>,
+    pub(super) differential_pressure: Option<Bound<'py, PyAny>>,
+    pub(super) airspeed: Option<Bound<'py, PyAny>>,
+    pub(super) gnss_position: Option<Bound<'py, PyAny>>,
+    pub(super) gnss_velocity: Option<Bound<'py, PyAny>>,
+}
+
+/// A sample, when it arrived and when it was taken.
+pub(super) struct Event {
+    pub(super) arrived: Time,
+    pub(super) taken: Time,
+    pub(super) observation: Observation,
+}
+
+/// All samples in the order of their arrival, and the times at which an estimate
+/// is wanted: those of the gyroscope, or of the accelerometer.
+pub(super) struct Sources {
+    pub(super) events: Vec<Event>,
+    pub(super) steps: Vec<Time>,
+    pub(super) begin_s: f64,
+    present: [bool; 8],
+    delay_s: f64,
+    /// Between samples of the accelerometer, unless they come with the
+    /// gyroscope's.
+    accelerometer_s: f64,
+    first_place: Option<GeodeticPosition>,
+}
+
+struct Series {
+    times_s: Vec<f64>,
+    rows: Vec<[f64; 3]>,
+}
+
+impl Sources {
+    pub(super) fn read(
+        given: &Given<'_>,
+        delays_s: Option<&Bound<'_, PyAny>>,
+        mounting: &Mounting,
+    ) -> PyResult<Self> {
+        let all = [
+            &given.gyroscope,
+            &given.accelerometer,
+            &given.magnetometer,
+            &given.static_pressure,
+            &given.differential_pressure,
+            &given.airspeed,
+            &given.gnss_position,
+            &given.gnss_velocity,
+        ];
+        let delays = delays(delays_s)?;
+        let mut series = Vec::new();
+        for (kind, source) in KINDS.iter().zip(all) {
+            series.push(
+                source
+                    .as_ref()
+                    .map(|source| kind.read(source))
+                    .transpose()?,
+            );
+        }
+        let present: Vec<bool> = series.iter().map(Option::is_some).collect();
+        let present = <[bool; 8]>::try_from(present).unwrap_or_default();
+        let [gyroscope, accelerometer, ..] = series.as_slice() else {
+            return Err(nothing());
+        };
+        let driving = gyroscope
+            .as_ref()
+            .or(accelerometer.as_ref())
+            .ok_or_else(nothing)?;
+        if given.airspeed.is_some() && given.differential_pressure.is_some() {
+            return Err(PyValueError::new_err(
+                "airspeed and differential_pressure are both given: give one, they are one sensor",
+            ));
+        }
+        let begin_s = series
+            .iter()
+            .flatten()
+            .filter_map(|series| series.times_s.first().copied())
+            .fold(f64::INFINITY, f64::min);
+        let mut sources = Self {
+            events: Vec::new(),
+            steps: driving.times_s.iter().map(|t| time(t - begin_s)).collect(),
+            begin_s,
+            present,
+            delay_s: 0.0,
+            accelerometer_s: interval_s(gyroscope.as_ref(), accelerometer.as_ref()),
+            first_place: None,
+        };
+        sources.steps.dedup();
+        for ((kind, series), delay_s) in KINDS.iter().zip(&series).zip(delays) {
+            if let Some(series) = series {
+                sources.add(kind, series, delay_s, mounting)?;
+            }
+        }
+        sources.events.sort_by_key(|event| event.arrived);
+        Ok(sources)
+    }
+
+    fn add(
+        &mut self,
+        kind: &Kind,
+        series: &Series,
+        delay_s: f64,
+        mounting: &Mounting,
+    ) -> PyResult<()> {
+        self.delay_s = self.delay_s.max(delay_s);
+        let mut kept = 0;
+        for (time_s, row) in series.times_s.iter().zip(&series.rows) {
+            if !kind.is_possible(row) {
+                continue;
+            }
+            kept += 1;
+            let since_s = time_s - self.begin_s;
+            if since_s > LONGEST_S {
+                return Err(PyValueError::new_err(format!(
+                    "{}: times are from {} s to {time_s} s, {LONGEST_S} s at most: are they in s?",
+                    kind.name, self.begin_s
+                )));
+            }
+            let observation = observation(kind.name, mounting.body(kind.name, *row));
+            if let (Observation::Position(place), None) = (observation, self.first_place) {
+                self.first_place = Some(place);
+            }
+            self.events.push(Event {
+                arrived: time(since_s),
+                taken: time(since_s - delay_s),
+                observation,
+            });
+        }
+        // Some may be spoilt; most are not possible if they are in another unit.
+        if 2 * kept < series.rows.len() {
+            return Err(PyValueError::new_err(format!(
+                "{}: {} of {} samples are not possible: it is in {}, each finite{}",
+                kind.name,
+                series.rows.len() - kept,
+                series.rows.len(),
+                kind.unit,
+                kind.bounds()
+            )));
+        }
+        Ok(())
+    }
+
+    fn has(&self, name: &str) -> bool {
+        let at = KINDS.iter().position(|kind| kind.name == name);
+        at.and_then(|at| self.present.get(at))
+            .copied()
+            .unwrap_or(false)
+    }
+
+    pub(super) fn has_field(&self) -> bool {
+        self.has("magnetometer")
+    }
+
+    pub(super) fn has_receiver(&self) -> bool {
+        self.has("gnss_velocity") || self.has("gnss_position")
+    }
+
+    pub(super) fn first_place(&self) -> Option<GeodeticPosition> {
+        self.first_place
+    }
+
+    /// How far the filter has to run behind.
+    pub(super) fn delay_s(&self, longest_wait_s: f64) -> f64 {
+        self.delay_s.max(self.accelerometer_s.min(longest_wait_s))
+    }
+}
+
+impl Kind {
+    /// The tuple of times and values.
+    fn read(&self, source: &Bound<'_, PyAny>) -> PyResult<Series> {
+        let name = self.name;
+        let parts: Vec<Bound<'_, PyAny>> = source
+            .try_iter()
+            .and_then(Iterator::collect)
+            .map_err(|_| PyTypeError::new_err(self.wanted("it is no tuple")))?;
+        let Some((times, values)) = parts.split_first() else {
+            return Err(PyValueError::new_err(self.wanted("it is empty")));
+        };
+        if values.len() != 1 && values.len() != self.width {
+            let has = format!("it has {} arrays", parts.len());
+            return Err(PyValueError::new_err(self.wanted(&has)));
+        }
+        let (shape, times_s) = numbers(&format!("{name}: t_s"), times)?;
+        if shape.len() != 1 || times_s.is_empty() {
+            let has = format!("its times are of shape {}", shape_words(&shape));
+            return Err(PyValueError::new_err(self.wanted(&has)));
+        }
+        check_times(name, &times_s)?;
+        let n = times_s.len();
+        let mut rows = vec![[0.0; 3]; n];
+        for (column, values) in values.iter().enumerate() {
+            let (shape, numbers) = numbers(&format!("{name}: values"), values)?;
+            let is_fitting = match shape.as_slice() {
+                [rows] => *rows == n && (parts.len() - 1 == self.width),
+                [rows, width] => *rows == n && *width == self.width && parts.len() == 2,
+                _ => false,
+            };
+            if !is_fitting {
+                let has = format!(
+                    "it has {n} times, and values of shape {}",
+                    shape_words(&shape)
+                );
+                return Err(PyValueError::new_err(self.wanted(&has)));
+            }
+            let width = numbers.len() / n;
+            for (row, given) in rows.iter_mut().zip(numbers.chunks_exact(width)) {
+                for (place, value) in row.iter_mut().skip(column).zip(given) {
+                    *place = *value;
+                }
+            }
+        }
+        Ok(Series { times_s, rows })
+    }
+
+    fn wanted(&self, has: &str) -> String {
+        let values = match (self.name, self.width) {
+            ("gnss_position", _) => "latitude_rad, longitude_rad, altitude_m",
+            (_, 1) => "values of shape (n,)",
+            _ => "values of shape (n, 3)",
+        };
+        format!(
+            "{}: {has}: give a tuple (t_s, {values}) in {}",
+            self.name, self.unit
+        )
+    }
+
+    fn is_possible(&self, row: &[f64; 3]) -> bool {
+        let (least, most) = self.range;
+        let in_range = row
+            .iter()
+            .take(self.width)
+            .all(|v| (least..=most).contains(v));
+        let [latitude, longitude, _] = row;
+        in_range
+            && (self.name != "gnss_position"
+                || (latitude.abs() <= std::f64::consts::FRAC_PI_2
+                    && longitude.abs() <= std::f64::consts::TAU))
+    }
+
+    fn bounds(&self) -> String {
+        if self.name == "gnss_position" {
+            return ", latitudes between -π/2 and π/2: are they in degrees?".to_owned();
+        }
+        format!(", between {} and {}", self.range.0, self.range.1)
+    }
+}
+
+fn observation(name: &str, row: [f64; 3]) -> Observation {
+    let [first, second, third] = row;
+    match name {
+        "gyroscope" => Observation::Rates(row),
+        "accelerometer" => Observation::SpecificForce(row),
+        "magnetometer" => Observation::MagneticField(row),
+        "static_pressure" => Observation::StaticPressure(first),
+        "differential_pressure" => Observation::DifferentialPressure(first),
+        "airspeed" => Observation::Airspeed(first),
+        "gnss_position" => Observation::Position(GeodeticPosition {
+            latitude_rad: first,
+            longitude_rad: second,
+            altitude_m: third,
+        }),
+        _ => Observation::Velocity(row),
+    }
+}
+
+fn nothing() -> PyErr {
+    PyValueError::new_err(
+        "neither gyroscope nor accelerometer is given: give at least one, as (t_s, values)",
+    )
+}
+
+fn delays(given: Option<&Bound<'_, PyAny>>) -> PyResult<[f64; 8]> {
+    let mut delays = [0.0; 8];
+    let Some(given) = given else {
+        return Ok(delays);
+    };
+    let names = || KINDS.map(|kind| kind.name).join(", ");
+    let each = given.cast::<PyDict>().map_err(|_| {
+        PyTypeError::new_err(format!(
+            "delays_s is no dict: give {{name: seconds}}, the names being {}",
+            names()
+        ))
+    })?;
+    for (name, delay) in each {
+        let name: String = name.extract().unwrap_or_default();
+        let at = KINDS.iter().position(|kind| kind.name == name);
+        let Some(place) = at.and_then(|at| delays.get_mut(at)) else {
+            return Err(PyValueError::new_err(format!(
+                "delays_s has {name:?}: choose of {}",
+                names()
+            )));
+        };
+        let what = format!("delays_s[{name:?}]");
+        let delay: f64 = delay
+            .extract()
+            .map_err(|_| PyTypeError::new_err(format!("{what} is no number: give seconds")))?;
+        *place = within(&what, delay, 0.0, LONGEST_DELAY_S)?;
+    }
+    Ok(delays)
+}
+
+fn check_times(name: &str, times_s: &[f64]) -> PyResult<()> {
+    let mut before = f64::NEG_INFINITY;
+    for (at, time_s) in times_s.iter().enumerate() {
+        if !time_s.is_finite() {
+            return Err(PyValueError::new_err(format!(
+                "{name}: t_s[{at}] is {time_s}: times must be finite"
+            )));
+        }
+        if *time_s < before {
+            return Err(PyValueError::new_err(format!(
+                "{name}: t_s[{at}] is {time_s}, after {before}: times must not decrease; sort them"
+            )));
+        }
+        before = *time_s;
+    }
+    Ok(())
+}
+
+/// Between two samples of an accelerometer that has times of its own, s.
+fn interval_s(gyroscope: Option<&Series>, accelerometer: Option<&Series>) -> f64 {
+    match (gyroscope, accelerometer) {
+        (Some(one), Some(other)) if one.times_s != other.times_s => {
+            let (first, last) = (other.times_s.first(), other.times_s.last());
+            let span_s = last.zip(first).map_or(0.0, |(last, first)| last - first);
+            1.5 * span_s / (other.times_s.len() as f64 - 1.0).max(1.0)
+        }
+        _ => 0.0,
+    }
+}
+
+fn time(since_s: f64) -> Time {
+    Time::from_nanos((since_s * 1e9).round() as i64)
+}
