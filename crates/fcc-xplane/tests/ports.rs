@@ -152,6 +152,7 @@ fn a_release_is_confirmed_only_by_the_port_that_answered() {
 }
 
 /// What a release gives while another program says that the overrides are clear.
+#[expect(clippy::unwrap_used, reason = "a part of tests")]
 fn released_among_lies(
     authority: XPlaneAuthority,
     plant: PlantId,
