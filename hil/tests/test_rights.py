@@ -213,11 +213,11 @@ def one_of_them(user: int, script: str, socket: Path) -> str:
     return done.stdout
 
 
-# Opens as many connections as it may, at most 600, and keeps them until its input ends.
-CROWD = """
+# Opens as many connections as it may, at most `most`, and says how many.
+CONNECTS = """
 import socket, sys
 kept = []
-for _ in range(600):
+for _ in range(most):
     s = socket.socket(socket.AF_UNIX)
     s.setblocking(False)
     try:
@@ -226,25 +226,21 @@ for _ in range(600):
         break
     kept.append(s)
 print(len(kept), flush=True)
+"""
+# Reads what each of its connections is answered.
+CROWD = f"""
+most = 600
+{CONNECTS}
 for s in kept:
     s.settimeout(5)
     print(s.recv(600).decode().strip())
 """
 # Fills the queue of a daemon that is stopped, until its input ends.
-FILLS = """
-import resource, socket, sys
+FILLS = f"""
+import resource
 most = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
 resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
-kept = []
-while True:
-    s = socket.socket(socket.AF_UNIX)
-    s.setblocking(False)
-    try:
-        s.connect(sys.argv[1])
-    except BlockingIOError:
-        break
-    kept.append(s)
-print(len(kept), flush=True)
+{CONNECTS}
 sys.stdin.read()
 """
 HOLDS_PLACES = """

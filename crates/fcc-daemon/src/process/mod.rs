@@ -239,11 +239,11 @@ impl Plant {
             self.end_earlier_helper();
         }
         self.replace_helper(config, held, report);
-        self.tell_answers(held);
+        self.tell_helper_reply_port(held);
     }
 
     /// Tells the helper by what it knows the plant that it may have to release.
-    fn tell_answers(&mut self, held: Option<PlantId>) {
+    fn tell_helper_reply_port(&mut self, held: Option<PlantId>) {
         let plant = held.or_else(|| self.authority.plant());
         let found = plant.zip(self.authority.answers_from());
         if let Some((plant, from)) = found.filter(|_| found != self.answers) {

@@ -87,7 +87,7 @@ impl ThesisNavigation {
         if let Some(matrix) = rotation_matrix(gravity, android_axes(self.field_ut)) {
             self.orientation = orientation(matrix);
         } else if self.field_ut.iter().any(|part| part.is_nan()) {
-            self.orientation = leaning(gravity);
+            self.orientation = roll_and_pitch(gravity);
         }
         // Otherwise the last one stays, as where Android's function fails.
     }
@@ -153,12 +153,12 @@ fn orientation([east, north, up]: [[f64; 3]; 3]) -> EulerAngles {
     let ([_, east_of_top, _], [_, north_of_top, _]) = (east, north);
     EulerAngles {
         heading_rad: wrap_two_pi(atan2(east_of_top, north_of_top)),
-        ..leaning(up)
+        ..roll_and_pitch(up)
     }
 }
 
 /// Roll and pitch alone.
-fn leaning(up: [f64; 3]) -> EulerAngles {
+fn roll_and_pitch(up: [f64; 3]) -> EulerAngles {
     let [right, top, back] = unit(up);
     EulerAngles {
         roll_rad: atan2(-right, back),

@@ -50,7 +50,7 @@ pub use innovations::Innovation;
 use super::{GeodeticPosition, InertialNavigation, Observation, Solution};
 use crate::framework::Time;
 
-/// What the filter is told of the sensors and of the place.
+/// What the filter knows beforehand of the sensors and the place.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct KalmanConfig {
     /// By how much the latest sample of any sensor comes after it was taken.
