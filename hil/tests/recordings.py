@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -77,6 +78,16 @@ def _until_cut(reader: StreamReader) -> Iterator[McapRecord]:
 def ticks(messages: list[Seen]) -> list[int]:
     """Return the numbers of the ticks recorded."""
     return [message.content.tick.number for message in messages if message.topic == RECORD]
+
+
+def assert_all_recorded(flown: list[Any]) -> None:
+    """Assert that no tick between the first record and the last is lost.
+
+    A busy machine makes the loop miss some; the next says how many.
+    """
+    assert flown[0].tick.number == 1 + flown[0].tick.missed
+    for record, following in itertools.pairwise(flown):
+        assert following.tick.number == record.tick.number + 1 + following.tick.missed
 
 
 def is_in_log_time_order(messages: list[Seen]) -> bool:

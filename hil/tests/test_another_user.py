@@ -10,7 +10,14 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from daemon_under_test import DaemonUnderTest, assert_released, engage, flight, write_config
+from daemon_under_test import (
+    DaemonUnderTest,
+    assert_released,
+    engage,
+    flight,
+    wait_until,
+    write_config,
+)
 from other_user import NOBODY, as_user, needs_two_users
 
 from fcc_hil.process import StandInProcess
@@ -128,11 +135,14 @@ def everything_of(daemon: DaemonUnderTest) -> dict[str, Any]:
 
 
 def test_another_user_is_refused_everything_in_flight(fccd: Path, tmp_path: Path) -> None:
-    with flight(fccd, tmp_path) as (simulator, daemon):
+    # Of its own name: daemons of one name publish one at a time.
+    named = f'[telemetry]\ninstance = "another-{os.getpid()}"\n'
+    with flight(fccd, tmp_path, others=named) as (simulator, daemon):
         engage(simulator, daemon)
+        # Helper and publisher.
+        wait_until(lambda: len(daemon.children()) >= 2, "the publisher runs")
         given = everything_of(daemon)
-        # Daemon, helper and publisher; lock, recording and shared memory.
-        assert len(given["processes"]) >= 3
+        # Lock, recording and shared memory.
         assert any("/live-" in path for path in given["paths"])
         assert any(path.endswith(".mcap") for path in given["paths"])
         assert given["ports"]
@@ -156,10 +166,6 @@ def test_another_user_is_refused_everything_in_flight(fccd: Path, tmp_path: Path
     assert ending.report["released"] is True
     assert ending.report["failsafes"] == 0
     assert ending.states == ["standby -> engaged", "engaged -> stopped"]
-    timing = ending.report["timing"]
-    # Without a real-time priority the machine may delay it by itself.
-    if timing["realtime"]["policy"] == "SCHED_FIFO":
-        assert timing["missed"] == 0, ending.log
 
 
 IN_A_NAMESPACE = ["unshare", "--user", "--map-root-user"]

@@ -20,6 +20,7 @@ from daemon_under_test import DaemonUnderTest, Ending, start, write_config
 from fault_flights import (
     ENGAGED,
     FAILSAFE,
+    NS,
     STANDBY,
     Flown,
     assert_flown_again,
@@ -245,26 +246,18 @@ def failsafe_of(flown: Flown, fault: str) -> int:
     return flown.failsafes[FAULTS.index(fault)]
 
 
-def last_good(flown: Flown, name: str, fault: str) -> int:
-    """Return the index of the last record with a valid value before a fault."""
+def last_good_ns(flown: Flown, name: str, fault: str) -> int:
+    """Return when the last valid value before a fault was taken."""
     sensor = SENSED[name]
     place = failsafe_of(flown, fault)
     present = sensor.value(flown.records[place])
-    if fault == "jumping":
-        half = sensor.jump / 2
-        while (
-            max(
-                abs(is_ - was)
-                for is_, was in zip(sensor.value(flown.records[place]), present, strict=True)
-            )
-            < half
-        ):
-            place -= 1
-        return place
-    taken = _taken_ns(flown.records[failsafe_of(flown, fault)], name)
-    while flown.records[place].tick.woke_ns > taken:
+    # What jumped is in the records, and only what was there before is valid.
+    while fault == "jumping" and not any(
+        abs(is_ - was) >= sensor.jump / 2
+        for is_, was in zip(sensor.value(flown.records[place]), present, strict=True)
+    ):
         place -= 1
-    return place
+    return _taken_ns(flown.records[place], name)
 
 
 def _taken_ns(record: Any, name: str) -> int:
@@ -280,7 +273,7 @@ def test_a_loss_is_failsafe_when_it_is_too_old(
 ) -> None:
     flight = flown[name]
     record = flight.records[failsafe_of(flight, fault)]
-    after_s = seconds(record, flight.records[last_good(flight, name, fault)])
+    after_s = (record.tick.woke_ns - last_good_ns(flight, name, fault)) * NS
     # As soon as the last good one is too old, within a tick or two that may be missed.
     assert MAX_AGE_S < after_s < 2 * MAX_AGE_S
 

@@ -34,7 +34,6 @@ def test_datagrams_of_another_host_do_not_disturb_a_flight(fccd: Path, tmp_path:
     assert ending.exit_code == SUCCESS
     assert ending.states == ["standby -> engaged", "engaged -> stopped"]
     assert disturbed(ending.events) == []
-    assert ending.report["timing"]["missed"] == 0
 
 
 @pytest.mark.skipif(
