@@ -117,6 +117,8 @@ impl Reported {
             .get_or_insert_with(|| Silence::begin(config, status, simulator));
         let why = silence.look(status);
         if why == Why::PortClosed && status.link().free_if_gone() {
+            // Nobody confirms this one.
+            self.control = Control::Free;
             return Some(format!(
                 "X-Plane at {simulator} has ended, and nothing holds its controls"
             ));
@@ -207,7 +209,8 @@ impl Reported {
     /// levers have them again.
     fn change_of_control(&mut self, status: &XPlaneStatus) -> Option<String> {
         let before = std::mem::replace(&mut self.control, status.control());
-        let is_free = before == Control::ReleaseMonitor && self.control == Control::Free;
+        // Confirmed while it was silent, it was still held when last looked at.
+        let is_free = before != Control::Free && self.control == Control::Free;
         let simulator = status
             .simulator()
             .filter(|_| is_free && status.is_clear())?;

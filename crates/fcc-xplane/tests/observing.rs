@@ -79,6 +79,26 @@ fn a_release_says_where_the_throttle_s_lever_is() {
     assert!(line.contains("its lever again, which is at 35 %"), "{line}");
 }
 
+/// As after a silence in which nothing is said of the controls.
+#[test]
+fn a_release_that_was_not_seen_before_it_was_confirmed_is_said() {
+    let mut bench = Bench::new();
+    let authority = XPlaneAuthority::of(bench.status.clone(), &bench.simulator.config());
+    bench.settle();
+    bench.fly().unwrap();
+    lines(&authority);
+    drop(bench.actuator.take());
+    for _ in 0..21 {
+        bench.watch().unwrap();
+    }
+    let said = lines(&authority);
+    assert!(
+        said.iter()
+            .any(|line| line.contains("confirmed the release of its controls")),
+        "{said:?}"
+    );
+}
+
 /// Of a version that has none of these datarefs nothing is missing.
 #[test]
 fn an_x_plane_without_the_optional_datarefs_is_quiet() {
