@@ -56,8 +56,8 @@ impl Default for AltitudeConfig {
             angle_of_attack_per_g_rad: 0.038_572, // 2.21°
             pitch_gain_per_s: 4.6,
             max_pitch_rate_radps: 0.174_533, // 10 °/s
-            pitch_rate_gain: 0.92,
-            pitch_rate_integral_gain: 0.8,
+            pitch_rate_gain: 0.84,
+            pitch_rate_integral_gain: 0.78,
             elevator_per_g: 0.30,
         }
     }
