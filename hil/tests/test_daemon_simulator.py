@@ -8,7 +8,15 @@ import time
 from pathlib import Path
 
 import pytest
-from daemon_under_test import assert_released, engage, flight, start, wait_until, write_config
+from daemon_under_test import (
+    assert_released,
+    engage,
+    flight,
+    start,
+    switch_on,
+    wait_until,
+    write_config,
+)
 from fault_flights import AT_ONCE_S, NS, Flown
 from read_only_simulator import ReadOnlySimulator
 
@@ -247,9 +255,7 @@ def test_writes_that_never_arrive_are_reported_with_the_setting_to_change(
         ReadOnlySimulator(simulator.port) as read_only,
         start(fccd, tmp_path, write_config(tmp_path, read_only.port)) as daemon,
     ):
-        daemon.wait_until_ready()
-        simulator.write(ENGAGE_SWITCH, 1.0)
-        daemon.wait_for("standby -> engaged")
+        switch_on(simulator, daemon)
         log = daemon.wait_for("Accept incoming connections")
         assert "have no effect" in log
         assert str(read_only.port) in log

@@ -156,7 +156,10 @@ def test_a_late_timer_is_counted_and_reported(
     # The tick that took so long, and what was due meanwhile.
     assert sum(record.tick.missed for record in missed(flight)) >= least
     assert flight.records[-1].overruns >= 1
-    assert any("tick overran its budget" in text for text in flight.texts())
+    # Of several within a second only the first has an event of its own, on a busy machine a
+    # timer that woke late.
+    first = ("tick overran its budget", "the timer woke")
+    assert any(kind in text for text in flight.texts() for kind in first)
     assert any("ticks overran or were missed" in text for text in flight.texts())
     assert_regular(flight.records, PERIOD_NS)
 

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from daemon_under_test import DaemonUnderTest, Ending, start, write_config
+from daemon_under_test import DaemonUnderTest, Ending, start, switch_on, write_config
 from fault_flights import (
     ENGAGED,
     FAILSAFE,
@@ -184,9 +184,7 @@ class Breaking:
         self.simulator.set_sensor_faults([])
 
     def engage(self) -> None:
-        self.daemon.wait_until_ready()
-        self.simulator.write(ENGAGE_SWITCH, 1.0)
-        self.daemon.wait_for("standby -> engaged")
+        switch_on(self.simulator, self.daemon)
 
     def disengage(self) -> None:
         self.simulator.write(ENGAGE_SWITCH, 0.0)
