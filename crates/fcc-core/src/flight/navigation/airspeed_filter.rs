@@ -41,7 +41,7 @@ const THRUST_SETTLES_S: f64 = 5.0;
 const THRUST_NOISE: f64 = 3.0;
 /// Beyond these innovations the force is not explained by airspeed: an engine
 /// that stops, or a wind that rises (weight; rad).
-const ENGINE_CHANGE: f64 = 0.035;
+const ENGINE_CHANGE: f64 = 0.05;
 const UPDRAUGHT_RAD: f64 = 0.026;
 /// Beyond this difference from the force by the remembered model, in weights,
 /// that is no longer the aircraft's: its engine has failed.
