@@ -2,6 +2,7 @@
 //! anew: the whole loop on X-Plane's protocol, in lockstep.
 #![cfg(test)]
 
+mod datarefs;
 mod flight;
 mod world;
 

@@ -9,6 +9,8 @@ use fcc_core::flight::Surfaces;
 use fcc_sim::{Aircraft, SimConfig, Truth};
 use fcc_xplane::{Errno, Port};
 
+use crate::datarefs;
+
 pub(crate) const OVERRIDES: [&str; 2] = [
     "sim/operation/override/override_joystick",
     "sim/operation/override/override_throttles",
@@ -315,45 +317,17 @@ impl World {
 
     /// A dataref's value; none if it does not exist.
     fn value(&self, truth: &Truth, path: &str) -> Option<f64> {
-        let (sin_roll, cos_roll) = truth.roll_rad.sin_cos();
-        let (sin_pitch, cos_pitch) = truth.pitch_rad.sin_cos();
-        let (sin_heading, cos_heading) = truth.heading_rad.sin_cos();
-        let force = truth.specific_force;
-        // From body axes to north, east, down (Stevens, Lewis and Johnson
-        // 2016, equation 1.4-5).
-        let side = force.y_mps2 * cos_roll - force.z_mps2 * sin_roll;
-        let below = force.y_mps2 * sin_roll + force.z_mps2 * cos_roll;
-        let ahead = force.x_mps2 * cos_pitch + below * sin_pitch;
-        let north = ahead * cos_heading - side * sin_heading;
-        let east = ahead * sin_heading + side * cos_heading;
-        let down = below * cos_pitch - force.x_mps2 * sin_pitch + 9.806_65;
         if let Some(value) = self.values.get(path) {
             return Some(*value);
         }
-        let name = path.rsplit('/').next().unwrap();
-        Some(match name {
+        match path.rsplit('/').next().unwrap() {
             // A real clock: it runs on in all manners.
-            "network_time_sec" => 900.0 + self.made_ns as f64 * 1e-9,
-            "total_flight_time_sec" => truth.time_s + self.time_offset_s,
-            "theta" | "true_theta" => truth.pitch_rad.to_degrees(),
-            "phi" | "true_phi" => truth.roll_rad.to_degrees(),
-            "psi" | "mag_psi" | "true_psi" => truth.heading_rad.to_degrees(),
-            "Prad" => truth.rates.roll_radps,
-            "Qrad" => truth.rates.pitch_radps,
-            "Rrad" => truth.rates.yaw_radps,
-            "local_ax" => east,
-            "local_ay" => -down,
-            "local_az" => -north,
-            "local_vx" => truth.velocity.east_mps,
-            "local_vy" => -truth.velocity.down_mps,
-            "local_vz" => -truth.velocity.north_mps,
-            "indicated_airspeed" => truth.indicated_airspeed_mps / 0.514_444_444,
-            "altitude_ft_pilot" | "pressure_altitude" => truth.altitude_m / 0.304_8,
-            "alpha" => truth.angle_of_attack_rad.to_degrees(),
-            _ if path.contains("generic_lights_switch") => 0.0,
-            _ if path.contains("joy_mapped_axis_value") => self.stick,
-            _ => return None,
-        })
+            "network_time_sec" => Some(900.0 + self.made_ns as f64 * 1e-9),
+            "total_flight_time_sec" => Some(truth.time_s + self.time_offset_s),
+            _ if path.contains("generic_lights_switch") => Some(0.0),
+            _ if path.contains("joy_mapped_axis_value") => Some(self.stick),
+            name => datarefs::of(truth, name),
+        }
     }
 
     /// Loads a flight: another aircraft, elsewhere; clock and overrides are
