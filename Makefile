@@ -100,12 +100,12 @@ lint-python: $(STAMPS)/python-module
 	cd deploy/vm && MYPYPATH=../../hil/tests ../../$(PYTHON) -m mypy --config-file ../../hil/pyproject.toml .
 
 deny: $(STAMPS)/rust
-	@command -v cargo-deny >/dev/null || cargo install --locked --version 0.20.2 cargo-deny
+	@command -v cargo-deny >/dev/null || cargo install --debug --locked --version 0.20.2 cargo-deny
 	cargo deny --log-level error check bans licenses sources
 	./scripts/advisories
 
 advisories: $(STAMPS)/rust ## Check the crates against RustSec's advisories; fails if that cannot be done
-	@command -v cargo-deny >/dev/null || cargo install --locked --version 0.20.2 cargo-deny
+	@command -v cargo-deny >/dev/null || cargo install --debug --locked --version 0.20.2 cargo-deny
 	ADVISORIES=required ./scripts/advisories
 
 lock: ## Lock the versions and hashes of the Python packages anew (needs uv)

@@ -16,6 +16,8 @@ import numpy.typing as npt
 import pytest
 
 from fcc_hil import airspeed, altitude
+from fcc_hil.campaign.draw import Bounds, draw
+from fcc_hil.campaign.flying import fly
 from fcc_hil.faulty_sensors import FaultySensors
 from fcc_hil.lockstep import measurements
 from fcc_hil.noise import SensorNoise
@@ -208,6 +210,14 @@ def test_a_headwind_that_falls_by_20_kt_in_10_s_is_no_fault() -> None:
 def test_turbulence_is_no_fault(severity: int) -> None:
     flown = _fly(weather=Weather(turbulence_severity=severity))
     assert not flown.is_doubted.any()
+
+
+@pytest.mark.parametrize(("seed", "number"), [(200024, 211), (200026, 108)])
+def test_a_healthy_airspeed_that_is_doubted_is_kept_above_the_stall(seed: int, number: int) -> None:
+    """An engine that fails while the throttle moves, and turbulence near the stall."""
+    flown, _ = fly(draw(number, seed, Bounds()))
+    assert any("is doubted: it is lower" in event.text for event in flown.events)
+    assert flown.verdict.figures["airspeed_over_stall"] > 1.0
 
 
 def test_a_blocked_tube_behaves_like_an_altimeter() -> None:

@@ -23,7 +23,7 @@ const WAIT_MS: u8 = 20;
 /// Interval of its signs of life.
 const ALIVE_EVERY: Duration = Duration::from_millis(100);
 /// Interval of trying what a new watcher does.
-const TRY_EVERY: Duration = Duration::from_millis(500);
+const TRY_EVERY: Duration = Duration::from_millis(250);
 /// The next attempt after one that failed.
 const TRY_AGAIN_AFTER: Duration = Duration::from_millis(100);
 /// Attempts in a row that fail: shared memory was damaged.

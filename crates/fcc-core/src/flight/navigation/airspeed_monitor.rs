@@ -27,6 +27,8 @@ const ALONE_S: f64 = 20.0;
 /// The lags of the forces' vote and of the sensor's difference, s.
 const VOTE_LAG_S: f64 = 2.0;
 const DIFFERENCE_LAG_S: f64 = 0.5;
+/// The lag of how much lower a doubted sensor is than the forces.
+const SLOWER_LAG_S: f64 = 2.0;
 /// After attitude, rates, forces or altitude were not measured, the models learn
 /// for this time, s, before they are compared again.
 const SETTLED_S: f64 = 10.0;
@@ -87,6 +89,8 @@ pub(super) struct AirspeedMonitor {
     near_stall_s: f64,
     /// It was believed for that, and has not agreed since.
     was_near_stall: bool,
+    /// How much slower the aircraft is if the doubted sensor is right, m/s.
+    slower: LowPass,
     /// For how long the models still learn before they are compared, s.
     settles_s: f64,
     /// For how long the models have not held, s.
@@ -132,6 +136,7 @@ impl AirspeedMonitor {
             agrees_s: 0.0,
             near_stall_s: 0.0,
             was_near_stall: false,
+            slower: LowPass::new(SLOWER_LAG_S),
             settles_s: 0.0,
             upset_s: 0.0,
             reference: Reference::NONE,
@@ -145,6 +150,12 @@ impl AirspeedMonitor {
     /// The doubt of the sensor, while it lasts.
     pub(super) const fn doubt(&self) -> Option<Doubt> {
         self.doubt
+    }
+
+    /// How much slower than by the forces the aircraft is if a sensor that is doubted
+    /// for being too low is right, m/s; 0 if it can not be.
+    pub(super) fn slower_mps(&self) -> f64 {
+        self.slower.output()
     }
 
     /// Whether the sensor was doubted because it shares the static port of a

@@ -158,6 +158,11 @@ impl Navigation {
         self.monitor.doubt()
     }
 
+    /// How much slower the aircraft is than estimated if a doubted sensor is right, m/s.
+    pub(crate) fn may_be_slower_by_mps(&self) -> f64 {
+        self.monitor.slower_mps()
+    }
+
     /// The doubt of the sensor of the angle of attack, while it lasts.
     pub(crate) const fn angle_doubt(&self) -> Option<Doubt> {
         self.lift.doubt()

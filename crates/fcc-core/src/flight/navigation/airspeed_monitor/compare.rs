@@ -6,6 +6,7 @@ use super::super::filter_bank::FilterBank;
 use super::super::force_sample::angle_of_attack_rad;
 use super::static_port::StaticPort;
 use super::{ALONE_S, AirspeedMonitor, MonitorInput};
+use crate::blocks::limit;
 
 /// A difference of 9 % of the reference airspeed (9 kt of 100 kt), of 3.5
 /// standard deviations and of 4.5 times the gusts must last for 2.5 s.
@@ -36,6 +37,8 @@ const NEAR_STALL_AFTER_S: f64 = 1.0;
 /// needs no more than this angle at the sensor's airspeed, rad (24°): no wing has more.
 const NEAR_STALL_LOAD: f64 = 0.5;
 const NO_WING_RAD: f64 = 0.42;
+/// The most that a doubted sensor raises the lowest airspeeds by, of the reference airspeed.
+const MOST_SLOWER_RATIO: f64 = 0.25;
 /// Doubt needs models that have learned the aircraft for this time, s; for this
 /// one if the sensor has stepped, which they need not tell.
 const LEARNED_S: f64 = 20.0;
@@ -173,11 +176,22 @@ impl AirspeedMonitor {
         } else {
             ANOTHER_BELIEVED_AFTER_S
         };
+        let carries = bank.older.lift_angle_rad(&input.sample, sensor_mps) < NO_WING_RAD;
         let is_near_stall = differs < 0.0
             && !self.was_near_stall
             && input.sample.up > NEAR_STALL_LOAD
             && angle_of_attack_rad(&input.sample, filter_mps) > NEAR_STALL_RAD
-            && bank.older.lift_angle_rad(&input.sample, sensor_mps) < NO_WING_RAD;
+            && carries;
+        let slower_mps = if carries && doubt.reason == DoubtReason::TooLow {
+            limit(
+                -differs,
+                0.0,
+                MOST_SLOWER_RATIO * self.prior.reference_mps,
+            )
+        } else {
+            0.0
+        };
+        self.slower.step(slower_mps, dt_s);
         self.near_stall_s = if is_near_stall {
             self.near_stall_s + dt_s
         } else {
@@ -190,6 +204,7 @@ impl AirspeedMonitor {
             bank.believing.adopt(sensor_mps);
             self.follow_sensor(bank);
             (self.doubt, self.static_port, self.blocked) = (None, None, None);
+            self.slower.reset(0.0);
         }
     }
 
