@@ -19,8 +19,10 @@ const FAST_S: f64 = 0.05;
 const MEMORY_S: f64 = 10.0;
 /// Samples between two comparisons.
 const COMPARED_EVERY: u32 = 20;
-/// Samples before the first.
+/// Samples before the first comparison.
 const FIRST_AFTER: u32 = 120;
+/// Samples in which the filters settle: they do not count.
+const SETTLES_FOR: u32 = 40;
 /// A smaller mean square of the pitch acceleration, (rad/s²)², says nothing.
 const LEAST_MOTION: f64 = 4e-4;
 /// The part of it that the elevator must explain.
@@ -67,7 +69,9 @@ impl BandPass {
 #[derive(Clone, Copy, Debug)]
 struct PlayedCommand {
     half_width: f64,
-    position: f64,
+    /// Where the surface may be, the least and the most: the play is crossed after
+    /// the command has moved by its width.
+    within: (f64, f64),
     band: BandPass,
     /// The last positions between trim and noise, the latest first.
     recent: [f64; DELAYS + 1],
@@ -217,7 +221,7 @@ impl ElevatorResponse {
             motion: Motion::default(),
             plays: PLAYS.map(|width| PlayedCommand {
                 half_width: 0.5 * width,
-                position: 0.0,
+                within: (0.0, 0.0),
                 band: BandPass::new(),
                 recent: [0.0; DELAYS + 1],
                 sums: [Sums::default(); DELAYS],
@@ -260,7 +264,7 @@ impl ElevatorResponse {
                 ..Self::new(self.assumed_s)
             };
             for play in &mut self.plays {
-                play.position = elevator;
+                play.within = (elevator - play.half_width, elevator + play.half_width);
             }
             return;
         }
@@ -279,7 +283,11 @@ impl ElevatorResponse {
     }
 
     fn remember(&mut self, elevator: f64, rate: f64, load: f64, acceleration: f64, period_s: f64) {
-        let new = period_s / MEMORY_S;
+        let new = if self.samples > SETTLES_FOR {
+            period_s / MEMORY_S
+        } else {
+            0.0
+        };
         let mean = |old: &mut f64, product: f64| *old += new * (product - *old);
         let motion = &mut self.motion;
         mean(&mut motion.rate_rate, rate * rate);
@@ -293,8 +301,11 @@ impl ElevatorResponse {
         );
         for play in &mut self.plays {
             let (least, most) = (elevator - play.half_width, elevator + play.half_width);
-            play.position = play.position.max(least).min(most);
-            let latest = play.band.step(play.position, period_s);
+            let inside = |position: f64| position.max(least).min(most);
+            play.within = (inside(play.within.0), inside(play.within.1));
+            let latest = play
+                .band
+                .step(0.5 * (play.within.0 + play.within.1), period_s);
             play.recent.rotate_right(1);
             if let Some(first) = play.recent.first_mut() {
                 *first = latest;
@@ -357,8 +368,10 @@ impl ElevatorResponse {
         };
         let is_seen = explained.left > LEAST_MOTION
             && explained.left - left > LEAST_EXPLAINED * explained.left;
+        // A play that is seldom crossed looks like a delay.
+        let may_be_play = width == 0.0 && with_play.0 < left && with_play.2 + 1.0 < delay;
         // The longest delay may stand for any longer one.
-        if is_seen && left < BETTER * present && delay < DELAYS as f64 {
+        if is_seen && left < BETTER * present && delay < DELAYS as f64 && !may_be_play {
             self.believed = (width, delay);
         }
         let (width, delay) = self.believed;
