@@ -26,7 +26,7 @@ const SETTLES_FOR: u32 = 40;
 /// A smaller mean square of the pitch acceleration, (rad/s²)², says nothing.
 const LEAST_MOTION: f64 = 4e-4;
 /// The part of it that the elevator must explain.
-const LEAST_EXPLAINED: f64 = 0.15;
+const LEAST_EXPLAINED: f64 = 0.2;
 /// Another model is believed if it leaves less than this part of what the
 /// present one leaves unexplained.
 const BETTER: f64 = 0.94;
