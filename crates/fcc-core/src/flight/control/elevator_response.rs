@@ -36,6 +36,10 @@ const PLAY_IS_BETTER: f64 = 0.94;
 const PLAY_EXPLAINS: f64 = 0.25;
 /// And does so for as long, s: one manoeuvre may be explained by chance.
 const PLAY_AFTER_S: f64 = 1.0;
+/// A delay of more samples than this is not believed while a model with play leaves
+/// less than this part of what it does.
+const LONG_DELAY: f64 = 6.0;
+const PLAY_MAY_BE: f64 = 1.05;
 /// Play is no longer believed if a model without it leaves less than this part.
 const NO_PLAY_IS_BETTER: f64 = 0.9;
 /// And does so for as long, s: a gust moves the aircraft without the elevator,
@@ -368,8 +372,11 @@ impl ElevatorResponse {
         };
         let is_seen = explained.left > LEAST_MOTION
             && explained.left - left > LEAST_EXPLAINED * explained.left;
-        // A play that is seldom crossed looks like a delay.
-        let may_be_play = width == 0.0 && with_play.0 < left && with_play.2 + 1.0 < delay;
+        // A play that is seldom crossed looks like a long delay.
+        let may_be_play = width == 0.0
+            && delay > LONG_DELAY
+            && with_play.2 < delay
+            && with_play.0 < PLAY_MAY_BE * left;
         // The longest delay may stand for any longer one.
         if is_seen && left < BETTER * present && delay < DELAYS as f64 && !may_be_play {
             self.believed = (width, delay);

@@ -152,8 +152,8 @@ impl AirspeedMonitor {
         self.doubt
     }
 
-    /// How much slower than by the forces the aircraft is if a sensor that is doubted
-    /// for being too low is right, m/s; 0 if it can not be.
+    /// How much slower than by the forces the aircraft is if a doubted sensor that is
+    /// lower is right, m/s; 0 if it can not be, or is silent.
     pub(super) fn slower_mps(&self) -> f64 {
         self.slower.output()
     }
@@ -240,6 +240,9 @@ impl AirspeedMonitor {
             }
             return;
         };
+        if input.sensor_mps.is_none() {
+            self.slower.step(0.0, dt_s);
+        }
         let settles = self.settle(&mut bank, input, dt_s);
         let now_mps = bank.older.airspeed_mps();
         let acceleration = acceleration_mps2(&sample, now_mps);
