@@ -27,7 +27,7 @@ const ALONE_S: f64 = 20.0;
 /// The lags of the forces' vote and of the sensor's difference, s.
 const VOTE_LAG_S: f64 = 2.0;
 const DIFFERENCE_LAG_S: f64 = 0.5;
-/// The lag of how much lower a doubted sensor is than the forces.
+/// The lag of how much lower a doubted sensor is than the forces, s.
 const SLOWER_LAG_S: f64 = 2.0;
 /// After attitude, rates, forces or altitude were not measured, the models learn
 /// for this time, s, before they are compared again.
@@ -153,7 +153,8 @@ impl AirspeedMonitor {
     }
 
     /// How much slower than by the forces the aircraft is if a doubted sensor that is
-    /// lower is right, m/s; 0 if it can not be, or is silent.
+    /// lower is right, m/s; 0 if it cannot be, or is
+    /// silent.
     pub(super) fn slower_mps(&self) -> f64 {
         self.slower.output()
     }
@@ -240,7 +241,7 @@ impl AirspeedMonitor {
             }
             return;
         };
-        if input.sensor_mps.is_none() {
+        if self.doubt.is_some() && input.sensor_mps.is_none() {
             self.slower.step(0.0, dt_s);
         }
         let settles = self.settle(&mut bank, input, dt_s);

@@ -5,8 +5,8 @@ use super::super::airspeed_reason::{Doubt, DoubtReason, Reference};
 use super::super::filter_bank::FilterBank;
 use super::super::force_sample::angle_of_attack_rad;
 use super::static_port::StaticPort;
-use super::{ALONE_S, AirspeedMonitor, MonitorInput};
-use crate::blocks::limit;
+use super::{ALONE_S, AirspeedMonitor, MonitorInput, SLOWER_LAG_S};
+use crate::blocks::{LowPass, limit};
 
 /// A difference of 9 % of the reference airspeed (9 kt of 100 kt), of 3.5
 /// standard deviations and of 4.5 times the gusts must last for 2.5 s.
@@ -201,7 +201,7 @@ impl AirspeedMonitor {
             bank.believing.adopt(sensor_mps);
             self.follow_sensor(bank);
             (self.doubt, self.static_port, self.blocked) = (None, None, None);
-            self.slower.reset(0.0);
+            self.slower = LowPass::new(SLOWER_LAG_S);
         }
     }
 
