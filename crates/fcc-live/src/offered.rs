@@ -39,8 +39,14 @@ fn finds_records(
     mut goes_on: impl FnMut() -> bool,
 ) -> Result<bool, WatchError> {
     let infos = subscribe(&INFO.watch::<Info>(access, instance)?, instance)?;
-    while newest(&infos)?.is_none() {
-        if !goes_on() {
+    loop {
+        // In this order: this thread may get no time in between, and the one that
+        // publishes enough.
+        let is_last = !goes_on();
+        if newest(&infos)?.is_some() {
+            break;
+        }
+        if is_last {
             return Ok(false);
         }
         std::thread::sleep(LOOK_EVERY);

@@ -369,4 +369,25 @@ mod tests {
         drop(publisher);
         assert_eq!(find(), WatchError::NotRunning(instance.clone()));
     }
+
+    /// On a busy machine all that the publisher does for a new watcher may come
+    /// between a look and the decision that it has had its time.
+    #[test]
+    fn what_is_published_between_the_last_two_looks_is_found() {
+        let name = format!("test-{}-busy", std::process::id());
+        let instance: Instance = name.parse().unwrap();
+        let mut publisher = Publisher::start(&instance, 2_048).unwrap();
+        let Presence::Here(place) = look(&instance) else {
+            panic!("not here");
+        };
+        let access = services::access(&place.root).unwrap();
+        let patience = Duration::from_secs(10);
+        let is_found = is_offered(&instance, || {
+            publisher.describe(Info::default());
+            // A watcher that came later has got it.
+            read_info(&access, &place, &instance, patience).unwrap();
+            false
+        });
+        assert!(is_found);
+    }
 }

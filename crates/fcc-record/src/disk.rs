@@ -5,7 +5,8 @@ use std::io::{self, Write};
 use std::os::unix::fs::MetadataExt as _;
 use std::path::Path;
 
-use super::opening::{open, open_found};
+use super::opening::{open, open_found, open_to_lock};
+use super::write_lock::{is_locked, try_lock};
 
 /// Where recordings are written.
 pub trait Disk: Send {
@@ -55,14 +56,14 @@ impl Disk for FileSystem {
                 _ => error,
             })?;
         }
-        // Readable, for the lock that shows others that it is being written.
-        // Not every file system has locks.
+        // Locked, so that others know that it is being written. Not every file
+        // system has locks.
         let file = OpenOptions::new()
             .read(true)
             .append(true)
             .create_new(true)
             .open(path)?;
-        let _ = file.try_lock();
+        let _ = try_lock(&file);
         // Until its folder is synced, a loss of power removes the file's name.
         match sync_folder_of(path) {
             Ok(()) => Ok(Box::new(file)),
@@ -138,9 +139,9 @@ pub fn create_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> io::Result<Fi
 /// Locks a file against other writers until the returned value is dropped; none
 /// if it is locked already. Not every file system has locks.
 pub(super) fn lock(path: &Path) -> io::Result<Option<File>> {
-    let file = open(path)?;
-    let is_taken = matches!(file.try_lock(), Err(fs::TryLockError::WouldBlock));
-    Ok((!is_taken).then_some(file))
+    let file = open_to_lock(path)?;
+    let is_free = try_lock(&file).unwrap_or(true);
+    Ok(is_free.then_some(file))
 }
 
 /// Whether a program is writing the file now.
@@ -152,8 +153,4 @@ pub fn is_being_written(path: &Path) -> bool {
 /// opened, such as a link, is none of this program's files.
 pub(super) fn may_be_deleted(path: &Path) -> bool {
     open_found(path).is_ok_and(|file| !is_locked(&file))
-}
-
-fn is_locked(file: &File) -> bool {
-    matches!(file.try_lock_shared(), Err(fs::TryLockError::WouldBlock))
 }

@@ -66,6 +66,7 @@ mod utc;
 #[cfg(feature = "flight")]
 mod views;
 mod wire;
+mod write_lock;
 mod writing;
 
 pub use about::About;
@@ -90,3 +91,4 @@ pub use settings::{Compression, RecorderSettings, RecordingPace};
 pub use status::{Notice, RecorderStatus};
 #[cfg(feature = "flight")]
 pub use views::FoxgloveViews;
+pub use write_lock::try_lock;

@@ -3,15 +3,17 @@
 //! What is opened is examined, not the name: between the two another program
 //! could exchange the file. A pipe is opened without waiting for its writer.
 
-use std::fs::{self, File, Metadata, OpenOptions};
+use std::fs::{self, File, Metadata, OpenOptions, Permissions};
 use std::io::{self, ErrorKind, Read as _};
-use std::os::unix::fs::{MetadataExt as _, OpenOptionsExt as _};
+use std::os::unix::fs::{MetadataExt as _, OpenOptionsExt as _, PermissionsExt as _};
 use std::path::Path;
 
 use nix::libc::{O_CLOEXEC, O_NOFOLLOW, O_NONBLOCK};
 use nix::unistd::geteuid;
 
 const ROOT: u32 = 0;
+/// The mode of a file that nobody but its owner opens.
+const OF_OWNER: u32 = 0o600;
 
 fn refused<T>(kind: ErrorKind, why: impl Into<String>) -> io::Result<T> {
     Err(io::Error::new(kind, why.into()))
@@ -49,6 +51,18 @@ fn regular(path: &Path, options: &mut OpenOptions, flags: i32) -> io::Result<(Fi
 /// # Errors
 /// The system's error, or that it is a link of another user or no regular file.
 pub(super) fn open(path: &Path) -> io::Result<File> {
+    named(path, OpenOptions::new().read(true))
+}
+
+/// The same, to write it, too, if that is possible.
+///
+/// # Errors
+/// As [`open`].
+pub(super) fn open_to_lock(path: &Path) -> io::Result<File> {
+    named(path, OpenOptions::new().read(true).write(true)).or_else(|_| open(path))
+}
+
+fn named(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
     if let Ok(link) = fs::symlink_metadata(path)
         && link.is_symlink()
     {
@@ -63,7 +77,7 @@ pub(super) fn open(path: &Path) -> io::Result<File> {
             return refused(ErrorKind::PermissionDenied, why);
         }
     }
-    let (file, _) = regular(path, OpenOptions::new().read(true), 0)?;
+    let (file, _) = regular(path, options, 0)?;
     Ok(file)
 }
 
@@ -108,14 +122,19 @@ fn read_all(file: File, most_bytes: u64) -> io::Result<Vec<u8>> {
 }
 
 /// Opens a file to lock it; creates it if it is missing, and changes nothing in
-/// it.
+/// it. Nobody else may open it.
 ///
 /// # Errors
-/// The system's error, or that it is a link or not a regular file.
+/// The system's error, or that it is a link or no regular file.
 pub fn open_lock(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.read(true).write(true).create(true).truncate(false);
-    let (file, _) = regular(path, &mut options, O_NOFOLLOW)?;
+    options.mode(OF_OWNER);
+    let (file, found) = regular(path, &mut options, O_NOFOLLOW)?;
+    if found.permissions().mode() & !OF_OWNER & 0o777 != 0 {
+        // Of an earlier version. Another user's stays as it is.
+        let _ = file.set_permissions(Permissions::from_mode(OF_OWNER));
+    }
     Ok(file)
 }
 

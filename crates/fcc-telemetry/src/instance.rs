@@ -6,7 +6,8 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 
 /// The name of a daemon on its machine: 1 to 32 letters, digits, `-`, `_` and
-/// `.`. Two daemons on one machine need two names.
+/// `.`, but not `.` or `..`: files have this name, and those are folders. Two
+/// daemons on one machine need two names.
 ///
 /// ```
 /// use fcc_telemetry::Instance;
@@ -27,7 +28,8 @@ const MAX_LETTERS: usize = 32;
 /// An invalid name.
 #[derive(thiserror::Error, Clone, PartialEq, Eq, Debug)]
 #[error(
-    "'{0}' is not a valid instance name: choose 1 to {MAX_LETTERS} letters, digits, '-', '_' or '.'"
+    "'{0}' is not a valid instance name: choose 1 to {MAX_LETTERS} letters, digits, '-', '_' or \
+     '.', but not '.' or '..'"
 )]
 pub struct InstanceError(String);
 
@@ -38,7 +40,8 @@ impl FromStr for Instance {
         let good = (1..=MAX_LETTERS).contains(&name.len())
             && name
                 .bytes()
-                .all(|letter| letter.is_ascii_alphanumeric() || b"-_.".contains(&letter));
+                .all(|letter| letter.is_ascii_alphanumeric() || b"-_.".contains(&letter))
+            && ![".", ".."].contains(&name);
         if good {
             Ok(Self(name.to_owned()))
         } else {
@@ -70,5 +73,19 @@ impl Default for Instance {
 impl fmt::Display for Instance {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The socket of commands has this name.
+    #[test]
+    fn a_name_is_not_that_of_a_folder() {
+        for name in [".", ".."] {
+            assert!(name.parse::<Instance>().is_err(), "{name}");
+        }
+        assert!("...".parse::<Instance>().is_ok());
     }
 }

@@ -301,13 +301,13 @@ fn prepare(path: &Path) -> Result<File, String> {
     }
     let lock = fcc_record::open_lock(&path.with_extension("flight.lock"))
         .map_err(|error| message("cannot be locked", &error))?;
-    match lock.try_lock() {
-        Ok(()) => Ok(lock),
-        Err(fs::TryLockError::WouldBlock) => Err(message(
+    match fcc_record::try_lock(&lock) {
+        Ok(true) => Ok(lock),
+        Ok(false) => Err(message(
             "another fccd uses it",
             &"give this one another restart.state_file",
         )),
-        Err(fs::TryLockError::Error(error)) => Err(message("cannot be locked", &error)),
+        Err(error) => Err(message("cannot be locked", &error)),
     }
 }
 

@@ -23,3 +23,19 @@ fn a_pipe_or_a_link_in_place_of_the_lock_is_reported() {
     refused("symbolic link");
     assert_eq!(fs::read(&victim).unwrap(), b"kept");
 }
+
+/// Whoever may read the folder could lock the file, of earlier versions open to
+/// others: the flight would not be recovered, and another fccd named as the cause.
+#[test]
+fn who_may_only_read_the_lock_does_not_keep_it() {
+    let folder = Folder::new(RestartMode::Warm);
+    let lock = folder.request.path.with_extension("flight.lock");
+    fs::write(&lock, "").unwrap();
+    let reader = File::open(&lock).unwrap();
+    reader.lock().unwrap();
+    let (restart, said) = Restart::begin(folder.request.clone());
+    assert!(restart.is_some() && said.is_none(), "{said:?}");
+    let (second, said) = Restart::begin(folder.request.clone());
+    assert!(second.is_none());
+    assert!(said.unwrap().contains("another fccd uses it"));
+}
