@@ -177,7 +177,9 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(prog="fcc", description=__doc__)
+    parser = _Parser(
+        prog="fcc", description="Fly JSBSim's aircraft with fccd, or with its loop in lockstep."
+    )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     flies = commands.add_parser(
@@ -229,7 +231,7 @@ def _parser() -> argparse.ArgumentParser:
 
     peer = commands.add_parser("peer", help="fly JSBSim's own autopilot through the pattern")
     peer.add_argument("--legs", type=int, default=8, help="(default %(default)s)")
-    peer.add_argument("--seed", type=int, default=1)
+    peer.add_argument("--seed", type=int, default=1, help="of every random sequence")
     peer.add_argument("--level", action="store_true", help="turn without climbing")
     peer.add_argument("--json", action="store_true", help="print the score as JSON")
     peer.add_argument("--plot", type=Path, metavar="FILE", help="write a picture here (PNG)")
@@ -247,7 +249,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     bench_live.add_argument("--fccd", type=Path, required=True, help="the daemon's program")
     bench_live.add_argument("--watcher", type=Path, required=True, help="the example `watch`")
-    bench_live.add_argument("--rounds", type=int, default=5, help="(default %(default)s)")
+    bench_live.add_argument(
+        "--rounds", type=int, default=5, help="of two flights each (default %(default)s)"
+    )
     bench_live.add_argument(
         "--seconds", type=float, default=300.0, metavar="S", help="of each flight (%(default)s)"
     )

@@ -69,9 +69,19 @@ def add(commands: Any) -> None:
         metavar="KT,KT",
         help="(default: 1.3 Vs, cruise and the greatest)",
     )
-    margins.add_argument("--axes", type=ranges.names(_AXES), default=_AXES, metavar="AXIS,AXIS")
     margins.add_argument(
-        "--delays", type=ranges.numbers(0.0, 1_000.0, "ms"), default=(25.0,), metavar="MS,MS"
+        "--axes",
+        type=ranges.names(_AXES),
+        default=_AXES,
+        metavar="AXIS,AXIS",
+        help=f"of {', '.join(_AXES)} (all)",
+    )
+    margins.add_argument(
+        "--delays",
+        type=ranges.numbers(0.0, 1_000.0, "ms"),
+        default=(25.0,),
+        metavar="MS,MS",
+        help="from a measurement to the effect of the command (25)",
     )
     margins.add_argument(
         "--servo",

@@ -99,11 +99,13 @@ class Flight:
 def progress_line(plan: Plan, engaged_at_s: float, progress: Progress) -> str:
     """Return one line with the state of the flight."""
     now = dict(zip(COLUMNS, progress.now, strict=True))
+    # Plus zero, because a rounded -0 looks like an error.
+    bank_deg = round(now["roll_deg"], 1) + 0.0
     leg = min(plan.legs, plan.pattern.legs_begun(progress.time_s - engaged_at_s))
     return (
-        f"{progress.time_s - engaged_at_s:6.1f} s  leg {leg} of {plan.legs}  "
+        f"true: {progress.time_s - engaged_at_s:6.1f} s  leg {leg} of {plan.legs}  "
         f"altitude {now['altitude_ft']:7.1f} ft  heading {now['heading_deg']:5.1f}°  "
-        f"airspeed {now['airspeed_kt']:5.1f} kt  bank {now['roll_deg']:5.1f}°"
+        f"airspeed {now['airspeed_kt']:5.1f} kt  bank {bank_deg:5.1f}°"
     )
 
 

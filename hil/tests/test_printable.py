@@ -36,3 +36,10 @@ def test_help_that_cannot_be_written_is_an_error(words: list[str]) -> None:
         )
     assert done.returncode == 1
     assert "the output could not be written: " in done.stderr
+
+
+def test_the_commands_that_fly_the_daemon_need_no_module_of_it() -> None:
+    # `make fly-jsbsim` installs none. A module that is None cannot be imported.
+    script = "import sys; sys.modules['fcc'] = None; from fcc_hil import __main__"
+    done = subprocess.run([sys.executable, "-c", script], stderr=subprocess.PIPE, check=False)
+    assert done.returncode == 0, done.stderr.decode()

@@ -33,7 +33,7 @@ const fn seconds(s: u64) -> Duration {
     Duration::from_secs(s)
 }
 
-/// As the issue of this check asks, and the thesis' pattern.
+/// Those of the check that judges, and the thesis' pattern.
 pub(crate) const FULL: Waits = Waits {
     pause: seconds(20),
     window: seconds(20),

@@ -11,8 +11,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import fcc
-
 from ..configurations import configuration, value_of
 from ..loading import Loading
 from ..units import FT_TO_M, KT_TO_MPS
@@ -83,6 +81,9 @@ class Limits:
         return max(1.3 * self.stall_kt(weight_lb), self.floor_kt + 4.0)
 
     def _configured(self, name: str) -> float:
+        # Here, because the commands that fly the daemon do without the module.
+        import fcc  # noqa: PLC0415
+
         key = f"autopilot.envelope.{name}"
         return value_of(configuration(self.name), key, float(fcc.Config()[key]))
 

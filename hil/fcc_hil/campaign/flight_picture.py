@@ -21,9 +21,10 @@ _ROWS = (
     (("roll_deg",), "bank, °"),
     (("load_g",), "load, g"),
     (("pitch_rate_degps",), "pitch rate, °/s"),
-    (("elevator", "aileron", "throttle"), "controls"),
+    (("elevator", "aileron", "rudder", "throttle"), "controls, -1..1"),
 )
-_COLOURS = ("#1f4e79", "#c0504d", "#7f7f7f")
+_COLOURS = ("#1f4e79", "#c0504d", "#6b9e3f", "#7f7f7f")
+_LIMIT = {"color": _COLOURS[1], "linewidth": 0.8, "linestyle": "--"}
 
 
 def draw(path: Path, truth: Truth, outcome: Outcome) -> None:
@@ -32,15 +33,30 @@ def draw(path: Path, truth: Truth, outcome: Outcome) -> None:
     flight = outcome.flight
     for axes, (names, title) in zip(rows, _ROWS, strict=True):
         for name, colour in zip(names, _COLOURS, strict=False):
-            axes.plot(truth["time_s"], truth[name], color=colour, linewidth=1.0, label=name)
-        if len(names) > 1:
-            axes.legend(frameon=False, fontsize=8, ncols=len(names))
+            axes.plot(truth["time_s"], truth[name], color=colour, linewidth=1.0, label=_label(name))
         axes.set_ylabel(title)
         axes.grid(visible=True, color="#dddddd", linewidth=0.6)
-    rows[0].axhline(flight.stall_kt, color=_COLOURS[1], linewidth=0.8, linestyle="--")
-    rows[2].axhline(flight.limits.stall_deg, color=_COLOURS[1], linewidth=0.8, linestyle="--")
-    rows[-1].set_xlabel("time, s")
+    rows[0].axhline(flight.stall_kt, label="stalling speed", **_LIMIT)
+    rows[2].axhline(flight.limits.stall_deg, label="stalling angle", **_LIMIT)
+    for axes in rows:
+        lines = axes.get_lines()
+        if len(lines) > 1:
+            # Above the plot, where it covers nothing.
+            axes.legend(
+                frameon=False,
+                fontsize=8,
+                ncols=len(lines),
+                loc="lower right",
+                bbox_to_anchor=(1.0, 0.97),
+                borderpad=0.0,
+            )
+    rows[-1].set_xlabel("time since the first tick, s")
     broken = "; ".join(outcome.verdict.broken) or "clean"
     figure.suptitle(f"{conditions(flight)}: {broken}", fontsize=9, wrap=True)
     figure.savefig(path, dpi=90)
     plt.close(figure)
+
+
+def _label(name: str) -> str:
+    """Return the name without its unit, which the axis has: `pitch_deg` is pitch."""
+    return name.removesuffix("_deg").removesuffix("_kt").replace("_", " ")

@@ -19,10 +19,15 @@ _COLOURS = ("#c0504d", "#d98a29", "#8a5fb0", "#3b8686", "#7a5c3e", "#c06c9c")
 _CLEAN, _GRID = "#b8c7d9", "#dddddd"
 
 _PANELS = (
-    ("airspeed_over_stall", "least airspeed, of Vs", "largest_angle_of_attack_deg", "attack, °"),
+    (
+        "airspeed_over_stall",
+        "least airspeed, multiple of Vs",
+        "largest_angle_of_attack_deg",
+        "largest angle of attack, °",
+    ),
     ("least_load_g", "least load, g", "largest_load_g", "largest load, g"),
     ("delay_ms", "delay, ms", "pitch_rate_sd_degps", "pitch rate when steady, °/s (1 sd)"),
-    ("turbulence", "turbulence, severity", "largest_bank_deg", "largest bank, °"),
+    ("turbulence", "turbulence, severity of MIL-F-8785C", "largest_bank_deg", "largest bank, °"),
 )
 _MOST_SHOWN = {"pitch_rate_sd_degps": 20.0, "largest_angle_of_attack_deg": 30.0}
 
@@ -55,6 +60,8 @@ def draw(path: Path, outcomes: Sequence[Outcome], title: str) -> None:
             axes.spines[side].set_visible(False)
     rows[0][1].axvline(LOADS_G[0], color="black", linewidth=0.6)
     rows[0][1].axhline(LOADS_G[1], color="black", linewidth=0.6)
+    severities = sorted({it.flight.weather.turbulence_severity for it in flown})
+    rows[1][1].set_xticks(range(severities[0], severities[-1] + 1))
     rows[1][1].axhline(LARGEST_BANK_DEG, color="black", linewidth=0.6)
     rows[0][0].legend(frameon=False, fontsize=8)
     figure.suptitle(title, fontsize=12)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from .draw import Bounds, Flight
+from .draw import Bounds, Fault, Flight
 from .flying import Outcome
 from .verdict import KINDS
 
@@ -69,11 +69,20 @@ def conditions(flight: Flight) -> str:
     ]
     vertical = [gust.down_mps for gust in flight.gusts]
     if vertical:
-        parts.append(f"gusts of {', '.join(f'{mps:+.1f}' for mps in vertical)} m/s down")
+        # Plus zero, because a rounded -0 looks like an error.
+        speeds = ", ".join(f"{round(mps, 1) + 0.0:+.1f}" for mps in vertical)
+        parts.append(f"gusts of {speeds} m/s (positive down)")
     if fault is not None:
         lasts = "" if fault.lasts_s is None else f" for {fault.lasts_s:.1f} s"
-        parts.append(f"{fault.what} at {fault.begins_s:.0f} s{lasts}")
+        parts.append(f"{fault.what}{_amount(fault)} at {fault.begins_s:.0f} s{lasts}")
     return ", ".join(parts)
+
+
+def _amount(fault: Fault) -> str:
+    """Return how much, of those faults that have an amount."""
+    if fault.what == "airspeed biased":
+        return f" by {fault.amount:+.1f} kt"
+    return f" ({100.0 * fault.amount:.0f} %)" if fault.what == "samples lost" else ""
 
 
 def document(outcomes: Sequence[Outcome], seed: int, bounds: Bounds) -> dict[str, Any]:

@@ -56,8 +56,9 @@ impl<C: Controller> StatusLine<C> {
         let now_s = at.time_s;
         let overload = if self.overloaded { "  overload" } else { "" };
         let timing = format!(
-            "late ≤{:6.1} µs  missed {}{overload}",
-            self.worst_us, self.missed
+            "late ≤ {} µs  missed {}{overload}",
+            lateness(self.worst_us),
+            self.missed
         );
         let Some(plant) = (self.describe)(record) else {
             return format!(
@@ -78,5 +79,25 @@ impl<C: Controller> StatusLine<C> {
             line.push_str(C::flag_name(bit));
         }
         line
+    }
+}
+
+/// Of one width up to 99,999 µs: tenths are of no use in a lateness of a millisecond.
+fn lateness(us: f64) -> String {
+    if us < 999.95 {
+        format!("{us:5.1}")
+    } else {
+        format!("{us:5.0}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::lateness;
+
+    #[test]
+    fn a_lateness_has_one_width() {
+        let told = [0.0, 202.84, 999.94, 999.96, 1_600.3, 10_035.0].map(lateness);
+        assert_eq!(told, ["  0.0", "202.8", "999.9", " 1000", " 1600", "10035"]);
     }
 }

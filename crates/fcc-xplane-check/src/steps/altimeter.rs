@@ -15,7 +15,7 @@ const TURN_INHG: f64 = 0.30;
 /// A click is 0.01 inHg.
 const CLICKS: u32 = 10;
 const CLICK_EVERY: Duration = Duration::from_millis(100);
-/// The issue's limit.
+/// A limit of this project.
 const MOST_FT: f64 = 5.0;
 const FOOT_M: f64 = 0.3048;
 
@@ -24,7 +24,7 @@ pub(super) const ALTIMETER: Step = Step {
     title: "the altimeter's setting + 0.30 inHg, then by clicks: the altitude stays",
     action: "The check turns the pilot's altimeter by 0.30 inHg at once and back, then by clicks.",
     passes: "The aircraft's height changes by at most 5 ft.",
-    source: "the issue's limit; 0.30 inHg are about 300 ft on the altimeter (ICAO Doc 7488)",
+    source: "a limit of this project; 0.30 inHg are about 300 ft on the altimeter (ICAO Doc 7488)",
     advice: "fccd flies by this aircraft's indicated altitude, and cannot correct it: send this \
              report, and do not turn the altimeter while fccd flies.",
     run: altimeter,

@@ -10,7 +10,7 @@ use crate::figure::Limit;
 use crate::step::Step;
 use crate::watched::Watched;
 
-/// The issue's limit.
+/// A limit of this project.
 const RELEASED_WITHIN_S: f64 = 1.0;
 /// The helper that releases is there this long after control was taken.
 const HELPER_WITHIN: Duration = Duration::from_millis(500);
@@ -25,7 +25,7 @@ pub(super) const ENDS: Step = Step {
     action: "The check ends fccd in flight by SIGINT, as Ctrl-C does, and another by SIGKILL.",
     passes: "Within 1 s both overrides are off and the yoke is centred, or as the joystick holds \
              it; exit code 0 after Ctrl-C.",
-    source: "the issue's limits",
+    source: "a limit of this project",
     advice: "Switch override_joystick and override_throttles off in X-Plane, and send this report.",
     run: ends,
     restore: |bench| {

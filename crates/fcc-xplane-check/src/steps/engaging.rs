@@ -15,7 +15,7 @@ use crate::watched::Watched;
 const LIGHT_ON: Duration = Duration::from_millis(75);
 /// How long it may take from a light until an override is read back.
 const VISIBLE_WITHIN: Duration = Duration::from_millis(300);
-/// The step in bank that a return may cause (issue: never more than 5°).
+/// The step in bank that a return may cause (a limit of this project).
 pub(super) const BANK_DEG: f64 = 5.0;
 
 pub(super) const LIGHTS: Step = Step {

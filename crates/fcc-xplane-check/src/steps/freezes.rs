@@ -20,7 +20,7 @@ pub(super) const FREEZE_STEP: Step = Step {
     title: "a freeze of more than 0.3 s",
     action: "The check has X-Plane load its scenery again, which makes it stand still.",
     passes: "fccd stays engaged, without failsafe, and the bank changes by at most 5°.",
-    source: "the issue's limits",
+    source: "limits of this project",
     advice: FREEZE_ADVICE,
     run: freeze,
     restore: |_| {},
@@ -68,7 +68,7 @@ pub(super) const RELOAD: Step = Step {
     title: "the aircraft is reloaded: the controls are released",
     action: "The check has X-Plane reload the aircraft while fccd flies.",
     passes: "Within 1 s both overrides are off and stay off, and fccd says why.",
-    source: "the issue's limit: a reloaded aircraft is another one, or elsewhere",
+    source: "a limit of this project: a reloaded aircraft is another one, or elsewhere",
     advice: "Switch override_joystick and override_throttles off in X-Plane, and send this report.",
     run: reload,
     restore: |bench| {

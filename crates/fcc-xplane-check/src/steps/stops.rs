@@ -21,7 +21,7 @@ pub(super) const PAUSE: Step = Step {
     title: "a pause of 20 s",
     action: "The check pauses X-Plane, and lets it run again.",
     passes: "The overrides stay on, there is no failsafe, and the flight continues as it was.",
-    source: "the issue's limits: no failsafe, a step of at most 5° of bank",
+    source: "limits of this project: no failsafe, a step of at most 5° of bank",
     advice: NO_ALARM,
     run: pause,
     restore: |bench| {
@@ -124,7 +124,7 @@ pub(super) const REPLAY: Step = Step {
     action: "The check switches X-Plane's replay on and off.",
     passes: "No failsafe; back in the flight, fccd flies on or has released the controls and says \
              why.",
-    source: "the issue: flown on if the aircraft is where it was, otherwise released",
+    source: "a rule of this project: flown on if the aircraft is where it was, otherwise released",
     advice: NO_ALARM,
     run: replay,
     restore: |bench| {

@@ -15,7 +15,7 @@ pub(super) const TIME: Step = Step {
     action: "The check sets X-Plane's time to twice its rate and back. Then reduce X-Plane to \
              about 15 frames a second (highest graphics settings), and restore it when asked.",
     passes: "fccd flies on at both.",
-    source: "the issue: time up to 2 times as fast is flown; below 19 frames a second X-Plane's \
+    source: "a limit of this project: time up to 2 times as fast is flown; below 19 frames a second X-Plane's \
              time runs slower",
     advice: "Do not change the rate of time while fccd flies; send this report.",
     run: time,

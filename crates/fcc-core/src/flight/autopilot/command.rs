@@ -63,7 +63,7 @@ impl fmt::Display for AutopilotCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Airspeed(mps) => write!(f, "airspeed {:.1} kt", mps / KNOT_MPS),
-            Self::Heading(rad) => write!(f, "heading {:.1}°", rad.to_degrees()),
+            Self::Heading(rad) => write!(f, "heading {:.1}°", compass_deg(*rad)),
             Self::Altitude(m) => write!(f, "altitude {:.0} ft", m / FOOT_M),
             Self::PressureAltitude(m) => write!(f, "pressure altitude {:.0} ft", m / FOOT_M),
             Self::Height(m) => write!(f, "height {:.0} ft", m / FOOT_M),
@@ -75,6 +75,13 @@ impl fmt::Display for AutopilotCommand {
             }
         }
     }
+}
+
+/// Tenths of a degree, 0 to 359.9, as on a compass card: headings are continuous
+/// through full turns.
+fn compass_deg(heading_rad: f64) -> f64 {
+    let tenths = libm::round(heading_rad.to_degrees() * 10.0);
+    (tenths - 3_600.0 * libm::floor(tenths / 3_600.0)) / 10.0
 }
 
 impl Autopilot {
@@ -126,6 +133,27 @@ impl Autopilot {
             let before_m = self.datum_m();
             self.altimeter.setting_pa = setting_pa;
             self.guidance.shift_altitude(self.datum_m() - before_m);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::string::ToString;
+
+    use super::AutopilotCommand;
+
+    #[test]
+    fn a_heading_is_told_as_on_a_compass_card() {
+        for (commanded_deg, told) in [
+            (90.0, "heading 90.0°"),
+            (436.5, "heading 76.5°"),
+            (-5.4, "heading 354.6°"),
+            (359.96, "heading 0.0°"),
+            (-0.01, "heading 0.0°"),
+        ] {
+            let command = AutopilotCommand::Heading(f64::to_radians(commanded_deg));
+            assert_eq!(command.to_string(), told);
         }
     }
 }
