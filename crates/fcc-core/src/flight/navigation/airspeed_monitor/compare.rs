@@ -182,8 +182,7 @@ impl AirspeedMonitor {
             && input.sample.up > NEAR_STALL_LOAD
             && angle_of_attack_rad(&input.sample, filter_mps) > NEAR_STALL_RAD
             && carries;
-        let may_be_right = matches!(doubt.reason, DoubtReason::TooLow | DoubtReason::TooHigh);
-        let slower_mps = if carries && may_be_right {
+        let slower_mps = if carries && !is_static {
             limit(-differs, 0.0, MOST_SLOWER_RATIO * self.prior.reference_mps)
         } else {
             0.0
