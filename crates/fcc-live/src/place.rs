@@ -18,6 +18,7 @@ use nix::fcntl::{FcntlArg, fcntl};
 use nix::libc;
 
 use super::PublishError;
+use fcc_telemetry::file_lock::{is_locked, whole_file};
 use fcc_telemetry::{Instance, RunFolder};
 
 const CURRENT: &str = "current";
@@ -100,7 +101,7 @@ impl Place {
                 fs::remove_file(folder.path(CURRENT))?;
                 folder.open(CURRENT)
             })?;
-            if fcntl(&file, FcntlArg::F_OFD_SETLK(&whole())).is_err() {
+            if fcntl(&file, FcntlArg::F_OFD_SETLK(&whole_file(libc::F_WRLCK))).is_err() {
                 return Ok(None);
             }
             // Otherwise the program that had locked it has removed it.
@@ -225,24 +226,6 @@ pub(super) fn config(root: &RunFolder) -> Result<Config, String> {
 
 fn lock_of(folder: &RunFolder) -> Option<File> {
     folder.open_existing(CURRENT).ok()
-}
-
-/// A lock on all of a file, which belongs to the open file and not to the
-/// process (`F_OFD_SETLK`, fcntl(2)).
-fn whole() -> libc::flock {
-    libc::flock {
-        l_type: libc::F_WRLCK as libc::c_short,
-        l_whence: libc::SEEK_SET as libc::c_short,
-        l_start: 0,
-        l_len: 0,
-        l_pid: 0,
-    }
-}
-
-fn is_locked(file: &File) -> bool {
-    let mut lock = whole();
-    fcntl(file, FcntlArg::F_OFD_GETLK(&mut lock)).is_ok()
-        && lock.l_type != libc::F_UNLCK as libc::c_short
 }
 
 fn is_at(file: &File, path: &Path) -> bool {

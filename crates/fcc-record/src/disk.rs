@@ -6,7 +6,7 @@ use std::os::unix::fs::MetadataExt as _;
 use std::path::Path;
 
 use super::opening::{open, open_found, open_to_lock};
-use super::write_lock::{is_locked, try_lock};
+use fcc_telemetry::file_lock::{is_locked, try_lock};
 
 /// Where recordings are written.
 pub trait Disk: Send {

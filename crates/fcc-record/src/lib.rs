@@ -46,6 +46,8 @@ mod framing;
 mod items;
 mod list;
 mod listed;
+#[cfg(test)]
+mod lock_tests;
 mod lost;
 mod name;
 mod opening;
@@ -66,7 +68,6 @@ mod utc;
 #[cfg(feature = "flight")]
 mod views;
 mod wire;
-mod write_lock;
 mod writing;
 
 pub use about::About;
@@ -91,4 +92,3 @@ pub use settings::{Compression, RecorderSettings, RecordingPace};
 pub use status::{Notice, RecorderStatus};
 #[cfg(feature = "flight")]
 pub use views::FoxgloveViews;
-pub use write_lock::try_lock;

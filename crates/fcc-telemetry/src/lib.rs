@@ -9,6 +9,7 @@
 
 #[cfg(feature = "flight")]
 mod altitude;
+pub mod file_lock;
 #[cfg(feature = "flight")]
 mod flight;
 mod instance;

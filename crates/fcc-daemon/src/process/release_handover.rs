@@ -18,6 +18,7 @@ use std::time::{Duration, Instant};
 
 use fcc_core::framework::PlantId;
 use fcc_telemetry::RunFolder;
+use fcc_telemetry::file_lock::whole_file;
 use nix::fcntl::{FcntlArg, fcntl};
 use nix::libc;
 use nix::sys::signal::{Signal, kill};
@@ -59,24 +60,13 @@ impl HelperLock {
     /// Locks the file, unless another helper has locked it: that one is ended
     /// first.
     pub(super) fn lock(&self) {
-        let _ = fcntl(&self.file, FcntlArg::F_SETLK(&whole(libc::F_WRLCK)));
-    }
-}
-
-/// A lock on all of a file.
-fn whole(kind: libc::c_int) -> libc::flock {
-    libc::flock {
-        l_type: kind as libc::c_short,
-        l_whence: libc::SEEK_SET as libc::c_short,
-        l_start: 0,
-        l_len: 0,
-        l_pid: 0,
+        let _ = fcntl(&self.file, FcntlArg::F_SETLK(&whole_file(libc::F_WRLCK)));
     }
 }
 
 /// The process that has locked the file of a plant, unless it is `except`.
 fn helper_of(file: &File, except: Option<u32>) -> Option<Pid> {
-    let mut lock = whole(libc::F_WRLCK);
+    let mut lock = whole_file(libc::F_WRLCK);
     fcntl(file, FcntlArg::F_GETLK(&mut lock)).ok()?;
     let is_locked = lock.l_type != libc::F_UNLCK as libc::c_short;
     // Not positive: of another namespace of processes.

@@ -301,7 +301,7 @@ fn prepare(path: &Path) -> Result<File, String> {
     }
     let lock = fcc_record::open_lock(&path.with_extension("flight.lock"))
         .map_err(|error| message("cannot be locked", &error))?;
-    match fcc_record::try_lock(&lock) {
+    match fcc_telemetry::file_lock::try_lock(&lock) {
         Ok(true) => Ok(lock),
         Ok(false) => Err(message(
             "another fccd uses it",
