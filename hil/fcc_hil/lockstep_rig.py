@@ -15,6 +15,7 @@ from .lockstep import as_controls, as_surfaces, measurements
 from .noise import NoiseLevels, SensorNoise
 from .plant import STEPS_PER_SECOND, Plant
 from .quantities import SENSORS
+from .receiver import Receiver, ReceiverReadings
 from .rig import Event, FlightError
 from .standin import Settings
 from .state import Controls, State
@@ -36,6 +37,8 @@ class Conditions:
     sensor_delay_ticks: int = 0
     """The age of the measurements."""
     actuation: Actuation = _AT_ONCE
+    receiver: Receiver | None = None
+    """None if the velocity over the ground is not measured."""
     gust: Callable[[Plant], None] | None = None
     """Called before each tick, to move the air."""
 
@@ -72,6 +75,8 @@ class LockstepRig:
         self._noise = SensorNoise(settings.seed, conditions.levels) if settings.noise else None
         self._late: deque[State] = deque(maxlen=conditions.sensor_delay_ticks + 1)
         self._sensors = FaultySensors()
+        receiver = conditions.receiver
+        self._receiver = None if receiver is None else ReceiverReadings(receiver, settings.seed)
         self._command = plant.controls
         self._servos = (
             None
@@ -134,11 +139,14 @@ class LockstepRig:
         state = plant.state()
         self._late.append(self._noise.apply(state) if self._noise else state)
         measured, channels = self._sensors.read(plant.time_s, self._late[0])
+        velocity = None if self._receiver is None else self._receiver.read(state)
         if measured is None:
             surfaces = self.machine.step(None)
         else:
             stand = plant.controls
             values = measurements(measured)
+            if velocity is not None:
+                values.north_mps, values.east_mps, values.down_mps = velocity
             if self.stick is not None:
                 values.pilot_pitch, values.pilot_roll, values.pilot_yaw = self.stick
             surfaces = self.machine.step(

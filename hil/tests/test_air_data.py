@@ -22,8 +22,9 @@ from fcc_hil.faulty_sensors import FaultySensors
 from fcc_hil.lockstep import measurements
 from fcc_hil.noise import SensorNoise
 from fcc_hil.plant import Plant, Weather
+from fcc_hil.receiver import Receiver, ReceiverReadings, Velocity
 from fcc_hil.sensor_faults import Faults
-from fcc_hil.state import Controls
+from fcc_hil.state import Controls, State
 from fcc_hil.units import FT_TO_M, KT_TO_MPS
 
 SEED = 2112
@@ -56,10 +57,14 @@ def _fly(
     weather: Weather | None = None,
     disturb: Callable[[Plant], None] | None = None,
     *,
-    over_ground: bool = False,
+    receiver: ReceiverReadings | None = None,
+    turn_every_s: float = math.inf,
     seed: int = SEED,
 ) -> _Flown:
-    """Hold heading and altitude from 5 s on; at the fault's time change the altitude."""
+    """Hold heading and altitude from 5 s on; at the fault's time change the altitude.
+
+    With turns, 90 degrees to the right each.
+    """
     plant = Plant("c172p", seed=seed, weather=weather or Weather())
     autopilot = fcc.Autopilot('[guidance]\nmode = "hold"\n')
     noise, sensors = SensorNoise(seed), FaultySensors()
@@ -67,7 +72,8 @@ def _fly(
     if break_it is not None:
         break_it(faults)
     engaged = commanded = False
-    start_m = 0.0
+    start_m = heading_rad = 0.0
+    turns_s = turn_every_s
     rows: list[tuple[float, ...]] = []
     while plant.time_s < end_s:
         plant.step(3)
@@ -77,19 +83,23 @@ def _fly(
         measured, _ = sensors.read(plant.time_s, noise.apply(state))
         assert measured is not None
         sample = measurements(measured)
-        if over_ground:
-            sample.north_mps, sample.east_mps = state.north_mps, state.east_mps
-            sample.down_mps = state.down_mps
+        velocity = receiver.read(state) if receiver else None
+        if velocity is not None:
+            sample.north_mps, sample.east_mps, sample.down_mps = velocity
         if plant.time_s < 5.0:
             autopilot.observe(sample)
             continue
         if not engaged:
             autopilot.engage(sample, throttle=plant.controls.throttle)
             engaged = True
-            start_m = state.altitude_m
+            start_m, heading_rad = state.altitude_m, measured.heading_rad
         if not commanded and plant.time_s >= _FAULT_S:
             autopilot.command(altitude_m=start_m + climb_ft * FT_TO_M)
             commanded = True
+        if plant.time_s >= turns_s:
+            heading_rad = (heading_rad + math.pi / 2.0) % math.tau
+            autopilot.command(heading_rad=heading_rad)
+            turns_s += turn_every_s
         s = autopilot.step(sample)
         plant.write(Controls(s.elevator, s.aileron, s.rudder, s.throttle))
         estimate = autopilot.estimate
@@ -162,11 +172,12 @@ def _block_static(faults: Faults) -> None:
         (0.0, 30.0, 300.0),
     ],
 )
-@pytest.mark.parametrize("over_ground", [False, True])
+@pytest.mark.parametrize("receiver", [None, Receiver()], ids=["alone", "receiver"])
 def test_a_blocked_static_port_is_doubted_and_flown_on_without(
-    climb_ft: float, doubted_s: float, error_ft: float, *, over_ground: bool
+    climb_ft: float, doubted_s: float, error_ft: float, receiver: Receiver | None
 ) -> None:
-    flown = _fly(_block_static, climb_ft, over_ground=over_ground, end_s=110.0)
+    readings = ReceiverReadings(receiver, SEED) if receiver else None
+    flown = _fly(_block_static, climb_ft, receiver=readings, end_s=110.0)
     assert flown.true_kt.min() > 1.2 * _VS_KT
     assert flown.true_kt.max() < _VNE_KT
     assert flown.is_doubted.any()
@@ -196,14 +207,78 @@ def test_a_sensor_that_agrees_again_is_taken_again() -> None:
     assert not flown.is_doubted[-1]
 
 
-def test_a_headwind_that_falls_by_20_kt_in_10_s_is_no_fault() -> None:
+@pytest.mark.parametrize("receiver", [None, Receiver()], ids=["alone", "receiver"])
+def test_a_headwind_that_falls_by_20_kt_in_10_s_is_no_fault(receiver: Receiver | None) -> None:
     def shear(plant: Plant) -> None:
         share = min(1.0, max(0.0, (plant.time_s - 30.0) / 10.0))
         plant.fdm["atmosphere/wind-north-fps"] = share * 20.0 * KT_TO_MPS / FT_TO_M
 
-    flown = _fly(disturb=shear, end_s=60.0)
+    readings = ReceiverReadings(receiver, SEED) if receiver else None
+    flown = _fly(disturb=shear, receiver=readings, turn_every_s=60.0, end_s=180.0)
     assert flown.true_kt.min() < 97.0, "the wind acts"
     assert not flown.is_doubted.any()
+
+
+_WINDY = Weather(wind_from_deg=240.0, wind_kt=20.0, turbulence_severity=2)
+
+
+@pytest.mark.parametrize("per_s", [0.1, -0.1])
+def test_a_slow_drift_is_found_by_the_velocity_over_the_ground_and_the_wind(per_s: float) -> None:
+    """In straight flight a wind that changes looks the same: the turns tell."""
+    flown = [
+        _fly(
+            lambda faults: faults.drift(airspeed, per_s=per_s, after=100.0),
+            weather=_WINDY,
+            receiver=ReceiverReadings(Receiver(), SEED) if is_measured else None,
+            turn_every_s=60.0,
+            end_s=330.0,
+        )
+        for is_measured in (False, True)
+    ]
+    alone, measured = flown
+    assert not alone.is_doubted.any(), "forces learn it as if it were the aircraft's"
+    doubted_s = measured.time_s[measured.is_doubted][0]
+    assert abs(per_s) * (doubted_s - 100.0) < 20.0
+    later = measured.time_s > doubted_s + 15.0
+    assert np.abs(measured.used_kt - measured.true_kt)[later].mean() < 10.0
+    assert measured.is_doubted[-1]
+
+
+class _WrongReceiver(ReceiverReadings):
+    """A receiver that fails after 100 s, or was never right."""
+
+    def __init__(self, changes: Callable[[Velocity], Velocity] | None) -> None:
+        super().__init__(Receiver(), SEED)
+        self._changes = changes
+        self._last: Velocity | None = None
+
+    def read(self, state: State) -> Velocity | None:
+        velocity = super().read(state)
+        if velocity is None:
+            return None
+        if self._changes is not None:
+            return self._changes(velocity)
+        if self._ticks < 4_000 or self._last is None:
+            self._last = velocity
+        return self._last
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        pytest.param(None, id="frozen"),
+        pytest.param(lambda v: (v[1], v[0], v[2]), id="north is east"),
+        pytest.param(lambda v: (-v[0], v[1], v[2]), id="north is south"),
+        pytest.param(lambda v: (v[0] / KT_TO_MPS, v[1] / KT_TO_MPS, v[2] / KT_TO_MPS), id="kt"),
+    ],
+)
+def test_a_wrong_velocity_over_the_ground_is_not_held_against_the_airspeed(
+    changes: Callable[[Velocity], Velocity] | None,
+) -> None:
+    receiver = _WrongReceiver(changes)
+    flown = _fly(weather=_WINDY, receiver=receiver, turn_every_s=60.0, end_s=330.0)
+    assert not flown.is_doubted.any()
+    assert np.abs(flown.used_kt - flown.true_kt).max() < 10.0
 
 
 @pytest.mark.parametrize("severity", [3, 4])
@@ -215,7 +290,7 @@ def test_turbulence_is_no_fault(severity: int) -> None:
 @pytest.mark.parametrize(("seed", "number"), [(200024, 211), (200026, 108)])
 def test_a_healthy_airspeed_that_is_doubted_is_kept_above_the_stall(seed: int, number: int) -> None:
     """An engine that fails while the throttle moves, and turbulence near the stall."""
-    flown, _ = fly(draw(number, seed, Bounds()))
+    flown, _ = fly(replace(draw(number, seed, Bounds()), receiver=None))
     assert any("is doubted: it is lower" in event.text for event in flown.events)
     assert flown.verdict.figures["airspeed_over_stall"] > 1.0
 

@@ -10,6 +10,7 @@ import numpy as np
 from ..actuation import Actuation
 from ..loading import Loading
 from ..plant import STEPS_PER_SECOND, Weather
+from ..receiver import Receiver
 from ..truth import TRUTH_HZ
 from .aircraft import AIRCRAFT, Limits
 
@@ -103,6 +104,8 @@ class Flight:
     biases: dict[str, float]
     """By the name of the quantity, in its unit."""
     sensor_delay_ticks: int
+    receiver: Receiver | None
+    """None in half of the flights: the velocity over the ground is not measured."""
     actuation: Actuation
     fault: Fault | None
     is_pattern: bool
@@ -160,6 +163,7 @@ def draw(number: int, seed: int, bounds: Bounds) -> Flight:
             latency_steps=int((delay_s - ticks / TRUTH_HZ) * STEPS_PER_SECOND),
             servo_hz=float(random.uniform(3.0, 10.0)) if random.random() < 0.7 else None,
         ),
+        receiver=_receiver(np.random.default_rng([seed, number, 1])),
         fault=_fault(random),
         is_pattern=is_pattern,
         orders=tuple(
@@ -215,6 +219,17 @@ def _biases(random: np.random.Generator) -> dict[str, float]:
         "yaw_rate": 0.2,
     }
     return {name: float(random.uniform(-most, most)) for name, most in within.items()}
+
+
+def _receiver(random: np.random.Generator) -> Receiver | None:
+    """Return a receiver of 1 to 10 velocities a second, 50 to 250 ms late."""
+    if random.random() < 0.5:
+        return None
+    return Receiver(
+        period_ticks=int(TRUTH_HZ) // int(random.choice([1, 5, 10])),
+        delay_ticks=int(random.integers(2, 11)),
+        sigma_mps=float(random.uniform(0.05, 0.3)),
+    )
 
 
 def _fault(random: np.random.Generator) -> Fault | None:

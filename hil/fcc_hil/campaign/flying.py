@@ -147,6 +147,7 @@ def _rig(flight: Flight) -> LockstepRig:
     conditions = Conditions(
         levels=levels,
         sensor_delay_ticks=flight.sensor_delay_ticks,
+        receiver=flight.receiver,
         actuation=flight.actuation,
         gust=mover(flight.gusts, lambda: plant.time_s - engaged_s[0]) if flight.gusts else None,
     )

@@ -12,7 +12,12 @@ use crate::framework::{Flags, Notice, Time};
 
 /// The numbers of notices: one for each reason, with the sensor's number in the
 /// lowest bits.
-const REASONS: [(u8, DoubtReason, &str); 6] = [
+const REASONS: [(u8, DoubtReason, &str); 7] = [
+    (
+        0x20,
+        DoubtReason::Wind,
+        "the velocity over the ground and the wind contradict it",
+    ),
     (
         0x40,
         DoubtReason::BlockedTube,

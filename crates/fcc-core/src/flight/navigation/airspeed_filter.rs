@@ -3,8 +3,12 @@
 use libm::exp;
 
 use super::force_sample::ForceSample;
+use super::scalar_update::{add_variance, squared, update};
 use super::upward::Upward;
+use super::wind::Wind;
 use crate::blocks::limit_abs;
+
+mod over_ground;
 
 /// What an [`AirspeedFilter`] must know of the aircraft beforehand.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -65,7 +69,7 @@ pub(super) const MIN_AIRSPEED_MPS: f64 = 5.0;
 /// the axial force, thrust ratio, angle of attack of zero lift in rad, angle of
 /// attack for 1 g in rad.
 const N: usize = 6;
-type State = [f64; N];
+type State = super::scalar_update::State<N>;
 
 /// The difference of the airspeed that a model has from the filter's, and the
 /// weight of it.
@@ -95,6 +99,7 @@ pub(super) struct AirspeedFilter {
     is_copy: bool,
     axial: Vote,
     lift: Vote,
+    pub(super) wind: Wind,
 }
 
 impl AirspeedFilter {
@@ -122,8 +127,9 @@ impl AirspeedFilter {
             is_copy: false,
             axial: Vote::default(),
             lift: Vote::default(),
+            wind: Wind::new(),
         };
-        filter.add_variance(sds.map(squared));
+        add_variance(&mut filter.covariance, sds.map(squared));
         filter.learn_offset(sample);
         filter
     }
@@ -224,7 +230,13 @@ impl AirspeedFilter {
     /// Corrects by a sensor's airspeed.
     pub(super) fn correct_by_sensor(&mut self, airspeed_mps: f64) {
         let by = airspeed_mps - self.x[0];
-        self.update([1.0, 0.0, 0.0, 0.0, 0.0, 0.0], by, squared(SENSOR_SD_MPS));
+        update(
+            &mut self.x,
+            &mut self.covariance,
+            [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            by,
+            squared(SENSOR_SD_MPS),
+        );
     }
 
     /// How far the airspeed is from this one by the forces alone, with the
@@ -252,14 +264,17 @@ impl AirspeedFilter {
             *wind *= fades;
         }
         let gusts = squared(gusts_mps);
-        self.add_variance([
-            (squared(AIRSPEED_WALK_MPS) + GUSTS_ALONG * 2.0 * gusts / GUST_S) * dt_s,
-            (1.0 - fades * fades) * gusts,
-            squared(OFFSET_WALK) * dt_s,
-            squared(THRUST_WALK) * dt_s,
-            squared(ANGLE_WALK_RAD) * dt_s,
-            0.0,
-        ]);
+        add_variance(
+            &mut self.covariance,
+            [
+                (squared(AIRSPEED_WALK_MPS) + GUSTS_ALONG * 2.0 * gusts / GUST_S) * dt_s,
+                (1.0 - fades * fades) * gusts,
+                squared(OFFSET_WALK) * dt_s,
+                squared(THRUST_WALK) * dt_s,
+                squared(ANGLE_WALK_RAD) * dt_s,
+                0.0,
+            ],
+        );
     }
 
     fn correct_by_axial_force(&mut self, sample: &ForceSample, dt_s: f64) {
@@ -295,7 +310,9 @@ impl AirspeedFilter {
                 *own += squared(by * per_force) * dt_s;
             }
         }
-        self.update(
+        update(
+            &mut self.x,
+            &mut self.covariance,
             [per_mps, 0.0, 1.0, thrust * slower, 0.0, induced],
             by,
             squared(AXIAL_SD) + THRUST_NOISE * unexplained,
@@ -351,7 +368,9 @@ impl AirspeedFilter {
         } else {
             LIFT_SD_RAD
         };
-        self.update(
+        update(
+            &mut self.x,
+            &mut self.covariance,
             [per_mps, -1.0 / true_mps, 0.0, 0.0, share, share * lift],
             by,
             squared(sd_rad),
@@ -366,34 +385,6 @@ impl AirspeedFilter {
     fn slower(&self) -> f64 {
         self.prior.reference_mps / self.at_mps()
     }
-
-    fn add_variance(&mut self, variance: State) {
-        for (place, (row, more)) in self.covariance.iter_mut().zip(variance).enumerate() {
-            if let Some(own) = row.get_mut(place) {
-                *own += more;
-            }
-        }
-    }
-
-    /// The correction by a scalar measurement (Gelb 1974, table 4.2-1).
-    fn update(&mut self, h: State, by: f64, variance: f64) {
-        let ph = self.covariance.map(|row| dot(row, h));
-        let per = 1.0 / (dot(ph, h) + variance);
-        for ((row, x), gain) in self.covariance.iter_mut().zip(&mut self.x).zip(ph) {
-            *x += gain * by * per;
-            for (p, other) in row.iter_mut().zip(ph) {
-                *p -= gain * other * per;
-            }
-        }
-    }
-}
-
-pub(super) fn squared(x: f64) -> f64 {
-    x * x
-}
-
-fn dot(a: State, b: State) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]

@@ -1,12 +1,15 @@
 //! Whether the airspeed sensor is believed, and the airspeed without it.
 
-use super::airspeed_filter::{AirframePrior, squared};
+use super::airspeed_filter::AirframePrior;
 use super::airspeed_reason::{Doubt, DoubtReason, Reference};
 use super::filter_bank::FilterBank;
 use super::force_sample::{ForceSample, acceleration_mps2};
+use super::scalar_update::squared;
+use super::wind::OverGround;
 use crate::blocks::{LowPass, smoothing_factor};
 
 mod compare;
+mod ground;
 mod static_port;
 mod step;
 
@@ -34,6 +37,8 @@ const SLOWER_LAG_S: f64 = 2.0;
 const SETTLED_S: f64 = 10.0;
 /// The same after an upset of this time, s: meanwhile the airspeed was only integrated.
 const LONG_UPSET_S: f64 = 3.0;
+/// A difference of 9 % of the reference airspeed (9 kt of 100 kt) may be a fault.
+const DIFFERS_RATIO: f64 = 0.09;
 /// Below this share of the reference airspeed nothing is compared.
 const LEAST_RATIO: f64 = 0.4;
 /// Vertical gusts are the filter's vertical wind, over this time, s; at least
@@ -52,6 +57,8 @@ pub(super) struct MonitorInput {
     pub(super) altitude_m: f64,
     /// Indicated, with the number of its sensor; none if it is silent.
     pub(super) sensor_mps: Option<(f64, u8)>,
+    /// A new reading of the velocity over the ground.
+    pub(super) over_ground: Option<OverGround>,
     /// The altimeter is doubted, whose static port the sensor may share.
     pub(super) altimeter_is_doubted: bool,
     /// Whether forces and motion are measured.
@@ -97,6 +104,14 @@ pub(super) struct AirspeedMonitor {
     upset_s: f64,
     reference: Reference,
     doubt: Option<Doubt>,
+    /// The time since the last velocity over the ground, and for how long it and the
+    /// wind have contradicted the sensor, s.
+    ground_s: f64,
+    contradicted_s: f64,
+    /// The airspeed by both and its standard deviation, while it is known, and the
+    /// sensor's difference from it, m/s.
+    by_ground: Option<(f64, f64)>,
+    ground_difference: LowPass,
     /// While the cause of a doubt may be the static port.
     static_port: Option<StaticPort>,
     blocked: Option<Blocked>,
@@ -141,6 +156,10 @@ impl AirspeedMonitor {
             upset_s: 0.0,
             reference: Reference::NONE,
             doubt: None,
+            ground_s: 0.0,
+            contradicted_s: 0.0,
+            by_ground: None,
+            ground_difference: LowPass::new(VOTE_LAG_S),
             static_port: None,
             blocked: None,
             was_doubted: false,
@@ -265,7 +284,8 @@ impl AirspeedMonitor {
         }
         bank.younger_s += dt_s;
         bank.learned_s += dt_s;
-        if self.doubt_step(&mut bank, input, dt_s) {
+        let contradicted = self.follow_ground(&mut bank, input, &sample, dt_s);
+        if contradicted || self.doubt_step(&mut bank, input, dt_s) {
             // Nothing else is compared in this tick.
         } else if settles {
             self.follow_sensor(&mut bank);

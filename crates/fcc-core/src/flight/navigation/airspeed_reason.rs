@@ -19,6 +19,8 @@ pub(crate) enum DoubtReason {
     /// The altimeter stands, and this one changes against the height: the static
     /// pressure is trapped (the same, blocked static system).
     BlockedStatic,
+    /// The velocity over the ground and the wind contradict it.
+    Wind,
     /// It is too high.
     TooHigh,
     /// It is too low.

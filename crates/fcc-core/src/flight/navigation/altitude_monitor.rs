@@ -1,7 +1,7 @@
 //! Whether the altimeter is believed, and altitude and climb rate without it.
 
-use super::airspeed_filter::squared;
 use super::airspeed_monitor::Blocked;
+use super::scalar_update::squared;
 use super::vertical::{Reference, VerticalState};
 use crate::units::GRAVITY_MPS2;
 

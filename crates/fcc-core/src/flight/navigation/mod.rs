@@ -27,9 +27,11 @@ mod plausibility;
 mod replacement;
 mod resolution;
 mod sample_tracker;
+mod scalar_update;
 mod upward;
 mod vertical;
 mod vertical_covariance;
+mod wind;
 mod without_altimeter;
 
 use core::time::Duration;
@@ -47,7 +49,7 @@ use airspeed_monitor::{AirspeedMonitor, MonitorInput};
 use altitude_monitor::AltitudeMonitor;
 use force_sample::{ForceSample, in_g};
 use motion_monitor::MotionMonitor;
-use sample_tracker::is_current;
+use sample_tracker::{SampleTracker, is_current};
 
 pub(crate) use agreement::Contradictions;
 pub use air_data::AirspeedChannel;
@@ -98,6 +100,7 @@ pub struct Navigation {
     agreement: Agreement,
     motion: MotionMonitor,
     airframe: AirframePrior,
+    velocity: SampleTracker,
     throttle: Option<f64>,
     is_engaged: bool,
     /// Whether what the air data monitors compare with is measured.
@@ -119,6 +122,7 @@ impl Navigation {
             agreement: Agreement::new(),
             motion: MotionMonitor::new(),
             airframe: CESSNA_172,
+            velocity: SampleTracker::new(),
             throttle: None,
             is_engaged: false,
             motion_is_known: true,
@@ -203,7 +207,10 @@ impl Navigation {
             .airspeed
             .step(now, measurements, &attitude, &vertical, dt_s);
         self.compare(now, measurements, &vertical, dt_s);
-        let input = self.monitor_input(now, measurements, &attitude, &vertical);
+        let input = MonitorInput {
+            over_ground: self.over_ground(now, measurements, &attitude, &vertical, dt_s),
+            ..self.monitor_input(now, measurements, &attitude, &vertical)
+        };
         let known = is_current(&force, now) && is_current(&measurements.attitude, now);
         self.monitor.step(&input, if known { dt_s } else { 0.0 });
         let without = self.monitor.without_sensor(&input);
@@ -290,6 +297,7 @@ impl Navigation {
             throttle: self.throttle,
             altitude_m: vertical.altitude_m,
             sensor_mps: is_current(&airspeed, now).then_some((airspeed.value, airspeed.source)),
+            over_ground: None,
             altimeter_is_doubted: self.altitude_monitor.is_doubted(),
             motion_is_known: self.motion_is_known,
             may_doubt: self.is_engaged,

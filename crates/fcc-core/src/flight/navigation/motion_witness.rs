@@ -2,7 +2,7 @@
 
 use libm::{asin, atan2, cos};
 
-use super::airspeed_filter::squared;
+use super::scalar_update::squared;
 use crate::blocks::{LowPass, limit_abs, wrap_pi};
 use crate::flight::Attitude;
 use crate::units::GRAVITY_MPS2;

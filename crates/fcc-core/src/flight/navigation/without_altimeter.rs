@@ -3,10 +3,10 @@
 use libm::tan;
 
 use super::Navigation;
-use super::airspeed_filter::squared;
 use super::altitude_monitor::{self, AltitudeInput, Verdict};
 use super::attitude::Orientation;
 use super::sample_tracker::is_current;
+use super::scalar_update::squared;
 use super::vertical::VerticalState;
 use crate::blocks::limit_abs;
 use crate::flight::Measurements;

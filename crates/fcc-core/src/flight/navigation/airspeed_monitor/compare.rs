@@ -1,16 +1,16 @@
 //! Comparison of the airspeed sensor with forces and motion.
 
-use super::super::airspeed_filter::{AirspeedFilter, squared};
+use super::super::airspeed_filter::AirspeedFilter;
 use super::super::airspeed_reason::{Doubt, DoubtReason, Reference};
 use super::super::filter_bank::FilterBank;
 use super::super::force_sample::angle_of_attack_rad;
+use super::super::scalar_update::squared;
 use super::static_port::StaticPort;
-use super::{ALONE_S, AirspeedMonitor, MonitorInput, SLOWER_LAG_S};
+use super::{ALONE_S, AirspeedMonitor, DIFFERS_RATIO, MonitorInput, SLOWER_LAG_S};
 use crate::blocks::{LowPass, limit};
 
-/// A difference of 9 % of the reference airspeed (9 kt of 100 kt), of 3.5
-/// standard deviations and of 4.5 times the gusts must last for 2.5 s.
-const DIFFERS_RATIO: f64 = 0.09;
+/// A difference of that share of the reference airspeed, of 3.5 standard deviations
+/// and of 4.5 times the gusts must last for 2.5 s.
 const DIFFERS_SDS: f64 = 3.5;
 const DIFFERS_GUSTS: f64 = 4.5;
 const DOUBTED_AFTER_S: f64 = 2.5;
@@ -79,6 +79,7 @@ impl AirspeedMonitor {
         let for_sensor =
             !input.altimeter_is_doubted && vote * differs.signum() > SENSOR_SHARE * differs.abs();
         let count = |now: bool, s: f64| if now { s + dt_s } else { (s - dt_s).max(0.0) };
+        let for_sensor = for_sensor || self.agrees_with_ground(limit_mps);
         self.differs_s = count(is_large && !for_sensor, self.differs_s);
         self.wind_s = count(is_large && for_sensor, self.wind_s);
         if differs.abs() < 0.3 * limit_mps {
@@ -168,7 +169,8 @@ impl AirspeedMonitor {
         let filter_mps = bank.older.airspeed_mps();
         self.look_at_static_port(bank, input, filter_mps + differs, holds, dt_s);
         let is_static = doubt.reason == DoubtReason::BlockedStatic;
-        let agrees = differs.abs() < AGREES_RATIO * self.prior.reference_mps
+        let agrees_mps = AGREES_RATIO * self.prior.reference_mps;
+        let agrees = (differs.abs() < agrees_mps || self.agrees_with_ground(agrees_mps))
             && !(is_static && input.altimeter_is_doubted);
         self.agrees_s = if agrees { self.agrees_s + dt_s } else { 0.0 };
         let needed_s = if source == doubt.source {
@@ -198,6 +200,7 @@ impl AirspeedMonitor {
             self.was_near_stall = !agrees;
             bank.believing = bank.older;
             bank.believing.adopt(sensor_mps);
+            bank.believing.wind.trust_sensor();
             self.follow_sensor(bank);
             (self.doubt, self.static_port, self.blocked) = (None, None, None);
             self.slower = LowPass::new(SLOWER_LAG_S);

@@ -1,9 +1,9 @@
 //! Whether an airspeed is wrong because the static port is blocked.
 
-use super::super::airspeed_filter::squared;
 use super::super::airspeed_reason::DoubtReason;
 use super::super::altitude_monitor::{LEAST_MPS, height_by_total_pressure_m};
 use super::super::filter_bank::FilterBank;
+use super::super::scalar_update::squared;
 use super::{AirspeedMonitor, MonitorInput};
 
 /// Both heights are this large, m, the one by pitch and lift beyond this many
