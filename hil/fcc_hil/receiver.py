@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .state import State
+from .truth import TRUTH_HZ
 
 Velocity = tuple[float, float, float]
 """Towards north, towards east and down, m/s."""
@@ -23,6 +24,11 @@ class Receiver:
     """The age of a velocity when it comes."""
     sigma_mps: float = 0.1
     """Of the noise of each component, one standard deviation."""
+
+    @property
+    def rate_hz(self) -> float:
+        """Velocities in a second."""
+        return TRUTH_HZ / self.period_ticks
 
 
 class ReceiverReadings:

@@ -59,12 +59,14 @@ def failure(outcome: Outcome) -> str:
 def conditions(flight: Flight) -> str:
     """Return the conditions of a flight in a line."""
     servo_hz, fault = flight.actuation.servo_hz, flight.fault
+    receiver = flight.receiver
     parts = [
         f"{flight.aircraft}, {flight.loading.weight_lb:.0f} lb",
         f"{flight.airspeed_kt:.0f} kt ({flight.airspeed_kt / flight.stall_kt:.2f} Vs)",
         f"turbulence {flight.weather.turbulence_severity}",
         f"{flight.delay_ms:.0f} ms late",
         "no servos" if servo_hz is None else f"servos of {servo_hz:.1f} Hz",
+        "no receiver" if receiver is None else f"receiver of {receiver.rate_hz:.0f} Hz",
         "timed pattern" if flight.is_pattern else "orders",
     ]
     vertical = [gust.down_mps for gust in flight.gusts]
