@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import importlib.metadata
 import json
 import os
 import signal
@@ -179,6 +180,9 @@ class _Parser(argparse.ArgumentParser):
 def _parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog="fcc", description="Fly JSBSim's aircraft with fccd, or with its loop in lockstep."
+    )
+    parser.add_argument(
+        "--version", action="version", version=f"%(prog)s {importlib.metadata.version('fcc-hil')}"
     )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 

@@ -46,9 +46,24 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&str, String)) {
                 .to_owned(),
         );
     }
+    paths(config, report);
     connections(config, report);
     rights(config, report);
     lists(config, report);
+}
+
+/// No file of Unix has a NUL in its name.
+fn paths(config: &Config, report: &mut impl FnMut(&str, String)) {
+    let state_file = config.restart.state_file.as_deref();
+    let paths = [
+        ("recording.folder", Some(config.recording.folder.as_path())),
+        ("restart.state_file", state_file),
+    ];
+    for (key, path) in paths {
+        if path.is_some_and(|path| path.as_os_str().as_encoded_bytes().contains(&0)) {
+            report(key, "has a NUL character: choose a path without".to_owned());
+        }
+    }
 }
 
 /// The lowest airspeed over the stalling speed: the margin of certification is

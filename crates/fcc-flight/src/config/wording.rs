@@ -153,6 +153,10 @@ mod tests {
                 "f:3: recording.folder: is 5: choose a text in quotes",
             ),
             (
+                "[recording]\nfolder = \"re\\u0000cordings\"\n",
+                "f:3: recording.folder: has a NUL character: choose a path without",
+            ),
+            (
                 "seed = 9300000000000000000\n",
                 "f:2: built-in.seed: is 9.3e18: choose 0 to 9e18",
             ),
