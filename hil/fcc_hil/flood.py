@@ -138,9 +138,16 @@ class Result:
     disturbed: list[str]
     """Events in which it left the state engaged before the end, or did not hear the simulator."""
 
-    def failures(self, most_percent: float = 3.0) -> list[str]:
+    def failures(self, most_percent: float = 3.0, least_per_second: float = 99_000.0) -> list[str]:
         """Return what is not as it must be."""
         found = []
+        if self.per_second < least_per_second:
+            found.append(
+                f"only {self.per_second:,.0f} datagrams a second were sent: "
+                "keep the second CPU free, and repeat"
+            )
+        if self.missed:
+            found.append(f"{self.missed} ticks missed")
         more = self.flooded_percent - self.quiet_percent
         if more > most_percent:
             found.append(f"{more:.2f} % of a core more, at most {most_percent} % are permitted")

@@ -27,6 +27,8 @@ PATIENCE_S = 15.0
 ATTACKS = int(os.environ.get("FCCD_ATTACKS", "5"))
 """How often shared memory is damaged; 100 take two minutes: `make test-attacks`."""
 
+_ON_A_QUIET_MACHINE = 100
+
 ENDED = "the process that publishes live telemetry"
 
 
@@ -142,8 +144,12 @@ def test_whoever_damages_shared_memory_the_flight_goes_on(
         ending = daemon.end(signal.SIGTERM)
     print(f"back after {sorted(took_s)[len(took_s) // 2]:.2f} s, at most {max(took_s):.2f} s")
     assert ending.exit_code == SUCCESS
+    missed = ending.report["timing"]["missed"]
+    print(f"{missed} ticks missed")
     # On a busy machine some are missed without any damage.
-    print(f"{ending.report['timing']['missed']} ticks missed")
+    if ATTACKS >= _ON_A_QUIET_MACHINE:
+        assert missed == 0
+        assert max(took_s) < 1.0
     assert ending.report["failsafes"] == 0
     assert ENDED in ending.log
     (recording,) = (tmp_path / "recordings").glob("*.mcap")
