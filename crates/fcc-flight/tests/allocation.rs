@@ -1,19 +1,24 @@
 //! Ten thousand ticks of the whole thing - aircraft, navigation, guidance,
 //! control, actuators, record, and a warm-up before each - do not touch the
-//! allocator.
+//! allocator; nor does a flight in which sensors fail and the aircraft is upset.
 #![cfg(test)]
 
 use std::time::Duration;
 
 use fcc_conformance::allocator_calls;
-use fcc_core::framework::State;
+use fcc_core::flight::{Autopilot, Measurements, Surfaces};
+use fcc_core::framework::{Actuator, ActuatorFault, Reading, Sensor, SensorFault, State, Tick};
 use fcc_flight::config::{BuiltInSection, Config, GustsChoice};
 use fcc_flight::flight::assemble;
 use fcc_runtime::{Machine, Message, Parts};
 use fcc_timer::ManualTimer;
 
-#[test]
-fn ten_thousand_ticks_of_a_flight_do_not_allocate() {
+/// Flies 10,000 ticks. Returns the calls of the allocator, the engaged ticks, the
+/// records, and what happened.
+fn fly(
+    sensor: impl Fn(Box<dyn Sensor<Measurements>>) -> Box<dyn Sensor<Measurements>>,
+    actuator: impl Fn(Box<dyn Actuator<Surfaces>>) -> Box<dyn Actuator<Surfaces>>,
+) -> (u64, u32, u32, Vec<String>) {
     let config = Config {
         built_in: Some(BuiltInSection {
             gusts: GustsChoice::Moderate,
@@ -29,27 +34,106 @@ fn ten_thousand_ticks_of_a_flight_do_not_allocate() {
                 .unwrap()
                 .with_warm_up(),
         ),
-        sensors: assembly.sensors,
+        sensors: assembly.sensors.into_iter().map(sensor).collect(),
         controller: assembly.autopilot,
-        actuators: assembly.actuators,
+        actuators: assembly.actuators.into_iter().map(actuator).collect(),
     };
     let (mut machine, mut link) = Machine::new(parts, &assembly.loop_config).unwrap();
     machine.start().unwrap();
 
     let (mut engaged, mut records) = (0, 0);
+    let mut events = Vec::with_capacity(1_000);
     let ((), calls) = allocator_calls(|| {
         for _ in 0..10_000 {
             if machine.step() == State::Engaged {
                 engaged += 1;
             }
             while let Some(message) = link.messages.receive() {
-                records += u32::from(matches!(message, Message::Tick(_)));
+                match message {
+                    Message::Tick(_) => records += 1,
+                    Message::Event(event) => events.push(event.kind),
+                }
             }
         }
     });
-    assert_eq!(calls, 0);
+    let events = events
+        .iter()
+        .map(|kind| kind.description::<Autopilot>().to_string());
+    (calls, engaged, records, events.collect())
+}
 
+#[test]
+fn ten_thousand_ticks_of_a_flight_do_not_allocate() {
+    let (calls, engaged, records, _) = fly(|sensor| sensor, |actuator| actuator);
+    assert_eq!(calls, 0);
     // It was a flight: 2 s of standby, and engaged to the end.
     assert_eq!(records, 10_000);
     assert!((9_900..=9_920).contains(&engaged), "{engaged}");
+}
+
+#[test]
+fn doubts_degraded_flight_and_recoveries_do_not_allocate() {
+    let (calls, _, records, events) = fly(
+        |sensor| Box::new(Failing(sensor)),
+        |actuator| Box::new(Sticking(actuator)),
+    );
+    assert_eq!(calls, 0);
+    assert_eq!(records, 10_000);
+    for text in [
+        "airspeed of sensor 1 is doubted",
+        "attitude is missing or too old",
+        "altitude is missing or too old",
+        "recovering from an upset",
+        "the simulator stood still",
+    ] {
+        assert!(
+            events.iter().any(|event| event.contains(text)),
+            "{text}: {events:#?}"
+        );
+    }
+}
+
+/// A sensor whose airspeed is wrong for 20 s, which then loses attitude, altitude, and
+/// everything for a while.
+struct Failing(Box<dyn Sensor<Measurements>>);
+
+impl Sensor<Measurements> for Failing {
+    fn sample(&mut self, tick: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
+        if (7_000..7_040).contains(&tick.number) {
+            return Err(SensorFault::Silent);
+        }
+        self.0.sample(tick, into)?;
+        match tick.number {
+            2_000..2_800 => into.airspeed_mps.value += 15.0,
+            4_000..4_080 => into.attitude = Reading::default(),
+            5_000..5_080 => into.altitude_m = Reading::default(),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn name(&self) -> &'static str {
+        self.0.name()
+    }
+}
+
+/// Ailerons that stick at their limit for 3 s.
+struct Sticking(Box<dyn Actuator<Surfaces>>);
+
+impl Actuator<Surfaces> for Sticking {
+    fn apply(&mut self, tick: &Tick, outputs: &Surfaces) -> Result<(), ActuatorFault> {
+        let mut outputs = *outputs;
+        if (6_000..6_120).contains(&tick.number) {
+            outputs.aileron = 1.0;
+        }
+        self.0.apply(tick, &outputs)
+    }
+
+    fn release(&mut self) -> Result<(), ActuatorFault> {
+        self.0.release()
+    }
+
+    fn name(&self) -> &'static str {
+        self.0.name()
+    }
 }
