@@ -122,10 +122,12 @@ reproducible: $(STAMPS)/rust ## Build the daemon of this commit in two folders, 
 NIGHTLY := nightly-2026-05-20
 # For fuzz: inputs for each target.
 INPUTS  ?= 1000000
+# `none` is three times as fast, and finds what is no error of memory.
+SANITIZER ?= address
 
 fuzz: ## Fuzz every parser of outside data, INPUTS= for each (needs a nightly toolchain)
 	@command -v cargo-fuzz >/dev/null || cargo install --locked --version 0.13.2 cargo-fuzz
-	NIGHTLY=$(NIGHTLY) ./scripts/fuzz $(INPUTS)
+	NIGHTLY=$(NIGHTLY) SANITIZER=$(SANITIZER) ./scripts/fuzz $(INPUTS)
 
 soundness: ## Run Miri and ThreadSanitizer over timers, loop, records and live telemetry (15 minutes)
 	NIGHTLY=$(NIGHTLY) ./scripts/soundness
