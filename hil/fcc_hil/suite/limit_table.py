@@ -72,13 +72,5 @@ _EDGES = limits(
     # All stall at 15 or 16. A level turn at 1.3 Vs and 30 degrees of bank needs 68 % of the lift.
     largest_angle_of_attack_deg=14.0,
 )
-EDGES = MappingProxyType(
-    {
-        "c172p": _EDGES,
-        # The play of its elevator lets it oscillate, by 5.3 to 8.7 deg/s as measured.
-        "c172x": {**_EDGES, "pitch_rate_sd_degps": 9.0},
-        "c172r": _EDGES,
-        "J3Cub": _EDGES,
-    }
-)
+EDGES = MappingProxyType(dict.fromkeys(("c172p", "c172x", "c172r", "J3Cub"), _EDGES))
 """At the edges of speed and weight, with noise and a delay of 25 ms: reasons, not measurements."""
