@@ -3,16 +3,33 @@
 from __future__ import annotations
 
 import signal
+import subprocess
+import sys
 from pathlib import Path
 
 from daemon_under_test import engage, start, wait_until
+from other_user import NOBODY, as_user, needs_two_users
 
 from fcc_hil.fly import ENGAGE_SWITCH
 from fcc_hil.process import StandInProcess
+from fcc_hil.protocol import Dialect
+from fcc_hil.protocol import beacon as announcement
 from fcc_hil.standin import Mode, Settings
 
 SUCCESS = 0
 NOT_RELEASED = 5
+
+
+# Sends the datagram to the group a hundred times a second.
+ANNOUNCES = """
+import socket, sys, time
+s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+s.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton("127.0.0.1"))
+while True:
+    s.sendto(bytes.fromhex(sys.argv[1]), (sys.argv[2], int(sys.argv[3])))
+    time.sleep(0.01)
+"""
+NOT_THERE = 49_999
 
 
 def write_beacon_config(scratch: Path) -> Path:
@@ -72,3 +89,30 @@ def test_an_exit_says_that_the_simulator_that_hangs_is_not_released(
         first.write(ENGAGE_SWITCH, 0.0)
         first.set_mode(Mode.RUNNING)
         wait_until(lambda: not first.progress().overridden, "the helper releases")
+
+
+@needs_two_users
+def test_another_user_who_announces_a_simulator_gets_no_aircraft_that_is_held(
+    fccd: Path, tmp_path: Path, beacon: tuple[str, int]
+) -> None:
+    datagram = announcement(Dialect(121_000), NOT_THERE, "forged").hex()
+    words = [*as_user(NOBODY), sys.executable, "-I", "-c", ANNOUNCES, datagram]
+    with (
+        StandInProcess(Settings(port=0, beacon=beacon)) as simulator,
+        start(fccd, tmp_path, write_beacon_config(tmp_path)) as daemon,
+    ):
+        engage(simulator, daemon)
+        impostor = subprocess.Popen([*words, beacon[0], str(beacon[1])], cwd="/")
+        try:
+            simulator.set_mode(Mode.FROZEN)
+            kept = daemon.wait_for("another X-Plane announced itself")
+            assert f"X-Plane at 127.0.0.1:{simulator.port} is kept until it confirms" in kept
+            daemon.wait_for("failsafe -> standby")
+            simulator.set_mode(Mode.RUNNING)
+            daemon.wait_for(f"X-Plane at 127.0.0.1:{simulator.port} confirmed the release")
+            assert not simulator.progress().overridden
+        finally:
+            impostor.kill()
+            impostor.wait()
+        ending = daemon.end(signal.SIGTERM)
+    assert ending.report["released"] is True
