@@ -63,6 +63,28 @@ class Ending:
         return [text.partition(":")[0] for text in self.events if " -> " in text]
 
 
+def children_of(pid: int) -> list[int]:
+    """Return the process numbers of the programs that a process started, from any thread."""
+    children: list[int] = []
+    for task in Path(f"/proc/{pid}/task").iterdir():
+        # A thread may end meanwhile.
+        with contextlib.suppress(FileNotFoundError, ProcessLookupError):
+            children += [int(child) for child in (task / "children").read_text().split()]
+    return children
+
+
+def helpers_of(pid: int, command: str = "release-helper") -> list[int]:
+    """Return the process numbers of a daemon's helpers that run this command."""
+
+    def runs_it(child: int) -> bool:
+        try:
+            return command.encode() in Path(f"/proc/{child}/cmdline").read_bytes().split(b"\0")
+        except OSError:
+            return False
+
+    return [child for child in children_of(pid) if runs_it(child)]
+
+
 class DaemonUnderTest:
     """A running `fccd`. Its output goes to files, so that it never waits for a reader."""
 
@@ -99,19 +121,11 @@ class DaemonUnderTest:
 
     def children(self) -> list[int]:
         """Return the process numbers of the programs that it started, from any thread."""
-        tasks = Path(f"/proc/{self.pid}/task").iterdir()
-        return [int(pid) for task in tasks for pid in (task / "children").read_text().split()]
+        return children_of(self.pid)
 
     def helpers(self, command: str = "release-helper") -> list[int]:
         """Return the process numbers of its helpers that run this command."""
-
-        def runs_it(pid: int) -> bool:
-            try:
-                return command.encode() in Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0")
-            except OSError:
-                return False
-
-        return [pid for pid in self.children() if runs_it(pid)]
+        return helpers_of(self.pid, command)
 
     @property
     def log(self) -> str:

@@ -19,12 +19,12 @@ from fcc_hil import airspeed, altitude
 from fcc_hil.campaign.draw import Bounds, draw
 from fcc_hil.campaign.flying import fly
 from fcc_hil.faulty_sensors import FaultySensors
-from fcc_hil.lockstep import measurements
+from fcc_hil.lockstep import as_controls, measurements
 from fcc_hil.noise import SensorNoise
 from fcc_hil.plant import Plant, Weather
 from fcc_hil.receiver import Receiver, ReceiverReadings, Velocity
 from fcc_hil.sensor_faults import Faults
-from fcc_hil.state import Controls, State
+from fcc_hil.state import State
 from fcc_hil.units import FT_TO_M, KT_TO_MPS
 
 SEED = 2112
@@ -33,6 +33,12 @@ _END_S = 75.0
 _VS_KT = 47.0
 """Of the c172p, flaps up (Pilot's Operating Handbook, Cessna 172P 1981, section 5)."""
 _VNE_KT = 158.0
+
+_TUBE = "it rises and falls with the altitude: the pitot tube may be blocked"
+_STATIC = "it changes against the height, and the altitude stands: the static port may be blocked"
+_TOO_LOW = "it is lower than forces and motion allow"
+_TOO_HIGH = "it is higher than forces and motion allow"
+_WIND = "the velocity over the ground and the wind contradict it"
 
 Break = Callable[[Faults], object]
 
@@ -48,6 +54,13 @@ class _Flown:
     sensed_kt: npt.NDArray[np.float64]
     used_kt: npt.NDArray[np.float64]
     is_doubted: npt.NDArray[np.bool_]
+    events: list[str]
+
+    def doubts(self) -> list[str]:
+        """Return why the airspeed was doubted, in order, by the events."""
+        begin, end = "airspeed of sensor 1 is doubted: ", "; flying on without it"
+        parts = [text.partition(begin) for text in self.events]
+        return [reason.removesuffix(end) for _, _, reason in parts if reason.endswith(end)]
 
 
 def _fly(
@@ -66,15 +79,16 @@ def _fly(
     With turns, 90 degrees to the right each.
     """
     plant = Plant("c172p", seed=seed, weather=weather or Weather())
-    autopilot = fcc.Autopilot('[guidance]\nmode = "hold"\n')
+    machine = fcc.Machine('[guidance]\nmode = "hold"\n')
     noise, sensors = SensorNoise(seed), FaultySensors()
     faults = Faults(lambda: plant.time_s, sensors.set_faults)
     if break_it is not None:
         break_it(faults)
-    engaged = commanded = False
-    start_m = heading_rad = 0.0
+    commanded = False
+    start_m = heading_rad = math.nan
     turns_s = turn_every_s
     rows: list[tuple[float, ...]] = []
+    events: list[str] = []
     while plant.time_s < end_s:
         plant.step(3)
         if disturb is not None:
@@ -86,23 +100,21 @@ def _fly(
         velocity = receiver.read(state) if receiver else None
         if velocity is not None:
             sample.north_mps, sample.east_mps, sample.down_mps = velocity
-        if plant.time_s < 5.0:
-            autopilot.observe(sample)
-            continue
-        if not engaged:
-            autopilot.engage(sample, throttle=plant.controls.throttle)
-            engaged = True
-            start_m, heading_rad = state.altitude_m, measured.heading_rad
         if not commanded and plant.time_s >= _FAULT_S:
-            autopilot.command(altitude_m=start_m + climb_ft * FT_TO_M)
+            machine.command(altitude_m=start_m + climb_ft * FT_TO_M)
             commanded = True
         if plant.time_s >= turns_s:
             heading_rad = (heading_rad + math.pi / 2.0) % math.tau
-            autopilot.command(heading_rad=heading_rad)
+            machine.command(heading_rad=heading_rad)
             turns_s += turn_every_s
-        s = autopilot.step(sample)
-        plant.write(Controls(s.elevator, s.aileron, s.rudder, s.throttle))
-        estimate = autopilot.estimate
+        surfaces = machine.step(sample, switch=plant.time_s >= 5.0)
+        events += [event.text for event in machine.events()]
+        if surfaces is None:
+            continue
+        if not rows:
+            start_m, heading_rad = state.altitude_m, measured.heading_rad
+        plant.write(as_controls(surfaces))
+        estimate = machine.estimate
         rows.append(
             (
                 plant.time_s,
@@ -115,24 +127,32 @@ def _fly(
             )
         )
     times_s, true_kt, measured_kt, estimated_kt, doubted, true_ft, used_ft = np.array(rows).T
-    return _Flown(
-        times_s, true_kt, true_ft, used_ft, measured_kt, estimated_kt, is_doubted=doubted > 0.5
-    )
+    is_doubted = doubted > 0.5
+    return _Flown(times_s, true_kt, true_ft, used_ft, measured_kt, estimated_kt, is_doubted, events)
 
 
 @pytest.mark.parametrize(
-    ("break_it", "climb_ft"),
+    ("break_it", "climb_ft", "reason"),
     [
-        pytest.param(lambda f: f.blocked_tube(after=_FAULT_S), 1_500.0, id="tube, climb"),
-        pytest.param(lambda f: f.blocked_tube(after=_FAULT_S), -1_500.0, id="tube, descent"),
-        pytest.param(lambda f: f.drift(airspeed, per_s=-2.0, after=_FAULT_S), 0.0, id="decay"),
+        pytest.param(lambda f: f.blocked_tube(after=_FAULT_S), 1_500.0, _TUBE, id="tube, climb"),
+        pytest.param(lambda f: f.blocked_tube(after=_FAULT_S), -1_500.0, _TUBE, id="tube, descent"),
         pytest.param(
-            lambda f: f.blocked_tube(drain_is_open=True, after=_FAULT_S), 0.0, id="open drain"
+            lambda f: f.drift(airspeed, per_s=-2.0, after=_FAULT_S), 0.0, _TOO_LOW, id="decay"
         ),
-        pytest.param(lambda f: f.bias(airspeed, by=15.0, after=_FAULT_S), 0.0, id="jump"),
+        pytest.param(
+            lambda f: f.blocked_tube(drain_is_open=True, after=_FAULT_S),
+            0.0,
+            _TOO_LOW,
+            id="open drain",
+        ),
+        pytest.param(
+            lambda f: f.bias(airspeed, by=15.0, after=_FAULT_S), 0.0, _TOO_HIGH, id="jump"
+        ),
     ],
 )
-def test_a_wrong_airspeed_is_doubted_and_flown_on_without(break_it: Break, climb_ft: float) -> None:
+def test_a_wrong_airspeed_is_doubted_and_flown_on_without(
+    break_it: Break, climb_ft: float, reason: str
+) -> None:
     flown = _fly(break_it, climb_ft)
     assert flown.true_kt.min() > 1.2 * _VS_KT
     assert flown.true_kt.max() < _VNE_KT
@@ -144,6 +164,7 @@ def test_a_wrong_airspeed_is_doubted_and_flown_on_without(break_it: Break, climb
     later = flown.time_s > _FAULT_S + 15.0
     assert np.abs(flown.used_kt - flown.true_kt)[later].max() < 10.0
     assert np.abs(flown.used_ft - flown.true_ft).max() < 50.0, "the altimeter is right"
+    assert flown.doubts() == [reason]
 
 
 @pytest.mark.parametrize("severity", [0, 2, 3])
@@ -154,6 +175,7 @@ def test_an_airspeed_that_decays_is_no_blocked_static_port(severity: int) -> Non
         seed=3002,
     )
     assert flown.is_doubted.any()
+    assert flown.doubts() == [_TOO_LOW]
     assert np.abs(flown.used_ft - flown.true_ft).max() < 50.0
 
 
@@ -185,6 +207,9 @@ def test_a_blocked_static_port_is_doubted_and_flown_on_without(
     assert np.abs(flown.used_ft - flown.true_ft).max() < error_ft
     climbed_ft = flown.true_ft[-1] - flown.true_ft[0]
     assert abs(climbed_ft - climb_ft) < error_ft
+    # In level flight, where it changes slowly, it may be taken for a wrong airspeed first.
+    assert flown.doubts()[-1] == _STATIC
+    assert climb_ft == 0.0 or flown.doubts() == [_STATIC]
 
 
 @pytest.mark.parametrize(("seed", "severity"), [(5003, 0), (5007, 2), (5002, 3)])
@@ -199,12 +224,14 @@ def test_a_static_port_that_is_blocked_in_level_flight_is_found_by_the_airspeed(
     flown = _fly(_block_static, weather=weather, end_s=110.0, seed=seed)
     assert np.abs(flown.used_ft - flown.true_ft).max() < 300.0
     assert abs(flown.true_ft[-1] - flown.true_ft[0]) < 150.0
+    assert flown.doubts()[-1] == _STATIC
 
 
 def test_a_sensor_that_agrees_again_is_taken_again() -> None:
     flown = _fly(lambda f: f.bias(airspeed, by=15.0, after=_FAULT_S, lasts=10.0), end_s=65.0)
     assert flown.is_doubted[flown.time_s > _FAULT_S + 5.0][0]
     assert not flown.is_doubted[-1]
+    assert flown.doubts() == [_TOO_HIGH]
 
 
 @pytest.mark.parametrize("receiver", [None, Receiver()], ids=["alone", "receiver"])
@@ -242,6 +269,7 @@ def test_a_slow_drift_is_found_by_the_velocity_over_the_ground_and_the_wind(per_
     later = measured.time_s > doubted_s + 15.0
     assert np.abs(measured.used_kt - measured.true_kt)[later].mean() < 10.0
     assert measured.is_doubted[-1]
+    assert measured.doubts() == [_WIND]
 
 
 class _WrongReceiver(ReceiverReadings):

@@ -6,11 +6,11 @@ Lost in the first turn of the pattern, at 30° of bank; back 20 s later.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import fcc
 import numpy as np
 import pytest
+from degraded_rows import LEVEL_AFTER_S, ROWS, SinceLoss
 
 from fcc_hil.faulty_sensors import Kind, SensorFault
 from fcc_hil.lockstep_rig import LockstepRig
@@ -23,7 +23,6 @@ SEED = 11
 """Not one of those on which the laws were developed (7)."""
 LOST_AT_S = 30.0
 LOST_FOR_S = 20.0
-LEVEL_AFTER_S = 8.0
 
 
 class Flight:
@@ -70,12 +69,13 @@ class Flight:
         """Fly to a time since engaging."""
         self.rig.fly_to(self.began_s + time_s)
 
+    def since_loss(self) -> SinceLoss:
+        """Return the truth so far."""
+        return SinceLoss(self.rig.truth(), self.began_s, self.began_s + LOST_AT_S)
+
     def between(self, column: str, begin_s: float, end_s: float) -> np.ndarray:
         """Return a column of the truth, by times since the loss."""
-        truth = self.rig.truth()
-        since_s = truth["time_s"] - self.began_s - LOST_AT_S
-        values: np.ndarray = truth[column][(since_s >= begin_s) & (since_s < end_s)]
-        return values
+        return self.since_loss().between(column, begin_s, end_s)
 
     def events(self) -> list[tuple[float, str]]:
         """Return the events since the loss, with their times since then."""
@@ -91,28 +91,6 @@ class Flight:
         return next(time_s for time_s, words in self.events() if text in words)
 
 
-@dataclass(frozen=True)
-class Limits:
-    """What is held from `LEVEL_AFTER_S` after a loss on."""
-
-    bank_deg: float
-    altitude_ft: float
-    airspeed_kt: float
-
-
-ROWS = {
-    "heading": (["heading"], Limits(1.0, 15.0, 3.0)),
-    "acceleration": (["specific_force"], Limits(1.5, 60.0, 5.0)),
-    "airspeed": (["airspeed"], Limits(1.0, 30.0, 8.0)),
-    "altitude": (["altitude"], Limits(1.0, 100.0, 15.0)),
-    "body rates": (["body_rates"], Limits(2.0, 15.0, 3.0)),
-    "body rates and heading": (["body_rates", "heading"], Limits(2.0, 15.0, 3.0)),
-    "attitude": (["attitude"], Limits(3.0, 20.0, 3.0)),
-    "attitude and acceleration": (["attitude", "specific_force"], Limits(3.0, 100.0, 15.0)),
-    "airspeed and altitude": (["airspeed", "altitude"], Limits(1.0, 150.0, 15.0)),
-}
-
-
 @pytest.mark.parametrize("name", ROWS)
 def test_what_is_left_is_held_and_then_the_pattern_is_flown_on(name: str) -> None:
     lost, limits = ROWS[name]
@@ -120,17 +98,12 @@ def test_what_is_left_is_held_and_then_the_pattern_is_flown_on(name: str) -> Non
     flight.fly_to(LOST_AT_S + LOST_FOR_S + 11.0)
     assert flight.when("engaged -> failsafe") == pytest.approx(0.25, abs=0.06)
     assert flight.when("now: flying on without a lost quantity") < 0.4
-    level = (LEVEL_AFTER_S, LOST_FOR_S)
-    assert np.max(np.abs(flight.between("roll_deg", *level))) < limits.bank_deg
-    altitude_ft = flight.between("altitude_ft", 0.0, LOST_FOR_S)
-    assert np.max(np.abs(altitude_ft - altitude_ft[0])) < limits.altitude_ft
-    captured = flight.rig.truth().captured_at(flight.began_s)
-    airspeed_kt = flight.between("airspeed_kt", *level)
-    assert np.max(np.abs(airspeed_kt - captured.airspeed_kt)) < limits.airspeed_kt
+    flight.since_loss().assert_held(limits, LOST_FOR_S)
     # Good for 2 s: the same leg, its heading and its altitude.
     assert flight.when("all is good again") == pytest.approx(LOST_FOR_S + 2.0, abs=0.1)
     assert flight.when("failsafe -> engaged") == pytest.approx(LOST_FOR_S + 2.0, abs=0.1)
     assert not [text for _, text in flight.events() if text.startswith("mode: ")]
+    captured = flight.rig.truth().captured_at(flight.began_s)
     end = (LOST_FOR_S + 9.0, LOST_FOR_S + 11.0)
     turned_deg = flight.between("heading_deg", *end) - captured.heading_deg
     assert np.max(np.abs((turned_deg - 90.0 + 180.0) % 360.0 - 180.0)) < 3.0
@@ -144,8 +117,7 @@ def test_a_lost_airspeed_is_replaced_by_forces_in_turbulence() -> None:
     flight.fly_to(LOST_AT_S + LOST_FOR_S)
     airspeed_kt = flight.between("airspeed_kt", LEVEL_AFTER_S, LOST_FOR_S)
     assert np.max(np.abs(airspeed_kt - 100.0)) < 14.0
-    altitude_ft = flight.between("altitude_ft", 0.0, LOST_FOR_S)
-    assert np.max(np.abs(altitude_ft - altitude_ft[0])) < 40.0
+    assert flight.since_loss().climbed_ft(LOST_FOR_S) < 40.0
 
 
 def test_a_doubted_airspeed_counts_as_lost_when_another_quantity_is() -> None:
@@ -163,8 +135,7 @@ def test_half_a_second_without_any_sensor_is_flown_through() -> None:
     flight.fly_to(LOST_AT_S + 12.0)
     assert flight.when("failsafe -> engaged") == pytest.approx(2.5, abs=0.1)
     assert np.max(np.abs(flight.between("roll_deg", 0.0, 12.0))) < 35.0
-    altitude_ft = flight.between("altitude_ft", 0.0, 12.0)
-    assert np.max(np.abs(altitude_ft - altitude_ft[0])) < 50.0
+    assert flight.since_loss().climbed_ft(12.0) < 50.0
     assert not [text for _, text in flight.events() if text.startswith("mode: ")]
 
 
@@ -197,10 +168,21 @@ def test_without_attitude_and_rates_control_is_given_back() -> None:
     assert np.max(np.abs(flight.between("roll_deg", 0.0, 5.0))) < 40.0
 
 
-def test_degraded_flight_ends_after_its_time() -> None:
-    flight = Flight(["heading"], 60.0, config="[failsafe]\ndegraded_s = 10.0\nhold_s = 2.0\n")
-    flight.fly_to(LOST_AT_S + 14.0)
-    assert flight.when("failsafe -> standby") == pytest.approx(12.25, abs=0.15)
+@pytest.mark.parametrize(
+    ("lost", "degraded_s", "sound_s"),
+    [
+        (["heading"], 10.0, 10.0),
+        # The integrated gyroscope alone is sound for 30 s.
+        (["attitude", "specific_force"], 600.0, 30.0),
+    ],
+)
+def test_degraded_flight_ends_after_its_time(
+    lost: list[str], degraded_s: float, sound_s: float
+) -> None:
+    config = f"[failsafe]\ndegraded_s = {degraded_s}\nhold_s = 2.0\n"
+    flight = Flight(lost, 60.0, config=config)
+    flight.fly_to(LOST_AT_S + sound_s + 4.0)
+    assert flight.when("failsafe -> standby") == pytest.approx(sound_s + 2.25, abs=0.15)
 
 
 def test_without_a_pilot_it_glides_in_a_gentle_turn() -> None:

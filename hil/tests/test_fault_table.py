@@ -72,3 +72,11 @@ def test_a_row_is_complete_and_names_an_existing_test(row: list[str]) -> None:
 @pytest.mark.parametrize("fault", REQUIRED)
 def test_a_required_fault_is_in_the_table(fault: str) -> None:
     assert any(row[0].startswith(fault) for row in ROWS)
+
+
+def test_the_document_names_the_tests_in_lockstep() -> None:
+    introduction = DOCUMENT.read_text().partition("\n## ")[0]
+    files = {file for row in ROWS for file, _ in SHOWN_BY.findall(row[-1])}
+    paths = [folder / file for folder in FOLDERS for file in files if (folder / file).exists()]
+    without_daemon = {path.name for path in paths if "fccd" not in path.read_text()}
+    assert set(re.findall(r"`(test_\w+\.py)`", introduction)) == without_daemon

@@ -14,12 +14,14 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import pytest
 from daemon_under_test import (
     DaemonUnderTest,
     Ending,
     assert_released,
     engage,
     flight,
+    helpers_of,
     start,
     wait_until,
     write_config,
@@ -111,22 +113,35 @@ def test_a_folder_of_another_user_is_refused_and_the_flight_is_flown(
     assert list(theirs.iterdir()) == []
 
 
-def test_no_exit_waits_for_a_helper_that_is_stopped(fccd: Path, tmp_path: Path) -> None:
-    with flight(fccd, tmp_path) as (simulator, daemon):
+@pytest.mark.parametrize("by", ["signal", "switch"])
+def test_no_exit_waits_for_a_helper_that_is_stopped(fccd: Path, tmp_path: Path, by: str) -> None:
+    with flight(fccd, tmp_path, others='[engage]\nswitch_off = "stop"') as (simulator, daemon):
         engage(simulator, daemon)
         (helper,) = daemon.helpers()
         os.kill(helper, signal.SIGSTOP)
-        ending = daemon.end(signal.SIGTERM, within_s=8.0)
+        if by == "switch":
+            simulator.write(ENGAGE_SWITCH, 0.0)
+        ending = daemon.end(signal.SIGTERM if by == "signal" else None, within_s=8.0)
         assert_released(simulator)
         wait_until(lambda: not Path(f"/proc/{helper}").exists(), "it has ended, too")
     assert ending.exit_code == SUCCESS
 
 
+def open_files(pid: int) -> set[str]:
+    """Return what a process has open."""
+    files = set()
+    for descriptor in Path(f"/proc/{pid}/fd").iterdir():
+        # It may close it meanwhile.
+        with contextlib.suppress(FileNotFoundError):
+            files.add(str(descriptor.readlink()))
+    return files
+
+
 def test_a_helper_holds_nothing_of_others(fccd: Path, tmp_path: Path) -> None:
-    """Neither a descriptor that the daemon inherited, nor the pipe that it prints into."""
+    """Neither descriptors that the daemon inherited or has, nor the pipe that it prints into."""
     with StandInProcess(Settings(port=0)) as simulator:
-        no_publisher = "[telemetry]\nenabled = false"
-        config = write_config(tmp_path, simulator.port, others=no_publisher)
+        instance = f'[telemetry]\ninstance = "fccd-test-{simulator.port}"'
+        config = write_config(tmp_path, simulator.port, others=instance)
         with (
             (tmp_path / "inherited").open("w") as inherited,
             subprocess.Popen(
@@ -137,11 +152,14 @@ def test_a_helper_holds_nothing_of_others(fccd: Path, tmp_path: Path) -> None:
                 pass_fds=[inherited.fileno()],
             ) as process,
         ):
-            folder = Path(f"/proc/{process.pid}/task/{process.pid}/children")
-            wait_until(lambda: folder.read_text().strip() != "", "its helper")
-            helper = Path("/proc") / folder.read_text().strip() / "fd"
+            wait_until(lambda: len(helpers_of(process.pid)) == 1, "its helper")
+            wait_until(lambda: len(helpers_of(process.pid, "publisher")) == 1, "its publisher")
+            (helper,) = (Path(f"/proc/{pid}/fd") for pid in helpers_of(process.pid))
             wait_until(lambda: len(list(helper.iterdir())) == 3, "three descriptors")
             assert (helper / "2").readlink() == Path("/dev/null")
+            (publisher,) = helpers_of(process.pid, "publisher")
+            wait_until(lambda: inherited.name not in open_files(publisher), "it is closed")
+            assert Path(f"/proc/{publisher}/fd/2").readlink() == Path("/dev/null")
             # Signals are caught by then.
             recordings = tmp_path / "recordings"
             wait_until(lambda: list(recordings.glob("*.mcap")) != [], "it records")
