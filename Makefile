@@ -39,7 +39,7 @@ STAMPS   := .stamps
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
+.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-upsets test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -79,6 +79,12 @@ ATTACKS := hil/tests/test_neighbours.py::test_whoever_is_killed_the_controls_are
 
 test-attacks: build $(STAMPS)/python-module ## Kill daemon and helper 100 times, and damage shared memory 100 times, in flight (15 minutes)
 	FCCD_KILLS=100 FCCD_ATTACKS=100 FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest --capture=no $(ATTACKS)
+
+UPSETS := hil/tests/test_drawn_upsets.py \
+          hil/tests/test_envelope_speed.py::test_climbing_turns_at_75_kt_do_not_stall
+
+test-upsets: $(STAMPS)/python-module ## Recover from 100 drawn upsets, and fly 60 flights of climbing turns in turbulence (5 minutes)
+	FCCD_UPSETS=100 FCCD_CLIMBING_TURNS=20 $(PYTHON) -m pytest --capture=no $(UPSETS)
 
 faulty: $(STAMPS)/rust
 	cargo build --locked --release -p fcc-daemon --features fault-injection

@@ -6,6 +6,7 @@ JSBSim's truth; noisy sensors; seeds on which nothing was tuned.
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -23,6 +24,9 @@ _HOLD = '[guidance]\nmode = "hold"\n'
 _ENGAGED_S = 3.0
 _STALL_DEG = 16.5
 """Of JSBSim's Cessnas: the lift table's largest value is at 0.28 rad."""
+
+_CLIMBING_TURNS = int(os.environ.get("FCCD_CLIMBING_TURNS", "1"))
+"""Flights at each severity of turbulence; `make test-upsets` flies 20."""
 
 
 class _Flight:
@@ -147,9 +151,20 @@ def test_energy_that_returns_is_used_without_a_step() -> None:
     assert len(reports) == 2, "it began once and ended once"
 
 
-@pytest.mark.parametrize(("turbulence", "seed"), [(4, 7304), (5, 7305)])
-def test_climbing_turns_at_75_kt_do_not_stall(turbulence: int, seed: int) -> None:
-    """Before: 5 and 15 of 20 such flights were beyond the stalling angle for a second."""
+@pytest.mark.parametrize(("turbulence", "stalled_of_20"), [(3, 0), (4, 0), (5, 1)])
+def test_climbing_turns_at_75_kt_do_not_stall(turbulence: int, stalled_of_20: int) -> None:
+    """Before: 1, 5 and 15 of 20 such flights were beyond the stalling angle for a second."""
+    longest_s = [_climbing_turns(turbulence, 9_001 + number) for number in range(_CLIMBING_TURNS)]
+    stalled = sum(seconds >= 1.0 for seconds in longest_s)
+    print(
+        f"turbulence {turbulence}: {stalled} of {len(longest_s)} flights of climbing turns stalled "
+        f"for 1 s; the longest {max(longest_s):.1f} s"
+    )
+    assert stalled <= stalled_of_20 * (_CLIMBING_TURNS // 20)
+
+
+def _climbing_turns(turbulence: int, seed: int) -> float:
+    """Return for how long the wing was stalled."""
     flight = _Flight("c172r", seed=seed, turbulence=turbulence)
     start = flight.plant.state()
     for leg in range(5):
@@ -159,7 +174,7 @@ def test_climbing_turns_at_75_kt_do_not_stall(turbulence: int, seed: int) -> Non
             airspeed_mps=75 * KT_TO_MPS,
         )
         flight.fly(20.0)
-    assert flight.longest_stall_s < 1.0
+    return flight.longest_stall_s
 
 
 @pytest.mark.parametrize(

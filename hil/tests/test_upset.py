@@ -109,16 +109,17 @@ def test_a_spin_is_recovered_from(turns: float, rudder: float) -> None:
     """The built-in aircraft, with noisy sensors, is engaged in a spin that was held for a while.
 
     14 CFR 23.221 (before 2017) allows one more turn; Cessna gives up to 1,000 ft for a spin of one
-    turn and its recovery. The height counts until it climbs.
+    turn and its recovery. The height counts to the end of the flight, when it is back at its
+    altitude.
     """
     aircraft = fcc.BuiltInAircraft("[built-in]\naltitude_ft = 8000.0\nairspeed_kt = 75.0\n")
     machine = fcc.Machine(HOLD + "[engage]\npermit_upset = true\n")
     controls, measured = aircraft.controls, aircraft.step(None)
     turned = held_turns = recovered_turns = 0.0
-    stalled, climbs, low_m, begin_m = False, False, math.inf, 0.0
+    stalled, low_m, begin_m = False, math.inf, 0.0
     loads: list[float] = []
     heading = aircraft.truth.heading_rad
-    for tick in range(2_400):
+    for tick in range(4_000):
         truth = aircraft.truth
         turned += math.remainder(truth.heading_rad - heading, math.tau) / math.tau
         heading = truth.heading_rad
@@ -141,19 +142,18 @@ def test_a_spin_is_recovered_from(turns: float, rudder: float) -> None:
             stalled = truth.angle_of_attack_rad > math.radians(17.0)
         if held_turns:
             loads.append(-truth.specific_force_z_mps2 / 9.80665)
-            climbs = climbs or truth.altitude_m > low_m
-            low_m = low_m if climbs else truth.altitude_m
+            low_m = min(low_m, truth.altitude_m)
             if abs(truth.yaw_rate_radps) > math.radians(20.0):
                 recovered_turns = abs(turned) - held_turns
         measured = aircraft.step(controls)
     assert held_turns
     assert recovered_turns < 1.0
-    assert climbs
     assert (begin_m - low_m) / FT_TO_M < 700.0
     assert max(loads) < LIMIT_LOAD
-    assert min(loads) > -0.1
+    assert min(loads) > 0.0
     assert machine.state == "engaged"
-    assert abs(math.degrees(aircraft.truth.roll_rad)) < 40.0
+    assert abs(math.degrees(aircraft.truth.roll_rad)) < 10.0
+    assert abs(aircraft.truth.altitude_m - begin_m) / FT_TO_M < 60.0, "it has climbed back"
     said = [event.text for event in machine.events()]
     assert "now: recovering from an upset" in said
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 
 import fcc
 
+from fcc_hil.aircraft import Aircraft
 from fcc_hil.lockstep import measurements
 from fcc_hil.noise import SensorNoise
 from fcc_hil.plant import STEP_S, Plant, Weather
@@ -35,7 +36,7 @@ them back."""
 class Conditions:
     """The aircraft, its sensors and its servos."""
 
-    aircraft: str = "c172p"
+    aircraft: str | Aircraft = "c172p"
     seed: int = 1
     noise: bool = False
     delay_ticks: int = 0
@@ -80,7 +81,7 @@ class Recovery:
 
     def see(self, time_s: float, state: State) -> None:
         """Look at a state, a time after the controls were given back."""
-        load = -state.specific_force_z_mps2 / _GRAVITY_MPS2
+        load = load_of(state)
         airspeed_kt = state.airspeed_mps / KT_TO_MPS
         self.least_ft = min(self.least_ft, state.altitude_m / FT_TO_M)
         self.greatest_kt = max(self.greatest_kt, airspeed_kt)
@@ -98,10 +99,15 @@ class Recovery:
         self.end = state
 
 
+def load_of(state: State) -> float:
+    """Return the load, g."""
+    return -state.specific_force_z_mps2 / _GRAVITY_MPS2
+
+
 def fly(script: Script, conditions: Conditions | None = None, seconds: float = 25.0) -> Recovery:
     """Fly level for 5 s, then the script, then `seconds` with the controls given back."""
     conditions = conditions or Conditions()
-    flight = _Flight(conditions)
+    flight = Flight(conditions)
     for _ in range(round(_SETTLING_S / flight.machine.period_s)):
         flight.tick(None)
     flight.switch = True
@@ -135,7 +141,7 @@ def fly(script: Script, conditions: Conditions | None = None, seconds: float = 2
     return recovery
 
 
-class _Flight:
+class Flight:
     """An aircraft and a loop, with the sensors and servos between them."""
 
     def __init__(self, conditions: Conditions) -> None:
