@@ -6,6 +6,7 @@ use super::degraded::{Lateral, Power, Vertical, held_without};
 use super::{Autopilot, flags};
 use crate::blocks::{limit_abs, wrap_two_pi};
 use crate::flight::atmosphere::true_airspeed_mps;
+use crate::flight::control::Envelope;
 use crate::flight::navigation::Estimate;
 use crate::flight::{Attitude, BodyRates, Measurements, Surfaces};
 use crate::framework::{Flags, Time};
@@ -72,6 +73,11 @@ impl Default for FailsafeConfig {
 /// Sink rate above that of the glide per airspeed below it, m/s per m/s: the
 /// airspeed error decays with g/V times it, in 3 s.
 const GLIDE_GAIN: f64 = 1.2;
+
+/// The most that the lowest and the stalling airspeed are of an airspeed that is only
+/// assumed.
+const LOWEST_OF_ASSUMED: f64 = 0.8;
+const STALL_OF_ASSUMED: f64 = 0.6;
 
 /// Flight path per height below the altitude that is to be kept by pitch, rad/m:
 /// a bandwidth of 0.1 rad/s at 100 kt, a tenth of the flight path's. At most 2°:
@@ -145,7 +151,7 @@ impl Autopilot {
             return recovering;
         }
         let (schedule, dt_s) = (self.schedule_at(estimate.airspeed_mps), self.clock.step_s());
-        let envelope = self.config.envelope;
+        let envelope = self.envelope_without(lost, &estimate);
         // A constant pitch: one that follows the airspeed lets it diverge.
         let trimmed = self.schedule_at(if glides {
             self.config.envelope.best_glide_airspeed_mps
@@ -215,6 +221,24 @@ impl Autopilot {
                 true_airspeed_mps(estimate.airspeed_mps, estimate.altitude_m);
         }
         estimate
+    }
+
+    /// The envelope. An airspeed that is not known, but assumed, is inside of it: no
+    /// change of pitch would change it.
+    fn envelope_without(&self, lost: Flags, estimate: &Estimate) -> Envelope {
+        let envelope = self.config.envelope;
+        if !lost.contains(flags::AIRSPEED) {
+            return envelope;
+        }
+        Envelope {
+            min_airspeed_mps: envelope
+                .min_airspeed_mps
+                .min(LOWEST_OF_ASSUMED * estimate.airspeed_mps),
+            stall_airspeed_mps: envelope
+                .stall_airspeed_mps
+                .min(STALL_OF_ASSUMED * estimate.airspeed_mps),
+            ..envelope
+        }
     }
 
     /// Continues what was flown before the failsafe: targets, mode and progress

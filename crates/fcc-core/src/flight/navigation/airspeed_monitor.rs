@@ -284,6 +284,11 @@ impl AirspeedMonitor {
         }
         bank.younger_s += dt_s;
         bank.learned_s += dt_s;
+        bank.begun_s += dt_s;
+        if self.doubt.is_none() && bank.is_first && bank.begun_s > SETTLED_S {
+            bank.is_first = false;
+            self.follow_sensor(&mut bank);
+        }
         let contradicted = self.follow_ground(&mut bank, input, &sample, dt_s);
         if contradicted || self.doubt_step(&mut bank, input, dt_s) {
             // Nothing else is compared in this tick.
@@ -352,6 +357,7 @@ impl AirspeedMonitor {
         };
         let knows = mean.thrust.is_some();
         if core::mem::replace(&mut bank.thrust_is_known, knows) != knows {
+            (bank.is_first, bank.begun_s) = (true, 0.0);
             for filter in bank.each() {
                 filter.learn_offset(&mean);
             }

@@ -13,6 +13,10 @@ pub(super) struct FilterBank {
     pub(super) younger: AirspeedFilter,
     pub(super) younger_s: f64,
     pub(super) learned_s: f64,
+    /// Whether the copies still compare with the models as they began, those of a single
+    /// sample, and for how long the present models have learned, s.
+    pub(super) is_first: bool,
+    pub(super) begun_s: f64,
     pub(super) thrust_is_known: bool,
 }
 
@@ -25,6 +29,8 @@ impl FilterBank {
             younger: believing,
             younger_s: 0.0,
             learned_s: 0.0,
+            is_first: true,
+            begun_s: 0.0,
             thrust_is_known: sample.thrust.is_some(),
         }
     }
