@@ -19,6 +19,22 @@ const UPSET_RAD: f64 = 1.047;
 /// any turn at 60° of bank.
 const UPSET_RADPS: f64 = 0.698;
 
+/// The largest bank and pitch of a steady flight, rad (45°, 25°), and its largest body rate,
+/// rad/s (15 °/s): 1.5 times that of a turn with 45° of bank at 60 kt.
+const STEADY_BANK_RAD: f64 = 0.785;
+const STEADY_PITCH_RAD: f64 = 0.436;
+const STEADY_RADPS: f64 = 0.262;
+
+/// Whether the controls' present positions are the trims of a flight.
+fn is_steady(estimate: &Estimate) -> bool {
+    let rates = estimate.body_rates;
+    estimate.roll_rad.abs() < STEADY_BANK_RAD
+        && estimate.pitch_rad.abs() < STEADY_PITCH_RAD
+        && [rates.roll_radps, rates.pitch_radps, rates.yaw_radps]
+            .iter()
+            .all(|rate| rate.abs() < STEADY_RADPS)
+}
+
 /// Whether bank or pitch is beyond 60°, or it yaws as in a spin.
 pub(super) fn is_far_from_level(estimate: &Estimate) -> bool {
     estimate.roll_rad.abs() > UPSET_RAD
@@ -33,12 +49,12 @@ impl Autopilot {
     }
 
     /// Begins to watch for upsets, with the trims of the present flight unless it
-    /// is one.
+    /// is one, or turns as in one: those are of the controls' present positions.
     pub(super) fn begin_watching_for_upsets(&mut self) {
-        let trims = if is_far_from_level(self.navigation.estimate()) {
-            Surfaces::default()
-        } else {
+        let trims = if is_steady(self.navigation.estimate()) {
             self.trims()
+        } else {
+            Surfaces::default()
         };
         self.recovery = Recovery::trimmed(&trims, self.schedule());
     }

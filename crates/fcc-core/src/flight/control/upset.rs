@@ -67,8 +67,9 @@ impl Motion {
         } else {
             path
         };
-        // On the wing's edge with the nose level the path says nothing of it.
-        let angle_of_attack_rad = if length < LEAST_LENGTH {
+        // On the wing's edge with the nose level the path says nothing of it, nor one that is
+        // steeper than any without sideslip.
+        let angle_of_attack_rad = if length < LEAST_LENGTH || sin_path.abs() > length {
             0.0
         } else {
             attitude - path

@@ -284,8 +284,7 @@ impl AirspeedMonitor {
         }
         bank.younger_s += dt_s;
         bank.learned_s += dt_s;
-        bank.begun_s += dt_s;
-        if self.doubt.is_none() && bank.is_first && bank.begun_s > SETTLED_S {
+        if self.doubt.is_none() && bank.is_first && bank.learned_s > SETTLED_S {
             bank.is_first = false;
             self.follow_sensor(&mut bank);
         }
@@ -357,7 +356,7 @@ impl AirspeedMonitor {
         };
         let knows = mean.thrust.is_some();
         if core::mem::replace(&mut bank.thrust_is_known, knows) != knows {
-            (bank.is_first, bank.begun_s) = (true, 0.0);
+            bank.is_first = false;
             for filter in bank.each() {
                 filter.learn_offset(&mean);
             }

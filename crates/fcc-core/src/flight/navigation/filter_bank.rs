@@ -14,9 +14,8 @@ pub(super) struct FilterBank {
     pub(super) younger_s: f64,
     pub(super) learned_s: f64,
     /// Whether the copies still compare with the models as they began, those of a single
-    /// sample, and for how long the present models have learned, s.
+    /// sample.
     pub(super) is_first: bool,
-    pub(super) begun_s: f64,
     pub(super) thrust_is_known: bool,
 }
 
@@ -29,8 +28,7 @@ impl FilterBank {
             younger: believing,
             younger_s: 0.0,
             learned_s: 0.0,
-            is_first: true,
-            begun_s: 0.0,
+            is_first: sample.thrust.is_some(),
             thrust_is_known: sample.thrust.is_some(),
         }
     }
