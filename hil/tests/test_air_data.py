@@ -19,7 +19,7 @@ from fcc_hil import airspeed, altitude
 from fcc_hil.campaign.draw import Bounds, draw
 from fcc_hil.campaign.flying import fly
 from fcc_hil.faulty_sensors import FaultySensors
-from fcc_hil.lockstep import as_controls, measurements
+from fcc_hil.lockstep import as_controls, as_surfaces, measurements
 from fcc_hil.noise import SensorNoise
 from fcc_hil.plant import Plant, Weather
 from fcc_hil.receiver import Receiver, ReceiverReadings, Velocity
@@ -73,6 +73,7 @@ def _fly(
     receiver: ReceiverReadings | None = None,
     turn_every_s: float = math.inf,
     seed: int = SEED,
+    throttle_is_measured: bool = False,
 ) -> _Flown:
     """Hold heading and altitude from 5 s on; at the fault's time change the altitude.
 
@@ -107,7 +108,8 @@ def _fly(
             heading_rad = (heading_rad + math.pi / 2.0) % math.tau
             machine.command(heading_rad=heading_rad)
             turns_s += turn_every_s
-        surfaces = machine.step(sample, switch=plant.time_s >= 5.0)
+        stand = as_surfaces(plant.controls) if throttle_is_measured else None
+        surfaces = machine.step(sample, readback=stand, switch=plant.time_s >= 5.0)
         events += [event.text for event in machine.events()]
         if surfaces is None:
             continue
@@ -150,10 +152,12 @@ def _fly(
         ),
     ],
 )
+@pytest.mark.parametrize("throttle_is_measured", [False, True], ids=["commanded", "measured"])
 def test_a_wrong_airspeed_is_doubted_and_flown_on_without(
-    break_it: Break, climb_ft: float, reason: str
+    break_it: Break, climb_ft: float, reason: str, *, throttle_is_measured: bool
 ) -> None:
-    flown = _fly(break_it, climb_ft)
+    """A throttle that is measured is known before the flight is engaged, too."""
+    flown = _fly(break_it, climb_ft, throttle_is_measured=throttle_is_measured)
     assert flown.true_kt.min() > 1.2 * _VS_KT
     assert flown.true_kt.max() < _VNE_KT
     error_kt = np.abs(flown.sensed_kt - flown.true_kt)
