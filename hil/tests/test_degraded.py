@@ -196,3 +196,20 @@ def test_without_a_pilot_it_glides_in_a_gentle_turn() -> None:
     assert np.max(np.abs(flight.between("airspeed_kt", *settled) - 65.0)) < 5.0
     assert np.max(np.abs(flight.between("roll_deg", *settled) - 15.0)) < 2.0
     assert np.max(flight.between("throttle", *settled)) == 0.0
+
+
+@pytest.mark.parametrize("also", ["specific_force", "altitude"])
+@pytest.mark.parametrize("aircraft", ["c172p", "c172r"])
+def test_a_glide_without_airspeed_is_no_dive(aircraft: str, also: str) -> None:
+    """By a constant pitch: within 20 kt of 65, sinking less than twice as fast as there.
+
+    The handbook of the 172P gives 1.5 nautical miles for 1,000 ft: 722 ft/min at 65 kt.
+    """
+    config = '[failsafe]\nend = "glide"\ndegraded_s = 5.0\nhold_s = 1.0\n'
+    flight = Flight(["airspeed", also], 100.0, aircraft=aircraft, config=config)
+    flight.fly_to(LOST_AT_S + 65.0)
+    settled = (45.0, 65.0)
+    assert np.max(np.abs(flight.between("airspeed_kt", *settled) - 65.0)) < 20.0
+    altitude_ft = flight.between("altitude_ft", *settled)
+    sinks_fpm = (altitude_ft[0] - altitude_ft[-1]) / (settled[1] - settled[0]) * 60.0
+    assert 0.0 < sinks_fpm < 2.0 * 722.0
