@@ -281,6 +281,16 @@ mod tests {
     }
 
     #[test]
+    fn of_a_simulator_on_this_machine_only_this_machine_reaches_the_port() {
+        for simulator in HERE {
+            let port = UdpPort::bind(0, simulator).unwrap();
+            assert_eq!(port.socket.local_addr().unwrap().ip(), simulator);
+        }
+        let elsewhere = UdpPort::bind(0, [192, 0, 2, 1].into()).unwrap();
+        assert!(elsewhere.socket.local_addr().unwrap().ip().is_unspecified());
+    }
+
+    #[test]
     fn the_warm_up_receives_everything_that_it_sends() {
         for simulator in HERE {
             let port = UdpPort::bind(0, simulator).unwrap();
