@@ -16,7 +16,7 @@ import numpy.typing as npt
 import pytest
 
 from fcc_hil import airspeed, altitude
-from fcc_hil.campaign.draw import Bounds, draw
+from fcc_hil.campaign.draw import Bounds, Fault, draw
 from fcc_hil.campaign.flying import fly
 from fcc_hil.faulty_sensors import FaultySensors
 from fcc_hil.lockstep import as_controls, as_surfaces, measurements
@@ -319,10 +319,16 @@ def test_turbulence_is_no_fault(severity: int) -> None:
     assert not flown.is_doubted.any()
 
 
-@pytest.mark.parametrize(("seed", "number"), [(200024, 211), (200026, 108)])
-def test_a_healthy_airspeed_that_is_doubted_is_kept_above_the_stall(seed: int, number: int) -> None:
+@pytest.mark.parametrize(
+    ("seed", "number", "fault"),
+    [(200024, 211, Fault("engine out", 17.0, None)), (200026, 108, None)],
+    ids=["engine out", "turbulence"],
+)
+def test_a_healthy_airspeed_that_is_doubted_is_kept_above_the_stall(
+    seed: int, number: int, fault: Fault | None
+) -> None:
     """An engine that fails while the throttle moves, and turbulence near the stall."""
-    flown, _ = fly(replace(draw(number, seed, Bounds()), receiver=None))
+    flown, _ = fly(replace(draw(number, seed, Bounds()), receiver=None, fault=fault))
     assert any("is doubted: it is lower" in event.text for event in flown.events)
     assert flown.verdict.figures["airspeed_over_stall"] > 1.0
 
