@@ -59,15 +59,15 @@ fly-jsbsim: build $(STAMPS)/python ## Fly JSBSim's Cessna over X-Plane's protoco
 test: lint test-rust check-cross test-python ## Run every check and every test
 
 test-rust: $(STAMPS)/rust
-	cargo test --locked --workspace --exclude fcc-py --exclude pendulum --all-features
+	cargo test --locked --workspace --all-features
 	cargo build --locked -p fcc-core --no-default-features
-	cargo check --locked -p fcc-daemon --no-default-features
+	cargo check --locked -p fcc-daemon -p fcc-py --no-default-features
 	@for crate in fcc-runtime fcc-telemetry fcc-record fcc-live fcc-replay fcc-report fcc-top thermostat pendulum; do \
 	    ! cargo tree --locked -p $$crate -e features,no-dev -i fcc-core | grep 'feature "flight"' || \
 	    { echo "$$crate is compiled with an aircraft: see above"; exit 1; }; done
 
-test-python: faulty build $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/systemd
-	cargo build --locked --release -p thermostat
+test-python: faulty $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/systemd
+	cargo build --locked --release -p fcc-daemon -p thermostat
 	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) \
 	    $(PYTHON) -m pytest hil --numprocesses auto --dist loadfile
 
@@ -95,7 +95,7 @@ lint: lint-rust lint-python deny ## Check formatting, lints, licences
 lint-rust: $(STAMPS)/rust
 	cargo fmt --all --check
 	cargo clippy --locked --workspace --all-targets --all-features -- -D warnings
-	RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --exclude fcc-py --exclude pendulum --no-deps --all-features
+	RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps --all-features
 
 lint-python: $(STAMPS)/python-module
 	$(PYTHON) -m ruff check hil deploy
@@ -141,9 +141,11 @@ soundness: ## Run Miri and ThreadSanitizer over timers, loop, records and live t
 # The boards: a Raspberry Pi with 64 bits, and a BeagleBone or a Pi with 32.
 BOARDS := aarch64-unknown-linux-gnu armv7-unknown-linux-gnueabihf
 
-check-cross: $(STAMPS)/cross ## Check that the daemon builds for the boards
+# The whole workspace, as in the other checks: with another choice of packages some
+# crates of build scripts have other features, and are compiled once more.
+check-cross: $(STAMPS)/cross ## Check that everything compiles for the boards
 	for board in $(BOARDS); do \
-	    ./scripts/cross $$board check --locked -p fcc-daemon || exit 1; \
+	    ./scripts/cross $$board check --locked --workspace --all-features || exit 1; \
 	done
 
 test-cross: $(STAMPS)/cross $(STAMPS)/qemu build ## Build for the boards, and run the tests in emulation
@@ -220,7 +222,7 @@ bench-flood: build $(STAMPS)/python ## Fly among 100,000 datagrams a second of a
 	$(PYTHON) -m fcc_hil bench-flood --fccd $(FCCD)
 
 doc: $(STAMPS)/rust ## Build the API documentation
-	cargo doc --locked --workspace --exclude fcc-py --exclude pendulum --no-deps --all-features
+	cargo doc --locked --workspace --no-deps --all-features
 
 # Crates that are not published: the Python module is published as a wheel.
 PRIVATE := fcc-py pendulum thermostat bench-tick
