@@ -55,6 +55,10 @@ GLIDING_S = (25.0, 26.5)
 MOST_FORCES_SD_MPS = 2.6
 """5 % of 100 kt."""
 
+MOST_MISSED = 5
+"""Deadlines of some 900; one that misses more tells of the machine, and is flown again."""
+ATTEMPTS = 3
+
 # Level turns: what a loss does to a climb is another matter.
 TURN = 'mode = "timed-pattern"\nhold_s = 0.5\nleg_s = 30.0\nclimb_ft = 0.0'
 TO_GLIDE = f'[failsafe]\ndegraded_s = {HELD_S}\nhold_s = 1.0\nend = "glide"\n'
@@ -127,6 +131,7 @@ class Degraded:
     is_overridden: bool
     """At its end."""
     ending: Ending
+    recordings: Path
 
     def since(self, lost_s: float) -> SinceLoss:
         """Return the truth by times since a loss."""
@@ -136,6 +141,15 @@ class Degraded:
         """Return the times of the events with a text, s."""
         events = self.ending.report["events"]
         return [float(event["time_s"]) for event in events if text in event["text"]]
+
+
+def fly_undisturbed(fccd: Path, folder: Path, name: str) -> Degraded:
+    """Fly one row of the table, again if the machine stood still meanwhile."""
+    for attempt in range(ATTEMPTS):
+        flown = fly(fccd, folder / f"{name} {attempt}", name)
+        if flown.ending.report["timing"]["missed"] <= MOST_MISSED:
+            break
+    return flown
 
 
 def fly(fccd: Path, scratch: Path, name: str) -> Degraded:
@@ -162,19 +176,15 @@ def fly(fccd: Path, scratch: Path, name: str) -> Degraded:
         else:
             flying.row(name)
         is_overridden, truth = simulator.progress().overridden, simulator.truth()
-        return Degraded(truth, flying.engaged_s, is_overridden, daemon.end(signal.SIGTERM))
+        ending = daemon.end(signal.SIGTERM)
+        return Degraded(truth, flying.engaged_s, is_overridden, ending, scratch / "recordings")
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return where the flights leave their recordings."""
-    return tmp_path_factory.mktemp("degraded")
-
-
-@pytest.fixture(scope="module")
-def flown(fccd: Path, folder: Path) -> dict[str, Degraded]:
+def flown(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Degraded]:
     """All flights, side by side."""
-    return at_once({name: functools.partial(fly, fccd, folder / name, name) for name in FLOWN})
+    fly_one = functools.partial(fly_undisturbed, fccd, tmp_path_factory.mktemp("degraded"))
+    return at_once({name: functools.partial(fly_one, name) for name in FLOWN})
 
 
 @pytest.mark.parametrize("name", FLOWN)
@@ -206,8 +216,8 @@ def test_what_is_good_again_is_flown_on(flown: dict[str, Degraded], name: str) -
     assert np.min(turns_deg) > 25.0
 
 
-def test_a_lost_airspeed_is_replaced_by_forces(flown: dict[str, Degraded], folder: Path) -> None:
-    flight = Flown.of(flown["airspeed"].ending, folder / "airspeed" / "recordings")
+def test_a_lost_airspeed_is_replaced_by_forces(flown: dict[str, Degraded]) -> None:
+    flight = Flown.of(flown["airspeed"].ending, flown["airspeed"].recordings)
     # It is measured again in the last seconds, which count as good.
     begin = flight.failsafes[0]
     estimates = [record.estimate for record in flight.records[begin + 40 : begin + 360]]
