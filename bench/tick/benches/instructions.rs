@@ -17,6 +17,12 @@ fn stages() -> Stages {
     stages
 }
 
+fn guided() -> Stages {
+    let mut stages = Stages::engaged();
+    stages.next_guided();
+    stages
+}
+
 #[library_benchmark]
 #[bench::x_plane(flight())]
 fn whole(mut flight: Flight) -> Flight {
@@ -46,7 +52,7 @@ fn guidance(mut stages: Stages) -> Stages {
 }
 
 #[library_benchmark]
-#[bench::engaged(stages())]
+#[bench::engaged(guided())]
 fn control(mut stages: Stages) -> Stages {
     stages.control();
     stages

@@ -33,18 +33,21 @@ type Stage = fn(&mut Stages);
 
 fn stages(criterion: &mut Criterion) {
     let mut stages = Stages::engaged();
-    let each: [(&str, Stage); 6] = [
-        ("sensors, decoding", Stages::sensors),
-        ("navigation", Stages::navigation),
-        ("guidance", Stages::guidance),
-        ("control", Stages::control),
-        ("actuators, encoding", Stages::actuators),
-        ("record into the ring", Stages::record),
+    // Each with what comes before it in a tick: what navigation has not seen is
+    // not controlled.
+    let each: [(&str, Stage, Stage); 7] = [
+        ("sensors, decoding", Stages::next, Stages::sensors),
+        ("navigation", Stages::next, Stages::navigation),
+        ("guidance", Stages::next_seen, Stages::guidance),
+        ("control", Stages::next_guided, Stages::control),
+        ("navigation, guidance and control", Stages::next, Stages::step),
+        ("actuators, encoding", Stages::next, Stages::actuators),
+        ("record into the ring", Stages::next, Stages::record),
     ];
     let mut group = criterion.benchmark_group("stage");
-    for (name, stage) in each {
+    for (name, before, stage) in each {
         group.bench_function(name, |bencher| {
-            bencher.iter_custom(|times| timed(&mut stages, times, Stages::next, stage));
+            bencher.iter_custom(|times| timed(&mut stages, times, before, stage));
         });
     }
     group.finish();

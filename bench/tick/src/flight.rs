@@ -4,13 +4,13 @@ use std::time::Duration;
 
 use fcc_core::flight::{Autopilot, AutopilotConfig};
 use fcc_core::framework::State;
-use fcc_runtime::{Link, LoopCommand, LoopConfig, Machine, Parts};
+use fcc_runtime::{Link, LoopConfig, Machine, Parts};
 use fcc_timer::{Expiry, ManualTimer, Timer, TimerError};
 use fcc_xplane::XPlane;
 use nix::time::{ClockId, clock_gettime};
 
 use crate::PERIOD;
-use crate::support::FakeXPlane;
+use crate::support::{FakeXPlane, SWITCH};
 
 /// The autopilot engages after navigation has settled for a second.
 const TICKS_TO_SETTLE: u32 = 80;
@@ -55,8 +55,7 @@ impl Flight {
             flight.frame();
             flight.tick();
         }
-        let sent = flight.link.commands.send(LoopCommand::Engage);
-        assert!(sent.is_ok(), "the command finds no room");
+        flight.simulator.set(SWITCH, 1.0);
         for _ in 0..TICKS_TO_SETTLE {
             flight.frame();
             flight.tick();

@@ -111,6 +111,18 @@ impl Stages {
         while self.ring.1.pop().is_ok() {}
     }
 
+    /// The same, and the measurements become position and motion.
+    pub fn next_seen(&mut self) {
+        self.next();
+        self.navigation();
+    }
+
+    /// The same, and set points.
+    pub fn next_guided(&mut self) {
+        self.next_seen();
+        self.guidance();
+    }
+
     /// A frame's datagrams become measurements.
     #[inline(never)]
     pub fn sensors(&mut self) {
@@ -139,6 +151,14 @@ impl Stages {
             .autopilot
             .control(&self.tick, black_box(&self.measurements));
         black_box(self.autopilot.outputs_are_valid(&self.outputs));
+    }
+
+    /// From measurements to surfaces and throttle.
+    #[inline(never)]
+    pub fn step(&mut self) {
+        self.navigation();
+        self.guidance();
+        self.control();
     }
 
     /// They become datagrams.
