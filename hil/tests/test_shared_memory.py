@@ -118,12 +118,19 @@ WAYS: list[Callable[[str, random.Random], None]] = [
 ]
 
 
+def stolen_s() -> float:
+    """Return for how long the host of a virtual machine ran something else: steal, proc(5)."""
+    of_all = Path("/proc/stat").read_text().splitlines()[0].split()
+    return int(of_all[8]) / os.sysconf("SC_CLK_TCK")
+
+
 def test_whoever_damages_shared_memory_the_flight_goes_on(
     fccd: Path, tmp_path: Path, instance: str
 ) -> None:
     """All of it is cut off, overwritten or removed: no tick is missed, and all is recorded."""
     dice = random.Random(12)
     took_s: list[float] = []
+    stolen_before_s = stolen_s()
     with fly(fccd, tmp_path, instance) as daemon:
         daemon.wait_for("standby -> engaged")
         modes = {path.name: path.stat().st_mode & 0o777 for path in files_of(instance)}
@@ -145,10 +152,11 @@ def test_whoever_damages_shared_memory_the_flight_goes_on(
     print(f"back after {sorted(took_s)[len(took_s) // 2]:.2f} s, at most {max(took_s):.2f} s")
     assert ending.exit_code == SUCCESS
     missed = ending.report["timing"]["missed"]
-    print(f"{missed} ticks missed")
+    host_took_s = stolen_s() - stolen_before_s
+    print(f"{missed} ticks missed; the host took {host_took_s:.1f} s of the processors' time")
     # On a busy machine some are missed without any damage.
     if ATTACKS >= _ON_A_QUIET_MACHINE:
-        assert missed == 0
+        assert missed == 0 or host_took_s > 1.0
         assert max(took_s) < 1.0
     assert ending.report["failsafes"] == 0
     assert ENDED in ending.log
