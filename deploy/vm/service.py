@@ -39,7 +39,7 @@ _LOOK_S = 0.1
 # not tested here.
 UNHURRIED: Mapping[str, Mapping[str, object]] = {
     "budget": {"failsafe_after": 0},
-    "failsafe": {"sensor_max_age_ms": 2_000},
+    "failsafe": {"sensor_max_age_ms": 600},
     "guidance": {"mode": "hold"},
 }
 

@@ -27,7 +27,7 @@ _OF_ROOT = {
     "a file of its configuration": "touch /etc/fccd/attempt && rm /etc/fccd/attempt",
     "a file of a user": "test -e /root/.attempts",
     "a raw socket": "perl -e 'socket(S,17,3,0) or exit 1'",
-    "the kernel's log": "head -c 1 /dev/kmsg",
+    "the kernel's log": "dd if=/dev/kmsg bs=8192 count=1",
     "a device": "mknod /var/lib/fccd/device c 1 3 && rm /var/lib/fccd/device",
     "the clock": "date --set '+1 second'",
     "the kernel's settings": "echo guest > /proc/sys/kernel/hostname",
