@@ -40,7 +40,11 @@ fn stages(criterion: &mut Criterion) {
         ("navigation", Stages::next, Stages::navigation),
         ("guidance", Stages::next_seen, Stages::guidance),
         ("control", Stages::next_guided, Stages::control),
-        ("navigation, guidance and control", Stages::next, Stages::step),
+        (
+            "navigation, guidance and control",
+            Stages::next,
+            Stages::step,
+        ),
         ("actuators, encoding", Stages::next, Stages::actuators),
         ("record into the ring", Stages::next, Stages::record),
     ];
