@@ -85,7 +85,7 @@ def test_a_killed_flight_is_recovered(guest: Guest, tmp_path: Path, figures: lis
         killed, taken_up = (service.records(path, tmp_path) for path in service.recordings())
     assert killed[-1].state.phase == ENGAGED
     engaged = [record for record in taken_up if record.state.phase == ENGAGED]
-    before_s = (engaged[0].woke_ns - taken_up[0].woke_ns) * 1e-9
+    before_s = (engaged[0].tick.woke_ns - taken_up[0].tick.woke_ns) * 1e-9
     figures.append(f"killed: flight recovered {before_s:.2f} s after the new loop's first tick")
     # It engages as always, and gets the stored state in the next tick.
     last = killed[-1].setpoints

@@ -55,12 +55,12 @@ def test_a_wall_clock_that_is_set_changes_nothing(guest: Guest, tmp_path: Path) 
     assert {record.state.phase for record in engaged} == {ENGAGED}
     assert all(record.faults == 0 for record in engaged)
     # The loop's time is the kernel's.
-    spent_s = (engaged[-1].woke_ns - engaged[0].woke_ns) * 1e-9
+    spent_s = (engaged[-1].tick.woke_ns - engaged[0].tick.woke_ns) * 1e-9
     assert flown_s < spent_s < flown_s + LATE_S
-    assert all(a.woke_ns < b.woke_ns for a, b in itertools.pairwise(records))
+    assert all(a.tick.woke_ns < b.tick.woke_ns for a, b in itertools.pairwise(records))
     # The wall clock is read once, at the start.
     seen = [m for m in in_sequence(tmp_path / Path(path).name) if m.topic == RECORD]
     assert (seen[-1].log_time_ns - seen[0].log_time_ns) * 1e-9 == pytest.approx(
-        (records[-1].woke_ns - records[0].woke_ns) * 1e-9, abs=1.0
+        (records[-1].tick.woke_ns - records[0].tick.woke_ns) * 1e-9, abs=1.0
     )
     assert (found["exit_code"], found["identity"]["differing"]) == (0, 0), found
