@@ -33,7 +33,7 @@ _START_S = 30.0
 # Ticks whose mark is cut in two by the end of what was read so far.
 _MARGIN = 100
 # Tracing may slow the loop down many times on a busy machine.
-_TRACE_S = 120.0
+_TRACE_S = 300.0
 
 
 @dataclass(frozen=True)
@@ -97,10 +97,13 @@ def test_only_the_timers_and_the_sockets_calls(
     assert set(following) <= {clock.waits_by, "recvfrom", "clock_gettime"}
     # Each tick reads until there is nothing left, and writes all controls, the trim among them, at
     # one go once engaged (one by one where the kernel cannot cut them apart). X-Plane takes 60
-    # datagrams in a frame of 50 ms: five every 4.2 ms.
+    # datagrams in a frame of 50 ms: five every 4.2 ms, and a tick that would be earlier writes
+    # nothing. Here the tracer makes ticks uneven and frames longer.
     emptied = [words for name, words in calls if name == "recvfrom" and "EAGAIN" in words]
     assert len(emptied) == flown
-    assert counts["sendto"] >= ticks / 3
+    taken = max(at for at, (name, _) in enumerate(calls) if name in TELLS_OF_CONTROL)
+    controlled = collections.Counter(name for name, _ in calls[taken:])
+    assert 2 * controlled["sendto"] >= controlled[COUNTS_PAGE_FAULTS] >= ticks / 2
     sockets = {words.partition(",")[0] for name, words in calls if name in ("recvfrom", "sendto")}
     assert len(sockets) == 1
 

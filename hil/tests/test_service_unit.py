@@ -92,7 +92,7 @@ def _calls(group: str) -> set[str]:
         ("LimitMEMLOCK", ["infinity"]),
         ("LimitRTPRIO", ["99"]),
         ("Restart", ["on-failure"]),
-        # Usage, real-time refused, taken by another: what would fail again at once.
+        # Usage, real-time refused: what would fail again at once; and a flight that is over.
         ("RestartPreventExitStatus", ["2 4 14"]),
         ("User", ["fccd"]),
     ],

@@ -156,7 +156,7 @@ def test_whoever_damages_shared_memory_the_flight_goes_on(
     print(f"{missed} ticks missed; the host took {host_took_s:.1f} s of the processors' time")
     # On a busy machine some are missed without any damage.
     if ATTACKS >= _ON_A_QUIET_MACHINE:
-        assert missed == 0 or host_took_s > 1.0
+        assert missed == 0
         assert max(took_s) < 1.0
     assert ending.report["failsafes"] == 0
     assert ENDED in ending.log
