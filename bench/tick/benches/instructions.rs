@@ -59,6 +59,13 @@ fn control(mut stages: Stages) -> Stages {
 }
 
 #[library_benchmark]
+#[bench::engaged(stages())]
+fn step(mut stages: Stages) -> Stages {
+    stages.step();
+    stages
+}
+
+#[library_benchmark]
 #[bench::encoding(stages())]
 fn actuators(mut stages: Stages) -> Stages {
     stages.actuators();
@@ -75,7 +82,7 @@ fn record(mut stages: Stages) -> Stages {
 library_benchmark_group!(
     name = tick,
     benchmarks = [
-        whole, sensors, navigation, guidance, control, actuators, record
+        whole, sensors, navigation, guidance, control, step, actuators, record
     ]
 );
 main!(library_benchmark_groups = tick);

@@ -4,8 +4,9 @@ use std::collections::VecDeque;
 use std::hint::black_box;
 use std::sync::{Arc, Mutex};
 
-use fcc_core::flight::{Autopilot, Measurements, Surfaces};
+use fcc_core::flight::{Autopilot, AutopilotConfig, Measurements, Surfaces};
 use fcc_core::framework::{Actuator, Controller, Message, MessageOf, RecordOf, Sensor, Tick};
+use fcc_sim::{Channels, SensorConfig, Severity, SimConfig, Simulation};
 use fcc_xplane::{Errno, Port, XPlane, XPlaneActuator, XPlaneSensor};
 use rtrb::{Consumer, Producer, RingBuffer};
 use std::net::SocketAddr;
@@ -13,21 +14,33 @@ use std::net::SocketAddr;
 use crate::support::{FLIGHT_TIME, FakeXPlane, Scripted, position_reply};
 use crate::{Flight, PERIOD};
 
-/// Enough for sensor and actuator to settle.
-const WARM_UP_TICKS: u32 = 100;
+/// Half a minute of flight: sensors and actuator have settled, and what the
+/// autopilot learns of the aircraft is known.
+const WARM_UP_TICKS: u32 = 1_200;
+/// The autopilot engages when navigation has settled for a second.
+const ENGAGED_AT_TICK: u32 = 80;
 
 /// The stages of a tick, to be called separately and in any order.
 /// [`next`](Self::next) advances to the next tick.
+///
+/// What becomes of datagrams is measured by a simulated X-Plane whose values are
+/// constant; the autopilot flies the built-in aircraft, in gusts, with noise and
+/// 25 ms of delay, so that everything in it moves as in flight.
 pub struct Stages {
     simulator: FakeXPlane,
     wire: Arc<Scripted>,
     sensor: XPlaneSensor<Wire>,
     actuator: XPlaneActuator<Wire>,
     autopilot: Autopilot,
+    aircraft: Simulation,
     tick: Tick,
     measurements: Measurements,
     sampled: Measurements,
     outputs: Surfaces,
+    /// What of the tick has been computed.
+    is_seen: bool,
+    is_guided: bool,
+    is_controlled: bool,
     record: RecordOf<Autopilot>,
     ring: (
         Producer<MessageOf<Autopilot>>,
@@ -51,55 +64,77 @@ impl Stages {
         let (sensor, actuator) =
             XPlane::over(&config, Wire(Arc::clone(&wire)), None).expect("a fair configuration");
         let record = *flight.machine.record();
+        let aircraft = SimConfig {
+            gusts: Some(Severity::Moderate),
+            sensors: SensorConfig {
+                noise: Channels::TYPICAL_NOISE,
+                delay_ms: 25,
+                ..SensorConfig::default()
+            },
+            ..SimConfig::default()
+        };
         let mut stages = Self {
             simulator,
             wire,
             sensor,
             actuator,
-            autopilot: flight.machine.controller().clone(),
+            autopilot: Autopilot::new(AutopilotConfig::default()),
+            aircraft: Simulation::new(&aircraft).expect("a fair configuration"),
             tick: record.tick,
-            measurements: record.measurements,
+            measurements: Measurements::default(),
             sampled: record.measurements,
-            outputs: record.outputs,
+            outputs: Surfaces::default(),
+            is_seen: true,
+            is_guided: true,
+            is_controlled: true,
             record,
             ring: RingBuffer::new(16),
         };
+        for _ in 0..ENGAGED_AT_TICK {
+            stages.next();
+            stages.navigation();
+            (stages.is_guided, stages.is_controlled) = (true, true);
+        }
+        let inhibits = stages
+            .autopilot
+            .engage_inhibits(&stages.tick, &stages.measurements);
+        assert!(inhibits.is_empty(), "does not engage");
+        stages.autopilot.engage(&stages.tick, &stages.measurements);
         for _ in 0..WARM_UP_TICKS {
             stages.next();
             stages.sensors();
-            stages.navigation();
-            stages.guidance();
-            stages.control();
+            stages.step();
             stages.actuators();
             stages.record();
         }
         stages
     }
 
-    /// Advances to the next tick: time passes, a frame arrives, the ring is
-    /// emptied.
+    /// Advances to the next tick: what of this one is left is computed, time
+    /// passes, the aircraft flies, a frame arrives, the ring is emptied.
     ///
     /// # Panics
     /// Not unless another thread has.
     pub fn next(&mut self) {
+        if !self.is_seen {
+            self.navigation();
+        }
+        if !self.is_guided {
+            self.guidance();
+        }
+        if !self.is_controlled {
+            self.control();
+        }
+        (self.is_seen, self.is_guided, self.is_controlled) = (false, false, false);
         self.tick.number += 1;
         self.tick.scheduled = self.tick.scheduled + PERIOD;
         self.tick.woke = self.tick.woke + PERIOD;
-        let now = self.tick.woke;
-        let measured = &mut self.measurements;
-        measured.attitude.taken = now;
-        measured.heading_rad.taken = now;
-        measured.body_rates.taken = now;
-        measured.specific_force.taken = now;
-        measured.airspeed_mps.taken = now;
-        measured.altitude_m.taken = now;
-        measured.angle_of_attack_rad.taken = now;
-        measured.position.taken = now;
-        measured.velocity.taken = now;
-        measured.surfaces.taken = now;
-        measured.engage_switch.taken = now;
-        measured.plant.taken = now;
-        measured.plant.value.time_s += PERIOD.as_secs_f64();
+        let Simulation {
+            sensor, actuator, ..
+        } = &mut self.aircraft;
+        let applied = actuator.apply(&self.tick, &self.outputs);
+        let sampled = sensor.sample(&self.tick, &mut self.measurements);
+        assert!(applied.is_ok() && sampled.is_ok(), "flies no longer");
 
         let time = self.simulator.value(FLIGHT_TIME) + PERIOD.as_secs_f32();
         self.simulator.set(FLIGHT_TIME, time);
@@ -135,6 +170,7 @@ impl Stages {
     pub fn navigation(&mut self) {
         self.autopilot
             .estimate(&self.tick, black_box(&self.measurements));
+        self.is_seen = true;
     }
 
     /// Set points.
@@ -142,6 +178,7 @@ impl Stages {
     pub fn guidance(&mut self) {
         self.autopilot
             .guide(&self.tick, black_box(&self.measurements));
+        self.is_guided = true;
     }
 
     /// Surfaces and throttle, and whether they are valid.
@@ -151,6 +188,7 @@ impl Stages {
             .autopilot
             .control(&self.tick, black_box(&self.measurements));
         black_box(self.autopilot.outputs_are_valid(&self.outputs));
+        self.is_controlled = true;
     }
 
     /// From measurements to surfaces and throttle.

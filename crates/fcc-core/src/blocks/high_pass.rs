@@ -37,6 +37,12 @@ impl HighPass {
     pub fn step(&mut self, input: f64, dt_s: f64) -> f64 {
         input - self.low.step(input, dt_s)
     }
+
+    /// The same with a [`smoothing_factor`](super::smoothing_factor) that several
+    /// filters of one time constant share.
+    pub(crate) fn step_by(&mut self, input: f64, factor: f64) -> f64 {
+        input - self.low.step_by(input, factor)
+    }
 }
 
 #[cfg(test)]

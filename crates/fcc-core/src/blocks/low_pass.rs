@@ -69,9 +69,15 @@ impl LowPass {
 
     /// Processes an input held for `dt_s` seconds; returns the output.
     pub fn step(&mut self, input: f64, dt_s: f64) -> f64 {
+        self.step_by(input, smoothing_factor(dt_s, self.tau_s))
+    }
+
+    /// The same with a [`smoothing_factor`] that several filters of one time
+    /// constant share.
+    pub(crate) fn step_by(&mut self, input: f64, factor: f64) -> f64 {
         let output = match self.output {
             None => input,
-            Some(output) => output + smoothing_factor(dt_s, self.tau_s) * (input - output),
+            Some(output) => output + factor * (input - output),
         };
         self.output = Some(output);
         output

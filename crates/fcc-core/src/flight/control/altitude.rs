@@ -325,22 +325,23 @@ impl AltitudeLoop {
             schedule.pitch_pace * config.pitch_gain_per_s * (pitch_rad - estimate.pitch_rad),
             config.max_pitch_rate_radps,
         );
+        let cos_bank = cos(bank);
         let turn_rate = GRAVITY_MPS2 / speed * tan(bank);
         let turn_pitch_rate = turn_rate * cos(estimate.pitch_rad) * sin(bank);
         // Load factor in excess of 1 is about V q / g.
         let per_load = GRAVITY_MPS2 / speed;
-        let most = per_load * (envelope.max_load_factor - cos(bank)).max(0.1);
-        let wanted = limit_abs(theta_rate * cos(bank) + turn_pitch_rate, most);
+        let most = per_load * (envelope.max_load_factor - cos_bank).max(0.1);
+        let wanted = limit_abs(theta_rate * cos_bank + turn_pitch_rate, most);
         // α̇ = q - (n - cos φ) g/V: the pitch rate at which the angle of attack
         // approaches its limit and does not exceed it.
-        let kept = per_load * (estimate.load_factor - cos(bank));
+        let kept = per_load * (estimate.load_factor - cos_bank);
         let most_rate = 2.0 * config.max_pitch_rate_radps;
         let kept_rate = limit_abs(ANGLE_OF_ATTACK_GAIN_PER_S * spare_rad + kept, most_rate);
         // It lowers the nose to the smallest pitch, and not further.
         let to_least = schedule.pitch_pace
             * config.pitch_gain_per_s
             * (envelope.min_pitch_rad - estimate.pitch_rad);
-        let least_rate = limit_abs(to_least, most_rate) * cos(bank) + turn_pitch_rate;
+        let least_rate = limit_abs(to_least, most_rate) * cos_bank + turn_pitch_rate;
         let pitch_rate = wanted.min(kept_rate.max(least_rate));
         let elevator = self.pitch_rate.step_scheduled(
             pitch_rate,

@@ -1,7 +1,7 @@
 //! The latency and the play between the elevator command and its effect, from
 //! the flight itself.
 
-use crate::blocks::{HighPass, LowPass};
+use crate::blocks::{HighPass, LowPass, smoothing_factor};
 
 /// The number of delays compared, one sample each.
 const DELAYS: usize = 12;
@@ -64,8 +64,25 @@ impl BandPass {
         }
     }
 
-    fn step(&mut self, input: f64, dt_s: f64) -> f64 {
-        self.slow.step(self.fast.step(input, dt_s), dt_s)
+    fn step(&mut self, input: f64, factors: &BandFactors) -> f64 {
+        let smoothed = self.fast.step_by(input, factors.fast);
+        self.slow.step_by(smoothed, factors.slow)
+    }
+}
+
+/// The smoothing factors of every [`BandPass`] in a step.
+#[derive(Clone, Copy, Debug)]
+struct BandFactors {
+    fast: f64,
+    slow: f64,
+}
+
+impl BandFactors {
+    fn over(period_s: f64) -> Self {
+        Self {
+            fast: smoothing_factor(period_s, FAST_S),
+            slow: smoothing_factor(period_s, SLOW_S),
+        }
     }
 }
 
@@ -275,18 +292,26 @@ impl ElevatorResponse {
         self.samples = self.samples.saturating_add(1);
         self.period_s += 0.1 * (period_s - self.period_s);
         let acceleration = (rate - rate_before) / period_s;
-        let acceleration = self.acceleration.step(acceleration, period_s);
+        let factors = BandFactors::over(period_s);
+        let acceleration = self.acceleration.step(acceleration, &factors);
         // The rate's noise is in the difference, too: with the later one it would
         // seem to explain it.
-        let rate = self.rate.step(rate_before, period_s);
-        let load = self.load.step(0.5 * (load_before + load), period_s);
-        self.remember(elevator, rate, load, acceleration, period_s);
+        let rate = self.rate.step(rate_before, &factors);
+        let load = self.load.step(0.5 * (load_before + load), &factors);
+        let moved = [rate, load, acceleration];
+        self.remember(elevator, moved, &factors, period_s);
         if self.samples >= FIRST_AFTER && self.samples.is_multiple_of(COMPARED_EVERY) {
             self.compare();
         }
     }
 
-    fn remember(&mut self, elevator: f64, rate: f64, load: f64, acceleration: f64, period_s: f64) {
+    fn remember(
+        &mut self,
+        elevator: f64,
+        [rate, load, acceleration]: [f64; 3],
+        factors: &BandFactors,
+        period_s: f64,
+    ) {
         let new = if self.samples > SETTLES_FOR {
             period_s / MEMORY_S
         } else {
@@ -309,7 +334,7 @@ impl ElevatorResponse {
             play.within = (inside(play.within.0), inside(play.within.1));
             let latest = play
                 .band
-                .step(0.5 * (play.within.0 + play.within.1), period_s);
+                .step(0.5 * (play.within.0 + play.within.1), factors);
             play.recent.rotate_right(1);
             if let Some(first) = play.recent.first_mut() {
                 *first = latest;

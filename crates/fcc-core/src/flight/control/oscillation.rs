@@ -1,6 +1,6 @@
 //! A monitor of oscillations, and the gain it takes out of the loops.
 
-use crate::blocks::HighPass;
+use crate::blocks::{HighPass, smoothing_factor};
 use crate::flight::Surfaces;
 use crate::flight::navigation::Estimate;
 
@@ -62,8 +62,9 @@ impl Axis {
 
     /// The half-period, s, of a half-cycle that ends an oscillation's row.
     fn step(&mut self, rate_radps: f64, command: f64, dt_s: f64) -> Option<f64> {
-        let rate = self.rate.step(rate_radps, dt_s);
-        let command = self.command.step(command, dt_s);
+        let factor = smoothing_factor(dt_s, SLOW_S);
+        let rate = self.rate.step_by(rate_radps, factor);
+        let command = self.command.step_by(command, factor);
         self.lasted_s += dt_s;
         if self.lasted_s > LONGEST_S {
             self.alike = 0;

@@ -166,9 +166,10 @@ impl Recovery {
     ) -> Change {
         let (was, was_unanswered) = (self.upset.is_upset(), self.upset.is_unanswered());
         let elevator = if inputs.followed { last.elevator } else { 0.0 };
+        let motion = Motion::of(estimate);
         let is = self
             .upset
-            .step(estimate, elevator, inputs.envelope, inputs.dt_s);
+            .step(estimate, &motion, elevator, inputs.envelope, inputs.dt_s);
         if !was_unanswered && self.upset.is_unanswered() {
             let load = estimate.load_factor.max(LEAST_LOAD);
             let stall_mps = estimate.airspeed_mps / (STALLED_RATIO * sqrt(load));
@@ -185,7 +186,6 @@ impl Recovery {
             (true, false) => Change::Ends,
             (true, true) => Change::None,
             (false, false) => {
-                let motion = Motion::of(estimate);
                 if inputs.followed
                     && motion.bank_rad.abs() < LEVEL_RAD
                     && estimate.body_rates.roll_radps.abs() < ROLLS_RADPS

@@ -86,20 +86,21 @@ impl Motion {
 /// Detects an upset, with hysteresis.
 ///
 /// ```
-/// use fcc_core::flight::control::{Envelope, UpsetDetector};
+/// use fcc_core::flight::control::{Envelope, Motion, UpsetDetector};
 /// use fcc_core::flight::navigation::Estimate;
 ///
 /// let (envelope, mut upset) = (Envelope::default(), UpsetDetector::default());
 /// let mut flown = Estimate { airspeed_mps: 51.4, true_airspeed_mps: 53.8, ..Estimate::default() };
-/// assert!(!upset.step(&flown, 0.0, &envelope, 0.025));
+/// let mut step = |flown: &Estimate| upset.step(flown, &Motion::of(flown), 0.0, &envelope, 0.025);
+/// assert!(!step(&flown));
 /// flown.roll_rad = 80.0_f64.to_radians();
-/// assert!(upset.step(&flown, 0.0, &envelope, 0.025));
+/// assert!(step(&flown));
 /// // At 50° it still is, ...
 /// flown.roll_rad = 50.0_f64.to_radians();
-/// assert!(upset.step(&flown, 0.0, &envelope, 0.025));
+/// assert!(step(&flown));
 /// // ... and not with the wings level for half a second.
 /// flown.roll_rad = 0.0;
-/// assert!((0..30).any(|_| !upset.step(&flown, 0.0, &envelope, 0.025)));
+/// assert!((0..30).any(|_| !step(&flown)));
 /// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct UpsetDetector {
@@ -176,16 +177,16 @@ impl UpsetDetector {
         }
     }
 
-    /// Whether the aircraft is upset, after a step with the elevator where it was
-    /// commanded to; 0 if it does not follow.
+    /// Whether the aircraft is upset, after a step with the estimate's motion and
+    /// the elevator where it was commanded to; 0 if it does not follow.
     pub fn step(
         &mut self,
         estimate: &Estimate,
+        motion: &Motion,
         elevator: f64,
         envelope: &Envelope,
         dt_s: f64,
     ) -> bool {
-        let motion = Motion::of(estimate);
         let stall_mps = envelope.stall_airspeed_mps;
         let rates = estimate.body_rates;
         let stalled = motion.angle_of_attack_rad > STALLED_RAD
@@ -212,12 +213,12 @@ impl UpsetDetector {
             || self.is_spinning && rates.yaw_radps.abs() > SPIN_STOPPED_RADPS;
 
         let bank = motion.bank_rad.abs();
-        let most_bank = (envelope.bank_limit_rad() + BANK_BEYOND_RAD).max(LEAST_BANK_RAD);
+        let bank_limit = envelope.bank_limit_rad();
+        let most_bank = (bank_limit + BANK_BEYOND_RAD).max(LEAST_BANK_RAD);
         let rolling_out = rates.roll_radps * motion.bank_rad.signum();
         let (least_pitch, most_pitch) = (envelope.min_pitch_rad, envelope.max_pitch_rad);
         let begins = bank > most_bank
-            || bank > envelope.bank_limit_rad()
-                && bank + AHEAD_S * rolling_out > most_bank + AHEAD_BEYOND_RAD
+            || bank > bank_limit && bank + AHEAD_S * rolling_out > most_bank + AHEAD_BEYOND_RAD
             || estimate.pitch_rad > most_pitch + PITCH_BEYOND_RAD
             || estimate.pitch_rad < least_pitch - PITCH_BEYOND_RAD
             || self.stalled_s > STALLED_FOR_S
@@ -225,7 +226,7 @@ impl UpsetDetector {
             || self.is_spinning;
         let normal = !begins
             && !stalled
-            && bank < NORMAL_BANK_RAD.max(envelope.bank_limit_rad())
+            && bank < NORMAL_BANK_RAD.max(bank_limit)
             && rates.roll_radps.abs() < NORMAL_RADPS
             && rates.pitch_radps.abs() < NORMAL_RADPS
             && estimate.pitch_rad < most_pitch + 0.2 * PITCH_BEYOND_RAD

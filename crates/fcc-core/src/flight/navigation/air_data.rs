@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use libm::{asin, cos, sin, sqrt};
+use libm::{asin, cos, sin};
 
 use super::attitude::Orientation;
 use super::resolution::Resolution;
@@ -10,7 +10,6 @@ use super::sample_tracker::{NewSample, SampleTracker, is_current};
 use super::vertical::VerticalState;
 use crate::blocks::{Complementary, limit_abs};
 use crate::flight::Measurements;
-use crate::flight::atmosphere::density_ratio;
 use crate::framework::Time;
 use crate::units::GRAVITY_MPS2;
 
@@ -31,7 +30,7 @@ use crate::units::GRAVITY_MPS2;
 /// let level = AttitudeChannel::new(1.36, 1.44).step(now, &measured, 0.025);
 /// let vertical = VerticalChannel::new(0.68).step(now, &measured, &level, 0.025);
 /// let mut airspeed = AirspeedChannel::new(0.89);
-/// assert_eq!(airspeed.step(now, &measured, &level, &vertical, 0.025), 51.4);
+/// assert_eq!(airspeed.step(now, &measured, &level, &vertical, 1.0, 0.025), 51.4);
 /// ```
 #[derive(Clone, Debug)]
 pub struct AirspeedChannel {
@@ -87,17 +86,19 @@ impl AirspeedChannel {
     }
 
     /// Processes the measurements; returns indicated airspeed in m/s.
+    /// `sqrt_density` is the root of
+    /// [`density_ratio`](crate::flight::atmosphere::density_ratio) at the altitude.
     pub fn step(
         &mut self,
         now: Time,
         measurements: &Measurements,
         orientation: &Orientation,
         vertical: &VerticalState,
+        sqrt_density: f64,
         dt_s: f64,
     ) -> f64 {
         if is_current(&measurements.specific_force, now) {
             let force = measurements.specific_force.value;
-            let sqrt_density = sqrt(density_ratio(vertical.altitude_m));
             let true_airspeed = (self.airspeed.value() / sqrt_density).max(MIN_AIRSPEED_MPS);
             let sin_path = limit_abs(vertical.climb_rate_mps / true_airspeed, 1.0);
             // Angle of attack, assuming still air.

@@ -4,7 +4,6 @@ use libm::exp;
 
 use super::force_sample::ForceSample;
 use super::scalar_update::{add_variance, squared, update};
-use super::upward::Upward;
 use super::wind::Wind;
 use crate::blocks::limit_abs;
 
@@ -86,7 +85,7 @@ struct Vote {
 ///   polar with the lift's part along x; Stevens, Lewis and Johnson 2016, 2.3),
 /// - of lift: the angle of attack α₀ + A n/q is the one between the body and a
 ///   path whose slope is the climb rate without vertical wind over the true
-///   airspeed, in any attitude ([`Upward`]).
+///   airspeed, in any attitude ([`Upward`](super::upward::Upward)).
 ///
 /// What it does not know of the aircraft it learns while a sensor is believed.
 #[derive(Clone, Copy, Debug)]
@@ -108,7 +107,7 @@ impl AirspeedFilter {
         let q = squared(airspeed_mps / prior.reference_mps);
         let path = sample.climb_rate_mps * sample.sqrt_density / airspeed_mps;
         let zero_lift_rad =
-            Upward::of(sample).angle_of_attack_rad(path) - LIFT_ANGLE_RAD * sample.up / q;
+            sample.upward.angle_of_attack_rad(path) - LIFT_ANGLE_RAD * sample.up / q;
         let x = [
             airspeed_mps,
             0.0,
@@ -160,7 +159,7 @@ impl AirspeedFilter {
 
     fn climb_rate_by(&self, [.., zero, angle]: State, sample: &ForceSample) -> f64 {
         let alpha = zero + angle * sample.up * squared(self.slower());
-        self.at_mps() / sample.sqrt_density * Upward::of(sample).sin_path(alpha)
+        self.at_mps() / sample.sqrt_density * sample.upward.sin_path(alpha)
     }
 
     /// Standard deviation of the airspeed, m/s.
@@ -341,7 +340,7 @@ impl AirspeedFilter {
     fn correct_by_lift(&mut self, sample: &ForceSample) {
         let true_mps = self.at_mps() / sample.sqrt_density;
         let lift = sample.up * squared(self.slower());
-        let upward = Upward::of(sample);
+        let upward = sample.upward;
         let share = upward.share;
         // In the scale of pitch: with the wings level a difference of pitch.
         let differs = |[_, wind, _, _, zero, angle]: State| {

@@ -5,6 +5,7 @@ use super::airspeed_reason::{Doubt, DoubtReason, Reference};
 use super::filter_bank::FilterBank;
 use super::force_sample::{ForceSample, acceleration_mps2};
 use super::scalar_update::squared;
+use super::upward::Upward;
 use super::wind::OverGround;
 use crate::blocks::{LowPass, smoothing_factor};
 
@@ -122,21 +123,10 @@ pub(super) struct AirspeedMonitor {
 
 impl AirspeedMonitor {
     pub(super) const fn new(prior: AirframePrior) -> Self {
-        const NOTHING: ForceSample = ForceSample {
-            forward: 0.0,
-            up: 0.0,
-            pitch_rad: 0.0,
-            roll_rad: 0.0,
-            climb_rate_mps: 0.0,
-            climbs_by_lift: false,
-            sqrt_density: 0.0,
-            thrust: None,
-            gusts_mps: 0.0,
-        };
         Self {
             prior,
             bank: None,
-            sum: NOTHING,
+            sum: ForceSample::NONE,
             sensor_sum_mps: 0.0,
             sum_s: 0.0,
             sensor_s: 0.0,
@@ -312,7 +302,7 @@ impl AirspeedMonitor {
             bank.older.adopt(sensor_mps);
             bank.older.restore_models();
             bank.believing = bank.older;
-            self.sum = ForceSample::default();
+            self.sum = ForceSample::NONE;
             (self.sensor_sum_mps, self.sum_s, self.sensor_s) = (0.0, 0.0, 0.0);
         }
         self.settles_s -= dt_s;
@@ -343,14 +333,16 @@ impl AirspeedMonitor {
     /// Corrects the filters by the mean of the samples since the last time.
     fn correct(&mut self, bank: &mut FilterBank, now: &ForceSample, holds: bool) {
         let passed_s = core::mem::take(&mut self.sum_s);
-        let sum = core::mem::take(&mut self.sum);
+        let sum = core::mem::replace(&mut self.sum, ForceSample::NONE);
         let sensor_sum_mps = core::mem::take(&mut self.sensor_sum_mps);
         let sensor_s = core::mem::take(&mut self.sensor_s);
+        let (roll_rad, pitch_rad) = (sum.roll_rad / passed_s, sum.pitch_rad / passed_s);
         let mean = ForceSample {
             forward: sum.forward / passed_s,
             up: sum.up / passed_s,
-            pitch_rad: sum.pitch_rad / passed_s,
-            roll_rad: sum.roll_rad / passed_s,
+            pitch_rad,
+            roll_rad,
+            upward: Upward::of(roll_rad, pitch_rad),
             climb_rate_mps: sum.climb_rate_mps / passed_s,
             ..*now
         };

@@ -15,13 +15,15 @@ const LOADS: core::ops::RangeInclusive<f64> = 0.3..=2.5;
 
 /// What the filter's models need, averaged over the time between two
 /// corrections.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct ForceSample {
     /// Specific force forward and up along the body axes, in g.
     pub(super) forward: f64,
     pub(super) up: f64,
     pub(super) pitch_rad: f64,
     pub(super) roll_rad: f64,
+    /// By roll and pitch.
+    pub(super) upward: Upward,
     pub(super) climb_rate_mps: f64,
     /// The climb rate comes from lift itself: the altimeter is doubted.
     pub(super) climbs_by_lift: bool,
@@ -35,6 +37,20 @@ pub(super) struct ForceSample {
 }
 
 impl ForceSample {
+    /// Nothing measured.
+    pub(super) const NONE: Self = Self {
+        forward: 0.0,
+        up: 0.0,
+        pitch_rad: 0.0,
+        roll_rad: 0.0,
+        upward: Upward::LEVEL,
+        climb_rate_mps: 0.0,
+        climbs_by_lift: false,
+        sqrt_density: 0.0,
+        thrust: None,
+        gusts_mps: 0.0,
+    };
+
     /// Whether the models of the forces hold.
     pub(super) fn models_hold(&self) -> bool {
         self.roll_rad.abs() < STEEP_BANK_RAD
@@ -52,14 +68,16 @@ pub(super) fn in_g(x_mps2: f64, z_mps2: f64) -> (f64, f64) {
 /// in g; without vertical wind, whose effect is of second order.
 pub(super) fn acceleration_mps2(sample: &ForceSample, airspeed_mps: f64) -> f64 {
     let sin_path = sin_path(sample, airspeed_mps);
-    let alpha = limit_abs(Upward::of(sample).angle_of_attack_rad(sin_path), 0.3);
+    let alpha = limit_abs(sample.upward.angle_of_attack_rad(sin_path), 0.3);
     let along = sample.forward * cos(alpha) - sample.up * sin(alpha) - sin_path;
     GRAVITY_MPS2 * along * sample.sqrt_density
 }
 
 /// The angle between the body and the path at an airspeed, rad; without vertical wind.
 pub(super) fn angle_of_attack_rad(sample: &ForceSample, airspeed_mps: f64) -> f64 {
-    Upward::of(sample).angle_of_attack_rad(sin_path(sample, airspeed_mps))
+    sample
+        .upward
+        .angle_of_attack_rad(sin_path(sample, airspeed_mps))
 }
 
 fn sin_path(sample: &ForceSample, airspeed_mps: f64) -> f64 {

@@ -2,14 +2,13 @@
 
 use libm::{asin, cos, sin, sqrt};
 
+use super::Path;
 use super::airspeed_reason::Doubt;
 use super::angle_monitor::{AngleMonitor, OtherAngles};
 use super::attitude::Orientation;
-use super::force_sample::ForceSample;
 use super::sample_tracker::is_current;
-use super::upward::Upward;
 use crate::blocks::{LowPass, limit, limit_abs};
-use crate::flight::{BodyRates, Measurements, SpecificForce};
+use crate::flight::{Measurements, SpecificForce};
 use crate::framework::Time;
 use crate::units::GRAVITY_MPS2;
 
@@ -41,15 +40,6 @@ impl Default for Lift {
             acceleration_mps2: 0.0,
         }
     }
-}
-
-/// The state of flight that the channel needs of the others.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Path<'a> {
-    pub(super) orientation: &'a Orientation,
-    pub(super) airspeed_mps: f64,
-    pub(super) true_airspeed_mps: f64,
-    pub(super) climb_rate_mps: f64,
 }
 
 /// Load, angle of attack and the acceleration along the flight path, from the
@@ -137,6 +127,7 @@ impl LiftChannel {
         now: Time,
         measurements: &Measurements,
         path: &Path<'_>,
+        airspeed_mps: f64,
         dt_s: f64,
     ) -> Lift {
         let force = measurements.specific_force;
@@ -146,12 +137,21 @@ impl LiftChannel {
         let load_factor = self.load.step(-force.value.z_mps2 / GRAVITY_MPS2, dt_s);
         let gust = load_factor - self.slow_load.step(load_factor, dt_s);
         let gust_load = sqrt(self.gust_square.step(gust * gust, dt_s).max(0.0));
-        let by_lift_rad = self.angle_of_attack(load_factor, path, dt_s);
+        let true_mps = airspeed_mps / path.sqrt_density;
+        let sin_path = path.vertical.climb_rate_mps / true_mps.max(1.0);
+        let by_lift_rad =
+            self.angle_of_attack(load_factor, path.orientation, sin_path, airspeed_mps, dt_s);
         let measured = measurements.angle_of_attack_rad;
+        let rates = measurements.body_rates.value;
         let believed = self.monitor.step(
             is_current(&measured, now).then_some((measured.value, measured.source)),
             self.impossible,
-            &self.other_angles(by_lift_rad, &measurements.body_rates.value, path),
+            &OtherAngles {
+                by_lift_rad,
+                by_path_rad: path.upward.angle_of_attack_rad(sin_path),
+                speed_ratio: airspeed_mps / self.stall_airspeed_mps,
+                turning_radps: rates.yaw_radps.abs().max(rates.roll_radps.abs()),
+            },
             dt_s,
         );
         let angle_of_attack_rad = believed.unwrap_or(by_lift_rad);
@@ -163,32 +163,23 @@ impl LiftChannel {
         }
     }
 
-    fn other_angles(&self, by_lift_rad: f64, rates: &BodyRates, path: &Path<'_>) -> OtherAngles {
-        let upward = Upward::of(&ForceSample {
-            pitch_rad: path.orientation.pitch_rad,
-            roll_rad: path.orientation.roll_rad,
-            ..ForceSample::default()
-        });
-        let sin_path = path.climb_rate_mps / path.true_airspeed_mps.max(1.0);
-        OtherAngles {
-            by_lift_rad,
-            by_path_rad: upward.angle_of_attack_rad(sin_path),
-            speed_ratio: path.airspeed_mps / self.stall_airspeed_mps,
-            turning_radps: rates.yaw_radps.abs().max(rates.roll_radps.abs()),
-        }
-    }
-
-    fn angle_of_attack(&mut self, load_factor: f64, path: &Path<'_>, dt_s: f64) -> f64 {
+    fn angle_of_attack(
+        &mut self,
+        load_factor: f64,
+        orientation: &Orientation,
+        sin_path: f64,
+        airspeed_mps: f64,
+        dt_s: f64,
+    ) -> f64 {
         // The lift coefficient over its largest.
-        let ratio = self.stall_airspeed_mps / path.airspeed_mps.max(0.5 * self.stall_airspeed_mps);
+        let ratio = self.stall_airspeed_mps / airspeed_mps.max(0.5 * self.stall_airspeed_mps);
         let lift = load_factor * ratio * ratio;
         let by_lift = ZERO_LIFT_RAD + (STALL_RAD - ZERO_LIFT_RAD) * lift;
-        let steady = path.orientation.roll_rad.abs() < LEARNING_BANK_RAD
+        let steady = orientation.roll_rad.abs() < LEARNING_BANK_RAD
             && (load_factor - 1.0).abs() < LEARNING_LOAD
             && lift < 0.7;
-        if steady && path.airspeed_mps > self.stall_airspeed_mps {
-            let sine = limit_abs(path.climb_rate_mps / path.true_airspeed_mps.max(1.0), 0.5);
-            let by_path = path.orientation.pitch_rad - asin(sine);
+        if steady && airspeed_mps > self.stall_airspeed_mps {
+            let by_path = orientation.pitch_rad - asin(limit_abs(sin_path, 0.5));
             let off = by_path - by_lift - self.learned_rad;
             if off.abs() < WIND_RAD {
                 let learned_rad = self.learned_rad + off * (dt_s / LEARNING_S).min(1.0);
@@ -211,6 +202,8 @@ fn acceleration(force: &SpecificForce, alpha: f64, orientation: &Orientation) ->
 
 #[cfg(test)]
 mod tests {
+    use super::super::upward::Upward;
+    use super::super::vertical::VerticalState;
     use super::*;
     use crate::framework::Reading;
 
@@ -219,6 +212,7 @@ mod tests {
         channel: &mut LiftChannel,
         force: SpecificForce,
         path: &Path<'_>,
+        airspeed_mps: f64,
         seconds: f64,
     ) -> Lift {
         let mut lift = Lift::default();
@@ -228,7 +222,7 @@ mod tests {
                 specific_force: Reading::new(force, now),
                 ..Measurements::default()
             };
-            lift = channel.step(now, &measured, path, 0.025);
+            lift = channel.step(now, &measured, path, airspeed_mps, 0.025);
         }
         lift
     }
@@ -242,15 +236,21 @@ mod tests {
         let airspeed_mps = stall_mps * core::f64::consts::SQRT_2;
         let path = Path {
             orientation: &orientation,
-            airspeed_mps,
-            true_airspeed_mps: airspeed_mps,
-            climb_rate_mps: 0.0,
+            upward: Upward::LEVEL,
+            vertical: VerticalState::default(),
+            sqrt_density: 1.0,
         };
         let level = SpecificForce {
             z_mps2: -GRAVITY_MPS2,
             ..SpecificForce::default()
         };
-        let lift = flown(&mut LiftChannel::new(stall_mps), level, &path, 0.1);
+        let lift = flown(
+            &mut LiftChannel::new(stall_mps),
+            level,
+            &path,
+            airspeed_mps,
+            0.1,
+        );
         assert!((lift.load_factor - 1.0).abs() < 1e-9);
         assert!((lift.angle_of_attack_rad - 0.09).abs() < 0.03);
     }

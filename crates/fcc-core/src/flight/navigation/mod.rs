@@ -67,6 +67,7 @@ pub(crate) use plausibility::{
 };
 pub(crate) use replacement::{DERIVED_RATES_LATE_S, Lost, Replacement};
 pub(crate) use resolution::Resolutions;
+use upward::Upward;
 pub use vertical::VerticalChannel;
 use vertical::VerticalState;
 
@@ -106,7 +107,43 @@ pub struct Navigation {
     /// Whether what the air data monitors compare with is measured.
     motion_is_known: bool,
     side_force: LowPass,
+    density: Density,
     estimate: Estimate,
+}
+
+/// Attitude and height, and what follows from them.
+#[derive(Clone, Copy, Debug)]
+struct Path<'a> {
+    orientation: &'a Orientation,
+    upward: Upward,
+    vertical: VerticalState,
+    /// √(density over its value at sea level).
+    sqrt_density: f64,
+}
+
+/// The air's density at the altitude for which it was computed last.
+#[derive(Clone, Copy, Debug)]
+struct Density {
+    altitude_m: f64,
+    sqrt_ratio: f64,
+}
+
+impl Density {
+    const AT_SEA_LEVEL: Self = Self {
+        altitude_m: 0.0,
+        sqrt_ratio: 1.0,
+    };
+
+    /// √(density over its value at sea level).
+    fn sqrt_ratio(&mut self, altitude_m: f64) -> f64 {
+        if altitude_m != self.altitude_m {
+            *self = Self {
+                altitude_m,
+                sqrt_ratio: sqrt(density_ratio(altitude_m)),
+            };
+        }
+        self.sqrt_ratio
+    }
 }
 
 impl Navigation {
@@ -127,6 +164,7 @@ impl Navigation {
             is_engaged: false,
             motion_is_known: true,
             side_force: LowPass::new(config.side_force_tau_s),
+            density: Density::AT_SEA_LEVEL,
             estimate: Estimate::INITIAL,
         }
     }
@@ -202,14 +240,22 @@ impl Navigation {
     pub fn step(&mut self, now: Time, measurements: &Measurements, dt_s: f64) {
         let attitude = self.attitude.step(now, measurements, dt_s);
         let force = measurements.specific_force;
-        let vertical = self.step_vertical(now, measurements, &attitude, dt_s);
-        let measured_mps = self
-            .airspeed
-            .step(now, measurements, &attitude, &vertical, dt_s);
-        self.compare(now, measurements, &vertical, dt_s);
+        let upward = Upward::of(attitude.roll_rad, attitude.pitch_rad);
+        let vertical = self.step_vertical(now, measurements, (&attitude, upward), dt_s);
+        let sqrt_density = self.density.sqrt_ratio(vertical.altitude_m);
+        let path = Path {
+            orientation: &attitude,
+            upward,
+            vertical,
+            sqrt_density,
+        };
+        let measured_mps =
+            self.airspeed
+                .step(now, measurements, &attitude, &vertical, sqrt_density, dt_s);
+        self.compare(now, measurements, sqrt_density, dt_s);
         let input = MonitorInput {
-            over_ground: self.over_ground(now, measurements, &attitude, &vertical, dt_s),
-            ..self.monitor_input(now, measurements, &attitude, &vertical)
+            over_ground: self.over_ground(now, measurements, &path, dt_s),
+            ..self.monitor_input(now, measurements, &path)
         };
         let known = is_current(&force, now) && is_current(&measurements.attitude, now);
         self.monitor.step(&input, if known { dt_s } else { 0.0 });
@@ -226,15 +272,8 @@ impl Navigation {
         if is_current(&force, now) {
             self.side_force.step(force.value.y_mps2, dt_s);
         }
-        let true_airspeed_mps =
-            super::atmosphere::true_airspeed_mps(airspeed_mps, vertical.altitude_m);
-        let path = lift::Path {
-            orientation: &attitude,
-            airspeed_mps,
-            true_airspeed_mps,
-            climb_rate_mps: vertical.climb_rate_mps,
-        };
-        let lift = self.lift.step(now, measurements, &path, dt_s);
+        let true_airspeed_mps = airspeed_mps / sqrt_density;
+        let lift = self.lift.step(now, measurements, &path, airspeed_mps, dt_s);
         self.estimate = Estimate {
             roll_rad: attitude.roll_rad,
             pitch_rad: attitude.pitch_rad,
@@ -256,12 +295,11 @@ impl Navigation {
     }
 
     /// Holds the sensors against each other before engaging.
-    fn compare(&mut self, now: Time, sensed: &Measurements, vertical: &VerticalState, dt_s: f64) {
+    fn compare(&mut self, now: Time, sensed: &Measurements, sqrt_density: f64, dt_s: f64) {
         if self.is_engaged {
             self.agreement = Agreement::new();
         } else {
-            let airspeed_mps = sensed.airspeed_mps.value;
-            let true_mps = super::atmosphere::true_airspeed_mps(airspeed_mps, vertical.altitude_m);
+            let true_mps = sensed.airspeed_mps.value / sqrt_density;
             self.agreement.step(now, sensed, true_mps, dt_s);
         }
     }
@@ -275,8 +313,7 @@ impl Navigation {
         &self,
         now: Time,
         measurements: &Measurements,
-        attitude: &Orientation,
-        vertical: &VerticalState,
+        path: &Path<'_>,
     ) -> MonitorInput {
         let force = measurements.specific_force.value;
         let (forward, up) = in_g(force.x_mps2, force.z_mps2);
@@ -285,17 +322,18 @@ impl Navigation {
             sample: ForceSample {
                 forward,
                 up,
-                pitch_rad: attitude.pitch_rad,
-                roll_rad: attitude.roll_rad,
-                climb_rate_mps: vertical.climb_rate_mps,
+                pitch_rad: path.orientation.pitch_rad,
+                roll_rad: path.orientation.roll_rad,
+                upward: path.upward,
+                climb_rate_mps: path.vertical.climb_rate_mps,
                 climbs_by_lift: self.altitude_monitor.is_doubted()
                     && !self.monitor.shares_static_port()
                     && !is_current(&measurements.velocity, now),
-                sqrt_density: sqrt(density_ratio(vertical.altitude_m)),
-                ..ForceSample::default()
+                sqrt_density: path.sqrt_density,
+                ..ForceSample::NONE
             },
             throttle: self.throttle,
-            altitude_m: vertical.altitude_m,
+            altitude_m: path.vertical.altitude_m,
             sensor_mps: is_current(&airspeed, now).then_some((airspeed.value, airspeed.source)),
             over_ground: None,
             altimeter_is_doubted: self.altitude_monitor.is_doubted(),

@@ -148,16 +148,23 @@ pub(crate) fn plausibility_gate(
         &new.attitude,
         convinced(0),
         |a: &Attitude| within(a.pitch_rad, MAX_ANGLE_RAD) && within(a.roll_rad, MAX_ANGLE_RAD),
-        |a, b, gap_s| ATTITUDE_RAD.holds(gravity_turned(*a, *b), gap_s),
+        |a, b, gap_s| {
+            // Gravity turns by no more than both angles together.
+            let most = (b.roll_rad - a.roll_rad).abs() + (b.pitch_rad - a.pitch_rad).abs();
+            ATTITUDE_RAD.holds(most, gap_s) || ATTITUDE_RAD.holds(gravity_turned(*a, *b), gap_s)
+        },
     );
-    let level = cos(good.attitude.value.pitch_rad);
+    let pitch_rad = good.attitude.value.pitch_rad;
     let heading = take(
         &mut good.heading_rad,
         &new.heading_rad,
         convinced(1),
         |rad| within(*rad, MAX_ANGLE_RAD),
         // Near the vertical a small rotation is a large change of the heading.
-        |a, b, gap_s| HEADING_RAD.holds(level * wrap_pi(b - a), gap_s),
+        |a, b, gap_s| {
+            let turned = wrap_pi(b - a);
+            HEADING_RAD.holds(turned, gap_s) || HEADING_RAD.holds(cos(pitch_rad) * turned, gap_s)
+        },
     );
     let rates = take(
         &mut good.body_rates,

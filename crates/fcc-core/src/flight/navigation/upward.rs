@@ -2,7 +2,6 @@
 
 use libm::{asin, atan2, cos, sin};
 
-use super::force_sample::ForceSample;
 use crate::blocks::limit_abs;
 
 /// Where up is in the aircraft's plane of symmetry: (sin θ, cos φ cos θ).
@@ -16,9 +15,15 @@ pub(super) struct Upward {
 }
 
 impl Upward {
-    pub(super) fn of(sample: &ForceSample) -> Self {
-        let along_x = sin(sample.pitch_rad);
-        let along_z = cos(sample.pitch_rad) * cos(sample.roll_rad);
+    /// Of wings and nose level.
+    pub(super) const LEVEL: Self = Self {
+        angle_rad: 0.0,
+        share: 1.0,
+    };
+
+    pub(super) fn of(roll_rad: f64, pitch_rad: f64) -> Self {
+        let along_x = sin(pitch_rad);
+        let along_z = cos(pitch_rad) * cos(roll_rad);
         let side = libm::copysign(1.0, along_z);
         Self {
             angle_rad: atan2(side * along_x, side * along_z),

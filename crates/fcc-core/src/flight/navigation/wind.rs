@@ -2,13 +2,10 @@
 
 use libm::{cos, fabs, hypot, sin, sqrt};
 
-use super::Navigation;
-use super::attitude::Orientation;
 use super::sample_tracker::{NewSample, is_current};
 use super::scalar_update::{Covariance, State, add_variance, squared, update, variance};
-use super::vertical::VerticalState;
+use super::{Navigation, Path};
 use crate::flight::Measurements;
-use crate::flight::atmosphere::density_ratio;
 use crate::framework::Time;
 
 /// Standard deviations at the beginning: of the wind, m/s, of the airspeed sensor's
@@ -206,8 +203,7 @@ impl Navigation {
         &mut self,
         now: Time,
         measurements: &Measurements,
-        attitude: &Orientation,
-        vertical: &VerticalState,
+        path: &Path<'_>,
         dt_s: f64,
     ) -> Option<OverGround> {
         let is_new = !matches!(
@@ -218,10 +214,10 @@ impl Navigation {
         (is_new && is_current(&measurements.heading_rad, now)).then(|| OverGround {
             north_mps: velocity.north_mps,
             east_mps: velocity.east_mps,
-            heading_rad: attitude.heading_rad,
-            climb_rate_mps: vertical.climb_rate_mps,
-            altitude_m: vertical.altitude_m,
-            sqrt_density: sqrt(density_ratio(vertical.altitude_m)),
+            heading_rad: path.orientation.heading_rad,
+            climb_rate_mps: path.vertical.climb_rate_mps,
+            altitude_m: path.vertical.altitude_m,
+            sqrt_density: path.sqrt_density,
             gusts_mps: self.monitor.gusts_mps(),
         })
     }

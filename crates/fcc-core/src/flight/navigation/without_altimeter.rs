@@ -2,12 +2,13 @@
 
 use libm::tan;
 
-use super::Navigation;
 use super::altitude_monitor::{self, AltitudeInput, Verdict};
 use super::attitude::Orientation;
 use super::sample_tracker::is_current;
 use super::scalar_update::squared;
+use super::upward::Upward;
 use super::vertical::VerticalState;
+use super::{Navigation, Path};
 use crate::blocks::limit_abs;
 use crate::flight::Measurements;
 use crate::framework::Time;
@@ -18,13 +19,17 @@ impl Navigation {
         &mut self,
         now: Time,
         measurements: &Measurements,
-        attitude: &Orientation,
+        (attitude, upward): (&Orientation, Upward),
         dt_s: f64,
     ) -> VerticalState {
         let (before, _) = self.vertical.state();
-        let sample = self
-            .monitor_input(now, measurements, attitude, &before)
-            .sample;
+        let before = Path {
+            orientation: attitude,
+            upward,
+            vertical: before,
+            sqrt_density: self.density.sqrt_ratio(before.altitude_m),
+        };
+        let sample = self.monitor_input(now, measurements, &before).sample;
         let path = self.monitor.path(&sample);
         let path_mps = path.map(|(climb_rate_mps, _)| climb_rate_mps);
         let ground_mps = is_current(&measurements.velocity, now)

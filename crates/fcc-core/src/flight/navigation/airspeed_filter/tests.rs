@@ -1,6 +1,7 @@
 use libm::{cos, sin};
 
 use super::super::force_sample::acceleration_mps2;
+use super::super::upward::Upward;
 use super::*;
 
 const PRIOR: AirframePrior = AirframePrior {
@@ -18,14 +19,16 @@ fn level_turn(bank_deg: f64) -> ForceSample {
     let load = 1.0 / cos(rad(bank_deg));
     // The lift is perpendicular to the path, the drag balanced by thrust.
     let alpha = LIFT_ANGLE_RAD * load;
+    let pitch_rad = libm::atan(libm::tan(alpha) * cos(rad(bank_deg)));
     ForceSample {
         forward: load * sin(alpha),
         up: load * cos(alpha),
-        pitch_rad: libm::atan(libm::tan(alpha) * cos(rad(bank_deg))),
+        pitch_rad,
         roll_rad: rad(bank_deg),
+        upward: Upward::of(rad(bank_deg), pitch_rad),
         sqrt_density: 1.0,
         thrust: Some((0.5, 0.0)),
-        ..ForceSample::default()
+        ..ForceSample::NONE
     }
 }
 
@@ -44,15 +47,10 @@ fn a_turn_with_60_degrees_of_bank_is_no_acceleration() {
 /// -1 g: no acceleration either, but for drag, which thrust balances.
 #[test]
 fn the_angle_of_attack_is_right_inverted() {
-    let inverted = ForceSample {
-        pitch_rad: rad(8.0),
-        roll_rad: rad(180.0),
-        sqrt_density: 1.0,
-        ..ForceSample::default()
-    };
-    let alpha = Upward::of(&inverted).angle_of_attack_rad(0.0);
+    let inverted = Upward::of(rad(180.0), rad(8.0));
+    let alpha = inverted.angle_of_attack_rad(0.0);
     assert!((alpha - rad(-8.0)).abs() < 1e-9);
-    let descending = Upward::of(&inverted).angle_of_attack_rad(sin(rad(-3.0)));
+    let descending = inverted.angle_of_attack_rad(sin(rad(-3.0)));
     assert!((descending - rad(-11.0)).abs() < 1e-9);
 }
 
