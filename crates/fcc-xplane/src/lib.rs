@@ -30,7 +30,7 @@
 //! | `motion`, `specific_force` | attitude, specific force and velocity from the local axes |
 //! | `other_control` | what acts on the controls besides this program |
 //! | `consistency`, `axial_load` | values compared with each other |
-//! | `source_filter`, `reply_port`, `port_watch`, `udp_sockets` | from which address and port of the simulator they are accepted |
+//! | `source_filter`, `reply_port`, `port_watch`, `udp_sockets`, `socket_diagnosis` | from which address and port of the simulator they are accepted |
 //! | `subscriptions`, `missing` | what to request, when to repeat it, and what does not arrive |
 //! | `traffic` | how much is sent to X-Plane |
 //! | `engage_switch` | the dataref that engages |
@@ -77,6 +77,7 @@ mod other_control;
 mod port;
 mod port_watch;
 mod pressure_altitude;
+mod probe;
 pub mod protocol;
 mod quantity;
 mod readbacks;
@@ -91,6 +92,7 @@ mod sent_yoke;
 mod shared_address;
 mod silence;
 mod simulator;
+mod socket_diagnosis;
 mod source_filter;
 mod specific_force;
 mod status;

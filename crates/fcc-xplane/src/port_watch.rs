@@ -7,15 +7,15 @@
 //! - Of a simulator on this machine the kernel tells the user of each socket.
 //!   Only ports of the user who has the port that the simulator listens on are
 //!   delivered; a port is gone if it is closed, or another user's.
-//! - Another machine reports that a port is closed (ICMP port unreachable) to a
-//!   socket that is connected to it. That counts unless a port that answers is
-//!   reported as closed, too: by a firewall.
+//! - Another machine reports that a port is closed ([`Probe`]). That counts
+//!   unless a port that answers is reported as closed, too: by a firewall.
 
-use std::net::{SocketAddr, UdpSocket};
+use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
+use crate::address::XPLANE_REPLY_PORT;
 use crate::link::SharedState;
-use crate::silence::{is_refused, open_probe, without_effect};
+use crate::probe::Probe;
 use crate::udp_port::is_of_this_machine;
 use crate::udp_sockets::UdpSockets;
 
@@ -23,16 +23,15 @@ const LOOK_EVERY: Duration = Duration::from_secs(1);
 /// While a port is silent, or none is known.
 const LOOK_AGAIN: Duration = Duration::from_millis(200);
 /// More ports of one user are not delivered: the kernel limits a filter's size.
-const MOST_PORTS: usize = 200;
-/// Of the request without effect, distinct from those of others.
-const INDEX: i32 = 9_005;
+pub(crate) const MOST_PORTS: usize = 200;
 
 /// Looks at the ports of the simulator of one connection.
 #[derive(Debug, Default)]
 pub(crate) struct PortWatch {
-    /// The simulator, and whether it is on this machine.
-    simulator: Option<(SocketAddr, bool)>,
+    simulator: Option<SocketAddr>,
     looked: Option<Instant>,
+    /// Of a simulator on this machine.
+    sockets: Option<UdpSockets>,
     /// The user who has the simulator's sockets, if that is known.
     user: Option<u32>,
     /// That user's ports.
@@ -47,9 +46,11 @@ impl PortWatch {
         let Some(simulator) = link.address.simulator() else {
             return;
         };
-        if self.simulator.is_none_or(|(known, _)| known != simulator) {
+        if self.simulator != Some(simulator) {
             *self = Self {
-                simulator: Some((simulator, is_of_this_machine(simulator))),
+                simulator: Some(simulator),
+                sockets: is_of_this_machine(simulator)
+                    .then(|| UdpSockets::sending_from(simulator.ip())),
                 ..Self::default()
             };
         }
@@ -74,23 +75,25 @@ impl PortWatch {
     }
 
     fn look_at_sockets(&mut self, link: &SharedState, is_held: bool) {
-        let Some((simulator, true)) = self.simulator else {
+        let Some((simulator, sockets)) = self.simulator.zip(self.sockets.as_mut()) else {
             return;
         };
-        let Ok(sockets) = UdpSockets::sending_from(simulator.ip()) else {
-            return;
-        };
-        if !is_held {
-            self.user = sockets.user_of(simulator.port());
+        sockets.look();
+        if !is_held && let Ok(user) = sockets.user_of(simulator.port()) {
+            self.user = user;
         }
-        self.owned = self.user.map(|user| sockets.ports_of(user));
-        if let Some(owned) = &mut self.owned {
-            let held = link.held_ports();
-            let gone = held.map(|port| if owned.contains(&port) { 0 } else { port });
+        let held = link.held_ports();
+        let mut likely = held.to_vec();
+        likely.extend([simulator.port(), XPLANE_REPLY_PORT]);
+        self.owned = self
+            .user
+            .map(|user| sockets.ports_of(user, &likely, MOST_PORTS));
+        if let Some(user) = self.user {
+            let gone = held.map(|port| match sockets.user_of(port) {
+                Ok(found) if found != Some(user) => port,
+                _ => 0,
+            });
             link.set_gone_ports(gone, true);
-            // Those that are in use come first.
-            owned.sort_by_key(|port| !held.contains(port));
-            owned.truncate(MOST_PORTS);
         } else {
             link.set_gone_ports([0; 4], false);
         }
@@ -101,7 +104,7 @@ impl PortWatch {
         let [port, ..] = held;
         let to = self
             .simulator
-            .map(|(simulator, _)| SocketAddr::new(simulator.ip(), port))
+            .map(|simulator| SocketAddr::new(simulator.ip(), port))
             .filter(|_| is_held && port != 0);
         let Some(to) = to else {
             self.probe = None;
@@ -123,7 +126,7 @@ impl PortWatch {
 #[derive(Debug)]
 pub(crate) struct ClosedPort {
     to: SocketAddr,
-    socket: UdpSocket,
+    probe: Probe,
     /// A firewall reports it as closed.
     is_unknown: bool,
     is_closed: bool,
@@ -133,7 +136,7 @@ impl ClosedPort {
     pub(crate) fn of(to: SocketAddr) -> Option<Self> {
         Some(Self {
             to,
-            socket: open_probe(to).ok()?,
+            probe: Probe::of(to).ok()?,
             is_unknown: false,
             is_closed: false,
         })
@@ -142,11 +145,8 @@ impl ClosedPort {
     /// What was found out by the requests so far; sends another one.
     /// `answers`: whether datagrams come from there.
     pub(crate) fn is_closed(&mut self, answers: bool) -> bool {
-        let refused = [
-            self.socket.take_error().ok().flatten(),
-            self.socket.send(&without_effect(INDEX)).err(),
-        ];
-        let refused = refused.iter().flatten().any(is_refused);
+        let refused = self.probe.is_refused();
+        self.probe.send();
         self.is_unknown |= refused && answers;
         self.is_closed = !answers && !self.is_unknown && (refused || self.is_closed);
         self.is_closed
@@ -155,6 +155,8 @@ impl ClosedPort {
 
 #[cfg(test)]
 mod tests {
+    use std::net::UdpSocket;
+
     use super::*;
 
     fn closed_within_a_second(asked: &mut ClosedPort, answers: bool) -> bool {

@@ -1,7 +1,6 @@
 //! Releasing control from outside a loop, and waiting for confirmation: at the
 //! end of a program, and on behalf of a program that was killed.
 
-use std::io::ErrorKind;
 use std::net::{SocketAddr, UdpSocket};
 use std::time::{Duration, Instant};
 
@@ -11,7 +10,8 @@ use crate::address::XPLANE_PORT;
 use crate::config::XPlaneConfig;
 use crate::controls::Controls;
 use crate::open::{OpenError, XPlane, bind, local_ports};
-use crate::port_watch::ClosedPort;
+use crate::port_watch::{ClosedPort, MOST_PORTS};
+use crate::probe::Probe;
 use crate::protocol::rref;
 use crate::quantity::{OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES};
 use crate::source_filter;
@@ -93,21 +93,24 @@ impl XPlane {
     }
 }
 
-/// Two sockets: X-Plane answers from another port than the one that it listens
-/// on, so a connected socket receives no answer; and only a connected one
-/// learns that no program listens there.
+/// X-Plane answers from another port than the one that it listens on, so a
+/// connected socket receives no answer; and only a connected one learns that no
+/// program listens there.
 struct Conversation {
     simulator: SocketAddr,
-    /// Connected: for the writes.
-    writes: UdpSocket,
-    /// For the requests and their answers.
+    /// Asks whether the port that it listens on is closed.
+    listening: Option<Probe>,
+    /// For what is sent, and the answers.
     answers: UdpSocket,
     requests: [[u8; rref::REQUEST_BYTES]; 2],
     /// A request without effect, to the port that is expected to answer: it
     /// lets the answers through a firewall on this side.
     opening: Option<SocketAddr>,
     expected: Expected,
-    is_of_this_machine: bool,
+    /// The ports of which an answer counts, if not any.
+    permitted: Option<Vec<u16>>,
+    /// Those of this machine, if it is there.
+    sockets: Option<UdpSockets>,
     /// Asks whether the expected port is closed, of another machine's.
     closed: Option<ClosedPort>,
     has_answered: bool,
@@ -130,8 +133,6 @@ impl Conversation {
         answers
             .set_read_timeout(Some(LISTEN_FOR))
             .map_err(refused)?;
-        let writes = UdpSocket::bind((local_address(ip), 0)).map_err(refused)?;
-        writes.connect(simulator).map_err(refused)?;
         let mut requests = [[0; rref::REQUEST_BYTES]; 2];
         let paths = [OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES];
         for ((request, index), path) in requests.iter_mut().zip(INDICES).zip(paths) {
@@ -149,12 +150,13 @@ impl Conversation {
         let asked = expected.port.map(|port| SocketAddr::new(ip, port));
         Ok(Self {
             simulator,
-            writes,
+            listening: Probe::of(simulator).ok(),
             answers,
             requests,
             opening: opens.then(|| SocketAddr::new(ip, opened)),
             expected,
-            is_of_this_machine: is_of_this_machine(simulator),
+            permitted: None,
+            sockets: is_of_this_machine(simulator).then(|| UdpSockets::sending_from(ip)),
             closed: asked.and_then(ClosedPort::of),
             has_answered: false,
         })
@@ -165,15 +167,17 @@ impl Conversation {
     /// user, or of the same machine.
     fn look_at_ports(&mut self) {
         let ip = self.simulator.ip();
-        let sockets = self
-            .is_of_this_machine
-            .then(|| UdpSockets::sending_from(ip).ok())
-            .flatten();
-        let listens = || sockets.as_ref()?.user_of(self.simulator.port());
-        let owned = self.expected.user.or_else(listens).zip(sockets.as_ref());
-        let owned = owned.map(|(user, sockets)| sockets.ports_of(user));
-        let is_gone = |port: u16| match (&owned, &mut self.closed) {
-            (Some(owned), _) => !owned.contains(&port),
+        let mut owner = None;
+        if let Some(sockets) = &mut self.sockets {
+            sockets.look();
+            let listens = || sockets.user_of(self.simulator.port()).ok().flatten();
+            owner = self.expected.user.or_else(listens).zip(Some(sockets));
+        }
+        let is_gone = |port: u16| match (&mut owner, &mut self.closed) {
+            (Some((user, sockets)), _) => {
+                let found = sockets.user_of(port);
+                found.is_ok_and(|found| found != Some(*user))
+            }
             (None, Some(closed)) => closed.is_closed(self.has_answered),
             (None, None) => false,
         };
@@ -181,21 +185,25 @@ impl Conversation {
             self.expected.port = None;
         }
         let expected = self.expected.port.map(|port| vec![port]);
-        // If this fails, any answer of that machine counts.
-        let _ = source_filter::attach(&self.answers, ip, expected.or(owned).as_deref());
+        let owned = || {
+            let (user, sockets) = owner?;
+            Some(sockets.ports_of(user, &[self.simulator.port()], MOST_PORTS))
+        };
+        self.permitted = expected.or_else(owned);
+        // If this fails, what others send is left out when it is received.
+        let _ = source_filter::attach(&self.answers, ip, self.permitted.as_deref());
     }
 
-    /// Sends the release and the requests; whether a program listens there, as
-    /// far as is known.
-    fn send_release(&self, controls: &mut Controls) -> bool {
-        let mut refused = false;
+    /// Sends the release and the requests.
+    fn send_release(&self, controls: &mut Controls) {
         let _ = controls.release(|bytes| {
-            let sent = self.writes.send(bytes);
-            sent.map(drop).map_err(|error| {
-                refused |= error.kind() == ErrorKind::ConnectionRefused;
-                error.raw_os_error().unwrap_or(0)
-            })
+            let sent = self.answers.send_to(bytes, self.simulator);
+            sent.map(drop)
+                .map_err(|error| error.raw_os_error().unwrap_or(0))
         });
+        if let Some(listening) = &self.listening {
+            listening.send();
+        }
         if let (Some(to), Some(request)) = (self.opening, self.requests.first()) {
             let mut without_effect = *request;
             rref::set_frequency(&mut without_effect, 0);
@@ -204,7 +212,6 @@ impl Conversation {
         for request in &self.requests {
             let _ = self.answers.send_to(request, self.simulator);
         }
-        !refused
     }
 
     /// Receives a datagram, or waits for a moment; returns whether it was an
@@ -214,7 +221,11 @@ impl Conversation {
         let Ok((length, from)) = self.answers.recv_from(&mut datagram) else {
             return false;
         };
-        let is_expected = self.expected.port.is_none_or(|port| port == from.port());
+        let is_expected = match (self.expected.port, &self.permitted) {
+            (Some(port), _) => port == from.port(),
+            (None, Some(permitted)) => permitted.contains(&from.port()),
+            (None, None) => true,
+        };
         let is_answer = from.ip() == self.simulator.ip()
             && is_expected
             && read_back(datagram.get(..length).unwrap_or_default(), readback);
@@ -227,8 +238,7 @@ impl Conversation {
 
     /// Whether the machine there reported that no program listens.
     fn is_refused(&self) -> bool {
-        let error = self.writes.take_error().ok().flatten();
-        error.is_some_and(|error| error.kind() == ErrorKind::ConnectionRefused)
+        self.listening.as_ref().is_some_and(Probe::is_refused)
     }
 
     fn end(mut self) {
@@ -263,8 +273,8 @@ fn retry_until_released(
             sent = Some(Instant::now());
             conversation.look_at_ports();
             readback = [None; 2];
-            refused = !conversation.send_release(controls);
-            refusals += u32::from(refused);
+            conversation.send_release(controls);
+            refused = false;
         }
         if conversation.receive(&mut readback) {
             refusals = 0;

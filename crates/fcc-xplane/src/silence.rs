@@ -1,35 +1,25 @@
 //! Why X-Plane is silent: whether it does not hear us, or we do not hear it.
 //!
 //! Found out outside the loop, and only while X-Plane is silent. A request
-//! without effect is sent from a connected socket each second: to such a socket
-//! the kernel reports that no program listens there (ICMP port unreachable), or
-//! that no route leads there. Beacons are received, and the sensor counts the
+//! without effect is sent each second: the simulator's machine reports that no
+//! program listens there, or another one that no route leads there. Beacons are received, and the sensor counts the
 //! other datagrams of that machine.
 
-use std::io::ErrorKind;
-use std::net::{SocketAddr, UdpSocket};
+use std::net::SocketAddr;
 use std::time::{Duration, Instant};
-
-use nix::sys::socket::setsockopt;
-use nix::sys::socket::sockopt::{Ipv4RecvErr, Ipv6RecvErr};
 
 use crate::config::XPlaneConfig;
 use crate::no_answer::Why;
-use crate::protocol::{beacon, rref};
+use crate::probe::{Probe, Report};
+use crate::protocol::beacon;
 use crate::status::XPlaneStatus;
-use crate::udp_port::{UdpPort, is_of_this_machine, local_address};
+use crate::udp_port::{UdpPort, is_of_this_machine};
 
 const PROBE_EVERY: Duration = Duration::from_secs(1);
-/// Then another socket is used, since a socket keeps its reports of errors in
-/// its receive buffer. The resolution of an absent address takes 3 s.
-const PROBES_PER_SOCKET: u32 = 5;
 /// More than arrive between two calls.
 const BEACONS_PER_CALL: usize = 16;
 /// Longer than a beacon.
 const BEACON_BYTES: usize = 1_024;
-/// Of the request without effect, distinct from those of a sensor and of a
-/// release.
-const INDEX: i32 = 9_004;
 
 /// Collects what is known about a silence.
 #[derive(Debug)]
@@ -37,9 +27,7 @@ pub(crate) struct Silence {
     simulator: SocketAddr,
     had_answered: bool,
     received_before: u64,
-    request: [u8; rref::REQUEST_BYTES],
-    probe: Option<UdpSocket>,
-    probes: u32,
+    probe: Option<Probe>,
     probed: Option<Instant>,
     /// What the last probe was answered with, and whether it was this probe.
     refusal: Option<Why>,
@@ -59,9 +47,7 @@ impl Silence {
             simulator,
             had_answered: status.reply_port().is_some(),
             received_before: status.counts().received,
-            request: without_effect(INDEX),
-            probe: None,
-            probes: 0,
+            probe: Probe::of(simulator).ok(),
             probed: None,
             refusal: None,
             refused_again: false,
@@ -111,10 +97,12 @@ impl Silence {
     }
 
     fn probe(&mut self) {
-        if let Some(probe) = &self.probe
-            && let Ok(Some(error)) = probe.take_error()
-        {
-            self.take_refusal(error.kind());
+        if let Some(report) = self.probe.as_ref().and_then(Probe::reported) {
+            self.refusal = Some(match report {
+                Report::Closed => Why::PortClosed,
+                Report::NoRoute => Why::NoRoute,
+            });
+            self.refused_again = true;
         }
         if self.probed.is_some_and(|at| at.elapsed() < PROBE_EVERY) {
             return;
@@ -123,55 +111,19 @@ impl Silence {
         if !std::mem::take(&mut self.refused_again) {
             self.refusal = None;
         }
-        if self.probes.is_multiple_of(PROBES_PER_SOCKET) {
-            self.probe = open_probe(self.simulator).ok();
+        if self.probe.is_none() {
+            self.probe = Probe::of(self.simulator).ok();
         }
-        self.probes = self.probes.wrapping_add(1);
-        let sent = self.probe.as_ref().map(|probe| probe.send(&self.request));
-        if let Some(Err(error)) = sent {
-            self.take_refusal(error.kind());
+        if let Some(probe) = &self.probe {
+            probe.send();
         }
     }
-
-    fn take_refusal(&mut self, kind: ErrorKind) {
-        let why = match kind {
-            ErrorKind::ConnectionRefused => Why::PortClosed,
-            ErrorKind::HostUnreachable | ErrorKind::NetworkUnreachable => Why::NoRoute,
-            _ => return,
-        };
-        self.refusal = Some(why);
-        self.refused_again = true;
-    }
-}
-
-/// A request that ends what was not requested.
-pub(crate) fn without_effect(index: i32) -> [u8; rref::REQUEST_BYTES] {
-    let mut request = [0; rref::REQUEST_BYTES];
-    // The path is a valid one.
-    let _ = rref::request(&mut request, 0, index, "sim/time/paused");
-    request
-}
-
-/// Whether the machine there reported that no program has the port.
-pub(crate) fn is_refused(error: &std::io::Error) -> bool {
-    error.kind() == ErrorKind::ConnectionRefused
-}
-
-/// A socket to which the kernel reports what is wrong with this port.
-pub(crate) fn open_probe(simulator: SocketAddr) -> std::io::Result<UdpSocket> {
-    let probe = UdpSocket::bind((local_address(simulator.ip()), 0))?;
-    probe.set_nonblocking(true)?;
-    // Without it, only a closed port is reported, and no absent machine.
-    let _ = match simulator {
-        SocketAddr::V4(_) => setsockopt(&probe, Ipv4RecvErr, &true),
-        SocketAddr::V6(_) => setsockopt(&probe, Ipv6RecvErr, &true),
-    };
-    probe.connect(simulator)?;
-    Ok(probe)
 }
 
 #[cfg(test)]
 mod tests {
+    use std::net::UdpSocket;
+
     use super::*;
     use crate::open::XPlane;
 

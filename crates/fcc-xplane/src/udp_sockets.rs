@@ -1,17 +1,25 @@
-//! The UDP sockets of this machine, and whose they are, as the kernel shows them
-//! in `/proc/net/udp` and `/proc/net/udp6` (proc(5)), read in the process's own
-//! folder, which a service with `ProcSubset=pid` has, too.
+//! The UDP sockets of this machine, and whose they are.
 //!
-//! Any user may read these files. In a namespace of users that contains no
-//! others, as in a service with `PrivateUsers=yes`, every other user has the
-//! number of `nobody`.
+//! A single socket is asked for by its address ([`SocketDiagnosis`]). Which
+//! ports a user has is read in `/proc/net/udp` and `/proc/net/udp6` (proc(5)), in
+//! the process's own folder, which a service with `ProcSubset=pid` has, too. That
+//! list may lack sockets: any user may open more than are read, and the kernel
+//! leaves some out while others are closed. So it only says which ports to ask
+//! for. Where the kernel answers no questions, what is in the list is true, and
+//! what is missing in a list that was read to its end is closed.
+//!
+//! Any user may ask and read. In a namespace of users that contains no others,
+//! as in a service with `PrivateUsers=yes`, every other user has the number of
+//! `nobody`.
 
 use std::fs::File;
 use std::io::{self, Read};
-use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
+
+use crate::socket_diagnosis::SocketDiagnosis;
 
 /// More than a machine with 10,000 sockets has.
-const MOST_BYTES: u64 = 2_000_000;
+const MOST_BYTES: usize = 2_000_000;
 /// The columns of a row: the local address, and the user's number.
 const LOCAL_ADDRESS: usize = 1;
 const USER: usize = 7;
@@ -23,37 +31,99 @@ struct Socket {
 }
 
 /// The sockets from which a datagram with one sender's address may come.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub(crate) struct UdpSockets(Vec<Socket>);
+#[derive(Debug)]
+pub(crate) struct UdpSockets {
+    ip: IpAddr,
+    kernel: Option<SocketDiagnosis>,
+    listed: Listed,
+}
 
 impl UdpSockets {
-    /// Those that can send from this address. Reads two files, so not in a tick.
+    /// Those that can send from this address. Not in a tick, as everything here.
+    pub(crate) fn sending_from(ip: IpAddr) -> Self {
+        Self {
+            ip,
+            kernel: SocketDiagnosis::open().ok(),
+            listed: Listed::default(),
+        }
+    }
+
+    /// Lists them anew. Without a list a single one can still be asked for.
+    pub(crate) fn look(&mut self) {
+        self.look_at(MOST_BYTES);
+    }
+
+    fn look_at(&mut self, most_bytes: usize) {
+        self.listed = Listed::read(self.ip, most_bytes).unwrap_or_default();
+    }
+
+    /// Whose socket this port is; none if no program has it.
     ///
     /// # Errors
-    /// When the kernel shows no sockets.
-    pub(crate) fn sending_from(ip: IpAddr) -> io::Result<Self> {
-        let read = |path: &str| {
+    /// When that is not known.
+    pub(crate) fn user_of(&mut self, port: u16) -> io::Result<Option<u32>> {
+        let asked = match &mut self.kernel {
+            Some(kernel) => kernel.user_of(SocketAddr::new(self.ip, port)),
+            None => Err(io::ErrorKind::Unsupported.into()),
+        };
+        match (asked, self.listed.user_of(port)) {
+            // One that is connected to another address is only listed.
+            (Ok(Some(user)), _) | (_, Some(user)) => Ok(Some(user)),
+            (Ok(None), None) => Ok(None),
+            (Err(_), None) if self.listed.is_whole => Ok(None),
+            (Err(error), None) => Err(error),
+        }
+    }
+
+    /// The ports of a user, those that are `likely` first, each once; at most so
+    /// many.
+    pub(crate) fn ports_of(&mut self, user: u32, likely: &[u16], most: usize) -> Vec<u16> {
+        let mut ports: Vec<u16> = likely.to_vec();
+        ports.extend(self.listed.ports_of(user));
+        let mut found = Vec::new();
+        for port in ports {
+            let is_new = port != 0 && found.len() < most && !found.contains(&port);
+            if is_new && self.user_of(port).ok().flatten() == Some(user) {
+                found.push(port);
+            }
+        }
+        found
+    }
+}
+
+/// The sockets in the kernel's lists.
+#[derive(Clone, PartialEq, Eq, Default, Debug)]
+struct Listed {
+    sockets: Vec<Socket>,
+    /// Whether the lists were read to their ends.
+    is_whole: bool,
+}
+
+impl Listed {
+    fn read(ip: IpAddr, most_bytes: usize) -> io::Result<Self> {
+        let mut is_whole = true;
+        let mut read = |path: &str| {
             let mut text = String::new();
-            File::open(path)?
-                .take(MOST_BYTES)
-                .read_to_string(&mut text)?;
+            let limit = most_bytes as u64;
+            is_whole &= File::open(path)?.take(limit).read_to_string(&mut text)? < most_bytes;
             Ok::<_, io::Error>(text)
         };
-        match ip {
+        let sockets = match ip {
             IpAddr::V4(_) => {
                 let v4 = read("/proc/self/net/udp")?;
                 // A kernel without IPv6 does not have it.
                 let v6 = read("/proc/self/net/udp6").unwrap_or_default();
-                Ok(Self::of(&[&v4, &v6], ip))
+                Self::of(&[&v4, &v6], ip)
             }
-            IpAddr::V6(_) => Ok(Self::of(&[&read("/proc/self/net/udp6")?], ip)),
-        }
+            IpAddr::V6(_) => Self::of(&[&read("/proc/self/net/udp6")?], ip),
+        };
+        Ok(Self { sockets, is_whole })
     }
 
     /// A port that is in an earlier table is not looked for in a later one: an
     /// IPv6 socket sends from an IPv4 address only where no IPv4 socket has its
     /// port.
-    fn of(tables: &[&str], ip: IpAddr) -> Self {
+    fn of(tables: &[&str], ip: IpAddr) -> Vec<Socket> {
         let mut found: Vec<Socket> = Vec::new();
         for table in tables {
             let earlier = found.len();
@@ -67,22 +137,20 @@ impl UdpSockets {
                 }
             }
         }
-        Self(found)
+        found
     }
 
-    /// Whose socket this port is; none if no program has it.
-    pub(crate) fn user_of(&self, port: u16) -> Option<u32> {
-        let socket = self.0.iter().find(|socket| socket.port == port)?;
+    fn user_of(&self, port: u16) -> Option<u32> {
+        let socket = self.sockets.iter().find(|socket| socket.port == port)?;
         Some(socket.user)
     }
 
-    /// The ports of a user, each once.
-    pub(crate) fn ports_of(&self, user: u32) -> Vec<u16> {
-        let own = self.0.iter().filter(|socket| socket.user == user);
-        let mut ports: Vec<u16> = own.map(|socket| socket.port).collect();
-        ports.sort_unstable();
-        ports.dedup();
-        ports
+    fn ports_of(&self, user: u32) -> impl Iterator<Item = u16> {
+        let own = self
+            .sockets
+            .iter()
+            .filter(move |socket| socket.user == user);
+        own.map(|socket| socket.port)
     }
 }
 
@@ -136,13 +204,21 @@ mod tests {
              2: 0000000000000000FFFF00000100007F:BF6C {rest}  1000 0 1 2 0 0\n \
              3: 00000000000000000000000001000000:BF6D {rest}  1003 0 1 2 0 0\n"
         );
-        let found = UdpSockets::of(&[&v4, &v6], "127.0.0.1".parse().unwrap());
+        let listed = |tables: &[&str], ip: &str| Listed {
+            sockets: Listed::of(tables, ip.parse().unwrap()),
+            is_whole: true,
+        };
+        let found = listed(&[&v4, &v6], "127.0.0.1");
         let users = [0xBF69, 0xBF6A, 0xBF6B, 0xBF6C, 0xBF6D].map(|port| found.user_of(port));
         assert_eq!(users, [Some(1000), None, Some(1002), Some(1000), None]);
-        assert_eq!(found.ports_of(1000), [0xBF69, 0xBF6C]);
-        let found = UdpSockets::of(&[&v6], "::1".parse().unwrap());
+        assert_eq!(found.ports_of(1000).collect::<Vec<_>>(), [0xBF69, 0xBF6C]);
+        let found = listed(&[&v6], "::1");
         assert_eq!(found.user_of(0xBF6D), Some(1003));
         assert_eq!(found.user_of(0xBF6C), None);
+    }
+
+    fn own_user() -> u32 {
+        std::fs::metadata("/proc/self").unwrap().uid()
     }
 
     #[test]
@@ -150,15 +226,35 @@ mod tests {
         for host in ["127.0.0.1", "[::1]"] {
             let socket = UdpSocket::bind(format!("{host}:0")).unwrap();
             let at = socket.local_addr().unwrap();
-            let user = || {
-                UdpSockets::sending_from(at.ip())
-                    .unwrap()
-                    .user_of(at.port())
+            let mut sockets = UdpSockets::sending_from(at.ip());
+            let mut user = || {
+                sockets.look();
+                sockets.user_of(at.port()).unwrap()
             };
-            let own = std::fs::metadata("/proc/self").unwrap().uid();
-            assert_eq!(user(), Some(own), "{host}");
+            assert_eq!(user(), Some(own_user()), "{host}");
             drop(socket);
             assert_eq!(user(), None, "{host}");
         }
+    }
+
+    /// Others may open more sockets than are listed.
+    #[test]
+    fn a_socket_that_is_not_listed_is_found() {
+        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+        let port = socket.local_addr().unwrap().port();
+        let mut sockets = UdpSockets::sending_from([127, 0, 0, 1].into());
+        sockets.look_at(HEAD.len());
+        assert_eq!(sockets.listed.sockets, []);
+        assert_eq!(sockets.user_of(port).unwrap(), Some(own_user()));
+        assert_eq!(sockets.ports_of(own_user(), &[port], 1), [port]);
+        assert_eq!(sockets.ports_of(own_user() + 1, &[port], 1), []);
+        // Where the kernel answers no questions, it may be open.
+        sockets.kernel = None;
+        assert!(sockets.user_of(port).is_err());
+        sockets.look();
+        assert_eq!(sockets.user_of(port).unwrap(), Some(own_user()));
+        drop(socket);
+        sockets.look();
+        assert_eq!(sockets.user_of(port).unwrap(), None);
     }
 }
