@@ -32,7 +32,11 @@ const LOOK_EVERY: Duration = Duration::from_millis(2);
 /// itself, it is ended. A watcher that joins may delay it by a second.
 const SILENT_POLLS: u32 = 75;
 const SILENT_FOR: Duration = Duration::from_millis(1_500);
-/// One that ended sooner is started again later, twice as late each time.
+/// The same until it publishes: its program is loaded first, which takes a slow or
+/// busy machine seconds.
+const BEGINS_WITHIN: Duration = Duration::from_secs(30);
+/// One that ended sooner, or never published, is started again later, twice as late
+/// each time.
 const SHORT_LIFE: Duration = Duration::from_millis(500);
 const FIRST_DELAY: Duration = Duration::from_millis(20);
 const LONGEST_DELAY: Duration = Duration::from_secs(10);
@@ -69,6 +73,7 @@ struct Running {
     child: Child,
     socket: OwnedFd,
     began: Instant,
+    publishes: bool,
     /// Why it does not publish.
     refused: Option<String>,
     /// When it last told that it makes progress, and the polls since.
@@ -87,7 +92,8 @@ impl fmt::Debug for PublisherProcess {
 }
 
 impl PublisherProcess {
-    /// Starts it, and waits until it publishes.
+    /// Starts it, and waits until it publishes, or for a limited time: one that is
+    /// slow publishes later, which is reported.
     pub(super) fn start(
         program: StartPublisher,
         instance: &Instance,
@@ -120,18 +126,23 @@ impl PublisherProcess {
             failed(format!("its process cannot be started: {why}"))
         })?;
         let deadline = now + PATIENCE;
-        while let Some(running) = &this.running {
+        while let Some(running) = &mut this.running {
             match take(&running.socket, &mut this.room) {
-                Received::Other(FromPublisher::Started(Ok(()))) => return Ok(this),
+                Received::Other(FromPublisher::Started(Ok(()))) => {
+                    running.publishes = true;
+                    return Ok(this);
+                }
                 Received::Other(FromPublisher::Started(Err(error))) => return Err(error),
                 Received::Closed => {
                     return Err(failed("its process has ended".to_owned()));
                 }
-                _ if Instant::now() > deadline => return Err(failed(NO_RESPONSE.to_owned())),
+                _ if Instant::now() > deadline => break,
                 _ => std::thread::sleep(LOOK_EVERY),
             }
         }
-        Err(failed(NO_RESPONSE.to_owned()))
+        this.texts
+            .push_back(format!("no live telemetry yet: {NO_RESPONSE}"));
+        Ok(this)
     }
 
     fn run(&mut self) -> io::Result<()> {
@@ -157,6 +168,7 @@ impl PublisherProcess {
             child,
             socket,
             began: now,
+            publishes: false,
             refused: None,
             alive: now,
             polls: 0,
@@ -253,9 +265,11 @@ impl PublisherProcess {
                         self.commands.push_back(command);
                     }
                 }
-                Received::Other(FromPublisher::Started(Ok(())))
-                | Received::Record(_)
-                | Received::Invalid => {}
+                Received::Other(FromPublisher::Started(Ok(()))) => {
+                    (running.alive, running.polls) = (Instant::now(), 0);
+                    running.publishes = true;
+                }
+                Received::Record(_) | Received::Invalid => {}
                 Received::Nothing | Received::Closed => return,
             }
         }
@@ -266,7 +280,7 @@ impl PublisherProcess {
             return;
         };
         self.lost = self.lost.saturating_add(running.not_published);
-        self.later(running.began.elapsed() < SHORT_LIFE);
+        self.later(!running.publishes || running.began.elapsed() < SHORT_LIFE);
         self.ended_because(why);
     }
 
@@ -310,7 +324,12 @@ impl Running {
             });
         }
         self.polls += 1;
-        if self.polls > SILENT_POLLS && self.alive.elapsed() > SILENT_FOR {
+        let silent_for = if self.publishes {
+            SILENT_FOR
+        } else {
+            BEGINS_WITHIN
+        };
+        if self.polls > SILENT_POLLS && self.alive.elapsed() > silent_for {
             let _ = self.child.kill();
             self.polls = 0;
         }
@@ -348,5 +367,30 @@ impl Drop for PublisherProcess {
             }
             std::thread::sleep(LOOK_EVERY);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_that_begins_late_is_neither_done_without_nor_ended() {
+        let program: StartPublisher = Box::new(|| {
+            let mut command = Command::new("sleep");
+            command.arg("60");
+            Ok(command)
+        });
+        let instance = Instance::default();
+        let mut process = PublisherProcess::start(program, &instance, 8, false).unwrap();
+        let said = process.poll().unwrap();
+        assert!(said.starts_with("no live telemetry yet: "), "{said}");
+        let begun = Instant::now();
+        while begun.elapsed() < SILENT_FOR * 2 {
+            assert_eq!(process.poll(), None);
+            std::thread::sleep(LOOK_EVERY);
+        }
+        assert_eq!(process.starts, 1);
+        assert!(process.running.is_some());
     }
 }
