@@ -14,7 +14,7 @@ import contextlib
 import json
 import re
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -24,19 +24,25 @@ from fcc_hil.process import StandInProcess
 from fcc_hil.standin import Settings
 from recordings import RECORD, in_sequence
 
-from guest import HOST, Guest
+from guest import HOST, Guest, accelerator
 
 CONFIG = "/etc/fccd/fccd.toml"
 RECORDINGS = "/var/lib/fccd/recordings"
 DROP_IN = "/run/systemd/system/fccd.service.d"
 PERIOD_NS = 25_000_000
-ENGAGED = 1
-"""The phase, as a recording calls it."""
+ENGAGED, FAILSAFE = 1, 2
+"""Phases, as a recording calls them."""
 PATIENCE_S = 180.0
+_ATTEMPTS = 5
 _LOOK_S = 0.1
 
-# A guest on a busy host pauses at times. These limits keep that from causing failsafes, which are
-# not tested here.
+# Faults, in bits, of fcc-core's autopilot/flags.rs: the quantities that control needs are too old.
+_ALL_OLD = 0x3F
+# With these: the engage switch is silent, so is the simulator, readings are old by its own clock.
+_LATE = _ALL_OLD | 1 << 11 | 1 << 20 | 1 << 42
+
+# A guest on a busy host pauses at times. These limits keep that from causing most failsafes, which
+# are not tested here.
 UNHURRIED: Mapping[str, Mapping[str, object]] = {
     "budget": {"failsafe_after": 0},
     "failsafe": {"sensor_max_age_ms": 600},
@@ -86,7 +92,10 @@ class Service:
         give_up_s = time.monotonic() + PATIENCE_S
         while not holds():
             assert time.monotonic() < give_up_s, f"not within {PATIENCE_S:.0f} s: {what}; " + (
-                self.guest.sh("systemctl status --lines 40 fccd; true")
+                self.guest.sh(
+                    "systemctl status --no-pager --lines 0 fccd; "
+                    f"journalctl --no-pager --unit fccd --after-cursor '{self._cursor}'"
+                )
             )
             time.sleep(_LOOK_S)
 
@@ -96,15 +105,35 @@ class Service:
 
     def engage(self, simulator: StandInProcess) -> None:
         """Move the switch inside the simulator, and wait for the status in systemd."""
-        self.wait_for_status("standby$")
-        simulator.write(ENGAGE_SWITCH, 1.0)
+        for _ in range(_ATTEMPTS):
+            self.wait_for_status("standby$")
+            before = self._refusals()
+            simulator.write(ENGAGE_SWITCH, 1.0)
+            self.wait_until(
+                lambda before=before: self.status == "engaged" or self._refusals() > before,  # type: ignore[misc]
+                "engaged, or refused",
+            )
+            if self.status == "engaged":
+                break
+            # On a busy host it was ready no more when the switch arrived.
+            self._switch_off(simulator)
         self.wait_for_status("engaged$")
         self.wait_until(lambda: simulator.progress().overridden, "the overrides are set")
 
     def engage_again(self, simulator: StandInProcess) -> None:
         """Move the switch off first, for a daemon that has seen it on only."""
-        simulator.write(ENGAGE_SWITCH, 0.0)
+        self._switch_off(simulator)
         self.engage(simulator)
+
+    def _switch_off(self, simulator: StandInProcess) -> None:
+        simulator.write(ENGAGE_SWITCH, 0.0)
+        # Long enough to be seen: an on that follows an off unseen is none.
+        self.fly_on(simulator, 1.0)
+
+    def _refusals(self) -> int:
+        """Return how often it has said that it does not engage."""
+        texts = (str(entry["MESSAGE"]) for entry in self.journal())
+        return sum("not engaged" in text for text in texts)
 
     def fly_on(self, simulator: StandInProcess, seconds: float) -> None:
         """Wait until the simulator has flown on."""
@@ -149,3 +178,18 @@ def flight(
             # Unless the package was removed meanwhile.
             if guest.try_sh("test -d /etc/fccd").exit_code == 0:
                 guest.agent.write(CONFIG, kept)
+
+
+def assert_control_is_kept(records: Iterable[Any]) -> None:
+    """Assert that it is engaged in all of them.
+
+    An emulated machine receives late at times, by more than the 600 ms that can be configured. A
+    failsafe because of that, and of nothing else, is permitted there: control is kept in it.
+    """
+    for record in records:
+        state = record.state
+        if state.phase == FAILSAFE and accelerator() == "tcg":
+            assert state.flags & _ALL_OLD == _ALL_OLD, hex(state.flags)
+            assert state.flags & ~_LATE == 0, hex(state.flags)
+        else:
+            assert state.phase == ENGAGED
