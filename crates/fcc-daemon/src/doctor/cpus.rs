@@ -57,12 +57,20 @@ pub(super) fn isolation(loop_cpu: &LoopCpu, board: &Board) -> Finding {
         (several, Some(cpu)) if cpus.online.contains(&cpu) => {
             let found = format!("none of {several}");
             let finding = CHECK.could_be_better(found);
-            if cpus.online.first() == Some(&cpu) {
-                // It keeps the kernel's time.
+            // The first one keeps the kernel's time.
+            let is_first = cpus.online.first() == Some(&cpu);
+            if is_first && loop_cpu.is_configured() {
                 finding.because(format!(
-                    "other programs run on CPU {cpu} too, the loop's CPU, and it cannot \
-                     be isolated: configure another CPU, and fccd doctor shows how to isolate it"
+                    "other programs run on CPU {cpu} too, the loop's CPU, and it cannot be \
+                     isolated: configure cpu = \"auto\", and fccd doctor shows which one to isolate"
                 ))
+            } else if is_first && let Some(&last) = cpus.online.last() {
+                let finding = finding.because(format!(
+                    "other programs run on CPU {cpu} too, the loop's CPU, and it cannot be \
+                     isolated: isolate CPU {last}, and cpu = \"auto\" chooses that one"
+                ));
+                let finding = board.kernel_option(finding, &isolating(last, &cpus.online));
+                loop_cpu.remedy_by_choice(finding)
             } else {
                 let finding = finding.because("other programs run on the loop's CPU too");
                 board.kernel_option(finding, &isolating(cpu, &cpus.online))

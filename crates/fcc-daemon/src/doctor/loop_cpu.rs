@@ -7,6 +7,9 @@ use super::busy_devices::fewest_interrupts;
 use super::machine::Machine;
 use super::{CONFIGURATION, Check, Finding};
 
+/// The configuration by which the loop chooses its CPU.
+const AUTO: &str = "cpu = \"auto\"";
+
 /// The CPUs of a machine, and the loop's CPU.
 #[derive(Debug)]
 pub(super) struct LoopCpu {
@@ -50,12 +53,25 @@ impl LoopCpu {
     pub(super) fn remedy(&self, finding: Finding) -> Finding {
         let remedy = match (self.request, &self.best) {
             (Some(CpuRequest::Number(_)), _) | (Some(CpuRequest::Auto), Ok(_)) => None,
-            (None, Ok(_)) => Some("cpu = \"auto\"".to_owned()),
+            (None, Ok(_)) => Some(AUTO.to_owned()),
             (_, Err(_)) => self.cpu.map(|cpu| format!("cpu = {cpu}")),
         };
         match remedy {
             Some(line) => finding.remedy(CONFIGURATION, line),
             None => finding,
+        }
+    }
+
+    /// Whether the configuration gives its number.
+    pub(super) const fn is_configured(&self) -> bool {
+        matches!(self.request, Some(CpuRequest::Number(_)))
+    }
+
+    /// Adds the remedy: let the loop choose its CPU, unless it does.
+    pub(super) fn remedy_by_choice(&self, finding: Finding) -> Finding {
+        match self.request {
+            Some(CpuRequest::Auto) => finding,
+            _ => finding.remedy(CONFIGURATION, AUTO),
         }
     }
 
@@ -72,14 +88,14 @@ impl LoopCpu {
                 let finding = CHECK
                     .lacks(found)
                     .because("the kernel refuses it: the loop would not be bound");
-                finding.remedy(CONFIGURATION, "cpu = \"auto\"")
+                finding.remedy(CONFIGURATION, AUTO)
             }
             (Some(CpuRequest::Number(cpu)), Ok(best)) if best.cpu != cpu => {
                 let found = format!("CPU {cpu}, as configured");
                 CHECK
                     .could_be_better(found)
                     .because(format!("CPU {} is better: {}", best.cpu, best.because))
-                    .remedy(CONFIGURATION, "cpu = \"auto\"")
+                    .remedy(CONFIGURATION, AUTO)
             }
             (Some(CpuRequest::Number(cpu)), _) => CHECK.ok(format!("CPU {cpu}, as configured")),
             (Some(CpuRequest::Auto), Ok(best)) => {

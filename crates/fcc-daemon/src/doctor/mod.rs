@@ -134,7 +134,7 @@ impl Finding {
 #[derive(Clone, PartialEq, Eq, Debug, Serialize)]
 pub struct Diagnosis {
     /// The board or machine, if known.
-    pub machine: String,
+    pub machine: Option<String>,
     /// Its kernel.
     pub kernel: String,
     /// The findings, the most important first.
@@ -172,7 +172,7 @@ impl Diagnosis {
             host_environment::cpu_quota(m, b),
         ];
         Self {
-            machine: board.name.clone(),
+            machine: Some(board.name.clone()).filter(|name| !name.is_empty()),
             kernel: machine.kernel(),
             findings,
         }

@@ -7,7 +7,7 @@ use super::{Diagnosis, Finding, Grade};
 /// The table, followed by what to do, the worst first.
 pub(super) fn text(diagnosis: &Diagnosis) -> String {
     let mut text = String::new();
-    for line in [&diagnosis.machine, &diagnosis.kernel] {
+    for line in diagnosis.machine.iter().chain([&diagnosis.kernel]) {
         if !line.is_empty() {
             let _ = writeln!(text, "{line}");
         }

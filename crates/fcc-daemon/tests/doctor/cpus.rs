@@ -95,19 +95,44 @@ fn all_findings_refer_to_the_loops_cpu() {
         (EVEN, Some(CpuRequest::Auto), &["1"]),
         (EVEN, Some(CpuRequest::Number(1)), &["1"]),
         (EVEN, Some(CpuRequest::Number(0)), &["0"]),
-        // The first one is good, and cannot be isolated.
-        (DISK_ON_CPU_1, Some(CpuRequest::Auto), &[]),
+        // The first one is good, and cannot be isolated: another one can, which
+        // the loop then chooses.
+        (DISK_ON_CPU_1, Some(CpuRequest::Auto), &["1"]),
         (DISK_ON_CPU_1, Some(CpuRequest::Number(0)), &[]),
     ] {
         put(root.path(), "proc/interrupts", interrupts);
         let found = check_for(root.path(), request);
         assert_eq!(cpus_named(&found), expected, "{request:?}");
     }
-    let isolation = finding(&check(root.path()), "isolated_cpus").clone();
+}
+
+/// What it says of the CPU of `cpu = "auto"` is followed, and it has nothing more
+/// to say: the loop is then on the CPU that it named.
+#[test]
+fn the_advice_on_isolation_leads_to_the_loops_cpu() {
+    const AUTO: (&str, &str) = ("fccd's configuration, [realtime]", "cpu = \"auto\"");
+    let root = machine(VIRTUAL);
+    put(root.path(), "proc/interrupts", DISK_ON_CPU_1);
+    for (request, configured) in [(None, &[AUTO][..]), (Some(CpuRequest::Auto), &[])] {
+        let isolation = finding(&check_for(root.path(), request), "isolated_cpus").clone();
+        let words = "isolate CPU 1, and cpu = \"auto\" chooses that one";
+        assert!(isolation.why.ends_with(words), "{}", isolation.why);
+        let [(_, option), rest @ ..] = &lines(&isolation)[..] else {
+            panic!("no remedy");
+        };
+        assert!(
+            option.contains("isolcpus=managed_irq,domain,1 "),
+            "{option}"
+        );
+        assert_eq!(rest, configured, "{request:?}");
+    }
+    put(root.path(), "sys/devices/system/cpu/isolated", "1\n");
+    let found = check_for(root.path(), Some(CpuRequest::Auto));
+    assert_eq!(finding(&found, "isolated_cpus").grade, Grade::Ok);
+    let loop_cpu = &finding(&found, "loop_cpu").found;
     assert!(
-        isolation.why.contains("cannot be isolated"),
-        "{}",
-        isolation.why
+        loop_cpu.starts_with("CPU 1, by cpu = \"auto\""),
+        "{loop_cpu}"
     );
 }
 

@@ -53,7 +53,10 @@ fn ids(diagnosis: &Diagnosis, grade: Grade) -> Vec<&str> {
 #[test]
 fn a_pi_set_up_for_flying_lacks_nothing() {
     let pi = check_files(PI_4);
-    assert_eq!(pi.machine, "Raspberry Pi 4 Model B Rev 1.4");
+    assert_eq!(
+        pi.machine.as_deref(),
+        Some("Raspberry Pi 4 Model B Rev 1.4")
+    );
     assert!(
         pi.kernel
             .starts_with("6.12.25+rpt-rpi-v8-rt #1 SMP PREEMPT_RT")
@@ -192,6 +195,8 @@ fn an_empty_machine_is_unknown_and_lacks_nothing() {
     let nothing = check_files(&[]);
     assert_eq!(ids(&nothing, Grade::Lacks), [""; 0]);
     assert!(ids(&nothing, Grade::NotKnown).contains(&"preemption"));
+    let json = serde_json::to_value(&nothing).unwrap();
+    assert_eq!(json["machine"], serde_json::Value::Null);
 }
 
 #[test]
