@@ -18,7 +18,15 @@ from typing import TYPE_CHECKING, Any
 from . import actions, simulator_options, watcher_load
 from . import commands as flights
 from .daemon import DaemonError, command
-from .fly import FlightError, Plan, fly, peer_row, print_progress, write_document
+from .fly import (
+    FlightError,
+    Plan,
+    altitudes_note,
+    fly,
+    peer_row,
+    print_progress,
+    write_document,
+)
 from .pattern import TimedPattern
 from .peer import fly_peer
 from .plant import TrimError
@@ -62,6 +70,8 @@ def _fly(options: argparse.Namespace) -> int:
             ]
         )
     )
+    if note := altitudes_note(plan.settings):
+        say(note)
     frames = flight.standin["frames"]
     say(
         f"stand-in: {frames['frames']} frames, {frames['slipped']} slipped, "

@@ -24,6 +24,7 @@ from .process import StandInProcess
 from .score import Score, score
 from .standin import Progress, Settings
 from .truth import COLUMNS, Truth
+from .units import FT_TO_M, INHG_TO_PA, STANDARD_INHG, pressure_altitude_m
 
 ENGAGE_SWITCH = f"{GENERIC_LIGHTS}[56]"
 
@@ -106,6 +107,19 @@ def progress_line(plan: Plan, engaged_at_s: float, progress: Progress) -> str:
         f"true: {progress.time_s - engaged_at_s:6.1f} s  leg {leg} of {plan.legs}  "
         f"altitude {now['altitude_ft']:7.1f} ft  heading {now['heading_deg']:5.1f}°  "
         f"airspeed {now['airspeed_kt']:5.1f} kt  bank {bank_deg:5.1f}°"
+    )
+
+
+def altitudes_note(settings: Settings) -> str:
+    """Return what the printed altitudes are above, where it is not the same; otherwise nothing."""
+    higher_ft = round(pressure_altitude_m(settings.qnh_inhg * INHG_TO_PA) / FT_TO_M, -1)
+    if higher_ft == 0.0:
+        return ""
+    return (
+        "altitudes: after `true:` above sea level; in fccd's lines above the level of its "
+        f"altimeter setting, by default {STANDARD_INHG:.2f} inHg. Here the pressure at sea level "
+        f"is {settings.qnh_inhg:.2f} inHg, so fccd's are about {abs(higher_ft):.0f} ft "
+        f"{'higher' if higher_ft > 0.0 else 'lower'}"
     )
 
 

@@ -15,7 +15,7 @@ import pytest
 from fcc_hil.__main__ import main
 from fcc_hil.cockpit import OVERRIDE_JOYSTICK
 from fcc_hil.daemon import Daemon, DaemonError, command
-from fcc_hil.fly import FlightError, Plan, fly, peer_row, write_document
+from fcc_hil.fly import FlightError, Plan, altitudes_note, fly, peer_row, write_document
 from fcc_hil.pattern import TimedPattern
 from fcc_hil.plot import plot_flight
 from fcc_hil.process import StandInError, StandInProcess
@@ -60,6 +60,19 @@ def test_a_flight_from_switch_to_score(tmp_path: Path) -> None:
     picture = tmp_path / "flight.png"
     plot_flight(picture, flight.truth, SHORT, flight.engaged_at_s, 1, "A short flight")
     assert picture.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+
+
+@pytest.mark.parametrize(
+    ("qnh_inhg", "words"),
+    # The pilots' table of pressure altitudes (FAA-H-8083-25C, figure 11-3), interpolated.
+    [(30.12, "about 180 ft lower"), (29.5, "about 390 ft higher")],
+)
+def test_the_two_altitudes_that_are_printed_are_explained(qnh_inhg: float, words: str) -> None:
+    assert words in altitudes_note(Settings(qnh_inhg=qnh_inhg))
+
+
+def test_at_the_standard_pressure_there_is_one_altitude() -> None:
+    assert not altitudes_note(Settings.plain())
 
 
 def test_a_flight_with_a_freeze() -> None:
