@@ -89,6 +89,30 @@ def test_users_have_separate_shared_memory(fccd: Path, tmp_path: Path, instance:
             assert "no live telemetry" not in flown.stderr
             assert json.loads(snapshot(fccd, instance).stdout)["process_id"] == daemon.pid
 
+            # A user is named who has the daemon, and none who only has a folder.
+            theirs_alone = f"{instance}-theirs"
+            words = [*as_user(uid), str(program), "fly", "--quiet", "--no-recording"]
+            options = ["--seconds", "600", "--instance", theirs_alone]
+            assert "for this user" not in snapshot(fccd, theirs_alone).stderr
+            with subprocess.Popen(
+                [*words, *options],
+                cwd=theirs,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+            ) as other:
+                try:
+                    named = f"sudo -u '#{uid}' fccd top --instance {theirs_alone}"
+                    wait_until(
+                        lambda: named in snapshot(fccd, theirs_alone).stderr, "they are named"
+                    )
+                finally:
+                    other.terminate()
+            assert Path(f"/dev/shm/fccd-run-{uid}").is_dir()
+            wait_until(
+                lambda: "for this user" not in snapshot(fccd, theirs_alone).stderr,
+                "they are no longer named",
+            )
+
         place = Path(f"/dev/shm/fccd-run-{uid}")
         assert (place.stat().st_uid, place.stat().st_mode & 0o777) == (uid, 0o700)
         # One of another user is reported, and not used; the flight is flown.

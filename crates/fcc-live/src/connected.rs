@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use super::WatchError;
-use super::place::{FoundPlace, Presence, look};
-use fcc_telemetry::{Instance, RunFolder};
+use super::place::{Elsewhere, FoundPlace, Presence, look, look_elsewhere};
+use fcc_telemetry::Instance;
 
 /// How long a daemon that is between two publishing processes is waited for:
 /// the second publishes within a second.
@@ -83,8 +83,9 @@ impl<T> Drop for Connected<T> {
 /// Nobody publishes by this name; perhaps another user does.
 fn not_running(instance: &Instance) -> WatchError {
     let instance = instance.clone();
-    match RunFolder::another_user() {
-        Some(user) => WatchError::PerhapsAnothers { instance, user },
-        None => WatchError::NotRunning(instance),
+    match look_elsewhere(&instance) {
+        Elsewhere::User(user) => WatchError::Anothers { instance, user },
+        Elsewhere::Hidden => WatchError::PerhapsAnothers(instance),
+        Elsewhere::Nobody => WatchError::NotRunning(instance),
     }
 }

@@ -44,18 +44,25 @@ pub enum WatchError {
          `kill -CONT` and its process number), hangs, or the machine is overloaded"
     )]
     NoAnswer(Instance, u64),
-    /// This user has no daemon of this name, but other users have or had
-    /// daemons.
+    /// Another user has a daemon of this name.
     #[error(
-        "no fccd named '{instance}' runs here for this user. A daemon of another user can be \
-         watched by that user alone: sudo -u {user} fccd top --instance {instance}"
+        "no fccd named '{instance}' runs here for this user. One runs for {user}, and can be \
+         watched by that user alone: sudo -u '{user}' fccd top --instance {instance}"
     )]
-    PerhapsAnothers {
+    Anothers {
         /// The daemon's name.
         instance: Instance,
         /// The other user; the first of several.
         user: String,
     },
+    /// This user has no daemon of this name; other users have or had daemons,
+    /// and only they see by which names.
+    #[error(
+        "no fccd named '{0}' runs here for this user: start one, for example with `fccd fly \
+         --instance {0}`, or give another's name with --instance. A daemon of another user can be \
+         watched by that user alone: sudo -u USER fccd top --instance {0}"
+    )]
+    PerhapsAnothers(Instance),
     /// The daemon publishes in another layout.
     #[error(
         "fccd '{instance}' is version {software} and publishes in layout {layout}; this program \

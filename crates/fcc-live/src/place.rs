@@ -7,8 +7,9 @@
 //!
 //! Whoever publishes removes what earlier ones left, and never opens it.
 
-use std::fs::{self, File, Permissions};
-use std::os::unix::fs::{FileExt, MetadataExt, PermissionsExt};
+use std::fs::{self, File, OpenOptions, Permissions};
+use std::io::ErrorKind;
+use std::os::unix::fs::{FileExt, MetadataExt, OpenOptionsExt, PermissionsExt};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
@@ -189,6 +190,34 @@ pub(super) fn look(instance: &Instance) -> Presence {
         }
     }
     presence
+}
+
+/// What is known of who else publishes by a name.
+pub(super) enum Elsewhere {
+    /// No other user does.
+    Nobody,
+    /// This user does, as `sudo -u` takes it.
+    User(String),
+    /// There are folders that this user may not look into.
+    Hidden,
+}
+
+/// Looks for another user who publishes by this name.
+pub(super) fn look_elsewhere(instance: &Instance) -> Elsewhere {
+    let name = folder_of(instance);
+    let mut found = Elsewhere::Nobody;
+    for (user, folder) in RunFolder::of_other_users() {
+        let current = OpenOptions::new()
+            .read(true)
+            .custom_flags(libc::O_NOFOLLOW | libc::O_NONBLOCK)
+            .open(folder.join(&name).join(CURRENT));
+        match current {
+            Ok(current) if is_locked(&current) => return Elsewhere::User(user),
+            Err(error) if error.kind() == ErrorKind::PermissionDenied => found = Elsewhere::Hidden,
+            _ => {}
+        }
+    }
+    found
 }
 
 fn look_in(folder: RunFolder) -> Presence {

@@ -64,21 +64,25 @@ impl RunFolder {
         found
     }
 
-    /// Another user whose programs have, or had, such a folder, as `sudo -u`
-    /// takes it; of several, the one whose folder changed last.
-    pub fn another_user() -> Option<String> {
+    /// The folders that programs of other users may have chosen, as far as this
+    /// user sees them: each with its user, as `sudo -u` takes it.
+    pub fn of_other_users() -> Vec<(String, PathBuf)> {
         let user = geteuid();
-        let in_memory = fs::read_dir("/dev/shm").into_iter().flatten().flatten();
-        let named = in_memory.map(|entry| entry.path()).filter(|path| {
-            let name = path.file_name().unwrap_or_default();
-            name.to_string_lossy().starts_with("fccd-run-")
-        });
-        let found = named
+        let entries = |of: &str| fs::read_dir(of).into_iter().flatten().flatten();
+        let in_memory = entries("/dev/shm")
+            .map(|entry| entry.path())
+            .filter(|path| {
+                let name = path.file_name().unwrap_or_default();
+                name.to_string_lossy().starts_with("fccd-run-")
+            });
+        let of_sessions = entries("/run/user").map(|entry| entry.path().join("fccd"));
+        in_memory
+            .chain(of_sessions)
             .chain([PathBuf::from(OF_SERVICE)])
-            .filter_map(|path| fs::symlink_metadata(path).ok())
-            .filter(|found| found.is_dir() && found.uid() != user.as_raw());
-        let last = found.max_by_key(|found| (found.mtime(), found.mtime_nsec()));
-        last.map(|found| login(found.uid()))
+            .filter_map(|path| Some((fs::symlink_metadata(&path).ok()?, path)))
+            .filter(|(found, _)| found.is_dir() && found.uid() != user.as_raw())
+            .map(|(found, path)| (login(found.uid()), path))
+            .collect()
     }
 
     /// The folder at `path`, created if it is missing.

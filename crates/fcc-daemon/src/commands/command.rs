@@ -47,20 +47,32 @@ pub(super) fn command(args: &CommandArgs) -> Result<Exit, Failure> {
         Err(Refusal::OfOwn(error @ CommandError::Refused(_))) => {
             (Exit::Refused, Err(error.to_string()))
         }
-        Err(Refusal::OfOwn(CommandError::Unreachable(WatchError::PerhapsAnothers {
-            instance,
-            user,
-        }))) => (
-            Exit::Failure,
-            // A number, as #1000, would begin a comment.
-            Err(format!(
-                "no fccd named '{instance}' runs here for this user. One of another user is \
-                 commanded with fccd command --of '{user}', if its configuration names you in \
-                 rights.commanders, or by sudo -u '{user}' fccd command"
-            )),
-        ),
+        Err(Refusal::OfOwn(CommandError::Unreachable(error))) => {
+            let (which, user) = match &error {
+                // A number, as #1000, would begin a comment.
+                WatchError::Anothers { user, .. } => {
+                    (format!("One runs for {user}, and"), format!("'{user}'"))
+                }
+                WatchError::PerhapsAnothers(_) => {
+                    ("One of another user".to_owned(), "USER".to_owned())
+                }
+                _ => return say(args, Exit::Failure, Err(error.to_string())),
+            };
+            let why = format!(
+                "no fccd named '{}' runs here for this user. {which} is commanded with fccd \
+                 command --of {user}, if its configuration names you in rights.commanders, or by \
+                 sudo -u {user} fccd command",
+                args.instance
+            );
+            (Exit::Failure, Err(why))
+        }
         Err(Refusal::OfOwn(error)) => (Exit::Failure, Err(error.to_string())),
     };
+    say(args, exit, result)
+}
+
+/// Prints the tick that carried the command out, or why none did.
+fn say(args: &CommandArgs, exit: Exit, result: Result<u64, String>) -> Result<Exit, Failure> {
     if args.json {
         let result = Sent {
             instance: args.instance.to_string(),
