@@ -228,7 +228,8 @@ def test_any_bytes_are_refused_without_a_crash(head: bytes, tail: bytes) -> None
         file.write(content)
         file.flush()
         for read in (fcc.Recording, fcc.report, fcc.replay, fcc.recover):
-            with pytest.raises(fcc.RecordingError, match="not a recording of fccd"):
+            # With the magic number it may be a recording that was cut.
+            with pytest.raises(fcc.RecordingError, match=r"not a recording of fccd|cut off after"):
                 read(file.name)
 
 

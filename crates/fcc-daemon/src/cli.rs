@@ -12,7 +12,7 @@ use fcc_telemetry::Instance;
 use fcc_timer::TimerKind;
 
 use crate::exit::exit_codes;
-use values::{cpu_cap_percent, early_wake, gusts, margin_us, positive_seconds, rate_hz};
+use values::{cpu_cap_percent, early_wake, gusts, margin_us, output, positive_seconds, rate_hz};
 use x_plane::XPlaneArgs;
 
 /// A real-time flight control computer in software.
@@ -137,7 +137,7 @@ pub struct RunArgs {
 #[derive(Args, Debug)]
 pub struct RecordingArgs {
     /// Folder of the recordings [default: recordings, or as configured]
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = output())]
     pub recordings: Option<PathBuf>,
     /// Do not record
     #[arg(long, conflicts_with = "recordings")]
@@ -218,7 +218,7 @@ pub struct ReplayArgs {
     #[arg(long, value_name = "OTHER")]
     pub config: Option<PathBuf>,
     /// Write both flights, tick by tick, into a CSV file
-    #[arg(long, value_name = "OUT", requires = "config")]
+    #[arg(long, value_name = "OUT", requires = "config", value_parser = output())]
     pub csv: Option<PathBuf>,
     /// Print the result as JSON
     #[arg(long)]
@@ -329,13 +329,13 @@ pub struct ReportArgs {
     /// The recording
     pub file: PathBuf,
     /// Write a page with all tables and plots in one file
-    #[arg(long, value_name = "OUT.html")]
+    #[arg(long, value_name = "OUT.html", value_parser = output())]
     pub html: Option<PathBuf>,
     /// Also write each plot as an SVG file, for papers
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = output())]
     pub svg: Option<PathBuf>,
     /// Write every tick and event into records.csv and events.csv
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = output())]
     pub csv: Option<PathBuf>,
     /// Print all statistics as JSON
     #[arg(long)]

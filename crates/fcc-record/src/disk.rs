@@ -50,11 +50,7 @@ impl Disk for FileSystem {
             .parent()
             .filter(|folder| !folder.as_os_str().is_empty());
         if let Some(folder) = folder {
-            fs::create_dir_all(folder).map_err(|error| match error.kind() {
-                // The file exists and is another one.
-                io::ErrorKind::AlreadyExists => io::ErrorKind::NotADirectory.into(),
-                _ => error,
-            })?;
+            create_folder(folder)?;
         }
         // Locked, so that others know that it is being written. Not every file
         // system has locks.
@@ -115,6 +111,31 @@ pub(super) fn sync_folder_of(path: &Path) -> io::Result<()> {
     }
 }
 
+/// Creates a folder, and those that it is in, if it is missing.
+///
+/// # Errors
+/// The system's error.
+pub fn create_folder(path: &Path) -> io::Result<()> {
+    fs::create_dir_all(path).map_err(|error| match error.kind() {
+        io::ErrorKind::AlreadyExists | io::ErrorKind::NotADirectory => io::Error::new(
+            io::ErrorKind::NotADirectory,
+            "it is a file, or is below one: give the name of a folder",
+        ),
+        _ => error,
+    })
+}
+
+/// What writing gave; a reader that has left, as in `| head`, is no failure.
+///
+/// # Errors
+/// Those of writing, other than a closed pipe.
+pub fn unless_left(written: io::Result<()>) -> io::Result<()> {
+    match written {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        written => written,
+    }
+}
+
 /// Creates a file, or replaces its content, unless it is one of the files that
 /// are read, under whatever name.
 ///
@@ -145,7 +166,7 @@ pub(super) fn lock(path: &Path) -> io::Result<Option<File>> {
 }
 
 /// Whether a program is writing the file now.
-pub fn is_being_written(path: &Path) -> bool {
+pub(super) fn is_being_written(path: &Path) -> bool {
     open(path).is_ok_and(|file| is_locked(&file))
 }
 

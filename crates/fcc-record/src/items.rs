@@ -85,6 +85,7 @@ pub struct Items<M> {
     clock_offset_ns: i64,
     /// The statistics in the file.
     end: Option<End>,
+    being_written: bool,
     last_tick: Option<Tick>,
     /// Damage after which no tick was read yet.
     damage: Option<Damage>,
@@ -95,12 +96,18 @@ pub struct Items<M> {
 }
 
 impl<M: RecordedMessage> Items<M> {
-    pub(super) fn new(raw: RawReader, clock_offset_ns: i64, end: Option<End>) -> Self {
+    pub(super) fn new(
+        raw: RawReader,
+        clock_offset_ns: i64,
+        end: Option<End>,
+        being_written: bool,
+    ) -> Self {
         Self {
             raw,
             channels: Channels::default(),
             clock_offset_ns,
             end,
+            being_written,
             last_tick: None,
             damage: None,
             held_back: VecDeque::new(),
@@ -125,7 +132,7 @@ impl<M: RecordedMessage> Items<M> {
             let (channels, offset_ns) = (&mut self.channels, self.clock_offset_ns);
             match self.raw.next(|record| channels.item(&record, offset_ns)) {
                 Err(cut) => {
-                    self.cut = Some(cut.to_string());
+                    self.cut = Some(cut.of_file(self.being_written).to_string());
                     return None;
                 }
                 Ok(Next::End) => return None,

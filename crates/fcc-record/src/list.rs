@@ -6,8 +6,8 @@ use std::{fs, io};
 use serde::Serialize;
 
 use super::damage::Damage;
+use super::name;
 use super::reader::{OpenError, Recording, Verified};
-use super::{disk, name};
 
 /// Properties of one recording.
 #[derive(Clone, PartialEq, Debug, Serialize)]
@@ -98,7 +98,7 @@ pub fn glance(path: &Path) -> Result<Entry, OpenError> {
 fn describe(recording: &Recording, verified: Verified) -> Entry {
     let about = recording.about();
     let path = recording.path();
-    let file = if verified.cut.is_some() && disk::is_being_written(path) {
+    let file = if verified.cut.is_some() && recording.is_being_written() {
         Wholeness::BeingWritten
     } else if !verified.damages.is_empty() {
         Wholeness::Damaged

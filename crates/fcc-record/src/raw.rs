@@ -26,6 +26,9 @@ pub(super) enum Cut {
     /// The file ends here, unfinished.
     #[error("cut off after {0} bytes")]
     Off(u64),
+    /// It is unfinished because a program writes it.
+    #[error("still being written, {0} bytes so far")]
+    NotYet(u64),
     /// It ends before it says what it is.
     #[error("too short: {0} bytes")]
     TooShort(u64),
@@ -40,6 +43,16 @@ pub(super) enum Cut {
         /// The system's error.
         source: io::Error,
     },
+}
+
+impl Cut {
+    /// The same of a file that a program writes, or not.
+    pub(super) fn of_file(self, is_being_written: bool) -> Self {
+        match self {
+            Self::Off(bytes) | Self::TooShort(bytes) if is_being_written => Self::NotYet(bytes),
+            cut => cut,
+        }
+    }
 }
 
 /// The next thing in a file.

@@ -12,9 +12,9 @@ use super::damage::Damage;
 use super::end::{End, RunStatistics};
 use super::items::{Channels, Item, Items, Messages, RecordedMessage};
 use super::opening;
-use super::raw::{Next, RawReader};
+use super::raw::{Cut, Next, RawReader};
 use super::schema::{self, Topic};
-use super::summary;
+use super::{disk, summary};
 use fcc_telemetry::schema::RecordDescription;
 
 /// An opened recording: what is known of the flight, and its messages.
@@ -47,6 +47,7 @@ pub struct Recording {
     about: About,
     columns: Option<RecordDescription>,
     whole: bool,
+    being_written: bool,
     end: Option<End>,
 }
 
@@ -62,8 +63,19 @@ pub enum OpenError {
         /// The system's error.
         source: io::Error,
     },
-    /// The file is not a recording, or was cut off before it could be
-    /// identified.
+    /// The file ends in the description of the flight, with which a recording
+    /// begins.
+    #[error(
+        "{path}: {cut}: the description of the flight, with which a recording begins, is not \
+         complete, so nothing of it can be read"
+    )]
+    CutInDescription {
+        /// The file.
+        path: PathBuf,
+        /// Where it ends, as text.
+        cut: String,
+    },
+    /// The file is not a recording.
     #[error("{path}: not a recording of fccd: {why}")]
     NotARecording {
         /// The file.
@@ -106,7 +118,12 @@ impl Recording {
     /// # Errors
     /// When it cannot be read or is not a recording.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, OpenError> {
-        let path = path.as_ref().to_owned();
+        Self::open_which(path.as_ref(), disk::is_being_written(path.as_ref()))
+    }
+
+    /// As [`open`](Self::open), of a file that a program writes, or not.
+    pub(super) fn open_which(path: &Path, being_written: bool) -> Result<Self, OpenError> {
+        let path = path.to_owned();
         let refused = |source| OpenError::Io {
             path: path.clone(),
             source,
@@ -120,9 +137,21 @@ impl Recording {
         });
         file.seek(SeekFrom::Start(0)).map_err(refused)?;
         let raw = RawReader::new(file).map_err(refused)?;
-        let (about, columns) = read_about(raw).map_err(|why| OpenError::NotARecording {
-            path: path.clone(),
-            why,
+        let (about, columns) = read_about(raw).map_err(|refusal| {
+            let path = path.clone();
+            match refusal {
+                Refusal::Cut(cut) => match cut.of_file(being_written) {
+                    cut @ (Cut::Off(_) | Cut::NotYet(_)) => OpenError::CutInDescription {
+                        path,
+                        cut: cut.to_string(),
+                    },
+                    cut => OpenError::NotARecording {
+                        path,
+                        why: cut.to_string(),
+                    },
+                },
+                Refusal::Other(why) => OpenError::NotARecording { path, why },
+            }
         })?;
         Ok(Self {
             path,
@@ -130,6 +159,7 @@ impl Recording {
             about,
             columns,
             whole: index.is_some(),
+            being_written,
             end,
         })
     }
@@ -160,6 +190,12 @@ impl Recording {
     /// before the end is found by [`verify`](Self::verify).
     pub const fn is_whole(&self) -> bool {
         self.whole
+    }
+
+    /// Whether it is not finished because a program was writing it when it was
+    /// opened.
+    pub const fn is_being_written(&self) -> bool {
+        self.being_written && !self.whole
     }
 
     /// The statistics at the end of the file; none if it is unfinished or
@@ -266,8 +302,10 @@ impl Recording {
     /// When the file can no longer be opened, or is of another plant.
     pub fn items<M: RecordedMessage>(&self) -> Result<Items<M>, OpenError> {
         self.has_plant_of::<M>()?;
-        self.raw()
-            .map(|raw| Items::new(raw, self.about.clock_offset_ns, self.end.clone()))
+        self.raw().map(|raw| {
+            let end = self.end.clone();
+            Items::new(raw, self.about.clock_offset_ns, end, self.being_written)
+        })
     }
 
     fn has_plant_of<M: RecordedMessage>(&self) -> Result<(), OpenError> {
@@ -304,8 +342,24 @@ enum Writer {
     Other,
 }
 
+/// Why a file is not read.
+enum Refusal {
+    /// It ends before the first message.
+    Cut(Cut),
+    /// It is not a recording, with the reason.
+    Other(String),
+}
+
+impl From<String> for Refusal {
+    fn from(why: String) -> Self {
+        Self::Other(why)
+    }
+}
+
+const OTHER: &str = "another program wrote it";
+
 /// Reads what precedes the first message.
-fn read_about(mut raw: RawReader) -> Result<(About, Option<RecordDescription>), String> {
+fn read_about(mut raw: RawReader) -> Result<(About, Option<RecordDescription>), Refusal> {
     enum Content {
         Profile(Writer),
         Flight(bool),
@@ -341,13 +395,18 @@ fn read_about(mut raw: RawReader) -> Result<(About, Option<RecordDescription>), 
             }
             _ => Content::Other,
         });
-        match content.map_err(|cut| cut.to_string())? {
+        let content = match content {
+            Err(_) if has_header && !is_ours && !known => return Err(OTHER.to_owned().into()),
+            content => content.map_err(Refusal::Cut)?,
+        };
+        match content {
             Next::Record(Content::Profile(Writer::Earlier(library))) => {
                 return Err(format!(
                     "{library} wrote it, in a format older than {}: read it with that version, or \
                      with Foxglove or any other program that reads MCAP",
                     schema::PROFILE
-                ));
+                )
+                .into());
             }
             Next::Record(Content::Profile(written)) => {
                 has_header = true;
@@ -367,10 +426,12 @@ fn read_about(mut raw: RawReader) -> Result<(About, Option<RecordDescription>), 
             }
             Next::Record(Content::Messages) if !has_header => {}
             Next::End if known => return Ok((about, columns)),
-            Next::End if is_ours => return Err("it contains no metadata of a flight".to_owned()),
+            Next::End if is_ours => {
+                return Err("it contains no metadata of a flight".to_owned().into());
+            }
             Next::Record(Content::OwnTopic | Content::OwnRecord | Content::Messages)
             | Next::End => {
-                return Err("another program wrote it".to_owned());
+                return Err(OTHER.to_owned().into());
             }
         }
     }

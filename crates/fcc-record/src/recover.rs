@@ -107,7 +107,7 @@ pub fn recover_while(
     // temporary file.
     let lock = disk::lock(path).map_err(unread)?;
     // Checked by name: another program may just have recovered it.
-    let recording = Recording::open(path)?;
+    let recording = Recording::open_which(path, lock.is_none())?;
     if lock.is_none() && !recording.is_whole() {
         return Err(RecoverError::BeingWritten(path.to_owned()));
     }

@@ -3,7 +3,7 @@
 //! Numbers are as recorded, in SI, with the unit in the column's name; they
 //! parse back to the same bits. A field without a measurement is empty.
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io;
 use std::marker::PhantomData;
 use std::path::Path;
@@ -11,7 +11,7 @@ use std::path::Path;
 use fcc_core::framework::{Controller, EventOf, Message, MessageOf, RecordOf, Time};
 
 use super::origin::Origin;
-use fcc_record::{Remark, create_output};
+use fcc_record::{Remark, create_folder, create_output};
 use fcc_telemetry::describe_event;
 use fcc_telemetry::schema::{Row, header};
 
@@ -37,7 +37,7 @@ impl<C: Controller> CsvFolder<C> {
     /// When the folder or a file cannot be made or written, or a file is the
     /// recording.
     pub fn create(folder: &Path, origin: &Origin, recording: &Path) -> io::Result<Self> {
-        fs::create_dir_all(folder)?;
+        create_folder(folder)?;
         let open = |name: &str| -> io::Result<_> {
             Ok(csv::WriterBuilder::new()
                 .buffer_capacity(BUFFER_BYTES)

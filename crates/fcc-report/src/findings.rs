@@ -30,6 +30,9 @@ fn end(report: &RunReport) -> Option<String> {
         FileEnd::Cut(reason) => Some(format!(
             "The recording was not finished: {reason}. The report covers the part before that."
         )),
+        FileEnd::BeingWritten(so_far) => Some(format!(
+            "The recording is {so_far}. The report covers these."
+        )),
         FileEnd::Finished(_) | FileEnd::Unknown => None,
     }
 }

@@ -67,6 +67,8 @@ pub enum FileEnd {
     Finished(String),
     /// Incomplete, with the reason.
     Cut(String),
+    /// Not ended: it was being written when it was read.
+    BeingWritten(String),
     /// Unknown.
     #[default]
     Unknown,
@@ -77,6 +79,7 @@ impl FileEnd {
     /// reading stopped.
     pub fn of(recording: &Recording, cut: Option<&str>) -> Self {
         match (cut, recording.end()) {
+            (Some(cut), _) if recording.is_being_written() => Self::BeingWritten(cut.to_owned()),
             (Some(cut), _) => Self::Cut(cut.to_owned()),
             (None, Some(end)) if recording.is_whole() => Self::Finished(end.ending.clone()),
             // The index that leads to the end is damaged.

@@ -1,11 +1,10 @@
 //! A report as one HTML page without other files.
 
-use std::io::Write as _;
+use std::io::{self, Write as _};
 use std::path::Path;
-use std::{fs, io};
 
 use comfy_table::Table;
-use fcc_record::create_output;
+use fcc_record::{create_folder, create_output, unless_left};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::plot::{Detail, Figure, Figures, figures};
@@ -109,25 +108,26 @@ impl<A: Addition> Report<A> {
     pub fn write_page<P: AsRef<Path>>(&self, path: &Path, others: &[P]) -> Result<(), String> {
         let page = self.to_html();
         create_output(path, others)
-            .and_then(|mut file| file.write_all(page.as_bytes()))
+            .and_then(|mut file| unless_left(file.write_all(page.as_bytes())))
             .map_err(|error| format!("{}: cannot be written: {error}", path.display()))
     }
 
     /// Writes each plot into a file in a folder, which is created if it is
-    /// missing; none may be the recording itself.
+    /// missing; none may be the recording itself. Returns the number of plots.
     ///
     /// # Errors
     /// What could not be written.
-    pub fn write_svgs(&self, folder: &Path, recording: &Path) -> Result<(), String> {
+    pub fn write_svgs(&self, folder: &Path, recording: &Path) -> Result<usize, String> {
         let refused =
             |error: io::Error| format!("{}: cannot be written: {error}", folder.display());
-        fs::create_dir_all(folder).map_err(refused)?;
-        for (name, svg) in self.to_svgs() {
+        create_folder(folder).map_err(refused)?;
+        let plots = self.to_svgs();
+        for (name, svg) in &plots {
             create_output(&folder.join(name), &[recording])
                 .and_then(|mut file| file.write_all(svg.as_bytes()))
                 .map_err(refused)?;
         }
-        Ok(())
+        Ok(plots.len())
     }
 }
 

@@ -93,7 +93,7 @@ impl RunReport {
             format!("{} Hz {}", timing.table.rate_hz, timer_name(&origin.timer))
         });
         let end = match &self.end {
-            FileEnd::Finished(reason) => reason.clone(),
+            FileEnd::Finished(reason) | FileEnd::BeingWritten(reason) => reason.clone(),
             FileEnd::Cut(reason) => format!("cut: {reason}"),
             FileEnd::Unknown => String::new(),
         };

@@ -1,6 +1,8 @@
 //! Values of options, as they are typed.
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use std::path::{Path, PathBuf};
+
+use clap::builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser};
 use fcc_flight::config::{EarlyWakeChoice, GustsChoice};
 
 pub(super) fn gusts() -> impl TypedValueParser<Value = GustsChoice> {
@@ -17,6 +19,16 @@ pub(super) fn early_wake() -> impl TypedValueParser<Value = EarlyWakeChoice> {
         "on" => EarlyWakeChoice::On,
         "off" => EarlyWakeChoice::Off,
         _ => EarlyWakeChoice::Auto,
+    })
+}
+
+/// The name of a file or a folder to write.
+pub(super) fn output() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| {
+        if path == Path::new("-") {
+            return Err("standard output is for the result: give a name, or ./- for one called -");
+        }
+        Ok(path)
     })
 }
 

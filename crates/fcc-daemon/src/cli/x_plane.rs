@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
+use super::values::output;
+
 /// `fccd x-plane`.
 #[derive(Args, Debug)]
 pub struct XPlaneArgs {
@@ -63,7 +65,8 @@ pub struct XPlaneCheckArgs {
     #[arg(long)]
     pub quick: bool,
     /// The report, in Markdown; the same as JSON is written beside it
-    #[arg(long, value_name = "FILE", default_value = "x-plane-check.md")]
+    #[arg(long, value_name = "FILE", default_value = "x-plane-check.md",
+          value_parser = output())]
     pub report: PathBuf,
     /// Print the report as JSON
     #[arg(long)]
@@ -81,7 +84,8 @@ pub struct IdentifyArgs {
     #[arg(long)]
     pub by_hand: bool,
     /// Folder for the recordings of its flights
-    #[arg(long, value_name = "DIR", default_value = "x-plane-identify.files")]
+    #[arg(long, value_name = "DIR", default_value = "x-plane-identify.files",
+          value_parser = output())]
     pub files: PathBuf,
     /// Print the responses as JSON
     #[arg(long)]

@@ -3,6 +3,7 @@
 use std::fmt::Display;
 
 use fcc_flight::config::ConfigError;
+use fcc_record::OpenError;
 use serde::Serialize;
 
 use crate::exit::Exit;
@@ -47,6 +48,17 @@ impl Failure {
             return output::json(&Printed { error }, self.exit);
         }
         self.exit
+    }
+}
+
+impl From<OpenError> for Failure {
+    fn from(error: OpenError) -> Self {
+        let exit = match error {
+            OpenError::AnotherPlant { .. } => Exit::Usage,
+            OpenError::CutInDescription { .. } => Exit::Incomplete,
+            _ => Exit::Failure,
+        };
+        Self::of(exit, error)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use fcc_record::Recovered;
+use fcc_record::{RecoverError, Recovered};
 
 use super::failure::Failure;
 use super::progress;
@@ -16,7 +16,10 @@ pub(super) fn recover(args: &RecoverArgs) -> Result<Exit, Failure> {
     let bar = progress::bar(bytes, "recovering");
     let recovered = fcc_record::recover(&args.file, |read| bar.set_position(read));
     bar.finish_and_clear();
-    let recovered = recovered.map_err(Failure::new)?;
+    let recovered = recovered.map_err(|error| match error {
+        RecoverError::Open(error) => error.into(),
+        error => Failure::new(error),
+    })?;
     let exit = if recovered.damages.is_empty() {
         Exit::Success
     } else {

@@ -7,7 +7,7 @@ use std::time::Instant;
 use fcc_core::flight::Autopilot;
 use fcc_flight::config::Config;
 use fcc_flight::replay::{recorded_config, replay as replay_of};
-use fcc_record::{OpenError, create_output};
+use fcc_record::{OpenError, create_output, unless_left};
 use fcc_replay::{Chain, ChainError, Comparison, Csv, Deviation, Identity, Replayed};
 use serde::Serialize;
 
@@ -96,7 +96,8 @@ fn run(
     );
     bar.finish_and_clear();
     let finished = written.and_then(|()| table.map_or(Ok(()), Csv::finish));
-    finished.map_err(refused)?;
+    unless_left(finished).map_err(refused)?;
+    remarks.extend(csv.map(|csv| format!("written: {}", csv.display())));
     let took_s = began.elapsed().as_secs_f64();
     let about = chain.about();
     Ok(Outcome {

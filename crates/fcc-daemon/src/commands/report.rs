@@ -1,8 +1,8 @@
 //! `fccd report FILE`: a report on a recording.
 
 use fcc_flight::replay::recorded_pattern;
-use fcc_record::{OpenError, Recording};
-use fcc_report::{FlightAddition, FlightReport, FlightSurvey};
+use fcc_record::Recording;
+use fcc_report::{FlightAddition, FlightReport, FlightSurvey, TABLES};
 use fcc_telemetry::FlightMessage;
 
 use super::failure::Failure;
@@ -13,15 +13,9 @@ use crate::output;
 
 /// Reads a recording and reports on it.
 pub(super) fn report(args: &ReportArgs) -> Result<Exit, Failure> {
-    let recording = Recording::open_as::<FlightMessage>(&args.file).map_err(|error| {
-        let exit = match error {
-            OpenError::AnotherPlant { .. } => Exit::Usage,
-            _ => Exit::Failure,
-        };
-        Failure::of(exit, error)
-    })?;
-    let report = make(args, &recording).map_err(Failure::new)?;
-    let exit = if report.is_complete() || fcc_record::is_being_written(&args.file) {
+    let recording = Recording::open_as::<FlightMessage>(&args.file)?;
+    let (report, written) = make(args, &recording).map_err(Failure::new)?;
+    let exit = if report.is_complete() {
         Exit::Success
     } else {
         Exit::Incomplete
@@ -29,27 +23,36 @@ pub(super) fn report(args: &ReportArgs) -> Result<Exit, Failure> {
     Ok(if args.json {
         output::json(&report, exit)
     } else {
-        output::result(report.to_text(), exit)
+        let lines: Vec<String> = [report.to_text()].into_iter().chain(written).collect();
+        output::result(lines.join("\n"), exit)
     })
 }
 
-fn make(args: &ReportArgs, recording: &Recording) -> Result<FlightReport, String> {
+/// The report, and a line on each file or folder that was written.
+fn make(args: &ReportArgs, recording: &Recording) -> Result<(FlightReport, Vec<String>), String> {
     let bar = progress::bar(recording.bytes(), "reading");
     let addition = FlightAddition::new(recorded_pattern(recording.about()));
     let report = FlightSurvey::read(recording, addition, args.csv.as_deref(), |read| {
         bar.set_position(read);
     })?;
     bar.finish_and_clear();
+    let mut written = Vec::new();
+    if let Some(folder) = &args.csv {
+        let tables = TABLES.join(", ");
+        written.push(format!("written: {}: {tables}", folder.display()));
+    }
     if let Some(folder) = &args.svg {
-        report.write_svgs(folder, &args.file)?;
+        let plots = report.write_svgs(folder, &args.file)?;
+        written.push(format!("written: {}: {plots} plots", folder.display()));
     }
     if let Some(page) = &args.html {
         let tables = args
             .csv
             .iter()
-            .flat_map(|folder| fcc_report::TABLES.map(|table| folder.join(table)));
+            .flat_map(|folder| TABLES.map(|table| folder.join(table)));
         let others: Vec<_> = tables.chain([args.file.clone()]).collect();
         report.write_page(page, &others)?;
+        written.push(format!("written: {}", page.display()));
     }
-    Ok(report)
+    Ok((report, written))
 }

@@ -3,7 +3,9 @@
 #![cfg(test)]
 
 mod damaged;
+mod named_files;
 mod output;
+mod recordings;
 mod remarks;
 mod setpoints;
 mod top;

@@ -45,6 +45,31 @@ fn a_reader_that_leaves_is_no_failure() {
     }
 }
 
+/// As in `fccd report FILE --html /dev/stdout | head -1`.
+#[test]
+fn a_reader_of_a_written_file_that_leaves_is_no_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    fly(folder.path());
+    std::fs::write(folder.path().join("c.toml"), "[built-in]\n").unwrap();
+    let flown = fcc_record::files(&folder.path().join("recordings")).unwrap();
+    let flown = flown[0].to_str().unwrap();
+    for words in [
+        &["report", flown, "--html", "/dev/stdout"][..],
+        &[
+            "replay",
+            flown,
+            "--config",
+            "c.toml",
+            "--csv",
+            "/dev/stdout",
+        ],
+    ] {
+        let ended = fccd(folder.path(), words).stdout(left()).output().unwrap();
+        let said = String::from_utf8(ended.stderr).unwrap();
+        assert_eq!((ended.status.code(), said.as_str()), (Some(0), ""));
+    }
+}
+
 #[test]
 fn a_result_that_cannot_be_printed_is_a_failure() {
     let folder = tempfile::tempdir().unwrap();
@@ -235,6 +260,7 @@ fn every_command_reports_an_error_as_json() {
     let instance = format!("json-{}", std::process::id());
     for (words, exit) in [
         (&["fly", "--config", "wrong.toml"][..], 2),
+        (&["report", "none.mcap", "--html", "-"], 2),
         (&["fly", "--seconds", "-1"], 2),
         (&["run", "--config", "wrong.toml"], 2),
         (&["run"], 2),

@@ -159,7 +159,7 @@ fn a_file_being_recovered_is_not_recovered_twice() {
 fn other_files_are_refused_with_a_reason() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("other.mcap");
-    for bytes in [&b""[..], b"hello", mcap::MAGIC, &[0; 100]] {
+    for bytes in [&b""[..], b"hello", &[0; 100]] {
         fs::write(&path, bytes).unwrap();
         assert!(matches!(
             Recording::open(&path),
@@ -169,8 +169,18 @@ fn other_files_are_refused_with_a_reason() {
     // Another program's recording.
     let file = fs::File::create(&path).unwrap();
     mcap::Writer::new(file).unwrap().finish().unwrap();
-    let error = Recording::open(&path).unwrap_err().to_string();
-    assert!(error.ends_with("another program wrote it"), "{error}");
+    let bytes = fs::read(&path).unwrap();
+    for length in [bytes.len(), bytes.len() - 10] {
+        fs::write(&path, &bytes[..length]).unwrap();
+        let error = Recording::open(&path).unwrap_err().to_string();
+        assert!(error.ends_with("another program wrote it"), "{error}");
+    }
+    // It may be one of fccd.
+    fs::write(&path, mcap::MAGIC).unwrap();
+    assert!(matches!(
+        Recording::open(&path),
+        Err(OpenError::CutInDescription { .. })
+    ));
 }
 
 proptest! {
