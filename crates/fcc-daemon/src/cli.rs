@@ -45,7 +45,7 @@ pub enum Action {
     /// Send a command to a daemon on this machine
     #[cfg(feature = "live")]
     Command(CommandArgs),
-    /// Check a configuration file
+    /// Check configuration files
     Check(CheckArgs),
     /// Check whether this machine suits a real-time loop
     Doctor(DoctorArgs),
@@ -301,9 +301,10 @@ pub struct SetArgs {
 /// `fccd check`.
 #[derive(Args, Debug)]
 pub struct CheckArgs {
-    /// Configuration file
-    pub file: PathBuf,
-    /// Print the result as JSON
+    /// Configuration files
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Print the result as JSON; of several files, as a list
     #[arg(long)]
     pub json: bool,
 }

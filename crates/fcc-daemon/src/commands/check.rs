@@ -1,4 +1,4 @@
-//! `fccd check FILE`.
+//! `fccd check FILE...`.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -9,7 +9,7 @@ use crate::cli::CheckArgs;
 use crate::exit::Exit;
 use crate::output;
 use crate::process::{commanders_refused, unknown_names};
-use fcc_flight::config::{Aircraft, Config, Problem};
+use fcc_flight::config::{Aircraft, Config, ConfigError, Problem};
 
 #[derive(Serialize)]
 struct Checked {
@@ -20,56 +20,66 @@ struct Checked {
     remarks: Vec<String>,
 }
 
-/// Checks a configuration file.
+/// Checks configuration files: the exit code is that of the worst.
 pub(super) fn check(args: &CheckArgs) -> Exit {
-    let (checked, remarks) = match Config::load_with_text(&args.file) {
+    let mut all = Vec::new();
+    let mut exit = Exit::Success;
+    for file in &args.files {
+        let (checked, description) = check_file(file);
+        if !checked.ok {
+            exit = Exit::Usage;
+        }
+        if !args.json {
+            match description {
+                Ok(text) => exit = output::result(text, exit),
+                Err(error) => output::message(error),
+            }
+        }
+        all.push(checked);
+    }
+    match all.as_slice() {
+        _ if !args.json => exit,
+        [one] => output::json(one, exit),
+        several => output::json(&several, exit),
+    }
+}
+
+/// Checks a file, and describes it.
+fn check_file(path: &Path) -> (Checked, Result<String, ConfigError>) {
+    let file = path.display().to_string();
+    match Config::load_with_text(path) {
         Ok((config, text)) => {
             let mut remarks = config.remarks(&text);
             remarks.extend(unknown_names(&config.rights));
             remarks.extend(commanders_refused(&config.rights, Path::new("/")));
-            (Ok(config), remarks)
-        }
-        Err(error) => (Err(error), Vec::new()),
-    };
-    let exit = if checked.is_ok() {
-        Exit::Success
-    } else {
-        Exit::Usage
-    };
-    if args.json {
-        let problems = match &checked {
-            Ok(_) => Vec::new(),
-            Err(error) => error.problems(),
-        };
-        let checked = Checked {
-            file: args.file.display().to_string(),
-            ok: checked.is_ok(),
-            problems,
-            remarks,
-        };
-        return output::json(&checked, exit);
-    }
-    match checked {
-        Ok(config) => {
             let aircraft = match config.aircraft() {
                 Some(Aircraft::XPlane(_)) => "X-Plane's aircraft",
                 Some(Aircraft::BuiltIn(_)) => "the built-in aircraft",
                 None => "by the listed sensors and actuators",
             };
             let mut text = format!(
-                "{}: valid: flies {aircraft} at {} Hz by {}",
-                args.file.display(),
-                config.tick.rate_hz,
-                config.tick.timer
+                "{file}: valid: flies {aircraft} at {} Hz by {}",
+                config.tick.rate_hz, config.tick.timer
             );
-            for remark in remarks {
-                let _ = write!(text, "\n{}: {remark}", args.file.display());
+            for remark in &remarks {
+                let _ = write!(text, "\n{file}: {remark}");
             }
-            output::result(text, exit)
+            let checked = Checked {
+                file,
+                ok: true,
+                problems: Vec::new(),
+                remarks,
+            };
+            (checked, Ok(text))
         }
         Err(error) => {
-            output::message(error);
-            exit
+            let checked = Checked {
+                file,
+                ok: false,
+                problems: error.problems(),
+                remarks: Vec::new(),
+            };
+            (checked, Err(error))
         }
     }
 }

@@ -29,6 +29,32 @@ fn flown() -> (tempfile::TempDir, String) {
     (folder, file)
 }
 
+#[test]
+fn several_configurations_are_checked_and_the_worst_counts() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("good.toml"), "[built-in]\n").unwrap();
+    fs::write(folder.path().join("wrong.toml"), "[lop]\n").unwrap();
+    for (words, exit) in [
+        (&["check", "good.toml", "wrong.toml"][..], 2),
+        (&["check", "wrong.toml", "good.toml"], 2),
+        (&["check", "good.toml", "good.toml"], 0),
+    ] {
+        let (code, valid, said) = ended(folder.path(), words);
+        assert_eq!(code, Some(exit), "{words:?}: {said}");
+        assert!(valid.contains("good.toml: valid: "), "{words:?}: {valid}");
+        assert_eq!(said.contains("wrong.toml:1: "), exit == 2, "{said}");
+    }
+    let (code, listed, _) = ended(
+        folder.path(),
+        &["check", "good.toml", "wrong.toml", "--json"],
+    );
+    assert_eq!(code, Some(2));
+    let listed: Value = serde_json::from_str(&listed).unwrap();
+    let of = |at: usize| (listed[at]["file"].as_str(), listed[at]["ok"].as_bool());
+    assert_eq!(of(0), (Some("good.toml"), Some(true)));
+    assert_eq!(of(1), (Some("wrong.toml"), Some(false)));
+}
+
 /// It would be a file of that name.
 #[test]
 fn a_hyphen_is_no_name_of_an_output() {
