@@ -96,7 +96,8 @@ pub struct FlyArgs {
     /// Name of this flight for watchers [default: as configured]
     #[arg(long, value_name = "NAME")]
     pub instance: Option<Instance>,
-    /// Fly in lockstep: as fast as the machine can, not in real time
+    /// Fly in lockstep: as fast as the machine can, not in real time; each tick
+    /// is still a period of the configured loop.rate_hz
     #[arg(long)]
     pub lockstep: bool,
     /// Where to record

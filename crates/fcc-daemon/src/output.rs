@@ -39,7 +39,12 @@ pub(crate) fn json<T: Serialize>(value: &T, exit: Exit) -> Exit {
 /// Prints a result as bytes.
 pub(crate) fn bytes(bytes: &[u8], exit: Exit) -> Exit {
     let mut out = io::stdout().lock();
-    match out.write_all(bytes).and_then(|()| out.flush()) {
+    printed(out.write_all(bytes).and_then(|()| out.flush()), exit)
+}
+
+/// The exit code after printing a result.
+pub(crate) fn printed(printing: io::Result<()>, exit: Exit) -> Exit {
+    match printing {
         Err(error) if !has_left(&error) => not_printed(&error, exit),
         _ => exit,
     }

@@ -1,5 +1,8 @@
 //! `fccd list [DIR]`.
 
+use std::io::ErrorKind;
+
+use fcc_flight::config::RecordingSection;
 use fcc_record::{Entry, Listed};
 use fcc_report::recordings_table;
 
@@ -12,11 +15,21 @@ use crate::output;
 /// Lists the recordings in a folder, and says which files cannot be read.
 pub(super) fn list(args: &ListArgs) -> Result<Exit, Failure> {
     let folder = args.folder.display();
-    let files = fcc_record::files(&args.folder).map_err(|error| {
-        Failure::new(format_args!(
-            "{folder}: cannot be listed: {error}. Give the folder that flights were recorded to"
-        ))
-    })?;
+    let found = match fcc_record::files(&args.folder) {
+        Err(error)
+            if error.kind() == ErrorKind::NotFound
+                && args.folder == RecordingSection::default().folder =>
+        {
+            None
+        }
+        found => Some(found.map_err(|error| {
+            Failure::new(format_args!(
+                "{folder}: cannot be listed: {error}. Give the folder that flights were recorded to"
+            ))
+        })?),
+    };
+    let is_there = found.is_some();
+    let files = found.unwrap_or_default();
     let bytes = |path: &std::path::PathBuf| path.metadata().map_or(0, |metadata| metadata.len());
     let bar = progress::bar(files.iter().map(bytes).sum(), "reading");
     let mut listed = Vec::new();
@@ -40,7 +53,12 @@ pub(super) fn list(args: &ListArgs) -> Result<Exit, Failure> {
     }
     let are_some = !listed.is_empty();
     let entries: Vec<Entry> = listed.into_iter().filter_map(Listed::entry).collect();
-    let text = if entries.is_empty() {
+    let text = if !is_there {
+        format!(
+            "no recordings: flights are recorded into the folder {folder}, which is not here yet; \
+             list another one with `fccd list DIR`"
+        )
+    } else if entries.is_empty() {
         let readable = if are_some { " that can be read" } else { "" };
         format!("{folder}: no recordings{readable}")
     } else {

@@ -22,12 +22,12 @@ mod timing;
 mod top;
 mod x_plane;
 
-use std::fs;
-use std::io::ErrorKind;
 use std::path::Path;
 
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser};
 use clap_complete::Shell;
+use fcc_record::create_folder;
 
 use failure::Failure;
 
@@ -44,14 +44,31 @@ pub fn run() -> Exit {
     }
     match Cli::try_parse() {
         Ok(cli) => carry_out(cli.command).unwrap_or_else(|failure| failure.print(json)),
-        Err(error) if error.use_stderr() => Failure::usage(error.render()).print(json),
-        Err(help) => match help.print() {
-            Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-                Failure::new(format_args!("the help could not be printed: {error}")).print(false)
-            }
-            _ => Exit::Success,
-        },
+        Err(error) if error.use_stderr() => Failure::usage(plain(error).render()).print(json),
+        Err(help_or_version) => output::printed(help_or_version.print(), Exit::Success),
     }
+}
+
+/// The parser's error with the usage of the whole command, and not only of the
+/// options that were given. No name of a file begins with two hyphens, so that is
+/// not proposed.
+fn plain(mut error: clap::Error) -> clap::Error {
+    let mut command = Cli::command();
+    command.build();
+    for word in std::env::args_os().skip(1) {
+        let Some(of_it) = command.find_subcommand(&word) else {
+            break;
+        };
+        command = of_it.clone();
+    }
+    if error.get(ContextKind::Usage).is_some() {
+        let usage = ContextValue::StyledStr(command.render_usage());
+        error.insert(ContextKind::Usage, usage);
+    }
+    if error.kind() == ErrorKind::UnknownArgument {
+        error.remove(ContextKind::Suggested);
+    }
+    error
 }
 
 fn carry_out(command: Action) -> Result<Exit, Failure> {
@@ -87,7 +104,7 @@ fn completions(shell: Shell) -> Exit {
 
 /// Writes manual pages for the program and each command.
 fn man(folder: &Path) -> Result<Exit, Failure> {
-    fs::create_dir_all(folder)
+    create_folder(folder)
         .and_then(|()| clap_mangen::generate_to(Cli::command(), folder))
         .map_err(|error| Failure::new(format_args!("{}: {error}", folder.display())))?;
     Ok(Exit::Success)

@@ -9,6 +9,7 @@ mod recordings;
 mod remarks;
 mod setpoints;
 mod top;
+mod usage;
 
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};

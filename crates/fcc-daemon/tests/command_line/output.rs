@@ -90,12 +90,13 @@ fn a_result_that_cannot_be_printed_is_a_failure() {
         ],
         &["completions", "bash"],
         &["--help"],
+        &["--version"],
     ] {
         let ended = fccd(folder.path(), words).stdout(full()).output().unwrap();
         let said = String::from_utf8(ended.stderr).unwrap();
         assert_eq!(ended.status.code(), Some(1), "{words:?}: {said}");
         assert!(
-            said.contains("could not be printed: No space left"),
+            said.contains("fccd: the result could not be printed: No space left"),
             "{words:?}: {said}"
         );
     }

@@ -8,6 +8,20 @@ use serde_json::Value;
 
 use super::{Flight, PATIENCE, fccd, fly};
 
+/// As in a fresh clone.
+#[test]
+fn nothing_recorded_yet_is_an_empty_list() {
+    let folder = tempfile::tempdir().unwrap();
+    let listed = fccd(folder.path(), &["list"]).output().unwrap();
+    assert_eq!(listed.status.code(), Some(0), "{listed:?}");
+    let said = String::from_utf8(listed.stdout).unwrap();
+    assert!(said.starts_with("no recordings: "), "{said}");
+    assert!(listed.stderr.is_empty());
+    let listed = fccd(folder.path(), &["list", "--json"]).output().unwrap();
+    assert_eq!(listed.status.code(), Some(0));
+    assert_eq!(listed.stdout, b"[]\n");
+}
+
 #[test]
 fn a_recording_that_is_being_written_is_not_said_to_be_cut() {
     let folder = tempfile::tempdir().unwrap();
