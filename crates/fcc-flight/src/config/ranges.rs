@@ -179,8 +179,17 @@ pub(super) fn check(config: &Config, places: &Places<'_>, unread: &[Problem]) ->
         line => !unread.iter().any(|problem| problem.line == line),
     };
     let mut others = Vec::new();
-    relations::check(config, &mut |key: &str, message: String| {
-        others.push(problem_at(places, key, message));
+    relations::check(config, &mut |keys: &[&str], message: String| {
+        // A number that is out of its range says nothing about another one.
+        let is_out = |problem: &Problem| {
+            problem
+                .key
+                .as_deref()
+                .is_some_and(|key| keys.contains(&key))
+        };
+        if let Some(key) = keys.first().filter(|_| !problems.iter().any(is_out)) {
+            others.push(problem_at(places, key, message));
+        }
     });
     for (at, section) in config.x_planes() {
         others.extend(x_plane(&at, section, &problems, places));

@@ -2,23 +2,24 @@
 
 use fcc_core::flight::control::Envelope;
 
-use super::ranges::range_of;
 use super::{AutopilotSection, Config, SensorEntry};
 
 /// Of `SCHED_FIFO` (sched(7)).
 const HIGHEST_PRIORITY: u8 = 99;
 
-/// Reports the key and the message of each violated constraint.
-pub(super) fn check(config: &Config, report: &mut impl FnMut(&str, String)) {
+/// Reports the message of each violated constraint, and the keys that it is about:
+/// the one to change first.
+pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     let early = &config.tick.early_wake;
     let (least, most) = (early.min_us, early.max_us);
     if least > most {
         let message = format!("is {least}: choose no more than max_us, {most}");
-        report("loop.early_wake.min_us", message);
+        let keys = ["loop.early_wake.min_us", "loop.early_wake.max_us"];
+        report(&keys, message);
     }
     if config.watchdog.enabled && config.realtime.priority == HIGHEST_PRIORITY {
         report(
-            "realtime.priority",
+            &["realtime.priority"],
             format!(
                 "is {HIGHEST_PRIORITY}: choose at most {}, so that the watchdog can have a higher \
                  one and interrupt a loop that spins",
@@ -33,7 +34,8 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&str, String)) {
     );
     if silent_s * 1e3 < max_age_ms as f64 {
         let message = format!("is {silent_s}: choose at least sensor_max_age_ms, {max_age_ms} ms");
-        report("failsafe.all_silent_s", message);
+        let keys = ["failsafe.all_silent_s", "failsafe.sensor_max_age_ms"];
+        report(&keys, message);
     }
     ages(config, report);
     budgets(config, report);
@@ -41,7 +43,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&str, String)) {
     built_in(config, report);
     if config.x_plane.is_some() && config.built_in.is_some() {
         report(
-            "built-in",
+            &["built-in"],
             "is given together with [x-plane]: keep the section of the aircraft that is to be flown"
                 .to_owned(),
         );
@@ -53,7 +55,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&str, String)) {
 }
 
 /// No file of Unix has a NUL in its name.
-fn paths(config: &Config, report: &mut impl FnMut(&str, String)) {
+fn paths(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     let state_file = config.restart.state_file.as_deref();
     let paths = [
         ("recording.folder", Some(config.recording.folder.as_path())),
@@ -61,7 +63,10 @@ fn paths(config: &Config, report: &mut impl FnMut(&str, String)) {
     ];
     for (key, path) in paths {
         if path.is_some_and(|path| path.as_os_str().as_encoded_bytes().contains(&0)) {
-            report(key, "has a NUL character: choose a path without".to_owned());
+            report(
+                &[key],
+                "has a NUL character: choose a path without".to_owned(),
+            );
         }
     }
 }
@@ -74,7 +79,7 @@ const OVER_STALL: f64 = 1.1;
 const MARGINS: f64 = 3.0;
 
 /// Of `[autopilot.envelope]`: an envelope in which an aircraft can fly.
-fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&str, String)) {
+fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&[&str], String)) {
     let envelope = &autopilot.envelope;
     let (stall, least, most, never) = (
         envelope.stall_airspeed_kt,
@@ -82,15 +87,17 @@ fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&str, String))
         envelope.max_airspeed_kt,
         envelope.never_exceed_airspeed_kt,
     );
-    let mut at = |key: &str, value: f64, wanted: String| {
-        report(
-            &format!("autopilot.envelope.{key}"),
-            format!("is {value}: choose {wanted}"),
-        );
+    let mut at = |keys: &[&str], value: f64, wanted: String| {
+        let keys: Vec<_> = keys
+            .iter()
+            .map(|key| format!("autopilot.envelope.{key}"))
+            .collect();
+        let keys: Vec<_> = keys.iter().map(String::as_str).collect();
+        report(&keys, format!("is {value}: choose {wanted}"));
     };
     if least >= most {
         at(
-            "min_airspeed_kt",
+            &["min_airspeed_kt", "max_airspeed_kt"],
             least,
             format!("less than max_airspeed_kt, {most}"),
         );
@@ -99,7 +106,7 @@ fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&str, String))
     let room = MARGINS * envelope.airspeed_margin_kt;
     if most < least + room {
         at(
-            "max_airspeed_kt",
+            &["max_airspeed_kt", "min_airspeed_kt", "airspeed_margin_kt"],
             most,
             format!(
                 "at least {:.1}: min_airspeed_kt, {least}, and {MARGINS} times airspeed_margin_kt, \
@@ -112,21 +119,25 @@ fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&str, String))
     let above_stall = OVER_STALL * stall;
     if least < above_stall {
         at(
-            "min_airspeed_kt",
+            &["min_airspeed_kt", "stall_airspeed_kt"],
             least,
             format!("at least {above_stall:.1}: {OVER_STALL} times stall_airspeed_kt, {stall}"),
         );
     }
     if most > never {
         at(
-            "max_airspeed_kt",
+            &["max_airspeed_kt", "never_exceed_airspeed_kt"],
             most,
             format!("at most never_exceed_airspeed_kt, {never}"),
         );
     }
-    for (key, value, lowest, highest, range) in [
+    for (keys, value, lowest, highest, range) in [
         (
-            "best_glide_airspeed_kt",
+            [
+                "best_glide_airspeed_kt",
+                "stall_airspeed_kt",
+                "max_airspeed_kt",
+            ],
             envelope.best_glide_airspeed_kt,
             above_stall,
             most,
@@ -135,7 +146,11 @@ fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&str, String))
             ),
         ),
         (
-            "maneuvering_airspeed_kt",
+            [
+                "maneuvering_airspeed_kt",
+                "stall_airspeed_kt",
+                "never_exceed_airspeed_kt",
+            ],
             envelope.maneuvering_airspeed_kt,
             above_stall,
             never,
@@ -145,13 +160,13 @@ fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&str, String))
         ),
     ] {
         if !(lowest..=highest).contains(&value) {
-            at(key, value, range);
+            at(&keys, value, range);
         }
     }
     let (load, limit_load) = (envelope.max_load_factor_g, envelope.limit_load_factor_g);
     if load > limit_load {
         at(
-            "max_load_factor_g",
+            &["max_load_factor_g", "limit_load_factor_g"],
             load,
             format!("at most limit_load_factor_g, {limit_load}"),
         );
@@ -159,7 +174,7 @@ fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&str, String))
     let least_load = Envelope::LEAST_MAX_LOAD_FACTOR;
     if load < least_load {
         at(
-            "max_load_factor_g",
+            &["max_load_factor_g"],
             load,
             format!(
                 "at least {least_load:.2}: less leaves no turn, since 0.1 g are kept for the flight path"
@@ -175,7 +190,7 @@ const FAST_LOOP_HZ: f64 = 40.0;
 const MOST_AGE_MS: (f64, f64) = (600.0, 250.0);
 
 /// Of `failsafe.sensor_max_age_ms`: readings of that age can be flown.
-fn ages(config: &Config, report: &mut impl FnMut(&str, String)) {
+fn ages(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     let (age_ms, rate_hz) = (config.failsafe.sensor_max_age_ms, config.tick.rate_hz);
     let (fast_ms, slow_ms) = MOST_AGE_MS;
     let most_ms = if rate_hz >= FAST_LOOP_HZ {
@@ -188,7 +203,7 @@ fn ages(config: &Config, report: &mut impl FnMut(&str, String)) {
             "is {age_ms}: choose at most {most_ms}: older readings cannot be flown with \
              loop.rate_hz = {rate_hz}"
         );
-        report("failsafe.sensor_max_age_ms", message);
+        report(&["failsafe.sensor_max_age_ms", "loop.rate_hz"], message);
     }
 }
 
@@ -197,7 +212,7 @@ fn ages(config: &Config, report: &mut impl FnMut(&str, String)) {
 const DATAGRAMS_PER_FRAME: f64 = 2.0;
 
 /// Of the connections to an X-Plane.
-fn connections(config: &Config, report: &mut impl FnMut(&str, String)) {
+fn connections(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     let mut ports: Vec<(u16, String)> = Vec::new();
     // The rate itself may be out of range here.
     let loop_hz = config.tick.rate_hz.max(1.0);
@@ -211,12 +226,13 @@ fn connections(config: &Config, report: &mut impl FnMut(&str, String)) {
                  x {rate_hz} frames a second / {loop_hz} ticks a second, or a lower {at}.rate_hz: \
                  the readings of a tick would be incomplete and old"
             );
-            report(&format!("{at}.datagrams_per_tick"), message);
+            let [most, rate] = ["datagrams_per_tick", "rate_hz"].map(|key| format!("{at}.{key}"));
+            report(&[&most, &rate, "loop.rate_hz"], message);
         }
         let port = section.local_port;
         if let Some((_, other)) = ports.iter().find(|(taken, _)| *taken == port) {
             let message = format!("is {port}, as {other}: give each connection its own port");
-            report(&format!("{at}.local_port"), message);
+            report(&[&format!("{at}.local_port"), other], message);
         } else if port != 0 {
             ports.push((port, format!("{at}.local_port")));
         }
@@ -224,38 +240,31 @@ fn connections(config: &Config, report: &mut impl FnMut(&str, String)) {
 }
 
 /// Of the start of the built-in aircraft.
-fn built_in(config: &Config, report: &mut impl FnMut(&str, String)) {
+fn built_in(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     let Some(section) = &config.built_in else {
         return;
     };
-    let is_in_range = |key: &str, value: f64| {
-        range_of(key).is_some_and(|(least, most)| (least..=most).contains(&value))
-    };
-    let airspeed = "built-in.airspeed_kt";
-    // One that is out of its range is reported as such.
+    let [airspeed, altitude] = ["built-in.airspeed_kt", "built-in.altitude_ft"];
     if section.ground_ft >= section.altitude_ft {
         report(
-            "built-in.ground_ft",
+            &["built-in.ground_ft", altitude],
             format!(
                 "is {}: choose less than altitude_ft, {}: the flight begins in the air",
                 section.ground_ft, section.altitude_ft
             ),
         );
     }
-    if is_in_range(airspeed, section.airspeed_kt)
-        && is_in_range("built-in.altitude_ft", section.altitude_ft)
-        && let Some(message) = section.why_not_level()
-    {
-        report(airspeed, message);
+    if let Some(message) = section.why_not_level() {
+        report(&[airspeed, altitude], message);
     }
 }
 
-fn overload(config: &Config, report: &mut impl FnMut(&str, String)) {
+fn overload(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     let section = &config.overload;
     let skip_after_s = section.skip_after_ms as f64 * 1e-3;
     if section.stop_after_s > 0.0 && section.stop_after_s < skip_after_s {
         report(
-            "overload.stop_after_s",
+            &["overload.stop_after_s", "overload.skip_after_ms"],
             format!(
                 "is {}, and deadlines are skipped after {skip_after_s} s (overload.skip_after_ms): \
                  choose at least that, or 0 for never",
@@ -265,16 +274,15 @@ fn overload(config: &Config, report: &mut impl FnMut(&str, String)) {
     }
 }
 
-fn budgets(config: &Config, report: &mut impl FnMut(&str, String)) {
+fn budgets(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     let budget = &config.budget;
     let Some(tick_us) = budget.tick_us else {
         return;
     };
-    // The rate itself may be out of range here.
     let period_us = (1e6 / config.tick.rate_hz.max(0.0)).floor();
     if f64::from(tick_us) > period_us {
         report(
-            "budget.tick_us",
+            &["budget.tick_us", "loop.rate_hz"],
             format!(
                 "is {tick_us}: choose no more than the period, {period_us}: a longer tick misses \
                  the next period"
@@ -290,7 +298,7 @@ fn budgets(config: &Config, report: &mut impl FnMut(&str, String)) {
     ] {
         if let Some(stage_us) = stage_us.filter(|stage_us| *stage_us > tick_us) {
             let message = format!("is {stage_us}: choose no more than tick_us, {tick_us}");
-            report(key, message);
+            report(&[key, "budget.tick_us"], message);
         }
     }
 }
@@ -298,7 +306,7 @@ fn budgets(config: &Config, report: &mut impl FnMut(&str, String)) {
 /// Of names of users and groups: a tenth of it is a large crew.
 const MOST_NAMES: usize = 100;
 
-fn rights(config: &Config, report: &mut impl FnMut(&str, String)) {
+fn rights(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     let rights = &config.rights;
     for (key, names) in [
         ("rights.commanders", &rights.commanders),
@@ -306,18 +314,18 @@ fn rights(config: &Config, report: &mut impl FnMut(&str, String)) {
     ] {
         if names.len() > MOST_NAMES {
             let message = format!("has {} names: keep at most {MOST_NAMES}", names.len());
-            report(key, message);
+            report(&[key], message);
         }
         let may_command = config.telemetry.enabled && config.telemetry.commands;
         if !names.is_empty() && !may_command {
             let message = "has names, and telemetry.enabled or telemetry.commands is false, so \
                            nobody may command: remove the names, or set it true";
-            report(key, message.to_owned());
+            report(&[key], message.to_owned());
         }
     }
 }
 
-fn lists(config: &Config, report: &mut impl FnMut(&str, String)) {
+fn lists(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     let actuators = config.actuators().len();
     let sensors = config.sensor.iter().map(SensorEntry::is_simulator);
     // Every actuator is the simulator's.
@@ -328,7 +336,7 @@ fn lists(config: &Config, report: &mut impl FnMut(&str, String)) {
         let entries = simulators.iter().enumerate();
         for (at, _) in entries.filter(|(_, is_simulator)| **is_simulator).skip(1) {
             let message = "is the simulator a second time: keep one".to_owned();
-            report(&format!("{list}[{at}].kind"), message);
+            report(&[&format!("{list}[{at}].kind")], message);
         }
     }
 }

@@ -179,6 +179,38 @@ mod tests {
         assert!(!timer[0].contains("identifier"), "{timer:?}");
     }
 
+    /// The number itself is refused, and no other one because of it.
+    #[test]
+    fn a_number_out_of_its_range_is_one_problem() {
+        for (text, expected) in [
+            (
+                "altitude_ft = -1e308\n",
+                "f:2: built-in.altitude_ft: is -1e308: choose 500 to 20000",
+            ),
+            (
+                "[loop]\nrate_hz = -1e308\n",
+                "f:3: loop.rate_hz: is -1e308: choose 20 to 2000",
+            ),
+            (
+                "[loop.early_wake]\nmax_us = -1e308\n",
+                "f:3: loop.early_wake.max_us: is -1e308: choose 1 to 10000",
+            ),
+            (
+                "[autopilot.envelope]\nmax_airspeed_kt = -1e308\n",
+                "f:3: autopilot.envelope.max_airspeed_kt: is -1e308: choose 10 to 600",
+            ),
+            (
+                "[autopilot.envelope]\nstall_airspeed_kt = 1e308\n",
+                "f:3: autopilot.envelope.stall_airspeed_kt: is 1e308: choose 5 to 300",
+            ),
+        ] {
+            assert_eq!(messages(text), [expected]);
+        }
+        let both = messages("altitude_ft = 500.0\nground_ft = 600.0\n");
+        let words = "f:3: built-in.ground_ft: is 600: choose less than altitude_ft, 500: ";
+        assert!(both[0].starts_with(words), "{both:?}");
+    }
+
     #[test]
     fn no_key_hides_a_later_error() {
         for key in [
