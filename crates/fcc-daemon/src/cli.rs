@@ -96,8 +96,8 @@ pub struct FlyArgs {
     /// Name of this flight for watchers [default: as configured]
     #[arg(long, value_name = "NAME")]
     pub instance: Option<Instance>,
-    /// Fly in lockstep: as fast as the machine can, not in real time; each tick
-    /// is still a period of the configured loop.rate_hz
+    /// Fly in lockstep: as fast as the machine can, not in real time; the
+    /// loop's rate stays the configured one
     #[arg(long)]
     pub lockstep: bool,
     /// Where to record

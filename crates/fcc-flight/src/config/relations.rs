@@ -2,6 +2,7 @@
 
 use fcc_core::flight::control::Envelope;
 
+use super::autopilot::EnvelopeSection;
 use super::{AutopilotSection, Config, SensorEntry};
 
 /// Of `SCHED_FIFO` (sched(7)).
@@ -163,6 +164,11 @@ fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&[&str], Strin
             at(&keys, value, range);
         }
     }
+    loads(envelope, &mut at);
+}
+
+/// Of the load factors in it.
+fn loads(envelope: &EnvelopeSection, at: &mut impl FnMut(&[&str], f64, String)) {
     let (load, limit_load) = (envelope.max_load_factor_g, envelope.limit_load_factor_g);
     if load > limit_load {
         at(
