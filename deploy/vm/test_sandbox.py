@@ -16,11 +16,11 @@ _RESULTS = "/var/lib/fccd/attempts"
 _UNIT = "/run/systemd/system/attempts.service"
 
 # Numbers of x86-64: mmap, unshare (syscalls(2)); PROT_READ | PROT_WRITE | PROT_EXEC, MAP_PRIVATE |
-# MAP_ANONYMOUS; CLONE_NEWUSER; AF_NETLINK (16), AF_PACKET (17).
+# MAP_ANONYMOUS; CLONE_NEWUSER; AF_ALG (38), AF_PACKET (17).
 _OF_ANY_USER = {
     "memory that is written and executed": "perl -e 'exit(syscall(9,0,4096,7,34,-1,0) == -1)'",
     "a namespace of users": "perl -e 'exit(syscall(272,0x10000000) == -1)'",
-    "a netlink socket": "perl -e 'socket(S,16,3,0) or exit 1'",
+    "a socket of the kernel's ciphers": "perl -e 'socket(S,38,5,0) or exit 1'",
     "a datagram to another network": "echo > /dev/udp/192.0.2.1/9",
     "processes of others": "test -e /proc/1/status",
 }

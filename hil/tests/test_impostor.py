@@ -44,6 +44,46 @@ while True:
         s.sendto(lie, ("127.0.0.1", port))
 """
 
+# Opens sockets of the simulator's port at other loopback addresses: the kernel lists the latest
+# first.
+CROWD = """
+import resource, socket, sys
+port, first, last = map(int, sys.argv[1:])
+_, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
+opened = []
+for number in range(first, last):
+    s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    s.bind((f"127.1.{number // 250}.{2 + number % 250}", port))
+    opened.append(s)
+print(len(opened), flush=True)
+sys.stdin.read()
+"""
+CROWD_SOCKETS = 16_000
+"""More rows than fccd reads of that list."""
+CROWD_PROCESSES = 4
+"""Each opens as many as a process usually may."""
+
+
+@contextlib.contextmanager
+def crowd(port: int) -> Iterator[None]:
+    """Let another user push this port's row out of what is read of the list of sockets."""
+    each = CROWD_SOCKETS // CROWD_PROCESSES
+    with contextlib.ExitStack() as stack:
+        processes = []
+        for first in range(0, CROWD_SOCKETS, each):
+            numbers = [str(number) for number in (port, first, first + each)]
+            words = [*as_user(NOBODY), sys.executable, "-I", "-u", "-c", CROWD, *numbers]
+            process = subprocess.Popen(
+                words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd="/"
+            )
+            processes.append(stack.enter_context(process))
+            stack.callback(process.kill)
+        for process in processes:
+            assert process.stdout is not None
+            assert int(process.stdout.readline()) == each
+        yield
+
 
 def ports_of(*processes: int) -> list[int]:
     """Return the UDP ports of these processes."""
@@ -140,3 +180,15 @@ def test_a_simulator_that_is_started_again_in_flight_is_flown_again(
                 assert not again.progress().overridden
     assert ending.exit_code == SUCCESS, ending.log
     assert ending.report["released"] is True
+
+
+def test_sockets_of_another_user_hide_no_port_of_the_simulator(fccd: Path, tmp_path: Path) -> None:
+    with flight(fccd, tmp_path) as (simulator, daemon):
+        engage(simulator, daemon)
+        with crowd(simulator.reply_port):
+            assert not is_over_within(daemon, 2.0 * ADOPTED_AFTER_S)
+            assert "nothing arrives" not in daemon.log
+            ending = daemon.end(signal.SIGTERM)
+        assert ending.exit_code == SUCCESS, ending.log
+        assert ending.report["released"] is True
+        assert not simulator.progress().overridden
