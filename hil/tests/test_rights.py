@@ -17,7 +17,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from daemon_under_test import DaemonUnderTest, assert_released, engage, write_config
+from daemon_under_test import (
+    DaemonUnderTest,
+    assert_released,
+    engage,
+    wait_until,
+    write_config,
+)
 from other_user import NOBODY, as_user, needs_two_users
 from test_service_unit import allowed_calls
 
@@ -71,6 +77,51 @@ def test_started_as_root_it_flies_as_the_user(fccd: Path, scratch: Path) -> None
     assert ending.exit_code == SUCCESS, ending.log
     (recording,) = (scratch / "recordings").glob("*.mcap")
     assert recording.stat().st_uid == NOBODY
+
+
+@needs_two_users
+@pytest.mark.parametrize("folder", ["mine", "link", "link/new"])
+def test_root_creates_no_folder_where_the_user_could_have_put_a_link(
+    fccd: Path, scratch: Path, folder: str
+) -> None:
+    """The user creates it itself; where it may not, nothing is created."""
+    home, roots = scratch / "home", scratch / "roots"
+    home.mkdir()
+    (home / "mine").mkdir()
+    roots.mkdir(mode=0o755)
+    (home / "link").symlink_to(roots)
+    for path in (home, home / "mine"):
+        os.chown(path, NOBODY, NOBODY)
+    recordings = home / folder / "recordings"
+    with flown_as_nobody(fccd, scratch, recordings) as daemon:
+        if folder == "mine":
+            wait_until(lambda: list(recordings.glob("*.mcap")) != [], "it records")
+            # Root creates it with mode 0750.
+            assert stat.S_IMODE(recordings.stat().st_mode) == 0o755
+        else:
+            daemon.wait_for("Permission denied (os error 13). Choose a writable folder")
+    assert list(roots.iterdir()) == []
+
+
+@needs_two_users
+def test_root_creates_the_folder_where_only_root_can(fccd: Path, scratch: Path) -> None:
+    recordings = scratch / "new" / "recordings"
+    with flown_as_nobody(fccd, scratch, recordings):
+        wait_until(lambda: list(recordings.glob("*.mcap")) != [], "it records")
+    assert recordings.parent.stat().st_uid == 0
+    assert recordings.stat().st_uid == NOBODY
+    assert stat.S_IMODE(recordings.stat().st_mode) == 0o750
+
+
+@contextlib.contextmanager
+def flown_as_nobody(fccd: Path, scratch: Path, recordings: Path) -> Iterator[DaemonUnderTest]:
+    with StandInProcess(Settings(port=0)) as simulator:
+        config = write_config(scratch, simulator.port, others='[rights]\nuser = "nobody"')
+        words: list[str | Path] = [fccd, "run", "--config", config, "--recordings", recordings]
+        with DaemonUnderTest([*words, "--json"], scratch) as daemon:
+            daemon.wait_for("was started as root, continues as user nobody (rights.user)")
+            yield daemon
+            daemon.end(signal.SIGTERM)
 
 
 def tasks(pid: int) -> list[str]:

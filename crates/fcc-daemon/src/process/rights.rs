@@ -7,16 +7,20 @@
 //! and locked memory; the service gets the same limits from systemd.
 
 use std::env;
-use std::fs::{self, DirBuilder};
-use std::io::{self, ErrorKind};
-use std::os::unix::fs::{DirBuilderExt, MetadataExt, chown};
+use std::fs;
+use std::io;
+use std::os::fd::OwnedFd;
+use std::os::unix::fs::MetadataExt;
 use std::os::unix::process::CommandExt;
-use std::path::Path;
+use std::path::{self, Component, Path, PathBuf};
 use std::process::Command;
 
 use fcc_flight::config::{Config, RightsSection};
+use nix::errno::Errno;
+use nix::fcntl::{OFlag, open, openat};
 use nix::sys::resource::{RLIM_INFINITY, Resource, getrlimit, rlim_t, setrlimit};
-use nix::unistd::{Group, User, geteuid, initgroups, setresgid, setresuid};
+use nix::sys::stat::{Mode, fstat, mkdirat};
+use nix::unistd::{Group, User, fchown, geteuid, initgroups, setresgid, setresuid};
 
 use crate::output;
 
@@ -27,6 +31,14 @@ const HIGHEST_PRIORITY: rlim_t = 99;
 const LOWEST_NICE: rlim_t = 40;
 /// The folders that systemd makes for the service.
 const RUN_FOLDERS: [&str; 2] = ["/run/fccd", "/run/fccd-commands"];
+/// Opens a folder, and no link.
+const FOLDER: OFlag = OFlag::O_DIRECTORY
+    .union(OFlag::O_NOFOLLOW)
+    .union(OFlag::O_CLOEXEC);
+/// The group, or all, may write.
+const OTHERS_WRITE: u32 = 0o022;
+/// Only its owner may rename or remove what is in such a folder.
+const STICKY: u32 = 0o1000;
 
 /// Why the rights of root could not be given up.
 #[derive(thiserror::Error, Debug)]
@@ -78,9 +90,14 @@ pub(crate) fn give_up(config: &Config) -> Result<(), RightsError> {
     let recordings = config.recording.enabled.then_some(&config.recording.folder);
     let folders = run_folders.iter().map(|folder| (Path::new(folder), 0o700));
     for (folder, mode) in folders.chain(recordings.map(|folder| (folder.as_path(), 0o750))) {
-        own(folder, mode, &user).map_err(|error| failed(&folder.display().to_string(), error))?;
+        create_for(&user, folder, mode)
+            .map_err(|error| failed(&folder.display().to_string(), error))?;
     }
     become_user(&user).map_err(|error| failed(name, error))?;
+    let used = run_folders.iter().map(Path::new);
+    for folder in used.chain(recordings.map(PathBuf::as_path)) {
+        tell_owner(folder, &user);
+    }
     output::message(format_args!(
         "was started as root, continues as user {name} (rights.user)"
     ));
@@ -127,29 +144,66 @@ fn raise_limits() {
     }
 }
 
-/// Creates a folder of the user, if it is missing. One that exists is left as it
-/// is: whose it is was decided by somebody else.
-fn own(folder: &Path, mode: u32, user: &User) -> io::Result<()> {
-    if let Some(parent) = folder.parent().filter(|of| !of.as_os_str().is_empty()) {
-        fs::create_dir_all(parent)?;
-    }
-    match DirBuilder::new().mode(mode).create(folder) {
-        Ok(()) => chown(folder, Some(user.uid.as_raw()), Some(user.gid.as_raw())),
-        Err(error) if error.kind() == ErrorKind::AlreadyExists => {
-            let owner = fs::metadata(folder)?.uid();
-            if owner != user.uid.as_raw() {
-                output::message(format_args!(
-                    "{} belongs to user {owner}, and this flight's files to {}: if it cannot \
-                     write there, run chown {} {}",
-                    folder.display(),
-                    user.name,
-                    user.name,
-                    folder.display()
-                ));
-            }
-            Ok(())
+/// Creates a folder of the user if it is missing, as root, where only root can
+/// put anything in its place. Elsewhere the user creates it later, with its own
+/// rights: a link there does not lead root to another folder.
+fn create_for(user: &User, folder: &Path, mode: u32) -> io::Result<()> {
+    let folder = path::absolute(folder)?;
+    let Some((parent, name)) = folder.parent().zip(folder.file_name()) else {
+        return Ok(());
+    };
+    let Some(parent) = of_root_alone(parent)? else {
+        return Ok(());
+    };
+    match mkdirat(&parent, name, Mode::from_bits_truncate(mode)) {
+        Ok(()) => {
+            let made = openat(&parent, name, FOLDER, Mode::empty())?;
+            Ok(fchown(made, Some(user.uid), Some(user.gid))?)
         }
-        Err(error) => Err(error),
+        Err(Errno::EEXIST) => Ok(()),
+        Err(errno) => Err(errno.into()),
+    }
+}
+
+/// Opens a folder in which only root can write, by way of folders whose entries
+/// only root can exchange, and by no link; creates what is missing. None if it
+/// is not such a folder.
+fn of_root_alone(path: &Path) -> io::Result<Option<OwnedFd>> {
+    let mut folder = open("/", FOLDER, Mode::empty())?;
+    for name in path.components().skip(1).map(Component::as_os_str) {
+        // With the sticky bit, as in `/tmp`, others cannot exchange what is root's.
+        let found = fstat(&folder)?;
+        let only_root_writes = found.st_mode & OTHERS_WRITE == 0;
+        if found.st_uid != 0 || !(only_root_writes || found.st_mode & STICKY != 0) {
+            return Ok(None);
+        }
+        let next = match openat(&folder, name, FOLDER, Mode::empty()) {
+            Err(Errno::ENOENT) if only_root_writes => {
+                mkdirat(&folder, name, Mode::from_bits_truncate(0o755))?;
+                openat(&folder, name, FOLDER, Mode::empty())
+            }
+            next => next,
+        };
+        let Ok(next) = next else { return Ok(None) };
+        folder = next;
+    }
+    let found = fstat(&folder)?;
+    Ok((found.st_uid == 0 && found.st_mode & OTHERS_WRITE == 0).then_some(folder))
+}
+
+/// Says whose an existing folder is, if it is another user's. It is left as it
+/// is: that was decided by somebody else.
+fn tell_owner(folder: &Path, user: &User) {
+    let Ok(found) = fs::metadata(folder) else {
+        return;
+    };
+    let (owner, folder) = (found.uid(), folder.display());
+    if owner != user.uid.as_raw() {
+        output::message(format_args!(
+            "{folder} belongs to user {owner}, and this flight's files to {0}: if it cannot write \
+             there, run chown {0} {folder}",
+            user.name
+        ));
     }
 }
 
