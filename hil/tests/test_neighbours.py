@@ -6,6 +6,7 @@ import contextlib
 import fcntl
 import os
 import random
+import resource
 import shutil
 import signal
 import subprocess
@@ -125,6 +126,24 @@ def test_no_exit_waits_for_a_helper_that_is_stopped(fccd: Path, tmp_path: Path, 
         assert_released(simulator)
         wait_until(lambda: not Path(f"/proc/{helper}").exists(), "it has ended, too")
     assert ending.exit_code == SUCCESS
+
+
+def test_a_helper_that_could_not_be_started_is_started_later(fccd: Path, tmp_path: Path) -> None:
+    """Descriptors are short when it ends."""
+    with flight(fccd, tmp_path) as (simulator, daemon):
+        engage(simulator, daemon)
+        most = resource.prlimit(daemon.pid, resource.RLIMIT_NOFILE)
+        resource.prlimit(daemon.pid, resource.RLIMIT_NOFILE, (0, most[1]))
+        (helper,) = daemon.helpers()
+        os.kill(helper, signal.SIGKILL)
+        words = daemon.wait_for("no release helper (")
+        assert "Too many open files" in words
+        assert "its start is tried again each second" in words
+        resource.prlimit(daemon.pid, resource.RLIMIT_NOFILE, most)
+        daemon.wait_for("the release helper, which could not be started before, was started")
+        assert len(daemon.helpers()) == 1
+        daemon.end(signal.SIGKILL)
+        wait_until(lambda: not simulator.progress().overridden, "it releases")
 
 
 def open_files(pid: int) -> set[str]:

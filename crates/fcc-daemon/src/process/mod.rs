@@ -3,6 +3,7 @@
 //! | module | what it does |
 //! |---|---|
 //! | `release_helper`, `release_handover` | a second process that releases the controls if this one is killed |
+//! | `kept_helper` | starts that process again if it has ended |
 //! | `told` | what that process is told, line by line |
 //! | `notice` | tells that process, and the plant's file, before control is taken |
 //! | `own_program` | starts this program again, as one of its helpers |
@@ -14,6 +15,7 @@
 //! | `signals` | the signals that end a flight, and those that must not |
 
 mod instance_lock;
+mod kept_helper;
 mod left_held;
 mod notice;
 mod own_program;
@@ -39,6 +41,7 @@ use fcc_telemetry::RunFolder;
 use crate::exit::Exit;
 use crate::output;
 use instance_lock::InstanceLock;
+use kept_helper::KeptHelper;
 use left_held::LeftHeld;
 pub(crate) use notice::Notice;
 #[cfg(fuzzing)]
@@ -57,10 +60,6 @@ pub use told::held_after;
 /// The interval of checks of the lock's file and, while control is held, for a
 /// release helper of an earlier daemon, which would release it.
 const CHECK_EVERY: Duration = Duration::from_secs(1);
-/// A helper that has just been started is not started again before this.
-const HELPER_AGAIN_AFTER: Duration = Duration::from_secs(1);
-/// A release helper that has ended is started again this often.
-const HELPERS_AGAIN: u32 = 5;
 
 /// This process, as the host of one flight.
 pub(crate) struct Process<'a> {
@@ -76,10 +75,7 @@ struct Plant {
     notice: &'static Notice,
     lock: InstanceLock,
     left_held: LeftHeld,
-    helper: Option<ReleaseHelper>,
-    helper_started: Instant,
-    /// How often it may still be started again.
-    helpers_again: u32,
+    helper: KeptHelper,
     was_held: bool,
     /// Where a plant's answers come from, as the helper knows it.
     answers: Option<(PlantId, u16)>,
@@ -110,7 +106,7 @@ impl Host for Process<'_> {
         if let Some(plant) = &mut self.plant
             && plant.lock.taken().is_none()
         {
-            plant.helper = start_helper(self.config, plant.notice, None);
+            plant.helper.start(self.config, plant.notice, None);
         }
         Ok(())
     }
@@ -157,11 +153,9 @@ impl Host for Process<'_> {
     }
 
     fn continues_release(&self) -> &'static str {
-        match &self.plant {
-            Some(Plant {
-                helper: Some(_), ..
-            }) => "; the release helper continues for two minutes",
-            _ => "",
+        match self.plant.as_ref().and_then(|plant| plant.helper.id()) {
+            Some(_) => "; the release helper continues for two minutes",
+            None => "",
         }
     }
 
@@ -170,9 +164,7 @@ impl Host for Process<'_> {
     fn end(&mut self, released: bool) {
         if let Some(plant) = self.plant.as_mut().filter(|_| released) {
             plant.notice.release(plant.notice.number());
-            if let Some(helper) = plant.helper.take() {
-                helper.end();
-            }
+            plant.helper.end();
             plant.lock.remove_files();
         }
     }
@@ -196,9 +188,7 @@ impl Plant {
             authority,
             notice,
             left_held: LeftHeld::new(&config.restart),
-            helper: None,
-            helper_started: now,
-            helpers_again: HELPERS_AGAIN,
+            helper: KeptHelper::none(),
             was_held: false,
             answers: None,
             checked: now,
@@ -238,7 +228,9 @@ impl Plant {
             self.checked = Instant::now();
             self.end_earlier_helper();
         }
-        self.replace_helper(config, held, report);
+        if self.lock.taken().is_none() && self.helper.keep(config, self.notice, held, report) {
+            self.answers = None;
+        }
         self.tell_helper_reply_port(held);
     }
 
@@ -258,42 +250,14 @@ impl Plant {
         let Some((plant, folder)) = self.authority.plant().zip(self.lock.folder()) else {
             return;
         };
-        let ours = self.helper.as_ref().map(ReleaseHelper::id);
-        match release_handover::end_helper(folder, &self.authority.unique(&plant), ours) {
+        let unique = self.authority.unique(&plant);
+        match release_handover::end_helper(folder, &unique, self.helper.id()) {
             Ok(false) => {}
             Ok(true) => output::message("the release helper of the previous daemon was ended"),
             Err(_) => output::message(
                 "the release helper of the previous daemon does not end: it may release the \
                  controls",
             ),
-        }
-    }
-
-    /// Starts the helper again if it has ended: it was killed, for example for
-    /// want of memory.
-    fn replace_helper(
-        &mut self,
-        config: &Config,
-        held: Option<PlantId>,
-        report: &mut dyn FnMut(String),
-    ) {
-        let is_young = self.helper_started.elapsed() < HELPER_AGAIN_AFTER;
-        if is_young || !self.helper.as_mut().is_some_and(ReleaseHelper::has_ended) {
-            return;
-        }
-        self.helper = None;
-        if self.helpers_again == 0 {
-            report(format!(
-                "the release helper has ended again, and is not started any more: {BY_HAND}"
-            ));
-            return;
-        }
-        self.helpers_again -= 1;
-        self.helper_started = Instant::now();
-        self.helper = start_helper(config, self.notice, held);
-        self.answers = None;
-        if self.helper.is_some() {
-            report("the release helper had ended, and was started again".to_owned());
         }
     }
 }

@@ -50,15 +50,25 @@ impl ReleaseHelper {
         held: Option<PlantId>,
     ) -> io::Result<Self> {
         let line = in_one_line(config)?;
-        let mut child = own_program("release-helper")
+        let child = own_program("release-helper")
             .stdin(Stdio::piped())
             .spawn()
             .map_err(not_started)?;
-        let mut pipe = child.stdin.take().ok_or(io::ErrorKind::BrokenPipe)?;
+        let mut this = Self { child };
+        match this.tell(&line, notice, held) {
+            Ok(()) => Ok(this),
+            Err(error) => {
+                this.end();
+                Err(error)
+            }
+        }
+    }
+
+    fn tell(&mut self, line: &str, notice: &Notice, held: Option<PlantId>) -> io::Result<()> {
+        let mut pipe = self.child.stdin.take().ok_or(io::ErrorKind::BrokenPipe)?;
         // The new pipe has room for it.
         writeln!(pipe, "{line}")?;
-        notice.add_helper(pipe, held)?;
-        Ok(Self { child })
+        notice.add_helper(pipe, held)
     }
 
     /// Its process number.
