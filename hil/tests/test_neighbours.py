@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import fcntl
 import os
 import random
@@ -39,6 +40,8 @@ TAKEN = 12
 CUT_OFF = "an earlier flight was cut off and may have left the controls held"
 KILLS = int(os.environ.get("FCCD_KILLS", "4"))
 """How many flights are killed; 100 take ten minutes: `make test-attacks`."""
+PR_SET_CHILD_SUBREAPER = 36
+"""See prctl(2)."""
 
 # Listens at abstract names with queues that are full: whoever connects waits.
 SQUATTER = """
@@ -126,6 +129,24 @@ def test_no_exit_waits_for_a_helper_that_is_stopped(fccd: Path, tmp_path: Path, 
         assert_released(simulator)
         wait_until(lambda: not Path(f"/proc/{helper}").exists(), "it has ended, too")
     assert ending.exit_code == SUCCESS
+
+
+def test_a_helper_that_is_stopped_releases_when_the_daemon_is_killed(
+    fccd: Path, tmp_path: Path
+) -> None:
+    """Also if the process that adopts it is of its session, as the first one of a container."""
+    libc = ctypes.CDLL(None, use_errno=True)
+    with contextlib.ExitStack() as after:
+        after.callback(libc.prctl, PR_SET_CHILD_SUBREAPER, 0, 0, 0, 0)
+        assert libc.prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0) == 0
+        with flight(fccd, tmp_path) as (simulator, daemon):
+            engage(simulator, daemon)
+            (helper,) = daemon.helpers()
+            os.kill(helper, signal.SIGSTOP)
+            daemon.end(signal.SIGKILL)
+            after.callback(os.waitpid, helper, 0)
+            after.callback(os.kill, helper, signal.SIGKILL)
+            assert_released(simulator)
 
 
 def test_a_helper_that_could_not_be_started_is_started_later(fccd: Path, tmp_path: Path) -> None:

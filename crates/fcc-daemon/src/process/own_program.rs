@@ -6,6 +6,7 @@ use std::os::unix::process::CommandExt;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
 
+use nix::sys::signal::Signal;
 use nix::sys::stat::{SFlag, fstat};
 use signal_hook::consts::{SIGABRT, SIGHUP, SIGINT, SIGQUIT, SIGTERM};
 
@@ -42,9 +43,14 @@ fn messages() -> Stdio {
 }
 
 /// What a helper does first, while nothing of its own is open: it closes what
-/// it inherited, and takes the program's name, which is that of the link.
+/// it inherited, and takes the program's name, which is that of the link. If it
+/// is stopped, the kernel continues it when the daemon ends.
 pub(crate) fn begin_helper() {
     close_inherited();
+    // On the end of the thread that started it, the daemon's main one. If that
+    // ended before this call, nothing is sent: this helper runs, and finds it out
+    // by its pipe.
+    let _ = nix::sys::prctl::set_pdeathsig(Signal::SIGCONT);
     let _ = nix::sys::prctl::set_name(c"fccd");
 }
 
