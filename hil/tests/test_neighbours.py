@@ -337,6 +337,67 @@ def test_a_run_folder_that_is_removed_in_flight_is_made_anew(fccd: Path, tmp_pat
             assert again.end(signal.SIGTERM).exit_code == SUCCESS
 
 
+def _can_mount() -> bool:
+    test = ["unshare", "--mount", "mount", "-t", "tmpfs", "tmpfs", "/mnt"]
+    return (
+        os.geteuid() == 0 and subprocess.run(test, capture_output=True, check=False).returncode == 0
+    )
+
+
+@contextlib.contextmanager
+def memory_to_fill(folder: Path) -> Iterator[Path]:
+    """Mount a little memory, and give the file that fills it."""
+    folder.mkdir()
+    subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", folder], check=True)
+    try:
+        yield folder / "filler"
+    finally:
+        subprocess.run(["umount", "--lazy", folder], check=True)
+
+
+def fill(filler: Path) -> None:
+    with contextlib.suppress(OSError), filler.open("wb", buffering=0) as file:
+        while True:
+            file.write(bytes(4096))
+
+
+@pytest.mark.skipif(not _can_mount(), reason="mounting is not permitted here")
+@pytest.mark.parametrize("fills", ["before the start", "before the takeover"])
+def test_what_is_held_is_stored_when_the_run_folder_is_full(
+    fccd: Path, tmp_path: Path, fills: str
+) -> None:
+    """What needs space is written before control is taken, and a failure is said."""
+    memory = tmp_path / "memory"
+    run = memory / "run"
+    environment = {"RUNTIME_DIRECTORY": str(run)}
+    without_telemetry = "[telemetry]\nenabled = false"
+    with memory_to_fill(memory) as filler:
+        run.mkdir(mode=0o700)
+        if fills == "before the start":
+            fill(filler)
+        with flight(fccd, tmp_path, others=without_telemetry, environment=environment) as (
+            simulator,
+            daemon,
+        ):
+            plant = f"X-Plane at 127.0.0.1:{simulator.port}"
+            if fills == "before the start":
+                cannot = daemon.wait_for(f"that {plant} is held cannot be stored (No space left")
+                assert "release the controls by hand" in cannot
+                filler.unlink()
+            daemon.wait_until_ready()
+            if fills == "before the takeover":
+                fill(filler)
+            engage(simulator, daemon)
+            daemon.send(signal.SIGSTOP)
+            _helper(daemon, random.Random(0))
+            daemon.end(signal.SIGKILL)
+            simulator.write(ENGAGE_SWITCH, 0.0)
+            with start(fccd, tmp_path, tmp_path / "fccd.toml", environment) as again:
+                assert "they are released" in again.wait_for(CUT_OFF)
+                wait_until(lambda: not simulator.progress().overridden, "they are")
+                assert again.end(signal.SIGTERM).exit_code == SUCCESS
+
+
 def test_a_place_that_another_daemon_took_meanwhile_is_said(fccd: Path, tmp_path: Path) -> None:
     run = tmp_path / "run"
     run.mkdir(mode=0o700)

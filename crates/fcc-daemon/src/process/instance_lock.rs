@@ -115,6 +115,7 @@ impl InstanceLock {
         let files = locked.and_then(|locked| Ok((locked, PlantFile::open(folder, &unique)?)));
         match files {
             Ok((locked, told)) => {
+                reserve(&told, plant);
                 self.notice.add_file(plant, told);
                 let file = Some(locked);
                 Claim::Locked { plant, file }
@@ -170,6 +171,7 @@ impl InstanceLock {
         let locked = locked
             .ok_or("another fccd locked it meanwhile; end one of them, or both write to it")?;
         let told = PlantFile::open(&folder, &unique).map_err(|error| error.to_string())?;
+        reserve(&told, plant);
         if !self.notice.replace_file(plant, told, held) {
             return Err("that happened too often".to_owned());
         }
@@ -197,5 +199,16 @@ impl InstanceLock {
                 release_handover::remove_file(folder, &self.authority.unique(plant));
             }
         }
+    }
+}
+
+/// Before control is taken: the loop's thread does not report what it cannot
+/// store.
+fn reserve(file: &PlantFile, plant: PlantId) {
+    if let Err(error) = file.reserve() {
+        output::message(format!(
+            "that {plant} is held cannot be stored ({error}): if this process and its release \
+             helper are both killed, release the controls by hand"
+        ));
     }
 }
