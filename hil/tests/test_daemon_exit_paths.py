@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import resource
 import signal
 import time
 from pathlib import Path
@@ -18,6 +19,7 @@ from fcc_hil.fly import ENGAGE_SWITCH
 # As in `fccd --help`.
 SUCCESS = 0
 FAILSAFE = 3
+NOT_RELEASED = 5
 PANICKED = 6
 
 
@@ -120,6 +122,30 @@ def test_a_killed_daemon_leaves_a_helper_that_centres_and_releases(
             "the helper's message",
         )
     assert ending.exit_code == -signal.SIGKILL
+
+
+def test_a_release_that_cannot_be_confirmed_for_want_of_descriptors_says_so(
+    fccd: Path, tmp_path: Path
+) -> None:
+    with flight(fccd, tmp_path) as (simulator, daemon):
+        engage(simulator, daemon)
+        most = resource.prlimit(daemon.pid, resource.RLIMIT_NOFILE)
+        resource.prlimit(daemon.pid, resource.RLIMIT_NOFILE, (0, most[1]))
+        ending = daemon.end(signal.SIGTERM)
+        assert_released(simulator)
+    assert ending.exit_code == NOT_RELEASED
+    assert (
+        f"X-Plane at 127.0.0.1:{simulator.port} could not be asked (Too many open files (os error "
+        "24)) to confirm the release of its controls; the release helper continues for two minutes"
+    ) in ending.events
+
+
+def test_a_stack_size_of_the_environment_has_no_effect(fccd: Path, tmp_path: Path) -> None:
+    with flight(fccd, tmp_path, environment={"RUST_MIN_STACK": "1"}) as (simulator, daemon):
+        engage(simulator, daemon)
+        ending = daemon.end(signal.SIGTERM)
+        assert_released(simulator)
+    assert ending.exit_code == SUCCESS
 
 
 def test_switching_off_releases_and_returns_to_standby(fccd: Path, tmp_path: Path) -> None:

@@ -4,11 +4,17 @@ from __future__ import annotations
 
 import json
 import os
+import signal
+import stat
 import subprocess
 from pathlib import Path
 
 import pytest
+from daemon_under_test import DaemonUnderTest, engage, wait_until, write_config
 from other_user import NOBODY, needs_two_users
+
+from fcc_hil.process import StandInProcess
+from fcc_hil.standin import Settings
 
 SUCCESS = 0
 USAGE = 2
@@ -40,6 +46,27 @@ def test_what_another_user_places_is_neither_followed_nor_deleted(
     assert victim.stat().st_size == 2_000_000
     assert link.is_symlink()
     assert pipe.is_fifo()
+
+
+def test_without_a_umask_others_may_write_nothing(fccd: Path, tmp_path: Path) -> None:
+    recordings = tmp_path / "new" / "recordings"
+    with StandInProcess(Settings(port=0)) as simulator:
+        config = write_config(tmp_path, simulator.port)
+        words: list[str | Path] = ["sh", "-c", 'umask 0; exec "$@"', "sh", fccd, "run"]
+        words += ["--config", config, "--recordings", recordings, "--json"]
+        with DaemonUnderTest(words, tmp_path) as daemon:
+            engage(simulator, daemon)
+            wait_until(lambda: list(recordings.glob("*.flight")) != [], "the flight's state")
+            modes = {
+                path.suffix: stat.S_IMODE(path.stat().st_mode)
+                for path in recordings.iterdir()
+                # Renamed at once.
+                if path.suffix != ".new"
+            }
+            assert daemon.end(signal.SIGTERM).exit_code == SUCCESS
+    assert modes == {".flight": 0o600, ".lock": 0o600, ".mcap": 0o644}
+    for folder in (recordings, recordings.parent):
+        assert stat.S_IMODE(folder.stat().st_mode) == 0o755
 
 
 @pytest.mark.parametrize(

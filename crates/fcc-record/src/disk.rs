@@ -2,10 +2,10 @@
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
-use std::os::unix::fs::MetadataExt as _;
+use std::os::unix::fs::{MetadataExt as _, OpenOptionsExt as _};
 use std::path::Path;
 
-use super::opening::{open, open_found, open_to_lock};
+use super::opening::{RECORDING, create_folder, open, open_found, open_to_lock};
 use fcc_telemetry::file_lock::{is_locked, try_lock};
 
 /// Where recordings are written.
@@ -58,6 +58,7 @@ impl Disk for FileSystem {
             .read(true)
             .append(true)
             .create_new(true)
+            .mode(RECORDING)
             .open(path)?;
         let _ = try_lock(&file);
         // Until its folder is synced, a loss of power removes the file's name.
@@ -109,20 +110,6 @@ pub(super) fn sync_folder_of(path: &Path) -> io::Result<()> {
         Err(error) if error.kind() == io::ErrorKind::InvalidInput => Ok(()),
         done => done,
     }
-}
-
-/// Creates a folder, and those that it is in, if it is missing.
-///
-/// # Errors
-/// The system's error.
-pub fn create_folder(path: &Path) -> io::Result<()> {
-    fs::create_dir_all(path).map_err(|error| match error.kind() {
-        io::ErrorKind::AlreadyExists | io::ErrorKind::NotADirectory => io::Error::new(
-            io::ErrorKind::NotADirectory,
-            "it is a file, or is below one: give the name of a folder",
-        ),
-        _ => error,
-    })
 }
 
 /// What writing gave; a reader that has left, as in `| head`, is no failure.

@@ -74,12 +74,12 @@ pub use about::About;
 pub use any_plant::{AnyPlantMessage, Unread};
 pub use crash::last_unfinished;
 pub use damage::Damage;
-pub use disk::{Disk, DiskFile, FileSystem, create_folder, create_output, unless_left};
+pub use disk::{Disk, DiskFile, FileSystem, create_output, unless_left};
 pub use end::End;
 pub use items::{Item, Items, Messages, RecordedMessage};
 pub use list::{Entry, Wholeness, entry, files, glance};
 pub use listed::Listed;
-pub use opening::{create_anew, open_lock, read_file, read_own_file};
+pub use opening::{create_anew, create_folder, open_lock, read_file, read_own_file};
 pub use reader::{OpenError, Recording, Verified};
 pub use recorded::{Recorded, Views};
 #[cfg(feature = "flight")]

@@ -3,9 +3,11 @@
 //! What is opened is examined, not the name: between the two another program
 //! could exchange the file. A pipe is opened without waiting for its writer.
 
-use std::fs::{self, File, Metadata, OpenOptions, Permissions};
+use std::fs::{self, DirBuilder, File, Metadata, OpenOptions, Permissions};
 use std::io::{self, ErrorKind, Read as _};
-use std::os::unix::fs::{MetadataExt as _, OpenOptionsExt as _, PermissionsExt as _};
+use std::os::unix::fs::{
+    DirBuilderExt as _, MetadataExt as _, OpenOptionsExt as _, PermissionsExt as _,
+};
 use std::path::Path;
 
 use nix::libc::{O_CLOEXEC, O_NOFOLLOW, O_NONBLOCK};
@@ -14,6 +16,8 @@ use nix::unistd::geteuid;
 const ROOT: u32 = 0;
 /// The mode of a file that nobody but its owner opens.
 const OF_OWNER: u32 = 0o600;
+/// The mode of a recording: whatever the umask is, only its owner may write it.
+pub(super) const RECORDING: u32 = 0o644;
 
 fn refused<T>(kind: ErrorKind, why: impl Into<String>) -> io::Result<T> {
     Err(io::Error::new(kind, why.into()))
@@ -138,16 +142,46 @@ pub fn open_lock(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-/// Creates a new file instead of one, or of a link, of this name.
+/// Creates a new file that nobody but its owner opens, instead of one, or of a
+/// link, of this name.
 ///
 /// # Errors
 /// The system's error.
 pub fn create_anew(path: &Path) -> io::Result<File> {
+    create_with(path, OF_OWNER)
+}
+
+/// The same, of a recording, which others may read.
+pub(super) fn create_recording_anew(path: &Path) -> io::Result<File> {
+    create_with(path, RECORDING)
+}
+
+fn create_with(path: &Path, mode: u32) -> io::Result<File> {
     match fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
         _ => {}
     }
-    File::create_new(path)
+    OpenOptions::new()
+        .write(true)
+        .create_new(true)
+        .mode(mode)
+        .open(path)
+}
+
+/// Creates a folder, and those above it that are missing. Whatever the umask
+/// is, nobody but the owner may write in them.
+///
+/// # Errors
+/// The system's error.
+pub fn create_folder(path: &Path) -> io::Result<()> {
+    let created = DirBuilder::new().recursive(true).mode(0o755).create(path);
+    created.map_err(|error| match error.kind() {
+        io::ErrorKind::AlreadyExists | io::ErrorKind::NotADirectory => io::Error::new(
+            io::ErrorKind::NotADirectory,
+            "it is a file, or is below one: give the name of a folder",
+        ),
+        _ => error,
+    })
 }
 
 #[cfg(test)]

@@ -19,6 +19,8 @@ use crate::recorded::Recorded;
 
 /// The name of a recorder's thread.
 const THREAD_NAME: &str = "fcc-recorder";
+/// Given explicitly, so that `RUST_MIN_STACK` does not change it.
+const STACK_BYTES: usize = 2 << 20;
 
 /// How long the end of a flight waits for the disk: a disk that hangs must not
 /// keep the program from ending.
@@ -78,6 +80,7 @@ impl<C: Recorded> RecorderOf<C> {
         };
         let thread = thread::Builder::new()
             .name(THREAD_NAME.to_owned())
+            .stack_size(STACK_BYTES)
             .spawn(write)
             .map_err(not_started)?;
         Ok(Self {

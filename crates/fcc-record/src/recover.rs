@@ -193,7 +193,7 @@ fn rewrite(
     mut go_on: impl FnMut(u64) -> bool,
 ) -> io::Result<Rewritten> {
     let mut raw = RawReader::new(opening::open(from)?)?;
-    let mut copy = Copy::begin(opening::create_anew(to)?).map_err(to_io)?;
+    let mut copy = Copy::begin(opening::create_recording_anew(to)?).map_err(to_io)?;
     let mut damages = damages.iter().peekable();
     let ending = loop {
         let damaged_at = match raw.next(|record| copy.take(&record)) {

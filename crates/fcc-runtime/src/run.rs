@@ -17,6 +17,8 @@ use crate::report::LoopReport;
 
 /// The name of a loop's own thread, as `top -H` and panic messages show it.
 pub const THREAD_NAME: &str = "fcc-loop";
+/// Given explicitly, so that `RUST_MIN_STACK` does not change it.
+const STACK_BYTES: usize = 2 << 20;
 
 /// A loop that has not started.
 ///
@@ -62,6 +64,7 @@ impl<C: Controller> Loop<C> {
         let stop = self.stop.clone();
         let thread = thread::Builder::new()
             .name(THREAD_NAME.to_owned())
+            .stack_size(STACK_BYTES)
             .spawn(move || self.run_there(&started))
             .map_err(|error| SpawnError::Thread(not_started(error)))?;
         match start.recv() {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use fcc_core::flight::Autopilot;
-use fcc_core::framework::{ControlAuthority, PlantId, Released, State};
+use fcc_core::framework::{ActuatorFault, ControlAuthority, PlantId, Released, State};
 use fcc_runtime::{Ending, Link, Loop, LoopReport, Machine, Parts, SpawnError, WatchdogConfig};
 use fcc_timer::{ManualTimer, RealtimeGranted, Timer, TimerError};
 
@@ -275,18 +275,24 @@ fn await_release(
     }
     let held = authority.and_then(|authority| authority.held().map(|plant| (authority, plant)));
     let confirmed = held.is_none_or(|(authority, plant)| {
-        let released = authority
-            .release(&plant, GIVE_BACK_WITHIN, &mut || false)
-            .unwrap_or(Released::Unconfirmed);
+        let released = authority.release(&plant, GIVE_BACK_WITHIN, &mut || false);
+        let unconfirmed = |what: &str| {
+            let continues = host.continues_release();
+            format!("{plant} {what} the release of its controls{continues}")
+        };
         observers.remark(match released {
-            Released::Confirmed => format!("{plant} confirmed the release of its controls"),
-            Released::Unreachable => format!("{plant} has ended, and nothing holds its controls"),
-            Released::Unconfirmed | Released::Cancelled => format!(
-                "{plant} did not confirm the release of its controls{}",
-                host.continues_release()
-            ),
+            Ok(Released::Confirmed) => format!("{plant} confirmed the release of its controls"),
+            Ok(Released::Unreachable) => {
+                format!("{plant} has ended, and nothing holds its controls")
+            }
+            Ok(Released::Unconfirmed | Released::Cancelled) => unconfirmed("did not confirm"),
+            Err(ActuatorFault::Io { errno }) => unconfirmed(&format!(
+                "could not be asked ({}) to confirm",
+                io::Error::from_raw_os_error(errno)
+            )),
+            Err(fault) => unconfirmed(&format!("could not be asked ({fault}) to confirm")),
         });
-        released.is_over()
+        released.is_ok_and(Released::is_over)
     });
     host.end(confirmed);
     LoopReport {

@@ -14,6 +14,8 @@ use super::state_file;
 
 /// How long the end of a flight waits for the disk.
 const PATIENCE: Duration = Duration::from_secs(2);
+/// Given explicitly, so that `RUST_MIN_STACK` does not change it.
+const STACK_BYTES: usize = 2 << 20;
 
 /// Writes the state file. Of several requests while the disk is busy, only the
 /// last is executed.
@@ -137,6 +139,7 @@ fn start_thread(path: PathBuf, desk: Arc<Requests>) -> io::Result<Receiver<Strin
     let (say, trouble) = mpsc::sync_channel(1);
     thread::Builder::new()
         .name("fcc-state".to_owned())
+        .stack_size(STACK_BYTES)
         .spawn(move || {
             let mut failing = false;
             while let Some(requested) = desk.next() {

@@ -16,7 +16,7 @@ mod saved;
 mod state_file;
 mod state_page;
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -296,7 +296,7 @@ fn prepare(path: &Path) -> Result<File, String> {
     if let Some(folder) = path.parent()
         && !folder.as_os_str().is_empty()
     {
-        fs::create_dir_all(folder)
+        fcc_record::create_folder(folder)
             .map_err(|error| message("its folder cannot be created", &error))?;
     }
     let lock = fcc_record::open_lock(&path.with_extension("flight.lock"))

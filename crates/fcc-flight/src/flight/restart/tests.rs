@@ -1,5 +1,6 @@
 //! The evaluation of a state file that is found at the start.
 
+use std::fs;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, AtomicU32, Ordering};
 
