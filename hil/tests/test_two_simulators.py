@@ -116,3 +116,24 @@ def test_another_user_who_announces_a_simulator_gets_no_aircraft_that_is_held(
             impostor.wait()
         ending = daemon.end(signal.SIGTERM)
     assert ending.report["released"] is True
+
+
+@needs_two_users
+def test_another_user_who_announces_a_simulator_before_the_first_contact_is_left_again(
+    fccd: Path, tmp_path: Path, beacon: tuple[str, int]
+) -> None:
+    """The real one has its turn after 2 s, and the other address is named."""
+    datagram = announcement(Dialect(121_000), NOT_THERE, "forged").hex()
+    words = [*as_user(NOBODY), sys.executable, "-I", "-c", ANNOUNCES, datagram]
+    with (
+        start(fccd, tmp_path, write_beacon_config(tmp_path)) as daemon,
+        subprocess.Popen([*words, beacon[0], str(beacon[1])], cwd="/") as impostor,
+    ):
+        try:
+            daemon.wait_for(f"X-Plane at 127.0.0.1:{NOT_THERE} does not answer")
+            with StandInProcess(Settings(port=0, beacon=beacon)) as simulator:
+                daemon.wait_for(f"X-Plane at 127.0.0.1:{simulator.port} answers")
+                engage(simulator, daemon)
+                assert daemon.end(signal.SIGTERM).exit_code == SUCCESS
+        finally:
+            impostor.kill()

@@ -71,6 +71,8 @@ pub struct XPlaneSensor<P: Port = UdpPort> {
     datagrams_per_tick: usize,
     silent_after: Duration,
     fallback_after: Duration,
+    /// When a beacon last led to another simulator.
+    chosen: Time,
     /// The first tick: until something arrives, silence is measured from here.
     began: Time,
     buffer: Box<[u8; BUFFER_BYTES]>,
@@ -106,6 +108,7 @@ impl<P: Port> XPlaneSensor<P> {
             datagrams_per_tick: usize::from(config.datagrams_per_tick),
             silent_after: config.silent_after,
             fallback_after: config.fallback_after,
+            chosen: Time::NEVER,
             began: Time::NEVER,
             buffer: Box::new([0; BUFFER_BYTES]),
             last_values: Box::new([0; BUFFER_BYTES]),

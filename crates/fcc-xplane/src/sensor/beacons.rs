@@ -1,6 +1,7 @@
 //! Simulators that are found by their beacons.
 
 use std::net::SocketAddr;
+use std::time::Duration;
 
 use fcc_core::framework::Time;
 
@@ -11,6 +12,10 @@ use crate::protocol::beacon;
 
 /// X-Plane sends about one beacon a second.
 const BEACONS_PER_TICK: usize = 4;
+/// A simulator that was chosen has this long to answer before another beacon is
+/// followed: one that announces itself much more often, and does not answer,
+/// leaves the others their turn.
+const ANSWERS_WITHIN: Duration = Duration::from_secs(2);
 
 impl<P: Port> XPlaneSensor<P> {
     /// Reads beacons: connects to the first simulator that computes a flight, and
@@ -25,6 +30,7 @@ impl<P: Port> XPlaneSensor<P> {
         if !waits {
             self.link.forget_announced();
         }
+        let may_leave = silent && now.since(self.chosen) > ANSWERS_WITHIN;
         let mut next = None;
         for _ in 0..BEACONS_PER_TICK {
             let Ok(Some((length, from))) = beacons.receive(self.buffer.as_mut_slice()) else {
@@ -41,14 +47,18 @@ impl<P: Port> XPlaneSensor<P> {
                 continue;
             }
             match known {
-                None => self.link.address.set_simulator(address),
+                None => {
+                    self.chosen = now;
+                    self.link.address.set_simulator(address);
+                }
                 // It may hang, and return with its controls held.
                 Some(_) if waits => self.link.set_announced(address),
-                Some(known) if silent => next = Some((known, address)),
+                Some(known) if may_leave => next = Some((known, address)),
                 Some(_) => {}
             }
         }
         if let Some((known, other)) = next {
+            self.chosen = now;
             self.leave(known, other);
         }
     }
