@@ -176,8 +176,8 @@ fn create_with(path: &Path, mode: u32) -> io::Result<File> {
 pub fn create_folder(path: &Path) -> io::Result<()> {
     let created = DirBuilder::new().recursive(true).mode(0o755).create(path);
     created.map_err(|error| match error.kind() {
-        io::ErrorKind::AlreadyExists | io::ErrorKind::NotADirectory => io::Error::new(
-            io::ErrorKind::NotADirectory,
+        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => io::Error::new(
+            ErrorKind::NotADirectory,
             "it is a file, or is below one: give the name of a folder",
         ),
         _ => error,

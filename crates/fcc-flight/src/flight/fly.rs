@@ -276,21 +276,25 @@ fn await_release(
     let held = authority.and_then(|authority| authority.held().map(|plant| (authority, plant)));
     let confirmed = held.is_none_or(|(authority, plant)| {
         let released = authority.release(&plant, GIVE_BACK_WITHIN, &mut || false);
-        let unconfirmed = |what: &str| {
-            let continues = host.continues_release();
-            format!("{plant} {what} the release of its controls{continues}")
-        };
+        let continues = host.continues_release();
         observers.remark(match released {
             Ok(Released::Confirmed) => format!("{plant} confirmed the release of its controls"),
             Ok(Released::Unreachable) => {
                 format!("{plant} has ended, and nothing holds its controls")
             }
-            Ok(Released::Unconfirmed | Released::Cancelled) => unconfirmed("did not confirm"),
-            Err(ActuatorFault::Io { errno }) => unconfirmed(&format!(
-                "could not be asked ({}) to confirm",
-                io::Error::from_raw_os_error(errno)
-            )),
-            Err(fault) => unconfirmed(&format!("could not be asked ({fault}) to confirm")),
+            Ok(Released::Unconfirmed | Released::Cancelled) => {
+                format!("{plant} did not confirm the release of its controls{continues}")
+            }
+            Err(fault) => {
+                let why = match fault {
+                    ActuatorFault::Io { errno } => io::Error::from_raw_os_error(errno).to_string(),
+                    other => other.to_string(),
+                };
+                format!(
+                    "{plant} could not be asked ({why}) to confirm the release of its \
+                     controls{continues}"
+                )
+            }
         });
         released.is_ok_and(Released::is_over)
     });
