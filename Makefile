@@ -74,7 +74,7 @@ test-python: faulty $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/systemd
 test-x-plane: build $(STAMPS)/python-module ## Run all steps of `fccd x-plane check` in full against the stand-in (3 minutes)
 	FCCD_FULL_CHECK=1 FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil/tests/test_x_plane_check.py
 
-ATTACKS := hil/tests/test_neighbours.py::test_whoever_is_killed_the_controls_are_released_in_the_end \
+ATTACKS := hil/tests/test_release_helper.py::test_whoever_is_killed_the_controls_are_released_in_the_end \
            hil/tests/test_shared_memory.py::test_whoever_damages_shared_memory_the_flight_goes_on
 
 test-attacks: build $(STAMPS)/python-module ## Kill daemon and helper 100 times, and damage shared memory 100 times, in flight (15 minutes)

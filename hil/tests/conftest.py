@@ -5,6 +5,7 @@ from __future__ import annotations
 import fcntl
 import os
 import signal
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -57,3 +58,12 @@ def faulty_fccd() -> Path:
         "cargo build --release -p fcc-daemon --features fault-injection "
         "--target-dir target/injection",
     )
+
+
+@pytest.fixture
+def scratch() -> Iterator[Path]:
+    """Give a folder that other users can enter; those of pytest are closed to them."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        folder.chmod(0o755)
+        yield folder

@@ -37,6 +37,7 @@ mod any_plant;
 mod chunk;
 mod crash;
 mod damage;
+mod description;
 mod disk;
 mod end;
 mod file;

@@ -56,7 +56,7 @@ pub(super) fn command(args: &CommandArgs) -> Result<Exit, Failure> {
                 WatchError::PerhapsAnothers(_) => {
                     ("One of another user".to_owned(), "USER".to_owned())
                 }
-                _ => return say(args, Exit::Failure, Err(error.to_string())),
+                _ => return print_result(args, Exit::Failure, Err(error.to_string())),
             };
             let why = format!(
                 "no fccd named '{}' runs here for this user. {which} is commanded with fccd \
@@ -68,11 +68,15 @@ pub(super) fn command(args: &CommandArgs) -> Result<Exit, Failure> {
         }
         Err(Refusal::OfOwn(error)) => (Exit::Failure, Err(error.to_string())),
     };
-    say(args, exit, result)
+    print_result(args, exit, result)
 }
 
 /// Prints the tick that carried the command out, or why none did.
-fn say(args: &CommandArgs, exit: Exit, result: Result<u64, String>) -> Result<Exit, Failure> {
+fn print_result(
+    args: &CommandArgs,
+    exit: Exit,
+    result: Result<u64, String>,
+) -> Result<Exit, Failure> {
     if args.json {
         let result = Sent {
             instance: args.instance.to_string(),

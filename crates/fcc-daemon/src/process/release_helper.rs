@@ -55,7 +55,7 @@ impl ReleaseHelper {
             .spawn()
             .map_err(not_started)?;
         let mut this = Self { child };
-        match this.tell(&line, notice, held) {
+        match this.configure(&line, notice, held) {
             Ok(()) => Ok(this),
             Err(error) => {
                 this.end();
@@ -64,7 +64,7 @@ impl ReleaseHelper {
         }
     }
 
-    fn tell(&mut self, line: &str, notice: &Notice, held: Option<PlantId>) -> io::Result<()> {
+    fn configure(&mut self, line: &str, notice: &Notice, held: Option<PlantId>) -> io::Result<()> {
         let mut pipe = self.child.stdin.take().ok_or(io::ErrorKind::BrokenPipe)?;
         // The new pipe has room for it.
         writeln!(pipe, "{line}")?;

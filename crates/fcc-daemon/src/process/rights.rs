@@ -96,7 +96,7 @@ pub(crate) fn give_up(config: &Config) -> Result<(), RightsError> {
     become_user(&user).map_err(|error| failed(name, error))?;
     let used = run_folders.iter().map(Path::new);
     for folder in used.chain(recordings.map(PathBuf::as_path)) {
-        tell_owner(folder, &user);
+        report_owner(folder, &user);
     }
     output::message(format_args!(
         "was started as root, continues as user {name} (rights.user)"
@@ -191,9 +191,9 @@ fn of_root_alone(path: &Path) -> io::Result<Option<OwnedFd>> {
     Ok((found.st_uid == 0 && found.st_mode & OTHERS_WRITE == 0).then_some(folder))
 }
 
-/// Says whose an existing folder is, if it is another user's. It is left as it
+/// Reports whose an existing folder is, if it is another user's. It is left as it
 /// is: that was decided by somebody else.
-fn tell_owner(folder: &Path, user: &User) {
+fn report_owner(folder: &Path, user: &User) {
     let Ok(found) = fs::metadata(folder) else {
         return;
     };

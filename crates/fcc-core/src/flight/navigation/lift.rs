@@ -2,10 +2,10 @@
 
 use libm::{asin, cos, sin, sqrt};
 
-use super::Path;
 use super::airspeed_reason::Doubt;
 use super::angle_monitor::{AngleMonitor, OtherAngles};
 use super::attitude::Orientation;
+use super::path::Path;
 use super::sample_tracker::is_current;
 use crate::blocks::{LowPass, limit, limit_abs};
 use crate::flight::{Measurements, SpecificForce};

@@ -23,6 +23,7 @@ mod marked_altitude;
 mod motion;
 mod motion_monitor;
 mod motion_witness;
+mod path;
 mod plausibility;
 mod replacement;
 mod resolution;
@@ -36,10 +37,7 @@ mod without_altimeter;
 
 use core::time::Duration;
 
-use libm::sqrt;
-
 use super::Measurements;
-use super::atmosphere::density_ratio;
 use crate::blocks::LowPass;
 use crate::framework::Time;
 use crate::units::{GRAVITY_MPS2, KNOT_MPS};
@@ -49,13 +47,13 @@ use airspeed_monitor::{AirspeedMonitor, MonitorInput};
 use altitude_monitor::AltitudeMonitor;
 use force_sample::{ForceSample, in_g};
 use motion_monitor::MotionMonitor;
+use path::{Density, Path};
 use sample_tracker::{SampleTracker, is_current};
 
 pub(crate) use agreement::Contradictions;
 pub use air_data::AirspeedChannel;
 pub(crate) use airspeed_reason::{Doubt, DoubtReason};
 pub use attitude::AttitudeChannel;
-use attitude::Orientation;
 pub use config::NavigationConfig;
 pub use estimate::{AirspeedSource, Estimate};
 pub(crate) use frozen::{Frozen, FrozenDetector, Known};
@@ -69,7 +67,6 @@ pub(crate) use replacement::{DERIVED_RATES_LATE_S, Lost, Replacement};
 pub(crate) use resolution::Resolutions;
 use upward::Upward;
 pub use vertical::VerticalChannel;
-use vertical::VerticalState;
 
 /// Computes an [`Estimate`] from measurements.
 ///
@@ -109,41 +106,6 @@ pub struct Navigation {
     side_force: LowPass,
     density: Density,
     estimate: Estimate,
-}
-
-/// Attitude and height, and what follows from them.
-#[derive(Clone, Copy, Debug)]
-struct Path<'a> {
-    orientation: &'a Orientation,
-    upward: Upward,
-    vertical: VerticalState,
-    /// √(density over its value at sea level).
-    sqrt_density: f64,
-}
-
-/// The air's density at the altitude for which it was computed last.
-#[derive(Clone, Copy, Debug)]
-struct Density {
-    altitude_m: f64,
-    sqrt_ratio: f64,
-}
-
-impl Density {
-    const AT_SEA_LEVEL: Self = Self {
-        altitude_m: 0.0,
-        sqrt_ratio: 1.0,
-    };
-
-    /// √(density over its value at sea level).
-    fn sqrt_ratio(&mut self, altitude_m: f64) -> f64 {
-        if altitude_m != self.altitude_m {
-            *self = Self {
-                altitude_m,
-                sqrt_ratio: sqrt(density_ratio(altitude_m)),
-            };
-        }
-        self.sqrt_ratio
-    }
 }
 
 impl Navigation {

@@ -2,9 +2,10 @@
 
 use libm::{cos, fabs, hypot, sin, sqrt};
 
+use super::Navigation;
+use super::path::Path;
 use super::sample_tracker::{NewSample, is_current};
 use super::scalar_update::{Covariance, State, add_variance, squared, update, variance};
-use super::{Navigation, Path};
 use crate::flight::Measurements;
 use crate::framework::Time;
 

@@ -2,13 +2,14 @@
 
 use libm::tan;
 
+use super::Navigation;
 use super::altitude_monitor::{self, AltitudeInput, Verdict};
 use super::attitude::Orientation;
+use super::path::Path;
 use super::sample_tracker::is_current;
 use super::scalar_update::squared;
 use super::upward::Upward;
 use super::vertical::VerticalState;
-use super::{Navigation, Path};
 use crate::blocks::limit_abs;
 use crate::flight::Measurements;
 use crate::framework::Time;
