@@ -69,21 +69,20 @@ impl Opened {
             return Err(WatchError::NoSharedMemory(words));
         }
         let access = services::access(&place.root).map_err(WatchError::NoSharedMemory)?;
-        // All at once: who publishes serves them together, each 20 ms. Those of
-        // another version have other names.
-        let info = INFO.watch::<Info>(&access, instance)?;
-        let infos = subscribe(&info, instance)?;
+        // Who publishes serves them in turn, each 20 ms: the information first, the
+        // columns last. With the information subscribed to after the other three,
+        // and the columns after it has arrived, all have arrived with the columns.
+        // Those of another version have other names.
         let records = RECORD.watch_slices(&access, instance);
         let records = records.and_then(|service| subscribe(&service, instance));
-        let columns = COLUMNS.watch_slices::<u8>(&access, instance);
-        let texts = columns.and_then(|service| Ok((subscribe(&service, instance)?, service)));
         let events = EVENT.watch(&access, instance);
         let events = events.and_then(|service| subscribe(&service, instance));
         let statuses = STATUS.watch(&access, instance);
         let statuses = statuses.and_then(|service| subscribe(&service, instance));
-        let info = first(&info, (place, instance), PATIENCE, || newest(&infos))?;
+        let info = read_info(&access, place, instance, PATIENCE)?;
         check_layout(&info, instance)?;
-        let (texts, columns) = texts?;
+        let columns = COLUMNS.watch_slices::<u8>(&access, instance)?;
+        let texts = subscribe(&columns, instance)?;
         let opened = Self {
             records: records?,
             events: events?,

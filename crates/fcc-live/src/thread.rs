@@ -314,14 +314,15 @@ impl Publishing {
         }
     }
 
-    /// Connects new watchers, and sends them the history.
+    /// Connects new watchers, and sends them the history: in the order that
+    /// they rely on.
     fn connect_watchers(&self) {
         if !self.paused {
             let _ = self.ports.infos.update_connections();
-            let _ = self.ports.columns.update_connections();
             let _ = self.ports.records.update_connections();
             let _ = self.ports.events.update_connections();
             let _ = self.ports.statuses.update_connections();
+            let _ = self.ports.columns.update_connections();
         }
     }
 
