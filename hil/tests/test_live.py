@@ -170,6 +170,25 @@ def test_python_reads_the_flight(fccd: Path, tmp_path: Path, instance: str) -> N
     assert [event["text"] for event in seen["events"]] == events
 
 
+def test_what_is_promised_at_once_is_there_on_a_busy_machine(
+    fccd: Path, tmp_path: Path, instance: str
+) -> None:
+    """The newest record and status, and the past events."""
+    busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(6)]
+    try:
+        with fly(fccd, tmp_path, instance) as daemon:
+            watch(instance, daemon)
+            for _ in range(40):
+                watcher = fcc.Watcher(instance)
+                assert "standby -> engaged" in [event.text for event in watcher.events()]
+                assert watcher.status(0.0) is not None
+                assert watcher.latest(0.0) is not None
+    finally:
+        for process in busy:
+            process.kill()
+            process.wait()
+
+
 def test_without_a_daemon_top_reports_it(fccd: Path, instance: str) -> None:
     asked = snapshot(fccd, instance)
     assert asked.returncode == FAILURE
