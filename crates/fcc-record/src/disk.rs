@@ -129,19 +129,21 @@ pub fn unless_left(written: io::Result<()>) -> io::Result<()> {
 /// # Errors
 /// The system's error, or that it is one of `inputs`.
 pub fn create_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> io::Result<File> {
-    let file = |path: &Path| fs::metadata(path).map(|file| (file.dev(), file.ino()));
-    if let Ok(there) = file(path)
-        && let Some(input) = inputs
-            .iter()
-            .find(|input| file(input.as_ref()).is_ok_and(|of| of == there))
-    {
-        let input = input.as_ref().display();
+    let mut inputs = inputs.iter().map(AsRef::as_ref);
+    if let Some(input) = inputs.find(|input| is_same_file(path, input)) {
+        let input = input.display();
         return Err(io::Error::new(
             io::ErrorKind::InvalidInput,
             format!("it is {input}, which this command uses, too: choose another name"),
         ));
     }
     File::create(path)
+}
+
+/// Whether both names lead to one file, also over a link.
+pub fn is_same_file(one: &Path, other: &Path) -> bool {
+    let identity = |path| fs::metadata(path).map(|file| (file.dev(), file.ino()));
+    identity(one).is_ok_and(|one| identity(other).is_ok_and(|other| other == one))
 }
 
 /// Locks a file against other writers until the returned value is dropped; none

@@ -75,7 +75,7 @@ pub use about::About;
 pub use any_plant::{AnyPlantMessage, Unread};
 pub use crash::last_unfinished;
 pub use damage::Damage;
-pub use disk::{Disk, DiskFile, FileSystem, create_output, unless_left};
+pub use disk::{Disk, DiskFile, FileSystem, create_output, is_same_file, unless_left};
 pub use end::End;
 pub use items::{Item, Items, Messages, RecordedMessage};
 pub use list::{Entry, Wholeness, entry, files, glance};

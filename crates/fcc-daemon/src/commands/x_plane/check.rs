@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 use std::fs::{self, OpenOptions};
 use std::io::{self, IsTerminal};
-use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
 
+use fcc_record::is_same_file;
 use fcc_xplane_check::{Report, Request, check as carry_out};
 
 use super::terminal::Terminal;
@@ -90,15 +90,6 @@ impl ReportFiles {
         }
         Ok(())
     }
-}
-
-/// Whether both names lead to one file, also over a link.
-fn is_same_file(one: &Path, other: &Path) -> bool {
-    let identity = |path| {
-        let file = fs::metadata(path).ok()?;
-        Some((file.dev(), file.ino()))
-    };
-    identity(one).is_some_and(|one| identity(other) == Some(one))
 }
 
 /// Writes the report and prints the summary.
