@@ -66,6 +66,28 @@ class Measurements:
         pilot_pitch: float = ...,
         pilot_roll: float = ...,
         pilot_yaw: float = ...,
+        raw_specific_force_x_mps2: float = ...,
+        raw_specific_force_y_mps2: float = ...,
+        raw_specific_force_z_mps2: float = ...,
+        raw_roll_rate_radps: float = ...,
+        raw_pitch_rate_radps: float = ...,
+        raw_yaw_rate_radps: float = ...,
+        magnetic_field_x_ut: float = ...,
+        magnetic_field_y_ut: float = ...,
+        magnetic_field_z_ut: float = ...,
+        static_pressure_pa: float = ...,
+        differential_pressure_pa: float = ...,
+        air_temperature_k: float = ...,
+        gnss_latitude_rad: float = ...,
+        gnss_longitude_rad: float = ...,
+        gnss_position_altitude_m: float = ...,
+        gnss_north_mps: float = ...,
+        gnss_east_mps: float = ...,
+        gnss_down_mps: float = ...,
+        gnss_horizontal_accuracy_m: float = ...,
+        gnss_vertical_accuracy_m: float = ...,
+        gnss_speed_accuracy_mps: float = ...,
+        range_m: float = ...,
     ) -> Measurements: ...
     @property
     def pitch_rad(self) -> float:
@@ -193,6 +215,138 @@ class Measurements:
 
     @pilot_yaw.setter
     def pilot_yaw(self, value: float) -> None: ...
+    @property
+    def raw_specific_force_x_mps2(self) -> float:
+        """Forward."""
+
+    @raw_specific_force_x_mps2.setter
+    def raw_specific_force_x_mps2(self, value: float) -> None: ...
+    @property
+    def raw_specific_force_y_mps2(self) -> float:
+        """Right."""
+
+    @raw_specific_force_y_mps2.setter
+    def raw_specific_force_y_mps2(self, value: float) -> None: ...
+    @property
+    def raw_specific_force_z_mps2(self) -> float:
+        """Down."""
+
+    @raw_specific_force_z_mps2.setter
+    def raw_specific_force_z_mps2(self, value: float) -> None: ...
+    @property
+    def raw_roll_rate_radps(self) -> float:
+        """P, about x: right wing down."""
+
+    @raw_roll_rate_radps.setter
+    def raw_roll_rate_radps(self, value: float) -> None: ...
+    @property
+    def raw_pitch_rate_radps(self) -> float:
+        """Q, about y: nose up."""
+
+    @raw_pitch_rate_radps.setter
+    def raw_pitch_rate_radps(self, value: float) -> None: ...
+    @property
+    def raw_yaw_rate_radps(self) -> float:
+        """R, about z: nose right."""
+
+    @raw_yaw_rate_radps.setter
+    def raw_yaw_rate_radps(self, value: float) -> None: ...
+    @property
+    def magnetic_field_x_ut(self) -> float:
+        """Forward."""
+
+    @magnetic_field_x_ut.setter
+    def magnetic_field_x_ut(self, value: float) -> None: ...
+    @property
+    def magnetic_field_y_ut(self) -> float:
+        """Right."""
+
+    @magnetic_field_y_ut.setter
+    def magnetic_field_y_ut(self, value: float) -> None: ...
+    @property
+    def magnetic_field_z_ut(self) -> float:
+        """Down."""
+
+    @magnetic_field_z_ut.setter
+    def magnetic_field_z_ut(self, value: float) -> None: ...
+    @property
+    def static_pressure_pa(self) -> float:
+        """Static pressure in Pa, from a barometer."""
+
+    @static_pressure_pa.setter
+    def static_pressure_pa(self, value: float) -> None: ...
+    @property
+    def differential_pressure_pa(self) -> float:
+        """Total minus static pressure in Pa, from a pitot tube."""
+
+    @differential_pressure_pa.setter
+    def differential_pressure_pa(self, value: float) -> None: ...
+    @property
+    def air_temperature_k(self) -> float:
+        """Temperature of the air outside in K."""
+
+    @air_temperature_k.setter
+    def air_temperature_k(self, value: float) -> None: ...
+    @property
+    def gnss_latitude_rad(self) -> float:
+        """North of the equator."""
+
+    @gnss_latitude_rad.setter
+    def gnss_latitude_rad(self, value: float) -> None: ...
+    @property
+    def gnss_longitude_rad(self) -> float:
+        """East of Greenwich."""
+
+    @gnss_longitude_rad.setter
+    def gnss_longitude_rad(self, value: float) -> None: ...
+    @property
+    def gnss_position_altitude_m(self) -> float:
+        """Above mean sea level, m."""
+
+    @gnss_position_altitude_m.setter
+    def gnss_position_altitude_m(self, value: float) -> None: ...
+    @property
+    def gnss_north_mps(self) -> float:
+        """Towards true north."""
+
+    @gnss_north_mps.setter
+    def gnss_north_mps(self, value: float) -> None: ...
+    @property
+    def gnss_east_mps(self) -> float:
+        """Towards east."""
+
+    @gnss_east_mps.setter
+    def gnss_east_mps(self, value: float) -> None: ...
+    @property
+    def gnss_down_mps(self) -> float:
+        """Down."""
+
+    @gnss_down_mps.setter
+    def gnss_down_mps(self, value: float) -> None: ...
+    @property
+    def gnss_horizontal_accuracy_m(self) -> float:
+        """Of the position, north and east, m."""
+
+    @gnss_horizontal_accuracy_m.setter
+    def gnss_horizontal_accuracy_m(self, value: float) -> None: ...
+    @property
+    def gnss_vertical_accuracy_m(self) -> float:
+        """Of the altitude, m."""
+
+    @gnss_vertical_accuracy_m.setter
+    def gnss_vertical_accuracy_m(self, value: float) -> None: ...
+    @property
+    def gnss_speed_accuracy_mps(self) -> float:
+        """Of each axis of the velocity, m/s."""
+
+    @gnss_speed_accuracy_mps.setter
+    def gnss_speed_accuracy_mps(self, value: float) -> None: ...
+    @property
+    def range_m(self) -> float:
+        """Distance in m to the ground or an obstacle, along the body's z axis."""
+
+    @range_m.setter
+    def range_m(self, value: float) -> None: ...
     # </schema>
     @staticmethod
     def from_array(row: npt.ArrayLike) -> Measurements: ...
@@ -508,6 +662,149 @@ class Truth:
     # </schema>
     def __eq__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]
+
+@final
+class RawTruth:
+    """The truth that raw sensors measure, at one moment; 0 if not given."""
+
+    # <schema>
+    def __new__(
+        cls,
+        *,
+        time_s: float = ...,
+        pitch_rad: float = ...,
+        roll_rad: float = ...,
+        heading_rad: float = ...,
+        roll_rate_radps: float = ...,
+        pitch_rate_radps: float = ...,
+        yaw_rate_radps: float = ...,
+        specific_force_x_mps2: float = ...,
+        specific_force_y_mps2: float = ...,
+        specific_force_z_mps2: float = ...,
+        static_pressure_pa: float = ...,
+        differential_pressure_pa: float = ...,
+        air_temperature_k: float = ...,
+        latitude_rad: float = ...,
+        longitude_rad: float = ...,
+        position_altitude_m: float = ...,
+        north_mps: float = ...,
+        east_mps: float = ...,
+        down_mps: float = ...,
+        height_m: float = ...,
+        throttle: float = ...,
+    ) -> RawTruth: ...
+    @property
+    def time_s(self) -> float:
+        """Simulated time, s."""
+
+    @property
+    def pitch_rad(self) -> float:
+        """Nose above the horizon."""
+
+    @property
+    def roll_rad(self) -> float:
+        """Right wing down."""
+
+    @property
+    def heading_rad(self) -> float:
+        """True heading, rad."""
+
+    @property
+    def roll_rate_radps(self) -> float:
+        """P, about x: right wing down."""
+
+    @property
+    def pitch_rate_radps(self) -> float:
+        """Q, about y: nose up."""
+
+    @property
+    def yaw_rate_radps(self) -> float:
+        """R, about z: nose right."""
+
+    @property
+    def specific_force_x_mps2(self) -> float:
+        """Forward."""
+
+    @property
+    def specific_force_y_mps2(self) -> float:
+        """Right."""
+
+    @property
+    def specific_force_z_mps2(self) -> float:
+        """Down."""
+
+    @property
+    def static_pressure_pa(self) -> float:
+        """Static pressure, Pa."""
+
+    @property
+    def differential_pressure_pa(self) -> float:
+        """Total minus static pressure, Pa."""
+
+    @property
+    def air_temperature_k(self) -> float:
+        """Temperature of the undisturbed air, K."""
+
+    @property
+    def latitude_rad(self) -> float:
+        """North of the equator."""
+
+    @property
+    def longitude_rad(self) -> float:
+        """East of Greenwich."""
+
+    @property
+    def position_altitude_m(self) -> float:
+        """Above mean sea level, m."""
+
+    @property
+    def north_mps(self) -> float:
+        """Towards true north."""
+
+    @property
+    def east_mps(self) -> float:
+        """Towards east."""
+
+    @property
+    def down_mps(self) -> float:
+        """Down."""
+
+    @property
+    def height_m(self) -> float:
+        """Above the ground, m."""
+
+    @property
+    def throttle(self) -> float:
+        """Throttle after the engine's lag."""
+
+    # </schema>
+    def __eq__(self, other: object, /) -> bool: ...
+    __hash__: None  # type: ignore[assignment]
+
+@final
+class RawSensors:
+    """What raw sensors give of a true motion, with the errors of their data sheets.
+
+    `sensors` is "phone", the thesis' of 2011, or "board", a present one; `field_ut` is the
+    earth's magnetic field in microtesla, north, east and down.
+    """
+
+    def __new__(
+        cls,
+        sensors: str,
+        start: RawTruth,
+        *,
+        seed: int = 1,
+        field_ut: tuple[float, float, float] = (21.1, 0.0, 45.3),
+    ) -> RawSensors: ...
+    def step(self, truth: RawTruth) -> None:
+        """Take the samples from the last truth to this one, at most 1 s later."""
+
+    def read(self, into: Measurements) -> dict[str, float]:
+        """Write what arrived since the last time, NaN for what did not.
+
+        Returns when each reading arrived, in s, by its name.
+        """
 
 @final
 class Event:

@@ -1,4 +1,4 @@
-"""The commands `suite`, `margins`, `tune`, `soak` and `bench-flood`, and `campaign`."""
+"""The commands `suite`, `margins`, `tune`, `soak`, `bench-flood`, `raw`, and `campaign`."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from .aircraft import AIRCRAFT
 from .campaign import command as campaign
 from .printable import say
 from .progress import bar
+from .rig import FlightError
 from .soak import Soak, soak
 
 _LARGEST_SEEDS = 1_000
@@ -103,6 +104,17 @@ def add(commands: Any) -> None:
     margins.set_defaults(run=_margins)
     campaign.add(commands)
 
+    raw = commands.add_parser(
+        "raw", help="fly the timed pattern with raw sensors, and save their readings and the truth"
+    )
+    raw.add_argument(
+        "--sensors", choices=("phone", "board"), default="phone", help="(default: phone)"
+    )
+    raw.add_argument("--aircraft", choices=sorted(AIRCRAFT), default="c172p")
+    raw.add_argument("--seed", type=int, default=1, metavar="N", help="of all errors (default: 1)")
+    raw.add_argument("--out", type=Path, required=True, metavar="FILE", help="this file, .npz")
+    raw.set_defaults(run=_raw)
+
     tune = commands.add_parser("tune", help="search gains for an aircraft")
     tune.add_argument(
         "--aircraft",
@@ -173,6 +185,23 @@ def add(commands: Any) -> None:
         "--seconds", type=float, default=30.0, metavar="S", help="of each (%(default)s)"
     )
     floods.set_defaults(run=_flood)
+
+
+def _raw(options: argparse.Namespace) -> int:
+    from . import raw_flight  # noqa: PLC0415 - needs the module fcc, which others do not
+
+    try:
+        arrays = raw_flight.fly(options.sensors, aircraft=options.aircraft, seed=options.seed)
+    except FlightError as error:
+        say(f"{error}", to=sys.stderr)
+        return 1
+    raw_flight.save(options.out, arrays)
+    for name in sorted(name for name in arrays if name.endswith("_t_s")):
+        times_s = arrays[name]
+        rate_hz = (len(times_s) - 1) / (times_s[-1] - times_s[0])
+        say(f"{name.removesuffix('_t_s'):22} {len(times_s):6} readings, {rate_hz:5.1f} Hz")
+    say(f"written to {options.out}")
+    return 0
 
 
 def _suite(options: argparse.Namespace) -> int:

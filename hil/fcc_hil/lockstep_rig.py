@@ -15,6 +15,7 @@ from .lockstep import as_controls, as_surfaces, measurements
 from .noise import NoiseLevels, SensorNoise
 from .plant import STEPS_PER_SECOND, Plant
 from .quantities import SENSORS
+from .raw_sensors import RawSensors
 from .receiver import Receiver, ReceiverReadings
 from .rig import Event, FlightError
 from .standin import Settings
@@ -41,6 +42,8 @@ class Conditions:
     """None if the velocity over the ground is not measured."""
     gust: Callable[[Plant], None] | None = None
     """Called before each tick, to move the air."""
+    raw_sensors: str | None = None
+    """The raw sensors that are recorded beside the others: phone or board."""
 
 
 class LockstepRig:
@@ -82,6 +85,11 @@ class LockstepRig:
             None
             if conditions.actuation == _AT_ONCE
             else Servos(conditions.actuation, plant.controls)
+        )
+        self.raw = (
+            RawSensors(plant, conditions.raw_sensors, seed=settings.seed)
+            if conditions.raw_sensors
+            else None
         )
         self.stick: tuple[float, float, float] | None = None
         """Where the pilot holds pitch, roll and yaw, -1 to 1; None if that is not measured."""
@@ -145,6 +153,8 @@ class LockstepRig:
         else:
             stand = plant.controls
             values = measurements(measured)
+            if self.raw is not None:
+                self.raw.read(values)
             if velocity is not None:
                 values.north_mps, values.east_mps, values.down_mps = velocity
             if self.stick is not None:
@@ -171,12 +181,15 @@ class LockstepRig:
 
     def _move(self) -> None:
         """Advance the aircraft by a tick."""
-        if self._servos is None:
+        if self._servos is None and self.raw is None:
             self.plant.step(self._steps)
             return
         for _ in range(self._steps):
-            self.plant.write(self._servos.step(self._command))
+            if self._servos is not None:
+                self.plant.write(self._servos.step(self._command))
             self.plant.step()
+            if self.raw is not None:
+                self.raw.step()
 
 
 def _sensors_of(channels: frozenset[str]) -> list[str]:

@@ -16,7 +16,7 @@ import fcc
 STUB = Path(__file__).parents[2] / "crates/fcc-py/fcc.pyi"
 LONGEST = 80
 BEGIN, END = "    # <schema>\n", "    # </schema>\n"
-SETTABLE = (fcc.Measurements(), fcc.Surfaces())
+SETTABLE = (fcc.Measurements(), fcc.Surfaces(), fcc.RawTruth())
 """What is constructed from its values."""
 VALUES = (
     *SETTABLE,

@@ -19,10 +19,10 @@
 //! | service | what | history |
 //! |---|---|---|
 //! | `fcc/INSTANCE/info` | [`Info`]: who publishes, in which layout | 1 |
-//! | `fcc/INSTANCE/columns/v2` | the columns of a record | 1 |
-//! | `fcc/INSTANCE/record/v2` | the record of each tick | 1 |
-//! | `fcc/INSTANCE/event/v2` | [`Event`]: what happened once | 64 |
-//! | `fcc/INSTANCE/status/v2` | [`Status`]: each second, how the run stands | 1 |
+//! | `fcc/INSTANCE/columns/v3` | the columns of a record | 1 |
+//! | `fcc/INSTANCE/record/v3` | the record of each tick | 1 |
+//! | `fcc/INSTANCE/event/v3` | [`Event`]: what happened once | 64 |
+//! | `fcc/INSTANCE/status/v3` | [`Status`]: each second, how the run stands | 1 |
 //!
 //! Commands are sent the other way: a [`Commander`] uses the service
 //! `fcc/INSTANCE/command/v2` and receives the result.
@@ -82,4 +82,4 @@ pub use watcher::WatcherOf;
 
 /// The version of all layouts except [`Info`]'s. Increase it with every change
 /// of one of them, or of a field's meaning.
-pub const LAYOUT: u32 = 2;
+pub const LAYOUT: u32 = 3;

@@ -3,6 +3,7 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use fcc_core::flight::calibration::Calibration;
 use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Actuator, Sensor, Switch, Tick, Time};
 use fcc_flight::config::Aircraft;
@@ -25,6 +26,7 @@ pub(crate) struct PyAircraft {
 
 struct Inner {
     simulation: Simulation,
+    calibration: Option<Calibration>,
     measured: Measurements,
     tick: Tick,
     time_s: f64,
@@ -52,6 +54,7 @@ impl PyAircraft {
         Ok(Self {
             inner: Mutex::new(Inner {
                 simulation,
+                calibration: section.calibration.to_core(),
                 measured: Measurements::default(),
                 tick: Tick::default(),
                 time_s: 0.0,
@@ -70,6 +73,7 @@ impl PyAircraft {
         let mut inner = self.inner();
         let Inner {
             simulation,
+            calibration,
             measured,
             tick,
             time_s,
@@ -91,7 +95,10 @@ impl PyAircraft {
         simulation.sensor.sample(tick, measured).map_err(|_| {
             errors::FLIGHT.with("the aircraft is out of bounds: its state is not finite any more")
         })?;
-        Ok(PyMeasurements::from_core(measured))
+        Ok(match calibration {
+            Some(calibration) => PyMeasurements::from_core(&calibration.applied(measured)),
+            None => PyMeasurements::from_core(measured),
+        })
     }
 
     /// Its true state.

@@ -57,6 +57,8 @@ pub mod live;
 pub mod machine;
 #[cfg(feature = "flight")]
 mod navigate;
+#[cfg(feature = "flight")]
+mod raw_sensors;
 pub mod recordings;
 #[cfg(feature = "flight")]
 mod stepped;

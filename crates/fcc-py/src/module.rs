@@ -9,7 +9,7 @@ use pyo3::types::PyTuple;
 use crate::live;
 use crate::{
     aircraft, autopilot, blocks, config, errors, events, fleet, flight, formulas, machine,
-    navigate, recordings, structured, timers, values,
+    navigate, raw_sensors, recordings, structured, timers, values,
 };
 
 /// The flight control computer: its autopilot and aircraft in lockstep, its
@@ -35,6 +35,8 @@ fn fcc(module: &Bound<'_, PyModule>) -> PyResult<()> {
     values::register::<values::PySetpoints>(module)?;
     values::register::<values::PyEstimate>(module)?;
     values::register::<values::PyTruth>(module)?;
+    values::register::<values::PyRawTruth>(module)?;
+    module.add_class::<raw_sensors::PyRawSensors>()?;
     module.add_class::<events::PyEvent>()?;
     module.add_class::<config::PyConfig>()?;
     module.add_class::<autopilot::PyAutopilot>()?;

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::airframe::Airframe;
+use crate::raw::RawSensorSet;
 use crate::servos::Servos;
 use crate::trim::TrimError;
 use crate::turbulence::Severity;
@@ -34,12 +35,18 @@ pub struct SimConfig {
     pub longitude_rad: f64,
     /// Magnetic variation, rad, positive east.
     pub magnetic_variation_rad: f64,
+    /// Inclination of the earth's magnetic field, rad, positive down.
+    pub magnetic_inclination_rad: f64,
+    /// Strength of the earth's magnetic field, µT, 20..=70.
+    pub magnetic_strength_ut: f64,
     /// Steady wind.
     pub wind: Wind,
     /// Gusts, if any.
     pub gusts: Option<Severity>,
     /// Errors and delay of the sensors.
     pub sensors: SensorConfig,
+    /// The raw sensors, if there are any.
+    pub raw_sensors: Option<RawSensorSet>,
     /// When the engage switch is switched on and off.
     pub switch: SwitchScript,
     /// Longest step of the integration, s, 0.0001..=0.01: each tick is split
@@ -140,9 +147,13 @@ impl Default for SimConfig {
             latitude_rad: 0.0,
             longitude_rad: 0.0,
             magnetic_variation_rad: 0.0,
+            // Of middle latitudes.
+            magnetic_inclination_rad: 65.0 * DEGREE_RAD,
+            magnetic_strength_ut: 50.0,
             wind: Wind::default(),
             gusts: None,
             sensors: SensorConfig::default(),
+            raw_sensors: None,
             switch: SwitchScript {
                 on_at_s: Some(2.0),
                 off_at_s: None,
@@ -225,6 +236,8 @@ impl SimConfig {
             self.heading_rad, self.wind.from_rad => -TAU, TAU, "-6.284..=6.284 rad";
             self.latitude_rad => -1.4, 1.4, "-1.4..=1.4 rad";
             self.longitude_rad, self.magnetic_variation_rad => -PI, PI, "-π..=π rad";
+            self.magnetic_inclination_rad => -PI / 2.0, PI / 2.0, "-π/2..=π/2 rad";
+            self.magnetic_strength_ut => 20.0, 70.0, "20..=70 µT";
             self.wind.speed_mps => 0.0, 60.0, "0..=60 m/s";
             self.substep_s => 1e-4, 0.01, "0.0001..=0.01 s";
         }

@@ -60,4 +60,20 @@ pub enum Stream {
     Sensors = 0,
     /// Gusts.
     Gusts = 1,
+    /// The raw sensors, each by itself.
+    Accelerometer = 2,
+    /// See `Accelerometer`.
+    Gyroscope = 3,
+    /// See `Accelerometer`.
+    Magnetometer = 4,
+    /// See `Accelerometer`.
+    Barometer = 5,
+    /// See `Accelerometer`.
+    Pitot = 6,
+    /// See `Accelerometer`.
+    Thermometer = 7,
+    /// See `Accelerometer`.
+    Gnss = 8,
+    /// See `Accelerometer`.
+    Rangefinder = 9,
 }

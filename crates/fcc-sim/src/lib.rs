@@ -50,6 +50,7 @@ mod config;
 pub mod gauss;
 mod link;
 pub mod motion;
+mod raw;
 mod sensing;
 pub mod servos;
 mod simulation;
@@ -65,6 +66,7 @@ pub use config::{
     Channels, LONGEST_DELAY_MS, SensorConfig, SimConfig, SimError, SwitchScript, Wind,
 };
 pub use link::{SwitchHandle, TruthHandle};
+pub use raw::{AxisErrors, RawSensor, RawSensorSet, RawSensors, RawTruth};
 pub use simulation::{SimActuator, SimSensor, Simulation};
 pub use trim::{Trim, TrimError, trim};
 pub use truth::Truth;

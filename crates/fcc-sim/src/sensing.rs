@@ -4,12 +4,15 @@
 //! rounded to the sensor's resolution. The reading is stamped with the tick
 //! that received it: as on a real bus, the delay is unknown to the loop.
 
+use fcc_core::flight::atmosphere::differential_pressure_pa;
 use fcc_core::flight::{Attitude, BodyRates, Measurements, Position, SpecificForce, Velocity};
 use fcc_core::framework::{Reading, Time};
 use libm::{cos, round, sin, sqrt};
 
+use crate::atmosphere::Air;
 use crate::config::{Channels, SensorConfig, SimConfig};
 use crate::gauss::{Gauss, Stream};
+use crate::raw::{RawSensors, RawTruth};
 use crate::truth::{Truth, half_turn, turn};
 
 /// The sensors of one aircraft.
@@ -99,9 +102,65 @@ impl Sensors {
     }
 }
 
+/// The raw sensors of the built-in aircraft.
+#[derive(Clone, Debug)]
+pub(crate) struct BuiltInRaw {
+    sensors: RawSensors,
+    earth: LocalEarth,
+    ground_m: f64,
+}
+
+impl BuiltInRaw {
+    /// None if there are none.
+    pub(crate) fn new(config: &SimConfig, start: &Truth) -> Option<Self> {
+        let set = config.raw_sensors.as_ref()?;
+        let earth = LocalEarth::new(config.latitude_rad, config.longitude_rad);
+        let (sin_down, cos_down) = libm::sincos(config.magnetic_inclination_rad);
+        let (sin_east, cos_east) = libm::sincos(config.magnetic_variation_rad);
+        let field_ut = [cos_down * cos_east, cos_down * sin_east, sin_down]
+            .map(|share| config.magnetic_strength_ut * share);
+        let start = raw_truth(start, &earth, config.ground_m);
+        Some(Self {
+            sensors: RawSensors::new(set, config.seed, &start, field_ut),
+            earth,
+            ground_m: config.ground_m,
+        })
+    }
+
+    pub(crate) fn step(&mut self, truth: &Truth) {
+        self.sensors
+            .step(&raw_truth(truth, &self.earth, self.ground_m));
+    }
+
+    pub(crate) fn read(&mut self, now: Time, into: &mut Measurements) {
+        self.sensors.read(now, into);
+    }
+}
+
+fn raw_truth(truth: &Truth, earth: &LocalEarth, ground_m: f64) -> RawTruth {
+    let air = Air::at(truth.altitude_m);
+    RawTruth {
+        time_s: truth.time_s,
+        attitude: Attitude {
+            pitch_rad: truth.pitch_rad,
+            roll_rad: truth.roll_rad,
+        },
+        heading_rad: truth.heading_rad,
+        rates: truth.rates,
+        specific_force: truth.specific_force,
+        static_pressure_pa: air.pressure_pa,
+        differential_pressure_pa: differential_pressure_pa(truth.indicated_airspeed_mps),
+        air_temperature_k: air.temperature_k,
+        position: earth.position(truth.north_m, truth.east_m, truth.altitude_m),
+        velocity: truth.velocity,
+        height_m: truth.altitude_m - ground_m,
+        throttle: truth.throttle,
+    }
+}
+
 /// The flat earth, tangent to the WGS 84 ellipsoid where the flight begins.
 #[derive(Clone, Copy, Debug)]
-struct LocalEarth {
+pub(crate) struct LocalEarth {
     latitude_rad: f64,
     longitude_rad: f64,
     north_radius_m: f64,
@@ -110,7 +169,7 @@ struct LocalEarth {
 }
 
 impl LocalEarth {
-    fn new(latitude_rad: f64, longitude_rad: f64) -> Self {
+    pub(crate) fn new(latitude_rad: f64, longitude_rad: f64) -> Self {
         /// WGS 84: semi-major axis, m, and first eccentricity squared.
         const EQUATOR_M: f64 = 6_378_137.0;
         const ECCENTRICITY_2: f64 = 6.694_379_990_14e-3;
@@ -124,7 +183,16 @@ impl LocalEarth {
         }
     }
 
-    fn position(&self, north_m: f64, east_m: f64, altitude_m: f64) -> Position {
+    /// North and east of the origin, m; east by the shorter way.
+    pub(crate) fn north_east_m(&self, position: &Position) -> (f64, f64) {
+        let east_rad = half_turn(position.longitude_rad - self.longitude_rad);
+        (
+            (position.latitude_rad - self.latitude_rad) * self.north_radius_m,
+            east_rad * self.east_radius_m,
+        )
+    }
+
+    pub(crate) fn position(&self, north_m: f64, east_m: f64, altitude_m: f64) -> Position {
         Position {
             latitude_rad: self.latitude_rad + north_m / self.north_radius_m,
             longitude_rad: half_turn(self.longitude_rad + east_m / self.east_radius_m),

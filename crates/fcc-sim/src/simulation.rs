@@ -8,7 +8,7 @@ use fcc_core::framework::{Actuator, ActuatorFault, Reading, Sensor, SensorFault,
 use crate::aircraft::Aircraft;
 use crate::config::{SimConfig, SimError, SwitchScript};
 use crate::link::{SharedState, SwitchHandle, TruthHandle};
-use crate::sensing::{History, Sensors};
+use crate::sensing::{BuiltInRaw, History, Sensors};
 use crate::trim::Trim;
 
 /// One simulated aircraft, in the parts for a loop and its observers.
@@ -47,6 +47,7 @@ impl Simulation {
                 aircraft,
                 sensors: Sensors::new(config),
                 history: History::new(config.sensors.delay_ms, &start),
+                raw: BuiltInRaw::new(config, &start),
                 script: config.switch,
                 link,
             },
@@ -68,6 +69,7 @@ pub struct SimSensor {
     aircraft: Aircraft,
     sensors: Sensors,
     history: Option<History>,
+    raw: Option<BuiltInRaw>,
     script: SwitchScript,
     link: Arc<SharedState>,
 }
@@ -97,12 +99,19 @@ impl Sensor<Measurements> for SimSensor {
             .link
             .commands()
             .unwrap_or_else(|| self.aircraft.hands_off());
-        let history = &mut self.history;
+        let (history, raw) = (&mut self.history, &mut self.raw);
         let passed_s = self
             .aircraft
             .step_watched(&commands, tick.dt_s, |aircraft| {
+                if history.is_none() && raw.is_none() {
+                    return;
+                }
+                let truth = aircraft.truth();
                 if let Some(history) = history {
-                    history.store(&aircraft.truth());
+                    history.store(&truth);
+                }
+                if let Some(raw) = raw {
+                    raw.step(&truth);
                 }
             });
         if self.aircraft.has_diverged() {
@@ -120,6 +129,9 @@ impl Sensor<Measurements> for SimSensor {
             .as_ref()
             .map_or(truth, |history| history.delayed(&truth));
         self.sensors.measure(&measured, taken, into);
+        if let Some(raw) = &mut self.raw {
+            raw.read(taken, into);
+        }
         into.surfaces = Reading::new(commands, taken);
         into.engage_switch = Reading::new(self.switch(), taken);
         let state = if passed_s < tick.dt_s {

@@ -2,7 +2,7 @@
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::Surfaces;
+use super::{GnssFix, MagneticField, OtherControl, Plant, Surfaces};
 use crate::framework::{Reading, Switch};
 use crate::{readings, schema};
 
@@ -13,6 +13,10 @@ schema! {
     /// Control needs attitude, heading, body rates, specific force, airspeed
     /// and altitude, as in the thesis; position and ground velocity are for
     /// navigation, if there is a source, and are never needed for control.
+    ///
+    /// From field 16 on they are raw: what the parts of a small computer or a
+    /// phone give, in body axes after their [`Calibration`](super::calibration),
+    /// from which navigation computes the others. Control does not use them.
     ///
     /// ```
     /// use core::time::Duration;
@@ -77,6 +81,30 @@ schema! {
         /// surfaces.
         #[field(15, column = "pilot_*")]
         pub pilot_controls: Reading<PilotControls>,
+        /// Specific force from an accelerometer, its bias included.
+        #[field(16, column = "raw_specific_force_*")]
+        pub raw_specific_force: Reading<SpecificForce>,
+        /// Turn rates from a gyroscope, its bias included.
+        #[field(17, column = "raw_*")]
+        pub raw_body_rates: Reading<BodyRates>,
+        /// Magnetic field from a magnetometer.
+        #[field(18, column = "magnetic_field_*")]
+        pub magnetic_field: Reading<MagneticField>,
+        /// Static pressure in Pa, from a barometer.
+        #[field(19)]
+        pub static_pressure_pa: Reading<f64>,
+        /// Total minus static pressure in Pa, from a pitot tube.
+        #[field(20)]
+        pub differential_pressure_pa: Reading<f64>,
+        /// Temperature of the air outside in K.
+        #[field(21)]
+        pub air_temperature_k: Reading<f64>,
+        /// A fix of satellite navigation.
+        #[field(22, column = "gnss_*")]
+        pub gnss: Reading<GnssFix>,
+        /// Distance in m to the ground or an obstacle, along the body's z axis.
+        #[field(23)]
+        pub range_m: Reading<f64>,
     }
 }
 
@@ -96,6 +124,14 @@ readings!(Measurements {
     other_control: "other control",
     suspect: "suspect readings",
     pilot_controls: "the pilot's controls",
+    raw_specific_force: "raw acceleration",
+    raw_body_rates: "raw body rates",
+    magnetic_field: "magnetic field",
+    static_pressure_pa: "static pressure",
+    differential_pressure_pa: "differential pressure",
+    air_temperature_k: "air temperature",
+    gnss: "satellite navigation",
+    range_m: "range",
 });
 
 schema! {
@@ -220,60 +256,6 @@ schema! {
 }
 
 schema! {
-    /// A simulated plant's clock and state.
-    ///
-    /// ```
-    /// use fcc_core::flight::{Plant, PlantState};
-    ///
-    /// let plant = Plant { time_s: 12.5, state: PlantState::Paused };
-    /// assert_ne!(plant.state, PlantState::Running);
-    /// ```
-    #[derive(Clone, Copy, PartialEq, Debug, Default)]
-    pub struct Plant {
-        /// The plant's time in s. The loop integrates with it if there is one:
-        /// a simulator whose frame rate falls slows its time.
-        #[field(1)]
-        pub time_s: f64,
-        /// The plant's state.
-        #[field(2)]
-        pub state: PlantState,
-    }
-}
-
-schema! {
-    /// What acts on the controls besides this program, as far as a source can
-    /// tell.
-    ///
-    /// ```
-    /// use fcc_core::flight::OtherControl;
-    ///
-    /// let climbing_alone = OtherControl { autopilot: true, ..OtherControl::default() };
-    /// assert_ne!(climbing_alone, OtherControl::default());
-    /// ```
-    #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-    pub struct OtherControl {
-        /// Another autopilot moves the controls by its servos.
-        #[field(1)]
-        pub autopilot: bool,
-        /// Another autothrottle moves the throttles.
-        #[field(2)]
-        pub autothrottle: bool,
-        /// Another flight control computer determines the control surfaces.
-        #[field(3)]
-        pub fly_by_wire: bool,
-        /// Artificial stability, such as a yaw damper, adds to the controls.
-        #[field(4)]
-        pub stability: bool,
-        /// Another program writes the controls that this one writes.
-        #[field(5)]
-        pub writer: bool,
-        /// Thrust is reversed.
-        #[field(6)]
-        pub reverse_thrust: bool,
-    }
-}
-
-schema! {
     /// Readings that the other values of their source contradict.
     ///
     /// ```
@@ -325,35 +307,5 @@ impl PilotControls {
     pub fn is_valid(&self) -> bool {
         let axes = [self.pitch, self.roll, self.yaw];
         axes.iter().all(|axis| axis.abs() <= Self::MOST)
-    }
-}
-
-schema! {
-    /// The state of a simulated plant.
-    ///
-    /// ```
-    /// use fcc_core::flight::PlantState;
-    ///
-    /// assert_eq!(PlantState::from_number(1), Some(PlantState::Paused));
-    /// ```
-    pub enum PlantState {
-        /// Time runs.
-        Running = 0,
-        /// Halted by its user: outputs are held, nothing integrates.
-        Paused = 1,
-        /// It sends, but its clock has stopped although it is not paused.
-        Stalled = 2,
-        /// Time runs, slower than the wall clock or at a low frame rate.
-        Slow = 3,
-        /// Its clock jumped: it was restarted, reloaded or repositioned.
-        Jumped = 4,
-        /// It shows a recorded flight: what it measures is not its present
-        /// state, and nothing is sent to it.
-        Replaying = 5,
-        /// It took back the controls by itself, as when its aircraft is loaded
-        /// again.
-        Reloaded = 6,
-        /// Time runs more than twice as fast as the wall clock.
-        Fast = 7,
     }
 }

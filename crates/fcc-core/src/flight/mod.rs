@@ -19,6 +19,8 @@ pub mod inertial;
 mod measurements;
 pub mod navigation;
 pub mod orientation;
+mod plant;
+mod raw_readings;
 mod setpoints;
 mod surfaces;
 
@@ -28,8 +30,9 @@ pub use autopilot::{
     StickTakeover, flags,
 };
 pub use measurements::{
-    Attitude, BodyRates, Measurements, OtherControl, PilotControls, Plant, PlantState, Position,
-    SpecificForce, Suspect, Velocity,
+    Attitude, BodyRates, Measurements, PilotControls, Position, SpecificForce, Suspect, Velocity,
 };
+pub use plant::{OtherControl, Plant, PlantState};
+pub use raw_readings::{GnssFix, MagneticField};
 pub use setpoints::Setpoints;
 pub use surfaces::Surfaces;

@@ -92,6 +92,20 @@ impl Add<Duration> for Time {
     }
 }
 
+impl Sub<Duration> for Time {
+    type Output = Self;
+
+    /// Saturates; [`Time::NEVER`] stays [`Time::NEVER`], and no other instant
+    /// becomes it.
+    fn sub(self, span: Duration) -> Self {
+        if self.is_never() {
+            return self;
+        }
+        let nanos = i64::try_from(span.as_nanos()).unwrap_or(i64::MAX);
+        Self(self.0.saturating_sub(nanos).max(i64::MIN + 1))
+    }
+}
+
 impl Sub for Time {
     type Output = i64;
 
@@ -110,6 +124,7 @@ mod tests {
         assert_eq!(Time::from_nanos(0).since(Time::NEVER), Duration::MAX);
         assert_eq!(Time::NEVER.since(Time::NEVER), Duration::MAX);
         assert!((Time::NEVER + Duration::from_secs(1)).is_never());
+        assert!((Time::NEVER - Duration::from_secs(1)).is_never());
     }
 
     #[test]
@@ -126,5 +141,9 @@ mod tests {
             Time::from_nanos(i64::MAX) + Duration::MAX,
             Time::from_nanos(i64::MAX)
         );
+        let early = Time::from_nanos(i64::MIN + 5) - Duration::from_secs(1);
+        assert!(!early.is_never());
+        let ms = Duration::from_millis(1);
+        assert_eq!(Time::from_nanos(1_000_000) - ms, Time::from_nanos(0));
     }
 }

@@ -1,8 +1,12 @@
 //! `[built-in]`: the aircraft is the built-in one.
 
 use fcc_core::units::{FOOT_M, KNOT_MPS};
-use fcc_sim::{Channels, SensorConfig, Severity, SimConfig, SwitchScript, TrimError, Wind, trim};
+use fcc_sim::{
+    Channels, RawSensorSet, SensorConfig, Severity, SimConfig, SwitchScript, TrimError, Wind, trim,
+};
 use serde::{Deserialize, Serialize};
+
+use super::CalibrationSection;
 
 /// `[built-in]`.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -30,6 +34,24 @@ pub struct BuiltInSection {
     pub engage_at_s: f64,
     /// The seed: the same seed gives the same flight.
     pub seed: u64,
+    /// The raw sensors, in addition to those that give attitude and altitude.
+    pub raw_sensors: RawSensorsChoice,
+    /// The calibration of the raw sensors.
+    #[serde(skip_serializing_if = "CalibrationSection::is_default")]
+    pub calibration: CalibrationSection,
+}
+
+/// The raw sensors.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RawSensorsChoice {
+    /// None.
+    #[default]
+    None,
+    /// Those of the thesis' phone.
+    Phone,
+    /// Those of a present board.
+    Board,
 }
 
 /// The severity of the gusts (MIL-F-8785C).
@@ -71,6 +93,8 @@ impl Default for BuiltInSection {
             delay_ms: 0,
             engage_at_s: 2.0,
             seed: 1,
+            raw_sensors: RawSensorsChoice::None,
+            calibration: CalibrationSection::default(),
         }
     }
 }
@@ -129,6 +153,11 @@ impl From<&BuiltInSection> for SimConfig {
                 off_at_s: None,
             },
             seed: section.seed,
+            raw_sensors: match section.raw_sensors {
+                RawSensorsChoice::None => None,
+                RawSensorsChoice::Phone => Some(RawSensorSet::phone()),
+                RawSensorsChoice::Board => Some(RawSensorSet::board()),
+            },
             ..Self::default()
         }
     }

@@ -8,7 +8,7 @@ use fcc_xplane::{XPlaneConfig, XPlaneConfigError};
 use toml::de::DeValue;
 
 use super::places::Places;
-use super::{Config, Problem, SensorEntry, XPlaneSection, relations};
+use super::{Config, Problem, SensorEntry, XPlaneSection, calibration, relations};
 
 /// Key, smallest and largest value.
 const RANGES: &[(&str, f64, f64)] = &[
@@ -152,10 +152,14 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("built-in.seed", 0.0, 9e18),
 ];
 
+/// The ranges of all numeric keys, and of the numbers in lists.
+fn ranges() -> impl Iterator<Item = &'static (&'static str, f64, f64)> {
+    RANGES.iter().chain(calibration::RANGES)
+}
+
 /// Smallest and largest value of a numeric key.
 pub(super) fn range_of(key: &str) -> Option<(f64, f64)> {
-    RANGES
-        .iter()
+    ranges()
         .find(|(name, ..)| *name == key)
         .map(|(_, least, most)| (*least, *most))
 }
@@ -211,7 +215,7 @@ fn problem_at(places: &Places<'_>, key: &str, message: String) -> Problem {
 /// an error in a section or an entry hides no number in it.
 fn out_of_range(places: &Places<'_>) -> Vec<Problem> {
     let mut problems = Vec::new();
-    for (key, least, most) in RANGES {
+    for (key, least, most) in ranges() {
         for key in places_of(places, key) {
             let value = places.number(&key);
             if let Some(value) = value.filter(|value| !(*least..=*most).contains(value)) {
@@ -266,7 +270,8 @@ fn x_plane(
     Some(problem_at(places, &key, error.to_string()))
 }
 
-/// A key, and of `x-plane` also that of each sensor of that kind.
+/// A key, and of `x-plane` also that of each sensor of that kind; of a list the
+/// place of each entry.
 fn places_of(places: &Places<'_>, key: &str) -> Vec<String> {
     let (kind, name) = key.split_once('.').unwrap_or((key, ""));
     let entries = places.value("sensor").and_then(DeValue::as_array);
@@ -275,127 +280,13 @@ fn places_of(places: &Places<'_>, key: &str) -> Vec<String> {
         given.and_then(DeValue::as_str) == Some(kind)
     });
     let keys = of_kind.map(|at| format!("sensor[{at}].{name}"));
-    std::iter::once(key.to_owned()).chain(keys).collect()
+    let keys = std::iter::once(key.to_owned()).chain(keys);
+    let entries = |key: String| match places.value(&key).and_then(DeValue::as_array) {
+        Some(list) => (0..list.len()).map(|at| format!("{key}[{at}]")).collect(),
+        None => vec![key],
+    };
+    keys.flat_map(entries).collect()
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::config::{BudgetSection, BuiltInSection, CpuChoice};
-
-    fn check(config: &Config) -> Vec<Problem> {
-        let text = config.to_toml().unwrap();
-        super::check(config, &super::super::read::read(&text).places, &[])
-    }
-
-    /// A new key without a range would accept any value.
-    #[test]
-    fn every_number_has_a_range() {
-        let mut config = Config {
-            x_plane: Some(XPlaneSection::default()),
-            built_in: Some(BuiltInSection::default()),
-            ..Config::default()
-        };
-        config.realtime.cpu = Some(CpuChoice::Number(1));
-        config.engage.stick_takeover = Some(0.3);
-        config.realtime.cpu_dma_latency_us = Some(0);
-        let us = Some(1);
-        config.budget = BudgetSection {
-            tick_us: us,
-            sensors_us: us,
-            estimate_us: us,
-            guide_us: us,
-            control_us: us,
-            actuators_us: us,
-            failsafe_after: us,
-        };
-        let values = toml::Value::try_from(&config).unwrap();
-        let mut missing = Vec::new();
-        walk("", &values, &mut missing);
-        assert!(missing.is_empty(), "without a range: {missing:?}");
-    }
-
-    fn walk(prefix: &str, value: &toml::Value, missing: &mut Vec<String>) {
-        match value {
-            toml::Value::Table(table) => {
-                for (name, value) in table {
-                    let separator = if prefix.is_empty() { "" } else { "." };
-                    walk(&format!("{prefix}{separator}{name}"), value, missing);
-                }
-            }
-            toml::Value::Float(_) | toml::Value::Integer(_)
-                if !RANGES.iter().any(|(key, ..)| *key == prefix) =>
-            {
-                missing.push(prefix.to_owned());
-            }
-            _ => {}
-        }
-    }
-
-    #[test]
-    fn a_watchdog_has_a_priority_above_the_loop() {
-        let mut config = Config {
-            built_in: Some(BuiltInSection::default()),
-            ..Config::default()
-        };
-        config.realtime.priority = 99;
-        let [problem] = &check(&config)[..] else {
-            panic!("one problem");
-        };
-        assert!(
-            problem.message.contains("at most 98"),
-            "{}",
-            problem.message
-        );
-        config.watchdog.enabled = false;
-        assert_eq!(check(&config), Vec::new());
-    }
-
-    /// The numbers are in their ranges, and the aircraft cannot fly by them: the
-    /// engine does not suffice.
-    #[test]
-    fn the_built_in_aircraft_begins_where_it_can_fly_level() {
-        let problems = |altitude_ft, airspeed_kt| {
-            let config = Config {
-                built_in: Some(BuiltInSection {
-                    altitude_ft,
-                    airspeed_kt,
-                    ..BuiltInSection::default()
-                }),
-                ..Config::default()
-            };
-            let found = check(&config);
-            let texts = found.into_iter().map(|problem| {
-                assert_eq!(problem.key.as_deref(), Some("built-in.airspeed_kt"));
-                problem.message
-            });
-            texts.collect::<Vec<_>>()
-        };
-        for (altitude_ft, airspeed_kt, word) in [
-            (
-                12_000.0,
-                100.0,
-                "at 12000 ft level flight takes a throttle of",
-            ),
-            (3_000.0, 134.0, "is 134: at 3000 ft level flight takes"),
-            (3_000.0, 170.0, "is 170: choose 50 to 160"),
-        ] {
-            let [problem] = &problems(altitude_ft, airspeed_kt)[..] else {
-                panic!("one problem at {altitude_ft} ft, {airspeed_kt} kt");
-            };
-            assert!(problem.contains(word), "{problem}");
-        }
-        for (altitude_ft, airspeed_kt) in [(3_000.0, 110.0), (8_000.0, 100.0)] {
-            assert!(problems(altitude_ft, airspeed_kt).is_empty());
-        }
-    }
-
-    #[test]
-    fn the_defaults_are_in_range() {
-        let config = Config {
-            built_in: Some(BuiltInSection::default()),
-            ..Config::default()
-        };
-        assert_eq!(check(&config), Vec::new());
-    }
-}
+mod tests;

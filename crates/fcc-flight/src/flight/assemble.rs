@@ -13,6 +13,7 @@ use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation, TruthHandle};
 use fcc_xplane::{OpenError, XPlane, XPlaneAuthority, XPlaneConfig, XPlaneStatus};
 
+use super::calibrated::Calibrated;
 use super::control_override::ControlOverride;
 use super::event_log::EventLog;
 #[cfg(feature = "live")]
@@ -148,7 +149,10 @@ fn built_in(section: &BuiltInSection, ticks: usize) -> Result<Plant, AssemblyErr
     let simulation = Simulation::new(&SimConfig::from(section))?;
     let (sensor, truth) = tap(simulation.sensor, ticks);
     Ok(Plant {
-        sensors: vec![Box::new(sensor)],
+        sensors: vec![match section.calibration.to_core() {
+            Some(calibration) => Box::new(Calibrated::new(sensor, calibration)),
+            None => Box::new(sensor),
+        }],
         actuators: vec![Box::new(simulation.actuator)],
         truth: Some(truth),
         true_now: Some(simulation.truth),

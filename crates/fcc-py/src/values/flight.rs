@@ -3,7 +3,7 @@
 use fcc_core::flight::navigation::Estimate;
 use fcc_core::flight::{Measurements, Plant, PlantState, Setpoints, Surfaces};
 use fcc_core::framework::{Reading, Switch, Time};
-use fcc_sim::Truth;
+use fcc_sim::{RawTruth, Truth};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -16,7 +16,9 @@ values_class! {
     /// indicated airspeed in m/s, barometric altitude in m.
     ///
     /// NaN means not measured: the last value is kept and becomes older. A value
-    /// that no aircraft of this kind can reach is treated in the same way.
+    /// that no aircraft of this kind can reach is treated in the same way. The raw
+    /// readings, from `raw_specific_force_x_mps2` on, are recorded; control does
+    /// not use them.
     #[pyclass(name = "Measurements", module = "fcc")]
     struct PyMeasurements(Measurements)
         without ["surfaces", "engage_switch", "plant", "other_control", "suspect"],
@@ -78,6 +80,18 @@ values_class! {
     /// scoring, never for flying.
     #[pyclass(name = "Truth", module = "fcc", frozen)]
     struct PyTruth(Truth),;
+}
+
+values_class! {
+    /// The truth that raw sensors measure, at one moment; 0 if not given.
+    #[pyclass(name = "RawTruth", module = "fcc", frozen)]
+    struct PyRawTruth(RawTruth),;
+
+    #[new]
+    #[pyo3(signature = (**values))]
+    fn new(values: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        checked(from_keywords::<Self>(values)?.0).map(Self)
+    }
 }
 
 impl PyMeasurements {

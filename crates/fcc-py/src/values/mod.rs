@@ -14,6 +14,8 @@ pub use class::{
 #[cfg(feature = "flight")]
 pub(crate) use class::{as_row, from_row};
 #[cfg(feature = "flight")]
-pub(crate) use flight::{PyEstimate, PyMeasurements, PySetpoints, PySurfaces, PyTruth, with_plant};
+pub(crate) use flight::{
+    PyEstimate, PyMeasurements, PyRawTruth, PySetpoints, PySurfaces, PyTruth, with_plant,
+};
 pub(crate) use shape::Shape;
 pub use shape::checked;

@@ -163,7 +163,7 @@ mod tests {
     use fcc_core::framework::{Reading, Record, State, Tick, Time};
 
     use super::*;
-    use crate::schema::protobuf::{RowDecoder, encode};
+    use crate::schema::protobuf::{RowDecoder, decode, encode};
     use crate::schema::{read_words, write_words};
 
     type TestRecord = Record<Reading<f64>, (), f64, f64>;
@@ -203,6 +203,31 @@ mod tests {
         assert_eq!(row, own);
         assert_eq!(read_words::<TestRecord>(&row), Ok(record()));
         assert!(decoder.decode(&[9, 1], &mut row).is_err());
+
+        // Without a reading nothing is written of it.
+        let empty = TestRecord {
+            measurements: Reading::default(),
+            ..record()
+        };
+        let mut short = Vec::new();
+        encode(&empty, &mut short);
+        // Its key and length, and keys and values of value, time and source.
+        assert_eq!(message.len() - short.len(), 2 + 9 + 9 + 2);
+        row.fill(0);
+        decoder.decode(&short, &mut row).unwrap();
+        own.fill(0);
+        write_words(&empty, &mut own);
+        assert_eq!(row, own);
+        assert_eq!(decode::<TestRecord>(&short), Ok(empty));
+
+        // A zero that was taken at the clock's beginning is a reading.
+        let zero = TestRecord {
+            measurements: Reading::new(0.0, Time::from_nanos(0)),
+            ..record()
+        };
+        let mut message = Vec::new();
+        encode(&zero, &mut message);
+        assert_eq!(decode::<TestRecord>(&message), Ok(zero));
 
         let taken = &description.columns[description
             .columns

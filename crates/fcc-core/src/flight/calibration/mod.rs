@@ -1,9 +1,18 @@
-//! From what a sensor with three axes gives to body axes: mounting, bias, scale and
-//! misalignment.
+//! From what a sensor gives to what is measured: mounting, bias, scale,
+//! misalignment and delay.
+//!
+//! [`Calibration::applied`] is the only place in which they are applied: to the
+//! raw readings of one source, before anything else sees them. So every record
+//! has body axes, calibrated, at the time at which they were taken.
 
 mod mounting;
 
+use core::time::Duration;
+
 pub use mounting::{Direction, Mounting, MountingError, Rotation};
+
+use super::{BodyRates, MagneticField, Measurements, SpecificForce};
+use crate::framework::Reading;
 
 /// The calibration of a sensor with three axes.
 ///
@@ -30,6 +39,7 @@ pub use mounting::{Direction, Mounting, MountingError, Rotation};
 pub struct AxesCalibration {
     matrix: Rotation,
     bias: [f64; 3],
+    delay: Duration,
 }
 
 /// What a calibration of three axes consists of; the default changes nothing.
@@ -47,6 +57,8 @@ pub struct Axes {
     /// that of x and z, of z that of x and y; angles in rad, of soft iron
     /// ratios.
     pub misalignment: [f64; 6],
+    /// From the measured event to its arrival.
+    pub delay: Duration,
 }
 
 impl Default for Axes {
@@ -57,6 +69,7 @@ impl Default for Axes {
             bias: [0.0; 3],
             scale: [1.0; 3],
             misalignment: [0.0; 6],
+            delay: Duration::ZERO,
         }
     }
 }
@@ -74,6 +87,7 @@ impl AxesCalibration {
         Self {
             matrix: of.rotation.after(&of.mounting.rotation()).after(&shape),
             bias: of.bias,
+            delay: of.delay,
         }
     }
 
@@ -82,11 +96,155 @@ impl AxesCalibration {
         let [bx, by, bz] = self.bias;
         self.matrix.turned([x - bx, y - by, z - bz])
     }
+
+    fn reading<T: Copy + Default>(
+        &self,
+        measured: Reading<T>,
+        split: impl Fn(T) -> [f64; 3],
+        join: impl Fn([f64; 3]) -> T,
+    ) -> Reading<T> {
+        taken_or_never(Reading {
+            value: join(self.applied(split(measured.value))),
+            taken: measured.taken - self.delay,
+            ..measured
+        })
+    }
 }
 
 impl Default for AxesCalibration {
     fn default() -> Self {
         Self::new(&Axes::default())
+    }
+}
+
+/// The calibration of a sensor of one number: (measured - bias) · scale.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct ScalarCalibration {
+    /// What it gives where there is nothing, in its unit.
+    pub bias: f64,
+    /// The true value over what it gives.
+    pub scale: f64,
+    /// From the measured event to its arrival.
+    pub delay: Duration,
+}
+
+impl Default for ScalarCalibration {
+    fn default() -> Self {
+        Self {
+            bias: 0.0,
+            scale: 1.0,
+            delay: Duration::ZERO,
+        }
+    }
+}
+
+impl ScalarCalibration {
+    fn reading(&self, measured: Reading<f64>) -> Reading<f64> {
+        taken_or_never(Reading {
+            value: (measured.value - self.bias) * self.scale,
+            taken: measured.taken - self.delay,
+            ..measured
+        })
+    }
+}
+
+/// The calibration of the raw readings of one source; the default changes
+/// nothing.
+///
+/// ```
+/// use core::time::Duration;
+/// use fcc_core::flight::Measurements;
+/// use fcc_core::flight::calibration::{Calibration, ScalarCalibration};
+/// use fcc_core::framework::{Reading, Time};
+///
+/// let barometer = ScalarCalibration {
+///     bias: 30.0,
+///     delay: Duration::from_millis(20),
+///     ..ScalarCalibration::default()
+/// };
+/// let calibration = Calibration { static_pressure: barometer, ..Calibration::default() };
+/// let arrived = Time::from_nanos(500_000_000);
+/// let given = Measurements {
+///     static_pressure_pa: Reading::new(90_842.0, arrived),
+///     ..Measurements::default()
+/// };
+/// let taken = Time::from_nanos(480_000_000);
+/// let measured = calibration.applied(&given);
+/// assert_eq!(measured.static_pressure_pa, Reading::new(90_812.0, taken));
+/// ```
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Calibration {
+    /// Of the raw specific force, m/s².
+    pub accelerometer: AxesCalibration,
+    /// Of the raw body rates, rad/s.
+    pub gyroscope: AxesCalibration,
+    /// Of the magnetic field, µT.
+    pub magnetometer: AxesCalibration,
+    /// Of the static pressure, Pa.
+    pub static_pressure: ScalarCalibration,
+    /// Of the differential pressure, Pa.
+    pub differential_pressure: ScalarCalibration,
+    /// Of the air's temperature, K.
+    pub air_temperature: ScalarCalibration,
+    /// Of the range, m.
+    pub range: ScalarCalibration,
+    /// How late a fix of satellite navigation arrives.
+    pub gnss_delay: Duration,
+}
+
+impl Calibration {
+    /// The measurements of a source as it gives them, with its raw readings
+    /// calibrated. What is not raw is unchanged, and what was never taken stays
+    /// so.
+    pub fn applied(&self, given: &Measurements) -> Measurements {
+        let raw_specific_force = self.accelerometer.reading(
+            given.raw_specific_force,
+            |f| [f.x_mps2, f.y_mps2, f.z_mps2],
+            |[x_mps2, y_mps2, z_mps2]| SpecificForce {
+                x_mps2,
+                y_mps2,
+                z_mps2,
+            },
+        );
+        let raw_body_rates = self.gyroscope.reading(
+            given.raw_body_rates,
+            |r| [r.roll_radps, r.pitch_radps, r.yaw_radps],
+            |[roll_radps, pitch_radps, yaw_radps]| BodyRates {
+                roll_radps,
+                pitch_radps,
+                yaw_radps,
+            },
+        );
+        let magnetic_field = self.magnetometer.reading(
+            given.magnetic_field,
+            |m| [m.x_ut, m.y_ut, m.z_ut],
+            |[x_ut, y_ut, z_ut]| MagneticField { x_ut, y_ut, z_ut },
+        );
+        Measurements {
+            raw_specific_force,
+            raw_body_rates,
+            magnetic_field,
+            static_pressure_pa: self.static_pressure.reading(given.static_pressure_pa),
+            differential_pressure_pa: self
+                .differential_pressure
+                .reading(given.differential_pressure_pa),
+            air_temperature_k: self.air_temperature.reading(given.air_temperature_k),
+            range_m: self.range.reading(given.range_m),
+            gnss: Reading {
+                taken: given.gnss.taken - self.gnss_delay,
+                ..given.gnss
+            },
+            ..*given
+        }
+    }
+}
+
+/// A reading that was never taken has no value.
+fn taken_or_never<T: Default>(reading: Reading<T>) -> Reading<T> {
+    if reading.is_never() {
+        Reading::default()
+    } else {
+        reading
     }
 }
 

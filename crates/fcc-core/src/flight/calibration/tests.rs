@@ -1,5 +1,6 @@
 use super::*;
 use crate::flight::orientation::EulerAngles;
+use crate::framework::Time;
 
 fn near(found: [f64; 3], expected: [f64; 3], within: f64) {
     for (found, expected) in found.into_iter().zip(expected) {
@@ -77,4 +78,72 @@ fn the_order_is_that_of_the_documentation() {
     });
     // 3 along x: (3 - 1) · 2 to the right, which the roll turns down.
     near(calibration.applied([3.0, 0.0, 0.0]), [0.0, 0.0, 4.0], 1e-12);
+}
+
+#[test]
+fn every_raw_reading_is_calibrated_once_and_no_other() {
+    let (arrived, taken) = (Time::from_nanos(200_000_000), Time::from_nanos(80_000_000));
+    let late = Duration::from_millis(120);
+    let axes = AxesCalibration::new(&Axes {
+        scale: [3.0; 3],
+        delay: late,
+        ..Axes::default()
+    });
+    let scalar = ScalarCalibration {
+        bias: 1.0,
+        scale: 3.0,
+        delay: late,
+    };
+    let calibration = Calibration {
+        accelerometer: axes,
+        gyroscope: axes,
+        magnetometer: axes,
+        static_pressure: scalar,
+        differential_pressure: scalar,
+        air_temperature: scalar,
+        range: scalar,
+        gnss_delay: late,
+    };
+    assert_eq!(
+        calibration.applied(&Measurements::default()),
+        Measurements::default()
+    );
+    let force = |z_mps2| SpecificForce {
+        z_mps2,
+        ..SpecificForce::default()
+    };
+    let rates = |yaw_radps| BodyRates {
+        yaw_radps,
+        ..BodyRates::default()
+    };
+    let field = |y_ut| MagneticField {
+        y_ut,
+        ..MagneticField::default()
+    };
+    let processed = Measurements {
+        specific_force: Reading::new(force(-9.0), arrived),
+        body_rates: Reading::new(rates(0.5), arrived),
+        altitude_m: Reading::new(7.0, arrived),
+        ..Measurements::default()
+    };
+    let raw = |time, force, rates, field, scalar| Measurements {
+        raw_specific_force: Reading::new(force, time),
+        raw_body_rates: Reading::new(rates, time),
+        magnetic_field: Reading::new(field, time),
+        static_pressure_pa: Reading::new(scalar, time),
+        differential_pressure_pa: Reading::new(scalar, time),
+        air_temperature_k: Reading::new(scalar, time),
+        range_m: Reading::new(scalar, time),
+        gnss: Reading::new(crate::flight::GnssFix::default(), time),
+        ..processed
+    };
+    let given = raw(arrived, force(-3.0), rates(0.1), field(20.0), 5.0);
+    let expected = raw(taken, force(-9.0), rates(0.3), field(60.0), 12.0);
+    let measured = calibration.applied(&given);
+    assert!((measured.raw_body_rates.value.yaw_radps - 0.3).abs() < 1e-12);
+    let measured = Measurements {
+        raw_body_rates: expected.raw_body_rates,
+        ..measured
+    };
+    assert_eq!(measured, expected);
 }

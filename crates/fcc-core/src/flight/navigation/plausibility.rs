@@ -16,6 +16,7 @@ use crate::flight::{
     Attitude, BodyRates, Measurements, PilotControls, Plant, Position, SpecificForce, Surfaces,
     Velocity,
 };
+use crate::framework::schema::{Schema, in_range};
 use crate::framework::{Flags, Reading};
 
 /// The largest plausible speed, that of sound, m/s.
@@ -209,6 +210,7 @@ pub(crate) fn plausibility_gate(
         true, plant, true, true, pilot,
     ]
     .into_iter()
+    .chain(take_raw(good, new))
     .zip(0..)
     .fold(Flags::NONE, |all, (plausible, bit)| {
         all.with(Flags::bit(bit), plausible)
@@ -268,6 +270,27 @@ fn take_others(good: &mut Measurements, new: &Measurements) -> [bool; 6] {
     replace(&mut good.other_control, &new.other_control);
     replace(&mut good.suspect, &new.suspect);
     [angle, position, velocity, surfaces, plant, pilot]
+}
+
+/// Copies the raw readings: any number, in its range if one is declared. What
+/// uses them judges them further.
+fn take_raw(good: &mut Measurements, new: &Measurements) -> [bool; 8] {
+    fn taken<T: Schema>(good: &mut Reading<T>, new: &Reading<T>) -> bool {
+        new.is_never() || take(good, new, Duration::ZERO, in_range, |_, _, _| true)
+    }
+    [
+        taken(&mut good.raw_specific_force, &new.raw_specific_force),
+        taken(&mut good.raw_body_rates, &new.raw_body_rates),
+        taken(&mut good.magnetic_field, &new.magnetic_field),
+        taken(&mut good.static_pressure_pa, &new.static_pressure_pa),
+        taken(
+            &mut good.differential_pressure_pa,
+            &new.differential_pressure_pa,
+        ),
+        taken(&mut good.air_temperature_k, &new.air_temperature_k),
+        taken(&mut good.gnss, &new.gnss),
+        taken(&mut good.range_m, &new.range_m),
+    ]
 }
 
 /// Whether an airspeed can be that of an aircraft which had another one before it

@@ -10,7 +10,7 @@ pub struct Named<'a> {
 }
 
 /// The ends of names and their units; of two that fit, the longer comes first.
-const UNITS: [(&str, &str); 22] = [
+const UNITS: [(&str, &str); 23] = [
     ("_per_m", "1/m"),
     ("_radps2", "rad/s²"),
     ("_radps", "rad/s"),
@@ -21,6 +21,7 @@ const UNITS: [(&str, &str); 22] = [
     ("_hz", "Hz"),
     ("_ns", "ns"),
     ("_us", "µs"),
+    ("_ut", "µT"),
     ("_ms", "ms"),
     ("_pa", "Pa"),
     ("_kg", "kg"),

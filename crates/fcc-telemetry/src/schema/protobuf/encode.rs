@@ -3,7 +3,8 @@
 use fcc_core::framework::schema::{Field, Schema, Sink, Type, Value};
 use prost::encoding::{self, WireType, encode_key, encode_varint, encoded_len_varint};
 
-/// Appends a struct as a message.
+/// Appends a struct as a message. A reading that was never taken, and whose
+/// value is zero, is not in it.
 pub fn encode<T: Schema>(value: &T, into: &mut Vec<u8>) {
     value.visit(&mut Encoder {
         into,
@@ -25,29 +26,44 @@ struct Encoder<'a> {
 }
 
 struct Open {
+    /// Offset of its key.
+    key: usize,
     /// Offset of its first field.
     start: usize,
     /// Whether it is written even if empty, to select the field of a choice.
     is_choice: bool,
+    /// Whether a value in it is neither zero nor never.
+    has_value: bool,
 }
 
 impl Sink for Encoder<'_> {
     fn begin(&mut self, field: &'static Field) {
+        let key = self.into.len();
         if field.number > 0 {
             encode_key(field.number, WireType::LengthDelimited, self.into);
         }
         self.open.push(Open {
+            key,
             start: self.into.len(),
             is_choice: matches!(field.of, Type::Choice(_)),
+            has_value: false,
         });
     }
 
     /// A message is preceded by its length, which is known at its end.
     fn end(&mut self, field: &'static Field) {
-        let Some(Open { start, .. }) = self.open.pop() else {
+        let Some(ended) = self.open.pop() else {
             return;
         };
+        let Open { key, start, .. } = ended;
+        if let Some(around) = self.open.last_mut() {
+            around.has_value |= ended.has_value;
+        }
         if field.number == 0 {
+            return;
+        }
+        if !ended.has_value && matches!(field.of, Type::Struct(of) if of.is_reading) {
+            self.into.truncate(key);
             return;
         }
         let end = self.into.len();
@@ -60,6 +76,10 @@ impl Sink for Encoder<'_> {
     }
 
     fn value(&mut self, field: &'static Field, value: Value) {
+        let is_zero = value.is_never() || value.bits() == 0 && !matches!(value, Value::Instant(_));
+        if let Some(open) = self.open.last_mut() {
+            open.has_value |= !is_zero;
+        }
         let said_by_absence = !self.open.last().is_some_and(|open| open.is_choice);
         let (number, into) = (field.number, &mut *self.into);
         match value {

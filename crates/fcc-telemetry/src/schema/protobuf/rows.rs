@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use fcc_core::framework::Time;
+
 use super::decode::{DecodeError, Wire, split, unzigzag};
 use crate::schema::words::put;
 use crate::schema::{DescribedColumn, RecordDescription};
@@ -11,6 +13,8 @@ use crate::schema::{DescribedColumn, RecordDescription};
 pub struct RowDecoder {
     fields: Fields,
     bytes: usize,
+    /// The offsets of the times of readings: never, where there is no reading.
+    taken: Vec<usize>,
 }
 
 /// The fields of a message, by their numbers.
@@ -30,9 +34,19 @@ impl RowDecoder {
         for column in &description.columns {
             add(&mut fields, column, &column.numbers);
         }
+        let is_taken = |column: &&DescribedColumn| {
+            let reading = column.reading.as_deref();
+            let field = reading.and_then(|reading| column.path.strip_prefix(reading));
+            field == Some(".taken") && column.layout() == Some(('i', size_of::<u64>()))
+        };
+        let columns = description.columns.iter();
         Self {
             fields,
             bytes: description.row_bytes,
+            taken: columns
+                .filter(is_taken)
+                .map(|column| column.offset)
+                .collect(),
         }
     }
 
@@ -46,6 +60,10 @@ impl RowDecoder {
     /// # Errors
     /// When the bytes are not a message of this type.
     pub fn decode(&self, message: &[u8], row: &mut [u64]) -> Result<(), DecodeError> {
+        let never = Time::NEVER.as_nanos() as u64;
+        for offset in &self.taken {
+            put(row, *offset, size_of::<u64>(), never);
+        }
         fill(&self.fields, message, row).ok_or(DecodeError::Damaged)
     }
 }

@@ -1,0 +1,131 @@
+//! Raw sensors for a plant of one's own.
+
+use std::sync::{Mutex, PoisonError};
+
+use fcc_core::flight::Measurements;
+use fcc_core::framework::Time;
+use fcc_sim::{RawSensorSet, RawSensors, RawTruth};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::values::{PyMeasurements, PyRawTruth, Values as _, checked};
+
+/// What a phone's or a board's accelerometer, gyroscope, magnetometer,
+/// barometer, pitot tube and satellite navigation give of a true motion: with
+/// bias, drift, scale, misalignment, the engine's vibration, noise, resolution,
+/// clipping, delay and jitter. The same seed gives the same errors, to the last
+/// bit.
+///
+/// `sensors` is "phone", the thesis' of 2011, or "board", a present one;
+/// `field_ut` is the earth's magnetic field in µT, north, east and down.
+#[pyclass(name = "RawSensors", module = "fcc")]
+pub(crate) struct PyRawSensors {
+    inner: Mutex<Inner>,
+}
+
+struct Inner {
+    sensors: RawSensors,
+    now_s: f64,
+}
+
+#[pymethods]
+impl PyRawSensors {
+    #[new]
+    #[pyo3(signature = (sensors, start, *, seed = 1, field_ut = (21.1, 0.0, 45.3)))]
+    fn new(
+        sensors: &str,
+        start: &PyRawTruth,
+        seed: u64,
+        field_ut: (f64, f64, f64),
+    ) -> PyResult<Self> {
+        let set = match sensors {
+            "phone" => RawSensorSet::phone(),
+            "board" => RawSensorSet::board(),
+            other => {
+                return Err(PyValueError::new_err(format!(
+                    "sensors is '{other}': choose \"phone\" or \"board\""
+                )));
+            }
+        };
+        let (north, east, down) = field_ut;
+        let field_ut = [north, east, down];
+        if field_ut.iter().any(|axis| !axis.is_finite()) {
+            return Err(PyValueError::new_err("field_ut is not finite: give µT"));
+        }
+        let start: RawTruth = checked((*start).into())?;
+        Ok(Self {
+            inner: Mutex::new(Inner {
+                sensors: RawSensors::new(&set, seed, &start, field_ut),
+                now_s: start.time_s,
+            }),
+        })
+    }
+
+    /// Takes the samples from the last truth to this one, at most 1 s later;
+    /// between the two the motion is taken to be linear.
+    fn step(&self, truth: &PyRawTruth) -> PyResult<()> {
+        let truth: RawTruth = checked((*truth).into())?;
+        let mut inner = self.inner.lock().unwrap_or_else(PoisonError::into_inner);
+        let (before_s, now_s) = (inner.now_s, truth.time_s);
+        if !(0.0..=1.0).contains(&(now_s - before_s)) {
+            return Err(PyValueError::new_err(format!(
+                "time_s is {now_s}, after {before_s}: give a time up to 1 s later"
+            )));
+        }
+        inner.now_s = now_s;
+        inner.sensors.step(&truth);
+        Ok(())
+    }
+
+    /// Writes what arrived since the last time into measurements, NaN for what
+    /// did not, and returns when each reading arrived, in s, by its name: the
+    /// mean of its samples' arrivals.
+    fn read<'py>(
+        &self,
+        py: Python<'py>,
+        into: &Bound<'py, PyMeasurements>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let mut inner = self.inner.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut arrived = Measurements::default();
+        // The clock begins where the simulation does.
+        let now_s = inner.now_s;
+        let now = Time::from_nanos((now_s * 1e9) as i64);
+        inner.sensors.read(now, &mut arrived);
+        let raw: Measurements = PyMeasurements::from_core(&arrived).into();
+        let before: Measurements = (*into.borrow()).into();
+        PyMeasurements::assign(
+            into,
+            Measurements {
+                raw_specific_force: raw.raw_specific_force,
+                raw_body_rates: raw.raw_body_rates,
+                magnetic_field: raw.magnetic_field,
+                static_pressure_pa: raw.static_pressure_pa,
+                differential_pressure_pa: raw.differential_pressure_pa,
+                air_temperature_k: raw.air_temperature_k,
+                gnss: raw.gnss,
+                range_m: raw.range_m,
+                ..before
+            },
+        );
+        let times = PyDict::new(py);
+        for (name, taken) in [
+            ("raw_specific_force", arrived.raw_specific_force.taken),
+            ("raw_body_rates", arrived.raw_body_rates.taken),
+            ("magnetic_field", arrived.magnetic_field.taken),
+            ("static_pressure", arrived.static_pressure_pa.taken),
+            (
+                "differential_pressure",
+                arrived.differential_pressure_pa.taken,
+            ),
+            ("air_temperature", arrived.air_temperature_k.taken),
+            ("gnss", arrived.gnss.taken),
+            ("range", arrived.range_m.taken),
+        ] {
+            if !taken.is_never() {
+                times.set_item(name, taken.as_nanos() as f64 * 1e-9)?;
+            }
+        }
+        Ok(times)
+    }
+}
