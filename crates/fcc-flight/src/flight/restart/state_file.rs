@@ -194,6 +194,17 @@ mod tests {
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 
+    /// Seventeen digits that a parser may round to the next number.
+    #[test]
+    fn numbers_are_restored_to_the_last_bit() {
+        for n in 0..20_000_u32 {
+            let mut flown = saved(Mode::Hold, 3.5);
+            flown.resume.surfaces.aileron = f64::from(n).sqrt() / 142.0;
+            let again = decode(&encode(&flown).unwrap()).unwrap();
+            assert_eq!(again, flown, "{n}");
+        }
+    }
+
     #[test]
     fn a_device_and_a_large_file_are_refused() {
         let folder = tempfile::tempdir().unwrap();
