@@ -20,7 +20,7 @@ def check(root: Path, crate: str, version: str) -> subprocess.CompletedProcess[s
         f'[[package]]\nname = "{crate}"\nversion = "{version}"\n'
         'source = "registry+https://github.com/rust-lang/crates.io-index"\n'
     )
-    words = [sys.executable, root / "scripts/known-advisories"]
+    words: list[str | Path] = [sys.executable, root / "scripts/known-advisories"]
     return subprocess.run(words, capture_output=True, text=True, check=False, timeout=30)
 
 
