@@ -98,10 +98,10 @@ lint-rust: $(STAMPS)/rust
 	RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps --all-features
 
 lint-python: $(STAMPS)/python-module
-	$(PYTHON) -m ruff check hil deploy scripts/known-advisories
-	$(PYTHON) -m ruff check --config hil/pyproject.toml crates/fcc-py/fcc.pyi
-	$(PYTHON) -m ruff format --check hil deploy scripts/known-advisories
-	$(PYTHON) -m ruff format --config hil/pyproject.toml --check crates/fcc-py/fcc.pyi
+	$(PYTHON) -m ruff check hil deploy
+	$(PYTHON) -m ruff check --config hil/pyproject.toml crates/fcc-py/fcc.pyi scripts/known-advisories
+	$(PYTHON) -m ruff format --check hil deploy
+	$(PYTHON) -m ruff format --config hil/pyproject.toml --check crates/fcc-py/fcc.pyi scripts/known-advisories
 	cd hil && ../$(PYTHON) -m mypy
 	cd deploy/vm && MYPYPATH=../../hil/tests ../../$(PYTHON) -m mypy --config-file ../../hil/pyproject.toml .
 
