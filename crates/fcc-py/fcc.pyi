@@ -7,7 +7,7 @@ The parts between `<schema>` and `</schema>` follow from the schema:
 `FCC_UPDATE=1 python -m pytest hil/tests/test_fcc_stub.py` writes them anew.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any, Final, TypeAlias, final, overload
@@ -795,7 +795,7 @@ class RawSensors:
         start: RawTruth,
         *,
         seed: int = 1,
-        field_ut: tuple[float, float, float] = (21.1, 0.0, 45.3),
+        field_ut: tuple[float, float, float] = ...,
     ) -> RawSensors: ...
     def step(self, truth: RawTruth) -> None:
         """Take the samples from the last truth to this one, at most 1 s later."""
@@ -910,14 +910,16 @@ class Machine:
         missing: Sequence[str] = ...,
         readback: Surfaces | tuple[float, float, float, float] | None = None,
         switch: bool | None = None,
+        ages_s: Mapping[str, float] = ...,
     ) -> Surfaces | None:
         """One tick: the surfaces to set, or None while the loop does not hold the controls.
 
         `measurements` are those of the sensors, None if nothing arrives; `missing` names the
         readings that do not arrive in this tick: attitude, heading, body_rates,
-        specific_force, airspeed, altitude. `readback` is the position of throttle (0..1),
-        elevator, aileron and rudder (-1..1), None if the aircraft has none; `switch` the
-        engage switch, None if there is none.
+        specific_force, airspeed, altitude. `ages_s` says of readings, by their names, how
+        long before this tick they were taken (0 to 10 s). `readback` is the position of
+        throttle (0..1), elevator, aileron and rudder (-1..1), None if the aircraft has none;
+        `switch` the engage switch, None if there is none.
         """
 
     def engage(self) -> None: ...
@@ -1126,6 +1128,13 @@ def quaternion_from_euler(roll_rad: float, pitch_rad: float, heading_rad: float)
 def euler_from_quaternion(quaternion: npt.ArrayLike) -> tuple[float, float, float]: ...
 def body_to_earth(quaternion: npt.ArrayLike, vector: npt.ArrayLike) -> _Array: ...
 def earth_to_body(quaternion: npt.ArrayLike, vector: npt.ArrayLike) -> _Array: ...
+def calibrate(samples: npt.ArrayLike, strength: float) -> dict[str, Any]:
+    """Find bias, scale and misalignment by which all samples (n, 3) have one strength.
+
+    Gravity's in m/s2 of an accelerometer at rest, the field's in uT of a magnetometer. Raises
+    ValueError with the reason if there is none.
+    """
+
 def navigate(
     *,
     gyroscope: _Source | None = None,

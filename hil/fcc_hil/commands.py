@@ -104,16 +104,7 @@ def add(commands: Any) -> None:
     margins.set_defaults(run=_margins)
     campaign.add(commands)
 
-    raw = commands.add_parser(
-        "raw", help="fly the timed pattern with raw sensors, and save their readings and the truth"
-    )
-    raw.add_argument(
-        "--sensors", choices=("phone", "board"), default="phone", help="(default: phone)"
-    )
-    raw.add_argument("--aircraft", choices=sorted(AIRCRAFT), default="c172p")
-    raw.add_argument("--seed", type=int, default=1, metavar="N", help="of all errors (default: 1)")
-    raw.add_argument("--out", type=Path, required=True, metavar="FILE", help="this file, .npz")
-    raw.set_defaults(run=_raw)
+    _add_raw(commands)
 
     tune = commands.add_parser("tune", help="search gains for an aircraft")
     tune.add_argument(
@@ -187,20 +178,56 @@ def add(commands: Any) -> None:
     floods.set_defaults(run=_flood)
 
 
+def _add_raw(commands: Any) -> None:
+    raw = commands.add_parser(
+        "raw", help="fly the timed pattern with raw sensors, by them or beside others"
+    )
+    raw.add_argument(
+        "--sensors", choices=("phone", "board"), default="phone", help="(default: phone)"
+    )
+    raw.add_argument("--aircraft", choices=sorted(AIRCRAFT), default="c172p")
+    raw.add_argument("--seed", type=int, default=1, metavar="N", help="of all errors (default: 1)")
+    raw.add_argument(
+        "--navigation",
+        choices=("measured", "kalman", "thesis"),
+        default="measured",
+        help="fly by ideal sensors, or by attitude from the raw ones (default: measured)",
+    )
+    raw.add_argument("--out", type=Path, metavar="FILE", help="write readings and truth here, .npz")
+    raw.add_argument("--json", type=Path, metavar="FILE", help="write the figures here")
+    raw.set_defaults(run=_raw)
+
+
 def _raw(options: argparse.Namespace) -> int:
     from . import raw_flight  # noqa: PLC0415 - needs the module fcc, which others do not
 
     try:
-        arrays = raw_flight.fly(options.sensors, aircraft=options.aircraft, seed=options.seed)
+        flight = raw_flight.fly(
+            options.sensors,
+            navigation=options.navigation,
+            aircraft=options.aircraft,
+            seed=options.seed,
+        )
     except FlightError as error:
         say(f"{error}", to=sys.stderr)
         return 1
-    raw_flight.save(options.out, arrays)
+    arrays, worst, errors = flight.arrays, flight.score["worst"], flight.errors()
     for name in sorted(name for name in arrays if name.endswith("_t_s")):
         times_s = arrays[name]
         rate_hz = (len(times_s) - 1) / (times_s[-1] - times_s[0])
         say(f"{name.removesuffix('_t_s'):22} {len(times_s):6} readings, {rate_hz:5.1f} Hz")
-    say(f"written to {options.out}")
+    say(f"\nnavigation: {options.navigation}; RMS errors against the truth, while engaged")
+    for name, figure in errors.items():
+        say(f"{name:22} {figure:6.2f}")
+    say(f"\n{len(flight.score['legs'])} legs, the worst of each")
+    for name, value in worst.items():
+        say(f"{name:22} {value:6.2f}" if isinstance(value, float) else f"{name:22}  never")
+    if options.json is not None:
+        figures = {"navigation": options.navigation, "errors": errors, **flight.score}
+        options.json.write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
+    if options.out is not None:
+        raw_flight.save(options.out, arrays)
+        say(f"written to {options.out}")
     return 0
 
 

@@ -15,6 +15,7 @@ from .lockstep import as_controls, as_surfaces, measurements
 from .noise import NoiseLevels, SensorNoise
 from .plant import STEPS_PER_SECOND, Plant
 from .quantities import SENSORS
+from .raw_calibration import Calibration
 from .raw_sensors import RawSensors
 from .receiver import Receiver, ReceiverReadings
 from .rig import Event, FlightError
@@ -44,6 +45,10 @@ class Conditions:
     """Called before each tick, to move the air."""
     raw_sensors: str | None = None
     """The raw sensors that are recorded beside the others: phone or board."""
+    calibration: Calibration | None = None
+    """That of the raw sensors."""
+    without: frozenset[str] = frozenset()
+    """Readings that there are not, by their names."""
 
 
 class LockstepRig:
@@ -91,6 +96,8 @@ class LockstepRig:
             if conditions.raw_sensors
             else None
         )
+        self._calibration = conditions.calibration
+        self._without = conditions.without
         self.stick: tuple[float, float, float] | None = None
         """Where the pilot holds pitch, roll and yaw, -1 to 1; None if that is not measured."""
         self._switch = False
@@ -153,15 +160,17 @@ class LockstepRig:
         else:
             stand = plant.controls
             values = measurements(measured)
-            if self.raw is not None:
-                self.raw.read(values)
+            ages_s = {} if self.raw is None else self.raw.read(values)
+            if self._calibration is not None:
+                self._calibration.apply(values)
             if velocity is not None:
                 values.north_mps, values.east_mps, values.down_mps = velocity
             if self.stick is not None:
                 values.pilot_pitch, values.pilot_roll, values.pilot_yaw = self.stick
             surfaces = self.machine.step(
                 values,
-                missing=_sensors_of(channels) if channels else (),
+                missing=[*self._without, *_sensors_of(channels)],
+                ages_s=ages_s,
                 readback=as_surfaces(stand),
                 switch=self._switch,
             )

@@ -1,12 +1,15 @@
-"""The timed pattern with raw sensors, as arrays: for navigation to be judged on.
+"""The timed pattern with raw sensors, in lockstep: flown by them, or recorded beside others.
 
+    python -m fcc_hil raw --sensors phone --navigation kalman
     python -m fcc_hil raw --sensors phone --out target/raw-phone.npz
 
-The autopilot flies by ideal sensors; the raw ones are read beside them, in lockstep.
+Flown by them, they are calibrated on the ground before (`raw_calibration`), and there are no
+others. The arrays are for navigation to be judged on.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import fcc
@@ -16,9 +19,12 @@ import numpy.typing as npt
 from .lockstep_rig import Conditions, LockstepRig
 from .pattern import TimedPattern
 from .plant import Plant, Weather
+from .raw_calibration import calibrate
 from .raw_sensors import DELAYS_S, FIELD_UT
 from .rig import FlightError
+from .score import Score, score
 from .standin import Settings
+from .units import FT_TO_M, KT_TO_MPS
 
 _LATITUDE_DEG = 45.0
 """Where navigation has a horizontal field and a convergence of meridians."""
@@ -26,8 +32,13 @@ _LATITUDE_DEG = 45.0
 _WEATHER = Weather(wind_from_deg=230.0, wind_kt=12.0, turbulence_severity=3)
 """A steady wind and light turbulence."""
 
-_STANDBY_S = 5.0
+_STANDBY_S = 20.0
 """Level flight in which navigation settles."""
+
+_MEASURED = frozenset(
+    {"attitude", "heading", "body_rates", "specific_force", "airspeed", "altitude"}
+)
+"""Readings of sensors that measure what control needs."""
 
 _NAMES = {
     "raw_body_rates": ("gyroscope", "radps"),
@@ -65,38 +76,92 @@ _TRUTH = (
 )
 """The values of the state that are kept; the heading is true."""
 
+_ESTIMATE = ("roll_rad", "pitch_rad", "heading_rad", "altitude_m", "airspeed_mps")
+"""The values of navigation's estimate that are kept."""
+
 Arrays = dict[str, npt.NDArray[np.float64]]
 
 
-def fly(sensors: str, *, aircraft: str = "c172p", legs: int = 8, seed: int = 1) -> Arrays:
-    """Fly the timed pattern; return the raw readings and the truth.
+@dataclass(frozen=True)
+class RawFlight:
+    """A flight of the timed pattern."""
 
-    Of each sensor `NAME_t_s`, when its readings arrived, `NAME_UNIT`, (n,) or (n, m), and
-    `NAME_delay_s`, what is known of its delay; `truth_NAME`, a row per tick; `field_ut`, the
-    earth's magnetic field, north, east and down. Raises FlightError.
+    arrays: Arrays
+    score: Score
+
+    def errors(self) -> dict[str, float]:
+        """Return the RMS errors of navigation while the pattern was flown."""
+        arrays = self.arrays
+        flown = arrays["truth_time_s"] >= arrays["engaged_s"]
+
+        def rms(name: str, unit: float) -> float:
+            error = (arrays[f"estimate_{name}"] - arrays[f"truth_{name}"])[flown]
+            if unit == _DEGREE:
+                error = np.arctan2(np.sin(error), np.cos(error))
+            return float(np.sqrt(np.mean(error**2)) / unit)
+
+        return {
+            "roll_deg": rms("roll_rad", _DEGREE),
+            "pitch_deg": rms("pitch_rad", _DEGREE),
+            "heading_deg": rms("heading_rad", _DEGREE),
+            "altitude_ft": rms("altitude_m", FT_TO_M),
+            "airspeed_kt": rms("airspeed_mps", KT_TO_MPS),
+        }
+
+
+_DEGREE = float(np.radians(1.0))
+
+
+def fly(
+    sensors: str,
+    *,
+    navigation: str = "measured",
+    aircraft: str = "c172p",
+    legs: int = 8,
+    seed: int = 1,
+) -> RawFlight:
+    """Fly the timed pattern; return the raw readings, the truth and the estimate.
+
+    `navigation` is `measured` for ideal sensors, or how attitude is computed from the raw ones:
+    `kalman`, `thesis`. Of each sensor there are `NAME_t_s`, when its readings arrived,
+    `NAME_UNIT`, (n,) or (n, m), and `NAME_delay_s`, what is known of its delay; `truth_NAME` and
+    `estimate_NAME`, a row per tick; `engaged_s`; `field_ut`, the earth's magnetic field, north,
+    east and down. Raises FlightError.
     """
     pattern = TimedPattern()
     plant = Plant(aircraft, seed=seed, weather=_WEATHER, latitude_deg=_LATITUDE_DEG)
-    machine = fcc.Machine('[guidance]\nmode = "timed-pattern"\n')
-    conditions = Conditions(raw_sensors=sensors)
+    north, east, down = FIELD_UT
+    machine = fcc.Machine(
+        '[guidance]\nmode = "timed-pattern"\n'
+        f'[navigation]\nmethod = "{navigation}"\nmagnetic_field_ut = [{north}, {east}, {down}]\n'
+    )
+    by_raw = navigation != "measured"
+    conditions = Conditions(
+        raw_sensors=sensors,
+        calibration=calibrate(sensors, seed, FIELD_UT) if by_raw else None,
+        without=_MEASURED if by_raw else frozenset(),
+    )
     rig = LockstepRig(Settings(aircraft=aircraft, seed=seed), plant, machine, conditions)
     truth: list[tuple[float, ...]] = []
+    estimate: list[tuple[float, ...]] = []
 
     def keep() -> bool:
-        state = plant.state()
+        state, found = plant.state(), machine.estimate
         truth.append(tuple(getattr(state, name) for name in _TRUTH))
+        estimate.append(tuple(getattr(found, name) for name in _ESTIMATE))
         return False
 
     rig.fly_to(rig.time_s + _STANDBY_S, keep)
     rig.set_switch(on=True)
-    rig.fly_to(rig.time_s + 1.0, keep)
+    engaged_s = rig.time_s
+    rig.fly_to(engaged_s + 1.0, keep)
     if not rig.holds_control:
         raise FlightError(f"not engaged: {', '.join(machine.engage_inhibits)}")
-    rig.fly_to(rig.time_s + pattern.duration_s(legs), keep)
+    rig.fly_to(engaged_s + pattern.duration_s(legs), keep)
     if rig.raw is None or not rig.holds_control:
         raise FlightError("the flight did not last to the end of the pattern")
 
-    arrays: Arrays = {"field_ut": np.array(FIELD_UT)}
+    arrays: Arrays = {"field_ut": np.array(FIELD_UT), "engaged_s": np.array(engaged_s)}
     for reading, rows in rig.raw.readings.items():
         name, unit = _NAMES[reading]
         if rows:
@@ -105,10 +170,13 @@ def fly(sensors: str, *, aircraft: str = "c172p", legs: int = 8, seed: int = 1) 
             arrays[f"{name}_{unit}"] = table[:, 1] if table.shape[1] == 2 else table[:, 1:]
     for name, delay_s in DELAYS_S[sensors].items():
         arrays[f"{name}_delay_s"] = np.array(delay_s)
-    table = np.array(truth)
-    for column, name in enumerate(_TRUTH):
-        arrays[f"truth_{name}"] = table[:, column]
-    return arrays
+    for kind, names, kept in (("truth", _TRUTH, truth), ("estimate", _ESTIMATE, estimate)):
+        table = np.array(kept)
+        for column, name in enumerate(names):
+            arrays[f"{kind}_{name}"] = table[:, column]
+    flown = rig.truth()
+    captured = flown.captured_at(engaged_s)
+    return RawFlight(arrays, score(flown.trace(), pattern.legs(legs, engaged_s, captured)))
 
 
 def save(path: Path, arrays: Arrays) -> None:

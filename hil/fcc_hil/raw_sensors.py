@@ -62,6 +62,7 @@ class RawSensors:
         """Switch them on; `sensors` is phone or board."""
         self._plant = plant
         self._sensors = fcc.RawSensors(sensors, self._truth(), seed=seed, field_ut=FIELD_UT)
+        self._delays_s = DELAYS_S[sensors]
         self.readings: dict[str, list[tuple[float, ...]]] = {name: [] for name in READINGS}
         """Of each reading when it arrived, in s, and its values in the order of READINGS."""
 
@@ -69,11 +70,18 @@ class RawSensors:
         """Take the samples up to the plant's present time; call it after each of its steps."""
         self._sensors.step(self._truth())
 
-    def read(self, into: fcc.Measurements) -> None:
-        """Write what arrived since the last time into measurements."""
+    def read(self, into: fcc.Measurements) -> dict[str, float]:
+        """Write what arrived since the last time into measurements.
+
+        Return how long ago each reading was taken, in s, as far as its delay is known.
+        """
+        ages_s = {}
         for name, arrived_s in self._sensors.read(into).items():
             values = (getattr(into, value) for value in READINGS[name])
             self.readings[name].append((arrived_s, *values))
+            waited_s = max(0.0, self._plant.time_s - arrived_s)
+            ages_s[name] = waited_s + self._delays_s.get(name, 0.0)
+        return ages_s
 
     def _truth(self) -> fcc.RawTruth:
         state = self._plant.state()

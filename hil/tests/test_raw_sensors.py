@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import subprocess
 from pathlib import Path
 
 import fcc
@@ -9,9 +11,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from fcc_hil import raw_flight
+from fcc_hil import raw_calibration, raw_flight
 from fcc_hil.lockstep_rig import Conditions, LockstepRig
 from fcc_hil.plant import Plant
+from fcc_hil.raw_sensors import FIELD_UT
 from fcc_hil.standin import Settings
 
 EARTH_M = 6_378_137.0
@@ -21,7 +24,7 @@ Array = npt.NDArray[np.float64]
 
 @pytest.fixture(scope="module")
 def flown() -> raw_flight.Arrays:
-    return raw_flight.fly("board", legs=1)
+    return raw_flight.fly("board", legs=1).arrays
 
 
 def _truth(flown: raw_flight.Arrays, sensor: str, *names: str) -> Array:
@@ -73,6 +76,102 @@ def test_pressures_give_altitude_and_airspeed(flown: raw_flight.Arrays) -> None:
     error_pa = flown["differential_pressure_pa"] - expected_pa
     assert abs(np.mean(error_pa)) < 25.0
     assert np.std(error_pa) < 15.0
+
+
+@pytest.mark.parametrize("sensors", ["phone", "board"])
+def test_the_pattern_is_flown_by_raw_sensors_alone(sensors: str) -> None:
+    """Seeds on which no parameter was chosen."""
+    flight = raw_flight.fly(sensors, navigation="kalman", seed=21)
+    errors, worst = flight.errors(), flight.score["worst"]
+    assert len(flight.score["legs"]) == 8
+    assert errors["roll_deg"] <= 1.5
+    assert errors["pitch_deg"] <= 1.5
+    assert errors["heading_deg"] <= 3.0
+    # Three standard deviations of the barometer's 2 m.
+    assert errors["altitude_ft"] <= 20.0
+    assert worst["altitude_settle_s"] is not None
+    # As with ideal sensors in this air.
+    assert worst["airspeed_error_kt"] <= 15.0
+
+
+def test_a_calibration_leaves_what_the_sensors_cannot_know() -> None:
+    """The drawn biases of a phone are 80 mg and 1 deg/s; calibrated it is aligned to a degree."""
+    found = raw_calibration.calibrate("phone", seed=8, field_ut=FIELD_UT)
+    again = raw_calibration.calibrate("phone", seed=8, field_ut=FIELD_UT)
+    assert np.array_equal(found.accelerometer.bias, again.accelerometer.bias)
+    still = fcc.RawTruth(
+        roll_rad=0.5,
+        specific_force_y_mps2=-9.80665 * np.sin(0.5),
+        specific_force_z_mps2=-9.80665 * np.cos(0.5),
+        static_pressure_pa=101_325.0,
+        air_temperature_k=288.15,
+    )
+    raw = fcc.RawSensors("phone", still, seed=8, field_ut=FIELD_UT)
+    forces = []
+    for step in range(1, 200):
+        raw.step(_at(still, step * 0.025))
+        read = fcc.Measurements()
+        raw.read(read)
+        found.apply(read)
+        if np.isfinite(read.raw_specific_force_x_mps2):
+            forces.append([getattr(read, f"raw_specific_force_{axis}_mps2") for axis in "xyz"])
+    x, y, z = np.mean(forces, axis=0)
+    assert np.arctan2(-y, -z) == pytest.approx(0.5, abs=np.radians(0.5))
+    assert np.linalg.norm([x, y, z]) == pytest.approx(9.80665, abs=0.03)
+
+
+def _at(truth: fcc.RawTruth, time_s: float) -> fcc.RawTruth:
+    names = (
+        "roll_rad",
+        "specific_force_y_mps2",
+        "specific_force_z_mps2",
+        "static_pressure_pa",
+        "air_temperature_k",
+    )
+    return fcc.RawTruth(time_s=time_s, **{name: getattr(truth, name) for name in names})
+
+
+def test_ages_say_when_readings_were_taken() -> None:
+    machine = fcc.Machine()
+    measured = fcc.Measurements(airspeed_mps=50.0, altitude_m=900.0)
+    for _ in range(3):
+        machine.step(measured, ages_s={"airspeed": 0.1})
+    records = machine.records()
+    ages_ns = records["woke_ns"] - records["airspeed_taken_ns"]
+    assert list(ages_ns) == [100_000_000] * 3
+    assert list(records["woke_ns"] - records["altitude_taken_ns"]) == [0] * 3
+    with pytest.raises(ValueError, match=r"ages_s: there is no sensor 'wind'; choose of attitude"):
+        machine.step(measured, ages_s={"wind": 0.1})
+    with pytest.raises(ValueError, match=r'ages_s\["airspeed"\] is -1: choose 0 to 10'):
+        machine.step(measured, ages_s={"airspeed": -1.0})
+
+
+def test_a_flight_by_raw_sensors_is_replayed_to_the_last_bit(fccd: Path, tmp_path: Path) -> None:
+    config = tmp_path / "raw.toml"
+    config.write_text(
+        '[built-in]\ngusts = "light"\nraw_sensors = "board"\nengage_at_s = 6.0\n'
+        '[navigation]\nmethod = "kalman"\n[guidance]\nmode = "timed-pattern"\n'
+    )
+    words: list[str | Path] = [fccd, "fly", "--lockstep", "--quiet", "--config", config]
+    words += ["--seconds", "60", "--recordings", tmp_path / "recordings"]
+    subprocess.run(words, capture_output=True, check=True, timeout=60)
+    (recording,) = (tmp_path / "recordings").glob("*.mcap")
+    # What was flown by differs from what the built-in aircraft's sensors of attitude gave.
+    records = fcc.Recording(recording).records
+    assert len(records) > 2_600
+    assert np.std(records["roll_rad"] - records["estimated_roll_rad"]) > 2e-3
+    words = [fccd, "replay", "--json", recording]
+    done = subprocess.run(words, capture_output=True, check=True, timeout=60, text=True)
+    assert json.loads(done.stdout)["identity"]["differing"] == 0
+
+
+def test_calibrate_refuses_with_the_reason() -> None:
+    with pytest.raises(ValueError, match="too few samples: take at least 12"):
+        fcc.calibrate(np.eye(3), 9.81)
+    with pytest.raises(ValueError, match=r"samples is of shape \(3,\): give \(n, 3\)"):
+        fcc.calibrate([1.0, 2.0, 3.0], 9.81)
+    with pytest.raises(ValueError, match="strength is -1"):
+        fcc.calibrate(np.eye(3), -1.0)
 
 
 def test_the_same_seed_gives_the_same_readings(tmp_path: Path) -> None:

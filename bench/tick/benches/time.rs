@@ -54,6 +54,10 @@ fn stages(criterion: &mut Criterion) {
             bencher.iter_custom(|times| timed(&mut stages, times, before, stage));
         });
     }
+    let mut by_raw_sensors = Stages::engaged_by_raw_sensors();
+    group.bench_function("the same from raw sensors", |bencher| {
+        bencher.iter_custom(|times| timed(&mut by_raw_sensors, times, Stages::next, Stages::step));
+    });
     group.finish();
 }
 

@@ -3,10 +3,12 @@
 use std::collections::VecDeque;
 use std::hint::black_box;
 use std::sync::{Arc, Mutex};
+use std::time::Duration;
 
+use fcc_core::flight::inertial::{MagneticNorth, RawNavigationConfig, RawNavigationMethod};
 use fcc_core::flight::{Autopilot, AutopilotConfig, Measurements, Surfaces};
 use fcc_core::framework::{Actuator, Controller, Message, MessageOf, RecordOf, Sensor, Tick};
-use fcc_sim::{Channels, SensorConfig, Severity, SimConfig, Simulation};
+use fcc_sim::{Channels, RawSensorSet, SensorConfig, Severity, SimConfig, Simulation};
 use fcc_xplane::{Errno, Port, XPlane, XPlaneActuator, XPlaneSensor};
 use rtrb::{Consumer, Producer, RingBuffer};
 use std::net::SocketAddr;
@@ -17,8 +19,12 @@ use crate::{Flight, PERIOD};
 /// Half a minute of flight: sensors and actuator have settled, and what the
 /// autopilot learns of the aircraft is known.
 const WARM_UP_TICKS: u32 = 1_200;
-/// The autopilot engages when navigation has settled for a second.
-const ENGAGED_AT_TICK: u32 = 80;
+/// The autopilot engages when navigation has settled for a second, which from raw
+/// sensors begins after one.
+const ENGAGED_AT_TICK: u32 = 160;
+
+/// The satellite receiver's is 120 ms.
+const LONGEST_DELAY: Duration = Duration::from_millis(200);
 
 /// The stages of a tick, to be called separately and in any order.
 /// [`next`](Self::next) advances to the next tick.
@@ -54,6 +60,18 @@ impl Stages {
     /// # Panics
     /// When it cannot be assembled.
     pub fn engaged() -> Self {
+        Self::flying_by(None)
+    }
+
+    /// The same; attitude is computed from the raw sensors of a present board.
+    ///
+    /// # Panics
+    /// When it cannot be assembled.
+    pub fn engaged_by_raw_sensors() -> Self {
+        Self::flying_by(Some(&RawSensorSet::board()))
+    }
+
+    fn flying_by(raw_sensors: Option<&RawSensorSet>) -> Self {
         let flight = Flight::engaged();
         let simulator = flight.simulator;
         let config = simulator.config();
@@ -71,14 +89,24 @@ impl Stages {
                 delay_ms: 25,
                 ..SensorConfig::default()
             },
+            raw_sensors: raw_sensors.copied(),
             ..SimConfig::default()
+        };
+        let raw_navigation = aircraft.raw_sensors.is_some().then(|| RawNavigationConfig {
+            method: RawNavigationMethod::Kalman,
+            delay: LONGEST_DELAY,
+            north: MagneticNorth::Field(aircraft.magnetic_field_ut()),
+        });
+        let config = AutopilotConfig {
+            raw_navigation,
+            ..AutopilotConfig::default()
         };
         let mut stages = Self {
             simulator,
             wire,
             sensor,
             actuator,
-            autopilot: Autopilot::new(AutopilotConfig::default()),
+            autopilot: Autopilot::new(config),
             aircraft: Simulation::new(&aircraft).expect("a fair configuration"),
             tick: record.tick,
             measurements: Measurements::default(),

@@ -6,9 +6,12 @@
 use std::time::Duration;
 
 use fcc_conformance::allocator_calls;
+use fcc_core::flight::inertial::MagneticNorth;
 use fcc_core::flight::{Autopilot, Measurements, Surfaces};
 use fcc_core::framework::{Actuator, ActuatorFault, Reading, Sensor, SensorFault, State, Tick};
-use fcc_flight::config::{BuiltInSection, Config, GustsChoice};
+use fcc_flight::config::{
+    BuiltInSection, Config, GustsChoice, NavigationMethod, NavigationSection, RawSensorsChoice,
+};
 use fcc_flight::flight::assemble;
 use fcc_runtime::{Machine, Message, Parts};
 use fcc_timer::ManualTimer;
@@ -16,6 +19,7 @@ use fcc_timer::ManualTimer;
 /// Flies 10,000 ticks. Returns the calls of the allocator, the engaged ticks, the
 /// records, and what happened.
 fn fly(
+    navigation: NavigationMethod,
     sensor: impl Fn(Box<dyn Sensor<Measurements>>) -> Box<dyn Sensor<Measurements>>,
     actuator: impl Fn(Box<dyn Actuator<Surfaces>>) -> Box<dyn Actuator<Surfaces>>,
 ) -> (u64, u32, u32, Vec<String>) {
@@ -23,11 +27,26 @@ fn fly(
         built_in: Some(BuiltInSection {
             gusts: GustsChoice::Moderate,
             delay_ms: 25,
+            // An attitude from raw sensors is known after a second, and settles.
+            engage_at_s: 4.0,
+            raw_sensors: match navigation {
+                NavigationMethod::Measured => RawSensorsChoice::None,
+                _ => RawSensorsChoice::Board,
+            },
             ..BuiltInSection::default()
         }),
+        navigation: NavigationSection {
+            method: navigation,
+            ..NavigationSection::default()
+        },
         ..Config::default()
     };
     let assembly = assemble(&config).unwrap();
+    let mut autopilot = *assembly.autopilot.config();
+    if let Some(raw) = &mut autopilot.raw_navigation {
+        // Computed in the tick of the first fix.
+        raw.north = MagneticNorth::ModelOf(2027.5);
+    }
     let parts = Parts {
         timer: Box::new(
             ManualTimer::new(Duration::from_millis(25))
@@ -35,7 +54,7 @@ fn fly(
                 .with_warm_up(),
         ),
         sensors: assembly.sensors.into_iter().map(sensor).collect(),
-        controller: assembly.autopilot,
+        controller: Autopilot::new(autopilot),
         actuators: assembly.actuators.into_iter().map(actuator).collect(),
     };
     let (mut machine, mut link) = Machine::new(parts, &assembly.loop_config).unwrap();
@@ -64,16 +83,20 @@ fn fly(
 
 #[test]
 fn ten_thousand_ticks_of_a_flight_do_not_allocate() {
-    let (calls, engaged, records, _) = fly(|sensor| sensor, |actuator| actuator);
-    assert_eq!(calls, 0);
-    // It was a flight: 2 s of standby, and engaged to the end.
-    assert_eq!(records, 10_000);
-    assert!((9_900..=9_920).contains(&engaged), "{engaged}");
+    for navigation in [NavigationMethod::Measured, NavigationMethod::Kalman] {
+        let (calls, engaged, records, events) =
+            fly(navigation, |sensor| sensor, |actuator| actuator);
+        assert_eq!(calls, 0);
+        // It was a flight: 4 s of standby, and engaged to the end.
+        assert_eq!(records, 10_000);
+        assert!((9_820..=9_840).contains(&engaged), "{engaged}: {events:#?}");
+    }
 }
 
 #[test]
 fn doubts_degraded_flight_and_recoveries_do_not_allocate() {
     let (calls, _, records, events) = fly(
+        NavigationMethod::Measured,
         |sensor| Box::new(Failing(sensor)),
         |actuator| Box::new(Sticking(actuator)),
     );

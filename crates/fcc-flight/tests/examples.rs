@@ -48,6 +48,7 @@ fn the_built_in_example_contains_every_default() {
         built_in: Some(BuiltInSection::default()),
         ..Config::default()
     };
+    expected.navigation.magnetic_field_ut = Some([21.1, 0.0, 45.3]);
     write_the_choices(&mut expected);
     let full = Config::parse(&uncommented(BUILT_IN), "built-in.toml").unwrap();
     assert_eq!(as_value(&full), as_value(&expected));

@@ -9,6 +9,7 @@
 //! | `aircraft` | the built-in aircraft alone |
 //! | `config` | configurations, by key |
 //! | `blocks`, `formulas` | the core's blocks and formulas |
+//! | `calibrate` | the calibration of a sensor of three axes |
 //! | `navigate` | navigation from arrays of raw samples |
 //! | `timers` | the kernel's timers |
 //! | `recordings` | recordings of any plant as numpy arrays; list, recover, report, replay |
@@ -55,6 +56,8 @@ mod json;
 pub mod live;
 #[macro_use]
 pub mod machine;
+#[cfg(feature = "flight")]
+mod calibrate;
 #[cfg(feature = "flight")]
 mod navigate;
 #[cfg(feature = "flight")]

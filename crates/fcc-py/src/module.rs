@@ -8,8 +8,8 @@ use pyo3::types::PyTuple;
 #[cfg(feature = "live")]
 use crate::live;
 use crate::{
-    aircraft, autopilot, blocks, config, errors, events, fleet, flight, formulas, machine,
-    navigate, raw_sensors, recordings, structured, timers, values,
+    aircraft, autopilot, blocks, calibrate, config, errors, events, fleet, flight, formulas,
+    machine, navigate, raw_sensors, recordings, structured, timers, values,
 };
 
 /// The flight control computer: its autopilot and aircraft in lockstep, its
@@ -63,6 +63,7 @@ fn fcc(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(formulas::body_to_earth, module)?)?;
     module.add_function(wrap_pyfunction!(formulas::earth_to_body, module)?)?;
 
+    module.add_function(wrap_pyfunction!(calibrate::calibrate, module)?)?;
     module.add_function(wrap_pyfunction!(navigate::navigate, module)?)?;
 
     module.add_class::<timers::PyTimer>()?;

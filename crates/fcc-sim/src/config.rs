@@ -131,6 +131,16 @@ impl Channels {
     };
 }
 
+impl SimConfig {
+    /// The earth's magnetic field: north, east, down, µT.
+    pub fn magnetic_field_ut(&self) -> [f64; 3] {
+        let (sin_down, cos_down) = libm::sincos(self.magnetic_inclination_rad);
+        let (sin_east, cos_east) = libm::sincos(self.magnetic_variation_rad);
+        [cos_down * cos_east, cos_down * sin_east, sin_down]
+            .map(|share| self.magnetic_strength_ut * share)
+    }
+}
+
 impl Default for SimConfig {
     fn default() -> Self {
         Self {

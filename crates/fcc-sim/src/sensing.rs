@@ -115,13 +115,9 @@ impl BuiltInRaw {
     pub(crate) fn new(config: &SimConfig, start: &Truth) -> Option<Self> {
         let set = config.raw_sensors.as_ref()?;
         let earth = LocalEarth::new(config.latitude_rad, config.longitude_rad);
-        let (sin_down, cos_down) = libm::sincos(config.magnetic_inclination_rad);
-        let (sin_east, cos_east) = libm::sincos(config.magnetic_variation_rad);
-        let field_ut = [cos_down * cos_east, cos_down * sin_east, sin_down]
-            .map(|share| config.magnetic_strength_ut * share);
         let start = raw_truth(start, &earth, config.ground_m);
         Some(Self {
-            sensors: RawSensors::new(set, config.seed, &start, field_ut),
+            sensors: RawSensors::new(set, config.seed, &start, config.magnetic_field_ut()),
             earth,
             ground_m: config.ground_m,
         })

@@ -16,7 +16,7 @@ schema! {
     ///
     /// From field 16 on they are raw: what the parts of a small computer or a
     /// phone give, in body axes after their [`Calibration`](super::calibration),
-    /// from which navigation computes the others. Control does not use them.
+    /// from which navigation computes the others, if it is configured to.
     ///
     /// ```
     /// use core::time::Duration;

@@ -92,6 +92,9 @@ impl Add<Duration> for Time {
     }
 }
 
+/// The first instant: the one before it is [`Time::NEVER`].
+const FIRST: i64 = -i64::MAX;
+
 impl Sub<Duration> for Time {
     type Output = Self;
 
@@ -102,7 +105,7 @@ impl Sub<Duration> for Time {
             return self;
         }
         let nanos = i64::try_from(span.as_nanos()).unwrap_or(i64::MAX);
-        Self(self.0.saturating_sub(nanos).max(i64::MIN + 1))
+        Self(self.0.saturating_sub(nanos).max(FIRST))
     }
 }
 

@@ -16,6 +16,7 @@ mod devices;
 mod early_wake;
 mod error;
 mod guidance;
+mod navigation;
 mod places;
 mod ranges;
 mod read;
@@ -35,6 +36,7 @@ use std::time::Duration;
 
 use fcc_core::flight::AutopilotConfig;
 use fcc_runtime::{Budget, LoopConfig, Overload};
+use fcc_sim::SimConfig;
 use fcc_timer::RealtimeRequest;
 use serde::{Deserialize, Serialize};
 
@@ -48,6 +50,7 @@ pub use devices::{ActuatorEntry, NoKeys, SensorEntry};
 pub use early_wake::EarlyWakeChoice;
 pub use error::{ConfigError, Problem};
 pub use guidance::GuidanceSection;
+pub use navigation::{NavigationMethod, NavigationSection};
 pub use recording::RecordingSection;
 pub use restart::{RestartMode, RestartSection};
 pub use rights::RightsSection;
@@ -88,6 +91,8 @@ pub struct Config {
     pub rights: RightsSection,
     /// Live telemetry.
     pub telemetry: TelemetrySection,
+    /// Where attitude comes from.
+    pub navigation: NavigationSection,
     /// The mode after engaging.
     pub guidance: GuidanceSection,
     /// The altimeter setting.
@@ -229,6 +234,16 @@ impl Config {
                 section.engage_switch
             ));
         }
+        if let Some(section) = &self.built_in
+            && section.raw_sensors == RawSensorsChoice::None
+            && self.navigation.method != NavigationMethod::Measured
+        {
+            remarks.push(
+                "navigation.method computes attitude from raw readings, and built-in.raw_sensors \
+                 is \"none\": nothing will engage"
+                    .to_owned(),
+            );
+        }
         remarks.extend(self.stick_remark());
         if self.actuators().is_empty() {
             remarks.push(NO_ACTUATOR.to_owned());
@@ -277,12 +292,20 @@ impl Config {
             level_and_trim: Duration::from_secs_f64(self.release.level_and_trim_s),
             failsafe: (&self.failsafe).into(),
             altimeter: (&self.altimeter).into(),
+            raw_navigation: self.navigation.to_core(self.simulated_field_ut()),
             ..self.autopilot.to_core(
                 &self.guidance,
                 Duration::from_millis(self.failsafe.sensor_max_age_ms),
                 Duration::from_secs_f64(self.failsafe.sensor_frozen_s),
             )
         }
+    }
+
+    /// The earth's magnetic field around the built-in aircraft.
+    fn simulated_field_ut(&self) -> Option<[f64; 3]> {
+        let gives_raw = |section: &&BuiltInSection| section.raw_sensors != RawSensorsChoice::None;
+        let section = self.built_in.as_ref().filter(gives_raw)?;
+        Some(SimConfig::from(section).magnetic_field_ut())
     }
 
     /// The loop's configuration.

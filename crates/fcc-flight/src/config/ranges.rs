@@ -8,7 +8,7 @@ use fcc_xplane::{XPlaneConfig, XPlaneConfigError};
 use toml::de::DeValue;
 
 use super::places::Places;
-use super::{Config, Problem, SensorEntry, XPlaneSection, calibration, relations};
+use super::{Config, Problem, SensorEntry, XPlaneSection, calibration, navigation, relations};
 
 /// Key, smallest and largest value.
 const RANGES: &[(&str, f64, f64)] = &[
@@ -154,7 +154,10 @@ const RANGES: &[(&str, f64, f64)] = &[
 
 /// The ranges of all numeric keys, and of the numbers in lists.
 fn ranges() -> impl Iterator<Item = &'static (&'static str, f64, f64)> {
-    RANGES.iter().chain(calibration::RANGES)
+    RANGES
+        .iter()
+        .chain(calibration::RANGES)
+        .chain(navigation::RANGES)
 }
 
 /// Smallest and largest value of a numeric key.

@@ -3,7 +3,7 @@
 use fcc_core::flight::control::Envelope;
 
 use super::autopilot::EnvelopeSection;
-use super::{AutopilotSection, Config, SensorEntry};
+use super::{AutopilotSection, Config, NavigationMethod, SensorEntry};
 
 /// Of `SCHED_FIFO` (sched(7)).
 const HIGHEST_PRIORITY: u8 = 99;
@@ -46,6 +46,13 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
         report(
             &["built-in"],
             "is given together with [x-plane]: keep the section of the aircraft that is to be flown"
+                .to_owned(),
+        );
+    }
+    if config.x_plane.is_some() && config.navigation.method != NavigationMethod::Measured {
+        report(
+            &["navigation.method", "x-plane"],
+            "computes attitude from raw readings, and X-Plane gives none: choose \"measured\""
                 .to_owned(),
         );
     }

@@ -150,7 +150,7 @@ fn built_in(section: &BuiltInSection, ticks: usize) -> Result<Plant, AssemblyErr
     let (sensor, truth) = tap(simulation.sensor, ticks);
     Ok(Plant {
         sensors: vec![match section.calibration.to_core() {
-            Some(calibration) => Box::new(Calibrated::new(sensor, calibration)),
+            Some(calibration) => Box::new(Calibrated::new(sensor, &calibration)),
             None => Box::new(sensor),
         }],
         actuators: vec![Box::new(simulation.actuator)],

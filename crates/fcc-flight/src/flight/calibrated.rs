@@ -16,10 +16,10 @@ pub(super) struct Calibrated<S> {
 }
 
 impl<S> Calibrated<S> {
-    pub(super) fn new(sensor: S, calibration: Calibration) -> Self {
+    pub(super) fn new(sensor: S, calibration: &Calibration) -> Self {
         Self {
             sensor,
-            calibration,
+            calibration: *calibration,
             given: Measurements::default(),
         }
     }
@@ -87,7 +87,7 @@ mod tests {
         let barometer = Barometer {
             pressure_pa: Some(90_030.0),
         };
-        let mut sensor = Calibrated::new(barometer, calibration);
+        let mut sensor = Calibrated::new(barometer, &calibration);
         let mut measured = Measurements::default();
         for (tick, sampled) in [(1, Ok(())), (2, Err(SensorFault::Silent))] {
             let woke = Time::from_nanos(tick * 25_000_000);

@@ -1,5 +1,6 @@
 //! The loop of the autopilot.
 
+use std::collections::HashMap;
 use std::sync::Mutex;
 
 use fcc_core::flight::{Autopilot, AutopilotConfig, Surfaces};
@@ -10,11 +11,15 @@ use pyo3::prelude::*;
 use pyo3::types::PyString;
 
 use super::Lockstep;
+use crate::arguments::within;
 use crate::commanded::Commanded;
 use crate::config::{configuration, refused};
 use crate::values::{
     PyEstimate, PyMeasurements, PySetpoints, PySurfaces, Values, checked, with_plant,
 };
+
+/// No reading that is older is of use.
+const OLDEST_S: f64 = 10.0;
 
 machine_class! {
     /// The loop that `fccd` runs, one call per tick, on a clock that advances only
@@ -52,25 +57,39 @@ machine_class! {
     ///
     /// `measurements` are those of the sensors; `None` if nothing arrives.
     /// `missing` names the readings that do not arrive in this tick: attitude,
-    /// heading, `body_rates`, `specific_force`, airspeed, altitude. `readback`
+    /// heading, `body_rates`, `specific_force`, airspeed, altitude. `ages_s` says
+    /// of readings, by their names, how long before this tick they were taken (0
+    /// to 10 s); those that are not named are taken in it. `readback`
     /// contains the readback of the controls: throttle 0..1, elevator, aileron and
     /// rudder -1..1, as `Surfaces` or as four numbers, without the elevator's
     /// trim; `None` if the aircraft has none. `switch` is the engage switch; `None` if there is none.
     #[pyo3(signature = (measurements = None, *, missing = Vec::new(), readback = None,
-                        switch = None))]
+                        switch = None, ages_s = HashMap::new()))]
+    #[allow(
+        clippy::needless_pass_by_value,
+        reason = "arguments of Python are given by value"
+    )]
     fn step(
         &self,
         measurements: Option<&PyMeasurements>,
         missing: Vec<String>,
         readback: Option<&Bound<'_, PyAny>>,
         switch: Option<bool>,
+        ages_s: HashMap<String, f64>,
     ) -> PyResult<Option<PySurfaces>> {
-        let missing = known_readings(missing)?;
+        known_readings("missing", missing.iter())?;
+        known_readings("ages_s", ages_s.keys())?;
+        for (name, age_s) in &ages_s {
+            within(&format!("ages_s[{name:?}]"), *age_s, 0.0, OLDEST_S)?;
+        }
         let readback = readback.map(surfaces).transpose()?;
         let switch = switch.map(|on| if on { Switch::On } else { Switch::Off });
         let mut lockstep = self.lockstep();
         let sample = measurements.map(|measurements| {
-            let sample = measurements.sample(|name| missing.iter().any(|missing| missing == name));
+            let is_missing = |name: &str| missing.iter().any(|missing| missing == name);
+            let mut sample = measurements.sample(is_missing);
+            let age_ns = |name: &str| ages_s.get(name).map(|age_s| (age_s * 1e9) as i64);
+            PyMeasurements::attributes().shape.set_ages(&mut sample, age_ns);
             with_plant(&sample, lockstep.next_s(), readback, switch)
         });
         Ok(lockstep.step(sample).map(PySurfaces::from))
@@ -107,17 +126,17 @@ machine_class! {
 }
 
 /// Refuses names that no reading has.
-fn known_readings(missing: Vec<String>) -> PyResult<Vec<String>> {
+fn known_readings<'a>(argument: &str, mut names: impl Iterator<Item = &'a String>) -> PyResult<()> {
     let without = PyMeasurements::WITHOUT;
     let readings = PyMeasurements::attributes().shape.readings.iter();
     let known: Vec<_> = readings
         .filter(|name| !without.contains(name))
         .copied()
         .collect();
-    match missing.iter().find(|name| !known.contains(&name.as_str())) {
-        None => Ok(missing),
+    match names.find(|name| !known.contains(&name.as_str())) {
+        None => Ok(()),
         Some(name) => Err(PyValueError::new_err(format!(
-            "missing: there is no sensor '{name}'; choose of {}",
+            "{argument}: there is no sensor '{name}'; choose of {}",
             known.join(", ")
         ))),
     }

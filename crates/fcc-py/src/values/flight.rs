@@ -17,8 +17,8 @@ values_class! {
     ///
     /// NaN means not measured: the last value is kept and becomes older. A value
     /// that no aircraft of this kind can reach is treated in the same way. The raw
-    /// readings, from `raw_specific_force_x_mps2` on, are recorded; control does
-    /// not use them.
+    /// readings, from `raw_specific_force_x_mps2` on, are flown by if the
+    /// configuration's `[navigation]` says so.
     #[pyclass(name = "Measurements", module = "fcc")]
     struct PyMeasurements(Measurements)
         without ["surfaces", "engage_switch", "plant", "other_control", "suspect"],

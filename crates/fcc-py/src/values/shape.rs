@@ -109,7 +109,7 @@ impl Shape {
     }
 
     /// Copies the values of all readings that `from` has; each was taken `now`,
-    /// or when the reading in `into` was.
+    /// plus its own time, or when the reading in `into` was.
     pub(crate) fn copy<T: Schema>(&self, from: &T, into: &mut T, now: Option<Time>) {
         let (values, before) = (flat(from), flat(into));
         let mut taken = [false; MOST];
@@ -128,12 +128,34 @@ impl Shape {
             let leaf = self.leaves.get(index).filter(|leaf| is_taken(leaf))?;
             match (leaf.part, now) {
                 (ReadingPart::Value, _) => values.as_slice().get(index).copied(),
-                (ReadingPart::Taken, Some(now)) => Some(Value::Instant(now.as_nanos())),
+                (ReadingPart::Taken, Some(now)) => match values.as_slice().get(index) {
+                    Some(Value::Instant(from_now)) => {
+                        Some(Value::Instant(now.as_nanos().saturating_add(*from_now)))
+                    }
+                    _ => None,
+                },
                 _ => before.as_slice().get(index).copied(),
             }
         };
         // Values of the same type are values that are declared.
         let _ = fill(into, given);
+    }
+
+    /// Sets when readings were taken, before a tick whose time is not known: those
+    /// of which an age in ns is given.
+    pub(crate) fn set_ages<T: Schema>(&self, of: &mut T, age_ns: impl Fn(&str) -> Option<i64>) {
+        let values = flat(of);
+        let given = |index: usize| {
+            let leaf = self.leaves.get(index)?;
+            let reading = leaf.reading.filter(|_| leaf.part == ReadingPart::Taken)?;
+            let is_taken = values
+                .as_slice()
+                .get(index)
+                .is_some_and(|at| !at.is_never());
+            let age_ns = age_ns(self.readings.get(reading)?)?;
+            is_taken.then_some(Value::Instant(-age_ns))
+        };
+        let _ = fill(of, given);
     }
 
     /// Marks as never taken the readings of which every number is NaN, and

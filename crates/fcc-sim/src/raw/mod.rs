@@ -132,7 +132,7 @@ impl RawSensors {
                 .rangefinder
                 .map(|sensor| channel(&sensor, seed, Stream::Rangefinder, start_s)),
         };
-        sensors.each(start, Begin);
+        sensors.each(start, &Begin);
         sensors
     }
 
@@ -150,7 +150,7 @@ impl RawSensors {
             throttle: truth.throttle,
         };
         self.now_s = truth.time_s;
-        self.each(truth, Step(self.engine));
+        self.each(truth, &Step(self.engine));
     }
 
     /// Writes what arrived since the last time; `now` is that of the last step
@@ -221,7 +221,7 @@ impl RawSensors {
     }
 
     /// Does the same with each sensor and the truth that it measures.
-    fn each(&mut self, truth: &RawTruth, act: impl Act) {
+    fn each(&mut self, truth: &RawTruth, act: &impl Act) {
         let (attitude, now_s) = (truth.attitude, truth.time_s);
         let orientation = quaternion_from_euler(EulerAngles {
             roll_rad: attitude.roll_rad,

@@ -1,6 +1,7 @@
 //! The autopilot's parts, put together by its configuration.
 
 use super::super::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop};
+use super::super::inertial::RawNavigation;
 use super::super::navigation::{FrozenDetector, Navigation, Replacement};
 use super::{
     ActiveMode, Actuation, AltitudeReference, Autopilot, AutopilotConfig, Degraded, Following,
@@ -13,6 +14,7 @@ impl Autopilot {
     /// An autopilot that is not engaged.
     pub fn new(config: AutopilotConfig) -> Self {
         Self {
+            raw: config.raw_navigation.map(RawNavigation::new),
             accepted: Measurements::default(),
             navigation: Navigation::new(&config.navigation)
                 .for_stall_airspeed(config.envelope.stall_airspeed_mps)

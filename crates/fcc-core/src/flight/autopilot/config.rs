@@ -5,6 +5,7 @@ use core::time::Duration;
 use crate::flight::Altimeter;
 use crate::flight::control::{AirspeedConfig, AltitudeConfig, Envelope, HeadingConfig};
 use crate::flight::guidance::{GuidanceConfig, TimedPatternConfig};
+use crate::flight::inertial::RawNavigationConfig;
 use crate::flight::navigation::NavigationConfig;
 use crate::framework::Flags;
 
@@ -59,6 +60,9 @@ pub struct AutopilotConfig {
     pub level_and_trim: Duration,
     /// How a flight goes on without a sensor, and how it ends.
     pub failsafe: FailsafeConfig,
+    /// How attitude and the other quantities that control needs are computed
+    /// from raw readings; `None` if sensors measure them.
+    pub raw_navigation: Option<RawNavigationConfig>,
     /// Navigation's time constants.
     pub navigation: NavigationConfig,
     /// The mode that is flown once engaged.
@@ -91,6 +95,7 @@ impl Default for AutopilotConfig {
             trims: true,
             level_and_trim: Duration::from_secs(10),
             failsafe: FailsafeConfig::default(),
+            raw_navigation: None,
             navigation: NavigationConfig::default(),
             guidance: GuidanceConfig::TimedPattern(TimedPatternConfig::default()),
             heading: HeadingConfig::default(),

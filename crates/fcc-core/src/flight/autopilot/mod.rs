@@ -49,6 +49,7 @@ use whereabouts::Whereabouts;
 
 use super::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop, Recovery};
 use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
+use super::inertial::RawNavigation;
 use super::navigation::{Estimate, FrozenDetector, Navigation, Replacement, plausibility_gate};
 use super::{Altimeter, AltitudeReference, Measurements, Setpoints, Surfaces};
 use crate::blocks::wrap_two_pi;
@@ -94,6 +95,8 @@ use crate::framework::{Controller, Flags, Notice, Reading, Switch, Tick, Time};
 #[derive(Clone, Debug)]
 pub struct Autopilot {
     config: AutopilotConfig,
+    /// Navigation from raw readings, if it is flown by them.
+    raw: Option<RawNavigation>,
     /// The last plausible measurements.
     accepted: Measurements,
     navigation: Navigation,
@@ -147,20 +150,27 @@ impl Controller for Autopilot {
     type Command = AutopilotCommand;
 
     fn estimate(&mut self, tick: &Tick, measurements: &Measurements) {
-        self.observe(tick, measurements);
+        match &mut self.raw {
+            Some(raw) => {
+                let found = *raw.step(tick.woke, measurements);
+                self.observe(tick, &found);
+            }
+            None => self.observe(tick, measurements),
+        }
     }
 
     fn engage_inhibits(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        self.inhibits(tick.woke, measurements)
+        self.inhibits(tick.woke, self.seen(measurements))
     }
 
     fn faults(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        self.unsafe_to_fly(tick.woke, measurements) | self.not_flyable(tick.woke, measurements)
+        let seen = self.seen(measurements);
+        self.unsafe_to_fly(tick.woke, seen) | self.not_flyable(tick.woke, seen)
     }
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         let of_parts = self.actuation.conditions() | self.doubted() | self.trim_conditions();
-        (self.external(tick.woke, measurements) | of_parts)
+        (self.external(tick.woke, self.seen(measurements)) | of_parts)
             .with(flags::RECOVERING, self.recovery.is_active())
             .with(flags::UNDERSPEED, self.altitude.gives_up_height())
             .with(flags::STALLS_FASTER, self.recovery.found_stall_mps() > 0.0)
@@ -189,7 +199,8 @@ impl Controller for Autopilot {
     }
 
     fn prepare_release(&mut self, tick: &Tick, measurements: &Measurements) -> bool {
-        self.begin_to_release(false, tick.woke, measurements)
+        let seen = *self.seen(measurements);
+        self.begin_to_release(false, tick.woke, &seen)
     }
 
     fn is_ready_for_release(&self) -> bool {
@@ -307,8 +318,9 @@ impl Controller for Autopilot {
     }
 
     fn failsafe(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
-        self.prepare_end_of_failsafe(tick.woke, measurements);
-        let lost = self.lost(tick.woke, measurements);
+        let seen = *self.seen(measurements);
+        self.prepare_end_of_failsafe(tick.woke, &seen);
+        let lost = self.lost(tick.woke, &seen);
         let estimate = *self.navigation.estimate();
         if !lost.intersects(flags::BODY_RATES | flags::ATTITUDE) {
             self.follow_outputs(&estimate);
@@ -316,7 +328,7 @@ impl Controller for Autopilot {
             self.actuation
                 .watch(&self.last, &estimate, self.clock.step_s());
         }
-        let outputs = self.safest(tick.woke, measurements);
+        let outputs = self.safest(tick.woke, &seen);
         self.last = self.with_trim(tick.woke, outputs, lost);
         self.last
     }
@@ -368,5 +380,12 @@ impl Controller for Autopilot {
 
     fn switch(&self, measurements: &Measurements) -> Reading<Switch> {
         measurements.engage_switch
+    }
+}
+
+impl Autopilot {
+    /// The measurements of this tick, as they are flown by.
+    fn seen<'a>(&'a self, measured: &'a Measurements) -> &'a Measurements {
+        self.raw.as_ref().map_or(measured, RawNavigation::found)
     }
 }

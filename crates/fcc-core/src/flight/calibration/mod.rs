@@ -5,10 +5,12 @@
 //! raw readings of one source, before anything else sees them. So every record
 //! has body axes, calibrated, at the time at which they were taken.
 
+mod fit;
 mod mounting;
 
 use core::time::Duration;
 
+pub use fit::{FitError, StrengthFit, fit_strength};
 pub use mounting::{Direction, Mounting, MountingError, Rotation};
 
 use super::{BodyRates, MagneticField, Measurements, SpecificForce};

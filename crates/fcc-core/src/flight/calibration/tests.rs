@@ -1,3 +1,5 @@
+use std::vec::Vec;
+
 use super::*;
 use crate::flight::orientation::EulerAngles;
 use crate::framework::Time;
@@ -146,4 +148,91 @@ fn every_raw_reading_is_calibrated_once_and_no_other() {
         ..measured
     };
     assert_eq!(measured, expected);
+}
+
+/// Gravity in directions spread evenly (a spiral on the sphere), as a sensor with
+/// these errors gives it.
+fn given(directions: usize, sensor: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<[f64; 3]> {
+    let golden = core::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    (0..directions)
+        .map(|n| {
+            let z = 1.0 - (2.0 * n as f64 + 1.0) / directions as f64;
+            let (sin, cos) = (golden * n as f64).sin_cos();
+            let across = (1.0 - z * z).sqrt();
+            sensor([across * cos * 9.81, across * sin * 9.81, z * 9.81])
+        })
+        .collect()
+}
+
+/// What a fit gives, applied to what it was made from, has one strength.
+#[test]
+fn a_fit_undoes_bias_scale_and_misalignment() {
+    let samples = given(40, |[x, y, z]| {
+        [
+            1.03 * x + 0.02 * y + 0.8,
+            0.97 * y + 0.01 * z - 0.5,
+            z + 0.015 * x + 0.3,
+        ]
+    });
+    let fit = fit_strength(&samples, 9.81).unwrap();
+    assert!(fit.residual < 1e-9 && fit.spread > 0.3, "{fit:?}");
+    for (found, expected) in fit.axes.bias.into_iter().zip([0.8, -0.5, 0.3]) {
+        assert!((found - expected).abs() < 1e-9, "{fit:?}");
+    }
+    let calibration = AxesCalibration::new(&fit.axes);
+    for sample in samples {
+        let [x, y, z] = calibration.applied(sample);
+        assert!(((x * x + y * y + z * z).sqrt() - 9.81).abs() < 1e-9);
+    }
+}
+
+/// A hard iron many times as strong as the field.
+#[test]
+fn a_bias_larger_than_the_strength_is_found() {
+    let samples = given(40, |[x, y, z]| [x + 300.0, y - 200.0, z + 100.0]);
+    let fit = fit_strength(&samples, 9.81).unwrap();
+    assert!((fit.axes.bias[0] - 300.0).abs() < 1e-6, "{fit:?}");
+}
+
+/// The standard deviation that a fit states is that of its biases: 200 fits of 60
+/// samples with noise of 0.05 m/s².
+#[test]
+fn the_stated_deviation_is_the_true_one() {
+    let mut state = 1_u64;
+    let mut uniform = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    let mut squares = 0.0;
+    for _ in 0..200 {
+        let clean = given(60, |sample| sample);
+        let noisy: Vec<_> = clean
+            .iter()
+            // Twelve uniform numbers have a variance of 1.
+            .map(|sample| sample.map(|part| part + 0.05 * (0..12).map(|_| uniform()).sum::<f64>()))
+            .collect();
+        let fit = fit_strength(&noisy, 9.81).unwrap();
+        let errors = fit.axes.bias.into_iter().zip(fit.bias_sigma);
+        squares += errors
+            .map(|(error, sigma)| (error / sigma).powi(2))
+            .sum::<f64>();
+    }
+    // Chi-square of 600: 600 within 4 standard deviations of 35.
+    assert!((460.0..740.0).contains(&squares), "{squares}");
+}
+
+#[test]
+fn what_gives_no_calibration_is_refused_with_the_reason() {
+    let samples = given(40, |sample| sample);
+    assert_eq!(fit_strength(&samples[..5], 9.81), Err(FitError::TooFew(12)));
+    let mut bad = samples.clone();
+    bad[3][1] = f64::NAN;
+    assert_eq!(fit_strength(&bad, 9.81), Err(FitError::NotFinite));
+    let flat = given(40, |[x, y, z]| [x, y, 0.05 * z]);
+    let refused = fit_strength(&flat, 9.81).unwrap_err();
+    assert!(matches!(refused, FitError::NotSpread(..)), "{refused:?}");
+    // A sensor of another quantity.
+    assert_eq!(fit_strength(&samples, 50.0), Err(FitError::NoFit));
 }

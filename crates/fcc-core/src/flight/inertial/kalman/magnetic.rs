@@ -107,6 +107,26 @@ impl Filter {
         self.correct(&measurement, Corrects::Heading);
     }
 
+    /// The field of a model, of a filter that began without it. A heading that a
+    /// receiver gave is true already.
+    pub(super) fn learn_earth_field(&mut self, model: [f64; 3]) {
+        if self.tracks.field.used.is_never() {
+            return;
+        }
+        self.settle();
+        let model = Vector3::from(model);
+        let (was, is) = (self.earth_field, model);
+        if !self.has_receiver() {
+            let angle_rad = atan2(is.y, is.x) - atan2(was.y, was.x);
+            self.turn_heading(angle_rad);
+            let turned = turn(Vector3::new(0.0, 0.0, angle_rad));
+            self.motion.velocity = turned * self.motion.velocity;
+            self.wind = (turned * self.wind.push(0.0)).xy();
+        }
+        self.earth_field = model;
+        self.reset_covariance(EARTH_FIELD, 3, p::MODEL_FIELD * p::MODEL_FIELD);
+    }
+
     fn field_measurement(&self, measured: Vector3<f64>, since_s: f64) -> Measurement<3> {
         let to_body = self.rotation().transpose();
         let expected = to_body * self.earth_field + self.body_field;

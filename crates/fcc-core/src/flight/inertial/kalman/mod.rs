@@ -121,6 +121,15 @@ impl KalmanNavigation {
         self.filter.innovations.as_slice()
     }
 
+    /// The earth's magnetic field here, north, east, down, µT, if it becomes
+    /// known only now: what was called north until then is turned to true north.
+    pub fn learn_earth_field(&mut self, field_ut: [f64; 3]) {
+        self.config.earth_field_ut = Some(field_ut);
+        if self.alignment.is_none() {
+            self.filter.learn_earth_field(field_ut);
+        }
+    }
+
     fn process(&mut self, sample: Sample) {
         if let Some(step) = self.inputs.take(&sample, &self.history, 0) {
             self.rest_or_advance(&step);

@@ -1,0 +1,398 @@
+//! Navigation from raw sensors in flight: what the raw readings of each tick say
+//! of attitude, heading, rates, specific force, airspeed and altitude, in the
+//! place of sensors that measure these.
+
+use core::time::Duration;
+
+use libm::{atan2, hypot};
+
+use super::stuck::StuckSensor;
+use super::{
+    GeodeticPosition, InertialNavigation, KalmanConfig, KalmanNavigation, Observation, Solution,
+    ThesisNavigation, earth_field_ut,
+};
+use crate::blocks::wrap_two_pi;
+use crate::flight::atmosphere::{calibrated_airspeed_mps, pressure_altitude_m};
+use crate::flight::orientation::euler_from_quaternion;
+use crate::flight::{
+    Attitude, BodyRates, GnssFix, Measurements, PlantState, SpecificForce, Velocity,
+};
+use crate::framework::schema::{Schema, in_range};
+use crate::framework::{Reading, Time};
+
+/// Roll and pitch less certain than this are none, rad.
+const USABLE_TILT: f64 = 0.15;
+/// The same of the heading, rad.
+const USABLE_HEADING: f64 = 0.35;
+
+/// What moves changes one axis by more than this: specific force, m/s², rates,
+/// rad/s, the magnetic field, µT, and the place, m/s.
+const MOVED_FORCE: f64 = 1.0;
+const MOVED_RATE: f64 = 0.05;
+const MOVED_FIELD: f64 = 3.0;
+const MOVED_MPS: f64 = 2.0;
+
+/// How attitude is computed from raw readings.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum RawNavigationMethod {
+    /// By [`KalmanNavigation`].
+    Kalman,
+    /// By [`ThesisNavigation`].
+    Thesis,
+}
+
+/// What is known of the earth's magnetic field: headings are magnetic, and
+/// velocities of a satellite receiver refer to true north.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum MagneticNorth {
+    /// The field here: north, east, down, µT.
+    Field([f64; 3]),
+    /// The World Magnetic Model of this year, at the first fix of a satellite
+    /// receiver.
+    ModelOf(f64),
+}
+
+/// The configuration of [`RawNavigation`].
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct RawNavigationConfig {
+    /// The method.
+    pub method: RawNavigationMethod,
+    /// As [`KalmanConfig::delay`].
+    pub delay: Duration,
+    /// The magnetic field.
+    pub north: MagneticNorth,
+}
+
+/// Computes from the raw readings of each tick what control needs.
+///
+/// | of | from |
+/// |---|---|
+/// | attitude, heading | the method, at the time of the latest sample of the gyroscopes |
+/// | body rates, specific force | gyroscopes and accelerometers, without the biases that the method found |
+/// | altitude | static pressure, by the standard atmosphere |
+/// | airspeed | differential pressure |
+/// | position, velocity | the satellite receiver, as it gives them |
+///
+/// Readings that sensors give of these themselves are not used, except airspeed
+/// and altitude where there is no raw reading of their pressure, and position
+/// and velocity without a receiver. An attitude or a heading that is less
+/// certain than 8.6° and 20° (one standard deviation) is left out, and counts as
+/// lost after a while.
+///
+/// ```
+/// use core::time::Duration;
+/// use fcc_core::flight::inertial::{
+///     MagneticNorth, RawNavigation, RawNavigationConfig, RawNavigationMethod,
+/// };
+/// use fcc_core::flight::{BodyRates, MagneticField, Measurements, SpecificForce};
+/// use fcc_core::framework::{Reading, Time};
+///
+/// let mut navigation = RawNavigation::new(RawNavigationConfig {
+///     method: RawNavigationMethod::Kalman,
+///     delay: Duration::from_millis(200),
+///     north: MagneticNorth::Field([20.0, 0.0, 40.0]),
+/// });
+/// // At rest, and the nose points east.
+/// let mut found = Measurements::default();
+/// for tick in 0..400 {
+///     let now = Time::from_nanos(tick * 25_000_000);
+///     let field = MagneticField { y_ut: -20.0, z_ut: 40.0, ..MagneticField::default() };
+///     let force = SpecificForce { z_mps2: -9.81, ..SpecificForce::default() };
+///     let raw = Measurements {
+///         raw_body_rates: Reading::new(BodyRates::default(), now),
+///         raw_specific_force: Reading::new(force, now),
+///         magnetic_field: Reading::new(field, now),
+///         ..Measurements::default()
+///     };
+///     found = *navigation.step(now, &raw);
+/// }
+/// assert!(found.attitude.value.roll_rad.abs() < 0.01);
+/// assert_eq!(found.heading_rad.value.to_degrees().round(), 90.0);
+/// ```
+#[derive(Clone, Debug)]
+pub struct RawNavigation {
+    config: RawNavigationConfig,
+    method: Method,
+    /// Those that were used last.
+    used: Measurements,
+    stuck_force: StuckSensor,
+    stuck_rates: StuckSensor,
+    /// How far magnetic north is to the east of the method's, rad.
+    declination_rad: f64,
+    found: Measurements,
+}
+
+#[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant, reason = "there is no heap, and one of it")]
+enum Method {
+    Kalman(KalmanNavigation),
+    Thesis(ThesisNavigation),
+}
+
+impl RawNavigation {
+    /// Before the first reading.
+    pub fn new(config: RawNavigationConfig) -> Self {
+        let field = match config.north {
+            MagneticNorth::Field(field) => Some(field),
+            MagneticNorth::ModelOf(_) => None,
+        };
+        Self {
+            config,
+            method: match config.method {
+                RawNavigationMethod::Kalman => {
+                    Method::Kalman(KalmanNavigation::new(KalmanConfig {
+                        delay: config.delay,
+                        earth_field_ut: field,
+                    }))
+                }
+                RawNavigationMethod::Thesis => Method::Thesis(ThesisNavigation::new()),
+            },
+            used: Measurements::default(),
+            stuck_force: StuckSensor::default(),
+            stuck_rates: StuckSensor::default(),
+            declination_rad: field.map_or(0.0, declination_rad),
+            found: Measurements::default(),
+        }
+    }
+
+    /// The measurements of the last step, with what they say.
+    pub const fn found(&self) -> &Measurements {
+        &self.found
+    }
+
+    /// Takes the measurements of a tick; those, with what they say in the place
+    /// of what was measured.
+    pub fn step(&mut self, now: Time, measured: &Measurements) -> &Measurements {
+        if is_elsewhere(measured) && !is_elsewhere(&self.found) {
+            *self = Self::new(self.config);
+        }
+        let before = latest_inertial(&self.used);
+        self.observe(now, measured);
+        let at = latest_inertial(&self.used);
+        let (mut attitude, mut heading) = (self.found.attitude, self.found.heading_rad);
+        let (mut rates, mut force) = (self.found.body_rates, self.found.specific_force);
+        if at > before {
+            let solution = match &mut self.method {
+                Method::Kalman(navigation) => navigation.step(at),
+                Method::Thesis(navigation) => navigation.step(at),
+            };
+            attitude = attitude_of(&solution, at).unwrap_or(attitude);
+            heading = self.heading_of(&solution, at).unwrap_or(heading);
+            rates = rates_of(&self.used.raw_body_rates, &solution);
+            force = force_of(&self.used.raw_specific_force, &solution);
+        }
+        let fix = self.used.gnss;
+        self.found = Measurements {
+            attitude,
+            heading_rad: heading,
+            body_rates: rates,
+            specific_force: force,
+            altitude_m: either(
+                self.used.static_pressure_pa,
+                pressure_altitude_m,
+                measured.altitude_m,
+            ),
+            airspeed_mps: either(
+                self.used.differential_pressure_pa,
+                |pressure_pa| calibrated_airspeed_mps(pressure_pa.max(0.0)),
+                measured.airspeed_mps,
+            ),
+            position: either(fix, |fix| fix.position, measured.position),
+            velocity: either(fix, |fix| fix.velocity, measured.velocity),
+            ..*measured
+        };
+        &self.found
+    }
+
+    /// Passes the new plausible readings on, and none that a sensor only repeats.
+    fn observe(&mut self, now: Time, raw: &Measurements) {
+        let (f, r, m) = (
+            raw.raw_specific_force,
+            raw.raw_body_rates,
+            raw.magnetic_field,
+        );
+        let force = [f.value.x_mps2, f.value.y_mps2, f.value.z_mps2];
+        let rates = [r.value.roll_radps, r.value.pitch_radps, r.value.yaw_radps];
+        let field = [m.value.x_ut, m.value.y_ut, m.value.z_ut];
+        let repeats_force =
+            self.stuck_force
+                .step(f.taken, force, [rates, field], [MOVED_RATE, MOVED_FIELD]);
+        let repeats_rates =
+            self.stuck_rates
+                .step(r.taken, rates, [force, field], [MOVED_FORCE, MOVED_FIELD]);
+        let repeats_fix = repeats(&self.used.gnss.value, &raw.gnss.value);
+        if !repeats_force && is_new(&mut self.used.raw_specific_force, &f, now) {
+            self.take(f.taken, Observation::SpecificForce(force));
+        }
+        if !repeats_rates && is_new(&mut self.used.raw_body_rates, &r, now) {
+            self.take(r.taken, Observation::Rates(rates));
+        }
+        if is_new(&mut self.used.magnetic_field, &m, now) {
+            self.take(m.taken, Observation::MagneticField(field));
+        }
+        let pressure = raw.static_pressure_pa;
+        if is_new(&mut self.used.static_pressure_pa, &pressure, now) {
+            self.take(pressure.taken, Observation::StaticPressure(pressure.value));
+        }
+        let pressure = raw.differential_pressure_pa;
+        if is_new(&mut self.used.differential_pressure_pa, &pressure, now) {
+            let observation = Observation::DifferentialPressure(pressure.value);
+            self.take(pressure.taken, observation);
+        }
+        if !repeats_fix && is_new(&mut self.used.gnss, &raw.gnss, now) {
+            self.take_fix(raw.gnss.taken, &raw.gnss.value);
+        }
+    }
+
+    fn take_fix(&mut self, taken: Time, fix: &GnssFix) {
+        let place = GeodeticPosition {
+            latitude_rad: fix.position.latitude_rad,
+            longitude_rad: fix.position.longitude_rad,
+            altitude_m: fix.position.altitude_m,
+        };
+        if let (MagneticNorth::ModelOf(year), Method::Kalman(navigation)) =
+            (self.config.north, &mut self.method)
+            && let Some(field) = earth_field_ut(place, year)
+        {
+            navigation.learn_earth_field(field);
+            self.declination_rad = declination_rad(field);
+            // Where else it flies, the filter follows the field by itself.
+            self.config.north = MagneticNorth::Field(field);
+        }
+        self.take(taken, Observation::Position(place));
+        let Velocity {
+            north_mps,
+            east_mps,
+            down_mps,
+        } = fix.velocity;
+        self.take(
+            taken,
+            Observation::Velocity([north_mps, east_mps, down_mps]),
+        );
+    }
+
+    fn take(&mut self, taken: Time, observation: Observation) {
+        match &mut self.method {
+            Method::Kalman(navigation) => navigation.observe(taken, observation),
+            Method::Thesis(navigation) => navigation.observe(taken, observation),
+        }
+    }
+
+    fn heading_of(&self, solution: &Solution, at: Time) -> Option<Reading<f64>> {
+        let north_rad = match self.method {
+            Method::Kalman(_) => self.declination_rad,
+            Method::Thesis(_) => 0.0,
+        };
+        let heading_rad = euler_from_quaternion(solution.quaternion).heading_rad;
+        let is_known =
+            heading_rad.is_finite() && is_certain(solution.sigma.heading_rad, USABLE_HEADING);
+        is_known.then(|| Reading::new(wrap_two_pi(heading_rad - north_rad), at))
+    }
+}
+
+fn declination_rad([north, east, _]: [f64; 3]) -> f64 {
+    atan2(east, north)
+}
+
+/// Whether the plant is another, or was put somewhere else.
+fn is_elsewhere(measured: &Measurements) -> bool {
+    let state = measured.plant.value.state;
+    !measured.plant.is_never() && matches!(state, PlantState::Jumped | PlantState::Reloaded)
+}
+
+/// When the gyroscopes, or without them the accelerometers, were last sampled.
+fn latest_inertial(used: &Measurements) -> Time {
+    let (rates, force) = (used.raw_body_rates.taken, used.raw_specific_force.taken);
+    if rates.is_never() { force } else { rates }
+}
+
+/// Whether a reading is later than the last one, not of the future, and possible;
+/// then it becomes the last one.
+fn is_new<T: Schema>(last: &mut Reading<T>, reading: &Reading<T>, now: Time) -> bool {
+    let is_later = !reading.is_never() && reading.taken > last.taken && reading.taken <= now;
+    let is_new = is_later && in_range(&reading.value);
+    if is_new {
+        *last = *reading;
+    }
+    is_new
+}
+
+/// Whether a receiver gives the place again that it gave before, although it
+/// says that it moves.
+fn repeats(last: &GnssFix, fix: &GnssFix) -> bool {
+    let Velocity {
+        north_mps,
+        east_mps,
+        ..
+    } = fix.velocity;
+    fix.position == last.position && hypot(north_mps, east_mps) > MOVED_MPS
+}
+
+/// What a raw reading says, or the one that is measured if there is none.
+fn either<R: Copy, T>(
+    raw: Reading<R>,
+    says: impl FnOnce(R) -> T,
+    measured: Reading<T>,
+) -> Reading<T> {
+    if raw.is_never() {
+        return measured;
+    }
+    Reading {
+        value: says(raw.value),
+        taken: raw.taken,
+        source: raw.source,
+    }
+}
+
+fn attitude_of(solution: &Solution, at: Time) -> Option<Reading<Attitude>> {
+    let angles = euler_from_quaternion(solution.quaternion);
+    let sigma = solution.sigma;
+    let is_known = angles.roll_rad.is_finite()
+        && angles.pitch_rad.is_finite()
+        && is_certain(sigma.roll_rad.max(sigma.pitch_rad), USABLE_TILT);
+    is_known.then(|| {
+        let attitude = Attitude {
+            pitch_rad: angles.pitch_rad,
+            roll_rad: angles.roll_rad,
+        };
+        Reading::new(attitude, at)
+    })
+}
+
+fn rates_of(raw: &Reading<BodyRates>, solution: &Solution) -> Reading<BodyRates> {
+    let [roll, pitch, yaw] = solution.gyroscope_bias_radps.map(known);
+    Reading {
+        value: BodyRates {
+            roll_radps: raw.value.roll_radps - roll,
+            pitch_radps: raw.value.pitch_radps - pitch,
+            yaw_radps: raw.value.yaw_radps - yaw,
+        },
+        ..*raw
+    }
+}
+
+fn force_of(raw: &Reading<SpecificForce>, solution: &Solution) -> Reading<SpecificForce> {
+    let [x, y, z] = solution.accelerometer_bias_mps2.map(known);
+    Reading {
+        value: SpecificForce {
+            x_mps2: raw.value.x_mps2 - x,
+            y_mps2: raw.value.y_mps2 - y,
+            z_mps2: raw.value.z_mps2 - z,
+        },
+        ..*raw
+    }
+}
+
+/// Whether a standard deviation is small enough; a method that states none is
+/// believed.
+fn is_certain(sigma: f64, usable: f64) -> bool {
+    sigma.is_nan() || sigma <= usable
+}
+
+/// A bias that the method does not know is none.
+fn known(bias: f64) -> f64 {
+    if bias.is_finite() { bias } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests;

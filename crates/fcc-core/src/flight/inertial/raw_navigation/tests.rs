@@ -1,0 +1,158 @@
+use super::*;
+use crate::flight::{MagneticField, Position};
+
+/// At rest, the nose to magnetic east.
+fn raw(now: Time, [north_ut, down_ut]: [f64; 2]) -> Measurements {
+    let force = SpecificForce {
+        z_mps2: -9.81,
+        ..SpecificForce::default()
+    };
+    let field = MagneticField {
+        y_ut: -north_ut,
+        z_ut: down_ut,
+        ..MagneticField::default()
+    };
+    Measurements {
+        raw_body_rates: Reading::new(BodyRates::default(), now),
+        raw_specific_force: Reading::new(force, now),
+        magnetic_field: Reading::new(field, now),
+        static_pressure_pa: Reading::new(89_874.6, now),
+        ..Measurements::default()
+    }
+}
+
+fn config() -> RawNavigationConfig {
+    RawNavigationConfig {
+        method: RawNavigationMethod::Kalman,
+        delay: Duration::from_millis(200),
+        north: MagneticNorth::ModelOf(2027.5),
+    }
+}
+
+fn tick(n: i64) -> Time {
+    Time::from_nanos(n * 25_000_000)
+}
+
+/// In Alaska, where magnetic north is 14° to the east.
+#[test]
+fn the_magnetic_heading_stays_when_the_declination_becomes_known() {
+    let place = GeodeticPosition {
+        latitude_rad: 60.0_f64.to_radians(),
+        longitude_rad: -150.0_f64.to_radians(),
+        altitude_m: 1_000.0,
+    };
+    let [north_ut, east_ut, down_ut] = earth_field_ut(place, 2027.5).unwrap();
+    assert!((10.0..18.0).contains(&atan2(east_ut, north_ut).to_degrees()));
+    let field = [hypot(north_ut, east_ut), down_ut];
+    let fix = GnssFix {
+        position: Position {
+            latitude_rad: place.latitude_rad,
+            longitude_rad: place.longitude_rad,
+            altitude_m: place.altitude_m,
+        },
+        ..GnssFix::default()
+    };
+    let mut navigation = RawNavigation::new(config());
+    for n in 0..1_600 {
+        let mut measured = raw(tick(n), field);
+        if n >= 400 && n % 8 == 0 {
+            measured.gnss = Reading::new(fix, tick(n));
+        }
+        let found = navigation.step(tick(n), &measured);
+        if n > 100 {
+            let heading_deg = found.heading_rad.value.to_degrees();
+            assert!((heading_deg - 90.0).abs() < 1.0, "{n}: {heading_deg}");
+        }
+    }
+    // ISO 2533: 89,874.6 Pa are 1,000 m.
+    assert!((navigation.found().altitude_m.value - 1_000.0).abs() < 0.1);
+    assert_eq!(navigation.found().position.value, fix.position);
+}
+
+#[test]
+fn without_a_gyroscope_for_long_the_attitude_becomes_old() {
+    let mut navigation = RawNavigation::new(config());
+    for n in 0..400 {
+        let mut measured = raw(tick(n), [20.0, 40.0]);
+        if n >= 200 {
+            measured.raw_body_rates = Reading::new(BodyRates::default(), tick(199));
+        }
+        navigation.step(tick(n), &measured);
+    }
+    assert_eq!(navigation.found().attitude.taken, tick(199));
+    assert_eq!(navigation.found().body_rates.taken, tick(199));
+    assert_eq!(navigation.found().altitude_m.taken, tick(399));
+}
+
+#[test]
+fn impossible_and_future_readings_are_not_used() {
+    let mut navigation = RawNavigation::new(config());
+    for n in 0..200 {
+        let mut measured = raw(tick(n), [20.0, 40.0]);
+        measured.differential_pressure_pa = Reading::new(f64::INFINITY, tick(n));
+        measured.static_pressure_pa = Reading::new(50_000.0, tick(n + 10));
+        navigation.step(tick(n), &measured);
+    }
+    let found = navigation.found();
+    assert!(found.airspeed_mps.is_never() && found.altitude_m.is_never());
+    assert!(found.attitude.value.roll_rad.abs() < 0.02);
+}
+
+/// A driver that repeats its last sample, while the aircraft begins to bank.
+#[test]
+fn a_gyroscope_that_repeats_itself_in_motion_is_left_out() {
+    let mut navigation = RawNavigation::new(config());
+    for n in 0..400 {
+        let mut measured = raw(tick(n), [20.0, 40.0]);
+        let still = BodyRates {
+            roll_radps: 1e-4 * (n.min(200) as f64),
+            ..BodyRates::default()
+        };
+        measured.raw_body_rates = Reading::new(still, tick(n));
+        if n > 200 {
+            measured.raw_specific_force.value.y_mps2 = -3.0;
+        }
+        navigation.step(tick(n), &measured);
+    }
+    // Half a second, 20 ticks, after its last change.
+    assert_eq!(navigation.found().attitude.taken, tick(219));
+    // At rest it may.
+    let mut navigation = RawNavigation::new(config());
+    for n in 0..400 {
+        navigation.step(tick(n), &raw(tick(n), [20.0, 40.0]));
+    }
+    assert_eq!(navigation.found().attitude.taken, tick(399));
+}
+
+#[test]
+fn a_place_that_is_repeated_by_a_receiver_that_moves_is_left_out() {
+    let mut navigation = RawNavigation::new(config());
+    for n in 0..80 {
+        let mut fix = GnssFix::default();
+        fix.velocity.north_mps = 50.0;
+        fix.position.latitude_rad = 0.5 + 1e-5 * (n.min(40) as f64);
+        let mut measured = raw(tick(n), [20.0, 40.0]);
+        measured.gnss = Reading::new(fix, tick(n));
+        navigation.step(tick(n), &measured);
+    }
+    assert_eq!(navigation.found().velocity.taken, tick(40));
+}
+
+/// The plant was put somewhere else: what was known is not true there.
+#[test]
+fn after_a_jump_it_begins_anew() {
+    let mut navigation = RawNavigation::new(config());
+    let mut jumped = raw(tick(200), [20.0, 40.0]);
+    jumped.plant = Reading::new(
+        crate::flight::Plant {
+            state: PlantState::Jumped,
+            ..crate::flight::Plant::default()
+        },
+        tick(200),
+    );
+    for n in 0..200 {
+        navigation.step(tick(n), &raw(tick(n), [20.0, 40.0]));
+    }
+    assert!(!navigation.found().attitude.is_never());
+    assert!(navigation.step(tick(200), &jumped).attitude.is_never());
+}

@@ -1,0 +1,151 @@
+//! `[navigation]`: where attitude and the other quantities that control needs
+//! come from.
+
+use std::time::Duration;
+
+use fcc_core::flight::inertial::{MagneticNorth, RawNavigationConfig, RawNavigationMethod};
+use serde::{Deserialize, Serialize};
+
+/// The middle of the World Magnetic Model 2025: a small computer may not know
+/// the date, and a declination changes by 0.1 to 0.2° a year.
+const MIDDLE_OF_THE_MODEL: f64 = 2027.5;
+
+/// `[navigation]`.
+#[derive(Clone, Copy, PartialEq, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct NavigationSection {
+    /// How they are computed from raw readings, or that sensors measure them.
+    pub method: NavigationMethod,
+    /// By how much the latest reading of any sensor comes after it was taken.
+    pub longest_delay_ms: f64,
+    /// The earth's magnetic field here: north, east, down. Without it, that of
+    /// the World Magnetic Model at the first fix of a satellite receiver, and of
+    /// the built-in aircraft its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub magnetic_field_ut: Option<[f64; 3]>,
+    /// The year of that model, with its fraction.
+    pub year: f64,
+}
+
+/// How attitude is computed.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum NavigationMethod {
+    /// Sensors measure it.
+    #[default]
+    Measured,
+    /// From raw readings, by a Kalman filter.
+    Kalman,
+    /// From raw readings, as in the thesis.
+    Thesis,
+}
+
+impl Default for NavigationSection {
+    fn default() -> Self {
+        Self {
+            method: NavigationMethod::Measured,
+            longest_delay_ms: 200.0,
+            magnetic_field_ut: None,
+            year: MIDDLE_OF_THE_MODEL,
+        }
+    }
+}
+
+/// Key, smallest and largest value, as in the table of all keys.
+pub(super) const RANGES: &[(&str, f64, f64)] = &[
+    ("navigation.longest_delay_ms", 0.0, 500.0),
+    ("navigation.magnetic_field_ut", -70.0, 70.0),
+    ("navigation.year", 2_020.0, 2_029.999),
+];
+
+impl NavigationSection {
+    /// The core's configuration; none if sensors measure everything. Of a
+    /// simulation the magnetic field is known.
+    pub(super) fn to_core(self, simulated_ut: Option<[f64; 3]>) -> Option<RawNavigationConfig> {
+        let method = match self.method {
+            NavigationMethod::Measured => return None,
+            NavigationMethod::Kalman => RawNavigationMethod::Kalman,
+            NavigationMethod::Thesis => RawNavigationMethod::Thesis,
+        };
+        let delay = Duration::try_from_secs_f64(self.longest_delay_ms * 1e-3);
+        Some(RawNavigationConfig {
+            method,
+            // The table of ranges refuses what is no delay.
+            delay: delay.unwrap_or_default(),
+            north: match self.magnetic_field_ut.or(simulated_ut) {
+                Some(field) => MagneticNorth::Field(field),
+                None => MagneticNorth::ModelOf(self.year),
+            },
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use fcc_core::flight::inertial::{MagneticNorth, RawNavigationMethod};
+
+    use crate::config::Config;
+
+    fn parsed(text: &str) -> Result<Config, String> {
+        let text = format!("[navigation]\n{text}");
+        Config::parse_without_aircraft(&text, "f").map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn without_keys_sensors_measure_attitude() {
+        let config = parsed("").unwrap();
+        assert_eq!(config.autopilot_config().raw_navigation, None);
+    }
+
+    #[test]
+    fn a_method_is_read_with_what_is_known() {
+        let text = "method = \"kalman\"\nlongest_delay_ms = 150\n\
+                    magnetic_field_ut = [19.0, -1.0, 49.0]";
+        let raw = parsed(text).unwrap().autopilot_config().raw_navigation;
+        let raw = raw.unwrap();
+        assert_eq!(raw.method, RawNavigationMethod::Kalman);
+        assert_eq!(raw.delay, Duration::from_millis(150));
+        assert_eq!(raw.north, MagneticNorth::Field([19.0, -1.0, 49.0]));
+        let raw = parsed("method = \"thesis\"").unwrap().autopilot_config();
+        let north = raw.raw_navigation.unwrap().north;
+        assert_eq!(north, MagneticNorth::ModelOf(2027.5));
+    }
+
+    #[test]
+    fn the_field_around_the_built_in_aircraft_is_known() {
+        let text = "[built-in]\nraw_sensors = \"board\"\n[navigation]\nmethod = \"kalman\"";
+        let config = Config::parse(text, "f").unwrap().autopilot_config();
+        let MagneticNorth::Field(field) = config.raw_navigation.unwrap().north else {
+            panic!("not known");
+        };
+        // Some 50 µT in middle latitudes.
+        let strength = field.iter().map(|part| part * part).sum::<f64>().sqrt();
+        assert!((45.0..60.0).contains(&strength), "{strength}");
+    }
+
+    #[test]
+    fn where_nothing_gives_raw_readings_it_is_said() {
+        let text = "[x-plane]\n[navigation]\nmethod = \"kalman\"\n";
+        let refused = Config::parse(text, "f").unwrap_err().to_string();
+        assert!(
+            refused.starts_with("f:3: navigation.method: computes"),
+            "{refused}"
+        );
+        let text = text.replace("x-plane", "built-in");
+        let remarks = Config::parse(&text, "f").unwrap().remarks(&text);
+        assert!(
+            remarks.iter().any(|remark| remark.contains("raw_sensors")),
+            "{remarks:?}"
+        );
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_with_the_range() {
+        assert_eq!(
+            parsed("year = 2012.4").unwrap_err(),
+            "f:2: navigation.year: is 2012.4: choose 2020 to 2029.999"
+        );
+    }
+}
