@@ -47,6 +47,8 @@ class Conditions:
     """The raw sensors that are recorded beside the others: phone or board."""
     calibration: Calibration | None = None
     """That of the raw sensors."""
+    raw_fault: Callable[[fcc.Measurements, float], None] | None = None
+    """Called in each tick with the raw readings, and the time in s, to falsify them."""
     without: frozenset[str] = frozenset()
     """Readings that there are not, by their names."""
 
@@ -96,6 +98,7 @@ class LockstepRig:
             if conditions.raw_sensors
             else None
         )
+        self._raw_fault = conditions.raw_fault
         self._calibration = conditions.calibration
         self._without = conditions.without
         self.stick: tuple[float, float, float] | None = None
@@ -161,6 +164,8 @@ class LockstepRig:
             stand = plant.controls
             values = measurements(measured)
             ages_s = {} if self.raw is None else self.raw.read(values)
+            if self._raw_fault is not None:
+                self._raw_fault(values, plant.time_s)
             if self._calibration is not None:
                 self._calibration.apply(values)
             if velocity is not None:

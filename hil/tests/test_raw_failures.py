@@ -1,0 +1,162 @@
+"""Raw sensors that fail while the pattern is flown by them alone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import fcc
+import numpy as np
+import pytest
+
+from fcc_hil.lockstep_rig import Conditions, LockstepRig
+from fcc_hil.plant import Plant, Weather
+from fcc_hil.raw_calibration import calibrate
+from fcc_hil.raw_sensors import FIELD_UT, READINGS
+from fcc_hil.standin import Settings
+
+SEED = 33
+ENGAGED_S = 20.0
+FAILS_S = 60.0
+END_S = 150.0
+MEASURED = frozenset(
+    {"attitude", "heading", "body_rates", "specific_force", "airspeed", "altitude"}
+)
+
+Fault = Callable[[fcc.Measurements], None]
+
+
+def lost(*readings: str) -> Fault:
+    def fault(values: fcc.Measurements) -> None:
+        for name in (value for reading in readings for value in READINGS[reading]):
+            setattr(values, name, math.nan)
+
+    return fault
+
+
+def repeated(reading: str) -> Fault:
+    kept: list[float] = []
+
+    def fault(values: fcc.Measurements) -> None:
+        given = [getattr(values, name) for name in READINGS[reading]]
+        if not kept and all(math.isfinite(value) for value in given):
+            kept.extend(given)
+        for name, value in zip(READINGS[reading], kept, strict=False):
+            setattr(values, name, value)
+
+    return fault
+
+
+def compass_turned(by_deg: float) -> Fault:
+    sine, cosine = math.sin(math.radians(by_deg)), math.cos(math.radians(by_deg))
+
+    def fault(values: fcc.Measurements) -> None:
+        x, y = values.magnetic_field_x_ut, values.magnetic_field_y_ut
+        values.magnetic_field_x_ut = cosine * x - sine * y
+        values.magnetic_field_y_ut = sine * x + cosine * y
+
+    return fault
+
+
+def fly(fault: Fault, for_s: float) -> tuple[fcc.Machine, LockstepRig, dict[str, float]]:
+    """Fly by the sensors of a board; return the largest errors, in deg, and the extremes."""
+    weather = Weather(wind_from_deg=230.0, wind_kt=20.0, turbulence_severity=3)
+    plant = Plant("c172p", seed=SEED, weather=weather, latitude_deg=45.0)
+    north, east, down = FIELD_UT
+    machine = fcc.Machine(
+        '[guidance]\nmode = "timed-pattern"\n[navigation]\nmethod = "kalman"\n'
+        f"magnetic_field_ut = [{north}, {east}, {down}]\n"
+    )
+
+    def falsify(values: fcc.Measurements, time_s: float) -> None:
+        if FAILS_S <= time_s < FAILS_S + for_s:
+            fault(values)
+
+    conditions = Conditions(
+        raw_sensors="board",
+        calibration=calibrate("board", SEED, FIELD_UT),
+        raw_fault=falsify,
+        without=MEASURED,
+    )
+    rig = LockstepRig(Settings(aircraft="c172p", seed=SEED), plant, machine, conditions)
+    rows: list[tuple[float, ...]] = []
+
+    def keep() -> bool:
+        state, found = plant.state(), machine.estimate
+        errors = (
+            found.roll_rad - state.roll_rad,
+            found.pitch_rad - state.pitch_rad,
+            found.heading_rad - state.heading_rad,
+        )
+        wrapped = (abs(math.degrees(math.remainder(error, math.tau))) for error in errors)
+        rows.append((plant.time_s, *wrapped, abs(math.degrees(state.roll_rad)), state.height_m))
+        return False
+
+    rig.fly_to(ENGAGED_S)
+    rig.set_switch(on=True)
+    rig.fly_to(END_S, keep)
+    table = np.array(rows)
+    failing = table[table[:, 0] >= FAILS_S]
+    names = ("roll", "pitch", "heading", "bank")
+    most = dict(zip(names, failing[:, 1:5].max(axis=0), strict=True))
+    return machine, rig, {**most, "height": float(failing[:, 5].min())}
+
+
+@pytest.mark.parametrize(
+    ("fault", "for_s"),
+    [
+        (lost("gnss"), 60.0),
+        (repeated("gnss"), 60.0),
+        (lost("magnetic_field"), 90.0),
+        (compass_turned(30.0), 90.0),
+        (repeated("magnetic_field"), 60.0),
+    ],
+    ids=["no receiver", "receiver repeats", "no compass", "compass turned", "compass repeats"],
+)
+def test_it_is_flown_on(fault: Fault, for_s: float) -> None:
+    machine, _, most = fly(fault, for_s)
+    assert machine.state == "engaged"
+    # What is wanted of a compass that is turned by 30 degrees while there is a receiver.
+    assert most["heading"] <= 5.0
+    assert most["roll"] <= 3.0
+    assert most["pitch"] <= 3.0
+    assert most["bank"] <= 45.0
+
+
+@pytest.mark.parametrize(
+    ("fault", "for_s"),
+    [
+        (lost(*READINGS), 0.5),
+        (lost("raw_body_rates"), 1.0),
+        (lost("raw_body_rates", "raw_specific_force"), 2.0),
+        (lost("raw_specific_force"), 10.0),
+        (repeated("raw_specific_force"), 20.0),
+        (lost("static_pressure"), 5.0),
+        (repeated("differential_pressure"), 30.0),
+    ],
+    ids=[
+        "nothing",
+        "no gyroscope",
+        "no inertial unit",
+        "no accelerometer",
+        "accelerometer repeats",
+        "no barometer",
+        "pitot tube repeats",
+    ],
+)
+def test_what_returns_is_flown_with_again(fault: Fault, for_s: float) -> None:
+    machine, rig, most = fly(fault, for_s)
+    assert machine.state == "engaged"
+    assert any("all is good again" in event.text for event in rig.events)
+    assert most["bank"] <= 60.0
+    assert most["height"] >= 500.0
+
+
+@pytest.mark.parametrize("fault", [lost("raw_body_rates"), repeated("raw_body_rates")])
+def test_without_its_only_gyroscope_control_is_given_back(fault: Fault) -> None:
+    """Before the aircraft is lost: a gyroscope that repeats itself is noticed."""
+    machine, rig, most = fly(fault, 90.0)
+    assert machine.state == "standby"
+    (released,) = (event for event in rig.events if event.text == "failsafe -> standby")
+    assert released.time_s == pytest.approx(FAILS_S + 5.5, abs=1.0)
+    assert most["height"] >= 500.0
