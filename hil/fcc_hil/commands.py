@@ -193,6 +193,9 @@ def _add_raw(commands: Any) -> None:
         default="measured",
         help="fly by ideal sensors, or by attitude from the raw ones (default: measured)",
     )
+    raw.add_argument(
+        "--turbulence", type=int, choices=range(8), default=3, help="severity, 0 to 7 (default: 3)"
+    )
     raw.add_argument("--out", type=Path, metavar="FILE", help="write readings and truth here, .npz")
     raw.add_argument("--json", type=Path, metavar="FILE", help="write the figures here")
     raw.set_defaults(run=_raw)
@@ -207,6 +210,7 @@ def _raw(options: argparse.Namespace) -> int:
             navigation=options.navigation,
             aircraft=options.aircraft,
             seed=options.seed,
+            turbulence=options.turbulence,
         )
     except FlightError as error:
         say(f"{error}", to=sys.stderr)

@@ -9,7 +9,7 @@ others. The arrays are for navigation to be judged on.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import fcc
@@ -29,8 +29,9 @@ from .units import FT_TO_M, KT_TO_MPS
 _LATITUDE_DEG = 45.0
 """Where navigation has a horizontal field and a convergence of meridians."""
 
-_WEATHER = Weather(wind_from_deg=230.0, wind_kt=12.0, turbulence_severity=3)
-"""A steady wind and light turbulence."""
+_WIND = Weather(wind_from_deg=230.0, wind_kt=12.0)
+
+LIGHT_TURBULENCE = 3
 
 _STANDBY_S = 20.0
 """Level flight in which navigation settles."""
@@ -119,17 +120,20 @@ def fly(
     aircraft: str = "c172p",
     legs: int = 8,
     seed: int = 1,
+    turbulence: int = LIGHT_TURBULENCE,
 ) -> RawFlight:
     """Fly the timed pattern; return the raw readings, the truth and the estimate.
 
     `navigation` is `measured` for ideal sensors, or how attitude is computed from the raw ones:
-    `kalman`, `thesis`. Of each sensor there are `NAME_t_s`, when its readings arrived,
-    `NAME_UNIT`, (n,) or (n, m), and `NAME_delay_s`, what is known of its delay; `truth_NAME` and
-    `estimate_NAME`, a row per tick; `engaged_s`; `field_ut`, the earth's magnetic field, north,
+    `kalman`, `thesis`. It is flown in 12 kt of wind, and turbulence of JSBSim's severity, 0 to 7.
+    Of each sensor there are `NAME_t_s`, when its readings arrived, `NAME_UNIT`, (n,) or (n, m),
+    and `NAME_delay_s`, what is known of its delay; `truth_NAME` and `estimate_NAME`, a row per
+    tick; `engaged_s`; `field_ut`, the earth's magnetic field, north,
     east and down. Raises FlightError.
     """
     pattern = TimedPattern()
-    plant = Plant(aircraft, seed=seed, weather=_WEATHER, latitude_deg=_LATITUDE_DEG)
+    weather = replace(_WIND, turbulence_severity=turbulence)
+    plant = Plant(aircraft, seed=seed, weather=weather, latitude_deg=_LATITUDE_DEG)
     north, east, down = FIELD_UT
     machine = fcc.Machine(
         '[guidance]\nmode = "timed-pattern"\n'
