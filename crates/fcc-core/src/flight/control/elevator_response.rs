@@ -1,6 +1,10 @@
 //! The latency and the play between the elevator command and its effect, from
 //! the flight itself.
 
+mod regression;
+
+use regression::{Motion, Sums};
+
 use crate::blocks::{HighPass, LowPass, smoothing_factor};
 
 /// The number of delays compared, one sample each.
@@ -97,87 +101,6 @@ struct PlayedCommand {
     /// The last positions between trim and noise, the latest first.
     recent: [f64; DELAYS + 1],
     sums: [Sums; DELAYS],
-}
-
-/// Mean products of a surface position with the motion.
-#[derive(Clone, Copy, Debug, Default)]
-struct Sums {
-    with_rate: f64,
-    with_load: f64,
-    with_acceleration: f64,
-    square: f64,
-}
-
-/// Mean products of the motion with itself.
-#[derive(Clone, Copy, Debug, Default)]
-struct Motion {
-    rate_rate: f64,
-    rate_load: f64,
-    load_load: f64,
-    rate_acceleration: f64,
-    load_acceleration: f64,
-    acceleration_acceleration: f64,
-}
-
-/// What the motion itself explains of the pitch acceleration.
-struct Explained {
-    determinant: f64,
-    motion: Motion,
-    per_rate: f64,
-    per_load: f64,
-    left: f64,
-}
-
-impl Motion {
-    fn explains(&self) -> Explained {
-        let motion = Self {
-            rate_rate: self.rate_rate + TINY,
-            load_load: self.load_load + TINY,
-            ..*self
-        };
-        let determinant = motion.rate_rate * motion.load_load - motion.rate_load * motion.rate_load;
-        let (per_rate, per_load) =
-            motion.solve(determinant, self.rate_acceleration, self.load_acceleration);
-        let left = self.acceleration_acceleration
-            - per_rate * self.rate_acceleration
-            - per_load * self.load_acceleration;
-        Explained {
-            determinant,
-            motion,
-            per_rate,
-            per_load,
-            left,
-        }
-    }
-
-    fn solve(&self, determinant: f64, with_rate: f64, with_load: f64) -> (f64, f64) {
-        (
-            (self.load_load * with_rate - self.rate_load * with_load) / determinant,
-            (self.rate_rate * with_load - self.rate_load * with_rate) / determinant,
-        )
-    }
-}
-
-/// Keeps the normal equations regular without motion.
-const TINY: f64 = 1e-9;
-
-impl Explained {
-    /// What is left unexplained with this surface position; all of it if the
-    /// elevator would act the wrong way.
-    fn left_with(&self, sums: &Sums) -> f64 {
-        let (rate, load) = self
-            .motion
-            .solve(self.determinant, sums.with_rate, sums.with_load);
-        let own = sums.square + TINY - sums.with_rate * rate - sums.with_load * load;
-        let effect = sums.with_acceleration
-            - sums.with_rate * self.per_rate
-            - sums.with_load * self.per_load;
-        if effect > 0.0 && own > 0.0 {
-            self.left - effect * effect / own
-        } else {
-            self.left
-        }
-    }
 }
 
 /// Measures the latency and the play between the elevator command and its
@@ -305,29 +228,13 @@ impl ElevatorResponse {
         }
     }
 
-    fn remember(
-        &mut self,
-        elevator: f64,
-        [rate, load, acceleration]: [f64; 3],
-        factors: &BandFactors,
-        period_s: f64,
-    ) {
+    fn remember(&mut self, elevator: f64, moved: [f64; 3], factors: &BandFactors, period_s: f64) {
         let new = if self.samples > SETTLES_FOR {
             period_s / MEMORY_S
         } else {
             0.0
         };
-        let mean = |old: &mut f64, product: f64| *old += new * (product - *old);
-        let motion = &mut self.motion;
-        mean(&mut motion.rate_rate, rate * rate);
-        mean(&mut motion.rate_load, rate * load);
-        mean(&mut motion.load_load, load * load);
-        mean(&mut motion.rate_acceleration, rate * acceleration);
-        mean(&mut motion.load_acceleration, load * acceleration);
-        mean(
-            &mut motion.acceleration_acceleration,
-            acceleration * acceleration,
-        );
+        self.motion.add(moved, new);
         for play in &mut self.plays {
             let (least, most) = (elevator - play.half_width, elevator + play.half_width);
             let inside = |position: f64| position.max(least).min(most);
@@ -343,10 +250,7 @@ impl ElevatorResponse {
             // both, so that it would seem to.
             let late = play.recent.iter().skip(1);
             for (sums, position) in play.sums.iter_mut().zip(late) {
-                mean(&mut sums.with_rate, position * rate);
-                mean(&mut sums.with_load, position * load);
-                mean(&mut sums.with_acceleration, position * acceleration);
-                mean(&mut sums.square, position * position);
+                sums.add(*position, moved, new);
             }
         }
     }
