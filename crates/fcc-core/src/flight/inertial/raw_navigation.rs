@@ -6,7 +6,7 @@ use core::time::Duration;
 
 use libm::{atan2, hypot};
 
-use super::stuck::StuckSensor;
+use super::stuck::{MOVED_FIELD, MOVED_FORCE, MOVED_MPS, MOVED_RATE, StuckSensor};
 use super::{
     GeodeticPosition, InertialNavigation, KalmanConfig, KalmanNavigation, Observation, Solution,
     ThesisNavigation, earth_field_ut,
@@ -24,13 +24,6 @@ use crate::framework::{Reading, Time};
 const USABLE_TILT: f64 = 0.15;
 /// The same of the heading, rad.
 const USABLE_HEADING: f64 = 0.35;
-
-/// What moves changes one axis by more than this: specific force, m/s², rates,
-/// rad/s, the magnetic field, µT, and the place, m/s.
-const MOVED_FORCE: f64 = 1.0;
-const MOVED_RATE: f64 = 0.05;
-const MOVED_FIELD: f64 = 3.0;
-const MOVED_MPS: f64 = 2.0;
 
 /// How attitude is computed from raw readings.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -117,6 +110,8 @@ pub struct RawNavigation {
     used: Measurements,
     stuck_force: StuckSensor,
     stuck_rates: StuckSensor,
+    /// Whether the model has given the field at the first fix.
+    knows_field: bool,
     /// How far magnetic north is to the east of the method's, rad.
     declination_rad: f64,
     found: Measurements,
@@ -150,6 +145,7 @@ impl RawNavigation {
             used: Measurements::default(),
             stuck_force: StuckSensor::default(),
             stuck_rates: StuckSensor::default(),
+            knows_field: false,
             declination_rad: field.map_or(0.0, declination_rad),
             found: Measurements::default(),
         }
@@ -252,12 +248,13 @@ impl RawNavigation {
         };
         if let (MagneticNorth::ModelOf(year), Method::Kalman(navigation)) =
             (self.config.north, &mut self.method)
+            && !self.knows_field
             && let Some(field) = earth_field_ut(place, year)
         {
             navigation.learn_earth_field(field);
             self.declination_rad = declination_rad(field);
             // Where else it flies, the filter follows the field by itself.
-            self.config.north = MagneticNorth::Field(field);
+            self.knows_field = true;
         }
         self.take(taken, Observation::Position(place));
         let Velocity {

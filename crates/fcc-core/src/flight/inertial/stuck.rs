@@ -6,6 +6,13 @@ use crate::framework::Time;
 /// calm air they are for a moment.
 const SAME_FOR_S: f64 = 0.5;
 
+/// What moves changes one axis by more than this: specific force, m/s², rates,
+/// rad/s, the magnetic field, µT, and the place, m/s.
+pub(super) const MOVED_FORCE: f64 = 1.0;
+pub(super) const MOVED_RATE: f64 = 0.05;
+pub(super) const MOVED_FIELD: f64 = 3.0;
+pub(super) const MOVED_MPS: f64 = 2.0;
+
 /// Notices that the samples of a sensor with three axes stay the same to the last
 /// bit while another one shows that it moved: a driver that repeats its last
 /// sample. At rest all of them may stay the same.

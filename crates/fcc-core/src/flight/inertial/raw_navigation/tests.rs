@@ -138,6 +138,44 @@ fn a_place_that_is_repeated_by_a_receiver_that_moves_is_left_out() {
     assert_eq!(navigation.found().velocity.taken, tick(40));
 }
 
+/// From Alaska, where magnetic north is 14° to the east, to where it is 5° to the
+/// west or less: the field is the model's there.
+#[test]
+fn after_a_jump_the_field_is_that_of_the_new_place() {
+    let mut navigation = RawNavigation::new(config());
+    for (part, (latitude_deg, longitude_deg)) in [(0, (60.0, -150.0)), (1, (45.0, -88.0))] {
+        let place = GeodeticPosition {
+            latitude_rad: f64::to_radians(latitude_deg),
+            longitude_rad: f64::to_radians(longitude_deg),
+            altitude_m: 1_000.0,
+        };
+        let [north_ut, east_ut, down_ut] = earth_field_ut(place, 2027.5).unwrap();
+        let mut fix = GnssFix::default();
+        fix.position.latitude_rad = place.latitude_rad;
+        fix.position.longitude_rad = place.longitude_rad;
+        fix.position.altitude_m = place.altitude_m;
+        for n in 0..800 {
+            let now = tick(800 * part + n);
+            let mut measured = raw(now, [hypot(north_ut, east_ut), down_ut]);
+            let state = if part == 1 && n == 0 {
+                PlantState::Jumped
+            } else {
+                PlantState::Running
+            };
+            let plant = crate::flight::Plant {
+                state,
+                ..crate::flight::Plant::default()
+            };
+            measured.plant = Reading::new(plant, now);
+            measured.gnss = Reading::new(fix, now);
+            navigation.step(now, &measured);
+        }
+        let heading_deg = navigation.found().heading_rad.value.to_degrees();
+        assert!((heading_deg - 90.0).abs() < 1.0, "{part}: {heading_deg}");
+        assert_eq!(navigation.declination_rad, atan2(east_ut, north_ut));
+    }
+}
+
 /// The plant was put somewhere else: what was known is not true there.
 #[test]
 fn after_a_jump_it_begins_anew() {
