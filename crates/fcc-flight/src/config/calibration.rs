@@ -41,12 +41,16 @@ macro_rules! axes_section {
             #[serde(with = "super::as_text")]
             pub mounting: Mounting,
             /// How it is turned from there: roll, pitch and yaw.
+            #[serde(deserialize_with = "super::exactly::numbers")]
             pub rotation_deg: [f64; 3],
             /// What it gives where there is nothing.
+            #[serde(deserialize_with = "super::exactly::numbers")]
             pub $bias: [f64; 3],
             /// The true value of each axis over what it gives.
+            #[serde(deserialize_with = "super::exactly::numbers")]
             pub scale: [f64; 3],
             /// How much of an axis belongs to another one.
+            #[serde(deserialize_with = "super::exactly::numbers")]
             pub misalignment: [f64; 6],
             /// From the measured event to its arrival.
             pub delay_ms: f64,
@@ -65,11 +69,11 @@ macro_rules! axes_section {
             }
         }
 
-        impl From<&$name> for AxesCalibration {
+        impl From<&$name> for Axes {
             fn from(section: &$name) -> Self {
                 let [roll_rad, pitch_rad, heading_rad] =
                     section.rotation_deg.map(f64::to_radians);
-                Self::new(&Axes {
+                Self {
                     mounting: section.mounting,
                     rotation: Rotation::of_angles(EulerAngles {
                         roll_rad,
@@ -80,7 +84,7 @@ macro_rules! axes_section {
                     scale: section.scale,
                     misalignment: section.misalignment,
                     delay: from_ms(section.delay_ms),
-                })
+                }
             }
         }
     };
@@ -228,6 +232,18 @@ pub(super) const RANGES: &[(&str, f64, f64)] = &[
 ];
 
 impl CalibrationSection {
+    /// The delays of the sensors that navigation uses, by their names.
+    pub(super) const fn delays_of_navigation(&self) -> [(&'static str, f64); 6] {
+        [
+            ("accelerometer", self.accelerometer.delay_ms),
+            ("gyroscope", self.gyroscope.delay_ms),
+            ("magnetometer", self.magnetometer.delay_ms),
+            ("static_pressure", self.static_pressure.delay_ms),
+            ("differential_pressure", self.differential_pressure.delay_ms),
+            ("gnss", self.gnss.delay_ms),
+        ]
+    }
+
     /// Whether it changes nothing.
     pub(super) fn is_default(&self) -> bool {
         *self == Self::default()
@@ -236,9 +252,9 @@ impl CalibrationSection {
     /// The core's calibration; none if it changes nothing.
     pub fn to_core(&self) -> Option<Calibration> {
         let calibration = Calibration {
-            accelerometer: (&self.accelerometer).into(),
-            gyroscope: (&self.gyroscope).into(),
-            magnetometer: (&self.magnetometer).into(),
+            accelerometer: AxesCalibration::new(&(&self.accelerometer).into()),
+            gyroscope: AxesCalibration::new(&(&self.gyroscope).into()),
+            magnetometer: AxesCalibration::new(&(&self.magnetometer).into()),
             static_pressure: (&self.static_pressure).into(),
             differential_pressure: (&self.differential_pressure).into(),
             air_temperature: (&self.air_temperature).into(),

@@ -15,10 +15,12 @@ mod cpu;
 mod devices;
 mod early_wake;
 mod error;
+mod exactly;
 mod guidance;
 mod navigation;
 mod places;
 mod ranges;
+mod raw_readings;
 mod read;
 mod recording;
 mod relations;
@@ -244,6 +246,7 @@ impl Config {
                     .to_owned(),
             );
         }
+        remarks.extend(raw_readings::without_effect(self, &places));
         remarks.extend(self.stick_remark());
         if self.actuators().is_empty() {
             remarks.push(NO_ACTUATOR.to_owned());

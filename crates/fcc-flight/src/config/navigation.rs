@@ -21,7 +21,10 @@ pub struct NavigationSection {
     /// The earth's magnetic field here: north, east, down. Without it, that of
     /// the World Magnetic Model at the first fix of a satellite receiver, and of
     /// the built-in aircraft its own.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "super::exactly::numbers_if_given"
+    )]
     pub magnetic_field_ut: Option<[f64; 3]>,
     /// The year of that model, with its fraction.
     pub year: f64,
@@ -51,14 +54,22 @@ impl Default for NavigationSection {
     }
 }
 
+/// As far back as the filter keeps samples.
+pub(super) const LONGEST_DELAY_MS: f64 = 500.0;
+
 /// Key, smallest and largest value, as in the table of all keys.
 pub(super) const RANGES: &[(&str, f64, f64)] = &[
-    ("navigation.longest_delay_ms", 0.0, 500.0),
+    ("navigation.longest_delay_ms", 0.0, LONGEST_DELAY_MS),
     ("navigation.magnetic_field_ut", -70.0, 70.0),
     ("navigation.year", 2_020.0, 2_029.999),
 ];
 
 impl NavigationSection {
+    /// Whether raw readings go into the filter, which waits for delayed ones.
+    pub(super) fn is_by_filter(&self) -> bool {
+        self.method == NavigationMethod::Kalman
+    }
+
     /// The core's configuration; none if sensors measure everything. Of a
     /// simulation the magnetic field is known.
     pub(super) fn to_core(self, simulated_ut: Option<[f64; 3]>) -> Option<RawNavigationConfig> {

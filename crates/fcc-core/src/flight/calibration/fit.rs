@@ -4,7 +4,7 @@
 use libm::sqrt;
 use nalgebra::{Matrix3, SMatrix, SVector, SymmetricEigen, Vector3};
 
-use super::Axes;
+use super::{Axes, AxesCalibration};
 
 /// Bias, and the symmetric matrix of scale and misalignment.
 const UNKNOWNS: usize = 9;
@@ -23,6 +23,13 @@ const LEAST_SAMPLES: usize = 12;
 /// Scales beyond these, and the like of misalignments, are no sensor's.
 const SCALES: core::ops::RangeInclusive<f64> = 0.5..=2.0;
 const LARGEST_MISALIGNMENT: f64 = 0.5;
+/// Samples that differ by more after the best fit, RMS over the strength, have no
+/// strength in common: noise is a few per cent at most.
+const LARGEST_RESIDUAL: f64 = 0.1;
+/// A sample that differs by more from the strength that the others have, of the
+/// strength and of the others' standard deviation, is an outlier.
+const OUTLIER_SHARE: f64 = 0.05;
+const OUTLIER_SIGMAS: f64 = 10.0;
 
 /// A calibration found by [`fit_strength`].
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -46,6 +53,12 @@ pub enum FitError {
     TooFew(usize),
     /// Samples that are not finite.
     NotFinite,
+    /// The strength of the samples, and the one that they should have: what another
+    /// unit gives.
+    OtherUnit(f64, f64),
+    /// The number of a sample, from 0, that contradicts all others, and by how much
+    /// its strength differs from theirs.
+    Outlier(usize, f64),
     /// The directions leave one axis out: its share, and the least that is
     /// enough.
     NotSpread(f64, f64),
@@ -58,6 +71,16 @@ impl core::fmt::Display for FitError {
         match self {
             Self::TooFew(least) => write!(f, "too few samples: take at least {least}"),
             Self::NotFinite => f.write_str("a sample is not finite"),
+            Self::OtherUnit(given, wanted) => write!(
+                f,
+                "the samples have a strength of about {given:.3}, and strength is {wanted}: give \
+                 both in one unit, such as m/s² (not g) or µT (not gauss or nT)"
+            ),
+            Self::Outlier(at, by) => write!(
+                f,
+                "sample {at}, counted from 0, contradicts the others by {by:.3}: leave it out, or \
+                 take it again"
+            ),
             Self::NotSpread(share, least) => write!(
                 f,
                 "the directions are not spread: {share:.2} of them are along one axis, {least} are \
@@ -109,7 +132,8 @@ impl core::error::Error for FitError {}
 ///
 /// # Errors
 /// When there are too few samples, they are not finite or not spread over the
-/// directions, or have no strength in common.
+/// directions, are of another unit than the strength, one of them contradicts the
+/// others, or they have no strength in common.
 pub fn fit_strength(samples: &[[f64; 3]], strength: f64) -> Result<StrengthFit, FitError> {
     if samples.len() < LEAST_SAMPLES {
         return Err(FitError::TooFew(LEAST_SAMPLES));
@@ -117,10 +141,74 @@ pub fn fit_strength(samples: &[[f64; 3]], strength: f64) -> Result<StrengthFit, 
     if samples.iter().flatten().any(|part| !part.is_finite()) {
         return Err(FitError::NotFinite);
     }
+    let all = Samples {
+        all: samples,
+        without: None,
+    };
+    let outlier = outlier(all, strength);
+    outlier.map_or_else(|| fit(all, strength), Err)
+}
+
+/// Samples, all of them or all but one.
+#[derive(Clone, Copy)]
+struct Samples<'a> {
+    all: &'a [[f64; 3]],
+    without: Option<usize>,
+}
+
+impl<'a> Samples<'a> {
+    fn each(self) -> impl Iterator<Item = (usize, Vector3<f64>)> + 'a {
+        let numbered = self.all.iter().enumerate();
+        numbered
+            .filter(move |(at, _)| Some(*at) != self.without)
+            .map(|(at, sample)| (at, Vector3::from(*sample)))
+    }
+
+    fn count(self) -> f64 {
+        (self.all.len() - usize::from(self.without.is_some())) as f64
+    }
+
+    /// The number of the sample of which this is largest.
+    fn most(self, of: impl Fn(Vector3<f64>) -> f64) -> Option<usize> {
+        let each = self.each().map(|(at, sample)| (at, of(sample)));
+        let most = each.max_by(|(_, a), (_, b)| a.total_cmp(b));
+        most.map(|(at, _)| at)
+    }
+}
+
+/// The sample without which the others fit, and which contradicts them: the one
+/// farthest from the middle of all, or from the sphere through them.
+fn outlier(all: Samples<'_>, strength: f64) -> Option<FitError> {
+    let (centre, radius) = sphere(all)?;
+    let sum: Vector3<f64> = all.each().map(|(_, sample)| sample).sum();
+    let middle = sum / all.count();
+    let farthest = [
+        all.most(|sample| (sample - middle).norm()),
+        all.most(|sample| ((sample - centre).norm() - radius).abs()),
+    ];
+    farthest.into_iter().flatten().find_map(|at| {
+        let others = Samples {
+            without: Some(at),
+            ..all
+        };
+        let fit = fit(others, strength).ok()?;
+        let calibrated = AxesCalibration::new(&fit.axes).applied(*all.all.get(at)?);
+        let by = (Vector3::from(calibrated).norm() - strength).abs();
+        let free = (others.count() - UNKNOWNS as f64).max(1.0);
+        let sigma = fit.residual * sqrt(others.count() / free);
+        let is_outlier = by > OUTLIER_SHARE * strength && by > OUTLIER_SIGMAS * sigma;
+        is_outlier.then_some(FitError::Outlier(at, by))
+    })
+}
+
+fn fit(samples: Samples<'_>, strength: f64) -> Result<StrengthFit, FitError> {
     let (centre, radius) = sphere(samples).ok_or(FitError::NoFit)?;
     let spread = spread(samples, centre);
     if spread < LEAST_SPREAD {
         return Err(FitError::NotSpread(spread, LEAST_SPREAD));
+    }
+    if !SCALES.contains(&(strength / radius)) {
+        return Err(FitError::OtherUnit(radius, strength));
     }
     let mut bias = centre;
     let mut shape = Matrix3::identity() * (strength / radius);
@@ -137,7 +225,7 @@ pub fn fit_strength(samples: &[[f64; 3]], strength: f64) -> Result<StrengthFit, 
             break;
         }
     }
-    let count = samples.len() as f64;
+    let count = samples.count();
     let free = (count - UNKNOWNS as f64).max(1.0);
     let variances = inverse.diagonal() * (squares / free);
     let sigmas = variances.fixed_rows::<3>(0).map(|of| sqrt(of.max(0.0)));
@@ -148,7 +236,7 @@ pub fn fit_strength(samples: &[[f64; 3]], strength: f64) -> Result<StrengthFit, 
         bias_sigma: sigmas.into(),
         spread,
     };
-    if is_possible(&fit) {
+    if is_possible(&fit) && fit.residual <= LARGEST_RESIDUAL * strength {
         Ok(fit)
     } else {
         Err(FitError::NoFit)
@@ -156,14 +244,13 @@ pub fn fit_strength(samples: &[[f64; 3]], strength: f64) -> Result<StrengthFit, 
 }
 
 /// The sphere through the samples, by linear least squares.
-fn sphere(samples: &[[f64; 3]]) -> Option<(Vector3<f64>, f64)> {
+fn sphere(samples: Samples<'_>) -> Option<(Vector3<f64>, f64)> {
     let mut normal = SMatrix::<f64, 4, 4>::zeros();
     let mut right = SVector::<f64, 4>::zeros();
-    for sample in samples {
-        let [x, y, z] = *sample;
-        let row = SVector::<f64, 4>::new(2.0 * x, 2.0 * y, 2.0 * z, 1.0);
+    for (_, sample) in samples.each() {
+        let row = (2.0 * sample).push(1.0);
         normal += row * row.transpose();
-        right += row * (x * x + y * y + z * z);
+        right += row * sample.norm_squared();
     }
     let found = normal.try_inverse()? * right;
     let centre = Vector3::new(found.x, found.y, found.z);
@@ -172,15 +259,13 @@ fn sphere(samples: &[[f64; 3]]) -> Option<(Vector3<f64>, f64)> {
 }
 
 /// The least share of the samples' directions along any axis.
-fn spread(samples: &[[f64; 3]], centre: Vector3<f64>) -> f64 {
+fn spread(samples: Samples<'_>, centre: Vector3<f64>) -> f64 {
     let mut squares = Matrix3::zeros();
-    for sample in samples {
-        let direction = (Vector3::from(*sample) - centre)
-            .try_normalize(0.0)
-            .unwrap_or_default();
+    for (_, sample) in samples.each() {
+        let direction = (sample - centre).try_normalize(0.0).unwrap_or_default();
         squares += direction * direction.transpose();
     }
-    SymmetricEigen::new(squares / samples.len() as f64)
+    SymmetricEigen::new(squares / samples.count())
         .eigenvalues
         .min()
 }
@@ -188,14 +273,14 @@ fn spread(samples: &[[f64; 3]], centre: Vector3<f64>) -> f64 {
 /// The normal equations of the differences of strengths, (|S(a - b)|² - g²) /
 /// 2g, their gradient, and the sum of their squares.
 fn equations(
-    samples: &[[f64; 3]],
+    samples: Samples<'_>,
     strength: f64,
     bias: &Vector3<f64>,
     shape: &Matrix3<f64>,
 ) -> (Normal, Unknowns, f64) {
     let (mut normal, mut gradient, mut squares) = (Normal::zeros(), Unknowns::zeros(), 0.0);
-    for sample in samples {
-        let free = Vector3::from(*sample) - bias;
+    for (_, sample) in samples.each() {
+        let free = sample - bias;
         let scaled = shape * free;
         let difference = (scaled.norm_squared() - strength * strength) / (2.0 * strength);
         let by_scaled = scaled / strength;
@@ -244,5 +329,5 @@ fn is_possible(fit: &StrengthFit) -> bool {
             .misalignment
             .iter()
             .all(|part| part.abs() <= LARGEST_MISALIGNMENT)
-        && fit.residual.is_finite()
+        && Axes::MULTIPLIES.contains(&axes.multiplies().0)
 }

@@ -8,10 +8,12 @@
 mod fit;
 mod mounting;
 
+use core::ops::RangeInclusive;
 use core::time::Duration;
 
 pub use fit::{FitError, StrengthFit, fit_strength};
 pub use mounting::{Direction, Mounting, MountingError, Rotation};
+use nalgebra::{Matrix3, SymmetricEigen};
 
 use super::{BodyRates, MagneticField, Measurements, SpecificForce};
 use crate::framework::Reading;
@@ -76,16 +78,47 @@ impl Default for Axes {
     }
 }
 
-impl AxesCalibration {
-    /// Works out the calibration.
-    pub fn new(of: &Axes) -> Self {
-        let [kx, ky, kz] = of.scale;
-        let [xy, xz, yx, yz, zx, zy] = of.misalignment;
-        let shape = Rotation([
+impl Axes {
+    /// By how much scale and misalignment together may multiply what is measured
+    /// along any direction: twice what a scale may do. Below it a direction is
+    /// lost, as if two of the sensor's axes were one.
+    pub const MULTIPLIES: RangeInclusive<f64> = 0.25..=4.0;
+
+    /// Scale and misalignment, T · K.
+    fn shape(&self) -> [[f64; 3]; 3] {
+        let [kx, ky, kz] = self.scale;
+        let [xy, xz, yx, yz, zx, zy] = self.misalignment;
+        [
             [kx, xy * ky, xz * kz],
             [yx * kx, ky, yz * kz],
             [zx * kx, zy * ky, kz],
-        ]);
+        ]
+    }
+
+    /// By how much scale and misalignment multiply what is measured, along the
+    /// direction in which that is least and the one in which it is most: the
+    /// extreme singular values of T · K.
+    ///
+    /// ```
+    /// use fcc_core::flight::calibration::Axes;
+    ///
+    /// // Three axes that show almost the same direction.
+    /// let singular = Axes { misalignment: [-0.49; 6], ..Axes::default() };
+    /// let (least, most) = singular.multiplies();
+    /// assert!((least - 0.02).abs() < 1e-9 && (most - 1.49).abs() < 1e-9);
+    /// ```
+    pub fn multiplies(&self) -> (f64, f64) {
+        let shape = Matrix3::from(self.shape());
+        let squares = SymmetricEigen::new(shape * shape.transpose()).eigenvalues;
+        let root = |square: f64| libm::sqrt(square.max(0.0));
+        (root(squares.min()), root(squares.max()))
+    }
+}
+
+impl AxesCalibration {
+    /// Works out the calibration.
+    pub fn new(of: &Axes) -> Self {
+        let shape = Rotation(of.shape());
         Self {
             matrix: of.rotation.after(&of.mounting.rotation()).after(&shape),
             bias: of.bias,

@@ -129,6 +129,11 @@ impl fmt::Display for Mounting {
 pub enum MountingError {
     /// It is not three directions.
     Words,
+    /// It has capitals.
+    Capitals(
+        /// What is meant.
+        Mounting,
+    ),
     /// The first two are parallel.
     Parallel,
     /// The third is not that of a right-handed set of axes, as every sensor has.
@@ -146,6 +151,7 @@ impl fmt::Display for MountingError {
                  forward, backward, right, left, down, up with hyphens, such as \
                  \"forward-right-down\"",
             ),
+            Self::Capitals(mounting) => write!(f, "has capitals: choose \"{mounting}\""),
             Self::Parallel => f.write_str(
                 "has parallel x and y axes: choose two directions at right angles, and the third",
             ),
@@ -165,7 +171,9 @@ impl FromStr for Mounting {
     fn from_str(text: &str) -> Result<Self, MountingError> {
         let direction = |word: Option<&str>| {
             let mut all = Direction::ALL.iter();
-            all.find(|(name, _)| Some(*name) == word).map(|(_, at)| *at)
+            let is_meant =
+                |(name, _): &&(&str, _)| word.is_some_and(|of| of.eq_ignore_ascii_case(name));
+            all.find(is_meant).map(|(_, at)| *at)
         };
         let mut words = text.split('-');
         let [x, y, z] = [(); 3].map(|()| direction(words.next()));
@@ -173,10 +181,12 @@ impl FromStr for Mounting {
             return Err(MountingError::Words);
         };
         let mounting = Self::new(x, y).ok_or(MountingError::Parallel)?;
-        if mounting.z() == z {
-            Ok(mounting)
-        } else {
+        if mounting.z() != z {
             Err(MountingError::LeftHanded(mounting))
+        } else if text.contains(char::is_uppercase) {
+            Err(MountingError::Capitals(mounting))
+        } else {
+            Ok(mounting)
         }
     }
 }
@@ -266,6 +276,10 @@ mod tests {
             (
                 "forward-right-up",
                 MountingError::LeftHanded(Mounting::default()),
+            ),
+            (
+                "Forward-RIGHT-down",
+                MountingError::Capitals(Mounting::default()),
             ),
         ] {
             assert_eq!(text.parse::<Mounting>(), Err(error), "{text}");

@@ -233,6 +233,39 @@ fn what_gives_no_calibration_is_refused_with_the_reason() {
     let flat = given(40, |[x, y, z]| [x, y, 0.05 * z]);
     let refused = fit_strength(&flat, 9.81).unwrap_err();
     assert!(matches!(refused, FitError::NotSpread(..)), "{refused:?}");
-    // A sensor of another quantity.
-    assert_eq!(fit_strength(&samples, 50.0), Err(FitError::NoFit));
+    // One that moved while it was sampled.
+    let moved = |&[x, y, z]: &[f64; 3]| [x, y, z + 6.0 * x.signum() * y.signum()];
+    let moving: Vec<_> = samples.iter().map(moved).collect();
+    assert_eq!(fit_strength(&moving, 9.81), Err(FitError::NoFit));
+}
+
+/// 1 g is 9.81 m/s².
+#[test]
+fn samples_of_another_unit_are_told_from_a_bad_fit() {
+    let in_g = given(40, |sample| sample.map(|part| part / 9.81));
+    let refused = fit_strength(&in_g, 9.81).unwrap_err();
+    let FitError::OtherUnit(given, wanted) = refused else {
+        panic!("{refused:?}");
+    };
+    assert!((given - 1.0).abs() < 1e-9 && wanted == 9.81);
+}
+
+/// A sample that is three times too long, near nothing, or of another world.
+#[test]
+fn one_outlier_is_named() {
+    let noise = |part: f64, at: usize| part + 0.02 * ((at * 37 % 11) as f64 / 5.0 - 1.0);
+    for factor in [0.0, 0.8, 1.2, 3.0, 100.0, -1e6] {
+        let mut samples = given(40, |sample| sample);
+        for (at, sample) in samples.iter_mut().enumerate() {
+            *sample = sample.map(|part| noise(part, at));
+        }
+        assert!(fit_strength(&samples, 9.81).is_ok());
+        samples[17] = samples[17].map(|part| part * factor);
+        let refused = fit_strength(&samples, 9.81).unwrap_err();
+        let FitError::Outlier(17, by) = refused else {
+            panic!("{factor}: {refused:?}");
+        };
+        let expected = 9.81 * (f64::abs(factor) - 1.0).abs();
+        assert!((by / expected - 1.0).abs() < 0.05, "{factor}: {by}");
+    }
 }
