@@ -3,8 +3,8 @@
 
 use fcc_core::flight::guidance::{GuidanceConfig, Progress};
 use fcc_core::flight::{
-    AltitudeReference, AutopilotCommand, Measurements, Plant, PlantState, Resume, Surfaces,
-    Velocity, flags,
+    AltitudeReference, AutopilotCommand, GnssFix, Measurements, Plant, PlantState, Resume,
+    Surfaces, Velocity, flags,
 };
 use fcc_core::framework::{Controller, Flags, Reading};
 
@@ -210,4 +210,28 @@ fn a_pause_is_no_time_in_which_navigation_settles() {
     cockpit.feel.plant = Some(PlantState::Running);
     cockpit.stood_s = cockpit.tick.woke.as_nanos() as f64 * 1e-9 - 100.0;
     assert_settles_after(cockpit, |cockpit| cockpit.pause(100.0), 1);
+}
+
+#[test]
+fn an_impossible_fix_is_a_condition() {
+    let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
+    let mut condition = |north_mps: f64| {
+        let mut measured = cockpit.measurements;
+        let velocity = Velocity {
+            north_mps,
+            ..Velocity::default()
+        };
+        let fix = GnssFix {
+            velocity,
+            ..GnssFix::default()
+        };
+        measured.gnss = Reading::new(fix, cockpit.tick.woke);
+        cockpit.autopilot.estimate(&cockpit.tick, &measured);
+        let conditions = cockpit.autopilot.conditions(&cockpit.tick, &measured);
+        conditions.contains(flags::IMPOSSIBLE_FIX)
+    };
+    assert!(!condition(50.0));
+    assert!(condition(500.0));
+    assert!(condition(f64::NAN));
+    assert!(!condition(50.0));
 }

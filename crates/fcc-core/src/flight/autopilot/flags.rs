@@ -118,6 +118,8 @@ pub const PITCH_AGAINST_FORCE: Flags = Flags::bit(51);
 pub const DOUBTED_ATTITUDE: Flags = Flags::bit(52);
 /// The body rates contradict the attitude and the other sensors, and are not used.
 pub const DOUBTED_BODY_RATES: Flags = Flags::bit(53);
+/// A fix of satellite navigation is not used: no aircraft can be there, or as fast.
+pub const IMPOSSIBLE_FIX: Flags = Flags::bit(54);
 /// What of attitude and body rates is doubted.
 pub(super) const DOUBTED_MOTION: Flags =
     Flags::from_bits(DOUBTED_ATTITUDE.bits() | DOUBTED_BODY_RATES.bits());
@@ -158,7 +160,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
 }
 
 /// The text of each bit, lowest first.
-pub(super) const NAMES: [&str; 54] = [
+pub(super) const NAMES: [&str; 55] = [
     "attitude is missing or too old",
     "heading is missing or too old",
     "body rates are missing or too old",
@@ -213,6 +215,7 @@ pub(super) const NAMES: [&str; 54] = [
     "forward acceleration contradicts pitch and airspeed: check signs and units, and the pitch's offset",
     "attitude contradicts body rates, forces and heading and is not used",
     "body rates contradict attitude, forces and heading and are not used",
+    "satellite navigation gives an impossible position or velocity and is not used",
 ];
 
 #[cfg(test)]

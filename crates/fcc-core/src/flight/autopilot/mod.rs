@@ -45,6 +45,7 @@ use reading_age::ReadingAges;
 use release::Release;
 pub use resume::Resume;
 pub use scale::Scale;
+use sensor_health::has_impossible_fix;
 use whereabouts::Whereabouts;
 
 use super::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop, Recovery};
@@ -176,6 +177,7 @@ impl Controller for Autopilot {
             .with(flags::STALLS_FASTER, self.recovery.found_stall_mps() > 0.0)
             .with(flags::AT_FLOOR, self.is_at_floor)
             .with(flags::RELEASING, self.release.is_some())
+            .with(flags::IMPOSSIBLE_FIX, has_impossible_fix(measurements))
     }
 
     fn failsafe_goes_on(&self) -> bool {

@@ -6,6 +6,7 @@ use super::future::is_from_the_future;
 use super::plant_clock::Waiting;
 use super::reading_age::taken_of_needed;
 use super::{Autopilot, flags};
+use crate::flight::navigation::is_possible_fix;
 use crate::flight::{Measurements, PlantState};
 use crate::framework::{Flags, Reading, Time};
 
@@ -17,6 +18,11 @@ const SWITCH_MAX_AGE: Duration = Duration::from_secs(1);
 /// plant: it has the outputs, and would have to take all that wait for it at
 /// once when it continues, perhaps with another aircraft.
 const SENT_FOR: Duration = Duration::from_millis(250);
+
+/// Whether the latest fix of satellite navigation is that of no aircraft.
+pub(super) fn has_impossible_fix(measured: &Measurements) -> bool {
+    !measured.gnss.is_never() && !is_possible_fix(&measured.gnss.value)
+}
 
 impl Autopilot {
     /// The needed quantities whose readings are too old to be used; all of them

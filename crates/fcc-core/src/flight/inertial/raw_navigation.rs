@@ -13,6 +13,7 @@ use super::{
 };
 use crate::blocks::wrap_two_pi;
 use crate::flight::atmosphere::{calibrated_airspeed_mps, pressure_altitude_m};
+use crate::flight::navigation::is_possible_fix;
 use crate::flight::orientation::euler_from_quaternion;
 use crate::flight::{
     Attitude, BodyRates, GnssFix, Measurements, PlantState, SpecificForce, Velocity,
@@ -235,7 +236,10 @@ impl RawNavigation {
             let observation = Observation::DifferentialPressure(pressure.value);
             self.take(pressure.taken, observation);
         }
-        if !repeats_fix && is_new(&mut self.used.gnss, &raw.gnss, now) {
+        if !repeats_fix
+            && is_possible_fix(&raw.gnss.value)
+            && is_new(&mut self.used.gnss, &raw.gnss, now)
+        {
             self.take_fix(raw.gnss.taken, &raw.gnss.value);
         }
     }

@@ -13,8 +13,8 @@ use libm::{asin, cos, sin, sqrt};
 
 use crate::blocks::wrap_pi;
 use crate::flight::{
-    Attitude, BodyRates, Measurements, PilotControls, Plant, Position, SpecificForce, Surfaces,
-    Velocity,
+    Attitude, BodyRates, GnssFix, Measurements, PilotControls, Plant, Position, SpecificForce,
+    Surfaces, Velocity,
 };
 use crate::framework::schema::{Schema, in_range};
 use crate::framework::{Flags, Reading};
@@ -246,17 +246,14 @@ fn take_others(good: &mut Measurements, new: &Measurements) -> [bool; 6] {
         &mut good.position,
         &new.position,
         anywhere,
-        |at: &Position| at.is_on_earth() && ALTITUDE_M.contains(&at.altitude_m),
+        is_possible_position,
         |_, _, _| true,
     );
     let velocity = take(
         &mut good.velocity,
         &new.velocity,
         anywhere,
-        |v: &Velocity| {
-            let axes = [v.north_mps, v.east_mps, v.down_mps];
-            axes.iter().all(|axis| within(*axis, MAX_GROUND_SPEED_MPS))
-        },
+        is_possible_velocity,
         |_, _, _| true,
     );
     let pilot = take(
@@ -272,11 +269,35 @@ fn take_others(good: &mut Measurements, new: &Measurements) -> [bool; 6] {
     [angle, position, velocity, surfaces, plant, pilot]
 }
 
-/// Copies the raw readings: any number, in its range if one is declared. What
-/// uses them judges them further.
+/// Whether an aircraft can be there.
+fn is_possible_position(at: &Position) -> bool {
+    at.is_on_earth() && ALTITUDE_M.contains(&at.altitude_m)
+}
+
+/// Whether an aircraft can move over the ground like this.
+fn is_possible_velocity(v: &Velocity) -> bool {
+    let axes = [v.north_mps, v.east_mps, v.down_mps];
+    axes.iter().all(|axis| within(*axis, MAX_GROUND_SPEED_MPS))
+}
+
+/// Whether a receiver's fix can be that of an aircraft: its position and velocity
+/// are held to what is possible of any source.
+pub(crate) fn is_possible_fix(fix: &GnssFix) -> bool {
+    in_range(fix) && is_possible_position(&fix.position) && is_possible_velocity(&fix.velocity)
+}
+
+/// Copies the raw readings: any number, in its range if one is declared, and of a
+/// receiver what is possible. What uses them judges them further.
 fn take_raw(good: &mut Measurements, new: &Measurements) -> [bool; 8] {
     fn taken<T: Schema>(good: &mut Reading<T>, new: &Reading<T>) -> bool {
-        new.is_never() || take(good, new, Duration::ZERO, in_range, |_, _, _| true)
+        taken_if(good, new, in_range)
+    }
+    fn taken_if<T: Schema>(
+        good: &mut Reading<T>,
+        new: &Reading<T>,
+        can_be_true: fn(&T) -> bool,
+    ) -> bool {
+        new.is_never() || take(good, new, Duration::ZERO, can_be_true, |_, _, _| true)
     }
     [
         taken(&mut good.raw_specific_force, &new.raw_specific_force),
@@ -288,7 +309,7 @@ fn take_raw(good: &mut Measurements, new: &Measurements) -> [bool; 8] {
             &new.differential_pressure_pa,
         ),
         taken(&mut good.air_temperature_k, &new.air_temperature_k),
-        taken(&mut good.gnss, &new.gnss),
+        taken_if(&mut good.gnss, &new.gnss, is_possible_fix),
         taken(&mut good.range_m, &new.range_m),
     ]
 }

@@ -194,3 +194,45 @@ fn after_a_jump_it_begins_anew() {
     assert!(!navigation.found().attitude.is_never());
     assert!(navigation.step(tick(200), &jumped).attitude.is_never());
 }
+
+/// What no aircraft does: faster than 450 m/s, above 20 km, off the earth.
+#[test]
+fn an_impossible_fix_is_not_used() {
+    let possible = GnssFix {
+        position: Position {
+            latitude_rad: 0.7,
+            longitude_rad: 0.1,
+            altitude_m: 900.0,
+        },
+        ..GnssFix::default()
+    };
+    let changes: [fn(&mut GnssFix); 6] = [
+        |fix| fix.velocity.north_mps = 500.0,
+        |fix| fix.velocity.east_mps = 1e300,
+        |fix| fix.velocity.down_mps = -451.0,
+        |fix| fix.position.altitude_m = 1e6,
+        |fix| fix.position.altitude_m = -501.0,
+        |fix| fix.position.latitude_rad = 2.0,
+    ];
+    for (number, change) in changes.into_iter().enumerate() {
+        let mut navigation = RawNavigation::new(config());
+        for n in 0..800 {
+            let mut fix = possible;
+            if n > 400 {
+                change(&mut fix);
+            }
+            let mut measured = raw(tick(n), [20.0, 40.0]);
+            if n % 8 == 0 {
+                measured.gnss = Reading::new(fix, tick(n));
+            }
+            navigation.step(tick(n), &measured);
+        }
+        let found = navigation.found();
+        assert_eq!(found.position.value, possible.position, "change {number}");
+        assert_eq!(found.velocity.value, possible.velocity, "change {number}");
+        // At rest and level, as before.
+        let attitude = found.attitude.value;
+        assert_eq!(found.attitude.taken, tick(799), "change {number}");
+        assert!(attitude.roll_rad.hypot(attitude.pitch_rad) < 0.01);
+    }
+}
