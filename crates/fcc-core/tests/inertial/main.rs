@@ -8,6 +8,7 @@
 mod consistency;
 mod flight;
 mod flights;
+mod gyroscope;
 mod hand;
 mod noise;
 mod sensors;

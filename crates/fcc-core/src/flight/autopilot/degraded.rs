@@ -1,6 +1,10 @@
 //! Degraded flight: what is held without a lost quantity, and for how long.
 
+mod coming_and_going;
+
 use core::time::Duration;
+
+use coming_and_going::{FORGOTTEN_SLOWER, Intermittent, Repeated};
 
 use super::{Autopilot, FailsafeEnd, flags};
 use crate::flight::Measurements;
@@ -147,48 +151,6 @@ pub(super) fn held_without(lost: Flags) -> Held {
     })
 }
 
-/// A quantity that comes and goes is used again when it has been good for this
-/// time without interruption, s.
-const STEADY_S: f64 = 1.0;
-
-/// The quantities that come and go. One that is lost again in the same failsafe
-/// is left out, and flown without: a loop that changes several times a second
-/// between old readings and what replaces them oscillates.
-#[derive(Clone, Copy, Debug, Default)]
-struct Intermittent {
-    /// Lost at present; lost before, and good since.
-    lost: Flags,
-    returned: Flags,
-    left_out: Flags,
-    /// For how long each has been good, s.
-    good_s: [f64; 6],
-}
-
-impl Intermittent {
-    fn step(&mut self, old: Flags, dt_s: f64) {
-        self.returned |= self.lost.keeping(old, false);
-        self.left_out |= Flags::from_bits(old.bits() & self.returned.bits());
-        self.lost = old;
-        for (bit, good_s) in self.good_s.iter_mut().enumerate() {
-            let flag = Flags::bit(bit as u32);
-            *good_s = if old.contains(flag) {
-                0.0
-            } else {
-                *good_s + dt_s
-            };
-            self.left_out = self.left_out.keeping(flag, *good_s < STEADY_S);
-        }
-    }
-
-    /// What is left out while these are lost: what is flown without attitude and
-    /// body rates is worse than what comes and goes.
-    fn left_out_with(&self, lost: Flags) -> Flags {
-        const LAST: Flags = Flags::from_bits(flags::ATTITUDE.bits() | flags::BODY_RATES.bits());
-        let both = (self.left_out | lost).contains(LAST);
-        self.left_out.keeping(LAST, !both)
-    }
-}
-
 /// A failsafe because of faults: since when, and whether it can go on or end.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Degraded {
@@ -200,9 +162,11 @@ pub(super) struct Degraded {
     pub(super) frozen: Flags,
     /// How long it has lasted, s.
     lasted_s: f64,
-    /// For how long nothing sound could be held, and all has been good, s.
+    /// For how long nothing sound could be held, as far as it is not forgotten, and all
+    /// has been good, s.
     unsound_s: f64,
     good_s: f64,
+    repeated: Repeated,
     is_sound: bool,
     pub(super) glides: bool,
     intermittent: Intermittent,
@@ -223,8 +187,27 @@ impl Degraded {
     pub(super) fn recovered(&self) -> Self {
         Self {
             recovered_s: Some(self.lasted_s),
+            unsound_s: self.unsound_s,
+            repeated: self.repeated,
             ..Self::default()
         }
+    }
+
+    fn forget_unsound(&mut self, dt_s: f64) {
+        self.unsound_s = (self.unsound_s - dt_s / FORGOTTEN_SLOWER).max(0.0);
+    }
+
+    /// Whether nothing sound could be held for longer than `hold` in all, with
+    /// interruptions.
+    fn is_worn_out(&self, hold: Duration) -> bool {
+        self.unsound_s > hold.as_secs_f64()
+    }
+
+    /// The first tick of a failsafe, at an altitude, m.
+    pub(super) fn begin(&mut self, altitude_m: f64) {
+        self.is_failsafe = true;
+        self.altitude_m = altitude_m;
+        self.repeated.begin();
     }
 }
 
@@ -290,6 +273,8 @@ impl Autopilot {
         let recovered_s = self.degraded.recovered_s.take();
         self.degraded.news = recovered_s.map(|lasted_s| (GOOD_AGAIN, lasted_s));
         if !self.degraded.is_failsafe {
+            self.degraded.repeated.flown_on(tick.dt_s);
+            self.degraded.forget_unsound(tick.dt_s);
             return;
         }
         let faults = self.unsafe_now(tick.woke, measured) | self.not_flyable(tick.woke, measured);
@@ -298,9 +283,11 @@ impl Autopilot {
         let degraded = &mut self.degraded;
         degraded.lasted_s += tick.dt_s;
         let limit_s = held.for_s.min(config.degraded.as_secs_f64());
-        degraded.is_sound = !faults.intersects(flags::NOT_SENSED) && degraded.lasted_s <= limit_s;
+        degraded.is_sound = !faults.contains(flags::DOUBTED_GYROSCOPE)
+            && !faults.intersects(flags::NOT_SENSED)
+            && degraded.lasted_s <= limit_s;
         if degraded.is_sound {
-            degraded.unsound_s = 0.0;
+            degraded.forget_unsound(tick.dt_s);
         } else {
             degraded.unsound_s += tick.dt_s;
         }
@@ -320,13 +307,15 @@ impl Autopilot {
     /// Whether the failsafe goes on: what it holds is sound, or nobody is there
     /// to take over.
     pub(super) fn goes_on(&self) -> bool {
-        self.degraded.is_sound || self.config.failsafe.end == FailsafeEnd::Glide
+        let degraded = &self.degraded;
+        let is_sound = degraded.is_sound && !degraded.is_worn_out(self.config.failsafe.hold);
+        is_sound || self.config.failsafe.end == FailsafeEnd::Glide
     }
 
     /// Whether what was lost has been good for long enough. Whether the failsafe
     /// ends then is for the loop to decide: one because of overruns does not.
     pub(super) fn is_good_again(&self) -> bool {
-        let after = self.config.failsafe.recovered_after;
+        let after = self.config.failsafe.recovered_after * self.degraded.repeated.factor();
         let good = Duration::from_secs_f64(self.degraded.good_s);
         self.degraded.is_failsafe && after > Duration::ZERO && good >= after
     }

@@ -113,8 +113,7 @@ impl Autopilot {
         let jumped = self.rejected(measured).bits() & !self.degraded.frozen.bits();
         self.distrusted |= Flags::from_bits(jumped);
         if !self.degraded.is_failsafe {
-            self.degraded.is_failsafe = true;
-            self.degraded.altitude_m = self.navigation.estimate().altitude_m;
+            self.degraded.begin(self.navigation.estimate().altitude_m);
             if self.frozen().contains(flags::FROZEN_BODY_RATES) {
                 let trims = Surfaces {
                     throttle: self.last.throttle,

@@ -120,6 +120,8 @@ pub const DOUBTED_ATTITUDE: Flags = Flags::bit(52);
 pub const DOUBTED_BODY_RATES: Flags = Flags::bit(53);
 /// A fix of satellite navigation is not used: no aircraft can be there, or as fast.
 pub const IMPOSSIBLE_FIX: Flags = Flags::bit(54);
+/// The magnetic field turns otherwise than the gyroscopes say: they are not used.
+pub const DOUBTED_GYROSCOPE: Flags = Flags::bit(55);
 /// What of attitude and body rates is doubted.
 pub(super) const DOUBTED_MOTION: Flags =
     Flags::from_bits(DOUBTED_ATTITUDE.bits() | DOUBTED_BODY_RATES.bits());
@@ -144,6 +146,7 @@ pub(super) const NOT_SENSED: Flags = Flags::from_bits(
         | DOUBTED_ALTITUDE.bits()
         | DOUBTED_ANGLE.bits()
         | DOUBTED_MOTION.bits()
+        | DOUBTED_GYROSCOPE.bits()
         | FROM_THE_FUTURE.bits()
         | SOURCE_CLOCK.bits()),
 );
@@ -160,7 +163,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
 }
 
 /// The text of each bit, lowest first.
-pub(super) const NAMES: [&str; 55] = [
+pub(super) const NAMES: [&str; 56] = [
     "attitude is missing or too old",
     "heading is missing or too old",
     "body rates are missing or too old",
@@ -216,6 +219,7 @@ pub(super) const NAMES: [&str; 55] = [
     "attitude contradicts body rates, forces and heading and is not used",
     "body rates contradict attitude, forces and heading and are not used",
     "satellite navigation gives an impossible position or velocity and is not used",
+    "gyroscope contradicts the magnetic field and is not used",
 ];
 
 #[cfg(test)]

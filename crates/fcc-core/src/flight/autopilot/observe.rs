@@ -11,7 +11,7 @@ use crate::flight::navigation::{
     ANGLE_OF_ATTACK, FrozenDetector, GateLimits, Lost, airspeed_can_follow, plausibility_gate,
 };
 use crate::flight::{Measurements, PlantState};
-use crate::framework::{Flags, Readings, Tick, Time};
+use crate::framework::{Flags, Reading, Readings, Tick, Time};
 
 impl Autopilot {
     /// Processes a tick's measurements.
@@ -115,6 +115,9 @@ impl Autopilot {
     /// Accepts the plausible measurements of a tick, after the gap that ended
     /// in it, if one did.
     fn accept(&mut self, tick: &Tick, measured: &Measurements) {
+        if !self.knows_attitude() {
+            self.forget_attitude();
+        }
         self.move_distrusted();
         let Some(gap) = self.clock.gap() else {
             self.pass_gate(measured);
@@ -147,6 +150,17 @@ impl Autopilot {
         if gap.ran_on {
             self.heading.lead_from(self.setpoints.roll_rad);
         }
+    }
+
+    /// The attitude so far came from gyroscopes that were wrong: the next one is no jump
+    /// from it.
+    fn forget_attitude(&mut self) {
+        self.accepted.attitude = Reading::default();
+        self.accepted.heading_rad = Reading::default();
+        self.replacement.forget_angles();
+        self.navigation.adopt_next_attitude();
+        let by_gyroscopes = flags::ATTITUDE | flags::HEADING;
+        self.distrusted = self.distrusted.keeping(by_gyroscopes, false);
     }
 
     /// Accepts the plausible ones of a tick's measurements.

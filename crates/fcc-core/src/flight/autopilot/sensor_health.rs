@@ -6,6 +6,7 @@ use super::future::is_from_the_future;
 use super::plant_clock::Waiting;
 use super::reading_age::taken_of_needed;
 use super::{Autopilot, flags};
+use crate::flight::inertial::RawNavigation;
 use crate::flight::navigation::is_possible_fix;
 use crate::flight::{Measurements, PlantState};
 use crate::framework::{Flags, Reading, Time};
@@ -25,6 +26,18 @@ pub(super) fn has_impossible_fix(measured: &Measurements) -> bool {
 }
 
 impl Autopilot {
+    /// Whether the gyroscopes are not used, because the magnetic field contradicts them.
+    pub(super) fn doubts_gyroscopes(&self) -> bool {
+        self.raw
+            .as_ref()
+            .is_some_and(RawNavigation::doubts_gyroscopes)
+    }
+
+    /// Whether what comes from raw sensors has an attitude, if it is flown by them.
+    pub(super) fn knows_attitude(&self) -> bool {
+        self.raw.as_ref().is_none_or(RawNavigation::knows_attitude)
+    }
+
     /// The needed quantities whose readings are too old to be used; all of them
     /// while a simulated plant is silent.
     pub(super) fn stale(&self, now: Time) -> Flags {
@@ -88,7 +101,10 @@ impl Autopilot {
     pub(super) fn too_old(&self, measurements: &Measurements) -> Flags {
         let judged = self.clock.judged();
         let taken = taken_of_needed(measurements);
-        taken.into_iter().fold(Flags::NONE, |old, (flag, taken)| {
+        let by_gyroscopes = Flags::NONE
+            .with(flags::BODY_RATES, self.doubts_gyroscopes())
+            .with(flags::ATTITUDE | flags::HEADING, !self.knows_attitude());
+        taken.into_iter().fold(by_gyroscopes, |old, (flag, taken)| {
             let reading = Reading::new((), taken);
             let is_known = match flag {
                 flags::AIRSPEED => self.navigation.airspeed_doubt().map(|_| true),
@@ -138,6 +154,7 @@ impl Autopilot {
         let is_lost_to_the_future = !stale.is_empty() && is_from_the_future(measurements, now);
         let is_lost_on_the_way = !stale.is_empty() && !self.ages.late().is_empty();
         (stale | self.frozen() | self.is_elsewhere() | self.doubted_motion())
+            .with(flags::DOUBTED_GYROSCOPE, self.doubts_gyroscopes())
             .with(flags::REJECTED, rejected)
             .with(flags::FROM_THE_FUTURE, is_lost_to_the_future)
             .with(flags::SOURCE_CLOCK, is_lost_on_the_way)

@@ -13,6 +13,9 @@
 //! machine.
 
 mod earth;
+mod field_rates;
+mod field_turning;
+mod gyroscope_monitor;
 mod kalman;
 mod magnetism;
 mod observation;

@@ -6,6 +6,10 @@ use core::time::Duration;
 
 use libm::{atan2, hypot};
 
+use super::field_rates::FieldRates;
+use super::gyroscope_monitor::GyroscopeMonitor;
+use found::{attitude_of, either, force_of, is_certain, rates_of};
+
 use super::stuck::{MOVED_FIELD, MOVED_FORCE, MOVED_MPS, MOVED_RATE, StuckSensor};
 use super::{
     GeodeticPosition, InertialNavigation, KalmanConfig, KalmanNavigation, Observation, Solution,
@@ -15,16 +19,15 @@ use crate::blocks::wrap_two_pi;
 use crate::flight::atmosphere::{calibrated_airspeed_mps, pressure_altitude_m};
 use crate::flight::navigation::is_possible_fix;
 use crate::flight::orientation::euler_from_quaternion;
-use crate::flight::{
-    Attitude, BodyRates, GnssFix, Measurements, PlantState, SpecificForce, Velocity,
-};
+use crate::flight::{BodyRates, GnssFix, Measurements, PlantState, Velocity};
 use crate::framework::schema::{Schema, in_range};
 use crate::framework::{Reading, Time};
 
-/// Roll and pitch less certain than this are none, rad.
-const USABLE_TILT: f64 = 0.15;
-/// The same of the heading, rad.
+/// A heading less certain than this is none, rad.
 const USABLE_HEADING: f64 = 0.35;
+/// By how much longer than the delay there is no attitude after gyroscopes began to be
+/// doubted: it is found by the magnetic field.
+const SETTLES: Duration = Duration::from_millis(100);
 
 /// How attitude is computed from raw readings.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -111,6 +114,14 @@ pub struct RawNavigation {
     used: Measurements,
     stuck_force: StuckSensor,
     stuck_rates: StuckSensor,
+    /// The gyroscopes' last sample, used or not.
+    rates_read: Reading<BodyRates>,
+    gyroscope: GyroscopeMonitor,
+    field_rates: FieldRates,
+    /// Since when gyroscopes are doubted, if they are.
+    by_field_since: Time,
+    /// That of the last step.
+    solution: Solution,
     /// Whether the model has given the field at the first fix.
     knows_field: bool,
     /// How far magnetic north is to the east of the method's, rad.
@@ -146,6 +157,11 @@ impl RawNavigation {
             used: Measurements::default(),
             stuck_force: StuckSensor::default(),
             stuck_rates: StuckSensor::default(),
+            rates_read: Reading::default(),
+            gyroscope: GyroscopeMonitor::new(),
+            field_rates: FieldRates::default(),
+            by_field_since: Time::NEVER,
+            solution: Solution::UNKNOWN,
             knows_field: false,
             declination_rad: field.map_or(0.0, declination_rad),
             found: Measurements::default(),
@@ -157,15 +173,27 @@ impl RawNavigation {
         &self.found
     }
 
+    /// Whether the gyroscopes are not used, because the magnetic field turns otherwise
+    /// than they say.
+    pub const fn doubts_gyroscopes(&self) -> bool {
+        self.gyroscope.is_doubted()
+    }
+
+    /// Whether there is an attitude: not for a moment after gyroscopes began to be
+    /// doubted, and then by the magnetic field.
+    pub fn knows_attitude(&self) -> bool {
+        !self.doubts_gyroscopes() || self.settled_by_field(self.found.attitude.taken)
+    }
+
     /// Takes the measurements of a tick; those, with what they say in the place
     /// of what was measured.
     pub fn step(&mut self, now: Time, measured: &Measurements) -> &Measurements {
         if is_elsewhere(measured) && !is_elsewhere(&self.found) {
             *self = Self::new(self.config);
         }
-        let before = latest_inertial(&self.used);
+        let before = self.latest_inertial();
         self.observe(now, measured);
-        let at = latest_inertial(&self.used);
+        let at = self.latest_inertial();
         let (mut attitude, mut heading) = (self.found.attitude, self.found.heading_rad);
         let (mut rates, mut force) = (self.found.body_rates, self.found.specific_force);
         if at > before {
@@ -173,10 +201,15 @@ impl RawNavigation {
                 Method::Kalman(navigation) => navigation.step(at),
                 Method::Thesis(navigation) => navigation.step(at),
             };
-            attitude = attitude_of(&solution, at).unwrap_or(attitude);
-            heading = self.heading_of(&solution, at).unwrap_or(heading);
+            if self.doubts_gyroscopes() && !self.settled_by_field(at) {
+                (attitude, heading) = (Reading::default(), Reading::default());
+            } else {
+                attitude = attitude_of(&solution, at).unwrap_or(attitude);
+                heading = self.heading_of(&solution, at).unwrap_or(heading);
+            }
             rates = rates_of(&self.used.raw_body_rates, &solution);
             force = force_of(&self.used.raw_specific_force, &solution);
+            self.solution = solution;
         }
         let fix = self.used.gnss;
         self.found = Measurements {
@@ -221,10 +254,16 @@ impl RawNavigation {
         if !repeats_force && is_new(&mut self.used.raw_specific_force, &f, now) {
             self.take(f.taken, Observation::SpecificForce(force));
         }
-        if !repeats_rates && is_new(&mut self.used.raw_body_rates, &r, now) {
-            self.take(r.taken, Observation::Rates(rates));
+        if !repeats_rates && is_new(&mut self.rates_read, &r, now) {
+            self.gyroscope.add_rates(r.taken, rates, &self.solution);
+            if !self.gyroscope.is_doubted() {
+                self.used.raw_body_rates = r;
+                self.take(r.taken, Observation::Rates(rates));
+            }
         }
         if is_new(&mut self.used.magnetic_field, &m, now) {
+            self.gyroscope.add_field(m.taken, field, &self.solution);
+            self.turn_by_field(m.taken, field);
             self.take(m.taken, Observation::MagneticField(field));
         }
         let pressure = raw.static_pressure_pa;
@@ -241,6 +280,41 @@ impl RawNavigation {
             && is_new(&mut self.used.gnss, &raw.gnss, now)
         {
             self.take_fix(raw.gnss.taken, &raw.gnss.value);
+        }
+    }
+
+    /// Takes how the field turns for rates while the gyroscopes are doubted.
+    fn turn_by_field(&mut self, taken: Time, field: [f64; 3]) {
+        let is_doubted = self.doubts_gyroscopes();
+        if is_doubted == self.by_field_since.is_never() {
+            self.by_field_since = if is_doubted { taken } else { Time::NEVER };
+            if let Method::Kalman(navigation) = &mut self.method {
+                navigation.turn_by_field(is_doubted);
+            }
+        }
+        let rates = self.field_rates.step(taken, field, &self.solution);
+        if let Some(rates) = rates.filter(|_| is_doubted) {
+            self.take(taken, Observation::Rates(rates));
+        }
+    }
+
+    /// Whether an attitude at a time is one by the field, and not of the moment in
+    /// which it is found.
+    fn settled_by_field(&self, at: Time) -> bool {
+        at.since(self.by_field_since) > self.config.delay + SETTLES
+    }
+
+    /// When the gyroscopes that are used, or without them the accelerometers, were last
+    /// sampled.
+    const fn latest_inertial(&self) -> Time {
+        let (rates, force) = (
+            self.used.raw_body_rates.taken,
+            self.used.raw_specific_force.taken,
+        );
+        if rates.is_never() || self.doubts_gyroscopes() {
+            force
+        } else {
+            rates
         }
     }
 
@@ -301,12 +375,6 @@ fn is_elsewhere(measured: &Measurements) -> bool {
     !measured.plant.is_never() && matches!(state, PlantState::Jumped | PlantState::Reloaded)
 }
 
-/// When the gyroscopes, or without them the accelerometers, were last sampled.
-fn latest_inertial(used: &Measurements) -> Time {
-    let (rates, force) = (used.raw_body_rates.taken, used.raw_specific_force.taken);
-    if rates.is_never() { force } else { rates }
-}
-
 /// Whether a reading is later than the last one, not of the future, and possible;
 /// then it becomes the last one.
 fn is_new<T: Schema>(last: &mut Reading<T>, reading: &Reading<T>, now: Time) -> bool {
@@ -329,71 +397,6 @@ fn repeats(last: &GnssFix, fix: &GnssFix) -> bool {
     fix.position == last.position && hypot(north_mps, east_mps) > MOVED_MPS
 }
 
-/// What a raw reading says, or the one that is measured if there is none.
-fn either<R: Copy, T>(
-    raw: Reading<R>,
-    says: impl FnOnce(R) -> T,
-    measured: Reading<T>,
-) -> Reading<T> {
-    if raw.is_never() {
-        return measured;
-    }
-    Reading {
-        value: says(raw.value),
-        taken: raw.taken,
-        source: raw.source,
-    }
-}
-
-fn attitude_of(solution: &Solution, at: Time) -> Option<Reading<Attitude>> {
-    let angles = euler_from_quaternion(solution.quaternion);
-    let sigma = solution.sigma;
-    let is_known = angles.roll_rad.is_finite()
-        && angles.pitch_rad.is_finite()
-        && is_certain(sigma.roll_rad.max(sigma.pitch_rad), USABLE_TILT);
-    is_known.then(|| {
-        let attitude = Attitude {
-            pitch_rad: angles.pitch_rad,
-            roll_rad: angles.roll_rad,
-        };
-        Reading::new(attitude, at)
-    })
-}
-
-fn rates_of(raw: &Reading<BodyRates>, solution: &Solution) -> Reading<BodyRates> {
-    let [roll, pitch, yaw] = solution.gyroscope_bias_radps.map(known);
-    Reading {
-        value: BodyRates {
-            roll_radps: raw.value.roll_radps - roll,
-            pitch_radps: raw.value.pitch_radps - pitch,
-            yaw_radps: raw.value.yaw_radps - yaw,
-        },
-        ..*raw
-    }
-}
-
-fn force_of(raw: &Reading<SpecificForce>, solution: &Solution) -> Reading<SpecificForce> {
-    let [x, y, z] = solution.accelerometer_bias_mps2.map(known);
-    Reading {
-        value: SpecificForce {
-            x_mps2: raw.value.x_mps2 - x,
-            y_mps2: raw.value.y_mps2 - y,
-            z_mps2: raw.value.z_mps2 - z,
-        },
-        ..*raw
-    }
-}
-
-/// Whether a standard deviation is small enough; a method that states none is
-/// believed.
-fn is_certain(sigma: f64, usable: f64) -> bool {
-    sigma.is_nan() || sigma <= usable
-}
-
-/// A bias that the method does not know is none.
-fn known(bias: f64) -> f64 {
-    if bias.is_finite() { bias } else { 0.0 }
-}
-
+mod found;
 #[cfg(test)]
 mod tests;

@@ -55,6 +55,11 @@ impl Navigation {
         }
     }
 
+    /// The attitude so far was wrong: the next one is adopted.
+    pub(crate) const fn adopt_next_attitude(&mut self) {
+        self.attitude.adopt_next();
+    }
+
     /// What is doubted of attitude and body rates, while it lasts.
     pub(crate) const fn motion_doubt(&self) -> Option<MotionDoubt> {
         self.motion.doubt()

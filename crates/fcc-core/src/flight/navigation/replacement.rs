@@ -158,6 +158,14 @@ impl Replacement {
         self.pitch_offset.reset(0.0);
     }
 
+    /// The angles so far were wrong: what is derived from them begins anew.
+    pub(crate) const fn forget_angles(&mut self) {
+        self.roll = Slope::new(ANGLE_RADPS);
+        self.pitch = Slope::new(ANGLE_RADPS);
+        self.heading = Slope::new(ANGLE_RADPS);
+        self.forget_offsets();
+    }
+
     /// The measurements without those that are lost, some of them replaced.
     pub(crate) fn without(
         &self,

@@ -55,6 +55,8 @@ pub(super) struct Filter {
     pub(super) rates: Vector3<f64>,
     /// The mean square of the horizontal velocity, m²/s².
     pub(super) mean_square_velocity: f64,
+    /// Whether what is taken for rates is how the magnetic field turns.
+    pub(super) turns_by_field: bool,
     pending: Pending,
 }
 
@@ -85,6 +87,7 @@ impl Filter {
             acceleration: Vector3::zeros(),
             rates: Vector3::zeros(),
             mean_square_velocity: 0.0,
+            turns_by_field: false,
             pending: Pending::default(),
         }
     }
@@ -118,7 +121,9 @@ impl Filter {
         pending.dt_s += dt_s;
         pending.turned_s += self.motion.attitude.to_rotation_matrix().matrix() * dt_s;
         pending.velocity += by.velocity;
-        let rate_density = if raw.rates.is_some() {
+        let rate_density = if self.turns_by_field {
+            2.0 * p::FIELD_RATE * p::FIELD_RATE * p::FIELD_RATE_S
+        } else if raw.rates.is_some() {
             let per_radian = 2.0 * p::RATE_SCALE * p::RATE_SCALE * p::ONE_WAY_RAD;
             p::RATE_NOISE * p::RATE_NOISE + per_radian * self.rates.norm()
         } else {

@@ -47,7 +47,12 @@ impl Filter {
         let since_s = self.tracks.field.since_tried_s(taken);
         let measurement = self.field_measurement(measured, since_s);
         let kind = ObservationKind::MagneticField;
-        if self.fuse(kind, taken, &measurement, p::FIELD_GATE, Corrects::Heading) {
+        let corrects = if self.turns_by_field {
+            Corrects::All
+        } else {
+            Corrects::Heading
+        };
+        if self.fuse(kind, taken, &measurement, p::FIELD_GATE, corrects) {
             return;
         }
         if self.stands() {
@@ -143,7 +148,9 @@ impl Filter {
             .fill_with_identity();
         let mut noise = p::FIELD.plus(p::FIELD_SHARE * self.earth_field.norm());
         // Iron nearby disturbs the field in the same way as long as nothing moves.
-        if self.stands() {
+        if self.turns_by_field {
+            noise.tau_s = p::FIELD_ALONE_S;
+        } else if self.stands() {
             noise.tau_s = p::FIELD_AT_REST_S;
         }
         Measurement {

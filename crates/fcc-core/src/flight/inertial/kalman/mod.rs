@@ -22,6 +22,7 @@
 
 mod air;
 mod align;
+mod by_field;
 mod filter;
 mod history;
 mod innovations;
@@ -46,6 +47,7 @@ use inputs::Inputs;
 use rest::Rest;
 
 pub use innovations::Innovation;
+pub(super) use motion::turn;
 
 use super::{GeodeticPosition, InertialNavigation, Observation, Solution};
 use crate::framework::Time;
@@ -128,6 +130,13 @@ impl KalmanNavigation {
         if self.alignment.is_none() {
             self.filter.learn_earth_field(field_ut);
         }
+    }
+
+    /// From here on what is observed as rates is how the magnetic field turns, or that
+    /// of gyroscopes again. Attitude and velocity were integrated from wrong ones
+    /// before.
+    pub fn turn_by_field(&mut self, turns_by_field: bool) {
+        self.filter.turn_by_field(turns_by_field);
     }
 
     fn process(&mut self, sample: Sample) {

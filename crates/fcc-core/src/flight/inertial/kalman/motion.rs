@@ -103,7 +103,7 @@ impl Motion {
 }
 
 /// The rotation by a rotation vector, rad.
-pub(super) fn turn(vector: Vector3<f64>) -> UnitQuaternion<f64> {
+pub(in crate::flight::inertial) fn turn(vector: Vector3<f64>) -> UnitQuaternion<f64> {
     let angle = vector.norm();
     // sin(x/2)/x, whose limit is 1/2.
     let factor = if angle > 1e-6 {

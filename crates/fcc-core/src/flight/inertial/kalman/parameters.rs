@@ -20,6 +20,10 @@ pub(super) const ONE_WAY_RAD: f64 = 1.0;
 /// Rates without gyroscopes, rad/s, and their correlation time, s.
 pub(super) const UNKNOWN_RATE: f64 = 0.5;
 pub(super) const UNKNOWN_RATE_S: f64 = 0.3;
+/// Rates by the magnetic field and a coordinated turn, rad/s, and the correlation time
+/// of their errors, s: sideslip and rolling, about the direction of the field.
+pub(super) const FIELD_RATE: f64 = 0.1;
+pub(super) const FIELD_RATE_S: f64 = 0.5;
 /// White noise of accelerometers, m/s/√s: 100 to 200 µg/√Hz at rest, vibration
 /// adds the rest.
 pub(super) const FORCE_NOISE: f64 = 0.02;
@@ -50,6 +54,8 @@ pub(super) const FIELD: Noise = Noise::new(1.0, 10.0);
 pub(super) const FIELD_SHARE: f64 = 0.05;
 /// The same error lasts for this long at rest, s.
 pub(super) const FIELD_AT_REST_S: f64 = 60.0;
+/// ... and for this long where the attitude follows it, s: without gyroscopes.
+pub(super) const FIELD_ALONE_S: f64 = 0.1;
 /// The aircraft's own field that calibration has left, µT, and its random walk,
 /// µT/√s: currents.
 pub(super) const BODY_FIELD: f64 = 2.0;

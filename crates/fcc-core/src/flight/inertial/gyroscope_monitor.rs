@@ -1,0 +1,226 @@
+//! Whether the gyroscopes and the magnetic field agree on how the aircraft turns,
+//! and which of the two is wrong if they do not.
+//!
+//! A field that turns, keeps its strength, and turns otherwise than the
+//! gyroscopes say for longer than a jump lasts: no usual failure of a magnetometer
+//! does that, so the gyroscopes are wrong. A field that does not turn while the
+//! gyroscopes do may be that of a frozen magnetometer as well: nothing is decided.
+//! With gyroscopes that are really wrong that does not last, because an autopilot
+//! that follows them turns the aircraft.
+
+use libm::{acos, sqrt};
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::Solution;
+use super::field_turning::{FieldTurning, Turning};
+use crate::framework::Time;
+
+/// They contradict each other beyond this angle, rad (12°), of several windows, the
+/// largest of them less than half of it: nobody turns that far unnoticed, and a
+/// current of the aircraft turns the field by less.
+const CONTRADICTS_RAD: f64 = 0.21;
+/// ... and beyond this share of the angle that either has turned: a compass that
+/// is turned by 30° errs by half of it, and so does one with 20 µT of iron.
+const CONTRADICTS_SHARE: f64 = 0.6;
+/// ... and beyond so many standard deviations.
+const CONTRADICTS_SIGMAS: f64 = 5.0;
+/// The field turns by this share of the contradiction at least.
+const FIELD_TURNS_SHARE: f64 = 0.4;
+/// Of so many windows, 2.4 s, each number from the latest on is looked at: gyroscopes
+/// that are wrong by a little take longer.
+const WINDOWS: usize = 12;
+
+/// The strength differs from the earth's by less than this share, and within the
+/// windows by less than this one: otherwise something disturbs it.
+const STRENGTH_SHARE: f64 = 0.15;
+const STEADY_STRENGTH_SHARE: f64 = 0.08;
+/// Samples that scatter by more than this share contain a jump, or are too noisy.
+const SCATTER_SHARE: f64 = 0.05;
+/// The field is believed once it has been where attitude and model expect it, within
+/// this angle (10°), for so long; until it jumps, or is not there for longer than the
+/// second time: wrong gyroscopes turn the attitude away from it, too.
+const EXPECTED_RAD: f64 = 0.175;
+const EXPECTED_FOR_S: f64 = 2.0;
+const UNEXPECTED_FOR_S: f64 = 10.0;
+
+/// Doubted gyroscopes are believed again when they have turned by this angle in all,
+/// rad (90°), over this time at least, s, counted in windows of more than the second
+/// angle (1°, at 5 °/s), and the field with them, but for this share of it.
+const BELIEVED_AFTER_RAD: f64 = 1.57;
+const BELIEVED_AFTER_S: f64 = 5.0;
+const TURNS_RAD: f64 = 0.0175;
+const NOISE_SIGMAS: f64 = 3.0;
+const AGREES_SHARE: f64 = 0.4;
+
+/// Slower nothing flies, m/s: on the ground there is iron nearby.
+const FLIES_MPS: f64 = 15.0;
+
+/// Holds the gyroscopes against the magnetic field.
+#[derive(Clone, Debug)]
+pub(super) struct GyroscopeMonitor {
+    turning: FieldTurning,
+    /// Of the gyroscopes, as it was before they were doubted, rad/s.
+    bias: Vector3<f64>,
+    /// The latest first.
+    windows: [Turning; WINDOWS],
+    known: usize,
+    /// Since when the field has been where it is expected, and when it last was.
+    expected_since: Time,
+    expected_last: Time,
+    is_field_sound: bool,
+    is_doubted: bool,
+    agreeing: Agreeing,
+}
+
+/// What doubted gyroscopes have shown since they last contradicted the field: how far
+/// they turned, rad, and sums of squares of that and of what the field did not turn
+/// with them, rad².
+#[derive(Clone, Copy, Debug, Default)]
+struct Agreeing {
+    since: Time,
+    turned_rad: f64,
+    turned_squared: f64,
+    error_squared: f64,
+}
+
+impl GyroscopeMonitor {
+    pub(super) fn new() -> Self {
+        Self {
+            turning: FieldTurning::new(),
+            bias: Vector3::zeros(),
+            windows: [Turning::NONE; WINDOWS],
+            known: 0,
+            expected_since: Time::NEVER,
+            expected_last: Time::NEVER,
+            is_field_sound: false,
+            is_doubted: false,
+            agreeing: Agreeing::default(),
+        }
+    }
+
+    /// Whether the gyroscopes are not to be used.
+    pub(super) const fn is_doubted(&self) -> bool {
+        self.is_doubted
+    }
+
+    /// Takes a sample of the gyroscopes, rad/s, and what is known of their bias.
+    pub(super) fn add_rates(&mut self, taken: Time, rates: [f64; 3], known: &Solution) {
+        if !self.is_doubted {
+            self.bias = Vector3::from(known.gyroscope_bias_radps.map(finite));
+        }
+        self.turning
+            .add_rates(taken, Vector3::from(rates) - self.bias);
+    }
+
+    /// Takes a sample of the magnetic field, µT, body axes, and what is known of
+    /// the field, the attitude and the velocity.
+    pub(super) fn add_field(&mut self, taken: Time, field: [f64; 3], known: &Solution) {
+        let own = Vector3::from(known.body_field_ut.map(finite));
+        let field = Vector3::from(field) - own;
+        let Some(turning) = self.turning.add_field(taken, field) else {
+            return;
+        };
+        self.expect(taken, field, known);
+        let earth_ut = Vector3::from(known.earth_field_ut).norm();
+        let is_smooth = turning.scatter < SCATTER_SHARE;
+        self.is_field_sound &= is_smooth || self.is_doubted;
+        let differs_ut = (turning.strength_ut - earth_ut).abs();
+        if !(self.is_field_sound && is_smooth && differs_ut < STRENGTH_SHARE * earth_ut) {
+            self.known = 0;
+            return;
+        }
+        self.windows.rotate_right(1);
+        if let Some(latest) = self.windows.first_mut() {
+            *latest = turning;
+        }
+        self.known = (self.known + 1).min(WINDOWS);
+        if self.contradicts(earth_ut) {
+            let flies = Vector3::from(known.velocity_mps).norm() > FLIES_MPS;
+            self.is_doubted |= flies;
+            self.agreeing = Agreeing::default();
+        } else if self.is_doubted {
+            self.agree(taken, &turning);
+        }
+    }
+
+    /// Follows whether the field is where it is expected to be.
+    fn expect(&mut self, taken: Time, field: Vector3<f64>, known: &Solution) {
+        let [w, x, y, z] = known.quaternion;
+        let to_earth = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z));
+        let expected = to_earth.inverse() * Vector3::from(known.earth_field_ut);
+        let cosine = expected.dot(&field) / (expected.norm() * field.norm());
+        // Not a number without an attitude or a field.
+        let is_expected = acos(cosine.clamp(-1.0, 1.0)) < EXPECTED_RAD;
+        if !is_expected {
+            self.expected_since = Time::NEVER;
+            let for_s = taken.since(self.expected_last).as_secs_f64();
+            self.is_field_sound &= self.is_doubted || for_s < UNEXPECTED_FOR_S;
+            return;
+        }
+        self.expected_last = taken;
+        if self.expected_since.is_never() {
+            self.expected_since = taken;
+        }
+        let for_s = taken.since(self.expected_since).as_secs_f64();
+        self.is_field_sound |= for_s >= EXPECTED_FOR_S;
+    }
+
+    /// Whether gyroscopes and field contradict each other over the latest windows,
+    /// however many of them.
+    fn contradicts(&self, earth_ut: f64) -> bool {
+        let (mut error, mut shown) = (Vector3::zeros(), Vector3::zeros());
+        let (mut by_field, mut by_rates, mut variance) = (0.0, 0.0, 0.0);
+        let mut largest = Vector3::zeros();
+        let (mut weakest_ut, mut strongest_ut) = (f64::INFINITY, 0.0_f64);
+        self.windows.iter().take(self.known).any(|window| {
+            error += window.error;
+            shown += window.shown;
+            by_field += window.shown.norm();
+            by_rates += (window.shown + window.error).norm();
+            // Of both parts across the field.
+            variance += 2.0 * window.variance;
+            if window.error.norm() > largest.norm() {
+                largest = window.error;
+            }
+            weakest_ut = weakest_ut.min(window.strength_ut);
+            strongest_ut = strongest_ut.max(window.strength_ut);
+            let angle = error.norm();
+            angle > CONTRADICTS_RAD
+                && (error - largest).norm() > 0.5 * CONTRADICTS_RAD
+                && angle > CONTRADICTS_SHARE * by_field.max(by_rates)
+                && angle > CONTRADICTS_SIGMAS * sqrt(variance)
+                && shown.norm() > FIELD_TURNS_SHARE * angle
+                && strongest_ut - weakest_ut < STEADY_STRENGTH_SHARE * earth_ut
+        })
+    }
+
+    /// Believes doubted gyroscopes again when they have agreed for long enough while
+    /// turning: in straight flight a wrong one agrees, too.
+    fn agree(&mut self, taken: Time, turning: &Turning) {
+        if self.agreeing.since.is_never() {
+            self.agreeing.since = taken;
+        }
+        let agreeing = &mut self.agreeing;
+        let turned = (turning.shown + turning.error).norm();
+        let noise = NOISE_SIGMAS * sqrt(2.0 * turning.variance);
+        if turned > TURNS_RAD {
+            agreeing.turned_rad += turned;
+        }
+        if turned > TURNS_RAD || turning.shown.norm() > TURNS_RAD + noise {
+            agreeing.turned_squared += turned * turned;
+            agreeing.error_squared += turning.error.norm_squared() - 2.0 * turning.variance;
+        }
+        let lasted_s = taken.since(agreeing.since).as_secs_f64();
+        if lasted_s >= BELIEVED_AFTER_S && agreeing.turned_rad >= BELIEVED_AFTER_RAD {
+            let most = AGREES_SHARE * AGREES_SHARE * agreeing.turned_squared;
+            self.is_doubted = agreeing.error_squared > most;
+            self.agreeing = Agreeing::default();
+            self.known = 0;
+        }
+    }
+}
+
+/// What is not known is none.
+fn finite(value: f64) -> f64 {
+    if value.is_finite() { value } else { 0.0 }
+}

@@ -1,0 +1,25 @@
+//! Without gyroscopes: attitude by the magnetic field, receiver and airspeed.
+
+use super::filter::{ATTITUDE, Filter, RATE_BIAS, VELOCITY};
+use super::parameters as p;
+
+/// What wrong gyroscopes have left of the attitude, rad² (23°), and of the velocity,
+/// m²/s².
+const LEFT_OF_ATTITUDE: f64 = 0.16;
+const LEFT_OF_VELOCITY: f64 = 9.0;
+
+impl Filter {
+    /// Begins to take how the field turns for rates, or ends to. The bias of either
+    /// is none of the other, and the field corrects the horizon, too: an error of it
+    /// is small against what gyroscopes have left.
+    pub(super) fn turn_by_field(&mut self, turns_by_field: bool) {
+        self.settle();
+        self.turns_by_field = turns_by_field;
+        self.rate_bias.fill(0.0);
+        self.reset_covariance(RATE_BIAS, 3, p::RATE_BIAS * p::RATE_BIAS);
+        if turns_by_field {
+            self.reset_covariance(ATTITUDE, 3, LEFT_OF_ATTITUDE);
+            self.add_variance(VELOCITY, 3, LEFT_OF_VELOCITY);
+        }
+    }
+}

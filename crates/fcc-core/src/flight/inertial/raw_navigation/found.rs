@@ -1,0 +1,78 @@
+//! What raw readings and a solution say of what control needs.
+
+use super::super::Solution;
+use crate::flight::orientation::euler_from_quaternion;
+use crate::flight::{Attitude, BodyRates, SpecificForce};
+use crate::framework::{Reading, Time};
+
+/// Roll and pitch less certain than this are none, rad.
+const USABLE_TILT: f64 = 0.15;
+
+/// What a raw reading says, or the one that is measured if there is none.
+pub(super) fn either<R: Copy, T>(
+    raw: Reading<R>,
+    says: impl FnOnce(R) -> T,
+    measured: Reading<T>,
+) -> Reading<T> {
+    if raw.is_never() {
+        return measured;
+    }
+    Reading {
+        value: says(raw.value),
+        taken: raw.taken,
+        source: raw.source,
+    }
+}
+
+pub(super) fn attitude_of(solution: &Solution, at: Time) -> Option<Reading<Attitude>> {
+    let angles = euler_from_quaternion(solution.quaternion);
+    let sigma = solution.sigma;
+    let is_known = angles.roll_rad.is_finite()
+        && angles.pitch_rad.is_finite()
+        && is_certain(sigma.roll_rad.max(sigma.pitch_rad), USABLE_TILT);
+    is_known.then(|| {
+        let attitude = Attitude {
+            pitch_rad: angles.pitch_rad,
+            roll_rad: angles.roll_rad,
+        };
+        Reading::new(attitude, at)
+    })
+}
+
+pub(super) fn rates_of(raw: &Reading<BodyRates>, solution: &Solution) -> Reading<BodyRates> {
+    let [roll, pitch, yaw] = solution.gyroscope_bias_radps.map(known);
+    Reading {
+        value: BodyRates {
+            roll_radps: raw.value.roll_radps - roll,
+            pitch_radps: raw.value.pitch_radps - pitch,
+            yaw_radps: raw.value.yaw_radps - yaw,
+        },
+        ..*raw
+    }
+}
+
+pub(super) fn force_of(
+    raw: &Reading<SpecificForce>,
+    solution: &Solution,
+) -> Reading<SpecificForce> {
+    let [x, y, z] = solution.accelerometer_bias_mps2.map(known);
+    Reading {
+        value: SpecificForce {
+            x_mps2: raw.value.x_mps2 - x,
+            y_mps2: raw.value.y_mps2 - y,
+            z_mps2: raw.value.z_mps2 - z,
+        },
+        ..*raw
+    }
+}
+
+/// Whether a standard deviation is small enough; a method that states none is
+/// believed.
+pub(super) fn is_certain(sigma: f64, usable: f64) -> bool {
+    sigma.is_nan() || sigma <= usable
+}
+
+/// A bias that the method does not know is none.
+pub(super) fn known(bias: f64) -> f64 {
+    if bias.is_finite() { bias } else { 0.0 }
+}

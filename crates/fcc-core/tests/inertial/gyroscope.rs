@@ -1,0 +1,203 @@
+//! Gyroscopes that are wrong in ways that their samples alone do not show, and
+//! magnetometers that are.
+
+use std::time::Duration;
+
+use fcc_core::flight::atmosphere::pressure_pa;
+use fcc_core::flight::inertial::{
+    MagneticNorth, RawNavigation, RawNavigationConfig, RawNavigationMethod,
+};
+use fcc_core::flight::orientation::earth_to_body;
+use fcc_core::flight::{BodyRates, GnssFix, MagneticField, Measurements, SpecificForce};
+use fcc_core::framework::Reading;
+
+use super::flight::Flight;
+use super::noise::Random;
+use super::sensors::{FIELD_UT, time};
+
+const TICK_S: f64 = 0.025;
+const FAILS_S: f64 = 30.0;
+
+/// What is made of rates, rad/s, and of the field, µT, and the time since it failed.
+type Fault = fn(&mut [f64; 3], &mut [f64; 3], f64, &mut Random);
+
+/// Turns to the left and to the right by 25° of bank, in between straight flight.
+fn turns(time_s: f64) -> (f64, f64, f64) {
+    let share = (time_s / 10.0 * std::f64::consts::PI).sin();
+    (25.0_f64.to_radians() * share * share * share, 0.0, 50.0)
+}
+
+fn straight(time_s: f64) -> (f64, f64, f64) {
+    if time_s < FAILS_S {
+        turns(time_s)
+    } else {
+        (0.0, 0.0, 50.0)
+    }
+}
+
+/// Flies with a fault from 30 s until `until_s`; the times at which gyroscopes began
+/// and ended to be doubted, after the fault began.
+fn doubted(
+    manoeuvre: super::flight::Manoeuvre,
+    fault: Fault,
+    until_s: f64,
+    end_s: f64,
+) -> Vec<f64> {
+    let mut flight = Flight::new(manoeuvre, 0.5, [4.0, -3.0]);
+    let mut random = Random::new(7);
+    let mut navigation = RawNavigation::new(RawNavigationConfig {
+        method: RawNavigationMethod::Kalman,
+        delay: Duration::from_millis(150),
+        north: MagneticNorth::Field(FIELD_UT),
+    });
+    let mut changes = Vec::new();
+    let mut was_doubted = false;
+    for tick in 0_u32.. {
+        flight.step(TICK_S);
+        let truth = flight.now;
+        if truth.time_s > end_s {
+            break;
+        }
+        let now = time(truth.time_s);
+        let noise = random.vector(0.002);
+        let mut rates = [0, 1, 2].map(|axis| truth.rates[axis] + 0.005 + noise[axis]);
+        // That of a phone's magnetometer.
+        let noise = random.vector(0.6);
+        let field = earth_to_body(truth.quaternion, FIELD_UT);
+        let mut field = [0, 1, 2].map(|axis| field[axis] + noise[axis]);
+        let since_s = truth.time_s - FAILS_S;
+        if since_s >= 0.0 && truth.time_s < until_s {
+            fault(&mut rates, &mut field, since_s, &mut random);
+        }
+        let [x_ut, y_ut, z_ut] = field;
+        let [x_mps2, y_mps2, z_mps2] = truth.force;
+        let mut measured = Measurements {
+            raw_body_rates: Reading::new(
+                BodyRates {
+                    roll_radps: rates[0],
+                    pitch_radps: rates[1],
+                    yaw_radps: rates[2],
+                },
+                now,
+            ),
+            raw_specific_force: Reading::new(
+                SpecificForce {
+                    x_mps2,
+                    y_mps2,
+                    z_mps2,
+                },
+                now,
+            ),
+            magnetic_field: Reading::new(MagneticField { x_ut, y_ut, z_ut }, now),
+            static_pressure_pa: Reading::new(pressure_pa(truth.place.altitude_m), now),
+            // At 500 m, 1.17 kg/m³.
+            differential_pressure_pa: Reading::new(0.5 * 1.167 * 50.0 * 50.0, now),
+            ..Measurements::default()
+        };
+        if tick % 8 == 0 {
+            let mut fix = GnssFix::default();
+            fix.position.latitude_rad = truth.place.latitude_rad;
+            fix.position.longitude_rad = truth.place.longitude_rad;
+            fix.position.altitude_m = truth.place.altitude_m;
+            [
+                fix.velocity.north_mps,
+                fix.velocity.east_mps,
+                fix.velocity.down_mps,
+            ] = truth.velocity;
+            measured.gnss = Reading::new(fix, now);
+        }
+        navigation.step(now, &measured);
+        if navigation.doubts_gyroscopes() != was_doubted {
+            was_doubted = !was_doubted;
+            changes.push(since_s);
+        }
+    }
+    changes
+}
+
+const WRONG: [(&str, Fault); 6] = [
+    ("inverted roll", |rates, _, _, _| rates[0] = -rates[0]),
+    ("stuck roll, with noise", |rates, _, _, random| {
+        rates[0] = random.normal(0.003);
+    }),
+    ("all frozen, with noise", |rates, _, _, random| {
+        *rates = random.vector(0.003);
+    }),
+    ("scale 0.3", |rates, _, _, _| {
+        *rates = rates.map(|rate| 0.3 * rate);
+    }),
+    ("clipped at 2 °/s", |rates, _, _, _| {
+        *rates = rates.map(|rate| rate.clamp(-0.035, 0.035));
+    }),
+    ("roll and yaw swapped", |rates, _, _, _| rates.swap(0, 2)),
+];
+
+#[test]
+fn wrong_gyroscopes_are_doubted_within_one_roll_into_a_turn() {
+    for (name, fault) in WRONG {
+        let changes = doubted(turns, fault, 40.0, 40.0);
+        // A turn lasts for 10 s, and rolls at up to 10 °/s.
+        assert_eq!(changes.len(), 1, "{name}: {changes:?}");
+        assert!((0.2..10.0).contains(&changes[0]), "{name}: {changes:?}");
+    }
+}
+
+#[test]
+fn they_are_believed_again_when_they_have_agreed_while_turning() {
+    // Stuck ones agree in straight flight.
+    let stuck: Fault = |rates, _, _, random| *rates = random.vector(0.003);
+    let changes = doubted(turns, stuck, 45.0, 110.0);
+    assert_eq!(changes.len(), 2, "{changes:?}");
+    assert!(changes[1] > 20.0 && changes[1] < 60.0, "{changes:?}");
+    let bank_only = |time_s: f64| {
+        if time_s < 40.0 {
+            turns(time_s)
+        } else {
+            straight(time_s)
+        }
+    };
+    assert_eq!(doubted(bank_only, stuck, 45.0, 110.0).len(), 1);
+}
+
+const MAGNETOMETER: [(&str, Fault); 9] = [
+    ("none", |_, _, _, _| {}),
+    ("frozen", |_, field, _, _| *field = [20.0, -10.0, 43.0]),
+    ("frozen, with noise", |_, field, _, random| {
+        let noise = random.vector(0.6);
+        *field = [20.0 + noise[0], -10.0 + noise[1], 43.0 + noise[2]];
+    }),
+    ("turned by 30°", |_, field, _, _| {
+        let (sin, cos) = 30.0_f64.to_radians().sin_cos();
+        let [x, y, _] = *field;
+        (field[0], field[1]) = (cos * x - sin * y, sin * x + cos * y);
+    }),
+    ("off by 20 µT", |_, field, _, _| field[1] += 20.0),
+    ("off by 200 µT", |_, field, _, _| field[0] += 200.0),
+    ("noise x 10", |_, field, _, random| {
+        let noise = random.vector(6.0);
+        *field = [0, 1, 2].map(|axis| field[axis] + noise[axis]);
+    }),
+    (
+        "the field of a current of 10 µT, on and off",
+        |_, field, since_s, _| {
+            field[1] += 5.0 + 5.0 * (since_s * 0.8).sin();
+        },
+    ),
+    ("jumps by 30° each 3 s", |_, field, since_s, _| {
+        if since_s % 6.0 < 3.0 {
+            let (sin, cos) = 30.0_f64.to_radians().sin_cos();
+            let [_, y, z] = *field;
+            (field[1], field[2]) = (cos * y - sin * z, sin * y + cos * z);
+        }
+    }),
+];
+
+#[test]
+fn a_wrong_magnetometer_does_not_make_gyroscopes_doubted() {
+    for (name, fault) in MAGNETOMETER {
+        for manoeuvre in [turns as super::flight::Manoeuvre, straight] {
+            let changes = doubted(manoeuvre, fault, 70.0, 70.0);
+            assert!(changes.is_empty(), "{name}: {changes:?}");
+        }
+    }
+}
