@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, SMatrix, SVector, SymmetricEigen, Vector3};
 use super::{Axes, AxesCalibration};
 
 /// Bias, and the symmetric matrix of scale and misalignment.
-const UNKNOWNS: usize = 9;
+pub(super) const UNKNOWNS: usize = 9;
 type Unknowns = SVector<f64, UNKNOWNS>;
 type Normal = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 
@@ -164,6 +164,10 @@ impl<'a> Samples<'a> {
             .map(|(at, sample)| (at, Vector3::from(*sample)))
     }
 
+    fn vectors(self) -> impl Iterator<Item = Vector3<f64>> + 'a {
+        self.each().map(|(_, sample)| sample)
+    }
+
     fn count(self) -> f64 {
         (self.all.len() - usize::from(self.without.is_some())) as f64
     }
@@ -179,7 +183,7 @@ impl<'a> Samples<'a> {
 /// The sample without which the others fit, and which contradicts them: the one
 /// farthest from the middle of all, or from the sphere through them.
 fn outlier(all: Samples<'_>, strength: f64) -> Option<FitError> {
-    let (centre, radius) = sphere(all)?;
+    let (centre, radius) = sphere(all.vectors())?;
     let sum: Vector3<f64> = all.each().map(|(_, sample)| sample).sum();
     let middle = sum / all.count();
     let farthest = [
@@ -202,7 +206,7 @@ fn outlier(all: Samples<'_>, strength: f64) -> Option<FitError> {
 }
 
 fn fit(samples: Samples<'_>, strength: f64) -> Result<StrengthFit, FitError> {
-    let (centre, radius) = sphere(samples).ok_or(FitError::NoFit)?;
+    let (centre, radius) = sphere(samples.vectors()).ok_or(FitError::NoFit)?;
     let spread = spread(samples, centre);
     if spread < LEAST_SPREAD {
         return Err(FitError::NotSpread(spread, LEAST_SPREAD));
@@ -244,10 +248,10 @@ fn fit(samples: Samples<'_>, strength: f64) -> Result<StrengthFit, FitError> {
 }
 
 /// The sphere through the samples, by linear least squares.
-fn sphere(samples: Samples<'_>) -> Option<(Vector3<f64>, f64)> {
+pub(super) fn sphere(samples: impl Iterator<Item = Vector3<f64>>) -> Option<(Vector3<f64>, f64)> {
     let mut normal = SMatrix::<f64, 4, 4>::zeros();
     let mut right = SVector::<f64, 4>::zeros();
-    for (_, sample) in samples.each() {
+    for sample in samples {
         let row = (2.0 * sample).push(1.0);
         normal += row * row.transpose();
         right += row * sample.norm_squared();

@@ -5,13 +5,20 @@
 //! raw readings of one source, before anything else sees them. So every record
 //! has body axes, calibrated, at the time at which they were taken.
 
+mod alignment;
 mod fit;
+mod guided;
 mod mounting;
 
 use core::ops::RangeInclusive;
 use core::time::Duration;
 
+pub use alignment::{DipFit, constant_dip, level_and_nose_up, levelled};
 pub use fit::{FitError, StrengthFit, fit_strength};
+pub use guided::{
+    CELLS, CELLS_OF_BANDS, Coverage, EarthField, Found, GuidedCalibration, GuidedKind, MountingWay,
+    Next, Place, Quality, Refusal, Values,
+};
 pub use mounting::{Direction, Mounting, MountingError, Rotation};
 use nalgebra::{Matrix3, SymmetricEigen};
 
@@ -79,6 +86,11 @@ impl Default for Axes {
 }
 
 impl Axes {
+    /// From sensor axes to body axes: the mounting, then the free rotation.
+    pub fn turn(&self) -> Rotation {
+        self.rotation.after(&self.mounting.rotation())
+    }
+
     /// By how much scale and misalignment together may multiply what is measured
     /// along any direction: twice what a scale may do. Below it a direction is
     /// lost, as if two of the sensor's axes were one.
@@ -120,10 +132,15 @@ impl AxesCalibration {
     pub fn new(of: &Axes) -> Self {
         let shape = Rotation(of.shape());
         Self {
-            matrix: of.rotation.after(&of.mounting.rotation()).after(&shape),
+            matrix: of.turn().after(&shape),
             bias: of.bias,
             delay: of.delay,
         }
+    }
+
+    /// C · R · T · K, by rows.
+    pub const fn matrix(&self) -> [[f64; 3]; 3] {
+        self.matrix.0
     }
 
     /// The vector in body axes of one in the sensor's axes.
