@@ -48,6 +48,7 @@ pub mod airframe;
 pub mod atmosphere;
 mod config;
 pub mod gauss;
+mod handling;
 mod link;
 pub mod motion;
 mod raw;
@@ -65,8 +66,9 @@ pub use airframe::Airframe;
 pub use config::{
     Channels, LONGEST_DELAY_MS, SensorConfig, SimConfig, SimError, SwitchScript, Wind,
 };
+pub use handling::{HandledSensors, HandlingFault, HandlingTask};
 pub use link::{SwitchHandle, TruthHandle};
-pub use raw::{AxisErrors, RawSensor, RawSensorSet, RawSensors, RawTruth};
+pub use raw::{AxisErrors, RawSensor, RawSensorSet, RawSensors, RawTruth, TrueErrors};
 pub use simulation::{SimActuator, SimSensor, Simulation};
 pub use trim::{Trim, TrimError, trim};
 pub use truth::Truth;

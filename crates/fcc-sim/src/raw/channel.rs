@@ -66,6 +66,16 @@ pub struct RawSensor<const N: usize> {
     pub jitter_s: f64,
 }
 
+/// The constant errors that were drawn for one sensor: it gives
+/// `shape` · truth + `bias`, while it is cold.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct TrueErrors<const N: usize> {
+    /// In the unit of the sensor.
+    pub bias: [f64; N],
+    /// Scale and share of each other axis, by rows.
+    pub shape: [[f64; N]; N],
+}
+
 /// The engine's motion between two instants.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub(super) struct Engine {
@@ -141,6 +151,13 @@ impl<const N: usize> Channel<N> {
             sum: [0.0; N],
             sum_s: 0.0,
             count: 0,
+        }
+    }
+
+    pub(super) const fn true_errors(&self) -> TrueErrors<N> {
+        TrueErrors {
+            bias: self.bias,
+            shape: self.shape,
         }
     }
 

@@ -14,7 +14,7 @@ use core::f64::consts::TAU;
 use core::time::Duration;
 
 use channel::{Arrived, Channel, Engine};
-pub use channel::{AxisErrors, RawSensor};
+pub use channel::{AxisErrors, RawSensor, TrueErrors};
 use fcc_core::flight::atmosphere::{pressure_altitude_m, pressure_pa};
 use fcc_core::flight::orientation::{EulerAngles, earth_to_body, quaternion_from_euler};
 use fcc_core::flight::{
@@ -134,6 +134,22 @@ impl RawSensors {
         };
         sensors.each(start, &Begin);
         sensors
+    }
+
+    /// The constant errors that were drawn: of the accelerometer, the gyroscope
+    /// and the magnetometer.
+    pub fn true_errors(&self) -> [TrueErrors<3>; 3] {
+        [&self.accelerometer, &self.gyroscope, &self.magnetometer].map(Channel::true_errors)
+    }
+
+    /// The same of the pitot tube.
+    pub fn pitot_errors(&self) -> TrueErrors<1> {
+        self.pitot.true_errors()
+    }
+
+    /// Another magnetic field, north, east and down, µT, from here on.
+    pub(crate) const fn set_field_ut(&mut self, field_ut: [f64; 3]) {
+        self.field_ut = field_ut;
     }
 
     /// Takes the samples from the last truth to this one.
