@@ -1,0 +1,100 @@
+//! The sensor of a device that another thread reads.
+
+use core::time::Duration;
+
+use fcc_core::flight::Measurements;
+use fcc_core::framework::{Sensor, SensorFault, Tick, Time};
+use rtrb::Consumer;
+
+use crate::device_thread::ThreadHandle;
+use crate::{Measured, Sample};
+
+/// What the thread of a device hands over.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Message<V> {
+    Sample(Sample<V>),
+    Fault(SensorFault),
+}
+
+/// How far a sample may be ahead of a tick: it may be taken after the tick woke,
+/// and then belongs to the next one. One that is further ahead has a wrong clock.
+const MOST_AHEAD: Duration = Duration::from_millis(10);
+
+/// A device as a sensor: takes what its thread has read since the last tick.
+///
+/// Waits for nothing, and allocates nothing. When it is dropped, the thread ends.
+#[derive(Debug)]
+pub struct DeviceSensor<V> {
+    pub(crate) messages: Consumer<Message<V>>,
+    pub(crate) name: &'static str,
+    pub(crate) silent_after: Duration,
+    pub(crate) fallback_after: Duration,
+    pub(crate) newest: Time,
+    /// Until the next sample.
+    pub(crate) fault: Option<SensorFault>,
+    pub(crate) _thread: ThreadHandle,
+}
+
+impl<V: Measured> DeviceSensor<V> {
+    /// The next message for this tick, if there is one.
+    fn next(&mut self, woke: Time) -> Option<Message<V>> {
+        if let Ok(Message::Sample(sample)) = self.messages.peek()
+            && sample.taken > woke
+            && sample.taken <= woke + MOST_AHEAD
+        {
+            return None;
+        }
+        self.messages.pop().ok()
+    }
+
+    /// Whether a sample is later than those before, and not of the future.
+    fn is_in_order(&self, sample: &Sample<V>, woke: Time) -> bool {
+        sample.taken > self.newest && sample.taken <= woke
+    }
+}
+
+impl<V: Measured> Sensor<Measurements> for DeviceSensor<V> {
+    fn sample(&mut self, tick: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
+        let mut malformed = false;
+        let mut pending: Option<Sample<V>> = None;
+        for _ in 0..self.messages.buffer().capacity() {
+            match self.next(tick.woke) {
+                Some(Message::Sample(sample)) if self.is_in_order(&sample, tick.woke) => {
+                    self.newest = sample.taken;
+                    self.fault = None;
+                    let merged = pending.as_ref().and_then(|old| V::merged(old, &sample));
+                    if let (None, Some(old)) = (&merged, &pending) {
+                        V::write(old, into);
+                    }
+                    pending = Some(merged.unwrap_or(sample));
+                }
+                Some(Message::Sample(_) | Message::Fault(SensorFault::Malformed)) => {
+                    malformed = true;
+                }
+                Some(Message::Fault(fault)) => self.fault = Some(fault),
+                None => break,
+            }
+        }
+        if let Some(sample) = &pending {
+            V::write(sample, into);
+        }
+        if let Some(fault) = self.fault {
+            return Err(fault);
+        }
+        if self.newest.is_never() || tick.woke.since(self.newest) > self.silent_after {
+            return Err(SensorFault::Silent);
+        }
+        if malformed {
+            return Err(SensorFault::Malformed);
+        }
+        Ok(())
+    }
+
+    fn fallback_after(&self) -> Duration {
+        self.fallback_after
+    }
+
+    fn name(&self) -> &'static str {
+        self.name
+    }
+}

@@ -1,0 +1,55 @@
+//! The sensors and servos of a Linux board as sensors and actuators of a loop:
+//! chips on I²C and SPI, the kernel's own drivers (IIO), serial lines, PWM and
+//! GPIO.
+//!
+//! Such devices are slow, and reading one waits: each is read in a thread of its
+//! own, and the loop takes what has arrived from a ring without waiting.
+//!
+//! ```
+//! use core::time::Duration;
+//! use fcc_core::flight::Measurements;
+//! use fcc_core::framework::Sensor;
+//! use fcc_linux::{DeviceError, DeviceThread, Sample, Source, StaticPressure, monotonic};
+//!
+//! /// A barometer that shows the standard atmosphere's pressure 20 times a second.
+//! struct Barometer;
+//!
+//! impl Source for Barometer {
+//!     type Value = StaticPressure;
+//!
+//!     fn read(&mut self) -> Result<Option<Sample<StaticPressure>>, DeviceError> {
+//!         std::thread::sleep(Duration::from_millis(50));
+//!         let pressure_pa = 101_325.0;
+//!         Ok(Some(Sample::new(monotonic(), StaticPressure { pressure_pa })))
+//!     }
+//! }
+//!
+//! let sensor = DeviceThread::new("barometer").start(|| Ok(Barometer))?;
+//! let sensor: Box<dyn Sensor<Measurements>> = Box::new(sensor);
+//! # drop(sensor);
+//! # Ok::<(), std::io::Error>(())
+//! ```
+//!
+//! # Structure
+//!
+//! | module | contents |
+//! |---|---|
+//! | `source` | what a device gives: [`Source`], [`Sample`], [`Measured`] |
+//! | `device_thread`, `device_sensor` | the thread that opens, reads and reopens a device; the sensor that takes what it read |
+//! | `error`, `clock` | [`DeviceError`]: what went wrong, where, what to do; the loop's clock |
+#![forbid(unsafe_code)]
+
+mod clock;
+mod device_sensor;
+mod device_thread;
+mod error;
+pub mod serial;
+mod source;
+
+pub use clock::monotonic;
+pub use device_sensor::DeviceSensor;
+pub use device_thread::{DeviceStatus, DeviceThread};
+pub use error::DeviceError;
+pub use source::{
+    DifferentialPressure, Field, Inertial, Measured, Sample, Source, StaticPressure, WAIT,
+};
