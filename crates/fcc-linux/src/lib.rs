@@ -9,18 +9,18 @@
 //! use core::time::Duration;
 //! use fcc_core::flight::Measurements;
 //! use fcc_core::framework::Sensor;
-//! use fcc_linux::{DeviceError, DeviceThread, Sample, Source, StaticPressure, monotonic};
+//! use fcc_linux::{DeviceError, DeviceThread, RawValues, Sample, Source, monotonic};
 //!
 //! /// A barometer that shows the standard atmosphere's pressure 20 times a second.
 //! struct Barometer;
 //!
 //! impl Source for Barometer {
-//!     type Value = StaticPressure;
+//!     type Value = RawValues;
 //!
-//!     fn read(&mut self) -> Result<Option<Sample<StaticPressure>>, DeviceError> {
+//!     fn read(&mut self) -> Result<Option<Sample<RawValues>>, DeviceError> {
 //!         std::thread::sleep(Duration::from_millis(50));
-//!         let pressure_pa = 101_325.0;
-//!         Ok(Some(Sample::new(monotonic(), StaticPressure { pressure_pa })))
+//!         let value = RawValues { static_pressure_pa: Some(101_325.0), ..RawValues::NONE };
+//!         Ok(Some(Sample::new(monotonic(), value)))
 //!     }
 //! }
 //!
@@ -34,7 +34,7 @@
 //!
 //! | module | contents |
 //! |---|---|
-//! | `source` | what a device gives: [`Source`], [`Sample`], [`Measured`] |
+//! | `source` | what a device gives: [`Source`], [`Sample`], [`Measured`], [`RawValues`] |
 //! | `device_thread`, `device_sensor` | the thread that opens, reads and reopens a device; the sensor that takes what it read |
 //! | `error`, `clock` | [`DeviceError`]: what went wrong, where, what to do; the loop's clock |
 #![forbid(unsafe_code)]
@@ -50,6 +50,4 @@ pub use clock::monotonic;
 pub use device_sensor::DeviceSensor;
 pub use device_thread::{DeviceStatus, DeviceThread};
 pub use error::DeviceError;
-pub use source::{
-    DifferentialPressure, Field, Inertial, Measured, Sample, Source, StaticPressure, WAIT,
-};
+pub use source::{Measured, RawValues, Sample, Source, WAIT};

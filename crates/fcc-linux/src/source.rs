@@ -54,107 +54,126 @@ pub trait Measured: Copy + Send + 'static {
     }
 }
 
-/// Specific force and turn rates of an inertial sensor, the mean of so many
-/// samples.
+/// What a chip measures at one time, as it gives it: without calibration, in its
+/// own axes, the mean of so many samples. `None`: it does not measure that.
 ///
-/// A loop is slower than such a sensor. The mean of all samples since the last
-/// tick keeps what the aircraft turned by, and averages its vibration, where a
-/// single sample would alias it.
+/// A loop is slower than most chips. The mean of all samples since the last tick
+/// keeps what the aircraft turned by, and averages its vibration, where a single
+/// sample would alias it.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
-pub struct Inertial {
-    /// m/s², in the sensor's axes.
-    pub specific_force_mps2: [f64; 3],
-    /// rad/s, in the sensor's axes.
-    pub rates_radps: [f64; 3],
+pub struct RawValues {
+    /// Of an accelerometer, m/s².
+    pub specific_force_mps2: Option<[f64; 3]>,
+    /// Of a gyroscope, rad/s.
+    pub rates_radps: Option<[f64; 3]>,
+    /// Of a magnetometer, µT.
+    pub field_ut: Option<[f64; 3]>,
+    /// Of a barometer, Pa.
+    pub static_pressure_pa: Option<f64>,
+    /// Of a pitot tube: total minus static pressure, Pa.
+    pub differential_pressure_pa: Option<f64>,
+    /// Of the air outside, K. The temperature that a barometer or an inertial
+    /// sensor measures is its own.
+    pub air_temperature_k: Option<f64>,
+    /// To the ground, m.
+    pub range_m: Option<f64>,
     /// How many samples this is the mean of.
     pub samples: u32,
 }
 
-impl Measured for Inertial {
-    fn write(sample: &Sample<Self>, into: &mut Measurements) {
-        let [x_mps2, y_mps2, z_mps2] = sample.value.specific_force_mps2;
-        let force = SpecificForce {
-            x_mps2,
-            y_mps2,
-            z_mps2,
-        };
-        let [roll_radps, pitch_radps, yaw_radps] = sample.value.rates_radps;
-        let rates = BodyRates {
-            roll_radps,
-            pitch_radps,
-            yaw_radps,
-        };
-        into.raw_specific_force = Reading::new(force, sample.taken);
-        into.raw_body_rates = Reading::new(rates, sample.taken);
-    }
+impl RawValues {
+    /// One sample, in which nothing was measured yet.
+    pub const NONE: Self = Self {
+        specific_force_mps2: None,
+        rates_radps: None,
+        field_ut: None,
+        static_pressure_pa: None,
+        differential_pressure_pa: None,
+        air_temperature_k: None,
+        range_m: None,
+        samples: 1,
+    };
 
-    fn merged(earlier: &Sample<Self>, later: &Sample<Self>) -> Option<Sample<Self>> {
-        let (a, b) = (&earlier.value, &later.value);
-        let samples = a.samples.saturating_add(b.samples);
-        if samples == 0 {
-            return None;
-        }
-        let weight = f64::from(b.samples) / f64::from(samples);
-        let mean = |[x, y, z]: [f64; 3], [u, v, w]: [f64; 3]| {
-            [
-                x + weight * (u - x),
-                y + weight * (v - y),
-                z + weight * (w - z),
-            ]
-        };
-        let between_ns = (later.taken - earlier.taken) as f64 * weight;
-        let after = Duration::from_nanos(between_ns.max(0.0) as u64);
-        Some(Sample {
-            taken: earlier.taken + after,
-            value: Self {
-                specific_force_mps2: mean(a.specific_force_mps2, b.specific_force_mps2),
-                rates_radps: mean(a.rates_radps, b.rates_radps),
-                samples,
-            },
+    /// The mean of two that have the same values.
+    fn mean(&self, later: &Self) -> Result<Self, Unlike> {
+        let samples = self.samples.saturating_add(later.samples).max(1);
+        let weight = f64::from(later.samples) / f64::from(samples);
+        let number = |a: f64, b: f64| a + weight * (b - a);
+        let vector =
+            |[x, y, z]: [f64; 3], [u, v, w]: [f64; 3]| [number(x, u), number(y, v), number(z, w)];
+        Ok(Self {
+            specific_force_mps2: both(self.specific_force_mps2, later.specific_force_mps2, vector)?,
+            rates_radps: both(self.rates_radps, later.rates_radps, vector)?,
+            field_ut: both(self.field_ut, later.field_ut, vector)?,
+            static_pressure_pa: both(self.static_pressure_pa, later.static_pressure_pa, number)?,
+            differential_pressure_pa: both(
+                self.differential_pressure_pa,
+                later.differential_pressure_pa,
+                number,
+            )?,
+            air_temperature_k: both(self.air_temperature_k, later.air_temperature_k, number)?,
+            range_m: both(self.range_m, later.range_m, number)?,
+            samples,
         })
     }
 }
 
-/// The magnetic field, of a magnetometer.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-pub struct Field {
-    /// µT, in the sensor's axes.
-    pub field_ut: [f64; 3],
-}
+/// Only one of two samples has a value.
+struct Unlike;
 
-impl Measured for Field {
-    fn write(sample: &Sample<Self>, into: &mut Measurements) {
-        let [x_ut, y_ut, z_ut] = sample.value.field_ut;
-        into.magnetic_field = Reading::new(MagneticField { x_ut, y_ut, z_ut }, sample.taken);
+/// The mean of a value that both samples have, or neither.
+fn both<T>(a: Option<T>, b: Option<T>, mean: impl Fn(T, T) -> T) -> Result<Option<T>, Unlike> {
+    match (a, b) {
+        (Some(a), Some(b)) => Ok(Some(mean(a, b))),
+        (None, None) => Ok(None),
+        _ => Err(Unlike),
     }
 }
 
-/// Static pressure, of a barometer.
-///
-/// The temperature that a barometer measures as well is its own, and not that
-/// of the air outside.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-pub struct StaticPressure {
-    /// Pa.
-    pub pressure_pa: f64,
-}
-
-impl Measured for StaticPressure {
+impl Measured for RawValues {
     fn write(sample: &Sample<Self>, into: &mut Measurements) {
-        into.static_pressure_pa = Reading::new(sample.value.pressure_pa, sample.taken);
+        let (taken, value) = (sample.taken, &sample.value);
+        if let Some([x_mps2, y_mps2, z_mps2]) = value.specific_force_mps2 {
+            let force = SpecificForce {
+                x_mps2,
+                y_mps2,
+                z_mps2,
+            };
+            into.raw_specific_force = Reading::new(force, taken);
+        }
+        if let Some([roll_radps, pitch_radps, yaw_radps]) = value.rates_radps {
+            let rates = BodyRates {
+                roll_radps,
+                pitch_radps,
+                yaw_radps,
+            };
+            into.raw_body_rates = Reading::new(rates, taken);
+        }
+        if let Some([x_ut, y_ut, z_ut]) = value.field_ut {
+            into.magnetic_field = Reading::new(MagneticField { x_ut, y_ut, z_ut }, taken);
+        }
+        let numbers = [
+            (value.static_pressure_pa, &mut into.static_pressure_pa),
+            (
+                value.differential_pressure_pa,
+                &mut into.differential_pressure_pa,
+            ),
+            (value.air_temperature_k, &mut into.air_temperature_k),
+            (value.range_m, &mut into.range_m),
+        ];
+        for (number, place) in numbers {
+            if let Some(number) = number {
+                *place = Reading::new(number, taken);
+            }
+        }
     }
-}
 
-/// Total minus static pressure, of a pitot tube.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-pub struct DifferentialPressure {
-    /// Pa.
-    pub pressure_pa: f64,
-}
-
-impl Measured for DifferentialPressure {
-    fn write(sample: &Sample<Self>, into: &mut Measurements) {
-        into.differential_pressure_pa = Reading::new(sample.value.pressure_pa, sample.taken);
+    fn merged(earlier: &Sample<Self>, later: &Sample<Self>) -> Option<Sample<Self>> {
+        let value = earlier.value.mean(&later.value).ok()?;
+        let weight = f64::from(later.value.samples) / f64::from(value.samples);
+        let between_ns = (later.taken - earlier.taken) as f64 * weight;
+        let after = Duration::from_nanos(between_ns.max(0.0) as u64);
+        Some(Sample::new(earlier.taken + after, value))
     }
 }
 
@@ -162,21 +181,27 @@ impl Measured for DifferentialPressure {
 mod tests {
     use super::*;
 
-    fn inertial(ns: i64, samples: u32, value: f64) -> Sample<Inertial> {
-        Sample::new(
-            Time::from_nanos(ns),
-            Inertial {
-                specific_force_mps2: [value; 3],
-                rates_radps: [-value; 3],
-                samples,
-            },
-        )
+    fn inertial(ns: i64, samples: u32, value: f64) -> Sample<RawValues> {
+        let value = RawValues {
+            specific_force_mps2: Some([value; 3]),
+            rates_radps: Some([-value; 3]),
+            samples,
+            ..RawValues::NONE
+        };
+        Sample::new(Time::from_nanos(ns), value)
     }
 
     /// One sample of 1 and three of 5: their mean is 4.
     #[test]
     fn batches_are_weighted_by_their_samples() {
-        let merged = Inertial::merged(&inertial(1_000, 1, 1.0), &inertial(5_000, 3, 5.0));
+        let merged = RawValues::merged(&inertial(1_000, 1, 1.0), &inertial(5_000, 3, 5.0));
         assert_eq!(merged, Some(inertial(4_000, 4, 4.0)));
+    }
+
+    #[test]
+    fn what_only_one_of_two_samples_has_is_not_averaged() {
+        let mut compass = inertial(2_000, 1, 1.0);
+        compass.value.field_ut = Some([20.0, 0.0, 40.0]);
+        assert_eq!(RawValues::merged(&inertial(1_000, 1, 1.0), &compass), None);
     }
 }

@@ -9,12 +9,12 @@ use std::time::Duration;
 use fcc_conformance::{SensorBench, Ticks, VanishingSource, sensor_conformance};
 use fcc_core::flight::Measurements;
 use fcc_core::framework::{Sensor, Time};
-use fcc_linux::{DeviceError, DeviceSensor, DeviceThread, Inertial, Sample, Source};
+use fcc_linux::{DeviceError, DeviceSensor, DeviceThread, RawValues, Sample, Source};
 use nix::errno::Errno;
 
 /// What the device shows: a sample, or that it is gone.
 enum Shown {
-    Sample(Sample<Inertial>),
+    Sample(Sample<RawValues>),
     Gone,
 }
 
@@ -44,10 +44,10 @@ fn cable() -> (Plug, Socket) {
 }
 
 impl Source for Socket {
-    type Value = Inertial;
+    type Value = RawValues;
 
     /// Says that the sample before was handed over.
-    fn read(&mut self) -> Result<Option<Sample<Inertial>>, DeviceError> {
+    fn read(&mut self) -> Result<Option<Sample<RawValues>>, DeviceError> {
         let _ = self.read.send(());
         match self.shown.recv_timeout(Duration::from_millis(100)) {
             Ok(Shown::Sample(sample)) => Ok(Some(sample)),
@@ -63,7 +63,7 @@ impl Source for Socket {
 
 /// The sensor, and the device's other end, if it is plugged in.
 struct Bench {
-    sensor: DeviceSensor<Inertial>,
+    sensor: DeviceSensor<RawValues>,
     plug: Option<Plug>,
     board: Arc<Mutex<Option<Socket>>>,
     now: Ticks,
@@ -122,9 +122,10 @@ impl SensorBench for Bench {
         for before_ms in [10, 5, 1] {
             let taken = woke - Duration::from_millis(before_ms);
             let Some(plug) = &self.plug else { return };
-            let value = Inertial {
-                samples: 1,
-                ..Inertial::default()
+            let value = RawValues {
+                specific_force_mps2: Some([0.0, 0.0, -9.8]),
+                rates_radps: Some([0.0; 3]),
+                ..RawValues::NONE
             };
             plug.shown
                 .send(Shown::Sample(Sample::new(taken, value)))
