@@ -36,6 +36,11 @@ pub struct DeviceSensor<V> {
 }
 
 impl<V: Measured> DeviceSensor<V> {
+    /// How much was handed over since the last tick, samples and faults.
+    pub fn waiting(&self) -> usize {
+        self.messages.slots()
+    }
+
     /// The next message for this tick, if there is one.
     fn next(&mut self, woke: Time) -> Option<Message<V>> {
         if let Ok(Message::Sample(sample)) = self.messages.peek()
@@ -47,9 +52,9 @@ impl<V: Measured> DeviceSensor<V> {
         self.messages.pop().ok()
     }
 
-    /// Whether a sample is later than those before, and not of the future.
+    /// Whether a sample is not before the last one, and not of the future.
     fn is_in_order(&self, sample: &Sample<V>, woke: Time) -> bool {
-        sample.taken > self.newest && sample.taken <= woke
+        sample.taken >= self.newest && sample.taken <= woke
     }
 }
 

@@ -36,6 +36,7 @@
 //! |---|---|
 //! | `source` | what a device gives: [`Source`], [`Sample`], [`Measured`], [`RawValues`] |
 //! | `device_thread`, `device_sensor` | the thread that opens, reads and reopens a device; the sensor that takes what it read |
+//! | [`iio`] | the kernel's own drivers of chips |
 //! | `error`, `clock` | [`DeviceError`]: what went wrong, where, what to do; the loop's clock |
 #![forbid(unsafe_code)]
 
@@ -43,10 +44,11 @@ mod clock;
 mod device_sensor;
 mod device_thread;
 mod error;
+pub mod iio;
 pub mod serial;
 mod source;
 
-pub use clock::monotonic;
+pub use clock::{Clock, monotonic};
 pub use device_sensor::DeviceSensor;
 pub use device_thread::{DeviceStatus, DeviceThread};
 pub use error::DeviceError;
