@@ -1,0 +1,204 @@
+//! NMEA 0183, as every satellite receiver speaks it: position and altitude
+//! (GGA), speed and course (RMC), accuracies (GST).
+//!
+//! By the descriptions in the *u-blox F9 HPG 1.32 interface description*
+//! (UBX-22008968), 2.7. Of any satellite system: the two letters after `$` are
+//! not looked at.
+
+use core::str;
+
+use fcc_core::flight::Position;
+
+use super::{Begin, Protocol};
+
+/// `$`, two letters of the talker, three of the sentence, a comma.
+const HEADER: usize = 7;
+/// `*` and two digits.
+const CHECKSUM: usize = 3;
+const MPS_PER_KNOT: f64 = 1_852.0 / 3_600.0;
+/// Receivers leave out the course of what hardly moves; faster than this they
+/// have none for another reason, m/s.
+const STANDING_MPS: f64 = 0.5;
+
+/// The protocol, as far as it is used.
+#[derive(Clone, Copy, Debug)]
+pub struct Nmea;
+
+/// A sentence.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Sentence {
+    /// RMC: speed over the ground.
+    Motion {
+        /// UTC time of day of the fix, s.
+        time_s: f64,
+        /// To true north and east, m/s; none without a fix.
+        velocity_mps: Option<[f64; 2]>,
+    },
+    /// GGA: where the antenna is.
+    Place {
+        /// UTC time of day of the fix, s.
+        time_s: f64,
+        /// None without a fix.
+        position: Option<Position>,
+    },
+    /// GST: one standard deviation, m.
+    Accuracy {
+        /// North or east, the larger.
+        horizontal_m: f64,
+        /// Of the altitude.
+        vertical_m: f64,
+    },
+}
+
+impl Protocol for Nmea {
+    type Frame = Sentence;
+
+    /// The standard has 82; some receivers give more digits.
+    const LONGEST: usize = 120;
+
+    fn begin(bytes: &[u8]) -> Begin<Sentence> {
+        if bytes.first() != Some(&b'$') {
+            return Begin::Noise;
+        }
+        let Some((head, rest)) = bytes.split_at_checked(HEADER) else {
+            return Begin::Incomplete;
+        };
+        let Some(parse) = parser(head) else {
+            return Begin::Noise;
+        };
+        let Some(length) = rest.iter().position(|byte| !is_text(*byte)) else {
+            return Begin::Incomplete;
+        };
+        let Some((text, [b'*', digits @ ..])) = rest.split_at_checked(length) else {
+            return Begin::Damaged;
+        };
+        let Some(digits) = digits.get(..CHECKSUM - 1) else {
+            return Begin::Incomplete;
+        };
+        let checked = head.iter().skip(1).chain(text);
+        let sum = checked.fold(0, |sum, byte| sum ^ byte);
+        let fields = str::from_utf8(text).unwrap_or_default();
+        let sentence = parse(&mut fields.split(','));
+        match sentence {
+            Some(sentence) if hex(digits) == Some(sum) => {
+                Begin::Frame(sentence, HEADER + length + CHECKSUM)
+            }
+            _ => Begin::Damaged,
+        }
+    }
+}
+
+type Parser = fn(&mut str::Split<'_, char>) -> Option<Sentence>;
+
+fn parser(head: &[u8]) -> Option<Parser> {
+    match head.get(3..)? {
+        b"RMC," => Some(motion),
+        b"GGA," => Some(place),
+        b"GST," => Some(accuracy),
+        _ => None,
+    }
+}
+
+fn is_text(byte: u8) -> bool {
+    (b' '..=b'~').contains(&byte) && byte != b'*' && byte != b'$'
+}
+
+fn hex(digits: &[u8]) -> Option<u8> {
+    let text = str::from_utf8(digits).ok()?;
+    let is_hex = text.bytes().all(|digit| digit.is_ascii_hexdigit());
+    u8::from_str_radix(text, 16).ok().filter(|_| is_hex)
+}
+
+/// Time, status, latitude, N or S, longitude, E or W, knots, course, date,
+/// variation and its direction, mode.
+fn motion(fields: &mut str::Split<'_, char>) -> Option<Sentence> {
+    let time_s = time(fields.next()?)?;
+    let status = fields.next()?;
+    let [knots, course] = [fields.nth(4)?, fields.next()?];
+    // Before version 2.3 there is none. E estimated, M manual, S simulated, N none.
+    let mode = fields.nth(3).unwrap_or_default();
+    let is_fix = status == "A" && !matches!(mode, "E" | "M" | "S" | "N");
+    let velocity_mps = is_fix.then(|| velocity(knots, course)).flatten();
+    Some(Sentence::Motion {
+        time_s,
+        velocity_mps,
+    })
+}
+
+fn velocity(knots: &str, course: &str) -> Option<[f64; 2]> {
+    let speed = number(knots)? * MPS_PER_KNOT;
+    if course.is_empty() {
+        return (speed < STANDING_MPS).then_some([0.0; 2]);
+    }
+    let (sin, cos) = libm::sincos(number(course)?.to_radians());
+    Some([speed * cos, speed * sin])
+}
+
+/// Time, latitude, N or S, longitude, E or W, quality, satellites, dilution,
+/// altitude above mean sea level, M, and more.
+fn place(fields: &mut str::Split<'_, char>) -> Option<Sentence> {
+    let time_s = time(fields.next()?)?;
+    let [latitude, north, longitude, east] = [
+        fields.next()?,
+        fields.next()?,
+        fields.next()?,
+        fields.next()?,
+    ];
+    // 0 no fix, 6 estimated, 7 manual, 8 simulated.
+    let is_fix = matches!(fields.next()?, "1" | "2" | "3" | "4" | "5");
+    let altitude = fields.nth(2)?;
+    let position = || {
+        Some(Position {
+            latitude_rad: angle(latitude, north, ["N", "S"], 90.0)?,
+            longitude_rad: angle(longitude, east, ["E", "W"], 180.0)?,
+            altitude_m: number(altitude)?,
+        })
+    };
+    Some(Sentence::Place {
+        time_s,
+        position: is_fix.then(position).flatten(),
+    })
+}
+
+/// Time, RMS of the ranges, the ellipse's axes and direction, and the standard
+/// deviations of latitude, longitude and altitude.
+fn accuracy(fields: &mut str::Split<'_, char>) -> Option<Sentence> {
+    let latitude = number(fields.nth(5)?)?;
+    let longitude = number(fields.next()?)?;
+    Some(Sentence::Accuracy {
+        horizontal_m: latitude.max(longitude),
+        vertical_m: number(fields.next()?)?,
+    })
+}
+
+/// hhmmss.ss
+fn time(text: &str) -> Option<f64> {
+    let part = |range: core::ops::Range<usize>| number(text.get(range)?);
+    let seconds = number(text.get(4..)?)?;
+    let time_s = part(0..2)? * 3_600.0 + part(2..4)? * 60.0 + seconds;
+    (0.0..86_401.0).contains(&time_s).then_some(time_s)
+}
+
+/// Degrees and minutes, (d)ddmm.mmmm, as rad.
+fn angle(text: &str, sense: &str, [plus, minus]: [&str; 2], most_deg: f64) -> Option<f64> {
+    let given = number(text)?;
+    let degrees = (given / 100.0).trunc();
+    let minutes = given - degrees * 100.0;
+    let angle_deg = degrees + minutes / 60.0;
+    if !(0.0..60.0).contains(&minutes) || !(0.0..=most_deg).contains(&angle_deg) {
+        return None;
+    }
+    match sense {
+        sense if sense == plus => Some(angle_deg.to_radians()),
+        sense if sense == minus => Some(-angle_deg.to_radians()),
+        _ => None,
+    }
+}
+
+/// Digits, a point, a sign; no exponent, and no name of a number.
+fn number(text: &str) -> Option<f64> {
+    let is_plain = text
+        .bytes()
+        .all(|byte| matches!(byte, b'0'..=b'9' | b'.' | b'-'));
+    text.parse().ok().filter(|_| is_plain)
+}
