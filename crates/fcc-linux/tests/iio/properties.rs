@@ -29,11 +29,9 @@ proptest! {
     ) {
         let number = stored.decode(&bytes).unwrap();
         if bits < 64 {
-            let (least, most) = match signed {
-                true => (-(1_i64 << (bits - 1)), (1_i64 << (bits - 1)) - 1),
-                false => (0, (1_i64 << bits) - 1),
-            };
-            prop_assert!((least..=most).contains(&number), "{text}: {number}");
+            let half = 1_i128 << (bits - 1);
+            let (least, most) = if signed { (-half, half - 1) } else { (0, 2 * half - 1) };
+            prop_assert!((least..=most).contains(&number.into()), "{text}: {number}");
         }
         prop_assert_eq!(stored.decode(&bytes[..stored.bytes() - 1]), None);
     }
