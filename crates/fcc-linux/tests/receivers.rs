@@ -1,6 +1,11 @@
 //! What RC receivers say, as other programs decode it.
 
-use fcc_linux::serial::{Crsf, Frames, Protocol, ReceiverFrame, Sbus, position, pulse_us};
+use fcc_core::flight::PilotControls;
+use fcc_core::framework::Switch;
+use fcc_linux::serial::{
+    Crsf, Frames, Pilot, Protocol, RcChannel, RcChannels, RcValues, ReceiverFrame, Sbus, position,
+    pulse_us,
+};
 
 fn found<P: Protocol>(bytes: &[u8]) -> Vec<P::Frame> {
     let mut found = Vec::new();
@@ -155,4 +160,128 @@ fn the_ends_of_travel_are_full_deflection() {
     assert_eq!((pulse_us(992), position(992)), (1_500.0, 0.0));
     assert!((position(172) + 1.0).abs() < 2e-3 && (position(1811) - 1.0).abs() < 2e-3);
     assert_eq!((position(0), position(2_047)), (-1.0, 1.0));
+}
+
+const STICKS: RcChannels = RcChannels {
+    switch: RcChannel {
+        number: 5,
+        is_reversed: false,
+    },
+    on_above_us: 1_700.0,
+    controls: Some([
+        RcChannel {
+            number: 2,
+            is_reversed: true,
+        },
+        RcChannel {
+            number: 1,
+            is_reversed: false,
+        },
+        RcChannel {
+            number: 4,
+            is_reversed: false,
+        },
+    ]),
+};
+
+/// Roll full right, pitch full to one side, yaw in the middle; the switch.
+fn frame(switch: u16, is_lost: bool, is_failsafe: bool) -> ReceiverFrame {
+    let mut channels = [992; 16];
+    (channels[0], channels[1], channels[4]) = (2_000, 2_000, switch);
+    ReceiverFrame::Channels {
+        channels,
+        is_lost,
+        is_failsafe,
+    }
+}
+
+const ON: u16 = 1_811;
+const OFF: u16 = 172;
+
+#[test]
+fn a_switch_changes_after_three_frames() {
+    let mut pilot = Pilot::new(STICKS);
+    let mut after = |switch| pilot.take(&frame(switch, false, false)).unwrap().switch;
+    assert_eq!(
+        [OFF, OFF, OFF].map(&mut after),
+        [None, None, Some(Switch::Off)]
+    );
+    assert_eq!([ON, OFF, ON, ON].map(&mut after), [Some(Switch::Off); 4]);
+    assert_eq!([ON, OFF, OFF].map(&mut after), [Some(Switch::On); 3]);
+    assert_eq!(after(OFF), Some(Switch::Off));
+    // The middle position of three.
+    assert_eq!([ON, ON, ON, 992, 992, 992].map(after)[5], Some(Switch::Off));
+}
+
+#[test]
+fn sticks_have_the_signs_that_are_set() {
+    let values = Pilot::new(STICKS).take(&frame(OFF, false, false)).unwrap();
+    let expected = PilotControls {
+        pitch: -1.0,
+        roll: 1.0,
+        yaw: 0.0,
+    };
+    assert_eq!(values.controls, Some(expected));
+    let unused = RcChannels {
+        controls: None,
+        ..STICKS
+    };
+    let values = Pilot::new(unused).take(&frame(OFF, false, false)).unwrap();
+    assert_eq!(values.controls, None);
+}
+
+#[test]
+fn a_reversed_switch_is_on_at_the_other_end() {
+    let switch = RcChannel {
+        is_reversed: true,
+        ..STICKS.switch
+    };
+    let mut pilot = Pilot::new(RcChannels { switch, ..STICKS });
+    let mut after = |switch| pilot.take(&frame(switch, false, false)).unwrap().switch;
+    assert_eq!([OFF, OFF, OFF].map(&mut after)[2], Some(Switch::On));
+    assert_eq!([ON, ON, ON].map(after)[2], Some(Switch::Off));
+}
+
+/// At once, and on only after three frames when it is back.
+#[test]
+fn a_lost_transmitter_is_a_switch_that_is_off() {
+    let lost = RcValues {
+        switch: Some(Switch::Off),
+        controls: None,
+    };
+    let link = |quality_percent| ReceiverFrame::Link { quality_percent };
+    for (is_lost, back) in [
+        (frame(ON, false, true), frame(ON, false, false)),
+        (frame(ON, true, true), frame(ON, false, false)),
+        (link(0), link(90)),
+    ] {
+        let mut pilot = Pilot::new(STICKS);
+        for _ in 0..3 {
+            pilot.take(&frame(ON, false, false));
+        }
+        assert_eq!(pilot.take(&is_lost), Some(lost));
+        if matches!(is_lost, ReceiverFrame::Link { .. }) {
+            // The receiver may go on sending what it is set to.
+            assert_eq!(pilot.take(&frame(ON, false, false)), Some(lost));
+        }
+        pilot.take(&back);
+        let after = [(); 4].map(|()| pilot.take(&frame(ON, false, false)).unwrap());
+        assert!(after[0].controls.is_some());
+        assert_eq!(
+            (after[0].switch, after[3].switch),
+            (Some(Switch::Off), Some(Switch::On))
+        );
+    }
+}
+
+#[test]
+fn a_frame_that_repeats_the_last_channels_says_nothing() {
+    let mut pilot = Pilot::new(STICKS);
+    assert_eq!(pilot.take(&frame(ON, true, false)), None);
+    assert_eq!(
+        pilot.take(&ReceiverFrame::Link {
+            quality_percent: 80
+        }),
+        None
+    );
 }

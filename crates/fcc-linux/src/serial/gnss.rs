@@ -1,0 +1,179 @@
+//! A satellite receiver on a serial line.
+
+use core::fmt;
+use core::time::Duration;
+
+use fcc_core::flight::{GnssFix, Measurements};
+use fcc_core::framework::{Reading, Time};
+
+use super::{Epochs, Frames, LineSettings, Nmea, SerialLine, Ubx, UbxMessage, configuration};
+use crate::{DeviceError, Measured, Sample, Source};
+
+/// Sentences are used if there was no message in UBX for so long: in them the
+/// vertical speed is worse, and the accuracies may be missing.
+const UBX_SILENT: Duration = Duration::from_secs(2);
+/// How often the configuration is sent while there is no fix message in UBX: a
+/// receiver that lost its power has lost it.
+const CONFIGURED_EVERY: Duration = Duration::from_secs(5);
+/// With less than one message in so many bytes they are not understood: a receiver
+/// with all of its messages sends 3 kB in a second.
+const NOTHING_UNDERSTOOD: usize = 10_000;
+
+/// A receiver, and how it is used.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct GnssSettings {
+    /// Its line.
+    pub line: LineSettings,
+    /// Whether it is [configured](configuration) as a receiver of u-blox.
+    pub configures: bool,
+}
+
+/// An open receiver: a [`Source`] of fixes, by UBX and by NMEA.
+///
+/// A fix is taken when its last byte was read; a known delay, of the receiver and
+/// of the line, is the calibration's.
+pub struct GnssReceiver {
+    line: SerialLine,
+    configures: bool,
+    clock: Box<dyn Fn() -> Time + Send>,
+    ubx: Frames<Ubx>,
+    nmea: Frames<Nmea>,
+    epochs: Epochs,
+    last_ubx: Time,
+    configured: Time,
+    refused: bool,
+    not_understood: usize,
+}
+
+impl fmt::Debug for GnssReceiver {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("GnssReceiver")
+            .field("line", &self.line)
+            .finish_non_exhaustive()
+    }
+}
+
+/// What a piece of the stream had in it.
+#[derive(Default)]
+struct Found {
+    by_ubx: Option<GnssFix>,
+    by_nmea: Option<GnssFix>,
+    has_ubx: bool,
+    messages: usize,
+    refused: bool,
+}
+
+impl GnssReceiver {
+    /// Opens the line; `clock` is the loop's, [`monotonic`](crate::monotonic).
+    ///
+    /// # Errors
+    /// See [`SerialLine::open`].
+    pub fn open(
+        settings: &GnssSettings,
+        clock: impl Fn() -> Time + Send + 'static,
+    ) -> Result<Self, DeviceError> {
+        Ok(Self {
+            line: SerialLine::open(&settings.line)?,
+            configures: settings.configures,
+            clock: Box::new(clock),
+            ubx: Frames::default(),
+            nmea: Frames::default(),
+            epochs: Epochs::default(),
+            last_ubx: Time::NEVER,
+            configured: Time::NEVER,
+            refused: false,
+            not_understood: 0,
+        })
+    }
+
+    fn configure(&mut self, now: Time) -> Result<(), DeviceError> {
+        let is_needed = now.since(self.last_ubx) > UBX_SILENT;
+        if self.configures && is_needed && now.since(self.configured) >= CONFIGURED_EVERY {
+            for message in configuration() {
+                self.line.write(&message)?;
+            }
+            self.configured = now;
+        }
+        Ok(())
+    }
+
+    fn parse(&mut self, bytes: &[u8]) -> Found {
+        let mut found = Found::default();
+        self.ubx.push(bytes, |message| {
+            found.messages += 1;
+            match message {
+                UbxMessage::NavPvt(pvt) => {
+                    (found.has_ubx, found.by_ubx) = (true, pvt.usable());
+                }
+                UbxMessage::Configured(is_accepted) => found.refused |= !is_accepted,
+            }
+        });
+        let epochs = &mut self.epochs;
+        self.nmea.push(bytes, |sentence| {
+            found.messages += 1;
+            if let Some(fix) = epochs.take(sentence) {
+                found.by_nmea = Some(fix);
+            }
+        });
+        found
+    }
+
+    /// What is to be said of bytes that gave no fix.
+    fn trouble(&mut self, found: &Found, length: usize, damaged: u64) -> Option<&'static str> {
+        if found.refused && !self.refused {
+            self.refused = true;
+            return Some(
+                "the receiver refuses a part of the configuration: u-blox 8 and older know \
+                 another one, and a port may be missing; it is used as it is set",
+            );
+        }
+        self.not_understood = match found.messages {
+            0 => self.not_understood + length,
+            _ => 0,
+        };
+        if self.not_understood > NOTHING_UNDERSTOOD {
+            self.not_understood = 0;
+            return Some(
+                "bytes arrive, but no message that is known: check `baud`, and that the receiver \
+                 sends UBX-NAV-PVT, or GGA and RMC",
+            );
+        }
+        let is_damaged = self.ubx.damaged() + self.nmea.damaged() > damaged;
+        is_damaged.then_some("a message arrived damaged: check the line and its length")
+    }
+}
+
+impl Source for GnssReceiver {
+    type Value = GnssFix;
+
+    fn read(&mut self) -> Result<Option<Sample<GnssFix>>, DeviceError> {
+        self.configure((self.clock)())?;
+        let mut buffer = [0; 512];
+        let length = self.line.read(&mut buffer)?;
+        let now = (self.clock)();
+        let damaged = self.ubx.damaged() + self.nmea.damaged();
+        let found = self.parse(buffer.get(..length).unwrap_or_default());
+        if found.has_ubx {
+            self.last_ubx = now;
+        }
+        let has_only_nmea = now.since(self.last_ubx) > UBX_SILENT;
+        let fix = found.by_ubx.or(found.by_nmea.filter(|_| has_only_nmea));
+        if let Some(fix) = fix {
+            self.not_understood = 0;
+            return Ok(Some(Sample::new(now, fix)));
+        }
+        match self.trouble(&found, length, damaged) {
+            Some(what) => Err(DeviceError::Malformed {
+                device: self.line.path().display().to_string(),
+                what,
+            }),
+            None => Ok(None),
+        }
+    }
+}
+
+impl Measured for GnssFix {
+    fn write(sample: &Sample<Self>, into: &mut Measurements) {
+        into.gnss = Reading::new(sample.value, sample.taken);
+    }
+}

@@ -1,0 +1,117 @@
+//! What is said on a line, in both directions.
+
+use std::fs::File;
+use std::io::{Read, Write};
+use std::os::fd::OwnedFd;
+use std::path::PathBuf;
+
+use fcc_core::framework::Time;
+use fcc_linux::serial::{
+    GnssReceiver, GnssSettings, LineSettings, RcProtocol, SerialLine, configuration,
+};
+use fcc_linux::{DeviceError, Source};
+use nix::pty::openpty;
+use nix::unistd::ttyname;
+
+use super::NAV_PVT;
+
+/// The device's end of a line, and its name; the third keeps it open.
+fn line() -> (File, PathBuf, OwnedFd) {
+    let pair = openpty(None, None).unwrap();
+    let path = ttyname(&pair.slave).unwrap();
+    (pair.master.into(), path, pair.slave)
+}
+
+fn receiver(path: PathBuf, now_s: i64) -> GnssReceiver {
+    let line = LineSettings {
+        path,
+        baud: 38_400,
+        has_even_parity: false,
+    };
+    let settings = GnssSettings {
+        line,
+        configures: true,
+    };
+    GnssReceiver::open(&settings, move || Time::from_nanos(now_s * 1_000_000_000)).unwrap()
+}
+
+/// ACK-NAK of CFG-VALSET, encoded by pyubx2.
+const REFUSED: [u8; 10] = [0xb5, 0x62, 0x05, 0x00, 0x02, 0x00, 0x06, 0x8a, 0x97, 0xbc];
+
+/// Encoded by pynmea2; a second apart.
+const SENTENCES: &str = "\
+    $GNGGA,101111.20,4257.00000,N,08752.80000,W,4,14,0.7,217.86,M,-34.4,M,1.0,0000*5B\r\n\
+    $GNRMC,101111.20,A,4257.00000,N,08752.80000,W,102.754,166.50,221126,,,R*73\r\n\
+    $GNRMC,101112.20,A,4257.00000,N,08752.80000,W,102.754,166.50,221126,,,R*70\r\n\
+    $GNGGA,101112.20,4257.00000,N,08752.80000,W,4,14,0.7,220.4,M,-34.4,M,1.0,0000*66\r\n";
+
+#[test]
+fn a_receiver_is_configured_and_one_that_refuses_is_used_as_it_is() {
+    let (mut device, path, _open) = line();
+    let mut receiver = receiver(path, 100);
+    device.write_all(&REFUSED).unwrap();
+    let Err(DeviceError::Malformed { what, .. }) = receiver.read() else {
+        panic!("the refusal is reported");
+    };
+    assert!(what.starts_with("the receiver refuses a part of the configuration"));
+    let expected = configuration().concat();
+    let mut sent = vec![0; expected.len()];
+    device.read_exact(&mut sent).unwrap();
+    assert_eq!(sent, expected);
+    device.write_all(SENTENCES.as_bytes()).unwrap();
+    let fix = receiver.read().unwrap().unwrap();
+    assert_eq!(fix.value.position.altitude_m, 220.4);
+    assert_eq!(fix.taken, Time::from_nanos(100_000_000_000));
+}
+
+#[test]
+fn sentences_beside_ubx_are_not_used() {
+    let (mut device, path, _open) = line();
+    let mut receiver = receiver(path, 100);
+    device.write_all(&NAV_PVT).unwrap();
+    assert!(receiver.read().unwrap().is_some());
+    device.write_all(SENTENCES.as_bytes()).unwrap();
+    assert_eq!(receiver.read().unwrap(), None);
+}
+
+#[test]
+fn bytes_that_are_not_understood_are_reported() {
+    let (mut device, path, _open) = line();
+    let mut receiver = receiver(path, 100);
+    for piece in 0..60 {
+        device.write_all(&[0xf0; 200]).unwrap();
+        if let Err(error) = receiver.read() {
+            assert!(piece > 40, "10,000 bytes");
+            assert!(error.to_string().contains("check `baud`"), "{error}");
+            return;
+        }
+    }
+    panic!("not reported");
+}
+
+/// SBUS and CRSF have rates that POSIX does not know.
+#[test]
+fn a_line_runs_at_any_rate() {
+    for (protocol, baud) in [(RcProtocol::Sbus, 100_000), (RcProtocol::Crsf, 420_000)] {
+        let (device, path, _open) = line();
+        let _line = SerialLine::open(&protocol.line(path)).unwrap();
+        let modes = rustix::termios::tcgetattr(&device).unwrap();
+        assert_eq!((modes.input_speed(), modes.output_speed()), (baud, baud));
+    }
+}
+
+#[test]
+fn a_line_that_is_missing_or_gone_is_an_error() {
+    let missing = SerialLine::open(&RcProtocol::Crsf.line("/dev/no-such-line")).unwrap_err();
+    assert!(missing.to_string().starts_with(
+        "cannot open /dev/no-such-line: No such file or directory (os error 2); check the path"
+    ));
+    let (device, path, open) = line();
+    let mut line = SerialLine::open(&RcProtocol::Crsf.line(path)).unwrap();
+    assert_eq!(line.read(&mut [0; 10]).unwrap(), 0, "silent");
+    drop((device, open));
+    assert!(matches!(
+        line.read(&mut [0; 10]),
+        Err(DeviceError::Io { .. })
+    ));
+}
