@@ -36,15 +36,18 @@
 //! |---|---|
 //! | `source` | what a device gives: [`Source`], [`Sample`], [`Measured`], [`RawValues`] |
 //! | `device_thread`, `device_sensor` | the thread that opens, reads and reopens a device; the sensor that takes what it read |
+//! | [`chip`] | chips on I²C and SPI |
 //! | [`iio`] | the kernel's own drivers of chips |
-//! | `error`, `clock` | [`DeviceError`]: what went wrong, where, what to do; the loop's clock |
+//! | `error`, `clock`, `pace` | [`DeviceError`]: what went wrong, where, what to do; the loop's clock; when a sample is due |
 #![forbid(unsafe_code)]
 
+pub mod chip;
 mod clock;
 mod device_sensor;
 mod device_thread;
 mod error;
 pub mod iio;
+mod pace;
 pub mod serial;
 mod source;
 
