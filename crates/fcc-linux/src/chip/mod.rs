@@ -10,6 +10,7 @@ pub mod bmp3;
 mod bus;
 pub mod icm42688;
 mod inertial;
+mod kind;
 pub mod mpu6050;
 pub mod ms4525do;
 mod polled;
@@ -17,4 +18,5 @@ pub mod qmc5883l;
 pub mod sdp3x;
 
 pub use bus::{BusError, I2cBus, Registers, SpiBus};
+pub use kind::{ChipConfig, ChipKind, Wiring};
 pub use polled::{Chip, ChipSource, Measurement};
