@@ -1,12 +1,13 @@
 //! `[[sensor]]` and `[[actuator]]`: sensors and actuators in addition to a
 //! simulator's, or instead of them.
 
+use fcc_linux::chip::ChipKind;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 use toml::de::DeTable;
 
 use super::read::{Entry, Reader};
-use super::{Config, XPlaneSection};
+use super::{ChipSection, Config, IioSection, XPlaneSection};
 
 /// One entry of `[[sensor]]`: a kind, and that kind's keys.
 #[derive(Clone, Debug, Serialize)]
@@ -16,6 +17,22 @@ pub enum SensorEntry {
     Simulator(NoKeys),
     /// An X-Plane that is only read, never written to.
     XPlane(Box<XPlaneSection>),
+    /// A driver of the kernel.
+    Iio(Box<IioSection>),
+    /// An ICM-42688-P, an accelerometer and gyroscope.
+    Icm42688(Box<ChipSection>),
+    /// An MPU-6050, 6500, 9250 or 9255, an accelerometer and gyroscope.
+    Mpu6050(Box<ChipSection>),
+    /// A BMP388 or BMP390, a barometer.
+    Bmp388(Box<ChipSection>),
+    /// A BMP180, a barometer.
+    Bmp180(Box<ChipSection>),
+    /// A 4525DO, a pitot tube's sensor.
+    Ms4525do(Box<ChipSection>),
+    /// An SDP31, SDP32 or SDP33, a pitot tube's sensor.
+    Sdp3x(Box<ChipSection>),
+    /// A QMC5883L, a magnetometer.
+    Qmc5883l(Box<ChipSection>),
 }
 
 /// One entry of `[[actuator]]`: a kind, and that kind's keys.
@@ -49,8 +66,8 @@ impl Config {
         let own = self.x_plane.iter().map(|own| ("x-plane".to_owned(), own));
         let listed = self.sensor.iter().enumerate();
         own.chain(listed.filter_map(|(at, entry)| match entry {
-            SensorEntry::Simulator(_) => None,
             SensorEntry::XPlane(section) => Some((format!("sensor[{at}]"), section.as_ref())),
+            _ => None,
         }))
     }
 
@@ -81,11 +98,28 @@ impl SensorEntry {
 }
 
 impl Entry for SensorEntry {
-    const KINDS: &'static [&'static str] = &["simulator", "x-plane"];
+    const KINDS: &'static [&'static str] = &[
+        "simulator",
+        "x-plane",
+        "iio",
+        "icm42688",
+        "mpu6050",
+        "bmp388",
+        "bmp180",
+        "ms4525do",
+        "sdp3x",
+        "qmc5883l",
+    ];
 
     fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, reader: &mut Reader<'t>) -> Option<Self> {
+        let chip = ChipKind::ALL.into_iter().find(|chip| chip.key() == kind);
+        if let Some(chip) = chip {
+            let section = reader.table(keys, 1)?;
+            return Some(Self::of_chip(chip, section));
+        }
         match kind {
             "x-plane" => reader.table(keys, 1).map(Self::XPlane),
+            "iio" => reader.table(keys, 1).map(Self::Iio),
             _ => reader.table(keys, 1).map(Self::Simulator),
         }
     }
@@ -112,6 +146,7 @@ mod tests {
         let kinds = config.sensors().map(|entry| match entry {
             SensorEntry::Simulator(_) => "simulator",
             SensorEntry::XPlane(_) => "x-plane",
+            other => panic!("{other:?}"),
         });
         (kinds.collect(), config.actuators().len())
     }
@@ -156,7 +191,9 @@ mod tests {
         let kind = message(&format!("{two}kind = \"gyroscope\"\n"));
         assert_eq!(
             kind,
-            "test:5: sensor[1].kind: is \"gyroscope\": choose \"simulator\" or \"x-plane\""
+            "test:5: sensor[1].kind: is \"gyroscope\": choose one of \"simulator\", \"x-plane\", \"iio\", \
+             \"icm42688\", \"mpu6050\", \"bmp388\", \"bmp180\", \"ms4525do\", \"sdp3x\", \
+             \"qmc5883l\""
         );
         let missing = message(two);
         assert!(missing.contains("`kind` is missing"), "{missing}");

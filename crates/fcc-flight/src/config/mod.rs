@@ -8,6 +8,7 @@
 mod altimeter;
 mod as_text;
 mod autopilot;
+mod board;
 mod budget;
 mod built_in;
 mod calibration;
@@ -44,6 +45,7 @@ use serde::{Deserialize, Serialize};
 
 pub use altimeter::AltimeterSection;
 pub use autopilot::AutopilotSection;
+pub use board::{BoardSensor, ChipSection, IioSection, OutputChoice};
 pub use budget::{BudgetSection, OverloadSection, WatchdogSection};
 pub use built_in::{BuiltInSection, GustsChoice, RawSensorsChoice};
 pub use calibration::CalibrationSection;
@@ -255,15 +257,25 @@ impl Config {
         let most = self.failsafe.sensor_max_age_ms;
         // After the last there is no other to fall back to.
         for (at, sensor) in sensors.iter().rev().skip(1).rev() {
-            let (key, section) = match sensor {
-                SensorEntry::Simulator(_) => ("x-plane".to_owned(), self.x_plane.as_ref()),
-                SensorEntry::XPlane(section) => (format!("sensor[{at}]"), Some(section.as_ref())),
+            let of_x_plane = |section: &XPlaneSection| section.fallback_after_ms;
+            let (key, fallback_ms) = match sensor {
+                SensorEntry::Simulator(_) => {
+                    ("x-plane".to_owned(), self.x_plane.as_ref().map(of_x_plane))
+                }
+                SensorEntry::XPlane(section) => {
+                    (format!("sensor[{at}]"), Some(of_x_plane(section)))
+                }
+                other => {
+                    let after = other
+                        .board()
+                        .map(|board| board.patience().1.as_millis() as u64);
+                    (format!("sensor[{at}]"), after)
+                }
             };
-            if let Some(section) = section.filter(|section| section.fallback_after_ms >= most) {
+            if let Some(fallback_ms) = fallback_ms.filter(|after_ms| *after_ms >= most) {
                 remarks.push(format!(
-                    "{key}.fallback_after_ms is {}, failsafe.sensor_max_age_ms is {most}: if this \
-                     sensor is lost, failsafe comes before the next sensor is used; choose less",
-                    section.fallback_after_ms
+                    "{key}.fallback_after_ms is {fallback_ms}, failsafe.sensor_max_age_ms is {most}: if this \
+                     sensor is lost, failsafe comes before the next sensor is used; choose less"
                 ));
             }
         }

@@ -8,7 +8,9 @@ use fcc_xplane::{XPlaneConfig, XPlaneConfigError};
 use toml::de::DeValue;
 
 use super::places::Places;
-use super::{Config, Problem, SensorEntry, XPlaneSection, calibration, navigation, relations};
+use super::{
+    Config, Problem, SensorEntry, XPlaneSection, board, calibration, navigation, relations,
+};
 
 /// Key, smallest and largest value.
 const RANGES: &[(&str, f64, f64)] = &[
@@ -158,6 +160,7 @@ fn ranges() -> impl Iterator<Item = &'static (&'static str, f64, f64)> {
         .iter()
         .chain(calibration::RANGES)
         .chain(navigation::RANGES)
+        .chain(board::RANGES)
 }
 
 /// Smallest and largest value of a numeric key.
@@ -273,14 +276,15 @@ fn x_plane(
     Some(problem_at(places, &key, error.to_string()))
 }
 
-/// A key, and of `x-plane` also that of each sensor of that kind; of a list the
+/// A key, and that of each sensor of that kind; of a list the
 /// place of each entry.
 fn places_of(places: &Places<'_>, key: &str) -> Vec<String> {
     let (kind, name) = key.split_once('.').unwrap_or((key, ""));
     let entries = places.value("sensor").and_then(DeValue::as_array);
     let of_kind = (0..entries.map_or(0, |entries| entries.len())).filter(|at| {
         let given = places.value(&format!("sensor[{at}].kind"));
-        given.and_then(DeValue::as_str) == Some(kind)
+        let given = given.and_then(DeValue::as_str);
+        given.is_some_and(|given| board::is_of_kind(kind, name, given))
     });
     let keys = of_kind.map(|at| format!("sensor[{at}].{name}"));
     let keys = std::iter::once(key.to_owned()).chain(keys);

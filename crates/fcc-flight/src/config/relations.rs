@@ -3,7 +3,7 @@
 use fcc_core::flight::control::Envelope;
 
 use super::autopilot::EnvelopeSection;
-use super::{AutopilotSection, Config, NavigationMethod, SensorEntry, raw_readings};
+use super::{AutopilotSection, Config, NavigationMethod, SensorEntry, board, raw_readings};
 
 /// Of `SCHED_FIFO` (sched(7)).
 const HIGHEST_PRIORITY: u8 = 99;
@@ -61,6 +61,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     rights(config, report);
     lists(config, report);
     raw_readings::check(config, report);
+    board::check(config, report);
 }
 
 /// No file of Unix has a NUL in its name.

@@ -1,6 +1,6 @@
 //! Assembles sensors, autopilot and actuators from a configuration.
 
-use std::io::ErrorKind;
+use std::io::{self, ErrorKind};
 use std::sync::Arc;
 
 #[cfg(feature = "live")]
@@ -13,6 +13,7 @@ use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation, TruthHandle};
 use fcc_xplane::{OpenError, XPlane, XPlaneAuthority, XPlaneConfig, XPlaneStatus};
 
+use super::board::{DeviceReporter, WatchedDevice, board_sensor};
 use super::calibrated::Calibrated;
 use super::control_override::ControlOverride;
 use super::event_log::EventLog;
@@ -54,6 +55,8 @@ pub struct Assembly {
     pub(super) truth: Option<TruthReceiver>,
     /// The present truth of a simulated aircraft.
     pub true_now: Option<TruthHandle>,
+    /// The state of the board's devices.
+    pub(super) devices: Vec<WatchedDevice>,
     /// Who has control of it; none for an aircraft that ends with the program.
     pub(super) authority: Option<Arc<dyn ControlAuthority>>,
     /// Starts the process that publishes live telemetry; without it, a thread of
@@ -72,6 +75,16 @@ pub enum AssemblyError {
     /// The connection to X-Plane could not be opened.
     #[error("X-Plane: {0}")]
     XPlane(#[from] OpenError),
+    /// The thread that reads a device could not be started.
+    #[error(
+        "cannot start the thread that reads {name}: {source}; free memory, or raise the limit of threads"
+    )]
+    Device {
+        /// The device.
+        name: &'static str,
+        /// The operating system's error.
+        source: io::Error,
+    },
 }
 
 impl AssemblyError {
@@ -107,7 +120,8 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
         Some(Aircraft::XPlane(section)) => x_plane(section, config)?,
         None => Plant::default(),
     };
-    let mut sensors = Vec::new();
+    let mut sensors: Vec<Box<dyn Sensor<Measurements>>> = Vec::new();
+    let mut devices = Vec::new();
     for entry in config.sensors() {
         match entry {
             SensorEntry::Simulator(_) => sensors.append(&mut plant.sensors),
@@ -117,6 +131,13 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
                     Some(flown) => sensor.beside(flown),
                     None => sensor,
                 }));
+            }
+            board => {
+                if let Some(board) = board.board() {
+                    let (sensor, status) = board_sensor(&board)?;
+                    sensors.push(sensor);
+                    devices.push(status);
+                }
             }
         }
     }
@@ -139,6 +160,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
             .then(|| RestartRequest::of(config)),
         truth: plant.truth,
         true_now: plant.true_now,
+        devices,
         authority: plant.authority,
         #[cfg(feature = "live")]
         publisher: None,
@@ -233,6 +255,10 @@ impl Assembly {
                 observers.push(Box::new(socket));
             }
         }
+        if !self.devices.is_empty() {
+            let devices = std::mem::take(&mut self.devices);
+            observers.push(Box::new(DeviceReporter::new(devices)));
+        }
         // The last, so that it receives what the others report at their end.
         observers.push(Box::new(EventLog::default()));
         observers
@@ -257,8 +283,6 @@ fn limits(autopilot: &AutopilotConfig) -> PlantLimits {
 
 #[cfg(test)]
 mod tests {
-    use std::io;
-
     use super::*;
 
     #[test]

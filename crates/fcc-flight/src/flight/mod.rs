@@ -6,6 +6,7 @@
 
 mod again;
 mod assemble;
+mod board;
 mod calibrated;
 #[cfg(any(test, feature = "conformance"))]
 pub mod conformance;

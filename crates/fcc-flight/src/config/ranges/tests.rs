@@ -1,3 +1,5 @@
+use fcc_linux::chip::ChipKind;
+
 use super::*;
 use crate::config::{BudgetSection, BuiltInSection, CpuChoice};
 
@@ -34,6 +36,37 @@ fn every_number_has_a_range() {
     let mut missing = Vec::new();
     walk("", &values, &mut missing);
     assert!(missing.is_empty(), "without a range: {missing:?}");
+}
+
+/// The same for the sensors of a board.
+#[test]
+fn every_number_of_a_sensor_has_a_range() {
+    for kind in ["iio"].into_iter().chain(ChipKind::ALL.map(ChipKind::key)) {
+        let of_pitot = match kind {
+            "ms4525do" => "range_psi = 1\n",
+            "iio" => "device = \"mpu6050\"\n",
+            _ => "",
+        };
+        let text = format!(
+            "actuator = []\n[[sensor]]\nkind = \"{kind}\"\n{of_pitot}rate_hz = 20\n\
+             [sensor.calibration.gnss]\ndelay_ms = 1\n"
+        );
+        let config = Config::parse(&text, "test").unwrap();
+        let mut missing = Vec::new();
+        walk(
+            "",
+            &toml::Value::try_from(&config.sensor[0]).unwrap(),
+            &mut missing,
+        );
+        missing.retain(|key| {
+            let is_it = |(range, ..): &&(&str, f64, f64)| {
+                let (of, name) = range.split_once('.').unwrap_or_default();
+                name == key && board::is_of_kind(of, name, kind)
+            };
+            !ranges().any(|range| is_it(&range)) && key != "address"
+        });
+        assert!(missing.is_empty(), "{kind} without a range: {missing:?}");
+    }
 }
 
 fn walk(prefix: &str, value: &toml::Value, missing: &mut Vec<String>) {

@@ -1,0 +1,87 @@
+//! The sensors of a board: their threads, and what is wrong with them.
+
+use fcc_core::flight::Measurements;
+use fcc_core::framework::{Controller, Sensor};
+use fcc_linux::iio::Iio;
+use fcc_linux::{DeviceSensor, DeviceStatus, DeviceThread, RawValues};
+
+use super::assemble::AssemblyError;
+use super::calibrated::Calibrated;
+use super::observer::{Access, Observer};
+use crate::config::BoardSensor;
+
+/// The name of a sensor of the kernel: which device it is, is in the
+/// configuration.
+const IIO: &str = "IIO";
+
+/// A device, and its state for programs.
+pub(super) struct WatchedDevice {
+    name: &'static str,
+    status: DeviceStatus,
+    /// What was reported last.
+    reported: Option<String>,
+}
+
+/// Starts the thread that reads a device. One that is not connected is no error:
+/// it may be, later.
+pub(super) fn board_sensor(
+    board: &BoardSensor<'_>,
+) -> Result<(Box<dyn Sensor<Measurements>>, WatchedDevice), AssemblyError> {
+    let name = match board {
+        BoardSensor::Chip(kind, _) => kind.name(),
+        BoardSensor::Iio(_) => IIO,
+    };
+    let (silent_after, fallback_after) = board.patience();
+    let thread = DeviceThread::new(name)
+        .silent_after(silent_after)
+        .fallback_after(fallback_after);
+    let status = thread.status();
+    let started = match board {
+        BoardSensor::Chip(kind, section) => {
+            let config = section.to_linux(*kind);
+            thread.start(move || config.open())
+        }
+        BoardSensor::Iio(section) => {
+            let config = section.to_linux();
+            thread.start(move || Iio::open(&config))
+        }
+    };
+    let sensor: DeviceSensor<RawValues> =
+        started.map_err(|source| AssemblyError::Device { name, source })?;
+    let watched = WatchedDevice {
+        name,
+        status,
+        reported: None,
+    };
+    let sensor: Box<dyn Sensor<Measurements>> = match board.calibration().to_core() {
+        Some(calibration) => Box::new(Calibrated::new(sensor, &calibration)),
+        None => Box::new(sensor),
+    };
+    Ok((sensor, watched))
+}
+
+/// Reports what is wrong with a device, and when it is read again: the loop's
+/// events say that it is silent, and not why.
+pub(super) struct DeviceReporter(Vec<WatchedDevice>);
+
+impl DeviceReporter {
+    pub(super) const fn new(devices: Vec<WatchedDevice>) -> Self {
+        Self(devices)
+    }
+}
+
+impl<C: Controller> Observer<C> for DeviceReporter {
+    fn poll(&mut self, access: &mut Access<'_, C::Command>) {
+        for device in &mut self.0 {
+            let trouble = device.status.trouble();
+            if trouble == device.reported {
+                continue;
+            }
+            access.reports.remark(match &trouble {
+                Some(trouble) => format!("{}: {trouble}", device.name),
+                None => format!("{} is read", device.name),
+            });
+            device.reported = trouble;
+        }
+    }
+}
