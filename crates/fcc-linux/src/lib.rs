@@ -37,6 +37,7 @@
 //! | `source` | what a device gives: [`Source`], [`Sample`], [`Measured`], [`RawValues`] |
 //! | `device_thread`, `device_sensor` | the thread that opens, reads and reopens a device; the sensor that takes what it read |
 //! | [`chip`] | chips on I²C and SPI |
+//! | [`probe`] | what is connected |
 //! | [`iio`] | the kernel's own drivers of chips |
 //! | `error`, `clock`, `pace` | [`DeviceError`]: what went wrong, where, what to do; the loop's clock; when a sample is due |
 #![forbid(unsafe_code)]
@@ -48,7 +49,9 @@ mod device_thread;
 mod error;
 pub mod iio;
 mod pace;
+pub mod probe;
 pub mod serial;
+pub mod servo;
 mod source;
 
 pub use clock::{Clock, monotonic};

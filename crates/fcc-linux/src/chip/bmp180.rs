@@ -34,6 +34,9 @@ const PRESSURES_PER_TEMPERATURE: u32 = 25;
 /// Table 1, and a margin for its error.
 const RANGE_PA: core::ops::RangeInclusive<i32> = 29_000..=111_000;
 
+/// The register by which it is recognized, and what that has.
+pub const IDENTIFICATION: (u8, &[u8]) = (ID, &[ID_VALUE]);
+
 /// Measurements in a second: a conversion of each takes 30 ms.
 pub const RATE_HZ: f64 = 30.0;
 
@@ -129,7 +132,7 @@ impl<R: Registers, D: DelayNs> Bmp180<R, D> {
     /// # Errors
     /// When it does not answer, or is another one.
     pub fn new(mut registers: R, delay: D) -> Result<Self, DeviceError> {
-        registers.identify("BMP180", ID, &[ID_VALUE])?;
+        registers.identify("BMP180", IDENTIFICATION)?;
         let mut bytes = [0; CALIBRATION_BYTES];
         registers.read(CALIBRATION, &mut bytes)?;
         let calibration = Bmp180Calibration::of(&bytes);

@@ -44,6 +44,9 @@ const RESET_US: u32 = 2_000;
 /// temperature 163 µs and 2,020 µs (section 3.9.2).
 const MEASUREMENT: Duration = Duration::from_micros(18_969);
 
+/// The register by which it is recognized, and what that has.
+pub const IDENTIFICATION: (u8, &[u8]) = (CHIP_ID, &[BMP388, BMP390]);
+
 /// Measurements in a second.
 pub const RATE_HZ: f64 = 50.0;
 
@@ -140,7 +143,7 @@ impl<R: Registers> Bmp3<R> {
     /// # Errors
     /// When it does not answer, is another one, or does not keep its settings.
     pub fn new(mut registers: R, delay: &mut impl DelayNs) -> Result<Self, DeviceError> {
-        registers.identify("BMP388 or BMP390", CHIP_ID, &[BMP388, BMP390])?;
+        registers.identify("BMP388 or BMP390", IDENTIFICATION)?;
         registers.write(COMMAND, SOFT_RESET)?;
         delay.delay_us(RESET_US);
         let mut bytes = [0; CALIBRATION_BYTES];

@@ -77,7 +77,7 @@ pub trait Registers {
     ///
     /// # Errors
     /// When it does not answer, or is another one.
-    fn identify(&mut self, chip: &str, register: u8, known: &[u8]) -> Result<u8, DeviceError> {
+    fn identify(&mut self, chip: &str, (register, known): (u8, &[u8])) -> Result<u8, DeviceError> {
         let found = self.value(register)?;
         if known.contains(&found) {
             return Ok(found);

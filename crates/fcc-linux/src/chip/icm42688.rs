@@ -45,6 +45,9 @@ const FIFO_CONFIG1: u8 = 0x5F;
 /// Packets with acceleration, turn rates and temperature: structure 3.
 const FIFO_ALL: u8 = 0x07;
 
+/// The register by which it is recognized, and what that has.
+pub const IDENTIFICATION: (u8, &[u8]) = (WHO_AM_I, &[WHO_AM_I_VALUE]);
+
 const PERIOD: Duration = Duration::from_millis(1);
 /// How often it is asked, unless configured otherwise.
 pub const RATE_HZ: f64 = 200.0;
@@ -134,7 +137,7 @@ impl<R: Registers> Icm42688<R> {
     /// When it does not answer, is another one, or does not keep its settings.
     pub fn new(mut registers: R, delay: &mut impl DelayNs) -> Result<Self, DeviceError> {
         registers.write(BANK, 0)?;
-        registers.identify("ICM-42688-P", WHO_AM_I, &[WHO_AM_I_VALUE])?;
+        registers.identify("ICM-42688-P", IDENTIFICATION)?;
         registers.write(DEVICE_CONFIG, RESET)?;
         delay.delay_us(RESET_US);
         registers.configure(&[

@@ -100,6 +100,19 @@ impl ChipKind {
         }
     }
 
+    /// The register by which it is recognized, and what that has; none if there
+    /// is none.
+    pub const fn identification(self) -> Option<(u8, &'static [u8])> {
+        match self {
+            Self::Icm42688 => Some(icm42688::IDENTIFICATION),
+            Self::Mpu6050 => Some(mpu6050::IDENTIFICATION),
+            Self::Bmp388 => Some(bmp3::IDENTIFICATION),
+            Self::Bmp180 => Some(bmp180::IDENTIFICATION),
+            Self::Qmc5883l => Some(qmc5883l::IDENTIFICATION),
+            Self::Ms4525do | Self::Sdp3x => None,
+        }
+    }
+
     /// How often it is asked, unless configured otherwise.
     pub const fn rate_hz(self) -> f64 {
         match self {

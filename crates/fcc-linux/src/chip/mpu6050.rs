@@ -48,6 +48,9 @@ const LSB_PER_DEGPS: f64 = 32.8;
 /// With the filter it measures 1,000 times a second, and gives every so many.
 const INTERNAL_HZ: f64 = 1_000.0;
 
+/// The register by which it is recognized, and what that has.
+pub const IDENTIFICATION: (u8, &[u8]) = (WHO_AM_I, &[MPU_6050, MPU_6500, MPU_9250, MPU_9255]);
+
 /// Samples in a second, unless configured otherwise.
 pub const RATE_HZ: f64 = 200.0;
 
@@ -69,8 +72,7 @@ impl<R: Registers> Mpu6050<R> {
         rate_hz: f64,
         delay: &mut impl DelayNs,
     ) -> Result<Self, DeviceError> {
-        let known = [MPU_6050, MPU_6500, MPU_9250, MPU_9255];
-        let found = registers.identify("MPU-6050, 6500, 9250 or 9255", WHO_AM_I, &known)?;
+        let found = registers.identify("MPU-6050, 6500, 9250 or 9255", IDENTIFICATION)?;
         registers.write(POWER, RESET)?;
         delay.delay_ms(RESET_MS);
         let divider = libm::round(INTERNAL_HZ / rate_hz).clamp(1.0, 256.0);

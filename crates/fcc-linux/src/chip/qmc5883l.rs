@@ -29,6 +29,9 @@ const PERIOD_VALUE: u8 = 0x01;
 const CHIP_ID: u8 = 0x0D;
 const CHIP_ID_VALUE: u8 = 0xFF;
 
+/// The register by which it is recognized, and what that has.
+pub const IDENTIFICATION: (u8, &[u8]) = (CHIP_ID, &[CHIP_ID_VALUE]);
+
 /// At ±8 G (section 2).
 const LSB_PER_GAUSS: f64 = 3_000.0;
 const UT_PER_GAUSS: f64 = 100.0;
@@ -45,7 +48,7 @@ impl<R: Registers> Qmc5883l<R> {
     /// # Errors
     /// When it does not answer, is another one, or does not keep its settings.
     pub fn new(mut registers: R, delay: &mut impl DelayNs) -> Result<Self, DeviceError> {
-        registers.identify("QMC5883L", CHIP_ID, &[CHIP_ID_VALUE])?;
+        registers.identify("QMC5883L", IDENTIFICATION)?;
         registers.write(CONTROL_2, SOFT_RESET)?;
         delay.delay_us(RESET_US);
         registers.write(PERIOD, PERIOD_VALUE)?;

@@ -5,6 +5,8 @@
 //! absolute pressure of 966 hPa, and is to be multiplied by 966 hPa over the
 //! present pressure: set `scale` in the calibration.
 
+use std::io;
+
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
 
@@ -62,6 +64,26 @@ pub fn pressure_pa(read: &[u8; 9]) -> Option<f64> {
     let is_valid = words.iter().all(|(word, expected)| crc(word) == *expected);
     let scale = i16::from_be_bytes([s1, s0]);
     (is_valid && scale > 0).then(|| f64::from(i16::from_be_bytes([p1, p0])) / f64::from(scale))
+}
+
+/// Reads the product's number (section 5).
+const READ_NUMBER: [[u8; 2]; 2] = [[0x36, 0x7C], [0xE1, 0x02]];
+/// The family in it: 0x0301 of the whole family (section 5).
+const FAMILY: [u8; 2] = [0x03, 0x01];
+
+/// Whether one is at an address, and does not measure: that one is recognized by
+/// the checksums of its values.
+///
+/// # Errors
+/// When nothing answers there.
+pub fn is_identified<B: I2c<Error: BusError>>(bus: &mut B, address: u8) -> io::Result<bool> {
+    let [first, second] = READ_NUMBER;
+    let mut number = [0; 18];
+    bus.write(address, &first).map_err(BusError::into_io)?;
+    bus.write(address, &second).map_err(BusError::into_io)?;
+    bus.read(address, &mut number).map_err(BusError::into_io)?;
+    let [high, low, checksum, ..] = number;
+    Ok([high, low] == FAMILY && crc(&FAMILY) == checksum)
 }
 
 /// A sensor that measures.

@@ -98,7 +98,8 @@ impl Roots {
         Ok(found)
     }
 
-    fn folder(&self, node: &str) -> Folder {
+    /// A device's folder.
+    pub(crate) fn folder(&self, node: &str) -> Folder {
         Folder::new(self.sysfs.join(node))
     }
 }

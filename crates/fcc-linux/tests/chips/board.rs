@@ -34,7 +34,7 @@ pub(crate) struct State {
 pub(crate) struct Board(Arc<Mutex<State>>);
 
 #[derive(Debug)]
-pub(crate) struct Fault(Errno);
+pub(crate) struct Fault(pub(crate) Errno);
 
 impl i2c::Error for Fault {
     fn kind(&self) -> i2c::ErrorKind {

@@ -10,6 +10,7 @@ mod board;
 mod conformance;
 mod inertial;
 mod pressure;
+mod probe;
 
 use fcc_linux::chip::qmc5883l::Qmc5883l;
 use fcc_linux::chip::{Chip, Measurement};

@@ -6,7 +6,8 @@ mod properties;
 mod tree;
 
 use fcc_core::framework::Time;
-use fcc_linux::iio::{Iio, IioConfig};
+use fcc_linux::iio::{Iio, IioConfig, Quantity};
+use fcc_linux::probe::{self, Found};
 use fcc_linux::{DeviceError, RawValues, Sample, Source, monotonic};
 
 use tree::Tree;
@@ -139,6 +140,33 @@ fn a_device_that_is_gone_is_an_error() {
     assert!(
         error.to_string().contains("nothing answers there"),
         "{error}"
+    );
+}
+
+/// Of two devices with one name each is given by its number.
+#[test]
+fn what_the_kernel_has_is_found() {
+    let mut tree = Tree::new();
+    tree.mpu6050();
+    tree.put("iio:device1/name", "bmp388");
+    tree.put("iio:device1/in_pressure_input", "101.3");
+    tree.put("iio:device1/in_temp_input", "21000");
+    tree.put("iio:device2/name", "an ADC");
+    tree.put("iio:device10/name", "bmp388");
+    tree.put("iio:device10/in_pressure_input", "101.3");
+    let found = probe::devices(&tree.config("", true).roots);
+    let entries: Vec<_> = found.iter().filter_map(Found::entry).collect();
+    let of = |device: &str| format!("[[sensor]]\nkind = \"iio\"\ndevice = \"{device}\"\n");
+    assert_eq!(
+        entries,
+        [of("mpu6050"), of("iio:device1"), of("iio:device10")]
+    );
+    let Found::Iio { quantities, .. } = &found[0] else {
+        panic!("{found:?}");
+    };
+    assert_eq!(
+        quantities,
+        &[Quantity::Acceleration, Quantity::AngularVelocity]
     );
 }
 
