@@ -5,8 +5,10 @@
 //! |---|---|
 //! | [`config`] | reads and checks the configuration file |
 //! | [`flight`] | assembles a flight from a configuration, flies and observes it |
+//! | [`probe`] | what is connected to the machine |
 //! | [`replay`] | prepares the replay of a recorded flight |
 
 pub mod config;
 pub mod flight;
+pub mod probe;
 pub mod replay;

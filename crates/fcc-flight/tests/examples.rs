@@ -2,9 +2,14 @@
 //! taken away, they are the defaults.
 #![cfg(test)]
 
-use fcc_flight::config::{BudgetSection, BuiltInSection, Config, CpuChoice, XPlaneSection};
+use fcc_flight::config::{
+    BoardSensor, BudgetSection, BuiltInSection, ChipSection, Config, CpuChoice, IioSection,
+    XPlaneSection,
+};
+use fcc_linux::chip::ChipKind;
 
 const BUILT_IN: &str = include_str!("../../../config/built-in.toml");
+const BOARD: &str = include_str!("../../../config/board.toml");
 const X_PLANE: &str = include_str!("../../../config/x-plane.toml");
 
 /// `#key = value` becomes `key = value`; what begins with `# ` is prose.
@@ -82,5 +87,37 @@ fn leaves(value: &toml::Value) -> usize {
     match value {
         toml::Value::Table(table) => table.values().map(leaves).sum(),
         _ => 1,
+    }
+}
+
+/// Every key of a board's sensors is explained, with its default.
+#[test]
+fn the_example_of_a_board_is_a_configuration() {
+    let config = Config::parse(BOARD, "board.toml").unwrap();
+    let kinds: Vec<_> = config.sensor.iter().filter_map(|one| one.board()).collect();
+    let [
+        BoardSensor::Chip(kind, imu),
+        _,
+        BoardSensor::Chip(pitot, section),
+        _,
+    ] = kinds[..]
+    else {
+        panic!("{kinds:?}");
+    };
+    let usual = ChipSection::default();
+    assert_eq!((kind, kind.rate_hz()), (ChipKind::Icm42688, 200.0));
+    assert_eq!(imu.silent_after_ms, usual.silent_after_ms);
+    let i2c = usual.to_linux(kind).wiring.to_string();
+    assert_eq!(i2c, "/dev/i2c-1, address 0x68");
+    assert_eq!(section.to_linux(pitot).range_psi, 1.0);
+    let written = [
+        format!("#rate_hz = {:.1} ", kind.rate_hz()),
+        format!("#silent_after_ms = {}\n", usual.silent_after_ms),
+        format!("#fallback_after_ms = {}\n", usual.fallback_after_ms),
+        "#i2c = \"/dev/i2c-1\"\n#address = 0x68\n".to_owned(),
+        format!("#   rate_hz = {:.1}\n", IioSection::default().rate_hz),
+    ];
+    for line in written {
+        assert!(BOARD.contains(&line), "{line}");
     }
 }

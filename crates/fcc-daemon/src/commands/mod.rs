@@ -9,6 +9,7 @@ mod failure;
 mod fly;
 mod list;
 mod outcome;
+mod probe;
 mod progress;
 #[cfg(feature = "live")]
 mod publisher;
@@ -85,6 +86,7 @@ fn carry_out(command: Action) -> Result<Exit, Failure> {
         Action::Top(args) => top::top(&args)?,
         Action::Check(args) => check::check(&args),
         Action::Doctor(args) => doctor::doctor(&args)?,
+        Action::Probe(args) => probe::probe(&args),
         Action::XPlane(args) => x_plane::x_plane(&args)?,
         Action::Report(args) => report::report(&args)?,
         #[cfg(feature = "live")]

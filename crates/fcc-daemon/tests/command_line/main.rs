@@ -5,6 +5,7 @@
 mod damaged;
 mod named_files;
 mod output;
+mod probe;
 mod recordings;
 mod remarks;
 mod setpoints;

@@ -80,8 +80,8 @@ impl Bmp180Calibration {
     }
 
     /// Temperature in tenths of a degree Celsius and pressure in Pa, by the
-    /// integer arithmetic of the data sheet (figure 4); `None` where it would
-    /// divide by zero.
+    /// integer arithmetic of the data sheet (figure 4); `None` where that has no
+    /// result.
     pub fn compensated(
         &self,
         raw_temperature: i32,
@@ -103,7 +103,8 @@ impl Bmp180Calibration {
         let x3 = (x1 + x2 + 2) >> 2;
         let b4 = (i64::from(self.ac4) * (x3 + 32_768)) >> 15;
         let b7 = (i64::from(raw_pressure) - b3) * (50_000 >> oss);
-        let p = (b7 * 2).checked_div(b4)?;
+        // No pressure is as high: of a calibration that is none.
+        let p = (b7 * 2).checked_div(b4).filter(|p| p.abs() < 1 << 24)?;
         let x1 = (p >> 8) * (p >> 8);
         let x1 = (x1 * 3_038) >> 16;
         let x2 = (-7_357 * p) >> 16;

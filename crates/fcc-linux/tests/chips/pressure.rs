@@ -2,9 +2,11 @@
 
 use fcc_linux::chip::Chip;
 use fcc_linux::chip::bmp3::Bmp3;
-use fcc_linux::chip::bmp180::Bmp180;
+use fcc_linux::chip::bmp180::{Bmp180, Bmp180Calibration};
 use fcc_linux::chip::ms4525do::{Ms4525do, OutputType};
 use fcc_linux::chip::sdp3x::{Sdp3x, crc};
+
+use proptest::prelude::*;
 
 use crate::board::{Board, NoDelay};
 use crate::measured;
@@ -114,4 +116,21 @@ fn an_sdp31_checks_what_it_sends() {
         Sdp3x::new(board.i2c(), &mut NoDelay).is_err(),
         "another chip"
     );
+}
+
+proptest! {
+    /// Also of a memory that was not read rightly, in debug builds, where an
+    /// overflow is a panic.
+    #[test]
+    fn any_calibration_of_a_bmp180_gives_a_pressure_or_none(
+        words in prop::array::uniform11(any::<u16>()),
+        temperature in 0..1_i32 << 16,
+        pressure in 0..1_i32 << 24,
+        oss in 0..4_u8,
+    ) {
+        let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_be_bytes()).collect();
+        if let Some(calibration) = bytes.first_chunk().and_then(Bmp180Calibration::of) {
+            let _ = calibration.compensated(temperature, pressure, oss);
+        }
+    }
 }

@@ -1,0 +1,68 @@
+//! `fccd probe`, on a root folder with the kernel's files.
+
+use std::fs;
+
+use tempfile::TempDir;
+
+use super::fccd;
+
+fn root() -> TempDir {
+    let root = TempDir::new().unwrap();
+    for (file, text) in [
+        ("name", "bmp388\n"),
+        ("in_pressure_input", "101.325\n"),
+        ("in_temp_input", "21000\n"),
+    ] {
+        let path = root
+            .path()
+            .join("sys/bus/iio/devices/iio:device0")
+            .join(file);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+    root
+}
+
+#[test]
+fn what_is_connected_is_listed_with_its_configuration() {
+    let root = root();
+    let words = ["probe", "--root", root.path().to_str().unwrap()];
+    let listed = fccd(root.path(), &words).output().unwrap();
+    assert!(listed.status.success(), "{listed:?}");
+    let text = String::from_utf8(listed.stdout).unwrap();
+    let expected = "iio:device0  bmp388  pressure\n\n\
+                    in a configuration, the most preferred first:\n\n\
+                    [[sensor]]\nkind = \"iio\"\ndevice = \"bmp388\"\n";
+    assert_eq!(text, expected);
+
+    // What it prints is a configuration.
+    let (_, entries) = text.split_once("first:\n").unwrap();
+    fs::write(
+        root.path().join("board.toml"),
+        format!("actuator = []\n{entries}"),
+    )
+    .unwrap();
+    let checked = fccd(root.path(), &["check", "board.toml"])
+        .output()
+        .unwrap();
+    assert!(checked.status.success(), "{checked:?}");
+
+    let json = fccd(root.path(), &[&words[..], &["--json"]].concat())
+        .output()
+        .unwrap();
+    let found: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    assert_eq!(found[0]["at"], "iio:device0");
+    assert_eq!(found[0]["remark"], "pressure");
+}
+
+#[test]
+fn a_machine_without_sensors_is_told_what_to_do() {
+    let root = TempDir::new().unwrap();
+    let words = ["probe", "--root", root.path().to_str().unwrap()];
+    let listed = fccd(root.path(), &words).output().unwrap();
+    let text = String::from_utf8(listed.stdout).unwrap();
+    assert!(
+        text.starts_with("nothing is connected that is known"),
+        "{text}"
+    );
+}
