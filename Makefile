@@ -140,12 +140,17 @@ soundness: ## Run Miri and ThreadSanitizer over timers, loop, records and live t
 
 # The boards: a Raspberry Pi with 64 bits, and a BeagleBone or a Pi with 32.
 BOARDS := aarch64-unknown-linux-gnu armv7-unknown-linux-gnueabihf
+# Of servo boards: a Cortex-M0, and a Cortex-M4.
+MICROCONTROLLERS := thumbv6m-none-eabi thumbv7em-none-eabi
 
 # The whole workspace, as in the other checks: with another choice of packages some
 # crates of build scripts have other features, and are compiled once more.
 check-cross: $(STAMPS)/cross ## Check that everything compiles for the boards
 	for board in $(BOARDS); do \
 	    ./scripts/cross $$board check --locked --workspace --all-features || exit 1; \
+	done
+	for board in $(MICROCONTROLLERS); do \
+	    cargo build --locked -p servo-board-firmware --target $$board || exit 1; \
 	done
 
 test-cross: $(STAMPS)/cross $(STAMPS)/qemu build ## Build for the boards, and run the tests in emulation
@@ -225,7 +230,7 @@ doc: $(STAMPS)/rust ## Build the API documentation
 	cargo doc --locked --workspace --no-deps --all-features
 
 # Crates that are not published: the Python module is published as a wheel.
-PRIVATE := fcc-py pendulum thermostat bench-tick
+PRIVATE := fcc-py pendulum servo-board-firmware thermostat bench-tick
 # Where they are built from their packages. cargo takes a package of the same
 # version for the same, so what an earlier run unpacked and built is removed.
 PACKAGED := $(TARGET)/packaged
@@ -296,7 +301,7 @@ $(STAMPS)/cross: $(STAMPS)/rust
 	@command -v aarch64-linux-gnu-gcc >/dev/null && command -v arm-linux-gnueabihf-gcc >/dev/null || \
 	    ./scripts/apt-install gcc-aarch64-linux-gnu libc6-dev-arm64-cross \
 	        gcc-arm-linux-gnueabihf libc6-dev-armhf-cross
-	rustup target add $(BOARDS)
+	rustup target add $(BOARDS) $(MICROCONTROLLERS)
 	@mkdir -p $(STAMPS) && touch $@
 
 $(STAMPS)/qemu:
