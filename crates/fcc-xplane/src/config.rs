@@ -23,6 +23,8 @@ use crate::protocol::{PathError, beacon, check_path, rref};
 pub struct XPlaneConfig {
     /// Where X-Plane is. Default: 127.0.0.1:49000.
     pub simulator: Simulator,
+    /// What is there. Default: a simulator.
+    pub plant: PlantKind,
     /// The UDP port to receive on. Default: 0 for
     /// [`USUAL_LOCAL_PORT`](crate::USUAL_LOCAL_PORT), or
     /// another that is free if a program has it, or if X-Plane is on this
@@ -78,6 +80,7 @@ impl Default for XPlaneConfig {
     fn default() -> Self {
         Self {
             simulator: Simulator::At((Ipv4Addr::LOCALHOST, XPLANE_PORT).into()),
+            plant: PlantKind::Simulator,
             local_port: 0,
             reply_port: XPLANE_REPLY_PORT,
             input: Input::Rref,
@@ -93,6 +96,17 @@ impl Default for XPlaneConfig {
             beacon: beacon::GROUP,
         }
     }
+}
+
+/// What is at the other end, and so which values it is asked for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum PlantKind {
+    /// X-Plane, or another simulator: all that it has.
+    Simulator,
+    /// A servo board that speaks X-Plane's messages: airspeed or differential
+    /// pressure, the engage switch, and where the servos are. What it does not
+    /// send is not missing, except who has control.
+    ServoBoard,
 }
 
 /// How measurements are received.

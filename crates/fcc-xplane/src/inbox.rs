@@ -290,6 +290,9 @@ impl Inbox {
         if let Some(([pitch, roll, yaw], taken)) = values.whole(Group::PilotControls) {
             into.pilot_controls = Reading::new(PilotControls { pitch, roll, yaw }, taken);
         }
+        if let Some(([pressure_pa], taken)) = values.whole(Group::DifferentialPressure) {
+            into.differential_pressure_pa = Reading::new(pressure_pa, taken);
+        }
         if self.clock.last_received() == now {
             self.publish_observations(there, into, link, writing);
         }

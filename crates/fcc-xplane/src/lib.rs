@@ -108,7 +108,7 @@ pub use actuator::XPlaneActuator;
 pub use address::{AddressError, HostName, Simulator, USUAL_LOCAL_PORT, XPLANE_PORT};
 pub use authority::{XPlaneAuthority, plant_at};
 pub use config::{
-    AxialLoad, DataRows, Input, Output, RowsVersion, XPlaneConfig, XPlaneConfigError,
+    AxialLoad, DataRows, Input, Output, PlantKind, RowsVersion, XPlaneConfig, XPlaneConfigError,
 };
 pub use discovery::{DiscoverError, Found, discover};
 pub use fcc_core::framework::{PlantId, Released};

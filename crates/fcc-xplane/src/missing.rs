@@ -13,7 +13,7 @@ use core::time::Duration;
 
 use fcc_core::framework::Time;
 
-use crate::config::DataRows;
+use crate::config::{DataRows, PlantKind};
 use crate::engage_switch;
 use crate::quantity::Quantity;
 use crate::rows::row_of;
@@ -73,11 +73,13 @@ impl Expected {
         }
     }
 
-    /// Whether its absence is reported.
-    pub(crate) fn is_needed(self) -> bool {
-        match self {
-            Self::Value(quantity) => quantity.is_needed(),
-            Self::Position => true,
+    /// Whether its absence there is reported.
+    pub(crate) fn is_needed_of(self, plant: PlantKind) -> bool {
+        match (plant, self) {
+            (PlantKind::Simulator, Self::Value(quantity)) => quantity.is_needed(),
+            (PlantKind::Simulator, Self::Position) => true,
+            (PlantKind::ServoBoard, Self::Value(quantity)) => quantity.is_override(),
+            (PlantKind::ServoBoard, Self::Position) => false,
         }
     }
 }

@@ -24,6 +24,8 @@ pub(crate) use table::{
 };
 use table::{Entry, Place, TABLE};
 
+use crate::config::PlantKind;
+
 /// A quantity read from X-Plane. The number of each is the index under which
 /// its dataref is subscribed; it is the same in every run, so that a
 /// subscription left over from a killed process is replaced and not duplicated.
@@ -88,6 +90,7 @@ pub(crate) enum Quantity {
     PilotPitch,
     PilotRoll,
     PilotYaw,
+    DifferentialPressure,
 }
 
 impl Quantity {
@@ -129,12 +132,39 @@ impl Quantity {
         matches!(self, Self::PilotPitch | Self::PilotRoll | Self::PilotYaw)
     }
 
+    /// Whether it is asked for there.
+    pub(crate) fn is_asked_of(self, plant: PlantKind) -> bool {
+        match plant {
+            PlantKind::Simulator => !self
+                .entry()
+                .is_some_and(|entry| matches!(entry.place, Place::ServoBoard(_))),
+            PlantKind::ServoBoard => {
+                self.is_override()
+                    || matches!(
+                        self,
+                        Self::Airspeed
+                            | Self::DifferentialPressure
+                            | Self::EngageSwitch
+                            | Self::YokePitch
+                            | Self::YokeRoll
+                            | Self::YokeHeading
+                            | Self::Throttle
+                    )
+            }
+        }
+    }
+
+    /// Whether it says who has control.
+    pub(crate) fn is_override(self) -> bool {
+        matches!(self, Self::OverrideJoystick | Self::OverrideThrottles)
+    }
+
     /// The path to subscribe; `None` if it is in no dataref. For set-up: it
     /// allocates.
     pub(crate) fn path(self, engage_switch: &str) -> Option<String> {
         match self.entry()?.place {
             Place::Position(name) => Some(format!("{}{name}", table::POSITION)),
-            Place::Dataref(path) => Some(path.to_owned()),
+            Place::Dataref(path) | Place::ServoBoard(path) => Some(path.to_owned()),
             Place::EngageSwitch => Some(engage_switch.to_owned()),
             Place::Row => None,
         }

@@ -18,7 +18,7 @@ use core::time::Duration;
 
 use fcc_core::framework::Time;
 
-use crate::config::{Input, XPlaneConfig};
+use crate::config::{Input, PlantKind, XPlaneConfig};
 use crate::engage_switch::{self, NONEXISTENT_DATAREF, NONEXISTENT_INDEX};
 use crate::inbox::Inbox;
 use crate::missing::{Expected, MissingValues, ValueSet};
@@ -107,7 +107,8 @@ impl Subscriptions {
         let mut list = Vec::new();
         let mut expected = Vec::new();
         for quantity in Quantity::all() {
-            if quantity.is_pilots() && !config.pilot_controls {
+            if !quantity.is_asked_of(config.plant) || quantity.is_pilots() && !config.pilot_controls
+            {
                 continue;
             }
             if let Some(rows) = rows.filter(|_| quantity.comes_in_rows()) {
@@ -122,18 +123,19 @@ impl Subscriptions {
             rref::request(&mut request, config.rate_hz, quantity.index(), &path)?;
             list.push(Subscription::to(Request::Value(quantity, request)));
         }
-        if rows.is_none() {
+        let is_board = config.plant == PlantKind::ServoBoard;
+        if rows.is_none() && !is_board {
             list.push(Subscription::to(position_request(POSITION_RATE_HZ)));
         }
         let mut without_effect = Box::new([0; rref::REQUEST_BYTES]);
         rref::request(&mut without_effect, 0, UNUSED_INDEX, ANY_DATAREF)?;
-        if engage_switch::generic_light(&config.engage_switch).is_none() {
+        if !is_board && engage_switch::generic_light(&config.engage_switch).is_none() {
             let mut request = Box::new([0; rref::REQUEST_BYTES]);
             rref::request(&mut request, 1, NONEXISTENT_INDEX, NONEXISTENT_DATAREF)?;
             list.push(Subscription::to(Request::Nonexistent(request)));
         }
         let asked = list.iter().filter_map(|asked| asked.request.expected());
-        expected.extend(asked.filter(|asked| asked.is_needed()));
+        expected.extend(asked.filter(|asked| asked.is_needed_of(config.plant)));
         Ok(Self {
             list,
             resubscribe: config.resubscribe,

@@ -28,6 +28,7 @@ pub(crate) enum Unit {
     Feet,
     Gravities,
     InchesOfMercury,
+    Pascals,
 }
 
 impl Unit {
@@ -41,7 +42,8 @@ impl Unit {
             | Self::MetresPerSecond
             | Self::MetresPerSecondSquared
             | Self::RadiansPerSecond
-            | Self::KilogramsPerCubicMetre => value,
+            | Self::KilogramsPerCubicMetre
+            | Self::Pascals => value,
             Self::Degrees => value.to_radians(),
             Self::Knots => value * KNOT_MPS,
             Self::Feet => value * FOOT_M,

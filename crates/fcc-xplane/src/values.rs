@@ -32,10 +32,11 @@ pub(crate) enum Group {
     Surfaces,
     Switch,
     PilotControls,
+    DifferentialPressure,
 }
 
 impl Group {
-    const COUNT: usize = 14;
+    const COUNT: usize = 15;
 
     /// All of them, in the order of their numbers.
     const ALL: [Self; Self::COUNT] = [
@@ -53,6 +54,7 @@ impl Group {
         Self::Surfaces,
         Self::Switch,
         Self::PilotControls,
+        Self::DifferentialPressure,
     ];
 
     /// The quantities of which it is made, in the order of its values.
@@ -80,6 +82,7 @@ impl Group {
             Self::Surfaces => &[Q::Throttle, Q::YokePitch, Q::YokeRoll, Q::YokeHeading],
             Self::Switch => &[Q::EngageSwitch],
             Self::PilotControls => &[Q::PilotPitch, Q::PilotRoll, Q::PilotYaw],
+            Self::DifferentialPressure => &[Q::DifferentialPressure],
         }
     }
 }

@@ -18,7 +18,7 @@ fn row(entry: &Entry) -> Option<String> {
         Place::Position(name) => format!("P`{name}`"),
         Place::Dataref(path) => format!("`{path}`"),
         Place::EngageSwitch => "`x-plane.engage_switch`".to_owned(),
-        Place::Row => return None,
+        Place::Row | Place::ServoBoard(_) => return None,
     };
     let unit = match entry.unit {
         Unit::Seconds => "s",
@@ -34,6 +34,7 @@ fn row(entry: &Entry) -> Option<String> {
         Unit::Feet => "ft",
         Unit::InchesOfMercury => "inHg",
         Unit::Gravities => "g",
+        Unit::Pascals => "Pa",
     };
     let access = if entry.is_written {
         "written, read back"

@@ -24,6 +24,8 @@ pub(super) enum Place {
     EngageSwitch,
     /// In a row of Data Output only.
     Row,
+    /// X-Plane does not have it: in this dataref of a servo board.
+    ServoBoard(&'static str),
 }
 
 /// What happens if a quantity never arrives, as text for users.
@@ -125,7 +127,7 @@ impl Entry {
     }
 }
 
-use Place::{Dataref, Position, Row};
+use Place::{Dataref, Position, Row, ServoBoard};
 use StatedBy::{ListAndArduPilot, ListAndSimHub};
 
 const NO_ATTITUDE: &str = "no attitude: not engaged";
@@ -251,4 +253,6 @@ pub(super) const TABLE: &[Entry] = &[
         .is("the same, right").or_else(NO_TAKEOVER),
     Entry::new(Quantity::PilotYaw, Dataref("sim/joystick/joy_mapped_axis_value[3]"), Unit::Ratio, [-1.1, 1.1]).since("11.5")
         .is("the same, right pedal").or_else(NO_TAKEOVER),
+    Entry::new(Quantity::DifferentialPressure, ServoBoard("fccd/servo_board/differential_pressure_pa"), Unit::Pascals, [-2e4, 2e4])
+        .is("of the pitot tube").instead("the airspeed that the board computes"),
 ];
