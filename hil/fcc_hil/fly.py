@@ -15,7 +15,8 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from .cockpit import GENERIC_LIGHTS, OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES
+from .cockpit import ENGAGE_SWITCH as ENGAGE_SWITCH
+from .cockpit import OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES
 from .daemon import Daemon
 from .pattern import TimedPattern
 from .peer import fly_peer
@@ -25,8 +26,6 @@ from .score import Score, score
 from .standin import Progress, Settings
 from .truth import COLUMNS, Truth
 from .units import FT_TO_M, INHG_TO_PA, STANDARD_INHG, pressure_altitude_m
-
-ENGAGE_SWITCH = f"{GENERIC_LIGHTS}[56]"
 
 _SUBSCRIBE_S = 15.0
 _STEADY_S = 2.0

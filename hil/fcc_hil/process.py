@@ -22,6 +22,8 @@ from types import TracebackType
 from typing import Any, cast
 
 from . import actions
+from .board_link import Change
+from .boarded import BoardedStandIn
 from .cockpit import Release, Write
 from .faulty_sensors import SensorFault
 from .person import AttendedStandIn
@@ -94,6 +96,11 @@ class _Commands:
     def jump(self, seconds: float) -> None:
         self.simulator.jump(seconds)
 
+    def board(self, action: str, *arguments: float) -> object:
+        if not isinstance(self.simulator, BoardedStandIn):
+            raise ValueError("there is no servo board: set Settings.board")
+        return self.simulator.at_board(action, *arguments)
+
     def stop(self) -> None:
         self.running = False
 
@@ -107,11 +114,17 @@ def request_real_time() -> str:
     return f"SCHED_FIFO {_PRIORITY}"
 
 
+def _simulator(settings: Settings) -> StandIn:
+    if settings.board:
+        return BoardedStandIn(settings)
+    return AttendedStandIn(settings) if settings.person else StandIn(settings)
+
+
 def _serve(settings: Settings, pipe: Connection) -> None:
     # Ctrl-C reaches the whole group; the starting process ends this one.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
-        simulator = AttendedStandIn(settings) if settings.person else StandIn(settings)
+        simulator = _simulator(settings)
     except Exception as error:
         pipe.send(error)
         return
@@ -232,6 +245,22 @@ class StandInProcess:
     def jump(self, seconds: float) -> None:
         """Move the simulator's clock without flying."""
         self._ask("jump", seconds)
+
+    def board_port(self) -> int:
+        """Return the servo board's UDP port."""
+        return cast("int", self._ask("board", "port"))
+
+    def board_changes(self) -> list[Change]:
+        """Return every change of control of the servo board's so far."""
+        return cast("list[Change]", self._ask("board", "changes"))
+
+    def board_counts(self) -> dict[str, int]:
+        """Return how many frames the servo board received, and were corrupt and lost."""
+        return cast("dict[str, int]", self._ask("board", "counts"))
+
+    def at_board(self, action: str, *arguments: float) -> None:
+        """Pull out its cable, put it back, disturb it or reboot it (`RunningBoard`)."""
+        self._ask("board", action, *arguments)
 
     def stop(self) -> None:
         """End it; does nothing if it has ended."""

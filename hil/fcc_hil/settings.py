@@ -95,6 +95,9 @@ class Settings:
     data_rate_hz: float = 20.0
     person: bool = False
     """Whether a person sits at it, who does what `fccd x-plane check --yes` asks for (`person`)."""
+    board: str = ""
+    """The servo board between the computer and the surfaces (`boarded`): `udp`, or the path that
+    is to lead to its serial line; empty for none."""
     misbehaves_in: tuple[int, ...] = ()
     """The steps of that check in which it misbehaves (`misbehaviour`); needs the person."""
 
