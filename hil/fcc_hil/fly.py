@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from .cockpit import ENGAGE_SWITCH as ENGAGE_SWITCH
+from .cockpit import ENGAGE_SWITCH as ENGAGE_SWITCH  # noqa: PLC0414 - as others know it
 from .cockpit import OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES
 from .daemon import Daemon
 from .pattern import TimedPattern

@@ -33,6 +33,8 @@ pub enum SensorEntry {
     Sdp3x(Box<ChipSection>),
     /// A QMC5883L, a magnetometer.
     Qmc5883l(Box<ChipSection>),
+    /// The servo board's, of `[servo-board]`.
+    ServoBoard(NoKeys),
 }
 
 /// One entry of `[[actuator]]`: a kind, and that kind's keys.
@@ -41,6 +43,8 @@ pub enum SensorEntry {
 pub enum ActuatorEntry {
     /// The simulator's.
     Simulator(NoKeys),
+    /// The servo board's, of `[servo-board]`.
+    ServoBoard(NoKeys),
 }
 
 /// The keys of a kind without keys.
@@ -109,6 +113,7 @@ impl Entry for SensorEntry {
         "ms4525do",
         "sdp3x",
         "qmc5883l",
+        "servo-board",
     ];
 
     fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, reader: &mut Reader<'t>) -> Option<Self> {
@@ -120,6 +125,7 @@ impl Entry for SensorEntry {
         match kind {
             "x-plane" => reader.table(keys, 1).map(Self::XPlane),
             "iio" => reader.table(keys, 1).map(Self::Iio),
+            "servo-board" => reader.table(keys, 1).map(Self::ServoBoard),
             _ => reader.table(keys, 1).map(Self::Simulator),
         }
     }
@@ -130,10 +136,13 @@ impl Entry for SensorEntry {
 }
 
 impl Entry for ActuatorEntry {
-    const KINDS: &'static [&'static str] = &["simulator"];
+    const KINDS: &'static [&'static str] = &["simulator", "servo-board"];
 
-    fn read<'t>(_: &str, keys: Spanned<DeTable<'t>>, reader: &mut Reader<'t>) -> Option<Self> {
-        reader.table(keys, 1).map(Self::Simulator)
+    fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, reader: &mut Reader<'t>) -> Option<Self> {
+        match kind {
+            "servo-board" => reader.table(keys, 1).map(Self::ServoBoard),
+            _ => reader.table(keys, 1).map(Self::Simulator),
+        }
     }
 }
 
@@ -146,6 +155,7 @@ mod tests {
         let kinds = config.sensors().map(|entry| match entry {
             SensorEntry::Simulator(_) => "simulator",
             SensorEntry::XPlane(_) => "x-plane",
+            SensorEntry::ServoBoard(_) => "servo-board",
             other => panic!("{other:?}"),
         });
         (kinds.collect(), config.actuators().len())
@@ -193,7 +203,7 @@ mod tests {
             kind,
             "test:5: sensor[1].kind: is \"gyroscope\": choose one of \"simulator\", \"x-plane\", \"iio\", \
              \"icm42688\", \"mpu6050\", \"bmp388\", \"bmp180\", \"ms4525do\", \"sdp3x\", \
-             \"qmc5883l\""
+             \"qmc5883l\", \"servo-board\""
         );
         let missing = message(two);
         assert!(missing.contains("`kind` is missing"), "{missing}");

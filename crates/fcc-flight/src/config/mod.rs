@@ -28,6 +28,7 @@ mod relations;
 mod restart;
 mod rights;
 mod runtime;
+mod servo_board;
 mod similar;
 mod telemetry;
 mod values;
@@ -62,6 +63,7 @@ pub use runtime::{
     EarlyWakeSection, EngageSection, FailsafeSection, LoopSection, RealtimeSection, ReleaseSection,
     Then,
 };
+pub use servo_board::ServoBoardSection;
 pub use telemetry::TelemetrySection;
 pub use values::keyed;
 pub use x_plane::XPlaneSection;
@@ -109,6 +111,9 @@ pub struct Config {
     /// The aircraft is the built-in one.
     #[serde(rename = "built-in", skip_serializing_if = "Option::is_none")]
     pub built_in: Option<BuiltInSection>,
+    /// Where the servo board is, for the sensor and the actuator of that kind.
+    #[serde(rename = "servo-board", skip_serializing_if = "Option::is_none")]
+    pub servo_board: Option<ServoBoardSection>,
     /// Sensors in addition to the simulator's, the most preferred first.
     #[serde(
         skip_serializing_if = "Vec::is_empty",
@@ -265,6 +270,12 @@ impl Config {
                 SensorEntry::XPlane(section) => {
                     (format!("sensor[{at}]"), Some(of_x_plane(section)))
                 }
+                SensorEntry::ServoBoard(_) => (
+                    "servo-board".to_owned(),
+                    self.servo_board
+                        .as_ref()
+                        .map(|section| section.fallback_after_ms),
+                ),
                 other => {
                     let after = other
                         .board()

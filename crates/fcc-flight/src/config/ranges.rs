@@ -10,6 +10,7 @@ use toml::de::DeValue;
 use super::places::Places;
 use super::{
     Config, Problem, SensorEntry, XPlaneSection, board, calibration, navigation, relations,
+    servo_board,
 };
 
 /// Key, smallest and largest value.
@@ -161,6 +162,7 @@ fn ranges() -> impl Iterator<Item = &'static (&'static str, f64, f64)> {
         .chain(calibration::RANGES)
         .chain(navigation::RANGES)
         .chain(board::RANGES)
+        .chain(servo_board::RANGES)
 }
 
 /// Smallest and largest value of a numeric key.

@@ -3,7 +3,10 @@
 use fcc_core::flight::control::Envelope;
 
 use super::autopilot::EnvelopeSection;
-use super::{AutopilotSection, Config, NavigationMethod, SensorEntry, board, raw_readings};
+use super::{
+    ActuatorEntry, AutopilotSection, Config, NavigationMethod, SensorEntry, board, raw_readings,
+    servo_board,
+};
 
 /// Of `SCHED_FIFO` (sched(7)).
 const HIGHEST_PRIORITY: u8 = 99;
@@ -62,6 +65,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     lists(config, report);
     raw_readings::check(config, report);
     board::check(config, report);
+    servo_board::check(config, report);
 }
 
 /// No file of Unix has a NUL in its name.
@@ -341,12 +345,12 @@ fn rights(config: &Config, report: &mut impl FnMut(&[&str], String)) {
 }
 
 fn lists(config: &Config, report: &mut impl FnMut(&[&str], String)) {
-    let actuators = config.actuators().len();
+    let actuators = config.actuators().iter();
+    let actuators = actuators.map(|entry| matches!(entry, ActuatorEntry::Simulator(_)));
     let sensors = config.sensor.iter().map(SensorEntry::is_simulator);
-    // Every actuator is the simulator's.
     for (list, simulators) in [
         ("sensor", sensors.collect::<Vec<_>>()),
-        ("actuator", vec![true; actuators]),
+        ("actuator", actuators.collect()),
     ] {
         let entries = simulators.iter().enumerate();
         for (at, _) in entries.filter(|(_, is_simulator)| **is_simulator).skip(1) {

@@ -27,6 +27,7 @@ static KEYS: LazyLock<Vec<String>> = LazyLock::new(|| {
     let config = Config {
         x_plane: Some(super::XPlaneSection::default()),
         built_in: Some(super::BuiltInSection::default()),
+        servo_board: Some(super::ServoBoardSection::default()),
         ..Config::default()
     };
     let values = config.values().ok();

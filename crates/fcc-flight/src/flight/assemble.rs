@@ -85,6 +85,9 @@ pub enum AssemblyError {
         /// The operating system's error.
         source: io::Error,
     },
+    /// The link to the servo board could not be opened.
+    #[error("servo board: {0}")]
+    ServoBoard(#[from] fcc_servo_link::OpenError),
 }
 
 impl AssemblyError {
@@ -122,6 +125,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
     };
     let mut sensors: Vec<Box<dyn Sensor<Measurements>>> = Vec::new();
     let mut devices = Vec::new();
+    let mut servo_board = servo_board(config)?;
     for entry in config.sensors() {
         match entry {
             SensorEntry::Simulator(_) => sensors.append(&mut plant.sensors),
@@ -132,6 +136,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
                     None => sensor,
                 }));
             }
+            SensorEntry::ServoBoard(_) => sensors.append(&mut servo_board.sensors),
             board => {
                 if let Some(board) = board.board() {
                     let (sensor, status) = board_sensor(&board)?;
@@ -142,9 +147,15 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
         }
     }
     let mut actuators = Vec::new();
+    // Whether what is moved goes on without this program.
+    let mut outlasts = plant.authority.is_some();
     for entry in config.actuators() {
         match entry {
             ActuatorEntry::Simulator(_) => actuators.append(&mut plant.actuators),
+            ActuatorEntry::ServoBoard(_) => {
+                outlasts |= !servo_board.actuators.is_empty();
+                actuators.append(&mut servo_board.actuators);
+            }
         }
     }
     Ok(Assembly {
@@ -154,10 +165,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
         actuators,
         loop_config,
         watchdog: config.watchdog.clone(),
-        restart: plant
-            .authority
-            .is_some()
-            .then(|| RestartRequest::of(config)),
+        restart: outlasts.then(|| RestartRequest::of(config)),
         truth: plant.truth,
         true_now: plant.true_now,
         devices,
@@ -172,7 +180,7 @@ fn built_in(section: &BuiltInSection, ticks: usize) -> Result<Plant, AssemblyErr
     let (sensor, truth) = tap(simulation.sensor, ticks);
     Ok(Plant {
         sensors: vec![match section.calibration.to_core() {
-            Some(calibration) => Box::new(Calibrated::new(sensor, &calibration)),
+            Some(calibration) => Box::new(Calibrated::new(Box::new(sensor), &calibration)),
             None => Box::new(sensor),
         }],
         actuators: vec![Box::new(simulation.actuator)],
@@ -204,6 +212,22 @@ fn x_plane(section: &XPlaneSection, config: &Config) -> Result<Plant, AssemblyEr
         true_now: None,
         authority: Some(Arc::new(authority)),
         x_plane: Some(status),
+    })
+}
+
+/// The servo board's sensor and actuator, if there is one.
+fn servo_board(config: &Config) -> Result<Plant, AssemblyError> {
+    let Some(section) = &config.servo_board else {
+        return Ok(Plant::default());
+    };
+    let (sensor, actuator) = fcc_servo_link::open(&section.to_link())?;
+    Ok(Plant {
+        sensors: vec![match section.calibration().to_core() {
+            Some(calibration) => Box::new(Calibrated::new(sensor, &calibration)),
+            None => sensor,
+        }],
+        actuators: vec![actuator],
+        ..Plant::default()
     })
 }
 

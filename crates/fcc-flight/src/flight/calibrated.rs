@@ -8,15 +8,15 @@ use fcc_core::framework::{Sensor, SensorFault, Tick};
 
 /// A sensor, and the calibration of its raw readings: they are calibrated here
 /// and nowhere else.
-pub(super) struct Calibrated<S> {
-    sensor: S,
+pub(super) struct Calibrated<S: ?Sized> {
+    sensor: Box<S>,
     calibration: Calibration,
     /// What the sensor gave.
     given: Measurements,
 }
 
-impl<S> Calibrated<S> {
-    pub(super) fn new(sensor: S, calibration: &Calibration) -> Self {
+impl<S: ?Sized> Calibrated<S> {
+    pub(super) fn new(sensor: Box<S>, calibration: &Calibration) -> Self {
         Self {
             sensor,
             calibration: *calibration,
@@ -29,7 +29,7 @@ impl<S> Calibrated<S> {
     clippy::missing_trait_methods,
     reason = "a method that is not passed on would have its default"
 )]
-impl<S: Sensor<Measurements>> Sensor<Measurements> for Calibrated<S> {
+impl<S: Sensor<Measurements> + ?Sized> Sensor<Measurements> for Calibrated<S> {
     fn sample(&mut self, tick: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
         let sampled = self.sensor.sample(tick, &mut self.given);
         *into = self.calibration.applied(&self.given);
@@ -87,7 +87,7 @@ mod tests {
         let barometer = Barometer {
             pressure_pa: Some(90_030.0),
         };
-        let mut sensor = Calibrated::new(barometer, &calibration);
+        let mut sensor = Calibrated::new(Box::new(barometer), &calibration);
         let mut measured = Measurements::default();
         for (tick, sampled) in [(1, Ok(())), (2, Err(SensorFault::Silent))] {
             let woke = Time::from_nanos(tick * 25_000_000);

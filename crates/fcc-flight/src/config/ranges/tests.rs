@@ -1,7 +1,7 @@
 use fcc_linux::chip::ChipKind;
 
 use super::*;
-use crate::config::{BudgetSection, BuiltInSection, CpuChoice};
+use crate::config::{BudgetSection, BuiltInSection, CpuChoice, ServoBoardSection};
 
 fn check(config: &Config) -> Vec<Problem> {
     let text = config.to_toml().unwrap();
@@ -14,6 +14,7 @@ fn every_number_has_a_range() {
     let mut config = Config {
         x_plane: Some(XPlaneSection::default()),
         built_in: Some(BuiltInSection::default()),
+        servo_board: Some(ServoBoardSection::default()),
         ..Config::default()
     };
     config.realtime.cpu = Some(CpuChoice::Number(1));

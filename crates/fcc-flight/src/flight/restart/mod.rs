@@ -93,6 +93,7 @@ fn fingerprint(config: &Config) -> u32 {
         autopilot: config.autopilot.clone(),
         altimeter: config.altimeter,
         x_plane: config.x_plane.clone(),
+        servo_board: config.servo_board.clone(),
         sensor: config.sensor.clone(),
         actuator: config.actuator.clone(),
         ..Config::default()

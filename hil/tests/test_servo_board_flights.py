@@ -1,0 +1,172 @@
+"""The daemon flies through a servo board: the board has the pitot tube, the switch and the servos.
+
+Attitude, heading and altitude come from the stand-in, as from sensors of the computer's own.
+"""
+
+from __future__ import annotations
+
+import signal
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from daemon_under_test import DaemonUnderTest, start, wait_until
+from fcc_hil.board_link import Change
+from fcc_hil.cockpit import ENGAGE_SWITCH
+from fcc_hil.pattern import TimedPattern
+from fcc_hil.process import StandInProcess
+from fcc_hil.score import score
+from fcc_hil.servo_board import FAILSAFE_AFTER_S, Control
+from fcc_hil.standin import Settings
+from fcc_hil.state import Controls
+from fcc_hil.truth import Truth
+
+CENTRED = Controls()
+WAYS = pytest.mark.parametrize("way", ["serial", "udp"])
+
+
+class Flight:
+    """A daemon, a board and an aircraft."""
+
+    def __init__(self, fccd: Path, scratch: Path, way: str, guidance: str) -> None:
+        self._fccd, self._scratch = fccd, scratch
+        line = scratch / "ttyBOARD"
+        board = str(line) if way == "serial" else "udp"
+        self.aircraft = StandInProcess(Settings(port=0, board=board))
+        port = self.aircraft.board_port()
+        where = f'serial = "{line}"' if way == "serial" else f'address = "127.0.0.1:{port}"'
+        # The simulator's airspeed is never used: it has a switch of its own, too.
+        self._config = scratch / "fccd.toml"
+        self._config.write_text(
+            f"[servo-board]\n{where}\n"
+            '[[sensor]]\nkind = "servo-board"\n'
+            f'[[sensor]]\nkind = "x-plane"\nsimulator = "127.0.0.1:{self.aircraft.port}"\n'
+            'engage_switch = "sim/cockpit2/switches/generic_lights_switch[57]"\n'
+            '[[actuator]]\nkind = "servo-board"\n'
+            f"[guidance]\n{guidance}\n"
+            f'[recording]\nfolder = "{scratch}/recordings"\n'
+        )
+        self.daemon = self.start()
+
+    def start(self) -> DaemonUnderTest:
+        return start(self._fccd, self._scratch, self._config)
+
+    def close(self) -> None:
+        self.daemon.__exit__()
+        self.aircraft.stop()
+
+    def engage(self) -> None:
+        self.daemon.wait_until_ready()
+        self.aircraft.write(ENGAGE_SWITCH, 1.0)
+        self.await_control(Control.HELD)
+
+    def await_control(self, control: Control, within_s: float = 15.0) -> Change:
+        """Wait until control is last changed to this, and return the change."""
+        wait_until(lambda: self._last() is control, f"the board is {control.value}", within_s)
+        return self.aircraft.board_changes()[-1]
+
+    def _last(self) -> Control:
+        changes = self.aircraft.board_changes()
+        return changes[-1].control if changes else Control.FREE
+
+    def truth(self) -> Truth:
+        return self.aircraft.truth()
+
+
+@contextmanager
+def flying(
+    fccd: Path, scratch: Path, way: str, guidance: str = 'mode = "hold"'
+) -> Iterator[Flight]:
+    flight = Flight(fccd, scratch, way, guidance)
+    try:
+        yield flight
+    finally:
+        flight.close()
+
+
+def assert_failsafe(change: Change) -> None:
+    """By its own clock the board waited for 200 ms, and not a pass longer."""
+    assert change.control is Control.FAILSAFE
+    assert change.driven == CENTRED
+    assert change.silent_before_s < FAILSAFE_AFTER_S <= change.silent_s
+
+
+@WAYS
+def test_a_killed_daemon_leaves_the_surfaces_centred_after_200_ms(
+    fccd: Path, tmp_path: Path, way: str
+) -> None:
+    with flying(fccd, tmp_path, way) as flight:
+        flight.engage()
+        time.sleep(3.0)
+        flight.daemon.send(signal.SIGKILL)
+        assert_failsafe(flight.await_control(Control.FAILSAFE))
+        # A new one flies on: the switch is still on.
+        flight.daemon = flight.start()
+        flight.await_control(Control.HELD)
+        ending = flight.daemon.end(signal.SIGTERM)
+        assert ending.exit_code == 0
+        flight.await_control(Control.FREE)
+
+
+@WAYS
+def test_a_cable_that_is_pulled_out_and_put_back_is_flown_on(
+    fccd: Path, tmp_path: Path, way: str
+) -> None:
+    with flying(fccd, tmp_path, way) as flight:
+        flight.engage()
+        for seconds in (0.05, 1.0):
+            time.sleep(2.0)
+            before = len(flight.aircraft.board_changes())
+            flight.aircraft.at_board("pull")
+            time.sleep(seconds)
+            flight.aircraft.at_board("put_back")
+            if seconds > FAILSAFE_AFTER_S:
+                flight.await_control(Control.HELD)
+                assert_failsafe(flight.aircraft.board_changes()[before])
+        time.sleep(2.0)
+        flight.aircraft.write(ENGAGE_SWITCH, 0.0)
+        change = flight.await_control(Control.FREE)
+        assert change.control is Control.FREE
+        assert "engaged -> failsafe" not in flight.daemon.log
+
+
+@WAYS
+def test_a_board_that_starts_again_in_flight_is_taken_again(
+    fccd: Path, tmp_path: Path, way: str
+) -> None:
+    with flying(fccd, tmp_path, way) as flight:
+        flight.engage()
+        time.sleep(2.0)
+        flight.aircraft.at_board("reboot")
+        flight.await_control(Control.FREE)
+        flight.await_control(Control.HELD)
+        time.sleep(2.0)
+        assert flight.aircraft.board_changes()[-1].control is Control.HELD
+        assert "engaged -> failsafe" not in flight.daemon.log
+
+
+def test_the_pattern_is_flown_over_a_line_with_wrong_bits(fccd: Path, tmp_path: Path) -> None:
+    """Of every 10,000 bits one is wrong, in both directions: 7 % of the frames."""
+    legs = 2
+    pattern = TimedPattern()
+    with flying(fccd, tmp_path, "serial", 'mode = "timed-pattern"') as flight:
+        flight.aircraft.at_board("disturb", 1e-4)
+        flight.engage()
+        engaged_s = flight.aircraft.progress().time_s
+        until_s = engaged_s + pattern.duration_s(legs)
+        while flight.aircraft.progress().time_s < until_s:
+            time.sleep(0.5)
+        truth = flight.truth()
+        counts = flight.aircraft.board_counts()
+        changes = flight.aircraft.board_changes()
+        assert [change.control for change in changes] == [Control.HELD]
+        flown = score(truth.trace(), pattern.legs(legs, engaged_s, truth.captured_at(engaged_s)))
+    assert counts["corrupt"] > 100
+    worst = flown["worst"]
+    print(f"{counts}: {worst}")
+    assert len(flown["legs"]) == legs
+    assert worst["heading_rms_deg"] < 0.5
+    assert worst["altitude_rms_ft"] < 5.0
+    assert worst["airspeed_error_kt"] < 3.0
