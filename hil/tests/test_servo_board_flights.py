@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 from daemon_under_test import DaemonUnderTest, start, wait_until
+
 from fcc_hil.board_link import Change
 from fcc_hil.cockpit import ENGAGE_SWITCH
 from fcc_hil.pattern import TimedPattern
