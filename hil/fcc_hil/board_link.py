@@ -44,6 +44,20 @@ class Change:
     """The same, in the pass before."""
 
 
+def disturbed(data: bytes, bit_errors: float, rng: random.Random) -> bytes:
+    """Return bytes of which each bit is wrong with this probability."""
+    if bit_errors <= 0.0 or not data:
+        return data
+    received = bytearray(data)
+    # The gap to the next wrong bit is geometrically distributed.
+    at = -1
+    while True:
+        at += 1 + int(math.log(1.0 - rng.random()) / math.log1p(-bit_errors))
+        if at >= 8 * len(received):
+            return bytes(received)
+        received[at // 8] ^= 1 << at % 8
+
+
 class _Serial:
     """Frames on a pseudo-terminal, to which a symbolic link leads."""
 
@@ -97,17 +111,7 @@ class _Serial:
         self._link.unlink(missing_ok=True)
 
     def _disturbed(self, data: bytes) -> bytes:
-        if self.bit_errors <= 0.0 or not data:
-            return data
-        disturbed = bytearray(data)
-        # The gap to the next wrong bit is geometrically distributed.
-        at = -1
-        while True:
-            gap = math.log(1.0 - self._rng.random()) / math.log1p(-self.bit_errors)
-            at += 1 + int(gap)
-            if at >= 8 * len(disturbed):
-                return bytes(disturbed)
-            disturbed[at // 8] ^= 1 << at % 8
+        return disturbed(data, self.bit_errors, self._rng)
 
 
 class _Udp:

@@ -161,7 +161,6 @@ class LockstepRig:
         if measured is None:
             surfaces = self.machine.step(None)
         else:
-            stand = plant.controls
             values = measurements(measured)
             ages_s = {} if self.raw is None else self.raw.read(values)
             if self._raw_fault is not None:
@@ -176,7 +175,7 @@ class LockstepRig:
                 values,
                 missing=[*self._without, *_sensors_of(channels)],
                 ages_s=ages_s,
-                readback=as_surfaces(stand),
+                readback=as_surfaces(self._stand()),
                 switch=self._switch,
             )
         if surfaces is None:
@@ -187,6 +186,10 @@ class LockstepRig:
         for event in self.machine.events():
             self.events.append(Event(plant.time_s, event.text))
         self._rows.append(row(state, plant.controls))
+
+    def _stand(self) -> Controls:
+        """Return where the controls stand, as it is measured."""
+        return self.plant.controls
 
     def _write(self, controls: Controls) -> None:
         self._command = controls

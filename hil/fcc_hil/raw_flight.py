@@ -16,6 +16,7 @@ import fcc
 import numpy as np
 import numpy.typing as npt
 
+from .lockstep_board import BoardedLockstepRig, BoardLine
 from .lockstep_rig import Conditions, LockstepRig
 from .pattern import TimedPattern
 from .plant import Plant, Weather
@@ -121,11 +122,14 @@ def fly(
     legs: int = 8,
     seed: int = 1,
     turbulence: int = LIGHT_TURBULENCE,
+    board: BoardLine | None = None,
 ) -> RawFlight:
     """Fly the timed pattern; return the raw readings, the truth and the estimate.
 
     `navigation` is `measured` for ideal sensors, or how attitude is computed from the raw ones:
     `kalman`, `thesis`. It is flown in 12 kt of wind, and turbulence of JSBSim's severity, 0 to 7.
+    With `board` the pitot tube, the switch and the surfaces are a servo board's, at the other end
+    of this line.
     Of each sensor there are `NAME_t_s`, when its readings arrived, `NAME_UNIT`, (n,) or (n, m),
     and `NAME_delay_s`, what is known of its delay; `truth_NAME` and `estimate_NAME`, a row per
     tick; `engaged_s`; `field_ut`, the earth's magnetic field, north,
@@ -145,7 +149,12 @@ def fly(
         calibration=calibrate(sensors, seed, FIELD_UT) if by_raw else None,
         without=_MEASURED if by_raw else frozenset(),
     )
-    rig = LockstepRig(Settings(aircraft=aircraft, seed=seed), plant, machine, conditions)
+    settings = Settings(aircraft=aircraft, seed=seed)
+    rig = (
+        LockstepRig(settings, plant, machine, conditions)
+        if board is None
+        else BoardedLockstepRig(settings, plant, machine, conditions, board)
+    )
     truth: list[tuple[float, ...]] = []
     estimate: list[tuple[float, ...]] = []
 

@@ -4,13 +4,14 @@
 
 use fcc_flight::config::{
     BoardSensor, BudgetSection, BuiltInSection, ChipSection, Config, CpuChoice, IioSection,
-    XPlaneSection,
+    ServoBoardSection, XPlaneSection,
 };
 use fcc_linux::chip::ChipKind;
 
 const BUILT_IN: &str = include_str!("../../../config/built-in.toml");
 const BOARD: &str = include_str!("../../../config/board.toml");
 const X_PLANE: &str = include_str!("../../../config/x-plane.toml");
+const SERVO_BOARD: &str = include_str!("../../../config/servo-board.toml");
 
 /// `#key = value` becomes `key = value`; what begins with `# ` is prose.
 fn uncommented(text: &str) -> String {
@@ -45,6 +46,19 @@ fn write_the_choices(config: &mut Config) {
 
 fn as_value(config: &Config) -> toml::Value {
     toml::Value::try_from(config).unwrap()
+}
+
+#[test]
+fn the_servo_boards_example_contains_every_default() {
+    Config::parse(SERVO_BOARD, "servo-board.toml").unwrap();
+    let full = uncommented(&SERVO_BOARD.replace("serial =", "#serial ="));
+    let full = Config::parse(&full.replace("#serial", "# serial"), "servo-board.toml").unwrap();
+    let expected = ServoBoardSection {
+        address: Some("192.168.4.1".parse().unwrap()),
+        ..ServoBoardSection::default()
+    };
+    let values = |section| toml::Value::try_from(section).unwrap();
+    assert_eq!(values(full.servo_board.unwrap()), values(expected));
 }
 
 #[test]

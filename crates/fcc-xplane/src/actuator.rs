@@ -23,10 +23,6 @@ use crate::sensor::send;
 use crate::traffic::WritePace;
 use crate::udp_port::UdpPort;
 
-/// While control is held, the overrides are set again at this interval, in case
-/// a datagram was lost or the simulator was restarted.
-const ASSERT_EVERY: Duration = Duration::from_secs(1);
-
 /// X-Plane as an actuator: takes control of the yoke and the throttles, writes
 /// them, and releases them.
 ///
@@ -40,6 +36,7 @@ pub struct XPlaneActuator<P: Port = UdpPort> {
     port: Arc<P>,
     link: Arc<SharedState>,
     controls: Controls,
+    assert_every: Duration,
     held: Option<HeldControl>,
 }
 
@@ -65,6 +62,7 @@ impl<P: Port> XPlaneActuator<P> {
             port,
             link,
             controls: Controls::new(config)?,
+            assert_every: config.plant.assert_every(),
             held: None,
         })
     }
@@ -113,7 +111,7 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
             return Ok(());
         }
         let mut sent = Ok(());
-        if now.since(held.asserted) >= ASSERT_EVERY {
+        if now.since(held.asserted) >= self.assert_every {
             held.asserted = now;
             sent = self.controls.take(write);
         }

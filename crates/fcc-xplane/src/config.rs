@@ -109,6 +109,27 @@ pub enum PlantKind {
     ServoBoard,
 }
 
+impl PlantKind {
+    /// After this long without a message, everything is requested again: it may
+    /// have been started again. A simulator may stand still for some frames; a
+    /// board sends 50 times a second, and holds the only switch.
+    pub(crate) const fn lost_after(self) -> Duration {
+        match self {
+            Self::Simulator => Duration::from_secs(1),
+            Self::ServoBoard => Duration::from_millis(250),
+        }
+    }
+
+    /// While control is held, the overrides are set again at this interval, in case
+    /// a datagram was lost or the other end was started again.
+    pub(crate) const fn assert_every(self) -> Duration {
+        match self {
+            Self::Simulator => Duration::from_secs(1),
+            Self::ServoBoard => Duration::from_millis(250),
+        }
+    }
+}
+
 /// How measurements are received.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Input {

@@ -28,8 +28,7 @@ use crate::quantity::Quantity;
 use crate::rows::row_of;
 use crate::traffic::{REQUESTS_PER_PORTION, RequestPace};
 
-/// A lost request is repeated after this long, this many times; all of them
-/// when the simulator has been silent for this long.
+/// A lost request is repeated after this long, this many times.
 const LOST_AFTER: Duration = Duration::from_secs(1);
 const LOST_TIMES: u8 = 5;
 
@@ -89,6 +88,8 @@ struct Subscription {
 pub(crate) struct Subscriptions {
     list: Vec<Subscription>,
     resubscribe: Duration,
+    /// After this long a silence, everything is requested again.
+    lost_after: Duration,
     restarted: Time,
     /// Whether everything was requested in vain: then some of the requests that
     /// are on their way when the simulator starts again are lost.
@@ -139,6 +140,7 @@ impl Subscriptions {
         Ok(Self {
             list,
             resubscribe: config.resubscribe,
+            lost_after: config.plant.lost_after(),
             restarted: Time::NEVER,
             in_vain: false,
             without_effect,
@@ -164,9 +166,9 @@ impl Subscriptions {
         );
     }
 
-    /// Requests everything again, at most once a second.
+    /// Requests everything again, at most once in the time after which it is lost.
     fn restart(&mut self, now: Time) {
-        if now.since(self.restarted) >= LOST_AFTER {
+        if now.since(self.restarted) >= self.lost_after {
             self.in_vain = !self.restarted.is_never();
             self.restarted = now;
             for subscription in &mut self.list {
@@ -195,7 +197,7 @@ impl Subscriptions {
         mut send: impl FnMut(&[u8]) -> Result<(), Errno>,
     ) -> Result<(), Errno> {
         let resubscribe = self.resubscribe;
-        if now.since(inbox.last_received()) >= LOST_AFTER {
+        if now.since(inbox.last_received()) >= self.lost_after {
             self.restart(now);
         } else if self.in_vain {
             self.in_vain = false;
