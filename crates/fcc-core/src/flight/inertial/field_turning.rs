@@ -67,6 +67,9 @@ struct Window {
     began: Time,
     /// From body axes at its beginning to those of the integral.
     attitude: UnitQuaternion<f64>,
+    /// The aircraft's own field, as known at its beginning: what is learned of it turns
+    /// nothing.
+    own: Vector3<f64>,
     samples: f64,
     time: f64,
     time_squared: f64,
@@ -140,9 +143,14 @@ impl FieldTurning {
         }
     }
 
-    /// Takes a sample of the field without the aircraft's own, µT; how the field
-    /// turned, if that ends a window. What is repeated to the last bit says nothing.
-    pub(super) fn add_field(&mut self, taken: Time, field: Vector3<f64>) -> Option<Turning> {
+    /// Takes a sample of the field, and the aircraft's own, µT; how the field turned, if
+    /// that ends a window. What is repeated to the last bit says nothing.
+    pub(super) fn add_field(
+        &mut self,
+        taken: Time,
+        field: Vector3<f64>,
+        own: Vector3<f64>,
+    ) -> Option<Turning> {
         if field == self.last || taken <= self.field_taken {
             return None;
         }
@@ -158,7 +166,7 @@ impl FieldTurning {
             let is_full = lasted_s >= WINDOW_S && window.samples >= LEAST_SAMPLES;
             if is_full {
                 // Its last sample is the first of the next: a jump is inside of one.
-                window.add(taken, field, attitude * field);
+                window.add(taken, field, attitude);
                 ended = window.turning(lasted_s);
             }
             if is_full || lasted_s > LONGEST_WINDOW_S {
@@ -168,13 +176,14 @@ impl FieldTurning {
         let window = self.window.get_or_insert(Window {
             began: taken,
             attitude,
+            own,
             samples: 0.0,
             time: 0.0,
             time_squared: 0.0,
             body: Line::default(),
             steady: Line::default(),
         });
-        window.add(taken, field, attitude * field);
+        window.add(taken, field, attitude);
         ended
     }
 
@@ -198,13 +207,14 @@ impl FieldTurning {
 }
 
 impl Window {
-    fn add(&mut self, taken: Time, body: Vector3<f64>, steady: Vector3<f64>) {
+    fn add(&mut self, taken: Time, field: Vector3<f64>, attitude: UnitQuaternion<f64>) {
+        let body = field - self.own;
         let time_s = taken.since(self.began).as_secs_f64();
         self.samples += 1.0;
         self.time += time_s;
         self.time_squared += time_s * time_s;
         self.body.add(time_s, body);
-        self.steady.add(time_s, steady);
+        self.steady.add(time_s, attitude * body);
     }
 
     /// The rotations over `lasted_s` by the slopes of the lines, ω = (dm/dt × m) / m²,

@@ -116,11 +116,11 @@ impl GyroscopeMonitor {
     /// the field, the attitude and the velocity.
     pub(super) fn add_field(&mut self, taken: Time, field: [f64; 3], known: &Solution) {
         let own = Vector3::from(known.body_field_ut.map(finite));
-        let field = Vector3::from(field) - own;
-        let Some(turning) = self.turning.add_field(taken, field) else {
+        let field = Vector3::from(field);
+        let Some(turning) = self.turning.add_field(taken, field, own) else {
             return;
         };
-        self.expect(taken, field, known);
+        self.expect(taken, field - own, known);
         let earth_ut = Vector3::from(known.earth_field_ut).norm();
         let is_smooth = turning.scatter < SCATTER_SHARE;
         self.is_field_sound &= is_smooth || self.is_doubted;
