@@ -131,7 +131,7 @@ impl DeviceStatus {
         self.lock().clone()
     }
 
-    fn set(&self, error: Option<&DeviceError>) {
+    pub(crate) fn set(&self, error: Option<&DeviceError>) {
         *self.lock() = error.map(ToString::to_string);
     }
 

@@ -64,13 +64,21 @@ impl DeviceError {
     /// The same for the loop.
     pub fn fault(&self) -> SensorFault {
         match self {
-            Self::Open { source, .. } | Self::Io { source, .. } => SensorFault::Io {
-                errno: source.raw_os_error().unwrap_or(0),
-            },
-            Self::WrongChip { .. } | Self::Refused { .. } => SensorFault::Io {
-                errno: Errno::ENODEV as i32,
-            },
             Self::Malformed { .. } => SensorFault::Malformed,
+            _ => SensorFault::Io {
+                errno: self.errno(),
+            },
+        }
+    }
+
+    /// The operating system's number of the error, or the one that is closest.
+    pub(crate) fn errno(&self) -> i32 {
+        match self {
+            Self::Open { source, .. } | Self::Io { source, .. } => {
+                source.raw_os_error().unwrap_or(Errno::EIO as i32)
+            }
+            Self::WrongChip { .. } | Self::Refused { .. } => Errno::ENODEV as i32,
+            Self::Malformed { .. } => Errno::EBADMSG as i32,
         }
     }
 }

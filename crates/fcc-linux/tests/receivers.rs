@@ -1,4 +1,10 @@
 //! What RC receivers say, as other programs decode it.
+#![allow(
+    clippy::indexing_slicing,
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "helper functions of tests"
+)]
 
 use fcc_core::flight::PilotControls;
 use fcc_core::framework::Switch;
@@ -85,7 +91,7 @@ fn silence_on_the_line_tells_where_a_frame_of_sbus_begins() {
     assert_eq!(found, [expected, expected]);
 }
 
-/// A capture of a Crossfire receiver in Betaflight's rx_crsf_unittest.cc, with the
+/// A capture of a Crossfire receiver in Betaflight's `rx_crsf_unittest.cc`, with the
 /// address that receivers have used since. Channels 0 to 3 are 189, 993, 978, 983,
 /// and 999, 1501, 1492, 1495 µs there, rounded to whole ones.
 const CAPTURED: [u8; 26] = [

@@ -1,5 +1,11 @@
 //! What satellite receivers say, as other programs decode and encode it: pyubx2
 //! 1.4.0, pynmea2 1.19.0.
+#![allow(
+    clippy::indexing_slicing,
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "helper functions of tests"
+)]
 
 use fcc_core::flight::{GnssFix, Position, Velocity};
 use fcc_linux::serial::{Epochs, Frames, NavPvt, Nmea, Ubx, UbxMessage, configuration};
@@ -206,7 +212,7 @@ fn fixes(sentences: &[&str]) -> Vec<GnssFix> {
     for sentence in sentences {
         let line = format!("{sentence}\r\n");
         frames.push(line.as_bytes(), |sentence| {
-            found.extend(epochs.take(sentence))
+            found.extend(epochs.take(sentence));
         });
     }
     found

@@ -1,4 +1,5 @@
 //! Frames in streams: cut anywhere, with noise between, and bytes that are none.
+#![allow(clippy::indexing_slicing, reason = "helper functions of tests")]
 
 use fcc_linux::serial::{Begin, Crsf, Epochs, Frames, Nmea, Protocol, Sbus, Ubx};
 use proptest::prelude::*;
@@ -7,7 +8,7 @@ use proptest::prelude::*;
 const ACK: &[u8] = &[0xb5, 0x62, 0x05, 0x01, 0x02, 0x00, 0x06, 0x8a, 0x98, 0xc1];
 /// Encoded by pynmea2.
 const GST: &[u8] = b"$GNGST,101112.20,1.5,,,,0.9,1.2,2.1*6A";
-/// A capture in Betaflight's rx_crsf_unittest.cc.
+/// A capture in Betaflight's `rx_crsf_unittest.cc`.
 const CRSF: &[u8] = &[
     0xc8, 0x18, 0x16, 0xbd, 0x08, 0x9f, 0xf4, 0xae, 0xf7, 0xbd, 0xef, 0x7d, 0xef, 0xfb, 0xad, 0xfd,
     0x45, 0x2b, 0x5a, 0x01, 0x00, 0x00, 0x00, 0x00, 0x00, 0x6c,

@@ -1,6 +1,11 @@
 //! The requirements of a sensor, for receivers on lines that are pulled out and
 //! put back: pseudo-terminals of the kernel.
-#![allow(clippy::unwrap_used, reason = "helper functions of tests")]
+#![allow(
+    clippy::indexing_slicing,
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "helper functions of tests"
+)]
 
 mod pty;
 mod speaking;
