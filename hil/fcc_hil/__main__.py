@@ -102,6 +102,7 @@ def _standin(options: argparse.Namespace) -> int:
         data_rows=options.data_rows,
         person=options.person or bool(options.misbehave),
         misbehaves_in=options.misbehave,
+        board=options.board,
     )
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
@@ -111,6 +112,10 @@ def _standin(options: argparse.Namespace) -> int:
             f"{settings.aircraft} flies on UDP {settings.host}:{simulator.port} and sends from "
             f"port {simulator.reply_port}; Ctrl-C ends it"
         )
+        if settings.board == "udp":
+            say(f"its servo board is on UDP {settings.host}:{simulator.board_port()}")
+        elif settings.board:
+            say(f"its servo board is on the serial line {settings.board}")
         sys.stdout.flush()
         began_s = time.monotonic()
         todo = sorted(options.at)
@@ -241,6 +246,13 @@ def _parser() -> argparse.ArgumentParser:
         for name, action in (*actions.ACTIONS.items(), ("kill", _KILL))
     )
     simulator_options.add(serves)
+    serves.add_argument(
+        "--board",
+        default="",
+        metavar="PATH",
+        help="a servo board drives the surfaces: at a serial line, to which this path will lead, "
+        "or at a UDP port (udp)",
+    )
     serves.set_defaults(run=_standin)
 
     peer = commands.add_parser("peer", help="fly JSBSim's own autopilot through the pattern")

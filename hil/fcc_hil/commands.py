@@ -196,6 +196,12 @@ def _add_raw(commands: Any) -> None:
     raw.add_argument(
         "--turbulence", type=int, choices=range(8), default=3, help="severity, 0 to 7 (default: 3)"
     )
+    raw.add_argument(
+        "--board",
+        type=ranges.number(0.0, 0.01),
+        metavar="P",
+        help="fly through a servo board, on a line that gets each bit wrong with this probability",
+    )
     raw.add_argument("--out", type=Path, metavar="FILE", help="write readings and truth here, .npz")
     raw.add_argument("--json", type=Path, metavar="FILE", help="write the figures here")
     raw.set_defaults(run=_raw)
@@ -204,6 +210,7 @@ def _add_raw(commands: Any) -> None:
 def _raw(options: argparse.Namespace) -> int:
     from . import raw_flight  # noqa: PLC0415 - needs the module fcc, which others do not
 
+    line = None if options.board is None else raw_flight.BoardLine(options.board)
     try:
         flight = raw_flight.fly(
             options.sensors,
@@ -211,10 +218,16 @@ def _raw(options: argparse.Namespace) -> int:
             aircraft=options.aircraft,
             seed=options.seed,
             turbulence=options.turbulence,
+            board=line,
         )
     except FlightError as error:
         say(f"{error}", to=sys.stderr)
         return 1
+    if line is not None:
+        say(
+            f"frames to the board: {line.board.received}, corrupt {line.board.corrupt}; "
+            f"from it: {line.computer.received}, corrupt {line.computer.corrupt}"
+        )
     arrays, worst, errors = flight.arrays, flight.score["worst"], flight.errors()
     for name in sorted(name for name in arrays if name.endswith("_t_s")):
         times_s = arrays[name]

@@ -81,6 +81,8 @@ _TRUTH = (
 _ESTIMATE = ("roll_rad", "pitch_rad", "heading_rad", "altitude_m", "airspeed_mps")
 """The values of navigation's estimate that are kept."""
 
+__all__ = ["BoardLine", "RawFlight", "fly", "save"]
+
 Arrays = dict[str, npt.NDArray[np.float64]]
 
 
