@@ -7,12 +7,16 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
+use fcc_flight::calibrate::{CalibrationKind, HandlingFault};
 use fcc_flight::config::{CpuChoice, EarlyWakeChoice, GustsChoice};
 use fcc_telemetry::Instance;
 use fcc_timer::TimerKind;
 
 use crate::exit::exit_codes;
-use values::{cpu_cap_percent, early_wake, gusts, margin_us, output, positive_seconds, rate_hz};
+use values::{
+    calibration_kind, cpu_cap_percent, early_wake, gusts, handling_fault, margin_us, output,
+    positive_seconds, rate_hz,
+};
 use x_plane::XPlaneArgs;
 
 /// A real-time flight control computer in software.
@@ -45,6 +49,8 @@ pub enum Action {
     /// Send a command to a daemon on this machine
     #[cfg(feature = "live")]
     Command(CommandArgs),
+    /// Calibrate a sensor of a configuration, guided step by step
+    Calibrate(CalibrateArgs),
     /// Check configuration files
     Check(CheckArgs),
     /// Check whether this machine suits a real-time loop
@@ -299,6 +305,41 @@ pub struct SetArgs {
     /// Indicated airspeed
     #[arg(long, value_name = "KT", allow_negative_numbers = true)]
     pub airspeed_kt: Option<f64>,
+}
+
+/// `fccd calibrate`.
+#[derive(Args, Debug)]
+pub struct CalibrateArgs {
+    /// What to calibrate
+    #[arg(value_name = "KIND", value_parser = calibration_kind())]
+    pub kind: CalibrationKind,
+    /// Configuration file
+    #[arg(value_name = "CONFIG")]
+    pub config: PathBuf,
+    /// The sensor, by its section in the configuration [default: the first
+    /// that gives such readings]
+    #[arg(long, value_name = "SECTION")]
+    pub sensor: Option<String>,
+    /// Of a mounting: only level the aircraft, and keep where the sensors point
+    #[arg(long)]
+    pub level_only: bool,
+    /// Change nothing
+    #[arg(long)]
+    pub dry_run: bool,
+    /// Give up after this time
+    #[arg(long, value_name = "S", default_value_t = 600.0, value_parser = positive_seconds,
+          allow_negative_numbers = true)]
+    pub seconds: f64,
+    /// Of the built-in aircraft, which a simulated person handles: what that
+    /// person does wrong
+    #[arg(long, value_name = "FAULT", value_parser = handling_fault())]
+    pub fault: Option<HandlingFault>,
+    /// Of the built-in aircraft: as fast as the machine can
+    #[arg(long)]
+    pub lockstep: bool,
+    /// Print the result as JSON
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// `fccd check`.

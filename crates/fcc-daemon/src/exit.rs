@@ -41,6 +41,7 @@ exits! {
     StepFailed = 15, "a step of the check against X-Plane failed or was skipped (x-plane check)";
     HitGround = 16, "the built-in aircraft hit the ground";
     Overloaded = 17, "for too long the loop's ticks left no time to sleep; it released the controls and stopped";
+    CalibrationRefused = 18, "a calibration would be poor, and was refused (calibrate)";
 }
 
 impl From<Exit> for ExitCode {

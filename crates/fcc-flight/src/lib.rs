@@ -3,12 +3,15 @@
 //!
 //! | module | what it does |
 //! |---|---|
+//! | [`calibrate`] | guided calibration of a configuration's raw sensors, and the file of what was found |
 //! | [`config`] | reads and checks the configuration file |
 //! | [`flight`] | assembles a flight from a configuration, flies and observes it |
 //! | [`probe`] | what is connected to the machine |
 //! | [`replay`] | prepares the replay of a recorded flight |
 
+pub mod calibrate;
 pub mod config;
 pub mod flight;
 pub mod probe;
 pub mod replay;
+mod sealed;

@@ -30,6 +30,7 @@ fn write_the_choices(config: &mut Config) {
     config.realtime.cpu = Some(CpuChoice::Number(3));
     config.realtime.cpu_dma_latency_us = Some(0);
     config.engage.stick_takeover = Some(0.3);
+    config.calibration.file = Some("recordings/fccd.calibration.toml".into());
     config.restart.state_file = Some("recordings/fccd.flight".into());
     config.rights.user = Some("fccd".to_owned());
     config.altimeter.field_elevation_ft = Some(723.0);

@@ -91,5 +91,6 @@ pub use remark::Remark;
 pub use schema::{PACKAGE, messages};
 pub use settings::{Compression, RecorderSettings, RecordingPace};
 pub use status::{Notice, RecorderStatus};
+pub use utc::timestamp;
 #[cfg(feature = "flight")]
 pub use views::FoxgloveViews;

@@ -43,7 +43,7 @@ fn date(unix_ns: u64) -> Date {
 }
 
 /// `2026-11-20T04:21:33Z`; nanoseconds since 1970 in UTC.
-pub(crate) fn timestamp(unix_ns: u64) -> String {
+pub fn timestamp(unix_ns: u64) -> String {
     let d = date(unix_ns);
     format!(
         "{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z",

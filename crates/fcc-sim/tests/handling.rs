@@ -11,7 +11,7 @@ use fcc_sim::units::DEGREE_RAD;
 use fcc_sim::{HandledSensors, HandlingFault, HandlingTask, RawSensorSet, SimConfig, TrueErrors};
 
 const G: f64 = 9.806_65;
-const SEEDS: u64 = 4;
+const SEEDS: u64 = 2;
 
 fn config(set: RawSensorSet, seed: u64) -> SimConfig {
     SimConfig {

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser};
+use fcc_flight::calibrate::{CalibrationKind, HandlingFault};
 use fcc_flight::config::{EarlyWakeChoice, GustsChoice};
 
 pub(super) fn gusts() -> impl TypedValueParser<Value = GustsChoice> {
@@ -11,6 +12,25 @@ pub(super) fn gusts() -> impl TypedValueParser<Value = GustsChoice> {
             .into_iter()
             .find_map(|(name, choice)| (name == given).then_some(choice))
             .ok_or("unknown strength")
+    })
+}
+
+pub(super) fn calibration_kind() -> impl TypedValueParser<Value = CalibrationKind> {
+    PossibleValuesParser::new(CalibrationKind::ALL.map(CalibrationKind::name)).try_map(|given| {
+        let mut all = CalibrationKind::ALL.into_iter();
+        all.find(|kind| kind.name() == given).ok_or("unknown kind")
+    })
+}
+
+pub(super) fn handling_fault() -> impl TypedValueParser<Value = HandlingFault> {
+    const FAULTS: [(&str, HandlingFault); 3] = [
+        ("ends-early", HandlingFault::EndsEarly),
+        ("restless", HandlingFault::Restless),
+        ("magnet", HandlingFault::Magnet),
+    ];
+    PossibleValuesParser::new(FAULTS.map(|(name, _)| name)).try_map(|given| {
+        let found = FAULTS.into_iter().find(|(name, _)| *name == given);
+        found.map(|(_, fault)| fault).ok_or("unknown fault")
     })
 }
 

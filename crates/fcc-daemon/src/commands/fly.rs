@@ -6,6 +6,7 @@ use std::sync::atomic::AtomicBool;
 use fcc_runtime::SpawnError;
 use signal_hook::consts::{SIGINT, SIGTERM};
 
+use super::calibrate::apply_calibration;
 use super::failure::Failure;
 use super::outcome;
 use crate::cli::{FlyArgs, RecordingArgs};
@@ -24,6 +25,7 @@ use fcc_flight::flight::{
 pub(super) fn fly(args: &FlyArgs) -> Result<Exit, Failure> {
     let (mut config, as_given) = configuration(args)?;
     direct(&mut config, &args.recording);
+    apply_calibration(&mut config)?;
     let plan = Plan {
         pace: if args.lockstep {
             Pace::Lockstep

@@ -1,6 +1,7 @@
 //! The commands: each prints its result on standard output and messages on
 //! standard error, and returns an exit code.
 
+mod calibrate;
 mod check;
 #[cfg(feature = "live")]
 mod command;
@@ -84,6 +85,7 @@ fn carry_out(command: Action) -> Result<Exit, Failure> {
         Action::Command(args) => command::command(&args)?,
         #[cfg(feature = "live")]
         Action::Top(args) => top::top(&args)?,
+        Action::Calibrate(args) => calibrate::calibrate(&args)?,
         Action::Check(args) => check::check(&args),
         Action::Doctor(args) => doctor::doctor(&args)?,
         Action::Probe(args) => probe::probe(&args),

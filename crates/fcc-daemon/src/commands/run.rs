@@ -1,5 +1,6 @@
 //! `fccd run`: flies the aircraft of a configuration until stopped.
 
+use super::calibrate::apply_calibration;
 use super::failure::Failure;
 use super::fly::{conduct, direct};
 use crate::cli::RunArgs;
@@ -28,6 +29,7 @@ pub(super) fn run(args: &RunArgs) -> Result<Exit, Failure> {
     if let Some(instance) = &args.instance {
         config.telemetry.instance = instance.clone();
     }
+    apply_calibration(&mut config)?;
     let plan = Plan {
         pace: Pace::RealTime,
         length: Length::Open,

@@ -2,6 +2,7 @@
 //! fails, and how it ends.
 #![cfg(test)]
 
+mod calibrate;
 mod damaged;
 mod named_files;
 mod output;

@@ -21,7 +21,7 @@ struct Terminal {
     theirs: File,
 }
 
-fn id(child: &Child) -> Pid {
+pub(super) fn id(child: &Child) -> Pid {
     Pid::from_raw(i32::try_from(child.id()).unwrap())
 }
 
@@ -43,12 +43,8 @@ fn watched(folder: &std::path::Path, instance: &str) -> (Flight, Child, Terminal
     sized(folder, instance, ["24", "80"])
 }
 
-fn sized(
-    folder: &std::path::Path,
-    instance: &str,
-    [rows, columns]: [&str; 2],
-) -> (Flight, Child, Terminal) {
-    let flight = Flight::start(folder, instance);
+/// Both sides of a terminal of this size.
+pub(super) fn terminal([rows, columns]: [&str; 2]) -> (PtyMaster, File) {
     // Closed in every program started here: otherwise each would keep its own
     // terminal open.
     let ours = posix_openpt(OFlag::O_RDWR | OFlag::O_NOCTTY | OFlag::O_CLOEXEC).unwrap();
@@ -65,6 +61,16 @@ fn sized(
         .custom_flags(OFlag::O_NOCTTY.bits())
         .open(name)
         .unwrap();
+    (ours, theirs)
+}
+
+fn sized(
+    folder: &std::path::Path,
+    instance: &str,
+    [rows, columns]: [&str; 2],
+) -> (Flight, Child, Terminal) {
+    let flight = Flight::start(folder, instance);
+    let (ours, theirs) = terminal([rows, columns]);
     let end = || Stdio::from(theirs.try_clone().unwrap());
     let top = fccd(folder, &["top", "--instance", instance])
         .stdin(end())

@@ -87,6 +87,12 @@ macro_rules! axes_section {
                 }
             }
         }
+
+        impl From<&$name> for AxesCalibration {
+            fn from(section: &$name) -> Self {
+                Self::new(&section.into())
+            }
+        }
     };
 }
 
@@ -252,9 +258,9 @@ impl CalibrationSection {
     /// The core's calibration; none if it changes nothing.
     pub fn to_core(&self) -> Option<Calibration> {
         let calibration = Calibration {
-            accelerometer: AxesCalibration::new(&(&self.accelerometer).into()),
-            gyroscope: AxesCalibration::new(&(&self.gyroscope).into()),
-            magnetometer: AxesCalibration::new(&(&self.magnetometer).into()),
+            accelerometer: (&self.accelerometer).into(),
+            gyroscope: (&self.gyroscope).into(),
+            magnetometer: (&self.magnetometer).into(),
             static_pressure: (&self.static_pressure).into(),
             differential_pressure: (&self.differential_pressure).into(),
             air_temperature: (&self.air_temperature).into(),

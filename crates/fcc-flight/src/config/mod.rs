@@ -12,6 +12,7 @@ mod board;
 mod budget;
 mod built_in;
 mod calibration;
+mod calibration_file;
 mod cpu;
 mod devices;
 mod early_wake;
@@ -50,6 +51,7 @@ pub use board::{BoardSensor, ChipSection, IioSection, OutputChoice};
 pub use budget::{BudgetSection, OverloadSection, WatchdogSection};
 pub use built_in::{BuiltInSection, GustsChoice, RawSensorsChoice};
 pub use calibration::CalibrationSection;
+pub use calibration_file::{CalibrationFileSection, RawSource};
 pub use cpu::CpuChoice;
 pub use devices::{ActuatorEntry, NoKeys, SensorEntry};
 pub use early_wake::EarlyWakeChoice;
@@ -97,6 +99,8 @@ pub struct Config {
     pub rights: RightsSection,
     /// Live telemetry.
     pub telemetry: TelemetrySection,
+    /// What `fccd calibrate` found.
+    pub calibration: CalibrationFileSection,
     /// Where attitude comes from.
     pub navigation: NavigationSection,
     /// The mode after engaging.

@@ -49,6 +49,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("recording.max_file_minutes", 0.0, 1e5),
     ("recording.keep_total_mb", 0.0, 1e8),
     ("restart.max_age_s", 1.0, 600.0),
+    ("calibration.stale_after_days", 1.0, 10_000.0),
     ("guidance.hold_s", 0.0, 86_400.0),
     ("guidance.leg_s", 1.0, 86_400.0),
     ("guidance.turn_deg", -179.0, 179.0),

@@ -66,10 +66,8 @@ impl RestartRequest {
     /// The request for a configuration.
     pub(super) fn of(config: &Config) -> Self {
         let section = &config.restart;
-        let path = section.state_file.clone().unwrap_or_else(|| {
-            let folder = state_directory().unwrap_or_else(|| config.recording.folder.clone());
-            folder.join(format!("{}.flight", config.telemetry.instance))
-        });
+        let path = section.state_file.clone();
+        let path = path.unwrap_or_else(|| config.state_file("flight"));
         Self {
             mode: section.mode,
             max_age: Duration::from_secs_f64(section.max_age_s),
@@ -78,12 +76,6 @@ impl RestartRequest {
             release_left_held: section.release_left_held,
         }
     }
-}
-
-/// The state directory given by systemd.
-fn state_directory() -> Option<PathBuf> {
-    let folders = std::env::var_os("STATE_DIRECTORY")?;
-    std::env::split_paths(&folders).next()
 }
 
 /// A fingerprint that differs for configurations that fly differently.

@@ -1,16 +1,14 @@
 //! The state file: the state of the flight, for the next start.
 //!
-//! A header line with the version and a CRC-32 of the rest, followed by JSON.
-//! It is written to a temporary file, synced and renamed, so that an
-//! interruption leaves either the old or the new file and never a part of one;
-//! the CRC is for disks that do not honour a sync.
+//! A [sealed](crate::sealed) file of JSON.
 
-use std::fs::{self, File};
-use std::io::{self, ErrorKind, Write};
+use std::fs;
+use std::io::{self, ErrorKind};
 use std::path::Path;
 
 use super::saved::Saved;
 use super::state_page::Page;
+use crate::sealed::{self, Unsealed, sync_folder};
 
 /// The beginning of every state file.
 const NAME: &str = "fccd-flight";
@@ -33,6 +31,16 @@ pub(super) enum StateFileError {
     Damaged,
 }
 
+impl From<Unsealed> for StateFileError {
+    fn from(unsealed: Unsealed) -> Self {
+        match unsealed {
+            Unsealed::Foreign => Self::Foreign,
+            Unsealed::Version(version) => Self::Version(version),
+            Unsealed::Damaged => Self::Damaged,
+        }
+    }
+}
+
 /// Reads a file; none if it does not exist.
 pub(super) fn read(path: &Path) -> Result<Option<Saved>, StateFileError> {
     match fcc_record::read_own_file(path, MOST_BYTES) {
@@ -44,12 +52,7 @@ pub(super) fn read(path: &Path) -> Result<Option<Saved>, StateFileError> {
 
 /// Writes a file; when this returns, it is on the disk.
 pub(super) fn write(path: &Path, saved: &Saved) -> io::Result<()> {
-    let new = path.with_extension("flight.new");
-    let mut file = fcc_record::create_anew(&new)?;
-    file.write_all(&encode(saved)?)?;
-    file.sync_data()?;
-    fs::rename(&new, path)?;
-    sync_folder(path)
+    sealed::replace(path, "flight.new", &encode(saved)?)
 }
 
 /// Removes a file; when this returns, the removal is on the disk.
@@ -61,47 +64,13 @@ pub(super) fn remove(path: &Path) -> io::Result<()> {
     }
 }
 
-fn sync_folder(path: &Path) -> io::Result<()> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    File::open(folder)?.sync_all()
-}
-
 fn encode(saved: &Saved) -> io::Result<Vec<u8>> {
     let body = serde_json::to_vec(&Page::of(saved))?;
-    let mut bytes = format!("{NAME} {VERSION} {:08x}\n", crc32fast::hash(&body)).into_bytes();
-    bytes.extend(body);
-    Ok(bytes)
+    Ok(sealed::seal(NAME, VERSION, &body))
 }
 
 fn decode(bytes: &[u8]) -> Result<Saved, StateFileError> {
-    let (head, body) = match bytes.iter().position(|byte| *byte == b'\n') {
-        Some(end) => bytes.split_at(end),
-        None => (bytes, [].as_slice()),
-    };
-    let head = std::str::from_utf8(head).map_err(|_| StateFileError::Foreign)?;
-    let mut words = head.split(' ');
-    if words.next() != Some(NAME) {
-        return Err(if bytes.is_empty() {
-            StateFileError::Damaged
-        } else {
-            StateFileError::Foreign
-        });
-    }
-    let version = words.next().and_then(|word| word.parse().ok());
-    match version.ok_or(StateFileError::Damaged)? {
-        VERSION => {}
-        version => return Err(StateFileError::Version(version)),
-    }
-    let crc = words
-        .next()
-        .and_then(|word| u32::from_str_radix(word, 16).ok());
-    let body = body.get(1..).unwrap_or_default();
-    if crc != Some(crc32fast::hash(body)) || words.next().is_some() {
-        return Err(StateFileError::Damaged);
-    }
+    let body = sealed::open(NAME, VERSION, bytes)?;
     let page: Page = serde_json::from_slice(body).map_err(|_| StateFileError::Damaged)?;
     page.saved().ok_or(StateFileError::Damaged)
 }
@@ -110,10 +79,8 @@ fn decode(bytes: &[u8]) -> Result<Saved, StateFileError> {
 /// read again; `None` if it is refused.
 #[cfg(fuzzing)]
 pub fn read_state(body: &[u8]) -> Option<bool> {
-    let mut bytes = format!("{NAME} {VERSION} {:08x}\n", crc32fast::hash(body)).into_bytes();
-    bytes.extend(body);
     let _ = decode(body);
-    let saved = decode(&bytes).ok()?;
+    let saved = decode(&sealed::seal(NAME, VERSION, body)).ok()?;
     let again = encode(&saved).ok()?;
     Some(decode(&again).is_ok_and(|again| again == saved))
 }

@@ -1,0 +1,226 @@
+//! `fccd calibrate KIND CONFIG`: a person turns the sensors or leaves them alone,
+//! and is told what to do next. Nothing is engaged and no actuator is opened.
+
+mod picture;
+mod words;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+use fcc_core::flight::calibration::{MountingWay, Next};
+use fcc_core::framework::{Tick, Time};
+use fcc_flight::calibrate::{
+    CalibrationFile, CalibrationKind, CalibrationSession, Entry, SessionError, apply,
+};
+use fcc_flight::config::Config;
+use indicatif::ProgressBar;
+use serde::Serialize;
+use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
+
+use super::failure::Failure;
+use crate::cli::CalibrateArgs;
+use crate::exit::Exit;
+use crate::output;
+
+/// Time between two pictures.
+const REDRAW_EVERY: Duration = Duration::from_millis(100);
+
+/// Puts what was found over the configuration of a flight, and says so.
+pub(super) fn apply_calibration(config: &mut Config) -> Result<(), Failure> {
+    let applied = apply(config, unix_s())
+        .map_err(|(file, error)| Failure::new(format_args!("{}: {error}", file.display())))?;
+    for remark in applied.remarks {
+        output::message(format_args!("fccd: {remark}"));
+    }
+    Ok(())
+}
+
+/// What is printed with `--json`.
+#[derive(Serialize)]
+struct Printed<'a> {
+    found: &'a Entry,
+    /// Where it was stored; none if nothing was changed.
+    file: Option<String>,
+}
+
+/// Calibrates a sensor.
+pub(super) fn calibrate(args: &CalibrateArgs) -> Result<Exit, Failure> {
+    let (mut config, _) = Config::load_with_text(&args.config)?;
+    let path = config.calibration_file();
+    let wrong = |error| Failure::new(format_args!("{}: {error}", path.display()));
+    let mut file = CalibrationFile::read(&path).map_err(wrong)?;
+    apply_calibration(&mut config)?;
+    let way = if args.level_only {
+        MountingWay::LevelOnly
+    } else {
+        MountingWay::LevelAndNoseUp
+    };
+    let place = args.sensor.clone();
+    let session = CalibrationSession::open(&config, args.kind, way, place, args.fault, unix_s());
+    let mut session = session.map_err(|error| Failure::of(Exit::Usage, error))?;
+    if args.lockstep && session.length_s().is_none() {
+        return Err(Failure::of(
+            Exit::Usage,
+            "--lockstep is for the built-in aircraft, whose time follows that of the loop",
+        ));
+    }
+    guide(args, &config, &mut session)?;
+    let found = session.finish().map_err(|refusal| {
+        let kind = args.kind.name();
+        let message = format_args!("no calibration of the {kind}: {refusal}. Nothing was changed");
+        Failure::of(Exit::CalibrationRefused, message.to_string())
+    })?;
+    let stored = (!args.dry_run).then(|| path.display().to_string());
+    if !args.dry_run {
+        file.add(found.clone(), &path).map_err(wrong)?;
+    }
+    let printed = Printed {
+        found: &found,
+        file: stored,
+    };
+    if args.json {
+        return Ok(output::json(&printed, Exit::Success));
+    }
+    Ok(output::result(text(&printed), Exit::Success))
+}
+
+fn text(printed: &Printed<'_>) -> String {
+    let Entry {
+        sensor,
+        error,
+        error_limit,
+        unit,
+        keys,
+        ..
+    } = printed.found;
+    let kind = printed.found.kind.name();
+    let keys = toml::to_string(keys).unwrap_or_default();
+    let stored = match &printed.file {
+        Some(file) => format!("stored in {file}; flights use it instead of the same keys"),
+        None => "not stored (--dry-run)".to_owned(),
+    };
+    format!(
+        "{kind} of {sensor}: an error of {error:.3} {unit} is left ({error_limit:.3} {unit} is \
+         accepted)\n\n{keys}\n{stored}"
+    )
+}
+
+/// Reads the sensors at the loop's rate until all is there, or the time is over.
+fn guide(
+    args: &CalibrateArgs,
+    config: &Config,
+    session: &mut CalibrationSession,
+) -> Result<(), Failure> {
+    let stopped = stopped_by_signals()?;
+    output::message(words::beforehand(args.kind));
+    let mut screen = Screen::new();
+    let period = Duration::from_secs_f64(1.0 / config.tick.rate_hz);
+    let limit_s = session.length_s().map_or(args.seconds, |length_s| {
+        if args.fault.is_some() {
+            length_s.min(args.seconds)
+        } else {
+            args.seconds
+        }
+    });
+    let begun = Instant::now();
+    let mut number = 0;
+    loop {
+        number += 1;
+        let due = period * u32::try_from(number).unwrap_or(u32::MAX);
+        if stopped.load(Ordering::Relaxed) {
+            return Err(Failure::new("interrupted: nothing was changed"));
+        }
+        if !args.lockstep {
+            thread::sleep(due.saturating_sub(begun.elapsed()));
+        }
+        let now = Time::from_nanos(i64::try_from(due.as_nanos()).unwrap_or(i64::MAX));
+        let tick = Tick {
+            number,
+            scheduled: now,
+            woke: now,
+            dt_s: period.as_secs_f64(),
+            ..Tick::default()
+        };
+        session.tick(&tick).map_err(|error| {
+            let exit = match error {
+                SessionError::Silent(_) => Exit::Failure,
+                _ => Exit::Usage,
+            };
+            Failure::of(exit, error)
+        })?;
+        screen.show(args.kind, session);
+        let is_complete = session.guided().is_some_and(|guided| guided.is_complete());
+        if is_complete || due.as_secs_f64() >= limit_s {
+            return Ok(());
+        }
+    }
+}
+
+fn stopped_by_signals() -> Result<Arc<AtomicBool>, Failure> {
+    let stopped = Arc::new(AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM, SIGQUIT, SIGHUP] {
+        signal_hook::flag::register(signal, Arc::clone(&stopped))
+            .map_err(|error| Failure::new(format_args!("signals cannot be caught: {error}")))?;
+    }
+    Ok(stopped)
+}
+
+/// A picture that is replaced all the time on a terminal; elsewhere a line for
+/// each new thing to do.
+struct Screen {
+    live: ProgressBar,
+    drawn: Option<Instant>,
+    said: Option<Next>,
+}
+
+impl Screen {
+    fn new() -> Self {
+        Self {
+            live: ProgressBar::new_spinner().with_style(plain()),
+            drawn: None,
+            said: None,
+        }
+    }
+
+    fn show(&mut self, kind: CalibrationKind, session: &CalibrationSession) {
+        let (Some(guided), Some(measured)) = (session.guided(), session.measured()) else {
+            return;
+        };
+        let next = guided.next();
+        let is_complete = guided.is_complete();
+        if self.live.is_hidden() {
+            if self.said != Some(next) {
+                self.said = Some(next);
+                let percent = 100.0 * guided.progress();
+                output::message(format_args!("{percent:3.0} %  {}", words::words(next)));
+            }
+            return;
+        }
+        if is_complete || self.drawn.is_none_or(|at| at.elapsed() >= REDRAW_EVERY) {
+            self.drawn = Some(Instant::now());
+            let drawn = picture::picture(kind, guided, &measured);
+            self.live.set_message(drawn);
+            self.live.tick();
+        }
+    }
+}
+
+/// The last picture stays.
+impl Drop for Screen {
+    fn drop(&mut self) {
+        self.live.abandon();
+    }
+}
+
+/// The message alone.
+fn plain() -> indicatif::ProgressStyle {
+    indicatif::ProgressStyle::with_template("{msg}")
+        .unwrap_or_else(|_| indicatif::ProgressStyle::default_spinner())
+}
+
+fn unix_s() -> u64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH);
+    since.map_or(0, |since| since.as_secs())
+}

@@ -1,0 +1,41 @@
+//! What the person is to do, in words.
+
+use fcc_core::flight::calibration::Next;
+use fcc_flight::calibrate::CalibrationKind;
+
+/// What to do before it begins.
+pub(super) const fn beforehand(kind: CalibrationKind) -> &'static str {
+    match kind {
+        CalibrationKind::Accelerometer => {
+            "Hold the sensor still with each of its six faces up, and with six of its edges, 3 s \
+             each. Lean it against something firm: a hand trembles."
+        }
+        CalibrationKind::Gyroscope => "Put it on something firm and take your hands off for 11 s.",
+        CalibrationKind::Magnetometer => {
+            "With everything switched on that is on in flight, go away from steel and magnets and \
+             turn it slowly through all directions. Calibrate accelerometer and mounting before."
+        }
+        CalibrationKind::Airspeed => {
+            "Shield the tube from wind, without touching it, and leave the aircraft alone for 11 s."
+        }
+        CalibrationKind::Mounting => {
+            "Put the aircraft level as in cruise, then raise its nose. Calibrate the accelerometer \
+             before."
+        }
+    }
+}
+
+/// What to do next.
+pub(super) fn words(next: Next) -> String {
+    match next {
+        Next::Wait => "wait for the first readings".to_owned(),
+        Next::LeaveAlone => "leave it alone".to_owned(),
+        Next::Place(place) => format!("put it with {place} up, and let go"),
+        Next::Hold(place) => format!("{place} is up: keep it still"),
+        Next::Turn(place) => format!("turn it slowly; missing: {place} along the field"),
+        Next::CoverTube => "shield the tube from wind, and leave it alone".to_owned(),
+        Next::Level => "put the aircraft level, and leave it alone".to_owned(),
+        Next::RaiseNose => "raise its nose by 20° or more, and hold it there".to_owned(),
+        Next::Done => "done".to_owned(),
+    }
+}

@@ -1,0 +1,204 @@
+//! `fccd calibrate` of the built-in aircraft's raw sensors, in simulated hands.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Output, Stdio};
+
+use super::fccd;
+
+const CONFIG: &str = "[built-in]\nraw_sensors = \"phone\"\nengage_at_s = 6.0\n\
+                      [navigation]\nmethod = \"kalman\"\n";
+
+fn with_config(folder: &Path, more: &str) {
+    fs::write(folder.join("raw.toml"), format!("{CONFIG}{more}")).unwrap();
+}
+
+fn calibrate(folder: &Path, words: &[&str]) -> Output {
+    let all = [&["calibrate"], words, &["raw.toml", "--lockstep"]].concat();
+    fccd(folder, &all).output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+const FILE: &str = "recordings/fccd.calibration.toml";
+
+/// In the order in which they are best done; then they are flown, and the
+/// recording has them.
+#[test]
+fn all_kinds_are_found_stored_and_flown() {
+    let folder = tempfile::tempdir().unwrap();
+    with_config(folder.path(), "");
+    for kind in [
+        "gyroscope",
+        "accelerometer",
+        "mounting",
+        "magnetometer",
+        "airspeed",
+    ] {
+        let done = calibrate(folder.path(), &[kind]);
+        assert!(done.status.success(), "{kind}: {}", said(&done));
+        let printed = String::from_utf8_lossy(&done.stdout).into_owned();
+        assert!(
+            printed.contains("stored in recordings/fccd.calibration.toml"),
+            "{printed}"
+        );
+    }
+    let stored = fs::read_to_string(folder.path().join(FILE)).unwrap();
+    assert!(stored.starts_with("# fccd-calibration 1 "), "{stored}");
+    let table: toml::Table = stored.parse().unwrap();
+    let entries = table["calibration"].as_array().unwrap();
+    assert_eq!(entries.len(), 5, "{stored}");
+    assert!(
+        folder
+            .path()
+            .join("recordings/fccd.calibration.old.toml")
+            .exists()
+    );
+    let words = [
+        "fly",
+        "--config",
+        "raw.toml",
+        "--lockstep",
+        "--seconds",
+        "20",
+        "--quiet",
+    ];
+    let flown = fccd(folder.path(), &words).output().unwrap();
+    assert!(flown.status.success(), "{}", said(&flown));
+    assert!(said(&flown).contains("calibrated by recordings/fccd.calibration.toml: gyroscope of"));
+    // The recording has the configuration in full: it replays without the file.
+    fs::remove_file(folder.path().join(FILE)).unwrap();
+    let recording = fs::read_dir(folder.path().join("recordings")).unwrap();
+    let recording = recording
+        .map(|entry| entry.unwrap().path())
+        .find(|path| path.extension().is_some_and(|of| of == "mcap"))
+        .unwrap();
+    let replayed = fccd(folder.path(), &["replay", recording.to_str().unwrap()]);
+    let replayed = { replayed }.output().unwrap();
+    assert!(replayed.status.success(), "{}", said(&replayed));
+    let bytes = fs::read(&recording).unwrap();
+    assert!(!bytes.is_empty());
+}
+
+#[test]
+fn poor_handling_is_refused_and_changes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    with_config(folder.path(), "");
+    for (kind, fault, expected) in [
+        ("accelerometer", "ends-early", "of 12 are there"),
+        ("gyroscope", "restless", "while it was to lie still"),
+        (
+            "magnetometer",
+            "magnet",
+            "no calibration of the magnetometer: ",
+        ),
+    ] {
+        let refused = calibrate(folder.path(), &[kind, "--fault", fault]);
+        assert_eq!(
+            refused.status.code(),
+            Some(18),
+            "{kind}: {}",
+            said(&refused)
+        );
+        assert!(said(&refused).contains(expected), "{}", said(&refused));
+        assert!(said(&refused).contains("Nothing was changed"));
+    }
+    let tried = calibrate(folder.path(), &["gyroscope", "--dry-run", "--json"]);
+    assert!(tried.status.success(), "{}", said(&tried));
+    let found: serde_json::Value = serde_json::from_slice(&tried.stdout).unwrap();
+    assert!(
+        found["file"].is_null() && found["found"]["unit"] == "°/s",
+        "{found}"
+    );
+    assert!(!folder.path().join(FILE).exists());
+}
+
+#[test]
+fn a_damaged_file_and_another_sensors_are_not_used() {
+    let folder = tempfile::tempdir().unwrap();
+    with_config(folder.path(), "");
+    assert!(calibrate(folder.path(), &["gyroscope"]).status.success());
+    let fly = |more: &[&str]| {
+        let words = [
+            "fly",
+            "--config",
+            "raw.toml",
+            "--lockstep",
+            "--seconds",
+            "1",
+            "--quiet",
+        ];
+        fccd(folder.path(), &[&words, more].concat())
+            .output()
+            .unwrap()
+    };
+    let other = fly(&["--seed", "2"]);
+    assert!(other.status.success());
+    let expected = "not used: it was made for simulated phone, seed 1, and here is simulated \
+                    phone, seed 2";
+    assert!(said(&other).contains(expected), "{}", said(&other));
+    let path = folder.path().join(FILE);
+    let good = fs::read_to_string(&path).unwrap();
+    fs::write(&path, good.replace("unix_s = 1", "unix_s = 2")).unwrap();
+    for refused in [fly(&[]), calibrate(folder.path(), &["airspeed"])] {
+        assert_eq!(refused.status.code(), Some(1), "{}", said(&refused));
+        assert!(
+            said(&refused).contains("is damaged, or was edited"),
+            "{}",
+            said(&refused)
+        );
+    }
+    with_config(folder.path(), "[calibration]\nenabled = false\n");
+    let without = fly(&[]);
+    assert!(without.status.success() && !said(&without).contains("calibrat"));
+}
+
+#[test]
+fn a_configuration_without_raw_sensors_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("raw.toml"), "[built-in]\n").unwrap();
+    let refused = calibrate(folder.path(), &["gyroscope"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(
+        said(&refused).contains("has no raw sensors"),
+        "{}",
+        said(&refused)
+    );
+}
+
+/// On a terminal there is a picture; Ctrl-C ends it and changes nothing.
+#[test]
+fn a_terminal_shows_the_coverage_and_an_interruption_changes_nothing() {
+    use std::io::Read as _;
+    use std::time::{Duration, Instant};
+
+    use nix::sys::signal::{Signal, kill};
+
+    let folder = tempfile::tempdir().unwrap();
+    with_config(folder.path(), "");
+    let (mut ours, theirs) = super::top::terminal(["40", "120"]);
+    let mut child = fccd(folder.path(), &["calibrate", "accelerometer", "raw.toml"])
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(theirs)
+        .spawn()
+        .unwrap();
+    let (mut seen, begun) = (String::new(), Instant::now());
+    let mut bytes = [0; 4096];
+    while !(seen.contains("edges, two of each row") && seen.contains("[+x]")) {
+        assert!(begun.elapsed() < Duration::from_secs(60), "{seen}");
+        let length = ours.read(&mut bytes).unwrap();
+        seen += &String::from_utf8_lossy(&bytes[..length]);
+    }
+    kill(super::top::id(&child), Signal::SIGINT).unwrap();
+    // The terminal is read until it is closed.
+    while ours.read(&mut bytes).is_ok_and(|length| {
+        seen += &String::from_utf8_lossy(&bytes[..length]);
+        length > 0
+    }) {}
+    assert_eq!(child.wait().unwrap().code(), Some(1));
+    assert!(seen.contains("interrupted: nothing was changed"), "{seen}");
+    assert!(!folder.path().join(FILE).exists());
+}

@@ -1,0 +1,126 @@
+//! The file of what was found: TOML below a first line with its checksum.
+
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::Entry;
+use crate::sealed::{self, Unsealed};
+
+/// The beginning of every such file, a comment of TOML.
+const NAME: &str = "# fccd-calibration";
+/// The version of the layout.
+const VERSION: u32 = 1;
+/// A file has a hundredth of it.
+const MOST_BYTES: u64 = 100_000;
+
+/// Why a file cannot be used.
+#[derive(thiserror::Error, Debug)]
+#[non_exhaustive]
+pub enum CalibrationFileError {
+    /// The system's error.
+    #[error("cannot be read: {0}")]
+    Unreadable(#[source] io::Error),
+    /// It was written by something else; never overwritten.
+    #[error("was not written by fccd calibrate: choose another calibration.file")]
+    Foreign,
+    /// It is of another version.
+    #[error("is of another version of fccd ({0}, and this one reads {VERSION}): calibrate again")]
+    Version(u32),
+    /// It was damaged, or edited.
+    #[error(
+        "is damaged, or was edited: put back its copy with the extension old.toml, or remove it \
+         and calibrate again; values of your own belong into the configuration's calibration"
+    )]
+    Damaged,
+    /// A value cannot be used.
+    #[error("cannot be used: {0}; calibrate again")]
+    Unusable(String),
+    /// It cannot be written.
+    #[error("cannot be written: {0}")]
+    Unwritable(#[source] io::Error),
+}
+
+impl From<Unsealed> for CalibrationFileError {
+    fn from(unsealed: Unsealed) -> Self {
+        match unsealed {
+            Unsealed::Foreign => Self::Foreign,
+            Unsealed::Version(version) => Self::Version(version),
+            Unsealed::Damaged => Self::Damaged,
+        }
+    }
+}
+
+/// All that was found.
+#[derive(Clone, PartialEq, Debug, Default, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct CalibrationFile {
+    /// At most one for each kind and place.
+    #[serde(default)]
+    pub calibration: Vec<Entry>,
+}
+
+impl CalibrationFile {
+    /// Reads a file; nothing was found if it does not exist.
+    ///
+    /// # Errors
+    /// When it cannot be read, is damaged, or was not written by this program.
+    pub fn read(path: &Path) -> Result<Self, CalibrationFileError> {
+        match fcc_record::read_own_file(path, MOST_BYTES) {
+            Ok(bytes) => Self::decode(&bytes),
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(Self::default()),
+            Err(error) => Err(CalibrationFileError::Unreadable(error)),
+        }
+    }
+
+    /// Adds what was found, instead of what was found before of the same, and
+    /// writes the file. The old one is kept beside it, with the extension
+    /// `old.toml`.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn add(&mut self, entry: Entry, path: &Path) -> Result<(), CalibrationFileError> {
+        let is_other = |old: &Entry| (old.kind, &old.place) != (entry.kind, &entry.place);
+        self.calibration.retain(is_other);
+        self.calibration.push(entry);
+        self.write(path).map_err(CalibrationFileError::Unwritable)
+    }
+
+    fn write(&self, path: &Path) -> io::Result<()> {
+        if let Some(folder) = path.parent()
+            && !folder.as_os_str().is_empty()
+        {
+            fcc_record::create_folder(folder)?;
+        }
+        match fcc_record::read_own_file(path, MOST_BYTES) {
+            Ok(old) => sealed::replace(&backup(path), "old.new", &old)?,
+            Err(error) if error.kind() == ErrorKind::NotFound => {}
+            Err(error) => return Err(error),
+        }
+        let body = toml::to_string(self).map_err(io::Error::other)?;
+        let bytes = sealed::seal(NAME, VERSION, body.as_bytes());
+        sealed::replace(path, "toml.new", &bytes)
+    }
+
+    fn decode(bytes: &[u8]) -> Result<Self, CalibrationFileError> {
+        let body = sealed::open(NAME, VERSION, bytes)?;
+        let text = std::str::from_utf8(body).map_err(|_| CalibrationFileError::Damaged)?;
+        toml::from_str(text).map_err(|_| CalibrationFileError::Damaged)
+    }
+}
+
+/// `fccd.calibration.toml` becomes `fccd.calibration.old.toml`.
+fn backup(path: &Path) -> PathBuf {
+    path.with_extension("old.toml")
+}
+
+/// Whether what a file with this body contains is written so that it is read
+/// again; `None` if it is refused.
+#[cfg(fuzzing)]
+pub fn read_calibration(body: &[u8]) -> Option<bool> {
+    let _ = CalibrationFile::decode(body);
+    let read = CalibrationFile::decode(&sealed::seal(NAME, VERSION, body)).ok()?;
+    let again = sealed::seal(NAME, VERSION, toml::to_string(&read).ok()?.as_bytes());
+    Some(CalibrationFile::decode(&again).is_ok())
+}

@@ -1,0 +1,269 @@
+//! The sensors of a configuration, uncalibrated, and the calibration of one.
+
+use fcc_core::flight::Measurements;
+use fcc_core::flight::calibration::{
+    Axes, EarthField, GuidedCalibration, GuidedKind, MountingWay, Refusal,
+};
+use fcc_core::framework::{Reading, Sensor, Tick};
+use fcc_sim::{HandledSensors, HandlingFault, HandlingTask, SimConfig};
+
+use super::entry::Circumstances;
+use super::{CalibrationKind, Entry};
+use crate::config::{Config, RawSource};
+
+/// For so long the sensors may take to give something, s.
+const OPENING_S: f64 = 5.0;
+/// Before it, another source may give it, too, s.
+const LOOKING_S: f64 = 0.5;
+
+/// Why there is no calibration session.
+#[derive(thiserror::Error, Debug)]
+#[non_exhaustive]
+pub enum SessionError {
+    /// Nothing gives raw readings.
+    #[error(
+        "the configuration has no raw sensors: give built-in.raw_sensors, or list sensors that \
+         have a calibration"
+    )]
+    NoSources,
+    /// There is no such source.
+    #[error("there is no sensor {given}: choose of {there}")]
+    NoSuchSource {
+        /// What was asked for.
+        given: String,
+        /// What there is.
+        there: String,
+    },
+    /// Nothing arrived.
+    #[error(
+        "no readings of the {0} arrived: check its wiring, and that it is in the configuration"
+    )]
+    Silent(&'static str),
+}
+
+/// A source that is read.
+struct Opened {
+    place: String,
+    sensor: Box<dyn Sensor<Measurements>>,
+    measured: Measurements,
+}
+
+/// The sensors of a configuration, uncalibrated, and the calibration of one. No
+/// actuator is opened.
+pub struct CalibrationSession {
+    kind: CalibrationKind,
+    way: MountingWay,
+    config: Config,
+    asked: Option<String>,
+    opened: Vec<Opened>,
+    /// Which of them is calibrated.
+    chosen: Option<(usize, Box<GuidedCalibration>)>,
+    accelerometer: Axes,
+    since_s: f64,
+    length_s: Option<f64>,
+    unix_s: u64,
+}
+
+impl CalibrationSession {
+    /// Opens the sensors. `config` has what was found before; `place` is one of
+    /// [`Config::raw_sources`], if not the first that gives something is meant.
+    /// The built-in aircraft's are in the hands of a simulated person. `unix_s`
+    /// is the present time.
+    ///
+    /// # Errors
+    /// When there are none, or none of this name.
+    pub fn open(
+        config: &Config,
+        kind: CalibrationKind,
+        way: MountingWay,
+        place: Option<String>,
+        fault: Option<HandlingFault>,
+        unix_s: u64,
+    ) -> Result<Self, SessionError> {
+        let sources = config.raw_sources();
+        if sources.is_empty() {
+            return Err(SessionError::NoSources);
+        }
+        if let Some(given) = &place
+            && !sources.iter().any(|source| source.place == *given)
+        {
+            let there: Vec<_> = sources.iter().map(|source| source.place.clone()).collect();
+            return Err(SessionError::NoSuchSource {
+                given: given.clone(),
+                there: there.join(", "),
+            });
+        }
+        let mut length_s = None;
+        let mut opened = Vec::new();
+        for source in sources {
+            if let Some(handled) = in_hands(config, &source, kind, fault) {
+                length_s = Some(handled.length_s());
+                opened.push(Opened {
+                    place: source.place,
+                    sensor: Box::new(handled),
+                    measured: Measurements::default(),
+                });
+            }
+        }
+        Ok(Self {
+            kind,
+            way,
+            config: config.clone(),
+            asked: place,
+            opened,
+            chosen: None,
+            accelerometer: Axes::default(),
+            since_s: 0.0,
+            length_s,
+            unix_s,
+        })
+    }
+
+    /// After so many seconds a simulated person has finished, or given up; none
+    /// if it is a real one.
+    pub const fn length_s(&self) -> Option<f64> {
+        self.length_s
+    }
+
+    /// Reads the sensors in a tick.
+    ///
+    /// # Errors
+    /// When nothing has arrived.
+    pub fn tick(&mut self, tick: &Tick) -> Result<(), SessionError> {
+        self.since_s += tick.dt_s;
+        for opened in &mut self.opened {
+            // A fault is seen by what does not arrive.
+            let _ = opened.sensor.sample(tick, &mut opened.measured);
+        }
+        if self.chosen.is_none() && self.since_s >= LOOKING_S {
+            self.choose();
+        }
+        let together = self.chosen.as_ref().map(|(at, _)| self.together(*at));
+        match (&mut self.chosen, together) {
+            (Some((_, calibration)), Some(measured)) => {
+                calibration.take(&measured);
+                Ok(())
+            }
+            _ if self.since_s < OPENING_S => Ok(()),
+            _ => Err(SessionError::Silent(self.kind.name())),
+        }
+    }
+
+    /// The calibration, as soon as the sensor has given something.
+    pub fn guided(&self) -> Option<&GuidedCalibration> {
+        self.chosen.as_ref().map(|(_, guided)| guided.as_ref())
+    }
+
+    /// The key of the source that is calibrated, and which sensor it is.
+    pub fn source(&self) -> Option<RawSource<'_>> {
+        let (at, _) = self.chosen.as_ref()?;
+        let place = &self.opened.get(*at)?.place;
+        let mut sources = self.config.raw_sources().into_iter();
+        sources.find(|source| source.place == *place)
+    }
+
+    /// What was last read of the source that is calibrated.
+    pub fn measured(&self) -> Option<Measurements> {
+        let (at, _) = self.chosen.as_ref()?;
+        Some(self.together(*at))
+    }
+
+    /// The result.
+    ///
+    /// # Errors
+    /// When it is not complete, or would be poor: the reason.
+    pub fn finish(&self) -> Result<Entry, Refusal> {
+        let guided = self.guided().ok_or(Refusal::Silent)?;
+        let found = guided.finish()?;
+        let source = self.source().ok_or(Refusal::Silent)?;
+        let at = Circumstances {
+            source: &source,
+            unix_s: self.unix_s,
+            temperature_k: guided.temperature_k(),
+            accelerometer: self.accelerometer,
+        };
+        Ok(Entry::new(self.kind, &found, &at))
+    }
+
+    fn choose(&mut self) {
+        let is_asked = |opened: &Opened| self.asked.as_ref().is_none_or(|of| *of == opened.place);
+        let gives = |opened: &Opened| is_asked(opened) && self.kind.is_in(&opened.measured);
+        let Some(at) = self.opened.iter().position(gives) else {
+            return;
+        };
+        let is_force = |opened: &&Opened| !opened.measured.raw_specific_force.is_never();
+        let chosen = self.opened.get(at).filter(is_force);
+        let force = chosen.or_else(|| self.opened.iter().find(is_force));
+        let sources = self.config.raw_sources();
+        let accelerometer = force.and_then(|force| {
+            let source = sources.iter().find(|source| source.place == force.place)?;
+            Some(Axes::from(&source.calibration.accelerometer))
+        });
+        let kind = match self.kind {
+            CalibrationKind::Accelerometer => GuidedKind::Accelerometer,
+            CalibrationKind::Gyroscope => GuidedKind::Gyroscope,
+            CalibrationKind::Airspeed => GuidedKind::Airspeed,
+            CalibrationKind::Magnetometer => GuidedKind::Magnetometer {
+                earth: self.earth(),
+                accelerometer,
+            },
+            CalibrationKind::Mounting => GuidedKind::Mounting {
+                way: self.way,
+                accelerometer: accelerometer.unwrap_or_default(),
+            },
+        };
+        self.accelerometer = accelerometer.unwrap_or_default();
+        self.chosen = Some((at, Box::new(GuidedCalibration::new(&kind))));
+    }
+
+    /// What is known of the earth's field: the configured one, or that of the
+    /// model.
+    fn earth(&self) -> EarthField {
+        match self.config.earth_field_ut() {
+            Some([north, east, down]) => EarthField::Strength(north.hypot(east).hypot(down)),
+            None => EarthField::InYear(self.config.navigation.year),
+        }
+    }
+
+    /// What the chosen source gives, with what only others give.
+    fn together(&self, at: usize) -> Measurements {
+        fn first<T: Copy>(into: &mut Reading<T>, other: &Reading<T>) {
+            if into.is_never() {
+                *into = *other;
+            }
+        }
+        let chosen = self.opened.get(at).map(|opened| opened.measured);
+        let mut together = chosen.unwrap_or_default();
+        for Opened { measured, .. } in &self.opened {
+            first(
+                &mut together.raw_specific_force,
+                &measured.raw_specific_force,
+            );
+            first(&mut together.raw_body_rates, &measured.raw_body_rates);
+            first(&mut together.magnetic_field, &measured.magnetic_field);
+            first(&mut together.air_temperature_k, &measured.air_temperature_k);
+            first(&mut together.gnss, &measured.gnss);
+        }
+        together
+    }
+}
+
+/// The sensors of the built-in aircraft in a simulated person's hands.
+fn in_hands(
+    config: &Config,
+    source: &RawSource<'_>,
+    kind: CalibrationKind,
+    fault: Option<HandlingFault>,
+) -> Option<HandledSensors> {
+    let section = config.built_in.as_ref()?;
+    if !source.is_built_in() {
+        return None;
+    }
+    let task = match kind {
+        CalibrationKind::Accelerometer => HandlingTask::Places,
+        CalibrationKind::Gyroscope | CalibrationKind::Airspeed => HandlingTask::LeaveAlone,
+        CalibrationKind::Magnetometer => HandlingTask::Tumble,
+        CalibrationKind::Mounting => HandlingTask::LevelAndNoseUp,
+    };
+    HandledSensors::new(&SimConfig::from(section), task, fault)
+}
