@@ -139,3 +139,156 @@ fn over(values: &mut Table, keys: &Table) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DAY: u64 = 86_400;
+
+    fn config(path: &std::path::Path, more: &str) -> Config {
+        let text =
+            format!("[calibration]\nfile = {path:?}\n[built-in]\nraw_sensors = \"board\"\n{more}");
+        Config::parse(&text, "test").unwrap()
+    }
+
+    fn entry(kind: CalibrationKind, keys: &str) -> Entry {
+        Entry {
+            kind,
+            place: "built-in".to_owned(),
+            sensor: "simulated board, seed 1".to_owned(),
+            date: "2026-11-22T22:50:00Z".to_owned(),
+            unix_s: 1_795_387_800,
+            program: "fccd 0.1.0".to_owned(),
+            error: 0.01,
+            error_limit: 0.05,
+            unit: kind.unit().to_owned(),
+            temperature_k: None,
+            aligned_with: Table::new(),
+            keys: toml::from_str(keys).unwrap(),
+        }
+    }
+
+    fn stored(entries: &[Entry]) -> (tempfile::TempDir, PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("state").join("fccd.calibration.toml");
+        let mut file = CalibrationFile::default();
+        for entry in entries {
+            file.add(entry.clone(), &path).unwrap();
+        }
+        (folder, path)
+    }
+
+    #[test]
+    fn what_was_found_replaces_the_same_keys_and_no_others() {
+        let found = entry(
+            CalibrationKind::Gyroscope,
+            "[gyroscope]\nbias_degps = [0.5, 0.0, -0.25]\n",
+        );
+        let (_folder, path) = stored(&[found]);
+        let given = "[built-in.calibration.gyroscope]\nbias_degps = [9.0, 9.0, 9.0]\n\
+                     mounting = \"right-backward-down\"\n";
+        let mut config = config(&path, given);
+        let applied = apply(&mut config, 1_795_387_800 + DAY).unwrap();
+        let gyroscope = config.built_in.unwrap().calibration.gyroscope;
+        assert_eq!(gyroscope.bias_degps, [0.5, 0.0, -0.25]);
+        assert_eq!(gyroscope.mounting.to_string(), "right-backward-down");
+        let [said] = &applied.remarks[..] else {
+            panic!("{applied:?}");
+        };
+        assert!(
+            said.ends_with("gyroscope of 2026-11-22, error 0.01 °/s"),
+            "{said}"
+        );
+    }
+
+    #[test]
+    fn stale_ones_are_used_and_said() {
+        let mut field = entry(
+            CalibrationKind::Magnetometer,
+            "[magnetometer]\nbias_ut = [10.0, 0.0, 0.0]\n",
+        );
+        let axes = Axes::default();
+        field.aligned_with = turn(axes.mounting, &axes.rotation);
+        let (_folder, path) = stored(&[field]);
+        for (more, days, expected) in [
+            ("", 1, None),
+            (
+                "",
+                181,
+                Some("is 181 days old, calibration.stale_after_days is 180"),
+            ),
+            (
+                "[built-in.calibration.accelerometer]\nmounting = \"backward-left-down\"\n",
+                1,
+                Some("an accelerometer that was turned in another way: calibrate it again"),
+            ),
+        ] {
+            let mut config = config(&path, more);
+            let applied = apply(&mut config, 1_795_387_800 + days * DAY).unwrap();
+            let said = applied.remarks.join("\n");
+            assert_eq!(applied.remarks.len(), 1 + usize::from(expected.is_some()));
+            assert!(expected.is_none_or(|words| said.contains(words)), "{said}");
+            let magnetometer = config.built_in.unwrap().calibration.magnetometer;
+            assert_eq!(magnetometer.bias_ut, [10.0, 0.0, 0.0]);
+        }
+    }
+
+    #[test]
+    fn a_file_that_cannot_be_used_is_refused_and_changes_nothing() {
+        let bias = |bias: &str| {
+            entry(
+                CalibrationKind::Gyroscope,
+                &format!("[gyroscope]\n{bias} = [500.0, 0.0, 0.0]\n"),
+            )
+        };
+        for (key, expected) in [
+            ("bias_degps", "bias_degps[0] is 500: choose -50 to 50"),
+            ("bias", "unknown field `bias`"),
+        ] {
+            let (_folder, path) = stored(&[bias(key)]);
+            let mut config = config(&path, "");
+            let (_, error) = apply(&mut config, 0).unwrap_err();
+            assert!(error.to_string().contains(expected), "{error}");
+            assert!(config.built_in.unwrap().calibration.to_core().is_none());
+        }
+        for (content, expected) in [
+            ("", "is damaged"),
+            ("hello\n", "was not written by fccd calibrate"),
+            (
+                "# fccd-calibration 2 00000000\n",
+                "of another version of fccd (2",
+            ),
+            (
+                "# fccd-calibration 1 00000000\nx",
+                "is damaged, or was edited",
+            ),
+        ] {
+            let (_folder, path) = stored(&[entry(CalibrationKind::Airspeed, "")]);
+            std::fs::write(&path, content).unwrap();
+            let (_, error) = apply(&mut config(&path, ""), 0).unwrap_err();
+            assert!(error.to_string().contains(expected), "{error}");
+        }
+    }
+
+    #[test]
+    fn the_old_file_is_kept_and_a_link_is_not_followed() {
+        let of = |bias: &str| {
+            entry(
+                CalibrationKind::Airspeed,
+                &format!("[differential_pressure]\nbias_pa = {bias}\n"),
+            )
+        };
+        let (_folder, path) = stored(&[of("1.0"), of("2.0")]);
+        let old = CalibrationFile::read(&path.with_extension("old.toml")).unwrap();
+        assert_eq!(old.calibration, [of("1.0")]);
+        assert_eq!(
+            CalibrationFile::read(&path).unwrap().calibration,
+            [of("2.0")]
+        );
+        let link = path.with_file_name("link.calibration.toml");
+        std::os::unix::fs::symlink(&path, &link).unwrap();
+        let error = CalibrationFile::read(&link).unwrap_err().to_string();
+        assert!(error.contains("symbolic link"), "{error}");
+    }
+}
