@@ -36,18 +36,15 @@ pub fn apply(config: &mut Config, unix_s: u64) -> Result<Applied, (PathBuf, Cali
     let mut applied = Applied::default();
     let mut changed = config.clone();
     for entry in file.calibration {
-        match what_differs(config, &entry) {
-            Some(why) => {
-                let kind = entry.kind.name();
-                let why = format!("the calibration of the {kind} is not used: {why}");
-                applied.remarks.push(why);
-            }
-            None => {
-                put(&mut changed, &entry)
-                    .map_err(|why| (path.clone(), CalibrationFileError::Unusable(why)))?;
-                applied.used.push(entry);
-            }
+        if let Some(why) = what_differs(config, &entry) {
+            let kind = entry.kind.name();
+            let why = format!("the calibration of the {kind} is not used: {why}");
+            applied.remarks.push(why);
+            continue;
         }
+        put(&mut changed, &entry)
+            .map_err(|why| (path.clone(), CalibrationFileError::Unusable(why)))?;
+        applied.used.push(entry);
     }
     // The ranges are those of a file.
     let checked = changed

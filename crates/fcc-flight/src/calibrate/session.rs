@@ -10,6 +10,7 @@ use fcc_sim::{HandledSensors, HandlingFault, HandlingTask, SimConfig};
 use super::entry::Circumstances;
 use super::{CalibrationKind, Entry};
 use crate::config::{Config, RawSource};
+use crate::flight::{AssemblyError, uncalibrated};
 
 /// For so long the sensors may take to give something, s.
 const OPENING_S: f64 = 5.0;
@@ -34,6 +35,9 @@ pub enum SessionError {
         /// What there is.
         there: String,
     },
+    /// A sensor could not be opened.
+    #[error(transparent)]
+    Open(#[from] AssemblyError),
     /// Nothing arrived.
     #[error(
         "no readings of the {0} arrived: check its wiring, and that it is in the configuration"
@@ -71,7 +75,7 @@ impl CalibrationSession {
     /// is the present time.
     ///
     /// # Errors
-    /// When there are none, or none of this name.
+    /// When there are none, or none of this name, or one cannot be opened.
     pub fn open(
         config: &Config,
         kind: CalibrationKind,
@@ -96,7 +100,14 @@ impl CalibrationSession {
         let mut length_s = None;
         let mut opened = Vec::new();
         for source in sources {
-            if let Some(handled) = in_hands(config, &source, kind, fault) {
+            if let Some(board) = config.board_sensor_of(&source.place) {
+                let (sensor, _) = uncalibrated(&board)?;
+                opened.push(Opened {
+                    place: source.place,
+                    sensor: Box::new(sensor),
+                    measured: Measurements::default(),
+                });
+            } else if let Some(handled) = in_hands(config, &source, kind, fault) {
                 length_s = Some(handled.length_s());
                 opened.push(Opened {
                     place: source.place,

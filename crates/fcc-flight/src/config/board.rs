@@ -212,9 +212,22 @@ pub enum BoardSensor<'a> {
     Iio(&'a IioSection),
 }
 
-impl BoardSensor<'_> {
+impl<'a> BoardSensor<'a> {
+    /// Which device it is: another one at its place has another calibration.
+    pub fn describe(&self) -> String {
+        match self {
+            Self::Chip(kind, section) => match section.to_linux(*kind).wiring {
+                Wiring::Spi { path } => format!("{} at {}", kind.name(), path.display()),
+                Wiring::I2c { path, address } => {
+                    format!("{} at {} {address:#04x}", kind.name(), path.display())
+                }
+            },
+            Self::Iio(section) => format!("IIO {}", section.device),
+        }
+    }
+
     /// Its calibration.
-    pub fn calibration(&self) -> &CalibrationSection {
+    pub const fn calibration(&self) -> &'a CalibrationSection {
         match self {
             Self::Chip(_, section) => &section.calibration,
             Self::Iio(section) => &section.calibration,
@@ -282,10 +295,25 @@ pub(super) fn is_of_kind(range_of: &str, key: &str, kind: &str) -> bool {
 }
 
 impl SensorEntry {
+    /// The calibration of the sensor of a board, if it is one.
+    pub(super) fn calibration_mut(&mut self) -> Option<&mut CalibrationSection> {
+        match self {
+            Self::Simulator(_) | Self::XPlane(_) | Self::ServoBoard(_) => None,
+            Self::Iio(section) => Some(&mut section.calibration),
+            Self::Icm42688(section)
+            | Self::Mpu6050(section)
+            | Self::Bmp388(section)
+            | Self::Bmp180(section)
+            | Self::Ms4525do(section)
+            | Self::Sdp3x(section)
+            | Self::Qmc5883l(section) => Some(&mut section.calibration),
+        }
+    }
+
     /// The sensor of a board, if it is one.
     pub fn board(&self) -> Option<BoardSensor<'_>> {
         let (kind, section) = match self {
-            Self::Simulator(_) | Self::XPlane(_) => return None,
+            Self::Simulator(_) | Self::XPlane(_) | Self::ServoBoard(_) => return None,
             Self::Iio(section) => return Some(BoardSensor::Iio(section)),
             Self::Icm42688(section) => (ChipKind::Icm42688, section),
             Self::Mpu6050(section) => (ChipKind::Mpu6050, section),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::{BuiltInSection, CalibrationSection, Config, RawSensorsChoice, SensorEntry};
+use super::{BoardSensor, BuiltInSection, CalibrationSection, Config, RawSensorsChoice};
 
 /// `[calibration]`.
 #[derive(Clone, PartialEq, Debug, Deserialize, Serialize)]
@@ -69,11 +69,20 @@ impl Config {
     /// The sources of raw readings, in their order of preference.
     pub fn raw_sources(&self) -> Vec<RawSource<'_>> {
         let built_in = self.built_in.as_ref().and_then(built_in);
-        let of = |entry: &SensorEntry| match entry {
-            SensorEntry::Simulator(_) => built_in.clone(),
-            SensorEntry::XPlane(_) => None,
-        };
-        self.sensors().filter_map(of).collect()
+        // Those of the list come first.
+        let sensors = self.sensors().enumerate();
+        let sources = sensors.filter_map(|(at, entry)| {
+            if entry.is_simulator() {
+                return built_in.clone();
+            }
+            let board = entry.board()?;
+            Some(RawSource {
+                place: listed(at),
+                sensor: board.describe(),
+                calibration: board.calibration(),
+            })
+        });
+        sources.collect()
     }
 
     /// The earth's magnetic field, north, east and down, µT: the configured one,
@@ -85,12 +94,31 @@ impl Config {
 
     /// The calibration of a source.
     pub(crate) fn calibration_of(&mut self, place: &str) -> Option<&mut CalibrationSection> {
-        let built_in = self.built_in.as_mut().filter(|_| place == BUILT_IN)?;
-        Some(&mut built_in.calibration)
+        if place == BUILT_IN {
+            return self
+                .built_in
+                .as_mut()
+                .map(|section| &mut section.calibration);
+        }
+        let mut entries = self.sensor.iter_mut().enumerate();
+        let (_, entry) = entries.find(|(at, _)| listed(*at) == place)?;
+        entry.calibration_mut()
+    }
+
+    /// The sensor of a board that is the source of this place.
+    pub(crate) fn board_sensor_of(&self, place: &str) -> Option<BoardSensor<'_>> {
+        let mut entries = self.sensor.iter().enumerate();
+        let (_, entry) = entries.find(|(at, _)| listed(*at) == place)?;
+        entry.board()
     }
 }
 
 const BUILT_IN: &str = "built-in";
+
+/// The key of an entry of `[[sensor]]`.
+fn listed(at: usize) -> String {
+    format!("sensor[{at}]")
+}
 
 fn built_in(section: &BuiltInSection) -> Option<RawSource<'_>> {
     let set = match section.raw_sensors {

@@ -1,9 +1,9 @@
-//! What belongs together in `[built-in.calibration]` and `[navigation]`.
+//! What belongs together in a calibration and `[navigation]`.
 
 use fcc_core::flight::calibration::Axes;
 
 use super::places::Places;
-use super::{Config, NavigationMethod, RawSensorsChoice};
+use super::{CalibrationSection, Config, NavigationMethod, RawSource};
 
 /// The earth's field at its surface until 2030, µT (World Magnetic Model 2025,
 /// technical report, figure of the total intensity: 22 to 67).
@@ -18,10 +18,22 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     {
         report(&["navigation.magnetic_field_ut"], message);
     }
-    let Some(section) = &config.built_in else {
-        return;
-    };
-    let of = &section.calibration;
+    let sources = config.raw_sources();
+    let delays = config.navigation.is_by_filter();
+    for source in &sources {
+        check_axes(&source.place, source.calibration, report);
+        if delays {
+            check_delays(config, &source.place, source.calibration, report);
+        }
+    }
+    if let Some(section) = &config.built_in
+        && !sources.iter().any(RawSource::is_built_in)
+    {
+        check_axes("built-in", &section.calibration, report);
+    }
+}
+
+fn check_axes(place: &str, of: &CalibrationSection, report: &mut impl FnMut(&[&str], String)) {
     for (sensor, axes) in [
         ("accelerometer", Axes::from(&of.accelerometer)),
         ("gyroscope", Axes::from(&of.gyroscope)),
@@ -30,7 +42,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
         let (least, most) = axes.multiplies();
         let permitted = Axes::MULTIPLIES;
         if !permitted.contains(&least) || !permitted.contains(&most) {
-            let key = |name: &str| format!("built-in.calibration.{sensor}.{name}");
+            let key = |name: &str| format!("{place}.calibration.{sensor}.{name}");
             let message = format!(
                 "multiplies what is measured, with scale, by {least:.2} along one direction and by \
                  {most:.2} along another: choose values with {} to {} along all; of axes that are \
@@ -41,13 +53,18 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
             report(&[&key("misalignment"), &key("scale")], message);
         }
     }
-    if section.raw_sensors == RawSensorsChoice::None || !config.navigation.is_by_filter() {
-        return;
-    }
+}
+
+fn check_delays(
+    config: &Config,
+    place: &str,
+    of: &CalibrationSection,
+    report: &mut impl FnMut(&[&str], String),
+) {
     let longest_ms = config.navigation.longest_delay_ms;
     for (sensor, delay_ms) in of.delays_of_navigation() {
         if delay_ms > longest_ms {
-            let key = format!("built-in.calibration.{sensor}.delay_ms");
+            let key = format!("{place}.calibration.{sensor}.delay_ms");
             let message = format!(
                 "is {delay_ms}, and navigation.longest_delay_ms is {longest_ms}: choose at most \
                  that, or a longer one (up to {} ms): navigation does not use what comes later",
@@ -80,8 +97,7 @@ fn wrong_field(field: [f64; 3]) -> Option<String> {
 /// What is given in the text and has no effect.
 pub(super) fn without_effect(config: &Config, places: &Places<'_>) -> Vec<String> {
     let mut found = Vec::new();
-    let gives_raw = |section: &super::BuiltInSection| section.raw_sensors != RawSensorsChoice::None;
-    let has_raw = config.built_in.as_ref().is_some_and(gives_raw);
+    let has_raw = config.raw_sources().iter().any(RawSource::is_built_in);
     let mut say = |key: &str, why: &str| {
         if places.has(key) {
             found.push(format!("{key} has no effect: {why}"));

@@ -15,7 +15,7 @@ use crate::config::BoardSensor;
 const IIO: &str = "IIO";
 
 /// A device, and its state for programs.
-pub(super) struct WatchedDevice {
+pub(crate) struct WatchedDevice {
     name: &'static str,
     status: DeviceStatus,
     /// What was reported last.
@@ -27,6 +27,18 @@ pub(super) struct WatchedDevice {
 pub(super) fn board_sensor(
     board: &BoardSensor<'_>,
 ) -> Result<(Box<dyn Sensor<Measurements>>, WatchedDevice), AssemblyError> {
+    let (sensor, watched) = uncalibrated(board)?;
+    let sensor: Box<dyn Sensor<Measurements>> = match board.calibration().to_core() {
+        Some(calibration) => Box::new(Calibrated::new(Box::new(sensor), &calibration)),
+        None => Box::new(sensor),
+    };
+    Ok((sensor, watched))
+}
+
+/// The same without its calibration.
+pub(crate) fn uncalibrated(
+    board: &BoardSensor<'_>,
+) -> Result<(DeviceSensor<RawValues>, WatchedDevice), AssemblyError> {
     let name = match board {
         BoardSensor::Chip(kind, _) => kind.name(),
         BoardSensor::Iio(_) => IIO,
@@ -52,10 +64,6 @@ pub(super) fn board_sensor(
         name,
         status,
         reported: None,
-    };
-    let sensor: Box<dyn Sensor<Measurements>> = match board.calibration().to_core() {
-        Some(calibration) => Box::new(Calibrated::new(sensor, &calibration)),
-        None => Box::new(sensor),
     };
     Ok((sensor, watched))
 }

@@ -39,6 +39,7 @@ mod scorer;
 mod truth_recorder;
 
 pub use assemble::{Assembly, AssemblyError, assemble, authority_without_connection};
+pub(crate) use board::uncalibrated;
 pub use control_override::ControlOverride;
 pub use flapping::Flapping;
 pub use fly::{FlyError, fly};
