@@ -309,6 +309,10 @@ pub struct SetArgs {
 
 /// `fccd calibrate`.
 #[derive(Args, Debug)]
+#[allow(
+    clippy::struct_excessive_bools,
+    reason = "each is a switch of the command line"
+)]
 pub struct CalibrateArgs {
     /// What to calibrate
     #[arg(value_name = "KIND", value_parser = calibration_kind())]

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use fcc_core::flight::calibration::{MountingWay, Next};
+use fcc_core::flight::calibration::{GuidedCalibration, MountingWay, Next};
 use fcc_core::framework::{Tick, Time};
 use fcc_flight::calibrate::{
     CalibrationFile, CalibrationKind, CalibrationSession, Entry, SessionError, apply,
@@ -151,7 +151,7 @@ fn guide(
             Failure::of(exit, error)
         })?;
         screen.show(args.kind, session);
-        let is_complete = session.guided().is_some_and(|guided| guided.is_complete());
+        let is_complete = session.guided().is_some_and(GuidedCalibration::is_complete);
         if is_complete || due.as_secs_f64() >= limit_s {
             return Ok(());
         }
