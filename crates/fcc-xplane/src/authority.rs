@@ -1,7 +1,7 @@
 //! Who has control of X-Plane, seen from outside the loop.
 
 use core::fmt;
-use std::net::{Ipv4Addr, SocketAddr};
+use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use fcc_core::framework::{ActuatorFault, ControlAuthority, PlantId, Released, Ta
 use crate::config::XPlaneConfig;
 use crate::open::{OpenError, XPlane};
 use crate::port_watch::PortWatch;
-use crate::release::Expected;
+use crate::release::{Expected, reserve_for};
 use crate::reported::Reported;
 use crate::status::XPlaneStatus;
 use crate::udp_port::is_of_this_machine;
@@ -26,6 +26,8 @@ pub struct XPlaneAuthority {
     reported: Mutex<Reported>,
     /// The port that a simulator answers from, as another program told it.
     expected: Mutex<Option<(SocketAddr, u16)>>,
+    /// For the release of this simulator, if no other port is free then.
+    reserve: Mutex<Option<(SocketAddr, UdpSocket)>>,
     /// Of the connection that is flown, and of those beside it.
     watches: Mutex<Vec<PortWatch>>,
 }
@@ -48,6 +50,7 @@ impl XPlaneAuthority {
             status: None,
             reported: Mutex::default(),
             expected: Mutex::default(),
+            reserve: Mutex::default(),
             watches: Mutex::default(),
         }
     }
@@ -136,6 +139,17 @@ impl ControlAuthority for XPlaneAuthority {
         }
     }
 
+    fn prepare_release(&self, plant: &PlantId) {
+        let mut reserve = locked(&self.reserve);
+        if let Some(simulator) = address(plant)
+            && reserve.as_ref().is_none_or(|(of, _)| *of != simulator)
+        {
+            *reserve = reserve_for(simulator)
+                .ok()
+                .map(|socket| (simulator, socket));
+        }
+    }
+
     fn report(&self, report: &mut dyn FnMut(fmt::Arguments<'_>)) {
         if let Some(status) = &self.status {
             self.watch_ports(status);
@@ -158,14 +172,24 @@ impl ControlAuthority for XPlaneAuthority {
     ) -> Result<Released, ActuatorFault> {
         let simulator = address(plant).ok_or(ActuatorFault::NotConnected)?;
         let expected = self.expected(simulator);
-        XPlane::release_expecting(&self.config, simulator, expected, within, is_cancelled).map_err(
-            |error| match error {
-                OpenError::Bind { source, .. } => ActuatorFault::Io {
-                    errno: source.raw_os_error().unwrap_or(0),
-                },
-                _ => ActuatorFault::NotConnected,
-            },
+        let reserve = locked(&self.reserve)
+            .as_ref()
+            .filter(|(of, _)| *of == simulator)
+            .and_then(|(_, socket)| socket.try_clone().ok());
+        XPlane::release_expecting(
+            &self.config,
+            simulator,
+            expected,
+            reserve,
+            within,
+            is_cancelled,
         )
+        .map_err(|error| match error {
+            OpenError::Bind { source, .. } => ActuatorFault::Io {
+                errno: source.raw_os_error().unwrap_or(0),
+            },
+            _ => ActuatorFault::NotConnected,
+        })
     }
 
     fn release_left(&self) {

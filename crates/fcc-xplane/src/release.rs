@@ -74,18 +74,20 @@ impl XPlane {
     ) -> Result<Released, OpenError> {
         config.validate()?;
         let expected = Expected::default();
-        Self::release_expecting(config, simulator, expected, timeout, is_cancelled)
+        Self::release_expecting(config, simulator, expected, None, timeout, is_cancelled)
     }
 
-    /// The same; only answers of what is expected are accepted.
+    /// The same; only answers of what is expected are accepted. The `reserve` is
+    /// used if no other port is free.
     pub(crate) fn release_expecting(
         config: &XPlaneConfig,
         simulator: SocketAddr,
         expected: Expected,
+        reserve: Option<UdpSocket>,
         timeout: Duration,
         is_cancelled: impl FnMut() -> bool,
     ) -> Result<Released, OpenError> {
-        let mut conversation = Conversation::open(config, simulator, expected)?;
+        let mut conversation = Conversation::open(config, simulator, expected, reserve)?;
         let mut controls = Controls::new(config)?;
         let outcome = retry_until_released(&mut conversation, &mut controls, timeout, is_cancelled);
         conversation.end();
@@ -121,12 +123,14 @@ impl Conversation {
         config: &XPlaneConfig,
         simulator: SocketAddr,
         expected: Expected,
+        reserve: Option<UdpSocket>,
     ) -> Result<Self, OpenError> {
         let ip = simulator.ip();
         let mut ports = local_ports(config.local_port, ip);
         // The daemon itself may still have its own.
         ports.push(0);
-        let answers = bind(&ports, |port| UdpSocket::bind((local_address(ip), port)))?;
+        let bound = bind(&ports, |port| UdpSocket::bind((local_address(ip), port)));
+        let answers = bound.or_else(|error| reserve.ok_or(error))?;
         let refused = |source| OpenError::Bind { port: 0, source };
         // If this fails, what others send is left out below.
         let _ = source_filter::attach(&answers, ip, None);
@@ -241,6 +245,17 @@ impl Conversation {
         self.listening.as_ref().is_some_and(Probe::is_refused)
     }
 
+    /// Whether no program has the simulator's port, as this machine knows of its
+    /// own. Of another one it is not known: a firewall that rejects what it does
+    /// not let through reports the same.
+    fn has_ended(&mut self) -> bool {
+        let port = self.simulator.port();
+        self.sockets.as_mut().is_some_and(|sockets| {
+            sockets.look();
+            sockets.user_of(port).is_ok_and(|user| user.is_none())
+        })
+    }
+
     fn end(mut self) {
         for request in &mut self.requests {
             rref::set_frequency(request, 0);
@@ -291,11 +306,27 @@ fn retry_until_released(
             refused = true;
             refusals += 1;
         }
-        if refusals >= REFUSALS {
+        if refused && refusals >= REFUSALS && conversation.has_ended() {
             return Released::Unreachable;
         }
     }
+    if refusals >= REFUSALS {
+        return Released::Refused;
+    }
     Released::Unconfirmed
+}
+
+/// A socket for a release, to be opened while a port can be had; it receives
+/// nothing from elsewhere.
+///
+/// # Errors
+/// When no port can be had.
+pub(crate) fn reserve_for(simulator: SocketAddr) -> std::io::Result<UdpSocket> {
+    let ip = simulator.ip();
+    let socket = UdpSocket::bind((local_address(ip), 0))?;
+    // If this fails, what others send is left out when it is received.
+    let _ = source_filter::attach(&socket, ip, None);
+    Ok(socket)
 }
 
 /// Stores the readback in a reply; values sent before the requests have other

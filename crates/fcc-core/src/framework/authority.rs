@@ -47,6 +47,10 @@ pub trait ControlAuthority: Send + Sync {
     /// answers from there, unless that is gone.
     fn expect(&self, _plant: &PlantId, _answers_from: u16) {}
 
+    /// Opens what a [`release`](Self::release) of this plant needs, while it can be
+    /// had: later, other programs may have taken it.
+    fn prepare_release(&self, _plant: &PlantId) {}
+
     /// Reports what has changed since the last call, as text for users: what is
     /// wrong and what to do about it, and when it is resolved.
     fn report(&self, report: &mut dyn FnMut(fmt::Arguments<'_>));
@@ -89,6 +93,9 @@ pub enum Released {
     Confirmed,
     /// The plant no longer exists: there is nothing left to control.
     Unreachable,
+    /// The plant's machine reports that no program is there, as a firewall does,
+    /// too: the plant has ended, or its controls are still held.
+    Refused,
     /// The plant did not answer, or reports that its controls are still held:
     /// it hangs, cannot be reached, or another program holds them.
     Unconfirmed,

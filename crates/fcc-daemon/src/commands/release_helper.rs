@@ -1,7 +1,7 @@
 //! `fccd release-helper`: releases the controls of a daemon that was killed.
 
 use std::fs::OpenOptions;
-use std::io;
+use std::io::{self, BufReader};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 
@@ -12,11 +12,12 @@ use nix::unistd::{dup2_stderr, ttyname};
 use super::failure::Failure;
 use crate::exit::Exit;
 use crate::output;
-use crate::process::{begin_helper, outlive_signals, run_release_helper};
+use crate::process::{DaemonPipe, begin_helper, outlive_signals, run_release_helper};
 
 /// Waits until the daemon that started this has ended.
 pub(super) fn release_helper() -> Result<Exit, Failure> {
     begin_helper();
+    let daemon = BufReader::new(DaemonPipe::new());
     let terminal = leave_terminal();
     let failure = |error| Failure::new(format_args!("release helper: {error}"));
     outlive_signals().map_err(|error| {
@@ -24,7 +25,7 @@ pub(super) fn release_helper() -> Result<Exit, Failure> {
             "release helper: signals cannot be caught: {error}"
         ))
     })?;
-    let Some(result) = run_release_helper(io::stdin().lock()).map_err(failure)? else {
+    let Some(result) = run_release_helper(daemon).map_err(failure)? else {
         return Ok(Exit::Success);
     };
     let plant = result.plant;
@@ -33,7 +34,7 @@ pub(super) fn release_helper() -> Result<Exit, Failure> {
         Released::Cancelled | Released::Confirmed => {
             (format!("; {plant} was released"), Exit::Success)
         }
-        Released::Unconfirmed => (
+        Released::Unconfirmed | Released::Refused => (
             format!(
                 ", and {plant} did not confirm the release of its controls: {}",
                 result.by_hand

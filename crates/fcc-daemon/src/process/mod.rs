@@ -3,6 +3,7 @@
 //! | module | what it does |
 //! |---|---|
 //! | `release_helper`, `release_handover` | a second process that releases the controls if this one is killed |
+//! | `daemon_pipe` | that process' end of the pipe from this one |
 //! | `kept_helper` | starts that process again if it has ended |
 //! | `told` | what that process is told, line by line |
 //! | `notice` | tells that process, and the plant's file, before control is taken |
@@ -14,6 +15,7 @@
 //! | `service_unit` | what the installed service's unit prevents |
 //! | `signals` | the signals that end a flight, and those that must not |
 
+mod daemon_pipe;
 mod instance_lock;
 mod kept_helper;
 mod left_held;
@@ -40,6 +42,7 @@ use fcc_telemetry::RunFolder;
 
 use crate::exit::Exit;
 use crate::output;
+pub(crate) use daemon_pipe::DaemonPipe;
 use instance_lock::InstanceLock;
 use kept_helper::KeptHelper;
 use left_held::LeftHeld;
@@ -159,6 +162,14 @@ impl Host for Process<'_> {
         }
     }
 
+    /// The end of this process may come late: its output and its disk may wait.
+    fn continue_release(&mut self) -> &'static str {
+        if let Some(plant) = &self.plant {
+            plant.notice.end();
+        }
+        self.continues_release()
+    }
+
     /// A helper that is not ended here releases after the end of the process:
     /// only then can nothing take control again.
     fn end(&mut self, released: bool) {
@@ -179,6 +190,9 @@ impl Plant {
         let folder = RunFolder::of_this_process(&mut |why| output::message(why));
         if folder.is_none() {
             output::message("without a folder of this user, a second fccd is not prevented");
+        }
+        if std::process::id() == 1 {
+            output::message(FIRST_PROCESS);
         }
         let notice = Notice::of_this_process();
         authority.notify(notice);
@@ -228,6 +242,9 @@ impl Plant {
             self.checked = Instant::now();
             self.end_earlier_helper();
         }
+        if let Some(plant) = held.filter(|_| begins) {
+            self.authority.prepare_release(&plant);
+        }
         if self.lock.taken().is_none() && self.helper.keep(config, self.notice, held, report) {
             self.answers = None;
         }
@@ -261,6 +278,11 @@ impl Plant {
         }
     }
 }
+
+/// Whose end ends all others (`pid_namespaces(7)`).
+const FIRST_PROCESS: &str = "this is the first process of its container: if it is killed, its \
+                             release helper ends with it, and the controls stay held until the \
+                             next start; start it below an init process (docker run --init)";
 
 const BY_HAND: &str = "if this process is killed, release the controls by hand";
 

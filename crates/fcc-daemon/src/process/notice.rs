@@ -152,6 +152,12 @@ impl Notice {
         self.send(&Line::Answers(from, plant));
     }
 
+    /// Passes on that the flight is over: what is still held is the helper's to
+    /// release, from now on.
+    pub(super) fn end(&self) {
+        self.send(&Line::Over);
+    }
+
     /// To the last helper: the others have ended. A pipe that is full belongs
     /// to one that is stopped.
     fn send(&self, line: &Line) {

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use nix::sys::signal::Signal;
 use nix::sys::stat::{SFlag, fstat};
-use signal_hook::consts::{SIGABRT, SIGHUP, SIGINT, SIGQUIT, SIGTERM};
+use signal_hook::consts::{SIGABRT, SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM};
 
 use super::signals::tolerate;
 
@@ -60,7 +60,8 @@ pub(crate) fn begin_helper() {
 /// # Errors
 /// When the system refuses.
 pub(crate) fn outlive_signals() -> io::Result<()> {
-    [SIGTERM, SIGINT, SIGQUIT, SIGHUP, SIGABRT]
+    // CONT wakes it to look whether the daemon has ended.
+    [SIGTERM, SIGINT, SIGQUIT, SIGHUP, SIGABRT, SIGCONT]
         .into_iter()
         .try_for_each(|signal| signal_hook::flag::register(signal, Arc::default()).map(drop))?;
     tolerate()

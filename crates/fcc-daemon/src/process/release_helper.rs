@@ -15,7 +15,7 @@ use std::process::{Child, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use fcc_core::framework::{ActuatorFault, PlantId, Released};
+use fcc_core::framework::{ActuatorFault, ControlAuthority, PlantId, Released};
 use fcc_flight::config::{Config, ConfigError};
 use fcc_flight::flight::authority_without_connection;
 use fcc_telemetry::{RunFolder, not_started};
@@ -29,6 +29,9 @@ use super::told::Told;
 /// How long a helper repeats the release: a simulator that loads scenery hangs
 /// for some time.
 const RELEASE_FOR: Duration = Duration::from_secs(120);
+
+/// The pause after a release that could not even be tried.
+const AGAIN_AFTER: Duration = Duration::from_millis(100);
 
 /// How long the end of a helper that was killed is waited for.
 const ENDS_WITHIN: Duration = Duration::from_millis(200);
@@ -127,7 +130,13 @@ pub(crate) fn run_release_helper(
     // A broken pipe counts as its end.
     for line in lines.map_while(Result::ok) {
         told.line(&line);
+        if told.is_over() {
+            break;
+        }
         let held = told.held().zip(authority.as_ref());
+        if let Some(((_, plant), authority)) = held {
+            authority.prepare_release(&plant);
+        }
         let unique = held.map(|((_, plant), authority)| authority.unique(&plant));
         let is_locked = match (&lock, unique) {
             (Some(lock), Some(plant)) => lock.is_of(plant),
@@ -153,7 +162,7 @@ pub(crate) fn run_release_helper(
     if let Some(from) = told.answers_from() {
         authority.expect(&plant, from);
     }
-    let released = authority.release(&plant, RELEASE_FOR, &mut || false)?;
+    let released = release(authority.as_ref(), &plant, RELEASE_FOR)?;
     // The next start need not release it.
     if released.is_over()
         && let Some(folder) = folder
@@ -167,6 +176,23 @@ pub(crate) fn run_release_helper(
         released,
         by_hand: authority.by_hand(),
     }))
+}
+
+/// Releases what is held until that is confirmed. What prevents it may pass: a
+/// network that is down, ports that another program has.
+fn release(
+    authority: &dyn ControlAuthority,
+    plant: &PlantId,
+    within: Duration,
+) -> Result<Released, ActuatorFault> {
+    let begun = Instant::now();
+    loop {
+        let left = within.saturating_sub(begun.elapsed());
+        match authority.release(plant, left, &mut || false) {
+            Err(_) if left > AGAIN_AFTER => thread::sleep(AGAIN_AFTER),
+            result => return result,
+        }
+    }
 }
 
 /// Why a helper could not do its work.

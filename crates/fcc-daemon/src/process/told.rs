@@ -1,9 +1,10 @@
 //! What a release helper is told through its pipe: one line for each takeover,
-//! for each release that the plant has confirmed, and for each change of where
-//! the plant's answers come from.
+//! for each release that the plant has confirmed, for each change of where the
+//! plant's answers come from, and at the end of a flight whose release the plant
+//! has not confirmed.
 //!
 //! ```text
-//! held NUMBER PLANT | free NUMBER | answers FROM PLANT
+//! held NUMBER PLANT | free NUMBER | answers FROM PLANT | over
 //! ```
 
 use std::fmt;
@@ -13,6 +14,7 @@ use fcc_core::framework::PlantId;
 const HELD: &str = "held ";
 const FREE: &str = "free ";
 const ANSWERS: &str = "answers ";
+const OVER: &str = "over";
 
 /// A line, without its end.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -24,6 +26,8 @@ pub(super) enum Line {
     /// By what the answers of a plant are known
     /// ([`answers_from`](fcc_core::framework::ControlAuthority::answers_from)).
     Answers(u16, PlantId),
+    /// The daemon neither takes nor releases control again.
+    Over,
 }
 
 impl fmt::Display for Line {
@@ -32,6 +36,7 @@ impl fmt::Display for Line {
             Self::Held(number, plant) => write!(f, "{HELD}{number} {plant}"),
             Self::Free(number) => write!(f, "{FREE}{number}"),
             Self::Answers(from, plant) => write!(f, "{ANSWERS}{from} {plant}"),
+            Self::Over => f.write_str(OVER),
         }
     }
 }
@@ -39,6 +44,9 @@ impl fmt::Display for Line {
 impl Line {
     /// None if it is none of these.
     fn read(line: &str) -> Option<Self> {
+        if line == OVER {
+            return Some(Self::Over);
+        }
         if let Some(number) = line.strip_prefix(FREE) {
             return Some(Self::Free(number.parse().ok()?));
         }
@@ -57,6 +65,7 @@ impl Line {
 pub(super) struct Told {
     held: Option<(u64, PlantId)>,
     answers: Option<(u16, PlantId)>,
+    is_over: bool,
 }
 
 impl Told {
@@ -67,6 +76,7 @@ impl Told {
             // A release that is told late does not cover the next takeover.
             Some(Line::Free(freed)) => self.held = self.held.filter(|(number, _)| *number > freed),
             Some(Line::Answers(from, plant)) => self.answers = Some((from, plant)),
+            Some(Line::Over) => self.is_over = true,
             None => {}
         }
     }
@@ -74,6 +84,11 @@ impl Told {
     /// The takeover, by its number, after which the plant is held.
     pub(super) const fn held(&self) -> Option<(u64, PlantId)> {
         self.held
+    }
+
+    /// Whether the flight is over.
+    pub(super) const fn is_over(&self) -> bool {
+        self.is_over
     }
 
     /// By what the answers of the plant that is held are known.

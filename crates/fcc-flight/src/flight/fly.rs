@@ -276,12 +276,18 @@ fn await_release(
     let held = authority.and_then(|authority| authority.held().map(|plant| (authority, plant)));
     let confirmed = held.is_none_or(|(authority, plant)| {
         let released = authority.release(&plant, GIVE_BACK_WITHIN, &mut || false);
-        let continues = host.continues_release();
+        let is_over = released.is_ok_and(Released::is_over);
+        let continues = if is_over { "" } else { host.continue_release() };
         observers.remark(match released {
             Ok(Released::Confirmed) => format!("{plant} confirmed the release of its controls"),
             Ok(Released::Unreachable) => {
                 format!("{plant} has ended, and nothing holds its controls")
             }
+            Ok(Released::Refused) => format!(
+                "{plant} did not confirm the release of its controls: its machine, or a firewall \
+                 there, reports that no program has that port; if the simulator still runs, its \
+                 controls are held{continues}"
+            ),
             Ok(Released::Unconfirmed | Released::Cancelled) => {
                 format!("{plant} did not confirm the release of its controls{continues}")
             }
@@ -296,7 +302,7 @@ fn await_release(
                 )
             }
         });
-        released.is_ok_and(Released::is_over)
+        is_over
     });
     host.end(confirmed);
     LoopReport {

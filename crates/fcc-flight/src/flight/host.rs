@@ -57,6 +57,11 @@ pub trait Host {
         ""
     }
 
+    /// The same, and it continues from now on: nothing here takes control again.
+    fn continue_release(&mut self) -> &'static str {
+        ""
+    }
+
     /// The flight is over; whether the release of the controls is confirmed.
     fn end(&mut self, _released: bool) {}
 
