@@ -4,7 +4,7 @@
 
 use fcc_flight::config::{
     BoardSensor, BudgetSection, BuiltInSection, ChipSection, Config, CpuChoice, IioSection,
-    ServoBoardSection, XPlaneSection,
+    SensorEntry, ServoBoardSection, XPlaneSection,
 };
 use fcc_linux::chip::ChipKind;
 
@@ -109,7 +109,11 @@ fn leaves(value: &toml::Value) -> usize {
 #[test]
 fn the_example_of_a_board_is_a_configuration() {
     let config = Config::parse(BOARD, "board.toml").unwrap();
-    let kinds: Vec<_> = config.sensor.iter().filter_map(|one| one.board()).collect();
+    let kinds: Vec<_> = config
+        .sensor
+        .iter()
+        .filter_map(SensorEntry::board)
+        .collect();
     let [
         BoardSensor::Chip(kind, imu),
         _,

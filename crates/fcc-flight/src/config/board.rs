@@ -266,6 +266,13 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     }
 }
 
+impl Config {
+    /// Whether it has a sensor that gives raw readings of a board.
+    pub(super) fn has_board(&self) -> bool {
+        self.sensor.iter().any(|entry| entry.board().is_some())
+    }
+}
+
 /// Key, smallest and largest value, as in the table of all keys.
 pub(super) const RANGES: &[(&str, f64, f64)] = &[
     ("iio.rate_hz", 1.0, 2_000.0),

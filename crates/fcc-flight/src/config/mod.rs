@@ -249,6 +249,7 @@ impl Config {
         }
         if let Some(section) = &self.built_in
             && section.raw_sensors == RawSensorsChoice::None
+            && !self.has_board()
             && self.navigation.method != NavigationMethod::Measured
         {
             remarks.push(
@@ -258,6 +259,16 @@ impl Config {
             );
         }
         remarks.extend(raw_readings::without_effect(self, &places));
+        if self.has_board()
+            && self.is_without_simulator()
+            && self.navigation.method == NavigationMethod::Measured
+        {
+            remarks.push(
+                "the sensors of a board give raw readings, and navigation.method is \"measured\": \
+                 nothing will engage; choose \"kalman\""
+                    .to_owned(),
+            );
+        }
         remarks.extend(self.stick_remark());
         if self.actuators().is_empty() {
             remarks.push(NO_ACTUATOR.to_owned());

@@ -1,5 +1,7 @@
 //! The sensors of a board: their threads, and what is wrong with them.
 
+use std::time::{Duration, Instant};
+
 use fcc_core::flight::Measurements;
 use fcc_core::framework::{Controller, Sensor};
 use fcc_linux::iio::Iio;
@@ -18,9 +20,25 @@ const IIO: &str = "IIO";
 pub(crate) struct WatchedDevice {
     name: &'static str,
     status: DeviceStatus,
-    /// What was reported last.
+    /// What was reported last, and when something else may be.
     reported: Option<String>,
+    quiet_until: Option<Instant>,
 }
+
+impl WatchedDevice {
+    pub(super) const fn new(name: &'static str, status: DeviceStatus) -> Self {
+        Self {
+            name,
+            status,
+            reported: None,
+            quiet_until: None,
+        }
+    }
+}
+
+/// For how long nothing more of a device is reported: one of which every
+/// hundredth value is damaged would fill the recording.
+const QUIET: Duration = Duration::from_secs(5);
 
 /// Starts the thread that reads a device. One that is not connected is no error:
 /// it may be, later.
@@ -60,11 +78,7 @@ pub(crate) fn uncalibrated(
     };
     let sensor: DeviceSensor<RawValues> =
         started.map_err(|source| AssemblyError::Device { name, source })?;
-    let watched = WatchedDevice {
-        name,
-        status,
-        reported: None,
-    };
+    let watched = WatchedDevice::new(name, status);
     Ok((sensor, watched))
 }
 
@@ -82,7 +96,10 @@ impl<C: Controller> Observer<C> for DeviceReporter {
     fn poll(&mut self, access: &mut Access<'_, C::Command>) {
         for device in &mut self.0 {
             let trouble = device.status.trouble();
-            if trouble == device.reported {
+            let is_quiet = device
+                .quiet_until
+                .is_some_and(|until| Instant::now() < until);
+            if is_quiet || trouble == device.reported {
                 continue;
             }
             access.reports.remark(match &trouble {
@@ -90,6 +107,27 @@ impl<C: Controller> Observer<C> for DeviceReporter {
                 None => format!("{} is read", device.name),
             });
             device.reported = trouble;
+            device.quiet_until = Some(Instant::now() + QUIET);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fcc_linux::DeviceStatus;
+
+    use super::*;
+    use crate::flight::conformance::observer_conforms;
+
+    #[test]
+    fn an_observer_of_devices_conforms() {
+        observer_conforms(|| {
+            Box::new(DeviceReporter::new(vec![WatchedDevice {
+                name: "BMP388",
+                status: DeviceStatus::default(),
+                reported: None,
+                quiet_until: None,
+            }]))
+        });
     }
 }

@@ -1,7 +1,7 @@
 //! The files of a device.
 
 use std::fs::{self, File};
-use std::io::{self, Read};
+use std::io::{self, ErrorKind, Read};
 use std::path::PathBuf;
 
 use crate::DeviceError;
@@ -70,7 +70,15 @@ impl Folder {
     /// # Errors
     /// When the kernel refuses it.
     pub fn write(&self, name: &str, text: &str) -> Result<(), DeviceError> {
-        fs::write(self.0.join(name), text).map_err(|source| self.failed(name, "writing", source))
+        fs::write(self.0.join(name), text).map_err(|source| match source.kind() {
+            ErrorKind::PermissionDenied => DeviceError::Refused {
+                device: self.shown_file(name),
+                what: "may not be written: give the right to it by a rule of udev, or set \
+                       buffered = false (docs/boards.md)"
+                    .to_owned(),
+            },
+            _ => self.failed(name, "writing", source),
+        })
     }
 
     /// The names in a folder within; none if it cannot be read.

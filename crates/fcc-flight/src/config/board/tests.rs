@@ -94,3 +94,17 @@ fn an_error_is_reported_with_its_line_and_what_to_do() {
         assert_eq!(lines(&format!("{begin}{keys}")), [expected]);
     }
 }
+
+#[test]
+fn raw_readings_alone_do_not_engage() {
+    let text = "actuator = []\n[[sensor]]\nkind = \"bmp180\"\n";
+    let remarks = |text: &str| Config::parse(text, "test").unwrap().remarks(text);
+    let about_raw =
+        |remark: &String| remark.starts_with("the sensors of a board give raw readings");
+    assert!(remarks(text).iter().any(about_raw));
+    let kalman = text.replace(
+        "[[sensor]]",
+        "[navigation]\nmethod = \"kalman\"\n[[sensor]]",
+    );
+    assert!(!remarks(&kalman).iter().any(about_raw));
+}
