@@ -32,7 +32,7 @@ fn sbus(bytes: &[u8; 25]) -> ([u16; 16], bool, bool) {
     }
 }
 
-/// The vector of the crate `sbus` (tests/parse_tester.rs), whose flags are those
+/// The vector of the crate `sbus` (its `parse_tester.rs`), whose flags are those
 /// of channels 17 and 18.
 #[test]
 fn channels_of_sbus_are_those_of_another_decoder() {
@@ -129,7 +129,7 @@ fn a_damaged_frame_of_crsf_is_counted_and_gives_nothing() {
 }
 
 /// By TBS' specification: uplink RSSI twice, quality, signal to noise, and more;
-/// the checksums by PyPI's crcmod, `Crc(0x1d5, initCrc=0, rev=False)`.
+/// the checksums by `crcmod` of Python, `Crc(0x1d5, initCrc=0, rev=False)`.
 #[test]
 fn link_statistics_tell_the_quality_of_the_link() {
     for (quality_percent, checksum) in [(100, CRC_100), (0, CRC_0)] {

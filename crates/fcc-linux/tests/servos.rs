@@ -248,7 +248,7 @@ impl I2c for Chip {
             match operation {
                 Operation::Write([register, values @ ..]) => {
                     at = usize::from(*register);
-                    for value in values.iter() {
+                    for value in &**values {
                         // The rate is locked while it is awake (7.3.5).
                         if at != 0xfe || registers[0] & 0x10 != 0 {
                             registers[at] = *value;
@@ -280,7 +280,7 @@ fn pca9685(rate_hz: f64) -> Pca9685Settings {
 }
 
 /// The data sheet's example in 7.3.5: 25 MHz and 200 Hz give 1Eh. 50 Hz give 79h,
-/// 24 and 1,526 Hz the ends, FFh (at 23.8 Hz) and 03h.
+/// 23.8 and 1,526 Hz the ends, `FFh` and 03h.
 #[test]
 fn the_prescale_value_is_that_of_the_data_sheet() {
     for (rate_hz, prescale) in [(200.0, 0x1e), (50.0, 0x79), (23.8, 0xff), (1_526.0, 0x03)] {

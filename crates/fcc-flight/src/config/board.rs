@@ -296,7 +296,9 @@ pub(super) fn is_of_kind(range_of: &str, key: &str, kind: &str) -> bool {
     let is_chip = ChipKind::ALL.iter().any(|chip| chip.key() == kind);
     match range_of {
         "chip" => is_chip,
-        "built-in" => (is_chip || kind == "iio") && key.starts_with("calibration."),
+        "built-in" => {
+            (is_chip || matches!(kind, "iio" | "gnss-serial")) && key.starts_with("calibration.")
+        }
         of_one => of_one == kind,
     }
 }
@@ -305,7 +307,11 @@ impl SensorEntry {
     /// The calibration of the sensor of a board, if it is one.
     pub(super) fn calibration_mut(&mut self) -> Option<&mut CalibrationSection> {
         match self {
-            Self::Simulator(_) | Self::XPlane(_) | Self::ServoBoard(_) => None,
+            Self::Simulator(_)
+            | Self::XPlane(_)
+            | Self::ServoBoard(_)
+            | Self::GnssSerial(_)
+            | Self::RcReceiver(_) => None,
             Self::Iio(section) => Some(&mut section.calibration),
             Self::Icm42688(section)
             | Self::Mpu6050(section)
@@ -320,7 +326,11 @@ impl SensorEntry {
     /// The sensor of a board, if it is one.
     pub fn board(&self) -> Option<BoardSensor<'_>> {
         let (kind, section) = match self {
-            Self::Simulator(_) | Self::XPlane(_) | Self::ServoBoard(_) => return None,
+            Self::Simulator(_)
+            | Self::XPlane(_)
+            | Self::ServoBoard(_)
+            | Self::GnssSerial(_)
+            | Self::RcReceiver(_) => return None,
             Self::Iio(section) => return Some(BoardSensor::Iio(section)),
             Self::Icm42688(section) => (ChipKind::Icm42688, section),
             Self::Mpu6050(section) => (ChipKind::Mpu6050, section),

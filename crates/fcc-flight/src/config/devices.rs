@@ -7,7 +7,10 @@ use toml::Spanned;
 use toml::de::DeTable;
 
 use super::read::{Entry, Reader};
-use super::{ChipSection, Config, IioSection, XPlaneSection};
+use super::{
+    ChipSection, Config, GnssSerialSection, IioSection, RcReceiverSection, ServosSection,
+    XPlaneSection,
+};
 
 /// One entry of `[[sensor]]`: a kind, and that kind's keys.
 #[derive(Clone, Debug, Serialize)]
@@ -35,6 +38,10 @@ pub enum SensorEntry {
     Qmc5883l(Box<ChipSection>),
     /// The servo board's, of `[servo-board]`.
     ServoBoard(NoKeys),
+    /// A satellite receiver on a serial line.
+    GnssSerial(Box<GnssSerialSection>),
+    /// An RC receiver on a serial line.
+    RcReceiver(Box<RcReceiverSection>),
 }
 
 /// One entry of `[[actuator]]`: a kind, and that kind's keys.
@@ -45,6 +52,8 @@ pub enum ActuatorEntry {
     Simulator(NoKeys),
     /// The servo board's, of `[servo-board]`.
     ServoBoard(NoKeys),
+    /// Servos of a board.
+    Servos(Box<ServosSection>),
 }
 
 /// The keys of a kind without keys.
@@ -114,6 +123,8 @@ impl Entry for SensorEntry {
         "sdp3x",
         "qmc5883l",
         "servo-board",
+        "gnss-serial",
+        "rc-receiver",
     ];
 
     fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, reader: &mut Reader<'t>) -> Option<Self> {
@@ -126,6 +137,8 @@ impl Entry for SensorEntry {
             "x-plane" => reader.table(keys, 1).map(Self::XPlane),
             "iio" => reader.table(keys, 1).map(Self::Iio),
             "servo-board" => reader.table(keys, 1).map(Self::ServoBoard),
+            "gnss-serial" => reader.table(keys, 1).map(Self::GnssSerial),
+            "rc-receiver" => reader.table(keys, 1).map(Self::RcReceiver),
             _ => reader.table(keys, 1).map(Self::Simulator),
         }
     }
@@ -136,11 +149,12 @@ impl Entry for SensorEntry {
 }
 
 impl Entry for ActuatorEntry {
-    const KINDS: &'static [&'static str] = &["simulator", "servo-board"];
+    const KINDS: &'static [&'static str] = &["simulator", "servo-board", "servos"];
 
     fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, reader: &mut Reader<'t>) -> Option<Self> {
         match kind {
             "servo-board" => reader.table(keys, 1).map(Self::ServoBoard),
+            "servos" => reader.table(keys, 1).map(Self::Servos),
             _ => reader.table(keys, 1).map(Self::Simulator),
         }
     }
@@ -203,7 +217,7 @@ mod tests {
             kind,
             "test:5: sensor[1].kind: is \"gyroscope\": choose one of \"simulator\", \"x-plane\", \"iio\", \
              \"icm42688\", \"mpu6050\", \"bmp388\", \"bmp180\", \"ms4525do\", \"sdp3x\", \
-             \"qmc5883l\", \"servo-board\""
+             \"qmc5883l\", \"servo-board\", \"gnss-serial\", \"rc-receiver\""
         );
         let missing = message(two);
         assert!(missing.contains("`kind` is missing"), "{missing}");

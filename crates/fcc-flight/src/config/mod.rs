@@ -19,6 +19,7 @@ mod early_wake;
 mod error;
 mod exactly;
 mod guidance;
+mod lines;
 mod navigation;
 mod places;
 mod ranges;
@@ -30,6 +31,7 @@ mod restart;
 mod rights;
 mod runtime;
 mod servo_board;
+mod servos;
 mod similar;
 mod telemetry;
 mod values;
@@ -57,6 +59,7 @@ pub use devices::{ActuatorEntry, NoKeys, SensorEntry};
 pub use early_wake::EarlyWakeChoice;
 pub use error::{ConfigError, Problem};
 pub use guidance::GuidanceSection;
+pub use lines::{GnssSerialSection, LineSensor, ProtocolChoice, RcReceiverSection};
 pub use navigation::{NavigationMethod, NavigationSection};
 pub use recording::RecordingSection;
 pub use restart::{RestartMode, RestartSection};
@@ -66,6 +69,7 @@ pub use runtime::{
     Then,
 };
 pub use servo_board::ServoBoardSection;
+pub use servos::{DrivesChoice, ReleasedChoice, ServoSection, ServosSection};
 pub use telemetry::TelemetrySection;
 pub use values::keyed;
 pub use x_plane::XPlaneSection;
@@ -292,9 +296,8 @@ impl Config {
                         .map(|section| section.fallback_after_ms),
                 ),
                 other => {
-                    let after = other
-                        .board()
-                        .map(|board| board.patience().1.as_millis() as u64);
+                    let board = other.board().map(|board| board.patience());
+                    let after = board.map(|(_, fallback)| fallback.as_millis() as u64);
                     (format!("sensor[{at}]"), after)
                 }
             };

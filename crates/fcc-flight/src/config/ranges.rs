@@ -9,7 +9,7 @@ use toml::de::DeValue;
 
 use super::places::Places;
 use super::{
-    Config, Problem, SensorEntry, XPlaneSection, board, calibration, navigation, relations,
+    Config, Problem, SensorEntry, XPlaneSection, board, calibration, lines, navigation, relations,
     servo_board,
 };
 
@@ -164,6 +164,7 @@ fn ranges() -> impl Iterator<Item = &'static (&'static str, f64, f64)> {
         .chain(navigation::RANGES)
         .chain(board::RANGES)
         .chain(servo_board::RANGES)
+        .chain(lines::RANGES)
 }
 
 /// Smallest and largest value of a numeric key.

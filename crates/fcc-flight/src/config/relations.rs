@@ -4,8 +4,8 @@ use fcc_core::flight::control::Envelope;
 
 use super::autopilot::EnvelopeSection;
 use super::{
-    ActuatorEntry, AutopilotSection, Config, NavigationMethod, SensorEntry, board, raw_readings,
-    servo_board,
+    ActuatorEntry, AutopilotSection, Config, NavigationMethod, SensorEntry, board, lines,
+    raw_readings, servo_board, servos,
 };
 
 /// Of `SCHED_FIFO` (sched(7)).
@@ -66,6 +66,8 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     raw_readings::check(config, report);
     board::check(config, report);
     servo_board::check(config, report);
+    lines::check(config, report);
+    servos::check(config, report);
 }
 
 /// No file of Unix has a NUL in its name.
@@ -345,8 +347,8 @@ fn rights(config: &Config, report: &mut impl FnMut(&[&str], String)) {
 }
 
 fn lists(config: &Config, report: &mut impl FnMut(&[&str], String)) {
-    let actuators = config.actuators().iter();
-    let actuators = actuators.map(|entry| matches!(entry, ActuatorEntry::Simulator(_)));
+    let is_simulator = |entry: &ActuatorEntry| matches!(entry, ActuatorEntry::Simulator(_));
+    let actuators = config.actuators().iter().map(is_simulator);
     let sensors = config.sensor.iter().map(SensorEntry::is_simulator);
     for (list, simulators) in [
         ("sensor", sensors.collect::<Vec<_>>()),

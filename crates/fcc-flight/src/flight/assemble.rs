@@ -19,6 +19,7 @@ use super::control_override::ControlOverride;
 use super::event_log::EventLog;
 #[cfg(feature = "live")]
 use super::limits::{altitudes_m, heights_m};
+use super::lines::{line_sensor, servos};
 #[cfg(feature = "live")]
 use super::live::Live;
 use super::observer::Observer;
@@ -137,9 +138,11 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
                 }));
             }
             SensorEntry::ServoBoard(_) => sensors.append(&mut servo_board.sensors),
-            board => {
-                if let Some(board) = board.board() {
-                    let (sensor, status) = board_sensor(&board)?;
+            other => {
+                let board = other.board().map(|board| board_sensor(&board));
+                let line = other.line().map(|line| line_sensor(&line));
+                if let Some(opened) = board.or(line) {
+                    let (sensor, status) = opened?;
                     sensors.push(sensor);
                     devices.push(status);
                 }
@@ -155,6 +158,11 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
             ActuatorEntry::ServoBoard(_) => {
                 outlasts |= !servo_board.actuators.is_empty();
                 actuators.append(&mut servo_board.actuators);
+            }
+            ActuatorEntry::Servos(section) => {
+                let (actuator, status) = servos(section)?;
+                actuators.push(actuator);
+                devices.push(status);
             }
         }
     }

@@ -4,10 +4,13 @@
 //! Data sheet: NXP, *PCA9685, 16-channel, 12-bit PWM Fm+ I²C-bus LED controller*,
 //! Rev. 4 (2015): registers in 7.3, the prescale value in 7.3.5.
 
+use std::io;
+use std::path::Path;
 use std::thread;
 use std::time::{Duration, Instant};
 
 use embedded_hal::i2c::I2c;
+use linux_embedded_hal::I2cdev;
 
 use super::PulseOutputs;
 use crate::DeviceError;
@@ -56,6 +59,20 @@ pub struct Pca9685<B> {
     settings: Pca9685Settings,
     prescale: u8,
     checked: Instant,
+}
+
+impl Pca9685<I2cdev> {
+    /// Opens the bus, and sets the chip up.
+    ///
+    /// # Errors
+    /// See [`open`](Self::open), and when there is no such bus.
+    pub fn open_at(bus: &Path, settings: Pca9685Settings) -> Result<Self, DeviceError> {
+        let opened = I2cdev::new(bus).map_err(|error| DeviceError::Open {
+            device: bus.display().to_string(),
+            source: io::Error::from(error),
+        });
+        Self::open(opened?, settings)
+    }
 }
 
 /// round(oscillator / (4096 x rate)) - 1, 3 at least (7.3.5, equation 1).

@@ -1,0 +1,205 @@
+//! The kinds of `[[sensor]]` on serial lines: satellite and RC receivers.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use fcc_core::framework::FALLBACK_AFTER;
+use fcc_linux::serial::{GnssSettings, LineSettings, RcChannel, RcChannels, RcProtocol};
+use serde::{Deserialize, Serialize};
+
+use super::{CalibrationSection, Config, SensorEntry};
+
+/// A satellite receiver.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct GnssSerialSection {
+    /// Its line.
+    pub path: PathBuf,
+    /// Bits in a second.
+    pub baud: u32,
+    /// Whether it is configured as a receiver of u-blox, from generation 9 on.
+    pub configure: bool,
+    /// It counts as silent after this long without a fix.
+    pub silent_after_ms: u64,
+    /// After this long without a fix, that of the next sensor is used.
+    pub fallback_after_ms: u64,
+    /// The calibration of its readings: its delay.
+    #[serde(skip_serializing_if = "CalibrationSection::is_default")]
+    pub calibration: CalibrationSection,
+}
+
+/// An RC receiver: engage switch and the pilot's sticks.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RcReceiverSection {
+    /// Its line.
+    pub path: PathBuf,
+    /// What it speaks.
+    pub protocol: ProtocolChoice,
+    /// The channel of the engage switch, from 1; negative if it is reversed, as
+    /// for all channels.
+    pub switch_channel: i8,
+    /// The pulse above which the switch is on.
+    pub switch_on_above_us: f64,
+    /// The channels of the sticks; 0 if they are not used.
+    pub pitch_channel: i8,
+    /// That of roll.
+    pub roll_channel: i8,
+    /// That of yaw.
+    pub yaw_channel: i8,
+    /// It counts as silent after this long without a frame.
+    pub silent_after_ms: u64,
+    /// After this long without one, the next sensor's sticks are used.
+    pub fallback_after_ms: u64,
+}
+
+/// What an RC receiver speaks.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ProtocolChoice {
+    /// Futaba's.
+    Sbus,
+    /// Crossfire and `ExpressLRS`.
+    Crsf,
+}
+
+impl Default for GnssSerialSection {
+    fn default() -> Self {
+        Self {
+            path: PathBuf::new(),
+            baud: 38_400,
+            configure: true,
+            silent_after_ms: 2_000,
+            fallback_after_ms: 1_000,
+            calibration: CalibrationSection::default(),
+        }
+    }
+}
+
+impl Default for RcReceiverSection {
+    fn default() -> Self {
+        Self {
+            path: PathBuf::new(),
+            protocol: ProtocolChoice::Sbus,
+            switch_channel: 5,
+            switch_on_above_us: 1_700.0,
+            pitch_channel: 2,
+            roll_channel: 1,
+            yaw_channel: 4,
+            silent_after_ms: 500,
+            fallback_after_ms: FALLBACK_AFTER.as_millis() as u64,
+        }
+    }
+}
+
+impl GnssSerialSection {
+    /// What opens it.
+    pub fn to_linux(&self) -> GnssSettings {
+        GnssSettings {
+            line: LineSettings {
+                path: self.path.clone(),
+                baud: self.baud,
+                has_even_parity: false,
+            },
+            configures: self.configure,
+        }
+    }
+}
+
+impl RcReceiverSection {
+    /// What it speaks.
+    pub fn protocol(&self) -> RcProtocol {
+        match self.protocol {
+            ProtocolChoice::Sbus => RcProtocol::Sbus,
+            ProtocolChoice::Crsf => RcProtocol::Crsf,
+        }
+    }
+
+    /// What its channels are.
+    pub fn channels(&self) -> RcChannels {
+        let channel = |number: i8| RcChannel {
+            number: number.unsigned_abs(),
+            is_reversed: number < 0,
+        };
+        let sticks = [self.pitch_channel, self.roll_channel, self.yaw_channel];
+        RcChannels {
+            switch: channel(self.switch_channel),
+            on_above_us: self.switch_on_above_us,
+            controls: (!sticks.contains(&0)).then(|| sticks.map(channel)),
+        }
+    }
+}
+
+/// A sensor on a serial line.
+#[derive(Clone, Copy, Debug)]
+pub enum LineSensor<'a> {
+    /// A satellite receiver.
+    Gnss(&'a GnssSerialSection),
+    /// An RC receiver.
+    Rc(&'a RcReceiverSection),
+}
+
+impl LineSensor<'_> {
+    /// After how long without a sample it is silent, and without a reading the
+    /// next sensor is used.
+    pub fn patience(&self) -> (Duration, Duration) {
+        let (silent_ms, fallback_ms) = match self {
+            Self::Gnss(section) => (section.silent_after_ms, section.fallback_after_ms),
+            Self::Rc(section) => (section.silent_after_ms, section.fallback_after_ms),
+        };
+        (
+            Duration::from_millis(silent_ms),
+            Duration::from_millis(fallback_ms),
+        )
+    }
+}
+
+impl SensorEntry {
+    /// The sensor on a serial line, if it is one.
+    pub fn line(&self) -> Option<LineSensor<'_>> {
+        match self {
+            Self::GnssSerial(section) => Some(LineSensor::Gnss(section)),
+            Self::RcReceiver(section) => Some(LineSensor::Rc(section)),
+            _ => None,
+        }
+    }
+}
+
+/// Reports what does not fit in the sensors on serial lines.
+pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
+    for (at, entry) in config.sensor.iter().enumerate() {
+        let mut wrong = |key: &str, message: &str| {
+            report(&[&format!("sensor[{at}].{key}")], message.to_owned());
+        };
+        let path = match entry.line() {
+            Some(LineSensor::Gnss(section)) => &section.path,
+            Some(LineSensor::Rc(section)) => {
+                if section.switch_channel == 0 {
+                    wrong("switch_channel", "is 0: choose 1 to 16, or -1 to -16");
+                }
+                &section.path
+            }
+            None => continue,
+        };
+        if path.as_os_str().is_empty() {
+            wrong(
+                "path",
+                "is missing: give the serial line, such as \"/dev/ttyAMA0\"",
+            );
+        }
+    }
+}
+
+/// Key, smallest and largest value, as in the table of all keys.
+pub(super) const RANGES: &[(&str, f64, f64)] = &[
+    ("gnss-serial.baud", 1_200.0, 4_000_000.0),
+    ("gnss-serial.silent_after_ms", 50.0, 60_000.0),
+    ("gnss-serial.fallback_after_ms", 10.0, 60_000.0),
+    ("rc-receiver.switch_channel", -16.0, 16.0),
+    ("rc-receiver.switch_on_above_us", 1_000.0, 2_000.0),
+    ("rc-receiver.pitch_channel", -16.0, 16.0),
+    ("rc-receiver.roll_channel", -16.0, 16.0),
+    ("rc-receiver.yaw_channel", -16.0, 16.0),
+    ("rc-receiver.silent_after_ms", 50.0, 60_000.0),
+    ("rc-receiver.fallback_after_ms", 10.0, 60_000.0),
+];

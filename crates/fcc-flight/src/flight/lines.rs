@@ -1,0 +1,85 @@
+//! Receivers on serial lines, and servos: their threads.
+
+use fcc_core::flight::{Measurements, Surfaces};
+use fcc_core::framework::{Actuator, Sensor};
+use fcc_linux::serial::{GnssReceiver, RcReceiver};
+use fcc_linux::servo::{Pca9685, Pca9685Settings, PulseOutputs, ServoBus, ServoThread, SysfsPwm};
+use fcc_linux::{DeviceThread, monotonic};
+
+use super::assemble::AssemblyError;
+use super::board::WatchedDevice;
+use super::calibrated::Calibrated;
+use crate::config::{LineSensor, ServosSection};
+
+const GNSS: &str = "GNSS receiver";
+const RC: &str = "RC receiver";
+const SERVOS: &str = "servos";
+
+/// Starts the thread that reads a line. One that is not there is no error: it may
+/// be, later.
+pub(super) fn line_sensor(
+    line: &LineSensor<'_>,
+) -> Result<(Box<dyn Sensor<Measurements>>, WatchedDevice), AssemblyError> {
+    let (silent_after, fallback_after) = line.patience();
+    let thread = |name| {
+        DeviceThread::new(name)
+            .silent_after(silent_after)
+            .fallback_after(fallback_after)
+    };
+    let failed = |name| move |source| AssemblyError::Device { name, source };
+    match line {
+        LineSensor::Gnss(section) => {
+            let (thread, settings) = (thread(GNSS), section.to_linux());
+            let watched = WatchedDevice::new(GNSS, thread.status());
+            let sensor = thread.start(move || GnssReceiver::open(&settings, monotonic));
+            let sensor = sensor.map_err(failed(GNSS))?;
+            let sensor: Box<dyn Sensor<Measurements>> = match section.calibration.to_core() {
+                Some(calibration) => Box::new(Calibrated::new(sensor, &calibration)),
+                None => Box::new(sensor),
+            };
+            Ok((sensor, watched))
+        }
+        LineSensor::Rc(section) => {
+            let (thread, protocol) = (thread(RC), section.protocol());
+            let (line, channels) = (protocol.line(&section.path), section.channels());
+            let watched = WatchedDevice::new(RC, thread.status());
+            let open = move || RcReceiver::open(&line, protocol, channels, monotonic);
+            let sensor = thread.start(open).map_err(failed(RC))?;
+            Ok((Box::new(sensor), watched))
+        }
+    }
+}
+
+/// Starts the thread that writes to servos, under the same condition.
+pub(super) fn servos(
+    section: &ServosSection,
+) -> Result<(Box<dyn Actuator<Surfaces>>, WatchedDevice), AssemblyError> {
+    let thread = ServoThread::new(SERVOS, section.to_linux());
+    let watched = WatchedDevice::new(SERVOS, thread.status());
+    let section = section.clone();
+    let open = move || {
+        let outputs: Box<dyn PulseOutputs> = match &section.pca9685 {
+            None => Box::new(SysfsPwm::open(&section.pwm_outputs(), section.rate_hz)?),
+            Some(bus) => {
+                let settings = Pca9685Settings {
+                    device: format!("{}, address {:#04x}", bus.display(), section.address),
+                    address: section.address,
+                    rate_hz: section.rate_hz,
+                    oscillator_hz: section.oscillator_mhz * 1e6,
+                    outputs: section.channels.iter().map(|c| c.output as u8).collect(),
+                };
+                Box::new(Pca9685::open_at(bus, settings)?)
+            }
+        };
+        Ok(ServoBus {
+            outputs,
+            heartbeat: None,
+        })
+    };
+    let actuator = thread.start(open);
+    let actuator = actuator.map_err(|source| AssemblyError::Device {
+        name: SERVOS,
+        source,
+    })?;
+    Ok((Box::new(actuator), watched))
+}
