@@ -248,7 +248,7 @@ impl I2c for Chip {
             match operation {
                 Operation::Write([register, values @ ..]) => {
                     at = usize::from(*register);
-                    for value in &**values {
+                    for value in values {
                         // The rate is locked while it is awake (7.3.5).
                         if at != 0xfe || registers[0] & 0x10 != 0 {
                             registers[at] = *value;
