@@ -48,6 +48,7 @@ class Flight:
             '[[actuator]]\nkind = "servo-board"\n'
             f"[guidance]\n{guidance}\n"
             f'[recording]\nfolder = "{scratch}/recordings"\n'
+            '[restart]\nmode = "warm"\n'
         )
         self.daemon = self.start()
 
@@ -103,7 +104,7 @@ def test_a_killed_daemon_leaves_the_surfaces_centred_after_200_ms(
         time.sleep(3.0)
         flight.daemon.send(signal.SIGKILL)
         assert_failsafe(flight.await_control(Control.FAILSAFE))
-        # A new one flies on: the switch is still on.
+        # A new one flies on.
         flight.daemon = flight.start()
         flight.await_control(Control.HELD)
         ending = flight.daemon.end(signal.SIGTERM)

@@ -1,4 +1,4 @@
-"""The timed pattern by a phone's raw sensors, with the pitot tube, switch and surfaces of a board."""
+"""The timed pattern by a phone's raw sensors, with a board's pitot tube, switch and surfaces."""
 
 from __future__ import annotations
 
