@@ -22,6 +22,10 @@ pub struct ServoBoardConfig {
     /// Where a loop has several sensors of a quantity, another one is preferred
     /// after this long without a reading. Default: 100 ms, five replies.
     pub fallback_after: Duration,
+    /// `SCHED_FIFO` with this priority for the thread that serves a serial line,
+    /// 1..=98, if it is granted: below the loop's, and above all without one.
+    /// Default: none.
+    pub priority: Option<u8>,
 }
 
 /// The way to a servo board.
@@ -47,6 +51,7 @@ impl Default for ServoBoardConfig {
             engage_switch: x_plane.engage_switch,
             silent_after: x_plane.silent_after,
             fallback_after: x_plane.fallback_after,
+            priority: None,
         }
     }
 }

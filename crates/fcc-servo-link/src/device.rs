@@ -113,7 +113,7 @@ pub fn open_serial(
     path: &Path,
     baud: Baud,
 ) -> Result<OnLine, OpenError> {
-    let port = SerialPort::open(path, baud).map_err(|source| OpenError::Line {
+    let port = SerialPort::open(path, baud, config.priority).map_err(|source| OpenError::Line {
         path: path.to_owned(),
         source,
     })?;

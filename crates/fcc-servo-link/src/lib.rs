@@ -29,7 +29,9 @@
 //! a pair of sockets, and the loop sends and receives on its end without
 //! waiting. If the line is lost, that thread opens it again as soon as it is
 //! back; until then sensor and actuator report the operating system's error. The
-//! queue towards the line is short, and what does not fit it is a fault, too.
+//! queue towards the line is short, and what does not fit it is a fault, too. The
+//! thread needs a real-time priority on a busy machine: the board gives up after
+//! 200 ms.
 //!
 //! The board has its own failsafe, so nothing has to release it on behalf of a
 //! program that was killed: there is no control authority.

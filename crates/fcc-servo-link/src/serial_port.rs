@@ -10,6 +10,7 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use std::sync::{Arc, Mutex};
 use std::thread;
 
+use fcc_timer::RealtimeRequest;
 use fcc_xplane::{Errno, Port};
 use nix::sys::socket::sockopt::SndBuf;
 use nix::sys::socket::{
@@ -93,12 +94,13 @@ pub struct SerialPort {
 }
 
 impl SerialPort {
-    /// Opens the line, and starts the thread that serves it.
+    /// Opens the line, and starts the thread that serves it, with a real-time
+    /// priority if one is given and granted.
     ///
     /// # Errors
     /// When the line cannot be opened, another program has it, or there are no
     /// resources for the thread.
-    pub fn open(path: &Path, baud: Baud) -> io::Result<Self> {
+    pub fn open(path: &Path, baud: Baud, priority: Option<u8>) -> io::Result<Self> {
         let tty = tty::open(path, baud)?;
         let flags = SockFlag::SOCK_NONBLOCK | SockFlag::SOCK_CLOEXEC;
         let (socket, other) = socketpair(AddressFamily::Unix, SockType::SeqPacket, None, flags)?;
@@ -109,6 +111,12 @@ impl SerialPort {
         thread::Builder::new()
             .name("servo-line".to_owned())
             .spawn(move || {
+                // That it is denied is reported for the loop.
+                let _granted = RealtimeRequest {
+                    priority,
+                    ..RealtimeRequest::default()
+                }
+                .apply();
                 relay.run(tty);
                 drop(end);
             })?;

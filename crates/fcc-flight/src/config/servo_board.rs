@@ -78,8 +78,8 @@ impl ServoBoardSection {
         }
     }
 
-    /// The link's configuration.
-    pub(crate) fn to_link(&self) -> ServoBoardConfig {
+    /// The link's configuration, for a loop of this priority; 0 for none.
+    pub(crate) fn to_link(&self, loop_priority: u8) -> ServoBoardConfig {
         let default = ServoBoardConfig::default();
         ServoBoardConfig {
             // One without a link is refused before.
@@ -87,6 +87,9 @@ impl ServoBoardSection {
             engage_switch: self.engage_switch.clone(),
             silent_after: Duration::from_millis(self.silent_after_ms),
             fallback_after: Duration::from_millis(self.fallback_after_ms),
+            priority: loop_priority
+                .checked_sub(1)
+                .filter(|priority| *priority > 0),
         }
     }
 

@@ -228,7 +228,7 @@ fn servo_board(config: &Config) -> Result<Plant, AssemblyError> {
     let Some(section) = &config.servo_board else {
         return Ok(Plant::default());
     };
-    let (sensor, actuator) = fcc_servo_link::open(&section.to_link())?;
+    let (sensor, actuator) = fcc_servo_link::open(&section.to_link(config.realtime.priority))?;
     Ok(Plant {
         sensors: vec![match section.calibration().to_core() {
             Some(calibration) => Box::new(Calibrated::new(sensor, &calibration)),
