@@ -58,8 +58,43 @@ def compass_turned(by_deg: float) -> Fault:
     return fault
 
 
+Axes = list[float]
+
+
+def gyroscope(wrong: Callable[[Axes], Axes]) -> Fault:
+    names = READINGS["raw_body_rates"]
+
+    def fault(values: fcc.Measurements) -> None:
+        for name, value in zip(names, wrong([getattr(values, n) for n in names]), strict=True):
+            setattr(values, name, value)
+
+    return fault
+
+
+def clipped_at(degps: float) -> Callable[[Axes], Axes]:
+    most = math.radians(degps)
+    return lambda rates: [max(-most, min(most, rate)) for rate in rates]
+
+
+def frozen_with_noise(**sigmas: float) -> Fault:
+    """Return readings that stay where they are, but for white noise of these sigmas."""
+    noise = np.random.default_rng(SEED)
+    repeat = {reading: repeated(reading) for reading in sigmas}
+
+    def fault(values: fcc.Measurements) -> None:
+        for reading, sigma in sigmas.items():
+            repeat[reading](values)
+            for name in READINGS[reading]:
+                setattr(values, name, getattr(values, name) + noise.normal(0.0, sigma))
+
+    return fault
+
+
 def fly(fault: Fault, for_s: float) -> tuple[fcc.Machine, LockstepRig, dict[str, float]]:
-    """Fly by the sensors of a board; return the largest errors, in deg, and the extremes."""
+    """Fly by the sensors of a board; return the largest errors, in deg, and the extremes.
+
+    `held` is the largest bank while control is held.
+    """
     weather = Weather(wind_from_deg=230.0, wind_kt=20.0, turbulence_severity=3)
     plant = Plant("c172p", seed=SEED, weather=weather, latitude_deg=45.0)
     north, east, down = FIELD_UT
@@ -89,7 +124,9 @@ def fly(fault: Fault, for_s: float) -> tuple[fcc.Machine, LockstepRig, dict[str,
             found.heading_rad - state.heading_rad,
         )
         wrapped = (abs(math.degrees(math.remainder(error, math.tau))) for error in errors)
-        rows.append((plant.time_s, *wrapped, abs(math.degrees(state.roll_rad)), state.height_m))
+        bank_deg = abs(math.degrees(state.roll_rad))
+        held_deg = bank_deg if machine.holds_control else 0.0
+        rows.append((plant.time_s, *wrapped, bank_deg, held_deg, state.height_m))
         return False
 
     rig.fly_to(ENGAGED_S)
@@ -97,9 +134,9 @@ def fly(fault: Fault, for_s: float) -> tuple[fcc.Machine, LockstepRig, dict[str,
     rig.fly_to(END_S, keep)
     table = np.array(rows)
     failing = table[table[:, 0] >= FAILS_S]
-    names = ("roll", "pitch", "heading", "bank")
-    most = dict(zip(names, failing[:, 1:5].max(axis=0), strict=True))
-    return machine, rig, {**most, "height": float(failing[:, 5].min())}
+    names = ("roll", "pitch", "heading", "bank", "held")
+    most = dict(zip(names, failing[:, 1:6].max(axis=0), strict=True))
+    return machine, rig, {**most, "height": float(failing[:, 6].min())}
 
 
 @pytest.mark.parametrize(
@@ -110,8 +147,16 @@ def fly(fault: Fault, for_s: float) -> tuple[fcc.Machine, LockstepRig, dict[str,
         (lost("magnetic_field"), 90.0),
         (compass_turned(30.0), 90.0),
         (repeated("magnetic_field"), 60.0),
+        (frozen_with_noise(magnetic_field=0.3), 90.0),
     ],
-    ids=["no receiver", "receiver repeats", "no compass", "compass turned", "compass repeats"],
+    ids=[
+        "no receiver",
+        "receiver repeats",
+        "no compass",
+        "compass turned",
+        "compass repeats",
+        "compass frozen with noise",
+    ],
 )
 def test_it_is_flown_on(fault: Fault, for_s: float) -> None:
     machine, _, most = fly(fault, for_s)
@@ -159,4 +204,27 @@ def test_without_its_only_gyroscope_control_is_given_back(fault: Fault) -> None:
     assert machine.state == "standby"
     (released,) = (event for event in rig.events if event.text == "failsafe -> standby")
     assert released.time_s == pytest.approx(FAILS_S + 5.5, abs=1.0)
+    assert most["height"] >= 500.0
+
+
+@pytest.mark.parametrize(
+    "fault",
+    [
+        gyroscope(lambda rates: [-rates[0], *rates[1:]]),
+        gyroscope(lambda rates: [0.0, *rates[1:]]),
+        gyroscope(clipped_at(4.0)),
+        frozen_with_noise(raw_body_rates=0.003, raw_specific_force=0.05),
+    ],
+    ids=["inverted roll", "roll stuck", "clipped", "inertial unit frozen with noise"],
+)
+def test_a_gyroscope_that_is_wrong_is_found_by_the_magnetic_field(fault: Fault) -> None:
+    """Wings level when control is given back: the field takes its place."""
+    machine, rig, most = fly(fault, 90.0)
+    assert machine.state == "standby"
+    named = "gyroscope contradicts the magnetic field and is not used"
+    found = next(event for event in rig.events if named in event.text)
+    (released,) = (event for event in rig.events if event.text == "failsafe -> standby")
+    assert found.time_s - FAILS_S <= 20.0
+    assert released.time_s - found.time_s == pytest.approx(5.0, abs=0.1)
+    assert most["held"] <= 60.0
     assert most["height"] >= 500.0

@@ -34,13 +34,18 @@ const WINDOWS: usize = 12;
 /// windows by less than this one: otherwise something disturbs it.
 const STRENGTH_SHARE: f64 = 0.15;
 const STEADY_STRENGTH_SHARE: f64 = 0.08;
+/// Beyond this share of the earth's field, what the filter has learned as the aircraft's
+/// own is a magnetometer that has failed, or was not calibrated.
+const OWN_SHARE: f64 = 0.2;
 /// Samples that scatter by more than this share contain a jump, or are too noisy.
 const SCATTER_SHARE: f64 = 0.05;
 /// The field is believed once it has been where attitude and model expect it, within
 /// this angle (10°), for so long; until it jumps, or is not there for longer than the
-/// second time: wrong gyroscopes turn the attitude away from it, too.
+/// second time: wrong gyroscopes turn the attitude away from it, too. A compass that is
+/// turned about its own z axis is right for some seconds of a turn, where that points
+/// along the field.
 const EXPECTED_RAD: f64 = 0.175;
-const EXPECTED_FOR_S: f64 = 2.0;
+const EXPECTED_FOR_S: f64 = 10.0;
 const UNEXPECTED_FOR_S: f64 = 10.0;
 
 /// Doubted gyroscopes are believed again when they have turned by this angle in all,
@@ -124,8 +129,13 @@ impl GyroscopeMonitor {
         let earth_ut = Vector3::from(known.earth_field_ut).norm();
         let is_smooth = turning.scatter < SCATTER_SHARE;
         self.is_field_sound &= is_smooth || self.is_doubted;
+        let is_calibrated = self.is_doubted || own.norm() < OWN_SHARE * earth_ut;
         let differs_ut = (turning.strength_ut - earth_ut).abs();
-        if !(self.is_field_sound && is_smooth && differs_ut < STRENGTH_SHARE * earth_ut) {
+        if !(self.is_field_sound
+            && is_smooth
+            && is_calibrated
+            && differs_ut < STRENGTH_SHARE * earth_ut)
+        {
             self.known = 0;
             return;
         }

@@ -85,3 +85,25 @@ impl Repeated {
         1 << doublings.min(MOST_DOUBLINGS)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `docs/faults.md`: the time doubles with the third failsafe, up to 16 times, of
+    /// those that follow each other within 60 s.
+    #[test]
+    fn failsafes_that_follow_each_other_last_longer() {
+        let mut repeated = Repeated::default();
+        let mut factors = [0; 8];
+        for factor in &mut factors {
+            repeated.begin();
+            *factor = repeated.factor();
+            repeated.flown_on(30.0);
+        }
+        assert_eq!(factors, [1, 1, 2, 4, 8, 16, 16, 16]);
+        repeated.flown_on(30.1);
+        repeated.begin();
+        assert_eq!(repeated.factor(), 1);
+    }
+}
