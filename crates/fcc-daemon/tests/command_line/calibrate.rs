@@ -75,11 +75,9 @@ fn all_kinds_are_found_stored_and_flown() {
         .map(|entry| entry.unwrap().path())
         .find(|path| path.extension().is_some_and(|of| of == "mcap"))
         .unwrap();
-    let replayed = fccd(folder.path(), &["replay", recording.to_str().unwrap()]);
-    let replayed = { replayed }.output().unwrap();
+    let words = ["replay", recording.to_str().unwrap()];
+    let replayed = fccd(folder.path(), &words).output().unwrap();
     assert!(replayed.status.success(), "{}", said(&replayed));
-    let bytes = fs::read(&recording).unwrap();
-    assert!(!bytes.is_empty());
 }
 
 #[test]
@@ -180,6 +178,7 @@ fn a_terminal_shows_the_coverage_and_an_interruption_changes_nothing() {
     with_config(folder.path(), "");
     let (mut ours, theirs) = super::top::terminal(["40", "120"]);
     let mut child = fccd(folder.path(), &["calibrate", "accelerometer", "raw.toml"])
+        .env("TERM", "xterm")
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .stderr(theirs)

@@ -26,7 +26,9 @@ pub enum CalibrationFileError {
     #[error("was not written by fccd calibrate: choose another calibration.file")]
     Foreign,
     /// It is of another version.
-    #[error("is of another version of fccd ({0}, and this one reads {VERSION}): calibrate again")]
+    #[error(
+        "is of another version of fccd ({0}, and this one reads {VERSION}): remove it, and calibrate again"
+    )]
     Version(u32),
     /// It was damaged, or edited.
     #[error(
@@ -35,7 +37,7 @@ pub enum CalibrationFileError {
     )]
     Damaged,
     /// A value cannot be used.
-    #[error("cannot be used: {0}; calibrate again")]
+    #[error("cannot be used: {0}; remove it, and calibrate again")]
     Unusable(String),
     /// It cannot be written.
     #[error("cannot be written: {0}")]

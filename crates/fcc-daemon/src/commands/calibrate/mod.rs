@@ -117,13 +117,9 @@ fn guide(
     output::message(words::beforehand(args.kind));
     let mut screen = Screen::new();
     let period = Duration::from_secs_f64(1.0 / config.tick.rate_hz);
-    let limit_s = session.length_s().map_or(args.seconds, |length_s| {
-        if args.fault.is_some() {
-            length_s.min(args.seconds)
-        } else {
-            args.seconds
-        }
-    });
+    // A simulated person does not go on.
+    let person_s = session.length_s().unwrap_or(f64::INFINITY);
+    let limit_s = args.seconds.min(person_s);
     let begun = Instant::now();
     let mut number = 0;
     loop {
