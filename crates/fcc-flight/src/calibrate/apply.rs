@@ -194,7 +194,7 @@ mod tests {
             panic!("{applied:?}");
         };
         assert!(
-            said.ends_with("gyroscope of 2026-11-22, error 0.01 °/s"),
+            said.ends_with("gyroscope of 2026-11-22, error 0.010 °/s"),
             "{said}"
         );
     }

@@ -77,7 +77,7 @@ impl Entry {
     pub fn describe(&self) -> String {
         let (kind, day) = (self.kind.name(), self.date.split('T').next());
         let day = day.unwrap_or_default();
-        format!("{kind} of {day}, error {:.2} {}", self.error, self.unit)
+        format!("{kind} of {day}, error {:.3} {}", self.error, self.unit)
     }
 }
 

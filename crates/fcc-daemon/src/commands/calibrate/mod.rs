@@ -164,11 +164,12 @@ fn stopped_by_signals() -> Result<Arc<AtomicBool>, Failure> {
 }
 
 /// A picture that is replaced all the time on a terminal; elsewhere a line for
-/// each new thing to do.
+/// each new thing to do, and each quarter of the way.
 struct Screen {
     live: ProgressBar,
     drawn: Option<Instant>,
-    said: Option<Next>,
+    /// The last line elsewhere: what to do, and how many quarters were there.
+    said: Option<(Next, u8)>,
 }
 
 impl Screen {
@@ -187,8 +188,9 @@ impl Screen {
         let next = guided.next();
         let is_complete = guided.is_complete();
         if self.live.is_hidden() {
-            if self.said != Some(next) {
-                self.said = Some(next);
+            let now = (next, (4.0 * guided.progress()) as u8);
+            if self.said != Some(now) {
+                self.said = Some(now);
                 let percent = 100.0 * guided.progress();
                 output::message(format_args!("{percent:3.0} %  {}", words::words(next)));
             }
