@@ -23,6 +23,8 @@ pub(crate) struct Truth {
     /// Averages of the step.
     pub(crate) rates: [f64; 3],
     pub(crate) force: [f64; 3],
+    /// Over the ground, m/s², of the step.
+    pub(crate) acceleration: [f64; 3],
 }
 
 pub(crate) struct Flight {
@@ -51,6 +53,7 @@ impl Flight {
                 airspeed: 0.0,
                 rates: [0.0; 3],
                 force: [0.0; 3],
+                acceleration: [0.0; 3],
             },
             manoeuvre,
             wind,
@@ -114,10 +117,9 @@ impl Flight {
         };
         now.rates = [x, y, z].map(|part| part * per_part / dt_s);
         let sum = [0, 1, 2, 3].map(|part| before.quaternion[part] + sign * now.quaternion[part]);
-        let accelerated = [0, 1, 2].map(|axis| {
-            let down = if axis == 2 { gravity } else { 0.0 };
-            (now.velocity[axis] - before.velocity[axis]) / dt_s - down
-        });
-        now.force = earth_to_body(sum, accelerated);
+        now.acceleration =
+            [0, 1, 2].map(|axis| (now.velocity[axis] - before.velocity[axis]) / dt_s);
+        let [north, east, down] = now.acceleration;
+        now.force = earth_to_body(sum, [north, east, down - gravity]);
     }
 }

@@ -10,6 +10,7 @@ mod flight;
 mod flights;
 mod gyroscope;
 mod hand;
+mod matched;
 mod noise;
 mod sensors;
 mod thesis;
