@@ -2,18 +2,19 @@
 //! of attitude, heading, rates, specific force, airspeed and altitude, in the
 //! place of sensors that measure these.
 
+mod readings;
+
 use core::time::Duration;
 
 use libm::{atan2, hypot};
+use readings::{attitude_of, either, force_of, is_certain, rates_of};
 
 use super::field_rates::FieldRates;
 use super::gyroscope_monitor::GyroscopeMonitor;
-use found::{attitude_of, either, force_of, is_certain, rates_of};
-
 use super::stuck::{MOVED_FIELD, MOVED_FORCE, MOVED_MPS, MOVED_RATE, StuckSensor};
 use super::{
-    GeodeticPosition, InertialNavigation, KalmanConfig, KalmanNavigation, Observation, Solution,
-    ThesisNavigation, earth_field_ut,
+    GeodeticPosition, InertialNavigation, Innovation, KalmanConfig, KalmanNavigation, Observation,
+    Solution, ThesisNavigation, earth_field_ut,
 };
 use crate::blocks::wrap_two_pi;
 use crate::flight::atmosphere::{calibrated_airspeed_mps, pressure_altitude_m};
@@ -120,12 +121,12 @@ pub struct RawNavigation {
     field_rates: FieldRates,
     /// Since when gyroscopes are doubted, if they are.
     by_field_since: Time,
-    /// That of the last step.
-    solution: Solution,
     /// Whether the model has given the field at the first fix.
     knows_field: bool,
     /// How far magnetic north is to the east of the method's, rad.
     declination_rad: f64,
+    /// That of the last step.
+    solution: Solution,
     found: Measurements,
 }
 
@@ -161,9 +162,9 @@ impl RawNavigation {
             gyroscope: GyroscopeMonitor::new(),
             field_rates: FieldRates::default(),
             by_field_since: Time::NEVER,
-            solution: Solution::UNKNOWN,
             knows_field: false,
             declination_rad: field.map_or(0.0, declination_rad),
+            solution: Solution::UNKNOWN,
             found: Measurements::default(),
         }
     }
@@ -183,6 +184,21 @@ impl RawNavigation {
     /// doubted, and then by the magnetic field.
     pub fn knows_attitude(&self) -> bool {
         !self.doubts_gyroscopes() || self.settled_by_field(self.found.attitude.taken)
+    }
+
+    /// What the method found at the latest inertial sample; its headings are true
+    /// if the declination is known.
+    pub const fn solution(&self) -> &Solution {
+        &self.solution
+    }
+
+    /// How the measurements differed from what was expected of them, since the
+    /// inertial sample before that; none by the thesis' way.
+    pub fn innovations(&self) -> &[Innovation] {
+        match &self.method {
+            Method::Kalman(navigation) => navigation.innovations(),
+            Method::Thesis(_) => &[],
+        }
     }
 
     /// Takes the measurements of a tick; those, with what they say in the place
@@ -397,6 +413,5 @@ fn repeats(last: &GnssFix, fix: &GnssFix) -> bool {
     fix.position == last.position && hypot(north_mps, east_mps) > MOVED_MPS
 }
 
-mod found;
 #[cfg(test)]
 mod tests;

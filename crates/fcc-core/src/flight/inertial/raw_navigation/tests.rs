@@ -1,5 +1,5 @@
 use super::*;
-use crate::flight::{MagneticField, Position, SpecificForce};
+use crate::flight::{BodyRates, MagneticField, Position, SpecificForce};
 
 /// At rest, the nose to magnetic east.
 fn raw(now: Time, [north_ut, down_ut]: [f64; 2]) -> Measurements {

@@ -1,6 +1,6 @@
-//! What raw readings and a solution say of what control needs.
+//! What a solution says in the place of readings.
 
-use super::super::Solution;
+use crate::flight::inertial::Solution;
 use crate::flight::orientation::euler_from_quaternion;
 use crate::flight::{Attitude, BodyRates, SpecificForce};
 use crate::framework::{Reading, Time};
