@@ -28,7 +28,7 @@ fn fly(
             gusts: GustsChoice::Moderate,
             delay_ms: 25,
             // An attitude from raw sensors is known after a second, and settles.
-            engage_at_s: 4.0,
+            engage_at_s: Some(4.0),
             raw_sensors: match navigation {
                 NavigationMethod::Measured => RawSensorsChoice::None,
                 _ => RawSensorsChoice::Board,

@@ -68,6 +68,9 @@ fn the_built_in_example_contains_every_default() {
         built_in: Some(BuiltInSection::default()),
         ..Config::default()
     };
+    if let Some(section) = &mut expected.built_in {
+        section.engage_at_s = Some(2.0);
+    }
     expected.navigation.magnetic_field_ut = Some([21.1, 0.0, 45.3]);
     expected.calibration.file = Some("recordings/fccd.calibration.toml".into());
     write_the_choices(&mut expected);

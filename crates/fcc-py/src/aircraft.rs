@@ -7,7 +7,7 @@ use fcc_core::flight::calibration::Calibration;
 use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Actuator, Sensor, Switch, Tick, Time};
 use fcc_flight::config::Aircraft;
-use fcc_sim::{SimConfig, Simulation};
+use fcc_sim::Simulation;
 use pyo3::prelude::*;
 
 use crate::arguments::step_s;
@@ -49,7 +49,7 @@ impl PyAircraft {
                 errors::FLIGHT.with("the configuration has [x-plane]: give one with [built-in]")
             );
         };
-        let simulation = Simulation::new(&SimConfig::from(section))
+        let simulation = Simulation::new(&section.simulation(config.navigation.method))
             .map_err(|error| errors::FLIGHT.with(format_args!("the built-in aircraft: {error}")))?;
         Ok(Self {
             inner: Mutex::new(Inner {

@@ -169,7 +169,8 @@ pub(crate) fn fly(
         // The switch counts from its second reading.
         None => period_s + config.guidance.default_length_s(),
     };
-    let ticks = ((section.engage_at_s + seconds) * config.tick.rate_hz).ceil() as u64;
+    let ticks = ((section.engages_at_s(config.navigation.method) + seconds) * config.tick.rate_hz)
+        .ceil() as u64;
     if keep && ticks > MOST_KEPT {
         return Err(PyValueError::new_err(format!(
             "{ticks} ticks are too many to keep: fly at most {MOST_KEPT}, or give keep=False"

@@ -320,7 +320,11 @@ impl<'a> Bench<'a> {
         }
         match line.text.split_once("not ready: ") {
             None => true,
-            Some((_, inhibits)) => parked && inhibits.trim() == "airspeed is below the floor",
+            Some((_, inhibits)) => {
+                parked
+                    && inhibits.trim().starts_with("airspeed is below the floor")
+                    && !inhibits.contains(", ")
+            }
         }
     }
 

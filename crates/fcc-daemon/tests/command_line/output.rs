@@ -153,7 +153,10 @@ fn a_flight_that_is_not_engaged_says_why_at_its_end() {
     let ended = fccd(folder.path(), &words).output().unwrap();
     let found: Value = serde_json::from_slice(&ended.stdout).unwrap();
     let ending = found["ending"].as_str().unwrap();
-    assert_eq!(ending, "not engaged: airspeed is below the floor");
+    assert_eq!(
+        ending,
+        "not engaged: airspeed is below the floor: fly faster than envelope.min_airspeed_kt"
+    );
 }
 
 /// A flight that touches the ground ends there, with a code of its own; its

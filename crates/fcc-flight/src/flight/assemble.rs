@@ -120,7 +120,10 @@ struct Plant {
 pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
     let loop_config = config.loop_config();
     let mut plant = match config.aircraft() {
-        Some(Aircraft::BuiltIn(section)) => built_in(section, loop_config.messages_capacity)?,
+        Some(Aircraft::BuiltIn(section)) => {
+            let simulated = section.simulation(config.navigation.method);
+            built_in(section, &simulated, loop_config.messages_capacity)?
+        }
         Some(Aircraft::XPlane(section)) => x_plane(section, config)?,
         None => Plant::default(),
     };
@@ -183,8 +186,12 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
     })
 }
 
-fn built_in(section: &BuiltInSection, ticks: usize) -> Result<Plant, AssemblyError> {
-    let simulation = Simulation::new(&SimConfig::from(section))?;
+fn built_in(
+    section: &BuiltInSection,
+    simulated: &SimConfig,
+    ticks: usize,
+) -> Result<Plant, AssemblyError> {
+    let simulation = Simulation::new(simulated)?;
     let (sensor, truth) = tap(simulation.sensor, ticks);
     Ok(Plant {
         sensors: vec![match section.calibration.to_core() {

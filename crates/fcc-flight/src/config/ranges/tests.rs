@@ -20,6 +20,7 @@ fn every_number_has_a_range() {
     config.realtime.cpu = Some(CpuChoice::Number(1));
     if let Some(section) = &mut config.built_in {
         section.calibration.gnss.delay_ms = 1.0;
+        section.engage_at_s = Some(2.0);
     }
     config.engage.stick_takeover = Some(0.3);
     config.realtime.cpu_dma_latency_us = Some(0);
