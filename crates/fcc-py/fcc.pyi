@@ -786,7 +786,8 @@ class RawSensors:
     """What raw sensors give of a true motion, with the errors of their data sheets.
 
     `sensors` is "phone", the thesis' of 2011, or "board", a present one; `field_ut` is the
-    earth's magnetic field in microtesla, north, east and down.
+    magnetic field in microtesla, north, east and down, up to 800 each. Raises ValueError for
+    what is out of its range, with the range.
     """
 
     def __new__(
@@ -794,8 +795,8 @@ class RawSensors:
         sensors: str,
         start: RawTruth,
         *,
-        seed: int = 1,
-        field_ut: tuple[float, float, float] = ...,
+        seed: int | None = None,
+        field_ut: npt.ArrayLike | None = None,
     ) -> RawSensors: ...
     def step(self, truth: RawTruth) -> None:
         """Take the samples from the last truth to this one, at most 1 s later."""

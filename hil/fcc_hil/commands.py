@@ -50,8 +50,12 @@ def add(commands: Any) -> None:
     suite.add_argument(
         "--workers", type=ranges.workers, metavar="N", help="processes (all processors)"
     )
-    suite.add_argument("--json", type=Path, metavar="FILE", help="write all figures here")
-    suite.add_argument("--picture", type=Path, metavar="FILE", help="write a picture here")
+    suite.add_argument(
+        "--json", type=ranges.file_to_write, metavar="FILE", help="write all figures here"
+    )
+    suite.add_argument(
+        "--picture", type=ranges.file_to_write, metavar="FILE", help="write a picture here"
+    )
     suite.set_defaults(run=_suite)
 
     margins = commands.add_parser(
@@ -99,8 +103,12 @@ def add(commands: Any) -> None:
         help="light and heavy as in the campaign, or file (default: file)",
     )
     margins.add_argument("--workers", type=ranges.workers, metavar="N", help="processes")
-    margins.add_argument("--json", type=Path, metavar="FILE", help="write all figures here")
-    margins.add_argument("--picture", type=Path, metavar="FILE", help="write a picture here")
+    margins.add_argument(
+        "--json", type=ranges.file_to_write, metavar="FILE", help="write all figures here"
+    )
+    margins.add_argument(
+        "--picture", type=ranges.file_to_write, metavar="FILE", help="write a picture here"
+    )
     margins.set_defaults(run=_margins)
     campaign.add(commands)
 
@@ -165,7 +173,9 @@ def add(commands: Any) -> None:
     )
     soaks.add_argument("--rate", type=ranges.count, default=100, metavar="HZ", help="(%(default)s)")
     soaks.add_argument("--idle", action="store_true", help="without stress-ng")
-    soaks.add_argument("--json", type=Path, metavar="FILE", help="write all figures here")
+    soaks.add_argument(
+        "--json", type=ranges.file_to_write, metavar="FILE", help="write all figures here"
+    )
     soaks.set_defaults(run=_soak)
 
     floods = commands.add_parser(
@@ -186,7 +196,13 @@ def _add_raw(commands: Any) -> None:
         "--sensors", choices=("phone", "board"), default="phone", help="(default: phone)"
     )
     raw.add_argument("--aircraft", choices=sorted(AIRCRAFT), default="c172p")
-    raw.add_argument("--seed", type=int, default=1, metavar="N", help="of all errors (default: 1)")
+    raw.add_argument(
+        "--seed",
+        type=ranges.whole(0, ranges.LARGEST_SEED),
+        default=1,
+        metavar="N",
+        help="of all errors (default: 1)",
+    )
     raw.add_argument(
         "--navigation",
         choices=("measured", "kalman", "thesis"),
@@ -202,8 +218,15 @@ def _add_raw(commands: Any) -> None:
         metavar="P",
         help="fly through a servo board, on a line that gets each bit wrong with this probability",
     )
-    raw.add_argument("--out", type=Path, metavar="FILE", help="write readings and truth here, .npz")
-    raw.add_argument("--json", type=Path, metavar="FILE", help="write the figures here")
+    raw.add_argument(
+        "--out",
+        type=ranges.file_to_write,
+        metavar="FILE",
+        help="write readings and truth here, .npz",
+    )
+    raw.add_argument(
+        "--json", type=ranges.file_to_write, metavar="FILE", help="write the figures here"
+    )
     raw.set_defaults(run=_raw)
 
 

@@ -1,9 +1,11 @@
-"""Numbers on a command line: each within its range, or refused with it."""
+"""Arguments of a command line: numbers in their range and files that can be written, or refused."""
 
 from __future__ import annotations
 
 import argparse
+import os
 from collections.abc import Callable
+from pathlib import Path
 
 LARGEST_SEED = 2**32 - 1
 _MOST_PROCESSES = 1_024
@@ -59,6 +61,19 @@ def names(of: tuple[str, ...]) -> Callable[[str], tuple[str, ...]]:
         return given
 
     return read
+
+
+def file_to_write(text: str) -> Path:
+    """Read a path, before flying: a file can be written there, or argparse.ArgumentTypeError."""
+    path = Path(text)
+    folder = path.parent
+    if path.is_dir():
+        raise argparse.ArgumentTypeError(f"'{text}' is a folder: give a file")
+    if not folder.is_dir():
+        raise argparse.ArgumentTypeError(f"'{text}': there is no folder '{folder}': create it")
+    if not os.access(path if path.exists() else folder, os.W_OK):
+        raise argparse.ArgumentTypeError(f"'{text}' may not be written: give another file")
+    return path
 
 
 count = whole(1, 1_000_000)

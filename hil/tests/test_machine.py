@@ -71,8 +71,11 @@ def test_engage_inhibits_are_reported(level: fcc.Measurements) -> None:
     machine = fcc.Machine(HOLD)
     machine.engage()
     assert machine.step(level) is None
-    assert _texts(machine) == ["command: engage", "not engaged: navigation is settling"]
-    assert machine.engage_inhibits == ["navigation is settling"]
+    assert _texts(machine) == [
+        "command: engage",
+        "not engaged: navigation is settling: engage again some seconds later",
+    ]
+    assert machine.engage_inhibits == ["navigation is settling: engage again some seconds later"]
 
 
 @pytest.mark.parametrize(
@@ -206,7 +209,7 @@ def test_impossible_controls_are_refused(
 
 @given(name=st.text().filter(lambda name: name not in SENSORS))
 def test_sensors_that_do_not_exist_are_refused(name: str) -> None:
-    with pytest.raises(ValueError, match=r"(?s)there is no sensor .*attitude, heading"):
+    with pytest.raises(ValueError, match=r"(?s)there is no reading .*attitude, heading"):
         fcc.Machine(HOLD).step(missing=[name])
 
 

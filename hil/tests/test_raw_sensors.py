@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import subprocess
+import sys
 from pathlib import Path
 
 import fcc
@@ -140,7 +141,7 @@ def test_ages_say_when_readings_were_taken() -> None:
     ages_ns = records["woke_ns"] - records["airspeed_taken_ns"]
     assert list(ages_ns) == [100_000_000] * 3
     assert list(records["woke_ns"] - records["altitude_taken_ns"]) == [0] * 3
-    with pytest.raises(ValueError, match=r"ages_s: there is no sensor 'wind'; choose of attitude"):
+    with pytest.raises(ValueError, match=r"ages_s: there is no reading 'wind': choose of attitude"):
         machine.step(measured, ages_s={"wind": 0.1})
     with pytest.raises(ValueError, match=r'ages_s\["airspeed"\] is -1: choose 0 to 10'):
         machine.step(measured, ages_s={"airspeed": -1.0})
@@ -165,6 +166,19 @@ def test_a_flight_by_raw_sensors_is_replayed_to_the_last_bit(fccd: Path, tmp_pat
     assert json.loads(done.stdout)["identity"]["differing"] == 0
 
 
+def test_the_built_in_aircraft_engages_in_gusts_by_default(fccd: Path, tmp_path: Path) -> None:
+    config = tmp_path / "raw.toml"
+    words: list[str | Path] = [fccd, "fly", "--lockstep", "--config", config, "--seconds", "1"]
+    words += ["--recordings", tmp_path / "recordings"]
+    for seed in range(1, 4):
+        config.write_text(
+            f'[built-in]\ngusts = "moderate"\nraw_sensors = "phone"\nseed = {seed}\n'
+            '[navigation]\nmethod = "kalman"\n'
+        )
+        done = subprocess.run(words, capture_output=True, check=True, timeout=60, text=True)
+        assert "standby -> engaged" in done.stdout + done.stderr
+
+
 def test_calibrate_refuses_with_the_reason() -> None:
     with pytest.raises(ValueError, match="too few samples: take at least 12"):
         fcc.calibrate(np.eye(3), 9.81)
@@ -172,6 +186,70 @@ def test_calibrate_refuses_with_the_reason() -> None:
         fcc.calibrate([1.0, 2.0, 3.0], 9.81)
     with pytest.raises(ValueError, match="strength is -1"):
         fcc.calibrate(np.eye(3), -1.0)
+
+
+def test_calibrate_names_an_outlier_and_another_unit() -> None:
+    drawn = np.random.default_rng(1).normal(size=(40, 3))
+    samples = 9.80665 * drawn / np.linalg.norm(drawn, axis=1)[:, None]
+    assert fcc.calibrate(samples, 9.80665)["residual"] < 1e-6
+    in_g = samples / 9.80665
+    with pytest.raises(ValueError, match=r"a strength of about 1\.000, and strength is 9\.80665"):
+        fcc.calibrate(in_g, 9.80665)
+    samples[7] *= 3.0
+    with pytest.raises(ValueError, match="sample 7, counted from 0, contradicts the others"):
+        fcc.calibrate(samples, 9.80665)
+
+
+def test_what_no_aircraft_can_have_is_refused_with_the_range() -> None:
+    air = {"static_pressure_pa": 101_325.0, "air_temperature_k": 288.15}
+    start = fcc.RawTruth(**air)
+    fcc.RawSensors("phone", start, seed=2**64 - 1, field_ut=[21.1, 0.0, 45.3])
+    for changes, message in (
+        ({"roll_rad": float("nan")}, "roll_rad is NaN: it must be a finite number"),
+        ({"time_s": 1e12}, "time_s is 1e12: choose 0 to 10000000"),
+        ({"static_pressure_pa": -1.0}, "static_pressure_pa is -1: choose 5000 to 110000"),
+        ({"differential_pressure_pa": -1e6}, "differential_pressure_pa is .*: choose -10000 to"),
+        ({"north_mps": 1e300}, "north_mps is 1e300: choose -450 to 450"),
+        ({"position_altitude_m": 1e6}, "position_altitude_m is .*: choose -500 to 20000"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            fcc.RawSensors("phone", fcc.RawTruth(**{**air, **changes}))
+    for seed in (-1, 2**64):
+        with pytest.raises(ValueError, match=rf"seed is {seed}: choose a whole number, 0 to 1844"):
+            fcc.RawSensors("phone", start, seed=seed)
+    with pytest.raises(TypeError, match=r"seed is 1\.5: choose a whole number"):
+        fcc.RawSensors("phone", start, seed=1.5)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"field_ut\[2\] is 1e308: choose -800 to 800"):
+        fcc.RawSensors("phone", start, field_ut=[0.0, 0.0, 1e308])
+    with pytest.raises(ValueError, match=r"field_ut is of shape \(2,\): give \(3,\)"):
+        fcc.RawSensors("phone", start, field_ut=[0.0, 0.0])
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--seed", "-1"], "give a whole number from 0 to 4294967295"),
+        (["--seed", str(2**70)], "give a whole number from 0 to 4294967295"),
+        (["--out", "."], "'.' is a folder: give a file"),
+        (["--out", "file/raw.npz"], "there is no folder 'file': create it"),
+        (["--json", "file/raw.json"], "there is no folder 'file': create it"),
+    ],
+)
+def test_what_cannot_be_flown_or_written_is_refused_before_the_flight(
+    words: list[str], message: str, tmp_path: Path
+) -> None:
+    (tmp_path / "file").touch()
+    refused = subprocess.run(
+        [sys.executable, "-m", "fcc_hil", "raw", *words],
+        capture_output=True,
+        check=False,
+        cwd=tmp_path,
+        text=True,
+        timeout=30,
+    )
+    assert refused.returncode == 2
+    assert message in refused.stderr
+    assert "Traceback" not in refused.stderr
 
 
 def test_the_same_seed_gives_the_same_readings(tmp_path: Path) -> None:

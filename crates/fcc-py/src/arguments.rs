@@ -3,7 +3,7 @@
 
 use fcc_telemetry::units;
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::values::{Values, names};
@@ -40,6 +40,21 @@ pub(crate) fn within(name: &str, value: f64, least: f64, most: f64) -> PyResult<
         "{name} is {}: choose {least} to {most}",
         units::number(value)
     )))
+}
+
+/// A whole number that is drawn by.
+pub(crate) fn seed(name: &str, given: &Bound<'_, PyAny>) -> PyResult<u64> {
+    given.extract().map_err(|error: PyErr| {
+        let message = format!(
+            "{name} is {given}: choose a whole number, 0 to {}",
+            u64::MAX
+        );
+        if error.is_instance_of::<PyOverflowError>(given.py()) {
+            PyValueError::new_err(message)
+        } else {
+            PyTypeError::new_err(message)
+        }
+    })
 }
 
 /// Anything that numpy converts to an array of numbers: its shape and its

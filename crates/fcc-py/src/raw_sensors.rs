@@ -1,5 +1,6 @@
 //! Raw sensors for a plant of one's own.
 
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::{Mutex, PoisonError};
 
 use fcc_core::flight::Measurements;
@@ -9,7 +10,33 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::values::{PyMeasurements, PyRawTruth, Values as _, checked};
+use crate::arguments::{seed as seed_of, vector, within};
+use crate::values::{PyMeasurements, PyRawTruth, Values as _, as_row, checked, names};
+
+/// The field that is taken without another: of middle latitudes, µT.
+const FIELD_UT: [f64; 3] = [21.1, 0.0, 45.3];
+/// What both magnetometers can show, µT.
+const LARGEST_FIELD_UT: f64 = 800.0;
+
+/// What an aircraft can do of what has no range by itself: smallest and largest
+/// value. The sensors' own ranges are 2,000 °/s and 16 g; altitudes and velocities
+/// are those that the autopilot takes for possible.
+const POSSIBLE: [(&str, f64, f64); 14] = [
+    ("pitch_rad", -TAU, TAU),
+    ("roll_rad", -TAU, TAU),
+    ("roll_rate_radps", -35.0, 35.0),
+    ("pitch_rate_radps", -35.0, 35.0),
+    ("yaw_rate_radps", -35.0, 35.0),
+    ("specific_force_x_mps2", -200.0, 200.0),
+    ("specific_force_y_mps2", -200.0, 200.0),
+    ("specific_force_z_mps2", -200.0, 200.0),
+    ("latitude_rad", -FRAC_PI_2, FRAC_PI_2),
+    ("longitude_rad", -PI, PI),
+    ("position_altitude_m", -500.0, 20_000.0),
+    ("north_mps", -450.0, 450.0),
+    ("east_mps", -450.0, 450.0),
+    ("down_mps", -450.0, 450.0),
+];
 
 /// What a phone's or a board's accelerometer, gyroscope, magnetometer,
 /// barometer, pitot tube and satellite navigation give of a true motion: with
@@ -18,7 +45,10 @@ use crate::values::{PyMeasurements, PyRawTruth, Values as _, checked};
 /// bit.
 ///
 /// `sensors` is "phone", the thesis' of 2011, or "board", a present one;
-/// `field_ut` is the earth's magnetic field in µT, north, east and down.
+/// `field_ut` is the magnetic field in µT, north, east and down, up to 800 each;
+/// without it (21.1, 0, 45.3). `seed` is a whole number, 0 to 2⁶⁴ - 1.
+///
+/// Raises `ValueError` for what is out of its range, with the range.
 #[pyclass(name = "RawSensors", module = "fcc")]
 pub(crate) struct PyRawSensors {
     inner: Mutex<Inner>,
@@ -32,12 +62,12 @@ struct Inner {
 #[pymethods]
 impl PyRawSensors {
     #[new]
-    #[pyo3(signature = (sensors, start, *, seed = 1, field_ut = (21.1, 0.0, 45.3)))]
+    #[pyo3(signature = (sensors, start, *, seed = None, field_ut = None))]
     fn new(
         sensors: &str,
         start: &PyRawTruth,
-        seed: u64,
-        field_ut: (f64, f64, f64),
+        seed: Option<&Bound<'_, PyAny>>,
+        field_ut: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let set = match sensors {
             "phone" => RawSensorSet::phone(),
@@ -48,12 +78,13 @@ impl PyRawSensors {
                 )));
             }
         };
-        let (north, east, down) = field_ut;
-        let field_ut = [north, east, down];
-        if field_ut.iter().any(|axis| !axis.is_finite()) {
-            return Err(PyValueError::new_err("field_ut is not finite: give µT"));
+        let seed = seed.map_or(Ok(1), |given| seed_of("seed", given))?;
+        let field_ut = field_ut.map_or(Ok(FIELD_UT), |given| vector("field_ut", given))?;
+        for (at, axis) in field_ut.into_iter().enumerate() {
+            let name = format!("field_ut[{at}]");
+            within(&name, axis, -LARGEST_FIELD_UT, LARGEST_FIELD_UT)?;
         }
-        let start: RawTruth = checked((*start).into())?;
+        let start = possible(*start)?;
         Ok(Self {
             inner: Mutex::new(Inner {
                 sensors: RawSensors::new(&set, seed, &start, field_ut),
@@ -65,7 +96,7 @@ impl PyRawSensors {
     /// Takes the samples from the last truth to this one, at most 1 s later;
     /// between the two the motion is taken to be linear.
     fn step(&self, truth: &PyRawTruth) -> PyResult<()> {
-        let truth: RawTruth = checked((*truth).into())?;
+        let truth = possible(*truth)?;
         let mut inner = self.inner.lock().unwrap_or_else(PoisonError::into_inner);
         let (before_s, now_s) = (inner.now_s, truth.time_s);
         if !(0.0..=1.0).contains(&(now_s - before_s)) {
@@ -128,4 +159,17 @@ impl PyRawSensors {
         }
         Ok(times)
     }
+}
+
+/// A truth that an aircraft can have.
+fn possible(of: PyRawTruth) -> PyResult<RawTruth> {
+    let truth = checked(of.into())?;
+    let mut row = Vec::new();
+    as_row(of, &mut row);
+    for (name, value) in names::<PyRawTruth>().zip(row) {
+        if let Some((_, least, most)) = POSSIBLE.iter().find(|(known, ..)| *known == name) {
+            within(name, value, *least, *most)?;
+        }
+    }
+    Ok(truth)
 }

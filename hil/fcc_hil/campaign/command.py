@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import time
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 from .. import ranges
@@ -69,28 +67,19 @@ def add(commands: Any) -> None:
     campaign.add_argument(
         "--scheduler", metavar="ADDRESS", help="fly on a Dask cluster, as in tcp://10.0.0.5:8786"
     )
-    campaign.add_argument("--json", type=_file, metavar="FILE", help="write everything here")
-    campaign.add_argument("--picture", type=_file, metavar="FILE", help="write a picture here")
+    campaign.add_argument(
+        "--json", type=ranges.file_to_write, metavar="FILE", help="write everything here"
+    )
+    campaign.add_argument(
+        "--picture", type=ranges.file_to_write, metavar="FILE", help="write a picture here"
+    )
     campaign.add_argument(
         "--record",
-        type=_file,
+        type=ranges.file_to_write,
         metavar="FILE",
         help="with --flight: write its recording here (.mcap)",
     )
     campaign.set_defaults(run=partial(_campaign, campaign))
-
-
-def _file(text: str) -> Path:
-    """Check before flying that a file can be written there."""
-    path = Path(text)
-    folder = path.parent
-    if path.is_dir():
-        raise argparse.ArgumentTypeError(f"'{text}' is a folder: give a file")
-    if not folder.is_dir():
-        raise argparse.ArgumentTypeError(f"'{text}': there is no folder '{folder}': create it")
-    if not os.access(path if path.exists() else folder, os.W_OK):
-        raise argparse.ArgumentTypeError(f"'{text}' may not be written: give another file")
-    return path
 
 
 def _campaign(parser: argparse.ArgumentParser, options: argparse.Namespace) -> int:

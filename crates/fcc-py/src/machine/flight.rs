@@ -57,9 +57,11 @@ machine_class! {
     ///
     /// `measurements` are those of the sensors; `None` if nothing arrives.
     /// `missing` names the readings that do not arrive in this tick: attitude,
-    /// heading, `body_rates`, `specific_force`, airspeed, altitude. `ages_s` says
-    /// of readings, by their names, how long before this tick they were taken (0
-    /// to 10 s); those that are not named are taken in it. `readback`
+    /// heading, `body_rates`, `specific_force`, airspeed, altitude,
+    /// `raw_specific_force`, `raw_body_rates`, `magnetic_field`, `static_pressure`,
+    /// `differential_pressure`, gnss and others, which the error for any other name
+    /// lists. `ages_s` says of readings, by their names, how long before this tick
+    /// they were taken (0 to 10 s); those that are not named are taken in it. `readback`
     /// contains the readback of the controls: throttle 0..1, elevator, aileron and
     /// rudder -1..1, as `Surfaces` or as four numbers, without the elevator's
     /// trim; `None` if the aircraft has none. `switch` is the engage switch; `None` if there is none.
@@ -136,7 +138,7 @@ fn known_readings<'a>(argument: &str, mut names: impl Iterator<Item = &'a String
     match names.find(|name| !known.contains(&name.as_str())) {
         None => Ok(()),
         Some(name) => Err(PyValueError::new_err(format!(
-            "{argument}: there is no sensor '{name}'; choose of {}",
+            "{argument}: there is no reading '{name}': choose of {}",
             known.join(", ")
         ))),
     }

@@ -7,8 +7,9 @@ use std::sync::{Mutex, PoisonError};
 use fcc_core::framework::Time;
 use fcc_core::framework::schema::{self, Field, Kind, Schema, Source, Unknown, Value, unit};
 use fcc_telemetry::schema::{Column, columns};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+
+use crate::arguments::{finite, within};
 
 /// The most single values that a struct may have.
 const MOST: usize = 128;
@@ -219,15 +220,14 @@ pub fn checked<T: Schema>(of: T) -> PyResult<T> {
         if is_nan(value) && is_nan(blank) {
             continue;
         }
-        let (least, most) = leaf.column.range.unwrap_or((f64::MIN, f64::MAX));
-        if let Value::Number(number) = value
-            && !(least..=most).contains(number)
-        {
-            let name = &leaf.column.name;
-            return Err(PyValueError::new_err(format!(
-                "{name} is {number}: choose {least} to {most}"
-            )));
-        }
+        let Value::Number(number) = *value else {
+            continue;
+        };
+        let name = &leaf.column.name;
+        match leaf.column.range {
+            Some((least, most)) => within(name, number, least, most)?,
+            None => finite(name, number)?,
+        };
     }
     Ok(of)
 }

@@ -32,8 +32,8 @@ schema! {
     /// The truth that raw sensors measure, at one moment.
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct RawTruth {
-        /// Simulated time, s.
-        #[field(1)]
+        /// Simulated time, s, of up to four months.
+        #[field(1, range = 0.0..=1e7)]
         pub time_s: f64,
         /// Pitch and roll.
         #[field(2)]
@@ -47,14 +47,14 @@ schema! {
         /// Specific force where the sensors are.
         #[field(5, column = "specific_force_*")]
         pub specific_force: SpecificForce,
-        /// Static pressure, Pa.
-        #[field(6)]
+        /// Static pressure, Pa: from below the Dead Sea to 20 km.
+        #[field(6, range = 5_000.0..=110_000.0)]
         pub static_pressure_pa: f64,
-        /// Total minus static pressure, Pa.
-        #[field(7)]
+        /// Total minus static pressure, Pa; at the speed of sound 90 kPa.
+        #[field(7, range = -10_000.0..=100_000.0)]
         pub differential_pressure_pa: f64,
         /// Temperature of the undisturbed air, K.
-        #[field(8)]
+        #[field(8, range = 150.0..=350.0)]
         pub air_temperature_k: f64,
         /// Where it is.
         #[field(9)]
@@ -63,7 +63,7 @@ schema! {
         #[field(10)]
         pub velocity: Velocity,
         /// Above the ground, m.
-        #[field(11)]
+        #[field(11, range = -1_000.0..=20_000.0)]
         pub height_m: f64,
         /// Throttle after the engine's lag.
         #[field(12, range = 0.0..=1.0)]
