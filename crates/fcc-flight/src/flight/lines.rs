@@ -34,7 +34,7 @@ pub(super) fn line_sensor(
             let sensor = thread.start(move || GnssReceiver::open(&settings, monotonic));
             let sensor = sensor.map_err(failed(GNSS))?;
             let sensor: Box<dyn Sensor<Measurements>> = match section.calibration.to_core() {
-                Some(calibration) => Box::new(Calibrated::new(sensor, &calibration)),
+                Some(calibration) => Box::new(Calibrated::new(Box::new(sensor), &calibration)),
                 None => Box::new(sensor),
             };
             Ok((sensor, watched))
