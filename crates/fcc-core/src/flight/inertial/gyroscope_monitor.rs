@@ -24,8 +24,10 @@ const CONTRADICTS_RAD: f64 = 0.21;
 const CONTRADICTS_SHARE: f64 = 0.6;
 /// ... and beyond so many standard deviations.
 const CONTRADICTS_SIGMAS: f64 = 5.0;
-/// The field turns by this share of the contradiction at least.
+/// Where they contradict each other the field turns by this share of it at least, and by
+/// so many standard deviations.
 const FIELD_TURNS_SHARE: f64 = 0.4;
+const NOISE_SIGMAS: f64 = 3.0;
 /// Of so many windows, 2.4 s, each number from the latest on is looked at: gyroscopes
 /// that are wrong by a little take longer.
 const WINDOWS: usize = 12;
@@ -54,7 +56,6 @@ const UNEXPECTED_FOR_S: f64 = 10.0;
 const BELIEVED_AFTER_RAD: f64 = 1.57;
 const BELIEVED_AFTER_S: f64 = 5.0;
 const TURNS_RAD: f64 = 0.0175;
-const NOISE_SIGMAS: f64 = 3.0;
 const AGREES_SHARE: f64 = 0.4;
 
 /// Slower nothing flies, m/s: on the ground there is iron nearby.
@@ -184,12 +185,14 @@ impl GyroscopeMonitor {
         let (mut weakest_ut, mut strongest_ut) = (f64::INFINITY, 0.0_f64);
         self.windows.iter().take(self.known).any(|window| {
             error += window.error;
-            shown += window.shown;
-            by_field += window.shown.norm();
+            // Where they agreed the field may have turned before it was frozen.
+            let (turned, wrong) = (window.shown.norm(), window.error.norm());
+            shown += window.shown * (wrong / turned.max(1e-9)).min(1.0);
+            by_field += turned;
             by_rates += (window.shown + window.error).norm();
             // Of both parts across the field.
             variance += 2.0 * window.variance;
-            if window.error.norm() > largest.norm() {
+            if wrong > largest.norm() {
                 largest = window.error;
             }
             weakest_ut = weakest_ut.min(window.strength_ut);
@@ -200,6 +203,7 @@ impl GyroscopeMonitor {
                 && angle > CONTRADICTS_SHARE * by_field.max(by_rates)
                 && angle > CONTRADICTS_SIGMAS * sqrt(variance)
                 && shown.norm() > FIELD_TURNS_SHARE * angle
+                && shown.norm() > NOISE_SIGMAS * sqrt(variance)
                 && strongest_ut - weakest_ut < STEADY_STRENGTH_SHARE * earth_ut
         })
     }
