@@ -55,6 +55,8 @@ pub enum Action {
     Check(CheckArgs),
     /// Check whether this machine suits a real-time loop
     Doctor(DoctorArgs),
+    /// List the sensors that are connected to this board
+    Probe(ProbeArgs),
     /// Check fccd against a running X-Plane
     XPlane(XPlaneArgs),
     /// Report on a recorded flight: tables, and a page with plots
@@ -307,7 +309,10 @@ pub struct SetArgs {
 
 /// `fccd calibrate`.
 #[derive(Args, Debug)]
-#[expect(clippy::struct_excessive_bools, reason = "each is an option")]
+#[allow(
+    clippy::struct_excessive_bools,
+    reason = "each is a switch of the command line"
+)]
 pub struct CalibrateArgs {
     /// What to calibrate
     #[arg(value_name = "KIND", value_parser = calibration_kind())]
@@ -348,6 +353,17 @@ pub struct CheckArgs {
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Print the result as JSON; of several files, as a list
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `fccd probe`.
+#[derive(Args, Debug)]
+pub struct ProbeArgs {
+    /// Root folder of the files to read
+    #[arg(long, value_name = "DIR", default_value = "/")]
+    pub root: PathBuf,
+    /// Print what was found as JSON
     #[arg(long)]
     pub json: bool,
 }
