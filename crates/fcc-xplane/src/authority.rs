@@ -173,9 +173,8 @@ impl ControlAuthority for XPlaneAuthority {
         let simulator = address(plant).ok_or(ActuatorFault::NotConnected)?;
         let expected = self.expected(simulator);
         let reserve = locked(&self.reserve)
-            .as_ref()
-            .filter(|(of, _)| *of == simulator)
-            .and_then(|(_, socket)| socket.try_clone().ok());
+            .take_if(|(of, _)| *of == simulator)
+            .map(|(_, socket)| socket);
         XPlane::release_expecting(
             &self.config,
             simulator,

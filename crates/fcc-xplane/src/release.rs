@@ -346,3 +346,31 @@ fn read_back(datagram: &[u8], readback: &mut [Option<bool>; 2]) -> bool {
     }
     found
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A firewall that rejects what it does not let through reports the same as a
+    /// machine on which no program has the port.
+    #[test]
+    fn only_this_machine_knows_that_no_program_has_the_port() {
+        let closed = UdpSocket::bind("127.0.0.1:0")
+            .unwrap()
+            .local_addr()
+            .unwrap();
+        let config = XPlaneConfig::default();
+        for (is_here, expected) in [(true, Released::Unreachable), (false, Released::Refused)] {
+            let expecting = Expected::default();
+            let mut conversation = Conversation::open(&config, closed, expecting, None).unwrap();
+            if !is_here {
+                conversation.sockets = None;
+            }
+            let mut controls = Controls::new(&config).unwrap();
+            let within = Duration::from_secs(2);
+            let released =
+                retry_until_released(&mut conversation, &mut controls, within, || false);
+            assert_eq!(released, expected);
+        }
+    }
+}
