@@ -8,14 +8,14 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use fcc_flight::calibrate::{CalibrationKind, HandlingFault};
-use fcc_flight::config::{CpuChoice, EarlyWakeChoice, GustsChoice};
+use fcc_flight::config::{CpuChoice, EarlyWakeChoice, GustsChoice, NavigationMethod};
 use fcc_telemetry::Instance;
 use fcc_timer::TimerKind;
 
 use crate::exit::exit_codes;
 use values::{
-    calibration_kind, cpu_cap_percent, early_wake, gusts, handling_fault, margin_us, output,
-    positive_seconds, rate_hz,
+    calibration_kind, cpu_cap_percent, early_wake, gusts, handling_fault, margin_us, navigation,
+    output, positive_seconds, rate_hz,
 };
 use x_plane::XPlaneArgs;
 
@@ -229,6 +229,14 @@ pub struct ReplayArgs {
     /// Write both flights, tick by tick, into a CSV file
     #[arg(long, value_name = "OUT", requires = "config", value_parser = output())]
     pub csv: Option<PathBuf>,
+    /// Run the recorded raw readings through navigation by this method, or several
+    /// with commas, and show its differences and its innovations
+    #[arg(long, value_name = "METHOD", value_delimiter = ',', value_parser = navigation(),
+          conflicts_with_all = ["config", "csv"])]
+    pub navigation: Vec<NavigationMethod>,
+    /// With --navigation: write a page with its plots beside those of the flight
+    #[arg(long, value_name = "OUT.html", requires = "navigation", value_parser = output())]
+    pub html: Option<PathBuf>,
     /// Print the result as JSON
     #[arg(long)]
     pub json: bool,

@@ -3,11 +3,12 @@
 
 use fcc_core::flight::Autopilot;
 use fcc_core::flight::guidance::{GuidanceConfig, TimedPatternConfig};
+use fcc_core::flight::inertial::RawNavigationConfig;
 use fcc_record::About;
 use fcc_replay::{Chain, Replay};
 use fcc_timer::TimerError;
 
-use crate::config::{Config, ConfigError};
+use crate::config::{Config, ConfigError, NavigationMethod};
 
 /// The configuration in the recording cannot be read by this version.
 #[derive(thiserror::Error, Debug)]
@@ -30,6 +31,14 @@ pub fn recorded_pattern(about: &About) -> Option<TimedPatternConfig> {
         GuidanceConfig::TimedPattern(pattern) => Some(pattern),
         GuidanceConfig::Hold => None,
     }
+}
+
+/// How navigation computes by a method, with the rest of this configuration; none
+/// of [`NavigationMethod::Measured`].
+pub fn navigation_by(config: &Config, method: NavigationMethod) -> Option<RawNavigationConfig> {
+    let mut config = config.clone();
+    config.navigation.method = method;
+    config.autopilot_config().raw_navigation
 }
 
 /// A replay of a flight by this configuration.

@@ -45,7 +45,10 @@ pub use csv::{CsvFolder, TABLES};
 pub use durations::NamedPercentiles;
 pub use events::EventLine;
 #[cfg(feature = "flight")]
-pub use flight::{FlightAddition, FlightReport, FlightSurvey, flight_table};
+pub use flight::{
+    Difference, FlightAddition, FlightReport, FlightSurvey, MethodResult, NavigationReplay,
+    SourceConsistency, flight_table,
+};
 pub use log_histogram::LogBin;
 pub use origin::{FileEnd, Origin};
 pub use plot::Figure;

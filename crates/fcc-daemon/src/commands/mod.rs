@@ -17,6 +17,7 @@ mod publisher;
 mod recover;
 mod release_helper;
 mod replay;
+mod replay_navigation;
 mod report;
 mod run;
 mod timing;

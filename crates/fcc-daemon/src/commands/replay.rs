@@ -13,6 +13,7 @@ use serde::Serialize;
 
 use super::failure::Failure;
 use super::progress;
+use super::replay_navigation::replay_navigation;
 use crate::cli::ReplayArgs;
 use crate::exit::Exit;
 use crate::output;
@@ -36,19 +37,25 @@ struct Outcome {
 
 /// Replays a recording.
 pub(super) fn replay(args: &ReplayArgs) -> Result<Exit, Failure> {
-    let chain = Chain::open::<Autopilot>(&args.files).map_err(|error| {
-        let exit = match error {
-            ChainError::Open(OpenError::AnotherPlant { .. }) => Exit::Usage,
-            ChainError::Open(OpenError::Io { .. }) => Exit::Failure,
-            _ => Exit::NotReplayed,
-        };
-        Failure::of(exit, error)
-    })?;
+    if !args.navigation.is_empty() {
+        return replay_navigation(args);
+    }
+    let chain = Chain::open::<Autopilot>(&args.files).map_err(not_opened)?;
     let recorded =
         recorded_config(&chain).map_err(|error| Failure::of(Exit::NotReplayed, error))?;
     let other = args.config.as_deref().map(Config::load).transpose()?;
     let outcome = run(&chain, &recorded, other, args).map_err(Failure::new)?;
     Ok(outcome.print(args.json))
+}
+
+/// Why files are no recording that can be replayed.
+pub(super) fn not_opened(error: ChainError) -> Failure {
+    let exit = match error {
+        ChainError::Open(OpenError::AnotherPlant { .. }) => Exit::Usage,
+        ChainError::Open(OpenError::Io { .. }) => Exit::Failure,
+        _ => Exit::NotReplayed,
+    };
+    Failure::of(exit, error)
 }
 
 /// Replays with the recorded configuration or another, and compares.

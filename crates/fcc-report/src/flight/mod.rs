@@ -3,6 +3,7 @@
 
 mod ground_track;
 mod legs;
+mod navigation;
 mod track;
 
 use comfy_table::Table;
@@ -21,6 +22,7 @@ use super::reported::{Addition, Reported};
 use super::survey::Survey;
 use super::terms::Terms;
 pub use legs::flight_table;
+pub use navigation::{Difference, MethodResult, NavigationReplay, SourceConsistency};
 use track::Track;
 
 /// The report on a flight.
@@ -47,6 +49,9 @@ pub struct FlightAddition {
     pub not_scored: Option<String>,
     /// The altimeter settings, each once, in their order, hPa.
     pub altimeter_settings_hpa: Vec<f64>,
+    /// Navigation by other methods, if it was wanted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub navigation: Option<NavigationReplay>,
     #[serde(skip)]
     scorer: Option<PatternScorer>,
     #[serde(skip)]
@@ -61,9 +66,16 @@ impl FlightAddition {
             ..Self::default()
         }
     }
-}
 
-impl FlightAddition {
+    /// Runs the raw readings through navigation as well.
+    #[must_use]
+    pub fn with_navigation(self, navigation: NavigationReplay) -> Self {
+        Self {
+            navigation: Some(navigation),
+            ..self
+        }
+    }
+
     fn set_altimeter(&mut self, setting_hpa: f64) {
         let settings = &mut self.altimeter_settings_hpa;
         if setting_hpa > 0.0
@@ -96,6 +108,9 @@ impl Addition for FlightAddition {
             self.not_scored = failed.map(|error| error.to_string());
         }
         self.track.finish();
+        if let Some(navigation) = &mut self.navigation {
+            navigation.finish();
+        }
     }
 
     fn findings(&self) -> Vec<String> {
@@ -114,7 +129,11 @@ impl Addition for FlightAddition {
 
     fn figures(&self, run: &RunReport) -> Vec<Figure> {
         let figure = ground_track::figure(run, self.track.places());
-        figure.into_iter().collect()
+        let navigation = self.navigation.iter();
+        figure
+            .into_iter()
+            .chain(navigation.flat_map(|navigation| navigation.figures(run)))
+            .collect()
     }
 
     fn text(&self) -> String {
@@ -159,6 +178,9 @@ impl Reported for Autopilot {
         let position = &record.measurements.position;
         if !position.is_never() {
             addition.track.push(time_s, &position.value);
+        }
+        if let Some(navigation) = &mut addition.navigation {
+            navigation.take(record, time_s);
         }
         addition.set_altimeter(record.setpoints.altimeter_setting_pa * PA_HPA);
         if let Some(scorer) = &mut addition.scorer {

@@ -20,6 +20,8 @@ mod timing;
 
 pub(crate) use curves::Detail;
 pub use figure::Figure;
+#[cfg(feature = "flight")]
+pub(crate) use time_plots::figure;
 
 use super::report::RunReport;
 

@@ -13,7 +13,8 @@ pub(super) fn figures(report: &RunReport, detail: Detail) -> Vec<Figure> {
     plots.map(|plot| figure(report, plot, detail)).collect()
 }
 
-fn figure(report: &RunReport, plot: &Plot, detail: Detail) -> Figure {
+/// The figure of one plot.
+pub(crate) fn figure(report: &RunReport, plot: &Plot, detail: Detail) -> Figure {
     let panels = plot.panels.iter().map(|panel| TimePanel {
         height_px: panel.height_px,
         y: axis(panel, plot),

@@ -141,6 +141,12 @@ impl Panel {
         }
     }
 
+    /// Of finished curves.
+    #[cfg(feature = "flight")]
+    pub(crate) fn drawn(title: &str, curves: Vec<Curve>) -> Self {
+        Self::of("", None, &[], curves).called(title)
+    }
+
     /// The names of its values 0, 1, 2, ...; none of numbers.
     pub(crate) fn labels(&self) -> &[String] {
         &self.labels
@@ -296,6 +302,12 @@ impl Default for Curve {
 }
 
 impl Curve {
+    /// A line whose values are not of a record.
+    #[cfg(feature = "flight")]
+    pub(crate) fn drawn(ink: Ink, name: &'static str) -> Self {
+        Self::new(ink, name, Role::Output, usize::MAX)
+    }
+
     pub(super) fn new(ink: Ink, name: &'static str, role: Role, value: usize) -> Self {
         Self {
             ink,
