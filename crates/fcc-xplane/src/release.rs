@@ -368,8 +368,7 @@ mod tests {
             }
             let mut controls = Controls::new(&config).unwrap();
             let within = Duration::from_secs(2);
-            let released =
-                retry_until_released(&mut conversation, &mut controls, within, || false);
+            let released = retry_until_released(&mut conversation, &mut controls, within, || false);
             assert_eq!(released, expected);
         }
     }
