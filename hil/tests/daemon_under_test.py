@@ -93,6 +93,7 @@ class DaemonUnderTest:
         words: Sequence[str | Path],
         scratch: Path,
         environment: Mapping[str, str] | None = None,
+        stdout: int | None = None,
     ) -> None:
         self._out = scratch / "fccd.out"
         self._err = scratch / "fccd.err"
@@ -101,7 +102,7 @@ class DaemonUnderTest:
             self._process = subprocess.Popen(
                 [str(word) for word in words],
                 stdin=subprocess.DEVNULL,
-                stdout=out,
+                stdout=out if stdout is None else stdout,
                 stderr=err,
                 env={**os.environ, **(environment or {})},
             )

@@ -10,7 +10,7 @@ import resource
 import signal
 import subprocess
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -87,6 +87,66 @@ def test_a_helper_that_could_not_be_started_is_started_later(fccd: Path, tmp_pat
         assert len(daemon.helpers()) == 1
         daemon.end(signal.SIGKILL)
         wait_until(lambda: not simulator.progress().overridden, "it releases")
+
+
+def test_a_helper_that_can_open_nothing_any_more_releases(fccd: Path, tmp_path: Path) -> None:
+    """As if other programs had taken all ports: it has its socket since the takeover."""
+    with flight(fccd, tmp_path) as (simulator, daemon):
+        engage(simulator, daemon)
+        (helper,) = daemon.helpers()
+        wait_until(
+            lambda: any(file.startswith("socket:") for file in open_files(helper)), "its socket"
+        )
+        most = resource.prlimit(helper, resource.RLIMIT_NOFILE)
+        resource.prlimit(helper, resource.RLIMIT_NOFILE, (0, most[1]))
+        daemon.end(signal.SIGKILL)
+        assert_released(simulator)
+
+
+def test_a_helper_sees_the_end_of_a_daemon_whose_pipe_stays_open(
+    fccd: Path, tmp_path: Path
+) -> None:
+    """As that of a killed process does, one thread of which waits for a disk."""
+    with flight(fccd, tmp_path) as (simulator, daemon):
+        engage(simulator, daemon)
+        (helper,) = daemon.helpers()
+        writer = os.open(f"/proc/{helper}/fd/0", os.O_WRONLY)
+        try:
+            daemon.send(signal.SIGKILL)
+            assert_released(simulator)
+        finally:
+            os.close(writer)
+
+
+@contextlib.contextmanager
+def full_pipe() -> Iterator[int]:
+    """Make a pipe that nobody reads, and in which nothing has room."""
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    with contextlib.suppress(BlockingIOError):
+        while True:
+            os.write(writer, bytes(4096))
+    os.set_blocking(writer, True)
+    try:
+        yield writer
+    finally:
+        os.close(reader)
+        os.close(writer)
+
+
+def test_a_helper_does_not_wait_for_a_daemon_that_has_given_up(fccd: Path, tmp_path: Path) -> None:
+    """The daemon cannot end: nobody reads its result."""
+    with StandInProcess(Settings(port=0)) as simulator, full_pipe() as output:
+        config = write_config(tmp_path, simulator.port)
+        words = [fccd, "run", "--config", config, "--json"]
+        with DaemonUnderTest(words, tmp_path, stdout=output) as daemon:
+            engage(simulator, daemon)
+            simulator.act("freeze:60")
+            daemon.send(signal.SIGTERM)
+            assert "the release helper continues" in daemon.wait_for("did not confirm the release")
+            simulator.act("run")
+            assert_released(simulator)
+            assert daemon.is_running
 
 
 def open_files(pid: int) -> set[str]:
