@@ -132,3 +132,59 @@ fn built_in(section: &BuiltInSection) -> Option<RawSource<'_>> {
         calibration: &section.calibration,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::config::Config;
+
+    const BOARD: &str = "actuator = []\n[navigation]\nmethod = \"kalman\"\n\
+         [[sensor]]\nkind = \"icm42688\"\nspi = \"/dev/spidev0.0\"\n\
+         [[sensor]]\nkind = \"x-plane\"\n\
+         [[sensor]]\nkind = \"qmc5883l\"\ni2c = \"/dev/i2c-2\"\n\
+         [[sensor]]\nkind = \"iio\"\ndevice = \"bmp380\"\n";
+
+    #[test]
+    fn each_sensor_of_a_board_is_a_source_with_a_calibration_of_its_own() {
+        let mut config = Config::parse(BOARD, "test").unwrap();
+        let sources = config.raw_sources();
+        let found: Vec<_> = sources
+            .iter()
+            .map(|source| (source.place.as_str(), source.sensor.as_str()))
+            .collect();
+        assert_eq!(
+            found,
+            [
+                ("sensor[0]", "ICM-42688-P at /dev/spidev0.0"),
+                ("sensor[2]", "QMC5883L at /dev/i2c-2 0x0d"),
+                ("sensor[3]", "IIO bmp380"),
+            ]
+        );
+        let of = config.calibration_of("sensor[2]").unwrap();
+        of.magnetometer.bias_ut = [1.0, 2.0, 3.0];
+        assert!(config.calibration_of("sensor[1]").is_none());
+        let biases = config.raw_sources();
+        let biases = biases.iter().map(|of| of.calibration.magnetometer.bias_ut);
+        assert_eq!(
+            biases.collect::<Vec<_>>(),
+            [[0.0; 3], [1.0, 2.0, 3.0], [0.0; 3]]
+        );
+    }
+
+    #[test]
+    fn a_calibration_of_a_board_is_checked_as_that_of_the_built_in_aircraft() {
+        for (keys, expected) in [
+            (
+                "misalignment = [-0.5, -0.5, -0.5, -0.5, -0.5, -0.5]",
+                "sensor[3].calibration.magnetometer.misalignment",
+            ),
+            (
+                "delay_ms = 900",
+                "sensor[3].calibration.magnetometer.delay_ms",
+            ),
+        ] {
+            let text = format!("{BOARD}[sensor.calibration.magnetometer]\n{keys}\n");
+            let message = Config::parse(&text, "test").unwrap_err().to_string();
+            assert!(message.contains(expected), "{message}");
+        }
+    }
+}
