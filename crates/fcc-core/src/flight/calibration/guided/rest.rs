@@ -231,12 +231,16 @@ impl<const N: usize> Halves<N> {
 }
 
 impl Halves<3> {
-    /// The angle from the first half to the second, rad; none of nothing.
+    /// The angle from the first half to the second, rad, beyond what noise gives;
+    /// none of nothing.
     pub(super) fn turned_rad(&self) -> f64 {
-        if self.second.count > 0.0 {
-            between(self.first.mean, self.second.mean)
-        } else {
-            0.0
+        /// Of the standard deviation of the difference.
+        const NOISE_SIGMAS: f64 = 5.0;
+        if self.second.count <= 0.0 {
+            return 0.0;
         }
+        let sigma = 2.0 * self.mean_sigma();
+        let noise_rad = NOISE_SIGMAS * sigma / norm(self.mean());
+        (between(self.first.mean, self.second.mean) - noise_rad).max(0.0)
     }
 }
