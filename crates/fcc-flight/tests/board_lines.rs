@@ -122,8 +122,17 @@ impl Observer<Autopilot> for Watching {
     }
 }
 
+/// An autopilot is copied from place to place before a flight, and without
+/// optimization each copy takes room: a program's first thread has as much.
 #[test]
 fn a_flight_goes_on_without_its_receiver_and_leaves_the_servos_in_failsafe() {
+    let flight = std::thread::Builder::new()
+        .stack_size(8 << 20)
+        .spawn(fly_it);
+    flight.unwrap().join().unwrap();
+}
+
+fn fly_it() {
     let folder = TempDir::new().unwrap();
     for output in 0..2 {
         let path = folder.path().join(format!("pwm{output}"));

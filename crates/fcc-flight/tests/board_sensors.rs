@@ -114,8 +114,17 @@ impl Observer<Autopilot> for Watching {
     }
 }
 
+/// An autopilot is copied from place to place before a flight, and without
+/// optimization each copy takes room: a program's first thread has as much.
 #[test]
 fn a_flight_goes_on_while_a_sensor_is_pulled_out_and_put_back() {
+    let flight = std::thread::Builder::new()
+        .stack_size(8 << 20)
+        .spawn(fly_it);
+    flight.unwrap().join().unwrap();
+}
+
+fn fly_it() {
     let folder = TempDir::new().unwrap();
     kernel(folder.path());
     let sysfs = folder.path().display();

@@ -272,7 +272,12 @@ fn poor_handling_is_refused_with_the_reason() {
             magnetometer,
             HandlingTask::Tumble,
             HandlingFault::Magnet,
-            |of| matches!(of, Refusal::Poor { .. } | Refusal::Strength { .. }),
+            |of| {
+                matches!(
+                    of,
+                    Refusal::Poor { .. } | Refusal::Strength { .. } | Refusal::Fit(_)
+                )
+            },
         ),
         (
             GuidedKind::Airspeed,

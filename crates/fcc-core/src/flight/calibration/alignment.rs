@@ -155,7 +155,7 @@ pub struct DipFit {
 ///     .collect();
 /// let fit = constant_dip(pairs.iter().copied()).unwrap();
 /// assert_eq!(fit.rotation.mounting().0.to_string(), "backward-left-down");
-/// assert!(fit.residual_rad < 1e-9);
+/// assert!(fit.residual_rad < 1e-6);
 /// ```
 pub fn constant_dip(
     pairs: impl ExactSizeIterator<Item = ([f64; 3], [f64; 3])> + Clone,
