@@ -9,7 +9,8 @@ use crate::units::GRAVITY_MPS2;
 
 /// The pressure at sea level, Pa: 1,013.25 hPa, 29.92126 inHg.
 pub const SEA_LEVEL_PRESSURE_PA: f64 = 101_325.0;
-const SEA_LEVEL_TEMPERATURE_K: f64 = 288.15;
+/// Temperature at mean sea level, K.
+pub const SEA_LEVEL_TEMPERATURE_K: f64 = 288.15;
 const LAPSE_RATE_K_PER_M: f64 = -0.006_5;
 const GAS_CONSTANT_J_PER_KG_K: f64 = 287.053;
 /// The upper limit of the lapse rate, m. Higher altitudes are limited to this

@@ -15,7 +15,9 @@ use core::time::Duration;
 
 use channel::{Arrived, Channel, Engine};
 pub use channel::{AxisErrors, RawSensor, TrueErrors};
-use fcc_core::flight::atmosphere::{pressure_altitude_m, pressure_pa};
+use fcc_core::flight::atmosphere::{
+    SEA_LEVEL_PRESSURE_PA, SEA_LEVEL_TEMPERATURE_K, pressure_altitude_m, pressure_pa,
+};
 use fcc_core::flight::orientation::{EulerAngles, earth_to_body, quaternion_from_euler};
 use fcc_core::flight::{
     Attitude, BodyRates, GnssFix, MagneticField, Measurements, Position, SpecificForce, Velocity,
@@ -29,8 +31,9 @@ use crate::gauss::Stream;
 use crate::sensing::LocalEarth;
 
 schema! {
-    /// The truth that raw sensors measure, at one moment.
-    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    /// The truth that raw sensors measure, at one moment. By default it stands on
+    /// the ground in the standard atmosphere at sea level (ISO 2533).
+    #[derive(Clone, Copy, PartialEq, Debug)]
     pub struct RawTruth {
         /// Simulated time, s, of up to four months.
         #[field(1, range = 0.0..=1e7)]
@@ -68,6 +71,25 @@ schema! {
         /// Throttle after the engine's lag.
         #[field(12, range = 0.0..=1.0)]
         pub throttle: f64,
+    }
+}
+
+impl Default for RawTruth {
+    fn default() -> Self {
+        Self {
+            time_s: 0.0,
+            attitude: Attitude::default(),
+            heading_rad: 0.0,
+            rates: BodyRates::default(),
+            specific_force: SpecificForce::default(),
+            static_pressure_pa: SEA_LEVEL_PRESSURE_PA,
+            differential_pressure_pa: 0.0,
+            air_temperature_k: SEA_LEVEL_TEMPERATURE_K,
+            position: Position::default(),
+            velocity: Velocity::default(),
+            height_m: 0.0,
+            throttle: 0.0,
+        }
     }
 }
 
