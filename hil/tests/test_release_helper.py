@@ -138,7 +138,7 @@ def test_a_helper_does_not_wait_for_a_daemon_that_has_given_up(fccd: Path, tmp_p
     """The daemon cannot end: nobody reads its result."""
     with StandInProcess(Settings(port=0)) as simulator, full_pipe() as output:
         config = write_config(tmp_path, simulator.port)
-        words = [fccd, "run", "--config", config, "--json"]
+        words: list[str | Path] = [fccd, "run", "--config", config, "--json"]
         with DaemonUnderTest(words, tmp_path, stdout=output) as daemon:
             engage(simulator, daemon)
             simulator.act("freeze:60")
