@@ -251,7 +251,10 @@ def test_a_helper_of_an_earlier_daemon_is_ended(fccd: Path, tmp_path: Path) -> N
             config = json.dumps(f'[x-plane]\nsimulator = "{address}"\n')
             helper.stdin.write(f"{config}\nheld 1 X-Plane at {address}\n")
             helper.stdin.flush()
-            wait_until(lambda: len(list(Path(f"/proc/{helper.pid}/fd").iterdir())) == 4, "its lock")
+            wait_until(
+                lambda: len(list(Path(f"/proc/{helper.pid}/fd").iterdir())) == 5,
+                "its lock and its socket",
+            )
             helper.send_signal(signal.SIGSTOP)
             engage(simulator, daemon)
             daemon.wait_for("the release helper of the previous daemon was ended")
