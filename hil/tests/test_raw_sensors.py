@@ -219,11 +219,11 @@ def test_what_no_aircraft_can_have_is_refused_with_the_range() -> None:
     start = fcc.RawTruth(**air)
     fcc.RawSensors("phone", start, seed=2**64 - 1, field_ut=[21.1, 0.0, 45.3])
     for changes, message in (
-        ({"roll_rad": float("nan")}, "roll_rad is NaN: it must be a finite number"),
-        ({"time_s": 1e12}, "time_s is 1e12: choose 0 to 10000000"),
+        ({"roll_rad": float("nan")}, "roll_rad is NaN: choose -3.14"),
+        ({"time_s": 1e12}, "time_s is .*: choose 0 to 10000000"),
         ({"static_pressure_pa": -1.0}, "static_pressure_pa is -1: choose 5000 to 110000"),
         ({"differential_pressure_pa": -1e6}, "differential_pressure_pa is .*: choose -10000 to"),
-        ({"north_mps": 1e300}, "north_mps is 1e300: choose -450 to 450"),
+        ({"north_mps": 1e300}, "north_mps is .*: choose -450 to 450"),
         ({"position_altitude_m": 1e6}, "position_altitude_m is .*: choose -500 to 20000"),
     ):
         with pytest.raises(ValueError, match=message):
@@ -233,7 +233,7 @@ def test_what_no_aircraft_can_have_is_refused_with_the_range() -> None:
             fcc.RawSensors("phone", start, seed=seed)
     with pytest.raises(TypeError, match=r"seed is 1\.5: choose a whole number"):
         fcc.RawSensors("phone", start, seed=1.5)  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match=r"field_ut\[2\] is 1e308: choose -800 to 800"):
+    with pytest.raises(ValueError, match=r"field_ut\[2\] is .*: choose -800 to 800"):
         fcc.RawSensors("phone", start, field_ut=[0.0, 0.0, 1e308])
     with pytest.raises(ValueError, match=r"field_ut is of shape \(2,\): give \(3,\)"):
         fcc.RawSensors("phone", start, field_ut=[0.0, 0.0])
