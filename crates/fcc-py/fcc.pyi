@@ -695,7 +695,7 @@ class RawTruth:
     ) -> RawTruth: ...
     @property
     def time_s(self) -> float:
-        """Simulated time, s."""
+        """Simulated time, s, of up to four months."""
 
     @property
     def pitch_rad(self) -> float:
@@ -735,11 +735,11 @@ class RawTruth:
 
     @property
     def static_pressure_pa(self) -> float:
-        """Static pressure, Pa."""
+        """Static pressure, Pa: from below the Dead Sea to 20 km."""
 
     @property
     def differential_pressure_pa(self) -> float:
-        """Total minus static pressure, Pa."""
+        """Total minus static pressure, Pa; at the speed of sound 90 kPa."""
 
     @property
     def air_temperature_k(self) -> float:
