@@ -204,13 +204,24 @@ impl RunFolder {
 fn chosen(user: Uid) -> impl Iterator<Item = PathBuf> {
     let of_service =
         env::var_os("RUNTIME_DIRECTORY").and_then(|folders| env::split_paths(&folders).next());
-    let of_session = env::var_os("XDG_RUNTIME_DIR").map(|folder| Path::new(&folder).join("fccd"));
+    let of_session = env::var_os("XDG_RUNTIME_DIR")
+        .map(PathBuf::from)
+        .or_else(|| session_folder(Path::new("/run/user"), user))
+        .map(|folder| folder.join("fccd"));
     let of_root = user.is_root().then(|| PathBuf::from(OF_SERVICE));
     let of_user = Some(PathBuf::from(format!("/dev/shm/fccd-run-{user}")));
     [of_service, of_session, of_root, of_user]
         .into_iter()
         .flatten()
         .filter(|path| path.is_absolute())
+}
+
+/// What `XDG_RUNTIME_DIR` names in a session of this user (`pam_systemd(8)`), if there
+/// is one now: a daemon that was started without the variable, as by `sudo` or
+/// `cron`, then has the locks of one that was started with it.
+fn session_folder(of_sessions: &Path, user: Uid) -> Option<PathBuf> {
+    let folder = of_sessions.join(user.to_string());
+    folder.is_dir().then_some(folder)
 }
 
 fn usable(report: &mut dyn FnMut(String)) -> impl Iterator<Item = RunFolder> {
@@ -251,6 +262,16 @@ mod tests {
         fs::remove_file(&path).unwrap();
         fs::write(&path, "").unwrap();
         assert!(at(geteuid()).unwrap_err().contains("not a folder"));
+    }
+
+    #[test]
+    fn without_a_session_no_folder_of_one_is_tried() {
+        let root = tempfile::tempdir().unwrap();
+        let user = Uid::from_raw(1000);
+        assert_eq!(session_folder(root.path(), user), None);
+        let folder = root.path().join("1000");
+        fs::create_dir(&folder).unwrap();
+        assert_eq!(session_folder(root.path(), user), Some(folder));
     }
 
     #[test]

@@ -6,8 +6,8 @@ use nix::errno::Errno;
 use nix::sys::resource::{RLIM_INFINITY, Resource, getrlimit};
 
 /// The error of starting a thread or a process; with what to do if a limit of
-/// their number is reached, for which the kernel says only that it is
-/// temporarily unavailable (EAGAIN, `clone(2)`).
+/// their number or of memory is reached, for which the kernel says only that it is
+/// temporarily unavailable (EAGAIN, `clone(2)`, `pthread_create(3)`).
 #[must_use]
 pub fn not_started(error: io::Error) -> io::Error {
     if error.raw_os_error() != Some(Errno::EAGAIN as i32) {
@@ -17,12 +17,19 @@ pub fn not_started(error: io::Error) -> io::Error {
         Ok((soft, _)) if soft != RLIM_INFINITY => format!("RLIMIT_NPROC is {soft}"),
         _ => "RLIMIT_NPROC is unlimited".to_owned(),
     };
+    let of_memory = match getrlimit(Resource::RLIMIT_AS) {
+        Ok((soft, _)) if soft != RLIM_INFINITY => format!(
+            ". Or the process may have no more memory (RLIMIT_AS is {soft} bytes): raise it with \
+             ulimit -v, or LimitAS of the service"
+        ),
+        _ => String::new(),
+    };
     io::Error::new(
         error.kind(),
         format!(
             "{error}: the limit of processes and threads is reached ({of_user} for this user; a \
              service or container has its own): end some, or raise it with ulimit -u, or \
-             LimitNPROC and TasksMax of the service"
+             LimitNPROC and TasksMax of the service{of_memory}"
         ),
     )
 }

@@ -17,6 +17,11 @@ fn full() -> Stdio {
         .into()
 }
 
+/// An output that is open for reading only (`fccd list 1< file`).
+fn read_only() -> Stdio {
+    File::open("/dev/null").unwrap().into()
+}
+
 /// A pipe whose reader has left.
 fn left() -> Stdio {
     let (reader, writer) = io::pipe().unwrap();
@@ -99,6 +104,19 @@ fn a_result_that_cannot_be_printed_is_a_failure() {
             said.contains("fccd: the result could not be printed: No space left"),
             "{words:?}: {said}"
         );
+    }
+}
+
+#[test]
+fn an_output_that_is_not_open_for_writing_is_a_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    fly(folder.path());
+    for words in [&["list"][..], &["list", "--json"], &["completions", "bash"]] {
+        let output = fccd(folder.path(), words).stdout(read_only()).output();
+        let ended = output.unwrap();
+        let said = String::from_utf8(ended.stderr).unwrap();
+        assert_eq!(ended.status.code(), Some(1), "{words:?}: {said}");
+        assert!(said.contains("Bad file descriptor"), "{words:?}: {said}");
     }
 }
 
