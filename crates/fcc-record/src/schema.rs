@@ -1,6 +1,8 @@
 //! The topics of a recording and their schemas.
 
 use std::borrow::Cow;
+#[cfg(feature = "flight")]
+use std::sync::LazyLock;
 
 use fcc_core::framework::schema::Schema;
 use fcc_core::framework::{Event, EventOf, RecordOf};
@@ -94,8 +96,9 @@ pub(super) fn undeclared(channel: u16, message: &[u8]) -> Option<TopicOf> {
             Some(Topic::Log) | None => true,
         };
         if is_flight {
-            let mut topics = topics::<Autopilot>().into_iter();
-            return topics.nth(usize::from(channel.checked_sub(1)?));
+            // Describing them takes longer than to recover a short file.
+            static TOPICS: LazyLock<Vec<TopicOf>> = LazyLock::new(topics::<Autopilot>);
+            return TOPICS.get(usize::from(channel.checked_sub(1)?)).cloned();
         }
     }
     let _ = message;
