@@ -1136,6 +1136,15 @@ def calibrate(samples: npt.ArrayLike, strength: float) -> dict[str, Any]:
     ValueError with the reason if there is none.
     """
 
+def levelled(force_mps2: npt.ArrayLike) -> list[list[float]]:
+    """Find the smallest rotation after which the force (3,) of a level aircraft points up."""
+
+def constant_dip(down: npt.ArrayLike, field: npt.ArrayLike) -> list[list[float]]:
+    """Find the rotation of a magnetometer after which the field's dip is the same everywhere.
+
+    Both are (n, 3), of the same attitudes. Raises ValueError if they do not determine it.
+    """
+
 def navigate(
     *,
     gyroscope: _Source | None = None,
