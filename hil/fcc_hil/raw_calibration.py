@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
+from typing import Any
 
 import fcc
 import numpy as np
@@ -35,15 +36,13 @@ class AxesCalibration:
     """Scale and misalignment."""
 
     @classmethod
-    def of(cls, found: dict[str, list[float]]) -> AxesCalibration:
+    def of(cls, found: dict[str, Any]) -> AxesCalibration:
         """Return what `fcc.calibrate` found."""
-        xy, xz, yx, yz, zx, zy = found["misalignment"]
-        ratios = np.array([[1.0, xy, xz], [yx, 1.0, yz], [zx, zy, 1.0]])
-        return cls(np.array(found["bias"]), ratios * np.array(found["scale"]))
+        return cls(np.array(found["bias"]), np.array(found["matrix"]))
 
-    def turned(self, rotation: Array) -> AxesCalibration:
+    def turned(self, rotation: list[list[float]]) -> AxesCalibration:
         """Return this calibration, whose axes are turned by a rotation matrix."""
-        return AxesCalibration(self.bias, rotation @ self.shape)
+        return AxesCalibration(self.bias, np.array(rotation) @ self.shape)
 
     def applied(self, given: npt.ArrayLike) -> Array:
         """Return the calibrated values of (3,) or (n, 3)."""
@@ -100,42 +99,17 @@ def calibrate(sensors: str, seed: int, field_ut: tuple[float, float, float]) -> 
     force, field = still["raw_specific_force"], still["magnetic_field"]
     accelerometer = AxesCalibration.of(fcc.calibrate(force, STANDARD_GRAVITY_MPS2))
     level = attitudes.index((0.0, 0.0, 0.0))
-    accelerometer = accelerometer.turned(_levelling(accelerometer.applied(force[level])))
+    accelerometer = accelerometer.turned(fcc.levelled(accelerometer.applied(force[level])))
     strength_ut = float(np.linalg.norm(field_ut))
     magnetometer = AxesCalibration.of(fcc.calibrate(field, strength_ut))
     down = -accelerometer.applied(force)
-    magnetometer = magnetometer.turned(_constant_dip(down, magnetometer.applied(field)))
+    magnetometer = magnetometer.turned(fcc.constant_dip(down, magnetometer.applied(field)))
     return Calibration(
         accelerometer=accelerometer,
         gyroscope=AxesCalibration(still["raw_body_rates"].mean(axis=0), np.eye(3)),
         magnetometer=magnetometer,
         differential_pressure_pa=float(still["differential_pressure"].mean()),
     )
-
-
-def _levelling(force: Array) -> Array:
-    """Return the rotation after which the force of a level aircraft points up."""
-    up = np.array([0.0, 0.0, -1.0])
-    axis = np.cross(force / np.linalg.norm(force), up)
-    return _rotation(
-        axis / max(float(np.linalg.norm(axis)), 1e-12) * np.arcsin(np.linalg.norm(axis))
-    )
-
-
-def _constant_dip(down: Array, field: Array) -> Array:
-    """Return the rotation of a small angle after which the dip is the same in all attitudes."""
-    # down . (m + turn x m) = constant.
-    rows = np.column_stack((np.cross(field, down), -np.ones(len(down))))
-    found = np.linalg.lstsq(rows, -np.sum(down * field, axis=1), rcond=None)[0]
-    return _rotation(found[:3])
-
-
-def _rotation(vector: Array) -> Array:
-    """Return the matrix of a rotation vector (Rodrigues)."""
-    angle = float(np.linalg.norm(vector))
-    x, y, z = vector / max(angle, 1e-12)
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.asarray(np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross)
 
 
 def _read(of: fcc.Measurements, name: str) -> tuple[float, ...]:

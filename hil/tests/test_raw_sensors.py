@@ -214,6 +214,34 @@ def test_calibrate_names_an_outlier_and_another_unit() -> None:
         fcc.calibrate(samples, 9.80665)
 
 
+def test_calibrate_gives_the_matrix_of_what_it_says() -> None:
+    drawn = np.random.default_rng(1).normal(size=(60, 3))
+    force = 9.80665 * drawn / np.linalg.norm(drawn, axis=1)[:, None]
+    bias, gain = np.array([0.1, -0.2, 0.3]), np.diag([1.02, 0.97, 1.01])
+    found = fcc.calibrate(force @ gain + bias, 9.80665)
+    assert np.asarray(found["matrix"]) == pytest.approx(np.linalg.inv(gain), abs=1e-6)
+    assert found["bias"] == pytest.approx(bias, abs=1e-6)
+
+
+def test_a_mounting_is_levelled_and_its_dip_made_constant() -> None:
+    # A shelf that rises by 5 deg forward, and the rotation about y of any textbook.
+    sin, cos = np.sin(np.radians(5.0)), np.cos(np.radians(5.0))
+    about_y = np.array([[cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]])
+    assert np.array(fcc.levelled([9.81 * sin, 0.0, -9.81 * cos])) == pytest.approx(about_y)
+    with pytest.raises(ValueError, match="does not point up"):
+        fcc.levelled([0.0, 0.0, 9.81])
+    # Rotations: a determinant of 1.
+    turns = np.linalg.qr(np.random.default_rng(2).normal(size=(40, 3, 3)))[0]
+    turns *= np.linalg.det(turns)[:, None, None]
+    down, field = turns @ [0.0, 0.0, 1.0], turns @ [21.0, 0.0, 45.0]
+    found = np.array(fcc.constant_dip(down, field @ about_y))
+    assert found == pytest.approx(about_y, abs=1e-6)
+    with pytest.raises(ValueError, match="down has 40 rows, and field has 39"):
+        fcc.constant_dip(down, field[1:])
+    with pytest.raises(ValueError, match="give 12 attitudes or more"):
+        fcc.constant_dip(down[:3], field[:3])
+
+
 def test_what_no_aircraft_can_have_is_refused_with_the_range() -> None:
     air = {"static_pressure_pa": 101_325.0, "air_temperature_k": 288.15}
     start = fcc.RawTruth(**air)
