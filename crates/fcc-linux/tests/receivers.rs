@@ -248,7 +248,8 @@ fn a_reversed_switch_is_on_at_the_other_end() {
     assert_eq!([ON, ON, ON].map(after)[2], Some(Switch::Off));
 }
 
-/// At once, and on only after three frames when it is back.
+/// At once; and when the transmitter is back, until the pilot has switched it off and
+/// on: a flight that went to standby must not engage because of a radio link.
 #[test]
 fn a_lost_transmitter_is_a_switch_that_is_off() {
     let lost = RcValues {
@@ -271,12 +272,12 @@ fn a_lost_transmitter_is_a_switch_that_is_off() {
             assert_eq!(pilot.take(&frame(ON, false, false)), Some(lost));
         }
         pilot.take(&back);
-        let after = [(); 4].map(|()| pilot.take(&frame(ON, false, false)).unwrap());
-        assert!(after[0].controls.is_some());
-        assert_eq!(
-            (after[0].switch, after[3].switch),
-            (Some(Switch::Off), Some(Switch::On))
-        );
+        let mut after = |switch| pilot.take(&frame(switch, false, false)).unwrap();
+        assert!(after(ON).controls.is_some());
+        for switch in [[ON; 4], [OFF; 4]].concat() {
+            assert_eq!(after(switch).switch, Some(Switch::Off));
+        }
+        assert_eq!([ON; 3].map(after)[2].switch, Some(Switch::On));
     }
 }
 

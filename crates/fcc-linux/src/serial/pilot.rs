@@ -56,7 +56,8 @@ impl Measured for RcValues {
 /// Follows the frames of a receiver.
 ///
 /// A transmitter that is lost (SBUS: failsafe; CRSF: a link quality of 0 %) is a
-/// switch that is off. A receiver that repeats its last channels (SBUS: frame lost)
+/// switch that is off, and stays so until the pilot has switched it off: the loop
+/// must not take control because a radio link is back. A receiver that repeats its last channels (SBUS: frame lost)
 /// says nothing, and the age of the readings decides.
 #[derive(Clone, Debug)]
 pub struct Pilot {
@@ -66,6 +67,8 @@ pub struct Pilot {
     switch: Option<Switch>,
     /// The switch of the latest frame, and how many in a row had it.
     latest: (Switch, u32),
+    /// The transmitter was lost, and its switch has not been off since.
+    must_go_off: bool,
 }
 
 impl Pilot {
@@ -76,6 +79,7 @@ impl Pilot {
             is_link_lost: false,
             switch: None,
             latest: (Switch::Off, 0),
+            must_go_off: false,
         }
     }
 
@@ -107,7 +111,10 @@ impl Pilot {
         let count = if switch == before { count } else { 0 };
         self.latest = (switch, count.saturating_add(1));
         if self.latest.1 >= FRAMES_FOR_A_CHANGE {
-            self.switch = Some(switch);
+            self.must_go_off &= switch == Switch::On;
+            if !self.must_go_off {
+                self.switch = Some(switch);
+            }
         }
         let deflection = |channel: RcChannel| {
             let deflection = position(value(channels, channel));
@@ -132,8 +139,9 @@ impl Pilot {
     }
 
     fn lost(&mut self) -> RcValues {
-        self.latest = (Switch::Off, FRAMES_FOR_A_CHANGE);
+        self.latest = (Switch::Off, 0);
         self.switch = Some(Switch::Off);
+        self.must_go_off = true;
         RcValues {
             switch: self.switch,
             controls: None,
