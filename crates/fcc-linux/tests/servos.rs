@@ -9,6 +9,7 @@
 
 use std::fs;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -590,6 +591,35 @@ fn a_slew_limit_makes_small_steps() {
         .fold(0.0, f64::max);
     // 0.1 s x 2 x 500 us.
     assert!(largest <= 100.0 + 1e-9, "{largest}");
+}
+
+/// The loop does not engage with servos that cannot be opened.
+#[test]
+fn servos_are_ready_once_they_are_open() {
+    let written = Written::default();
+    let is_there = Arc::new(AtomicBool::new(false));
+    let found = Arc::clone(&is_there);
+    let open = move || {
+        if found.load(Ordering::Acquire) {
+            let outputs = Box::new(written.clone());
+            return Ok(ServoBus {
+                outputs,
+                heartbeat: None,
+            });
+        }
+        Err(DeviceError::Open {
+            device: "/nope/pwm".to_owned(),
+            source: Errno::ENOENT.into(),
+        })
+    };
+    let settings = ServoSettings::new(vec![elevator()]);
+    let servos = ServoThread::new("servos", settings).start(open).unwrap();
+    assert!(eventually(|| servos.ready()
+        == Err(ActuatorFault::Io {
+            errno: Errno::ENOENT as i32
+        })));
+    is_there.store(true, Ordering::Release);
+    assert!(eventually(|| servos.ready().is_ok()));
 }
 
 #[test]

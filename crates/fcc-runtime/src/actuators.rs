@@ -50,6 +50,20 @@ impl<A> Actuators<A> {
         }
     }
 
+    /// Whether every actuator could take control now; what is wrong is an event of
+    /// each that could not.
+    pub(crate) fn are_ready<O>(&mut self, tick: &Tick, events: &mut Events<O>) -> bool {
+        let mut all = true;
+        for (index, watched) in (0..).zip(&mut self.all) {
+            let ready = watched.actuator.ready();
+            if ready.is_err() {
+                all = false;
+                watched.note(index, ready, tick, events);
+            }
+        }
+        all
+    }
+
     /// Passes the outputs to every actuator, even if one fails.
     pub(crate) fn apply<O>(&mut self, tick: &Tick, outputs: &A, events: &mut Events<O>) {
         for (index, watched) in (0..).zip(&mut self.all) {

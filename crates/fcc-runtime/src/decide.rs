@@ -101,7 +101,9 @@ impl<C: Controller> Machine<C> {
             return;
         }
         let engage_inhibits = self.record.engage_inhibits;
-        if lost_control || self.overruns.are_too_many() || !engage_inhibits.is_empty() {
+        let is_refused =
+            lost_control || self.overruns.are_too_many() || !engage_inhibits.is_empty();
+        if is_refused || !self.actuators.are_ready(tick, &mut self.telemetry.events) {
             let kind = EventKind::EngageRefused { engage_inhibits };
             self.telemetry.events.push(tick, kind);
         } else {

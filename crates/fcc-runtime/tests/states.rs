@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use bench::{Bench, EventKind, LOST, RELEASED, SENSORS_LOST, change, config};
 use fcc_core::framework::State::{Engaged, Failsafe, Standby, Stopped};
-use fcc_core::framework::{AfterRelease, Flags, Notice, Switch};
+use fcc_core::framework::{ActuatorFault, AfterRelease, Flags, Notice, Switch};
 use fcc_runtime::{Ending, LoopCommand, LoopConfig};
 
 const GONE: Flags = Flags::bit(0);
@@ -50,6 +50,26 @@ fn the_parts_of_a_tick_are_called_in_order() {
         ["sample", "estimate", "guide", "control", "apply"]
     );
     assert_eq!(bench.stage.log().applied, [0.5]);
+}
+
+/// Or it would hold control of servos that do not move.
+#[test]
+fn an_actuator_that_is_not_ready_is_not_engaged() {
+    let mut bench = Bench::new();
+    let fault = ActuatorFault::Io { errno: 2 };
+    bench.stage.set(|script| script.ready = Err(fault));
+    for _ in 0..2 {
+        bench.command(LoopCommand::Engage);
+        assert_eq!(bench.tick(|_| {}), Standby);
+    }
+    let broken = |index| EventKind::ActuatorFault { index, fault };
+    let refused = refused(Flags::NONE);
+    // A fault that goes on is one event.
+    assert_eq!(bench.events(), [broken(0), broken(1), refused, refused]);
+    assert!(bench.stage.log().applied.is_empty());
+    bench.stage.set(|script| script.ready = Ok(()));
+    bench.command(LoopCommand::Engage);
+    assert_eq!(bench.tick(|_| {}), Engaged);
 }
 
 #[test]

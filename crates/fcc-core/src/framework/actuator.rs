@@ -33,6 +33,16 @@ use crate::schema;
 /// assert!(heater.release().is_ok() && heater.release().is_ok());
 /// ```
 pub trait Actuator<A>: Send {
+    /// Whether it could take control now; if not, the loop does not engage. The
+    /// rules of a tick apply. True by default: what only a write can show is shown
+    /// by the first one.
+    ///
+    /// # Errors
+    /// What is wrong.
+    fn ready(&self) -> Result<(), ActuatorFault> {
+        Ok(())
+    }
+
     /// Sends the outputs and returns. Never waits, allocates, locks, logs or
     /// panics. The first call after a release takes control.
     ///

@@ -42,9 +42,11 @@ impl<C: Controller> fmt::Display for EventDescription<C> {
                 C::write_command(&command, f)
             }
             EventKind::StopRequested => f.write_str("stop requested"),
-            EventKind::EngageRefused { engage_inhibits } if engage_inhibits.is_empty() => {
-                f.write_str("not engaged: control was released at the same time, or ticks overrun")
-            }
+            EventKind::EngageRefused { engage_inhibits } if engage_inhibits.is_empty() => f
+                .write_str(
+                    "not engaged: control was released at the same time, ticks overrun, or an \
+                     actuator is not ready",
+                ),
             EventKind::EngageRefused { engage_inhibits } => {
                 f.write_str("not engaged: ")?;
                 name_flags::<C>(f, engage_inhibits)

@@ -1,30 +1,46 @@
 //! The aircraft in a status line.
 
-use fcc_core::framework::State;
+use fcc_core::framework::{Reading, State};
 use fcc_telemetry::units::{M_FT, MPS_KT};
 use fcc_telemetry::{FlightRecord, ShownAltitude};
 
 /// Attitude, altitude and airspeed, and while engaged what is commanded; none
-/// before they are measured.
+/// before they are known. What no sensor measures, navigation knows from raw readings.
 pub(crate) fn describe(record: &FlightRecord) -> Option<String> {
     let measured = &record.measurements;
-    if measured.airspeed_mps.is_never() {
+    let estimate = &record.estimate;
+    let is_raw = measured.airspeed_mps.is_never();
+    // Before anything arrives, the estimate is of zeros.
+    if is_raw && estimate.airspeed_mps == 0.0 && estimate.altitude_m == 0.0 {
         return None;
     }
-    let heading = compass(measured.heading_rad.value);
+    let known = |reading: &Reading<f64>, estimated: f64| {
+        if reading.is_never() {
+            estimated
+        } else {
+            reading.value
+        }
+    };
+    let heading = compass(known(&measured.heading_rad, estimate.heading_rad));
     let shown = ShownAltitude::of(record);
     let name = shown.name;
-    let altitude = if measured.altitude_m.is_never() {
+    let altitude = if measured.altitude_m.is_never() && !is_raw {
         "    –".to_owned()
     } else {
-        format!("{:5.0}", (measured.altitude_m.value - shown.datum_m) * M_FT)
+        let altitude_m = known(&measured.altitude_m, estimate.altitude_m);
+        format!("{:5.0}", (altitude_m - shown.datum_m) * M_FT)
     };
     let qnh = shown
         .setting_hpa
         .map_or_else(String::new, |hpa| format!("  QNH {hpa:.1} hPa"));
-    let airspeed = measured.airspeed_mps.value * MPS_KT;
+    let airspeed = known(&measured.airspeed_mps, estimate.airspeed_mps) * MPS_KT;
+    let roll_rad = if measured.attitude.is_never() {
+        estimate.roll_rad
+    } else {
+        measured.attitude.value.roll_rad
+    };
     // Plus zero, because a rounded -0 looks like an error.
-    let bank = measured.attitude.value.roll_rad.to_degrees().round() + 0.0;
+    let bank = roll_rad.to_degrees().round() + 0.0;
     let desired = &record.setpoints;
     Some(if record.state == State::Engaged {
         format!(

@@ -72,6 +72,10 @@ impl ServoActuator {
 }
 
 impl Actuator<Surfaces> for ServoActuator {
+    fn ready(&self) -> Result<(), ActuatorFault> {
+        self.state()
+    }
+
     fn apply(&mut self, _: &Tick, surfaces: &Surfaces) -> Result<(), ActuatorFault> {
         self.is_held = true;
         self.give(Order::Apply(*surfaces))

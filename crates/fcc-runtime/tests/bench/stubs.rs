@@ -150,6 +150,10 @@ impl Controller for Stub {
 struct Arm(Stage, usize);
 
 impl Actuator<f64> for Arm {
+    fn ready(&self) -> Result<(), ActuatorFault> {
+        self.0.script().ready
+    }
+
     fn apply(&mut self, _: &Tick, outputs: &f64) -> Result<(), ActuatorFault> {
         self.0.note(|log| log.held[self.1] = true);
         if self.1 == 1 {
