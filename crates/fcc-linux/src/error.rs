@@ -93,8 +93,8 @@ fn advice(error: &io::Error) -> &'static str {
             "; add the user to the device's group (`ls -l` shows it), and log in again"
         }
         Some(Errno::EBUSY) => {
-            "; a driver of the kernel or another program has it: use that driver (kind = \"iio\"), \
-             or unload it"
+            "; another program or a driver of the kernel has it: end that program; use that driver \
+             (kind = \"iio\"), or unload it"
         }
         Some(Errno::ENXIO | Errno::EREMOTEIO | Errno::ENODEV | Errno::ETIMEDOUT) => {
             "; nothing answers there: check wiring, power and address"

@@ -43,6 +43,7 @@
 #![forbid(unsafe_code)]
 
 pub mod chip;
+mod claim;
 mod clock;
 mod device_sensor;
 mod device_thread;

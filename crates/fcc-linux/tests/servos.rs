@@ -175,6 +175,27 @@ fn pulses_are_written_to_the_files_of_pwm() {
     );
 }
 
+/// Two daemons that write one servo, or two entries of a configuration.
+#[test]
+fn an_output_is_driven_by_one() {
+    let folder = PwmFolder::new(2, "1000000");
+    let outputs = folder.outputs(2);
+    let mut first = SysfsPwm::open(&outputs[1..], 50.0).unwrap();
+    first.write(&[Some(1_500.0)]).unwrap();
+    let error = SysfsPwm::open(&outputs, 50.0).unwrap_err().to_string();
+    assert!(
+        error.contains("pwm1/period: another fccd on this machine has it"),
+        "{error}"
+    );
+    assert_eq!(
+        folder.has(1, "enable"),
+        "1",
+        "the other one's start wrote nothing"
+    );
+    drop(first);
+    SysfsPwm::open(&outputs, 50.0).unwrap();
+}
+
 #[test]
 fn a_pwm_that_is_not_there_is_an_error_with_its_path() {
     let missing = PwmOutput {
@@ -487,6 +508,28 @@ fn without_the_loop_servos_go_to_failsafe() {
     assert!(eventually(|| elevator().0 == "1600000"), "silent again");
     drop(actuator);
     assert_eq!(elevator().1, "0", "released when it ends");
+}
+
+/// A failsafe throttle is for the silence of a flight, not for an aircraft on the
+/// bench: 2,000 us at once, before anybody had engaged.
+#[test]
+fn a_throttle_is_idle_while_nobody_has_control() {
+    let mut settings = ServoSettings::new(vec![ServoChannel {
+        failsafe: 1.0,
+        ..ServoChannel::new(Drives::Throttle)
+    }]);
+    settings.silent_after = Duration::from_millis(50);
+    let (mut actuator, written, _) = one(settings);
+    let last = || written.0.lock().unwrap().last().copied();
+    assert_eq!(last(), Some(1_000.0));
+    let half = Surfaces {
+        throttle: 0.5,
+        ..Surfaces::default()
+    };
+    assert_eq!(actuator.apply(&Tick::default(), &half), Ok(()));
+    assert!(eventually(|| last() == Some(2_000.0)), "silent");
+    actuator.release().unwrap();
+    assert!(eventually(|| last() == Some(1_000.0)));
 }
 
 #[test]

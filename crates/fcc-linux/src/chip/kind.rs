@@ -18,6 +18,7 @@ use super::{
     BusError, Chip, ChipSource, I2cBus, Registers, SpiBus, bmp3, bmp180, icm42688, mpu6050,
     ms4525do, qmc5883l, sdp3x,
 };
+use crate::claim::claim;
 use crate::{Clock, DeviceError};
 
 /// The kinds of chips, as a configuration names them.
@@ -200,11 +201,17 @@ impl ChipConfig {
     /// # Errors
     /// When the bus cannot be opened, the chip does not answer, or is another.
     pub fn open(&self) -> Result<ChipSource<Box<dyn Chip>>, DeviceError> {
-        let chip = match &self.wiring {
-            Wiring::I2c { path, address } => self.on_i2c(path, *address)?,
-            Wiring::Spi { path } => self.on_spi(path)?,
+        let (chip, claim) = match &self.wiring {
+            Wiring::I2c { path, address } => {
+                let claim = claim(path, (*address).into())?;
+                (self.on_i2c(path, *address)?, claim)
+            }
+            Wiring::Spi { path } => {
+                let claim = claim(path, 0)?;
+                (self.on_spi(path)?, claim)
+            }
         };
-        Ok(ChipSource::new(chip, self.rate_hz, self.clock.clone()))
+        Ok(ChipSource::new(chip, self.rate_hz, self.clock.clone()).claimed(claim))
     }
 
     fn on_i2c(&self, path: &Path, address: u8) -> Result<Box<dyn Chip>, DeviceError> {

@@ -1,6 +1,7 @@
 //! A chip that is asked again and again.
 
 use core::time::Duration;
+use std::fs::File;
 
 use crate::pace::Pace;
 use crate::{Clock, DeviceError, RawValues, Sample, Source};
@@ -45,6 +46,8 @@ pub struct ChipSource<C> {
     chip: C,
     pace: Pace,
     clock: Clock,
+    /// That no other daemon asks it.
+    claim: Option<File>,
 }
 
 impl<C: Chip> ChipSource<C> {
@@ -54,7 +57,15 @@ impl<C: Chip> ChipSource<C> {
             chip,
             pace: Pace::new(rate_hz),
             clock,
+            claim: None,
         }
+    }
+
+    /// Keeps the claim of its device for as long as it is asked.
+    #[must_use]
+    pub(crate) fn claimed(mut self, claim: File) -> Self {
+        self.claim = Some(claim);
+        self
     }
 }
 

@@ -13,6 +13,7 @@ use rustix::termios::{
     tcgetattr, tcsetattr,
 };
 
+use crate::claim::claim_file;
 use crate::{DeviceError, WAIT};
 
 /// A driver that cannot divide its clock down to a rate comes close to it; a
@@ -62,6 +63,8 @@ impl SerialLine {
 
     fn set(&self, settings: &LineSettings) -> Result<(), DeviceError> {
         let doing = |doing| move |source: rustix::io::Errno| self.error(doing, source.into());
+        // Root may open an exclusive line, too.
+        claim_file(&self.file, &self.path, 0)?;
         ioctl_tiocexcl(&self.file).map_err(doing("claiming the line for this program"))?;
         let mut modes = tcgetattr(&self.file).map_err(doing("reading the line's settings"))?;
         raw(&mut modes, settings.has_even_parity);

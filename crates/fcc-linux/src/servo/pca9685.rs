@@ -4,6 +4,7 @@
 //! Data sheet: NXP, *PCA9685, 16-channel, 12-bit PWM Fm+ I²C-bus LED controller*,
 //! Rev. 4 (2015): registers in 7.3, the prescale value in 7.3.5.
 
+use std::fs::File;
 use std::io;
 use std::path::Path;
 use std::thread;
@@ -15,6 +16,7 @@ use linux_embedded_hal::I2cdev;
 use super::PulseOutputs;
 use crate::DeviceError;
 use crate::chip::BusError;
+use crate::claim::claim;
 
 const MODE1: u8 = 0x00;
 const MODE2: u8 = 0x01;
@@ -59,6 +61,8 @@ pub struct Pca9685<B> {
     settings: Pca9685Settings,
     prescale: u8,
     checked: Instant,
+    /// That no other daemon drives it.
+    claim: Option<File>,
 }
 
 impl Pca9685<I2cdev> {
@@ -67,11 +71,14 @@ impl Pca9685<I2cdev> {
     /// # Errors
     /// See [`open`](Self::open), and when there is no such bus.
     pub fn open_at(bus: &Path, settings: Pca9685Settings) -> Result<Self, DeviceError> {
+        let claim = claim(bus, settings.address.into())?;
         let opened = I2cdev::new(bus).map_err(|error| DeviceError::Open {
             device: bus.display().to_string(),
             source: io::Error::from(error),
         });
-        Self::open(opened?, settings)
+        let mut this = Self::open(opened?, settings)?;
+        this.claim = Some(claim);
+        Ok(this)
     }
 }
 
@@ -98,6 +105,7 @@ impl<B: I2c<Error: BusError>> Pca9685<B> {
             prescale: prescale(settings.oscillator_hz, settings.rate_hz),
             settings,
             checked: Instant::now(),
+            claim: None,
         };
         this.set_up()?;
         Ok(this)

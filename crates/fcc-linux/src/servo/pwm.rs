@@ -2,7 +2,7 @@
 //! (Documentation/ABI/testing/sysfs-class-pwm and Documentation/driver-api/pwm.rst
 //! of the Linux kernel).
 
-use std::fs::{self, OpenOptions};
+use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::thread;
@@ -10,6 +10,7 @@ use std::time::Duration;
 
 use super::PulseOutputs;
 use crate::DeviceError;
+use crate::claim::claim;
 
 /// Files of a new output belong to root until a rule of udev has given them to the
 /// user's group.
@@ -43,6 +44,8 @@ struct Output {
     folder: PathBuf,
     /// What was written last; none while it is not enabled.
     duty_ns: Option<u64>,
+    /// That no other daemon drives it.
+    claim: Option<File>,
 }
 
 impl SysfsPwm {
@@ -70,14 +73,15 @@ impl Output {
                 source,
             })?;
         }
-        let this = Self {
+        let mut this = Self {
             folder,
             duty_ns: None,
+            claim: None,
         };
         let mut waited = Duration::ZERO;
         while let Err(error) = this.set_up(period_ns) {
-            if waited >= EXPORTED_WITHIN {
-                return Err(this.error("setting up the output", error));
+            if waited >= EXPORTED_WITHIN || matches!(error, DeviceError::Refused { .. }) {
+                return Err(error);
             }
             thread::sleep(TRIED_EVERY);
             waited += TRIED_EVERY;
@@ -85,9 +89,18 @@ impl Output {
         Ok(this)
     }
 
+    /// Before anything is written to it, it is claimed.
+    fn set_up(&mut self, period_ns: u64) -> Result<(), DeviceError> {
+        if self.claim.is_none() {
+            self.claim = Some(claim(&self.folder.join("period"), 0)?);
+        }
+        self.set_period(period_ns)
+            .map_err(|error| self.error("setting up the output", error))
+    }
+
     /// A period must never be shorter than a pulse, and none can be set before the
     /// first period.
-    fn set_up(&self, period_ns: u64) -> io::Result<()> {
+    fn set_period(&self, period_ns: u64) -> io::Result<()> {
         let period = fs::read_to_string(self.folder.join("period"))?;
         let period: u64 = period.trim().parse().unwrap_or_default();
         if period != 0 {

@@ -10,7 +10,7 @@ use std::time::Instant;
 use fcc_core::flight::Surfaces;
 use rtrb::{Consumer, RingBuffer};
 
-use super::{ServoActuator, ServoChannel};
+use super::{Drives, ServoActuator, ServoChannel};
 use crate::{DeviceError, DeviceStatus};
 
 /// Orders that fit between the loop and the thread: it falls behind only while a
@@ -299,6 +299,8 @@ impl<O: FnMut() -> Result<ServoBus, DeviceError>> Writer<O> {
                     channel.towards(*position, surfaces, passed_s)
                 }
                 Wanted::Followed(_) => *position,
+                // An engine must not run before the loop engages, or after its release.
+                Wanted::Released if channel.drives == Drives::Throttle => 0.0,
                 Wanted::Released | Wanted::Failsafe => channel.failsafe,
             };
             let is_off =
