@@ -173,26 +173,40 @@ impl Channels {
     }
 }
 
-/// All channels of a quantity, none if one of them is missing.
+/// All channels of a quantity, none if it has none of them.
 fn channels(folder: &Folder, quantity: Quantity) -> Result<Vec<Channel>, DeviceError> {
     let prefix = quantity.prefix();
     let mut all = Vec::new();
+    let mut missing = None;
     for axis in quantity.axes() {
         let name = format!("{prefix}{axis}");
         let is_raw = folder.has(&format!("{name}_raw"));
         if !is_raw && !folder.has(&format!("{name}_input")) {
-            return Ok(Vec::new());
+            missing = Some(name);
+            continue;
         }
         let number = |what: &str, default: f64| {
             let own = format!("{name}_{what}");
             let shared = format!("{prefix}_{what}");
             folder.number_or(&[&own, &shared], default)
         };
+        // The temperature of a chip is not used, and a thermistor's scale is negative.
+        let is_free = quantity == Quantity::Temperature;
         let (offset, scale) = if is_raw {
-            (number("offset", 0.0)?, number("scale", 1.0)?)
+            let unknown = if is_free { 1.0 } else { 0.0 };
+            (number("offset", 0.0)?, number("scale", unknown)?)
         } else {
             (0.0, 1.0)
         };
+        if scale <= 0.0 && !is_free {
+            return Err(DeviceError::Refused {
+                device: folder.shown(),
+                what: format!(
+                    "the scale of {name} ({prefix}_scale) is missing or not above 0, so the unit \
+                     of its numbers is not known: check the driver, or choose another device"
+                ),
+            });
+        }
         all.push(Channel {
             name,
             quantity,
@@ -201,7 +215,21 @@ fn channels(folder: &Folder, quantity: Quantity) -> Result<Vec<Channel>, DeviceE
             is_processed: !is_raw,
         });
     }
-    Ok(all)
+    match missing {
+        // One that lost an axis must not be taken for a device without the quantity.
+        Some(name) if !all.is_empty() => Err(DeviceError::Refused {
+            device: folder.shown(),
+            what: format!(
+                "it has {} but not {name}_raw or {name}_input: check the driver, or choose another \
+                 device",
+                all.iter()
+                    .map(|channel| channel.name.as_str())
+                    .collect::<Vec<_>>()
+                    .join(" and ")
+            ),
+        }),
+        _ => Ok(all),
+    }
 }
 
 fn mounted(folder: &Folder, quantity: Quantity) -> Result<Matrix, DeviceError> {
@@ -210,7 +238,8 @@ fn mounted(folder: &Folder, quantity: Quantity) -> Result<Matrix, DeviceError> {
         if let Ok(text) = folder.text(name) {
             return text.parse().map_err(|_| DeviceError::Malformed {
                 device: format!("{}/{name}", folder.shown()),
-                what: "is no matrix like 1, 0, 0; 0, 1, 0; 0, 0, 1",
+                what: "is no rotation as a matrix like 1, 0, 0; 0, 1, 0; 0, 0, 1: correct the \
+                       board's description",
             });
         }
     }

@@ -16,9 +16,9 @@ use core::str::FromStr;
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Matrix([[f64; 3]; 3]);
 
-/// The text is no mounting matrix.
+/// The text is no mounting matrix: no nine numbers, or no rotation.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
-#[error("no mounting matrix like 1, 0, 0; 0, 1, 0; 0, 0, 1")]
+#[error("no rotation as a matrix like 1, 0, 0; 0, 1, 0; 0, 0, 1")]
 pub struct MatrixError;
 
 impl Matrix {
@@ -36,7 +36,31 @@ impl FromStr for Matrix {
 
     fn from_str(text: &str) -> Result<Self, MatrixError> {
         let rows = three(text.split(';').map(row));
-        rows.map(Self).ok_or(MatrixError)
+        rows.map(Self).filter(Self::is_rotation).ok_or(MatrixError)
+    }
+}
+
+/// What entries with three decimals are off at most.
+const TOLERANCE: f64 = 0.01;
+
+impl Matrix {
+    /// Rows of length 1 that are at right angles, and right-handed: of a mirrored one
+    /// an aircraft would roll to the other side.
+    fn is_rotation(&self) -> bool {
+        let [x, y, z] = self.0;
+        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let cross = [
+            x[1] * y[2] - x[2] * y[1],
+            x[2] * y[0] - x[0] * y[2],
+            x[0] * y[1] - x[1] * y[0],
+        ];
+        let is = |value: f64, expected: f64| (value - expected).abs() <= TOLERANCE;
+        // With z as their cross product, x and y at right angles are enough.
+        is(dot(x, x), 1.0)
+            && is(dot(y, y), 1.0)
+            && is(dot(x, y), 0.0)
+            && is(dot(cross, z), 1.0)
+            && is(dot(z, z), 1.0)
     }
 }
 
@@ -66,6 +90,11 @@ mod tests {
             "1,0,0;0,1,0;0,0,x",
             "1,0,0;0,1,0;0,0,1;0,0,0",
             "1,0,0;0,1,0;0,0,inf",
+            // Mirrored, of another length, and not at right angles.
+            "1,0,0;0,1,0;0,0,-1",
+            "0,0,0;0,0,0;0,0,0",
+            "1,0,0;0,2,0;0,0,0.5",
+            "1,0,0;0.5,0.866,0;0,0,1",
         ] {
             assert_eq!(text.parse::<Matrix>(), Err(MatrixError), "{text:?}");
         }

@@ -198,7 +198,25 @@ fn what_cannot_be_opened_is_explained() {
         scale.ends_with("iio:device0/in_accel_scale: is no number"),
         "{scale}"
     );
+    tree.put("iio:device0/in_accel_scale", "0");
+    let scale = refused(&tree.config("iio:device0", true));
+    assert!(
+        scale.contains("the scale of in_accel_x (in_accel_scale) is missing or not above 0"),
+        "{scale}"
+    );
     tree.put("iio:device0/in_accel_scale", "0.000598");
+    let axis = tree.sysfs("iio:device0/in_anglvel_x_raw");
+    std::fs::rename(&axis, axis.with_extension("gone")).unwrap();
+    let lost = refused(&tree.config("iio:device0", true));
+    assert!(
+        lost.contains("it has in_anglvel_y and in_anglvel_z but not in_anglvel_x_raw"),
+        "{lost}"
+    );
+    std::fs::rename(axis.with_extension("gone"), axis).unwrap();
+    tree.put("iio:device0/in_mount_matrix", "1, 0, 0; 0, 1, 0; 0, 0, -1");
+    let mirrored = refused(&tree.config("iio:device0", true));
+    assert!(mirrored.contains("is no rotation"), "{mirrored}");
+    tree.put("iio:device0/in_mount_matrix", "1, 0, 0; 0, 1, 0; 0, 0, 1");
     tree.put("iio:device0/scan_elements/in_accel_x_type", "le:f32/32>>0");
     let stored = refused(&tree.config("iio:device0", true));
     assert!(
