@@ -1,7 +1,8 @@
-//! Receivers on serial lines, and servos: their threads.
+//! Receivers and servos: their threads.
 
 use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Actuator, Sensor};
+use fcc_linux::gpsd::Gpsd;
 use fcc_linux::serial::{GnssReceiver, RcReceiver};
 use fcc_linux::servo::{Pca9685, Pca9685Settings, PulseOutputs, ServoBus, ServoThread, SysfsPwm};
 use fcc_linux::{DeviceThread, monotonic};
@@ -9,13 +10,14 @@ use fcc_linux::{DeviceThread, monotonic};
 use super::assemble::AssemblyError;
 use super::board::WatchedDevice;
 use super::calibrated::Calibrated;
-use crate::config::{LineSensor, ServosSection};
+use crate::config::{CalibrationSection, LineSensor, ServosSection};
 
 const GNSS: &str = "GNSS receiver";
+const GPSD: &str = "gpsd";
 const RC: &str = "RC receiver";
 const SERVOS: &str = "servos";
 
-/// Starts the thread that reads a line. One that is not there is no error: it may
+/// Starts the thread that reads a receiver. One that is not there is no error: it may
 /// be, later.
 pub(super) fn line_sensor(
     line: &LineSensor<'_>,
@@ -32,12 +34,15 @@ pub(super) fn line_sensor(
             let (thread, settings) = (thread(GNSS), section.to_linux());
             let watched = WatchedDevice::new(GNSS, thread.status());
             let sensor = thread.start(move || GnssReceiver::open(&settings, monotonic));
-            let sensor = sensor.map_err(failed(GNSS))?;
-            let sensor: Box<dyn Sensor<Measurements>> = match section.calibration.to_core() {
-                Some(calibration) => Box::new(Calibrated::new(Box::new(sensor), &calibration)),
-                None => Box::new(sensor),
-            };
-            Ok((sensor, watched))
+            let sensor = Box::new(sensor.map_err(failed(GNSS))?);
+            Ok((calibrated(sensor, &section.calibration), watched))
+        }
+        LineSensor::Gpsd(section) => {
+            let (thread, settings) = (thread(GPSD), section.to_linux());
+            let watched = WatchedDevice::new(GPSD, thread.status());
+            let sensor = thread.start(move || Gpsd::open(&settings, monotonic));
+            let sensor = Box::new(sensor.map_err(failed(GPSD))?);
+            Ok((calibrated(sensor, &section.calibration), watched))
         }
         LineSensor::Rc(section) => {
             let (thread, protocol) = (thread(RC), section.protocol());
@@ -47,6 +52,16 @@ pub(super) fn line_sensor(
             let sensor = thread.start(open).map_err(failed(RC))?;
             Ok((Box::new(sensor), watched))
         }
+    }
+}
+
+fn calibrated(
+    sensor: Box<dyn Sensor<Measurements>>,
+    calibration: &CalibrationSection,
+) -> Box<dyn Sensor<Measurements>> {
+    match calibration.to_core() {
+        Some(calibration) => Box::new(Calibrated::new(sensor, &calibration)),
+        None => sensor,
     }
 }
 
