@@ -39,6 +39,7 @@
 //! | [`chip`] | chips on I²C and SPI |
 //! | [`serial`] | satellite and RC receivers on serial lines |
 //! | [`gpsd`] | fixes from the service gpsd |
+//! | [`gpio`] | a switch, and the heartbeat for a multiplexer |
 //! | [`servo`] | servos |
 //! | [`probe`] | what is connected |
 //! | [`iio`] | the kernel's own drivers of chips |
@@ -50,6 +51,7 @@ mod clock;
 mod device_sensor;
 mod device_thread;
 mod error;
+pub mod gpio;
 pub mod gpsd;
 pub mod iio;
 mod pace;

@@ -313,7 +313,8 @@ impl SensorEntry {
             | Self::ServoBoard(_)
             | Self::GnssSerial(_)
             | Self::Gpsd(_)
-            | Self::RcReceiver(_) => None,
+            | Self::RcReceiver(_)
+            | Self::GpioSwitch(_) => None,
             Self::Iio(section) => Some(&mut section.calibration),
             Self::Icm42688(section)
             | Self::Mpu6050(section)
@@ -333,7 +334,8 @@ impl SensorEntry {
             | Self::ServoBoard(_)
             | Self::GnssSerial(_)
             | Self::Gpsd(_)
-            | Self::RcReceiver(_) => return None,
+            | Self::RcReceiver(_)
+            | Self::GpioSwitch(_) => return None,
             Self::Iio(section) => return Some(BoardSensor::Iio(section)),
             Self::Icm42688(section) => (ChipKind::Icm42688, section),
             Self::Mpu6050(section) => (ChipKind::Mpu6050, section),

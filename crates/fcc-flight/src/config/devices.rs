@@ -8,8 +8,8 @@ use toml::de::DeTable;
 
 use super::read::{Entry, Reader};
 use super::{
-    ChipSection, Config, GnssSerialSection, GpsdSection, IioSection, RcReceiverSection,
-    ServosSection, XPlaneSection,
+    ChipSection, Config, GnssSerialSection, GpioSwitchSection, GpsdSection, IioSection,
+    RcReceiverSection, ServosSection, XPlaneSection,
 };
 
 /// One entry of `[[sensor]]`: a kind, and that kind's keys.
@@ -44,6 +44,8 @@ pub enum SensorEntry {
     Gpsd(Box<GpsdSection>),
     /// An RC receiver on a serial line.
     RcReceiver(Box<RcReceiverSection>),
+    /// The engage switch on a line of GPIO.
+    GpioSwitch(Box<GpioSwitchSection>),
 }
 
 /// One entry of `[[actuator]]`: a kind, and that kind's keys.
@@ -128,6 +130,7 @@ impl Entry for SensorEntry {
         "gnss-serial",
         "gpsd",
         "rc-receiver",
+        "gpio-switch",
     ];
 
     fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, reader: &mut Reader<'t>) -> Option<Self> {
@@ -143,6 +146,7 @@ impl Entry for SensorEntry {
             "gnss-serial" => reader.table(keys, 1).map(Self::GnssSerial),
             "gpsd" => reader.table(keys, 1).map(Self::Gpsd),
             "rc-receiver" => reader.table(keys, 1).map(Self::RcReceiver),
+            "gpio-switch" => reader.table(keys, 1).map(Self::GpioSwitch),
             _ => reader.table(keys, 1).map(Self::Simulator),
         }
     }
@@ -221,7 +225,8 @@ mod tests {
             kind,
             "test:5: sensor[1].kind: is \"gyroscope\": choose one of \"simulator\", \"x-plane\", \"iio\", \
              \"icm42688\", \"mpu6050\", \"bmp388\", \"bmp180\", \"ms4525do\", \"sdp3x\", \
-             \"qmc5883l\", \"servo-board\", \"gnss-serial\", \"gpsd\", \"rc-receiver\""
+             \"qmc5883l\", \"servo-board\", \"gnss-serial\", \"gpsd\", \"rc-receiver\", \
+             \"gpio-switch\""
         );
         let missing = message(two);
         assert!(missing.contains("`kind` is missing"), "{missing}");

@@ -1,4 +1,4 @@
-//! The kinds of `[[sensor]]` that are receivers: of satellites and of a transmitter.
+//! The kinds of `[[sensor]]` that are receivers, of satellites and of a transmitter, or a switch.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -7,7 +7,7 @@ use fcc_core::framework::FALLBACK_AFTER;
 use fcc_linux::serial::{GnssSettings, LineSettings, RcChannel, RcChannels, RcProtocol};
 use serde::{Deserialize, Serialize};
 
-use super::{CalibrationSection, Config, GpsdSection, SensorEntry};
+use super::{CalibrationSection, Config, GpioSwitchSection, GpsdSection, SensorEntry};
 
 /// A satellite receiver.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -130,7 +130,7 @@ impl RcReceiverSection {
     }
 }
 
-/// A receiver: how it is opened.
+/// A receiver or a switch: how it is opened.
 #[derive(Clone, Copy, Debug)]
 pub enum LineSensor<'a> {
     /// A satellite receiver.
@@ -139,6 +139,8 @@ pub enum LineSensor<'a> {
     Gpsd(&'a GpsdSection),
     /// An RC receiver.
     Rc(&'a RcReceiverSection),
+    /// A switch on a line of GPIO.
+    Switch(&'a GpioSwitchSection),
 }
 
 impl LineSensor<'_> {
@@ -149,6 +151,7 @@ impl LineSensor<'_> {
             Self::Gnss(section) => (section.silent_after_ms, section.fallback_after_ms),
             Self::Gpsd(section) => (section.silent_after_ms, section.fallback_after_ms),
             Self::Rc(section) => (section.silent_after_ms, section.fallback_after_ms),
+            Self::Switch(section) => (section.silent_after_ms, section.fallback_after_ms),
         };
         (
             Duration::from_millis(silent_ms),
@@ -158,18 +161,19 @@ impl LineSensor<'_> {
 }
 
 impl SensorEntry {
-    /// The receiver, if it is one.
+    /// The receiver or switch, if it is one.
     pub fn line(&self) -> Option<LineSensor<'_>> {
         match self {
             Self::GnssSerial(section) => Some(LineSensor::Gnss(section)),
             Self::Gpsd(section) => Some(LineSensor::Gpsd(section)),
             Self::RcReceiver(section) => Some(LineSensor::Rc(section)),
+            Self::GpioSwitch(section) => Some(LineSensor::Switch(section)),
             _ => None,
         }
     }
 }
 
-/// Reports what does not fit in receivers.
+/// Reports what does not fit in receivers and switches.
 pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     for (at, entry) in config.sensor.iter().enumerate() {
         let mut wrong = |key: &str, message: &str| {
@@ -186,6 +190,15 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
             Some(LineSensor::Gpsd(section)) => {
                 if let Some(message) = section.wrong_address() {
                     wrong("address", message);
+                }
+                continue;
+            }
+            Some(LineSensor::Switch(section)) => {
+                if section.line.is_none() {
+                    wrong(
+                        "line",
+                        "is missing: give the line's number, `gpioinfo` lists them",
+                    );
                 }
                 continue;
             }

@@ -9,7 +9,7 @@ use toml::de::DeValue;
 
 use super::places::Places;
 use super::{
-    Config, Problem, SensorEntry, XPlaneSection, board, calibration, gpsd, lines, navigation,
+    Config, Problem, SensorEntry, XPlaneSection, board, calibration, gpio, gpsd, lines, navigation,
     relations, servo_board,
 };
 
@@ -166,6 +166,7 @@ fn ranges() -> impl Iterator<Item = &'static (&'static str, f64, f64)> {
         .chain(servo_board::RANGES)
         .chain(lines::RANGES)
         .chain(gpsd::RANGES)
+        .chain(gpio::RANGES)
 }
 
 /// Smallest and largest value of a numeric key.

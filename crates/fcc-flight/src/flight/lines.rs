@@ -1,11 +1,14 @@
-//! Receivers and servos: their threads.
+//! Receivers, switches and servos: their threads.
 
 use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Actuator, Sensor};
+use fcc_linux::gpio::{GpioLine, GpioSwitch};
 use fcc_linux::gpsd::Gpsd;
 use fcc_linux::serial::{GnssReceiver, RcReceiver};
-use fcc_linux::servo::{Pca9685, Pca9685Settings, PulseOutputs, ServoBus, ServoThread, SysfsPwm};
-use fcc_linux::{DeviceThread, monotonic};
+use fcc_linux::servo::{
+    HeartbeatLine, Pca9685, Pca9685Settings, PulseOutputs, ServoBus, ServoThread, SysfsPwm,
+};
+use fcc_linux::{Clock, DeviceThread, monotonic};
 
 use super::assemble::AssemblyError;
 use super::board::WatchedDevice;
@@ -15,9 +18,10 @@ use crate::config::{CalibrationSection, LineSensor, ServosSection};
 const GNSS: &str = "GNSS receiver";
 const GPSD: &str = "gpsd";
 const RC: &str = "RC receiver";
+const SWITCH: &str = "engage switch";
 const SERVOS: &str = "servos";
 
-/// Starts the thread that reads a receiver. One that is not there is no error: it may
+/// Starts the thread that reads a receiver or a switch. One that is not there is no error: it may
 /// be, later.
 pub(super) fn line_sensor(
     line: &LineSensor<'_>,
@@ -50,6 +54,17 @@ pub(super) fn line_sensor(
             let watched = WatchedDevice::new(RC, thread.status());
             let open = move || RcReceiver::open(&line, protocol, channels, monotonic);
             let sensor = thread.start(open).map_err(failed(RC))?;
+            Ok((Box::new(sensor), watched))
+        }
+        LineSensor::Switch(section) => {
+            let thread = thread(SWITCH);
+            let watched = WatchedDevice::new(SWITCH, thread.status());
+            let (pin, pull, settles_in) = (section.pin(), section.pull(), section.settles_in());
+            let open = move || {
+                let line = GpioLine::input(&pin, pull)?;
+                Ok(GpioSwitch::new(line, settles_in, Clock::default()))
+            };
+            let sensor = thread.start(open).map_err(failed(SWITCH))?;
             Ok((Box::new(sensor), watched))
         }
     }
@@ -86,10 +101,14 @@ pub(super) fn servos(
                 Box::new(Pca9685::open_at(bus, settings)?)
             }
         };
-        Ok(ServoBus {
-            outputs,
-            heartbeat: None,
-        })
+        let heartbeat = match &section.heartbeat {
+            None => None,
+            Some(heartbeat) => {
+                let line: Box<dyn HeartbeatLine> = Box::new(GpioLine::output(&heartbeat.pin())?);
+                Some(line)
+            }
+        };
+        Ok(ServoBus { outputs, heartbeat })
     };
     let actuator = thread.start(open);
     let actuator = actuator.map_err(|source| AssemblyError::Device {

@@ -43,7 +43,7 @@ fn every_number_has_a_range() {
 /// The same for the sensors of a board.
 #[test]
 fn every_number_of_a_sensor_has_a_range() {
-    let lines = ["gnss-serial", "gpsd", "rc-receiver"];
+    let lines = ["gnss-serial", "gpsd", "rc-receiver", "gpio-switch"];
     for kind in ["iio"]
         .into_iter()
         .chain(ChipKind::ALL.map(ChipKind::key))
@@ -54,10 +54,11 @@ fn every_number_of_a_sensor_has_a_range() {
             "iio" => "rate_hz = 20\ndevice = \"mpu6050\"\n",
             "gnss-serial" | "rc-receiver" => "path = \"/dev/ttyS0\"\n",
             "gpsd" => "",
+            "gpio-switch" => "line = 17\n",
             _ => "rate_hz = 20\n",
         };
         let calibration = match kind {
-            "rc-receiver" => "",
+            "rc-receiver" | "gpio-switch" => "",
             _ => "[sensor.calibration.gnss]\ndelay_ms = 1\n",
         };
         let text = format!("[built-in]\n[[sensor]]\nkind = \"{kind}\"\n{keys}{calibration}");
