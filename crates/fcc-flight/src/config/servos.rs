@@ -171,6 +171,13 @@ impl ServosSection {
         }
     }
 
+    /// Where they are, for people: the bus, or the chip of the first.
+    pub fn place(&self) -> PathBuf {
+        let first = self.channels.first().and_then(|first| first.pwm.clone());
+        let chip = self.pca9685.clone().or(self.pwm.clone()).or(first);
+        chip.unwrap_or_default()
+    }
+
     /// The outputs of PWM, in the order of the channels.
     pub fn pwm_outputs(&self) -> Vec<PwmOutput> {
         let output = |channel: &ServoSection| PwmOutput {

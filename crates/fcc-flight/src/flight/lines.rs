@@ -1,25 +1,21 @@
-//! Receivers, switches and servos: their threads.
+//! Receivers and switches: their threads.
 
-use fcc_core::flight::{Measurements, Surfaces};
-use fcc_core::framework::{Actuator, Sensor};
+use fcc_core::flight::Measurements;
+use fcc_core::framework::Sensor;
 use fcc_linux::gpio::{GpioLine, GpioSwitch};
 use fcc_linux::gpsd::Gpsd;
 use fcc_linux::serial::{GnssReceiver, RcReceiver};
-use fcc_linux::servo::{
-    HeartbeatLine, Pca9685, Pca9685Settings, PulseOutputs, ServoBus, ServoThread, SysfsPwm,
-};
 use fcc_linux::{Clock, DeviceThread, monotonic};
 
 use super::assemble::AssemblyError;
 use super::board::WatchedDevice;
 use super::calibrated::Calibrated;
-use crate::config::{CalibrationSection, LineSensor, ServosSection};
+use crate::config::{CalibrationSection, LineSensor};
 
 const GNSS: &str = "GNSS receiver";
 const GPSD: &str = "gpsd";
 const RC: &str = "RC receiver";
 const SWITCH: &str = "engage switch";
-const SERVOS: &str = "servos";
 
 /// Starts the thread that reads a receiver or a switch. One that is not there is no error: it may
 /// be, later.
@@ -78,42 +74,4 @@ fn calibrated(
         Some(calibration) => Box::new(Calibrated::new(sensor, &calibration)),
         None => sensor,
     }
-}
-
-/// Starts the thread that writes to servos, under the same condition.
-pub(super) fn servos(
-    section: &ServosSection,
-) -> Result<(Box<dyn Actuator<Surfaces>>, WatchedDevice), AssemblyError> {
-    let thread = ServoThread::new(SERVOS, section.to_linux());
-    let watched = WatchedDevice::new(SERVOS, thread.status());
-    let section = section.clone();
-    let open = move || {
-        let outputs: Box<dyn PulseOutputs> = match &section.pca9685 {
-            None => Box::new(SysfsPwm::open(&section.pwm_outputs(), section.rate_hz)?),
-            Some(bus) => {
-                let settings = Pca9685Settings {
-                    device: format!("{}, address {:#04x}", bus.display(), section.address),
-                    address: section.address,
-                    rate_hz: section.rate_hz,
-                    oscillator_hz: section.oscillator_mhz * 1e6,
-                    outputs: section.channels.iter().map(|c| c.output as u8).collect(),
-                };
-                Box::new(Pca9685::open_at(bus, settings)?)
-            }
-        };
-        let heartbeat = match &section.heartbeat {
-            None => None,
-            Some(heartbeat) => {
-                let line: Box<dyn HeartbeatLine> = Box::new(GpioLine::output(&heartbeat.pin())?);
-                Some(line)
-            }
-        };
-        Ok(ServoBus { outputs, heartbeat })
-    };
-    let actuator = thread.start(open);
-    let actuator = actuator.map_err(|source| AssemblyError::Device {
-        name: SERVOS,
-        source,
-    })?;
-    Ok((Box::new(actuator), watched))
 }
