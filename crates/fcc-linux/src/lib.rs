@@ -43,11 +43,13 @@
 //! | [`servo`] | servos |
 //! | [`probe`] | what is connected |
 //! | [`iio`] | the kernel's own drivers of chips |
-//! | `error`, `clock`, `pace` | [`DeviceError`]: what went wrong, where, what to do; the loop's clock; when a sample is due |
+//! | `error`, `pace` | [`DeviceError`]: what went wrong, where, what to do; when a sample is due |
+//! | `clock`, `device_clock` | the loop's clock; a device's own on it |
 #![forbid(unsafe_code)]
 
 pub mod chip;
 mod clock;
+mod device_clock;
 mod device_sensor;
 mod device_thread;
 mod error;

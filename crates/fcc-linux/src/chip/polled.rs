@@ -2,6 +2,7 @@
 
 use core::time::Duration;
 
+use crate::device_clock::DeviceClock;
 use crate::pace::Pace;
 use crate::{Clock, DeviceError, RawValues, Sample, Source};
 
@@ -12,6 +13,9 @@ pub struct Measurement {
     pub values: RawValues,
     /// How long before the chip's answer it was measured.
     pub age: Duration,
+    /// When, on the chip's own clock; none if it has none. That clock begins
+    /// anywhere, and begins anew with the chip.
+    pub stamp: Option<Duration>,
 }
 
 impl Measurement {
@@ -20,6 +24,7 @@ impl Measurement {
         Self {
             values,
             age: Duration::ZERO,
+            stamp: None,
         }
     }
 }
@@ -39,12 +44,14 @@ impl<C: Chip + ?Sized> Chip for Box<C> {
     }
 }
 
-/// A chip as a source of samples: asked so often, and stamped.
+/// A chip as a source of samples: asked so often, and stamped; where it stamps them
+/// itself, by that.
 #[derive(Debug)]
 pub struct ChipSource<C> {
     chip: C,
     pace: Pace,
     clock: Clock,
+    device_clock: DeviceClock,
 }
 
 impl<C: Chip> ChipSource<C> {
@@ -54,6 +61,7 @@ impl<C: Chip> ChipSource<C> {
             chip,
             pace: Pace::new(rate_hz),
             clock,
+            device_clock: DeviceClock::default(),
         }
     }
 }
@@ -67,6 +75,13 @@ impl<C: Chip> Source for ChipSource<C> {
         }
         let measured = self.chip.measure()?;
         let answered = self.clock.now();
-        Ok(measured.map(|measured| Sample::new(answered - measured.age, measured.values)))
+        Ok(measured.map(|measured| {
+            let read = answered - measured.age;
+            let taken = match measured.stamp {
+                Some(stamp) => self.device_clock.time(stamp, read).min(answered),
+                None => read,
+            };
+            Sample::new(taken, measured.values)
+        }))
     }
 }
