@@ -13,7 +13,7 @@ use fcc_core::framework::Time;
 /// use fcc_linux::gpio::Debounce;
 ///
 /// let mut switch = Debounce::new(Duration::from_millis(20));
-/// let mut at = |ms, is_on| switch.take(Time::from_nanos(ms * 1_000_000), is_on);
+/// let mut at = |ms: i64, is_on| switch.take(Time::from_nanos(ms * 1_000_000), is_on);
 /// assert_eq!(at(0, false), None);
 /// assert_eq!(at(20, false), Some(false));
 /// // It bounces once, and stays.
