@@ -58,7 +58,7 @@ fly-jsbsim: build $(STAMPS)/python ## Fly JSBSim's Cessna over X-Plane's protoco
 
 test: lint test-rust check-cross test-python ## Run every check and every test
 
-test-rust: $(STAMPS)/rust
+test-rust: $(STAMPS)/rust $(STAMPS)/gpsd
 	cargo test --locked --workspace --all-features
 	cargo build --locked -p fcc-core --no-default-features
 	cargo check --locked -p fcc-daemon -p fcc-py --no-default-features
@@ -275,6 +275,11 @@ $(STAMPS)/python: hil/pyproject.toml hil/locked.txt
 
 $(STAMPS)/strace:
 	@command -v strace >/dev/null || ./scripts/apt-install strace
+	@mkdir -p $(STAMPS) && touch $@
+
+# gpsfake, which plays a receiver to a real gpsd, is in gpsd-clients.
+$(STAMPS)/gpsd:
+	@command -v gpsfake >/dev/null && test -x /usr/sbin/gpsd || ./scripts/apt-install gpsd gpsd-clients
 	@mkdir -p $(STAMPS) && touch $@
 
 $(STAMPS)/wheel-tools: $(STAMPS)/python

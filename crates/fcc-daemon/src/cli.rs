@@ -371,6 +371,13 @@ pub struct ProbeArgs {
     /// Root folder of the files to read
     #[arg(long, value_name = "DIR", default_value = "/")]
     pub root: PathBuf,
+    /// Set up and read the chips as well, and show what they measure: not while
+    /// another program reads them
+    #[arg(long)]
+    pub live: bool,
+    /// Ask each SPI device which chip it is
+    #[arg(long)]
+    pub spi: bool,
     /// Print what was found as JSON
     #[arg(long)]
     pub json: bool,

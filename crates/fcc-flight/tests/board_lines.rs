@@ -1,12 +1,15 @@
-//! A flight with a satellite receiver on a line, which is pulled out and put back,
-//! and with servos: the line is a pseudo-terminal, and the folder of PWM a
-//! stand-in.
+//! A flight with a satellite receiver, which is pulled out and put back, and with
+//! servos: on a line, which is a pseudo-terminal, and by the real gpsd, to which
+//! gpsfake plays a receiver. The folder of PWM is a stand-in.
 #![cfg(test)]
+#![allow(clippy::expect_used, reason = "helper functions of tests")]
 
 use std::fs::{self, File};
 use std::io::Write;
+use std::net::TcpListener;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex};
 
 use fcc_core::flight::Autopilot;
@@ -14,7 +17,8 @@ use fcc_core::framework::{Controller, LoopCommand, RecordOf, State, Time};
 use fcc_flight::config::Config;
 use fcc_flight::flight::{Access, FlightTime, Length, Observer, Pace, Plan, Report, assemble, fly};
 use nix::pty::openpty;
-use nix::unistd::ttyname;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::{Pid, ttyname};
 use tempfile::TempDir;
 
 /// UBX-NAV-PVT encoded by pyubx2: latitude 42.95, longitude -87.88, 220.4 m above
@@ -29,13 +33,101 @@ const NAV_PVT: [u8; 100] = [
     0x00, 0x00, 0x2d, 0x8b,
 ];
 
-/// A new line under a name, and the receiver's end of it.
-fn plug_in(folder: &Path) -> File {
-    let pair = openpty(None, None).unwrap();
-    let path = folder.join("gnss");
-    let _ = fs::remove_file(&path);
-    symlink(ttyname(&pair.slave).unwrap(), path).unwrap();
-    pair.master.into()
+/// How the receiver is connected.
+#[derive(Clone, Copy)]
+enum Way {
+    Line,
+    /// By gpsd at this port.
+    Gpsd(u16),
+}
+
+/// A receiver that is connected until this is dropped.
+enum Receiver {
+    Line(File),
+    Gpsd(Child),
+}
+
+impl Way {
+    /// The sensor's entry, without its calibration.
+    fn entry(self, folder: &Path) -> String {
+        match self {
+            Self::Line => format!(
+                "kind = \"gnss-serial\"\npath = \"{}/gnss\"\n",
+                folder.display()
+            ),
+            Self::Gpsd(port) => format!("kind = \"gpsd\"\naddress = \"localhost:{port}\"\n"),
+        }
+    }
+
+    /// What a remark of it begins with.
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Line => "GNSS receiver: ",
+            Self::Gpsd(_) => "gpsd: ",
+        }
+    }
+
+    fn plug_in(self, folder: &Path) -> Receiver {
+        match self {
+            // A new line under the same name, and the receiver's end of it.
+            Self::Line => {
+                let pair = openpty(None, None).unwrap();
+                let path = folder.join("gnss");
+                let _ = fs::remove_file(&path);
+                symlink(ttyname(&pair.slave).unwrap(), path).unwrap();
+                Receiver::Line(pair.master.into())
+            }
+            Self::Gpsd(port) => {
+                let log = folder.join("receiver.nmea");
+                let seconds: String = (0..60).map(second).collect();
+                fs::write(&log, format!("# a receiver\n{seconds}")).unwrap();
+                let gpsfake = Command::new("gpsfake")
+                    .args(["--nowait", "--quiet", "--cycle", "0.02", "--port"])
+                    .arg(port.to_string())
+                    .arg(log)
+                    .stdin(Stdio::null())
+                    .stdout(Stdio::null())
+                    .stderr(Stdio::null())
+                    .spawn()
+                    .expect("gpsd and gpsd-clients are installed: `make test-rust` does it");
+                Receiver::Gpsd(gpsfake)
+            }
+        }
+    }
+}
+
+impl Receiver {
+    /// gpsfake speaks by itself.
+    fn speak(&mut self) {
+        if let Self::Line(line) = self {
+            let _ = line.write(&NAV_PVT);
+        }
+    }
+}
+
+impl Drop for Receiver {
+    /// gpsfake ends its gpsd at SIGTERM.
+    fn drop(&mut self) {
+        if let Self::Gpsd(gpsfake) = self {
+            let pid = Pid::from_raw(gpsfake.id().cast_signed());
+            let _ = kill(pid, Signal::SIGTERM);
+            let _ = gpsfake.wait();
+        }
+    }
+}
+
+/// The same place as in [`NAV_PVT`], in a second's sentences.
+fn second(number: u32) -> String {
+    let sentence = |text: String| {
+        let sum = text.bytes().fold(0, |sum, byte| sum ^ byte);
+        format!("${text}*{sum:02X}\r\n")
+    };
+    [
+        format!("GNRMC,1011{number:02}.00,A,4257.00000,N,08752.80000,W,0.3,,221126,,,A"),
+        format!("GNGGA,1011{number:02}.00,4257.00000,N,08752.80000,W,1,14,0.7,220.4,M,-34.4,M,,"),
+    ]
+    .map(sentence)
+    .concat()
 }
 
 fn duty(folder: &Path, output: u32) -> String {
@@ -60,7 +152,8 @@ enum Step {
 
 struct Watching {
     folder: PathBuf,
-    receiver: Option<File>,
+    way: Way,
+    receiver: Option<Receiver>,
     step: Step,
     latest: Option<RecordOf<Autopilot>>,
     remarks: Arc<Mutex<Vec<String>>>,
@@ -81,7 +174,7 @@ impl Observer<Autopilot> for Watching {
 
     fn poll(&mut self, access: &mut Access<'_, <Autopilot as Controller>::Command>) {
         if let Some(receiver) = &mut self.receiver {
-            let _ = receiver.write(&NAV_PVT);
+            receiver.speak();
         }
         let Some(record) = self.latest else { return };
         let fix = record.measurements.gnss;
@@ -105,11 +198,11 @@ impl Observer<Autopilot> for Watching {
                     .lock()
                     .unwrap()
                     .iter()
-                    .any(|remark| remark.starts_with("GNSS receiver: ")) =>
+                    .any(|remark| remark.starts_with(self.way.name())) =>
             {
                 assert_eq!(record.state, State::Engaged);
                 self.gone_since = fix.taken;
-                self.receiver = Some(plug_in(&self.folder));
+                self.receiver = Some(self.way.plug_in(&self.folder));
                 Step::Back
             }
             Step::Back if fix.taken > self.gone_since => {
@@ -122,17 +215,29 @@ impl Observer<Autopilot> for Watching {
     }
 }
 
-/// An autopilot is copied from place to place before a flight, and without
-/// optimization each copy takes room: a program's first thread has as much.
 #[test]
 fn a_flight_goes_on_without_its_receiver_and_leaves_the_servos_in_failsafe() {
+    in_a_thread(Way::Line);
+}
+
+#[test]
+fn a_flight_goes_on_without_gpsd() {
+    let free = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = free.local_addr().unwrap().port();
+    drop(free);
+    in_a_thread(Way::Gpsd(port));
+}
+
+/// An autopilot is copied from place to place before a flight, and without
+/// optimization each copy takes room: a program's first thread has as much.
+fn in_a_thread(way: Way) {
     let flight = std::thread::Builder::new()
         .stack_size(8 << 20)
-        .spawn(fly_it);
+        .spawn(move || fly_it(way));
     flight.unwrap().join().unwrap();
 }
 
-fn fly_it() {
+fn fly_it(way: Way) {
     let folder = TempDir::new().unwrap();
     for output in 0..2 {
         let path = folder.path().join(format!("pwm{output}"));
@@ -141,10 +246,11 @@ fn fly_it() {
             fs::write(path.join(file), "0").unwrap();
         }
     }
-    let receiver = plug_in(folder.path());
+    let receiver = way.plug_in(folder.path());
+    let entry = way.entry(folder.path());
     let here = folder.path().display();
     let text = format!(
-        "[built-in]\n[[sensor]]\nkind = \"gnss-serial\"\npath = \"{here}/gnss\"\n\
+        "[built-in]\n[[sensor]]\n{entry}\
          [[actuator]]\nkind = \"simulator\"\n[[actuator]]\nkind = \"servos\"\npwm = \"{here}\"\n\
          [[actuator.channel]]\ndrives = \"elevator\"\noutput = 0\nfailsafe = 0.1\n\
          [[actuator.channel]]\ndrives = \"throttle\"\noutput = 1\n"
@@ -155,6 +261,7 @@ fn fly_it() {
     let mut observers = assembly.observers(&config, Pace::RealTime, None);
     observers.push(Box::new(Watching {
         folder: folder.path().to_owned(),
+        way,
         receiver: Some(receiver),
         step: Step::Fix,
         latest: None,

@@ -96,6 +96,8 @@ fn advice(error: &io::Error) -> &'static str {
             "; another program or a driver of the kernel has it: end that program; use that driver \
              (kind = \"iio\"), or unload it"
         }
+        Some(Errno::ECONNREFUSED) => "; nothing listens there: start it, and check the address",
+        Some(Errno::ECONNRESET) => "; it has ended or closed the connection: see its log",
         Some(Errno::ENXIO | Errno::EREMOTEIO | Errno::ENODEV | Errno::ETIMEDOUT) => {
             "; nothing answers there: check wiring, power and address"
         }

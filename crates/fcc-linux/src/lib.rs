@@ -37,17 +37,25 @@
 //! | `source` | what a device gives: [`Source`], [`Sample`], [`Measured`], [`RawValues`] |
 //! | `device_thread`, `device_sensor` | the thread that opens, reads and reopens a device; the sensor that takes what it read |
 //! | [`chip`] | chips on I²C and SPI |
+//! | [`serial`] | satellite and RC receivers on serial lines |
+//! | [`gpsd`] | fixes from the service gpsd |
+//! | [`gpio`] | a switch, and the heartbeat for a multiplexer |
+//! | [`servo`] | servos |
 //! | [`probe`] | what is connected |
 //! | [`iio`] | the kernel's own drivers of chips |
-//! | `error`, `clock`, `pace` | [`DeviceError`]: what went wrong, where, what to do; the loop's clock; when a sample is due |
+//! | `error`, `pace` | [`DeviceError`]: what went wrong, where, what to do; when a sample is due |
+//! | `clock`, `device_clock` | the loop's clock; a device's own on it |
 #![forbid(unsafe_code)]
 
 pub mod chip;
 mod claim;
 mod clock;
+mod device_clock;
 mod device_sensor;
 mod device_thread;
 mod error;
+pub mod gpio;
+pub mod gpsd;
 pub mod iio;
 mod pace;
 pub mod probe;

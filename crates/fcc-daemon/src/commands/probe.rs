@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use fcc_flight::probe::{Connected, connected};
+use fcc_flight::probe::{Connected, ProbeRequest, Values, connected};
 
 use crate::cli::ProbeArgs;
 use crate::exit::Exit;
@@ -10,7 +10,11 @@ use crate::output;
 
 /// Lists what is connected, and the lines of a configuration that read it.
 pub(super) fn probe(args: &ProbeArgs) -> Exit {
-    let found = connected(&args.root);
+    let request = ProbeRequest {
+        live: args.live,
+        spi: args.spi,
+    };
+    let found = connected(&args.root, request);
     if args.json {
         output::json(&found, Exit::Success)
     } else {
@@ -32,6 +36,9 @@ fn text(found: &[Connected]) -> String {
     let mut text = String::new();
     for one in found {
         let _ = writeln!(text, "{:at$}  {:name$}  {}", one.at, one.name, one.remark);
+        for line in one.values.iter().flat_map(measured) {
+            let _ = writeln!(text, "    {line}");
+        }
     }
     let entries: Vec<&str> = found
         .iter()
@@ -46,4 +53,32 @@ fn text(found: &[Connected]) -> String {
     }
     text.truncate(text.trim_end().len());
     text
+}
+
+/// A line for each quantity.
+fn measured(values: &Values) -> Vec<String> {
+    let degps = |rates: [f64; 3]| rates.map(f64::to_degrees);
+    let vectors = [
+        ("specific force", values.specific_force_mps2, "m/s²"),
+        ("turn rates", values.rates_radps.map(degps), "°/s"),
+        ("magnetic field", values.field_ut, "µT"),
+    ];
+    let numbers = [
+        ("static pressure", values.static_pressure_pa, "Pa"),
+        (
+            "differential pressure",
+            values.differential_pressure_pa,
+            "Pa",
+        ),
+        ("air temperature", values.air_temperature_k, "K"),
+        ("range", values.range_m, "m"),
+    ];
+    let vectors = vectors.into_iter().filter_map(|(name, value, unit)| {
+        let [x, y, z] = value?;
+        Some(format!("{name} {x:.2}, {y:.2}, {z:.2} {unit}"))
+    });
+    let numbers = numbers
+        .into_iter()
+        .filter_map(|(name, value, unit)| Some(format!("{name} {:.2} {unit}", value?)));
+    vectors.chain(numbers).collect()
 }

@@ -9,6 +9,7 @@ mod output;
 mod probe;
 mod recordings;
 mod remarks;
+mod servos;
 mod setpoints;
 mod top;
 mod usage;

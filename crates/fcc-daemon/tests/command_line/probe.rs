@@ -30,7 +30,7 @@ fn what_is_connected_is_listed_with_its_configuration() {
     let listed = fccd(root.path(), &words).output().unwrap();
     assert!(listed.status.success(), "{listed:?}");
     let text = String::from_utf8(listed.stdout).unwrap();
-    let expected = "iio:device0  bmp388  pressure\n\n\
+    let expected = "iio:device0  bmp388  pressure\n    static pressure 101325.00 Pa\n\n\
                     in a configuration, the most preferred first:\n\n\
                     [[sensor]]\nkind = \"iio\"\ndevice = \"bmp388\"\n";
     assert_eq!(text, expected);
@@ -53,6 +53,8 @@ fn what_is_connected_is_listed_with_its_configuration() {
     let found: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
     assert_eq!(found[0]["at"], "iio:device0");
     assert_eq!(found[0]["remark"], "pressure");
+    assert_eq!(found[0]["values"]["static_pressure_pa"], 101_325.0);
+    assert_eq!(found[0]["values"]["rates_radps"], serde_json::Value::Null);
 }
 
 #[test]

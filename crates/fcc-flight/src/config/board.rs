@@ -297,7 +297,8 @@ pub(super) fn is_of_kind(range_of: &str, key: &str, kind: &str) -> bool {
     match range_of {
         "chip" => is_chip,
         "built-in" => {
-            (is_chip || matches!(kind, "iio" | "gnss-serial")) && key.starts_with("calibration.")
+            (is_chip || matches!(kind, "iio" | "gnss-serial" | "gpsd"))
+                && key.starts_with("calibration.")
         }
         of_one => of_one == kind,
     }
@@ -311,7 +312,9 @@ impl SensorEntry {
             | Self::XPlane(_)
             | Self::ServoBoard(_)
             | Self::GnssSerial(_)
-            | Self::RcReceiver(_) => None,
+            | Self::Gpsd(_)
+            | Self::RcReceiver(_)
+            | Self::GpioSwitch(_) => None,
             Self::Iio(section) => Some(&mut section.calibration),
             Self::Icm42688(section)
             | Self::Mpu6050(section)
@@ -330,7 +333,9 @@ impl SensorEntry {
             | Self::XPlane(_)
             | Self::ServoBoard(_)
             | Self::GnssSerial(_)
-            | Self::RcReceiver(_) => return None,
+            | Self::Gpsd(_)
+            | Self::RcReceiver(_)
+            | Self::GpioSwitch(_) => return None,
             Self::Iio(section) => return Some(BoardSensor::Iio(section)),
             Self::Icm42688(section) => (ChipKind::Icm42688, section),
             Self::Mpu6050(section) => (ChipKind::Mpu6050, section),

@@ -8,8 +8,8 @@ use toml::de::DeTable;
 
 use super::read::{Entry, Reader};
 use super::{
-    ChipSection, Config, GnssSerialSection, IioSection, RcReceiverSection, ServosSection,
-    XPlaneSection,
+    ChipSection, Config, GnssSerialSection, GpioSwitchSection, GpsdSection, IioSection,
+    RcReceiverSection, ServosSection, XPlaneSection,
 };
 
 /// One entry of `[[sensor]]`: a kind, and that kind's keys.
@@ -40,8 +40,12 @@ pub enum SensorEntry {
     ServoBoard(NoKeys),
     /// A satellite receiver on a serial line.
     GnssSerial(Box<GnssSerialSection>),
+    /// A satellite receiver that gpsd reads.
+    Gpsd(Box<GpsdSection>),
     /// An RC receiver on a serial line.
     RcReceiver(Box<RcReceiverSection>),
+    /// The engage switch on a line of GPIO.
+    GpioSwitch(Box<GpioSwitchSection>),
 }
 
 /// One entry of `[[actuator]]`: a kind, and that kind's keys.
@@ -124,7 +128,9 @@ impl Entry for SensorEntry {
         "qmc5883l",
         "servo-board",
         "gnss-serial",
+        "gpsd",
         "rc-receiver",
+        "gpio-switch",
     ];
 
     fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, reader: &mut Reader<'t>) -> Option<Self> {
@@ -138,7 +144,9 @@ impl Entry for SensorEntry {
             "iio" => reader.table(keys, 1).map(Self::Iio),
             "servo-board" => reader.table(keys, 1).map(Self::ServoBoard),
             "gnss-serial" => reader.table(keys, 1).map(Self::GnssSerial),
+            "gpsd" => reader.table(keys, 1).map(Self::Gpsd),
             "rc-receiver" => reader.table(keys, 1).map(Self::RcReceiver),
+            "gpio-switch" => reader.table(keys, 1).map(Self::GpioSwitch),
             _ => reader.table(keys, 1).map(Self::Simulator),
         }
     }
@@ -217,7 +225,8 @@ mod tests {
             kind,
             "test:5: sensor[1].kind: is \"gyroscope\": choose one of \"simulator\", \"x-plane\", \"iio\", \
              \"icm42688\", \"mpu6050\", \"bmp388\", \"bmp180\", \"ms4525do\", \"sdp3x\", \
-             \"qmc5883l\", \"servo-board\", \"gnss-serial\", \"rc-receiver\""
+             \"qmc5883l\", \"servo-board\", \"gnss-serial\", \"gpsd\", \"rc-receiver\", \
+             \"gpio-switch\""
         );
         let missing = message(two);
         assert!(missing.contains("`kind` is missing"), "{missing}");

@@ -1,4 +1,4 @@
-//! The kinds of `[[sensor]]` on serial lines: satellite and RC receivers.
+//! The kinds of `[[sensor]]` that are receivers, of satellites and of a transmitter, or a switch.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -7,7 +7,7 @@ use fcc_core::framework::FALLBACK_AFTER;
 use fcc_linux::serial::{GnssSettings, LineSettings, RcChannel, RcChannels, RcProtocol};
 use serde::{Deserialize, Serialize};
 
-use super::{CalibrationSection, Config, SensorEntry};
+use super::{CalibrationSection, Config, GpioSwitchSection, GpsdSection, SensorEntry};
 
 /// A satellite receiver.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -130,13 +130,17 @@ impl RcReceiverSection {
     }
 }
 
-/// A sensor on a serial line.
+/// A receiver or a switch: how it is opened.
 #[derive(Clone, Copy, Debug)]
 pub enum LineSensor<'a> {
     /// A satellite receiver.
     Gnss(&'a GnssSerialSection),
+    /// A satellite receiver that gpsd reads.
+    Gpsd(&'a GpsdSection),
     /// An RC receiver.
     Rc(&'a RcReceiverSection),
+    /// A switch on a line of GPIO.
+    Switch(&'a GpioSwitchSection),
 }
 
 impl LineSensor<'_> {
@@ -145,7 +149,9 @@ impl LineSensor<'_> {
     pub fn patience(&self) -> (Duration, Duration) {
         let (silent_ms, fallback_ms) = match self {
             Self::Gnss(section) => (section.silent_after_ms, section.fallback_after_ms),
+            Self::Gpsd(section) => (section.silent_after_ms, section.fallback_after_ms),
             Self::Rc(section) => (section.silent_after_ms, section.fallback_after_ms),
+            Self::Switch(section) => (section.silent_after_ms, section.fallback_after_ms),
         };
         (
             Duration::from_millis(silent_ms),
@@ -155,17 +161,19 @@ impl LineSensor<'_> {
 }
 
 impl SensorEntry {
-    /// The sensor on a serial line, if it is one.
+    /// The receiver or switch, if it is one.
     pub fn line(&self) -> Option<LineSensor<'_>> {
         match self {
             Self::GnssSerial(section) => Some(LineSensor::Gnss(section)),
+            Self::Gpsd(section) => Some(LineSensor::Gpsd(section)),
             Self::RcReceiver(section) => Some(LineSensor::Rc(section)),
+            Self::GpioSwitch(section) => Some(LineSensor::Switch(section)),
             _ => None,
         }
     }
 }
 
-/// Reports what does not fit in the sensors on serial lines.
+/// Reports what does not fit in receivers and switches.
 pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     for (at, entry) in config.sensor.iter().enumerate() {
         let mut wrong = |key: &str, message: &str| {
@@ -178,6 +186,21 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
                     wrong("switch_channel", "is 0: choose 1 to 16, or -1 to -16");
                 }
                 &section.path
+            }
+            Some(LineSensor::Gpsd(section)) => {
+                if let Some(message) = section.wrong_address() {
+                    wrong("address", message);
+                }
+                continue;
+            }
+            Some(LineSensor::Switch(section)) => {
+                if section.line.is_none() {
+                    wrong(
+                        "line",
+                        "is missing: give the line's number, `gpioinfo` lists them",
+                    );
+                }
+                continue;
             }
             None => continue,
         };

@@ -9,8 +9,8 @@ use toml::de::DeValue;
 
 use super::places::Places;
 use super::{
-    Config, Problem, SensorEntry, XPlaneSection, board, calibration, lines, navigation, relations,
-    servo_board,
+    Config, Problem, SensorEntry, XPlaneSection, board, calibration, gpio, gpsd, lines, navigation,
+    relations, servo_board,
 };
 
 /// Key, smallest and largest value.
@@ -165,6 +165,8 @@ fn ranges() -> impl Iterator<Item = &'static (&'static str, f64, f64)> {
         .chain(board::RANGES)
         .chain(servo_board::RANGES)
         .chain(lines::RANGES)
+        .chain(gpsd::RANGES)
+        .chain(gpio::RANGES)
 }
 
 /// Smallest and largest value of a numeric key.

@@ -7,7 +7,7 @@ use fcc_linux::servo::{Drives, PwmOutput, Released, ServoChannel, ServoError, Se
 use fcc_telemetry::units::number;
 use serde::{Deserialize, Serialize};
 
-use super::{ActuatorEntry, Config};
+use super::{ActuatorEntry, Config, HeartbeatSection};
 
 /// Servos, and where their pulses are written.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -29,6 +29,9 @@ pub struct ServosSection {
     pub released: ReleasedChoice,
     /// They go to failsafe after this long without outputs.
     pub silent_after_ms: u64,
+    /// The line that changes while the loop has control.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub heartbeat: Option<HeartbeatSection>,
     /// Each servo.
     #[serde(rename = "channel")]
     pub channels: Vec<ServoSection>,
@@ -117,6 +120,7 @@ impl Default for ServosSection {
             rate_hz: 50.0,
             released: ReleasedChoice::Failsafe,
             silent_after_ms: usual.silent_after.as_millis() as u64,
+            heartbeat: None,
             channels: Vec::new(),
         }
     }
@@ -165,6 +169,13 @@ impl ServosSection {
             silent_after: Duration::from_millis(self.silent_after_ms),
             ..ServoSettings::new(channels)
         }
+    }
+
+    /// Where they are, for people: the bus, or the chip of the first.
+    pub fn place(&self) -> PathBuf {
+        let first = self.channels.first().and_then(|first| first.pwm.clone());
+        let chip = self.pca9685.clone().or(self.pwm.clone()).or(first);
+        chip.unwrap_or_default()
     }
 
     /// The outputs of PWM, in the order of the channels.

@@ -19,7 +19,7 @@ use super::control_override::ControlOverride;
 use super::event_log::EventLog;
 #[cfg(feature = "live")]
 use super::limits::{altitudes_m, heights_m};
-use super::lines::{line_sensor, servos};
+use super::lines::line_sensor;
 #[cfg(feature = "live")]
 use super::live::Live;
 use super::observer::Observer;
@@ -29,6 +29,7 @@ use super::plan::Pace;
 use super::recording::{FlightRecorder, RecordingRequest};
 use super::restart::{RestartKeeper, RestartRequest};
 use super::scorer::Scorer;
+use super::servos::{servo_authority, servos};
 use super::truth_recorder::{TruthReceiver, tap};
 use crate::config::{
     ActuatorEntry, Aircraft, BuiltInSection, Config, SensorEntry, WatchdogSection, XPlaneSection,
@@ -152,7 +153,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
             }
         }
     }
-    let mut actuators = Vec::new();
+    let (mut actuators, mut servo_controls) = (Vec::new(), Vec::new());
     // Whether what is moved goes on without this program.
     let mut outlasts = plant.authority.is_some();
     for entry in config.actuators() {
@@ -163,9 +164,10 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
                 actuators.append(&mut servo_board.actuators);
             }
             ActuatorEntry::Servos(section) => {
-                let (actuator, status) = servos(section)?;
-                actuators.push(actuator);
-                devices.push(status);
+                let opened = servos(section)?;
+                actuators.push(opened.actuator);
+                devices.push(opened.device);
+                servo_controls.push(opened.control);
             }
         }
     }
@@ -180,7 +182,10 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
         truth: plant.truth,
         true_now: plant.true_now,
         devices,
-        authority: plant.authority,
+        // One plant is released after the program: a simulator's.
+        authority: plant
+            .authority
+            .or_else(|| servo_authority(config, servo_controls)),
         #[cfg(feature = "live")]
         publisher: None,
     })
@@ -250,7 +255,7 @@ fn servo_board(config: &Config) -> Result<Plant, AssemblyError> {
 /// what another one held; none if nothing can be left held.
 pub fn authority_without_connection(config: &Config) -> Option<Arc<dyn ControlAuthority>> {
     match config.aircraft() {
-        Some(Aircraft::BuiltIn(_)) | None => None,
+        Some(Aircraft::BuiltIn(_)) | None => servo_authority(config, Vec::new()),
         Some(Aircraft::XPlane(section)) => Some(Arc::new(XPlaneAuthority::without_connection(
             &XPlaneConfig::from(section),
         ))),

@@ -1,21 +1,23 @@
-//! Receivers on serial lines, and servos: their threads.
+//! Receivers and switches: their threads.
 
-use fcc_core::flight::{Measurements, Surfaces};
-use fcc_core::framework::{Actuator, Sensor};
+use fcc_core::flight::Measurements;
+use fcc_core::framework::Sensor;
+use fcc_linux::gpio::{GpioLine, GpioSwitch};
+use fcc_linux::gpsd::Gpsd;
 use fcc_linux::serial::{GnssReceiver, RcReceiver};
-use fcc_linux::servo::{Pca9685, Pca9685Settings, PulseOutputs, ServoBus, ServoThread, SysfsPwm};
-use fcc_linux::{DeviceThread, monotonic};
+use fcc_linux::{Clock, DeviceThread, monotonic};
 
 use super::assemble::AssemblyError;
 use super::board::WatchedDevice;
 use super::calibrated::Calibrated;
-use crate::config::{LineSensor, ServosSection};
+use crate::config::{CalibrationSection, LineSensor};
 
 const GNSS: &str = "GNSS receiver";
+const GPSD: &str = "gpsd";
 const RC: &str = "RC receiver";
-const SERVOS: &str = "servos";
+const SWITCH: &str = "engage switch";
 
-/// Starts the thread that reads a line. One that is not there is no error: it may
+/// Starts the thread that reads a receiver or a switch. One that is not there is no error: it may
 /// be, later.
 pub(super) fn line_sensor(
     line: &LineSensor<'_>,
@@ -32,12 +34,15 @@ pub(super) fn line_sensor(
             let (thread, settings) = (thread(GNSS), section.to_linux());
             let watched = WatchedDevice::new(GNSS, thread.status());
             let sensor = thread.start(move || GnssReceiver::open(&settings, monotonic));
-            let sensor = sensor.map_err(failed(GNSS))?;
-            let sensor: Box<dyn Sensor<Measurements>> = match section.calibration.to_core() {
-                Some(calibration) => Box::new(Calibrated::new(Box::new(sensor), &calibration)),
-                None => Box::new(sensor),
-            };
-            Ok((sensor, watched))
+            let sensor = Box::new(sensor.map_err(failed(GNSS))?);
+            Ok((calibrated(sensor, &section.calibration), watched))
+        }
+        LineSensor::Gpsd(section) => {
+            let (thread, settings) = (thread(GPSD), section.to_linux());
+            let watched = WatchedDevice::new(GPSD, thread.status());
+            let sensor = thread.start(move || Gpsd::open(&settings, monotonic));
+            let sensor = Box::new(sensor.map_err(failed(GPSD))?);
+            Ok((calibrated(sensor, &section.calibration), watched))
         }
         LineSensor::Rc(section) => {
             let (thread, protocol) = (thread(RC), section.protocol());
@@ -47,39 +52,26 @@ pub(super) fn line_sensor(
             let sensor = thread.start(open).map_err(failed(RC))?;
             Ok((Box::new(sensor), watched))
         }
+        LineSensor::Switch(section) => {
+            let thread = thread(SWITCH);
+            let watched = WatchedDevice::new(SWITCH, thread.status());
+            let (pin, pull, settles_in) = (section.pin(), section.pull(), section.settles_in());
+            let open = move || {
+                let line = GpioLine::input(&pin, pull)?;
+                Ok(GpioSwitch::new(line, settles_in, Clock::default()))
+            };
+            let sensor = thread.start(open).map_err(failed(SWITCH))?;
+            Ok((Box::new(sensor), watched))
+        }
     }
 }
 
-/// Starts the thread that writes to servos, under the same condition.
-pub(super) fn servos(
-    section: &ServosSection,
-) -> Result<(Box<dyn Actuator<Surfaces>>, WatchedDevice), AssemblyError> {
-    let thread = ServoThread::new(SERVOS, section.to_linux());
-    let watched = WatchedDevice::new(SERVOS, thread.status());
-    let section = section.clone();
-    let open = move || {
-        let outputs: Box<dyn PulseOutputs> = match &section.pca9685 {
-            None => Box::new(SysfsPwm::open(&section.pwm_outputs(), section.rate_hz)?),
-            Some(bus) => {
-                let settings = Pca9685Settings {
-                    device: format!("{}, address {:#04x}", bus.display(), section.address),
-                    address: section.address,
-                    rate_hz: section.rate_hz,
-                    oscillator_hz: section.oscillator_mhz * 1e6,
-                    outputs: section.channels.iter().map(|c| c.output as u8).collect(),
-                };
-                Box::new(Pca9685::open_at(bus, settings)?)
-            }
-        };
-        Ok(ServoBus {
-            outputs,
-            heartbeat: None,
-        })
-    };
-    let actuator = thread.start(open);
-    let actuator = actuator.map_err(|source| AssemblyError::Device {
-        name: SERVOS,
-        source,
-    })?;
-    Ok((Box::new(actuator), watched))
+fn calibrated(
+    sensor: Box<dyn Sensor<Measurements>>,
+    calibration: &CalibrationSection,
+) -> Box<dyn Sensor<Measurements>> {
+    match calibration.to_core() {
+        Some(calibration) => Box::new(Calibrated::new(sensor, &calibration)),
+        None => sensor,
+    }
 }

@@ -37,6 +37,7 @@ mod repair;
 mod restart;
 mod run_statistics;
 mod scorer;
+mod servos;
 mod truth_recorder;
 
 pub use assemble::{Assembly, AssemblyError, assemble, authority_without_connection};

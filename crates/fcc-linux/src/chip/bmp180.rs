@@ -178,6 +178,7 @@ impl<R: Registers, D: DelayNs> Chip for Bmp180<R, D> {
             return Err(self.registers.malformed("its pressure is out of its range"));
         };
         Ok(Some(Measurement {
+            stamp: None,
             values: RawValues {
                 static_pressure_pa: Some(pressure_pa.into()),
                 ..RawValues::NONE

@@ -178,6 +178,7 @@ impl<R: Registers> Chip for Bmp3<R> {
             return Err(self.registers.malformed("its pressure is out of its range"));
         }
         Ok(Some(Measurement {
+            stamp: None,
             values: RawValues {
                 static_pressure_pa: Some(pressure_pa),
                 ..RawValues::NONE

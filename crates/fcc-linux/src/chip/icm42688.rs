@@ -49,6 +49,9 @@ const FIFO_ALL: u8 = 0x07;
 pub const IDENTIFICATION: (u8, &[u8]) = (WHO_AM_I, &[WHO_AM_I_VALUE]);
 
 const PERIOD: Duration = Duration::from_millis(1);
+/// A count of the time stamps is 1 µs of a clock that runs at 30/32 of its rate, as
+/// long as no clock is given from outside ("FIFO timestamp interval scaling").
+const SECONDS_PER_COUNT: f64 = 32.0 / 30.0 * 1e-6;
 /// How often it is asked, unless configured otherwise.
 pub const RATE_HZ: f64 = 200.0;
 
@@ -63,6 +66,9 @@ const MOST_PACKETS: usize = 128;
 // Header of a packet (section 6.2).
 const EMPTY: u8 = 0x80;
 const HAS_BOTH: u8 = 0x60;
+/// The header's bits for what its time stamp is of, and those of a measurement's.
+const STAMP: u8 = 0x0C;
+const STAMP_OF_SAMPLE: u8 = 0x08;
 /// The header's bit of packets with 20 bytes.
 const HIGH_RESOLUTION: u8 = 0x10;
 
@@ -89,38 +95,83 @@ pub struct PacketError;
 /// When a packet has another structure.
 pub fn mean_of(fifo: &[u8]) -> Result<Option<RawValues>, PacketError> {
     let mut sum = Sum::default();
-    let (packets, _) = fifo.as_chunks::<PACKET>();
-    for packet in packets {
-        let [
-            header,
-            ax1,
-            ax0,
-            ay1,
-            ay0,
-            az1,
-            az0,
-            gx1,
-            gx0,
-            gy1,
-            gy0,
-            gz1,
-            gz0,
-            ..,
-        ] = *packet;
-        if header & EMPTY != 0 {
-            break;
-        }
-        if header & (HAS_BOTH | HIGH_RESOLUTION) != HAS_BOTH {
-            return Err(PacketError);
-        }
-        let force = [word(ax1, ax0), word(ay1, ay0), word(az1, az0)];
-        let rates = [word(gx1, gx0), word(gy1, gy0), word(gz1, gz0)];
-        // While a sensor starts its values are -32,768 (section 6.1).
-        if !force.iter().chain(&rates).any(|value| *value == i16::MIN) {
-            sum.add(force, rates);
+    for packet in packets(fifo) {
+        let packet = packet?;
+        if packet.is_measured() {
+            sum.add(packet.force, packet.rates);
         }
     }
     Ok(sum.mean(LSB_PER_G, radps(LSB_PER_DEGPS)))
+}
+
+/// One measurement.
+struct Packet {
+    force: [i16; 3],
+    rates: [i16; 3],
+    /// Of its own counter, if it is stamped.
+    stamp: Option<u16>,
+}
+
+impl Packet {
+    /// While a sensor starts its values are -32,768 (section 6.1).
+    fn is_measured(&self) -> bool {
+        !self
+            .force
+            .iter()
+            .chain(&self.rates)
+            .any(|value| *value == i16::MIN)
+    }
+}
+
+/// The packets of the FIFO, up to its end.
+fn packets(fifo: &[u8]) -> impl Iterator<Item = Result<Packet, PacketError>> {
+    let (packets, _) = fifo.as_chunks::<PACKET>();
+    let packets = packets.iter().take_while(|packet| packet[0] & EMPTY == 0);
+    packets.map(|packet| {
+        let [header, values @ .., _temperature, stamp1, stamp0] = packet;
+        if header & (HAS_BOTH | HIGH_RESOLUTION) != HAS_BOTH {
+            return Err(PacketError);
+        }
+        let [ax1, ax0, ay1, ay0, az1, az0, gx1, gx0, gy1, gy0, gz1, gz0] = *values;
+        let is_stamped = header & STAMP == STAMP_OF_SAMPLE;
+        Ok(Packet {
+            force: [word(ax1, ax0), word(ay1, ay0), word(az1, az0)],
+            rates: [word(gx1, gx0), word(gy1, gy0), word(gz1, gz0)],
+            stamp: is_stamped.then(|| u16::from_be_bytes([*stamp1, *stamp0])),
+        })
+    })
+}
+
+/// The chip's counter of 16 bits, which overflows 15 times a second, continued.
+#[derive(Debug, Default)]
+struct Counter {
+    latest: Option<u16>,
+    counts: u64,
+}
+
+impl Counter {
+    fn follow(&mut self, stamp: u16) -> u64 {
+        let passed = stamp.wrapping_sub(self.latest.unwrap_or(stamp));
+        self.latest = Some(stamp);
+        self.counts += u64::from(passed);
+        self.counts
+    }
+
+    /// The mean time of the packets that were measured; none if one of them has no
+    /// stamp.
+    fn mean(&mut self, fifo: &[u8]) -> Option<Duration> {
+        let (mut sum, mut number) = (0, 0);
+        for packet in packets(fifo) {
+            let packet = packet.ok()?;
+            let counts = self.follow(packet.stamp?);
+            if packet.is_measured() {
+                sum += counts;
+                number += 1;
+            }
+        }
+        let mean = sum as f64 / f64::from(number);
+        Duration::try_from_secs_f64(mean * SECONDS_PER_COUNT).ok()
+    }
 }
 
 /// An ICM-42688-P that is set up.
@@ -128,6 +179,7 @@ pub fn mean_of(fifo: &[u8]) -> Result<Option<RawValues>, PacketError> {
 pub struct Icm42688<R> {
     registers: R,
     fifo: Vec<u8>,
+    counter: Counter,
 }
 
 impl<R: Registers> Icm42688<R> {
@@ -152,6 +204,7 @@ impl<R: Registers> Icm42688<R> {
         Ok(Self {
             registers,
             fifo: vec![0; MOST_PACKETS * PACKET],
+            counter: Counter::default(),
         })
     }
 
@@ -180,7 +233,9 @@ impl<R: Registers> Chip for Icm42688<R> {
         let Ok(mean) = mean_of(fifo) else {
             return self.flushed("its FIFO is out of step");
         };
+        let stamp = self.counter.mean(fifo);
         Ok(mean.map(|values| Measurement {
+            stamp,
             // The newest is between nothing and a period old.
             age: PERIOD * values.samples / 2,
             values,

@@ -236,17 +236,7 @@ impl ChipConfig {
                 what: format!("{} has no SPI: use I²C", self.kind.name()),
             });
         };
-        let mut opened =
-            SpidevDevice::open(path).map_err(|error| cannot_open(path, error.into_io()))?;
-        let options = SpidevOptions::new()
-            .bits_per_word(8)
-            .max_speed_hz(hz)
-            .mode(SpiModeFlags::SPI_MODE_0)
-            .build();
-        opened
-            .configure(&options)
-            .map_err(|source| cannot_open(path, source))?;
-        let bus = SpiBus::new(opened, &path.display().to_string());
+        let bus = SpiBus::new(open_spi(path, hz)?, &path.display().to_string());
         self.on_either(match self.kind {
             ChipKind::Bmp388 => bus.with_dummy_bytes(bmp3::SPI_DUMMY_BYTES),
             _ => bus,
@@ -261,6 +251,21 @@ impl ChipConfig {
             _ => Box::new(Bmp3::new(bus, &mut Delay)?),
         })
     }
+}
+
+/// Opens an SPI device for the chips here, at so many bits in a second.
+pub(crate) fn open_spi(path: &Path, hz: u32) -> Result<SpidevDevice, DeviceError> {
+    let mut opened =
+        SpidevDevice::open(path).map_err(|error| cannot_open(path, error.into_io()))?;
+    let options = SpidevOptions::new()
+        .bits_per_word(8)
+        .max_speed_hz(hz)
+        .mode(SpiModeFlags::SPI_MODE_0)
+        .build();
+    opened
+        .configure(&options)
+        .map_err(|source| cannot_open(path, source))?;
+    Ok(opened)
 }
 
 fn cannot_open(path: &Path, source: io::Error) -> DeviceError {

@@ -18,5 +18,6 @@ pub mod qmc5883l;
 pub mod sdp3x;
 
 pub use bus::{BusError, I2cBus, Registers, SpiBus};
+pub(crate) use kind::open_spi;
 pub use kind::{ChipConfig, ChipKind, Wiring};
 pub use polled::{Chip, ChipSource, Measurement};

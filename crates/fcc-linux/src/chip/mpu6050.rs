@@ -127,6 +127,7 @@ impl<R: Registers> Chip for Mpu6050<R> {
         );
         let values = one.mean(LSB_PER_G, radps(LSB_PER_DEGPS));
         Ok(values.map(|values| Measurement {
+            stamp: None,
             values,
             age: self.age,
         }))

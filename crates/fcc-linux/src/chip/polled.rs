@@ -3,6 +3,7 @@
 use core::time::Duration;
 use std::fs::File;
 
+use crate::device_clock::DeviceClock;
 use crate::pace::Pace;
 use crate::{Clock, DeviceError, RawValues, Sample, Source};
 
@@ -13,6 +14,9 @@ pub struct Measurement {
     pub values: RawValues,
     /// How long before the chip's answer it was measured.
     pub age: Duration,
+    /// When, on the chip's own clock; none if it has none. That clock begins
+    /// anywhere, and begins anew with the chip.
+    pub stamp: Option<Duration>,
 }
 
 impl Measurement {
@@ -21,6 +25,7 @@ impl Measurement {
         Self {
             values,
             age: Duration::ZERO,
+            stamp: None,
         }
     }
 }
@@ -40,7 +45,8 @@ impl<C: Chip + ?Sized> Chip for Box<C> {
     }
 }
 
-/// A chip as a source of samples: asked so often, and stamped.
+/// A chip as a source of samples: asked so often, and stamped; where it stamps them
+/// itself, by that.
 #[derive(Debug)]
 pub struct ChipSource<C> {
     chip: C,
@@ -48,6 +54,7 @@ pub struct ChipSource<C> {
     clock: Clock,
     /// That no other daemon asks it.
     claim: Option<File>,
+    device_clock: DeviceClock,
 }
 
 impl<C: Chip> ChipSource<C> {
@@ -58,6 +65,7 @@ impl<C: Chip> ChipSource<C> {
             pace: Pace::new(rate_hz),
             clock,
             claim: None,
+            device_clock: DeviceClock::default(),
         }
     }
 
@@ -78,6 +86,13 @@ impl<C: Chip> Source for ChipSource<C> {
         }
         let measured = self.chip.measure()?;
         let answered = self.clock.now();
-        Ok(measured.map(|measured| Sample::new(answered - measured.age, measured.values)))
+        Ok(measured.map(|measured| {
+            let read = answered - measured.age;
+            let taken = match measured.stamp {
+                Some(stamp) => self.device_clock.time(stamp, read).min(answered),
+                None => read,
+            };
+            Sample::new(taken, measured.values)
+        }))
     }
 }

@@ -126,12 +126,21 @@ fn motion(fields: &mut str::Split<'_, char>) -> Option<Sentence> {
 }
 
 fn velocity(knots: &str, course: &str) -> Option<[f64; 2]> {
-    let speed = number(knots)? * MPS_PER_KNOT;
-    if course.is_empty() {
-        return (speed < STANDING_MPS).then_some([0.0; 2]);
-    }
-    let (sin, cos) = libm::sincos(number(course)?.to_radians());
-    Some([speed * cos, speed * sin])
+    let course_deg = match course {
+        "" => None,
+        course => Some(number(course)?),
+    };
+    velocity_over_ground(number(knots)? * MPS_PER_KNOT, course_deg)
+}
+
+/// North and east, m/s, of a speed and its course from true north; a receiver that
+/// stands has no course.
+pub(crate) fn velocity_over_ground(speed_mps: f64, course_deg: Option<f64>) -> Option<[f64; 2]> {
+    let Some(course_deg) = course_deg else {
+        return (speed_mps < STANDING_MPS).then_some([0.0; 2]);
+    };
+    let (sin, cos) = libm::sincos(course_deg.to_radians());
+    Some([speed_mps * cos, speed_mps * sin])
 }
 
 /// Time, latitude, N or S, longitude, E or W, quality, satellites, dilution,

@@ -10,7 +10,8 @@ use fcc_core::flight::Surfaces;
 use fcc_core::framework::{Actuator, ActuatorFault, Tick};
 use rtrb::Producer;
 
-use super::thread::{CONNECTED, NOT_OPEN, Order, Shared};
+use super::ServoControl;
+use super::thread::{CONNECTED, NOT_OPEN, Order, PERMITTED, Shared};
 
 /// How long the drop waits for the last pulses to be written.
 const END_WITHIN: Duration = Duration::from_secs(1);
@@ -50,6 +51,28 @@ impl ServoActuator {
         self.shared.taken.load(Ordering::Acquire) == self.shared.given.load(Ordering::Acquire)
     }
 
+    /// Control of the servos, for a [`ServoAuthority`](super::ServoAuthority).
+    pub fn control(&self) -> ServoControl {
+        ServoControl(Arc::clone(&self.shared))
+    }
+
+    /// Counts as held before the first pulse is written: what may have been taken
+    /// must be released.
+    fn take(&mut self) -> Result<(), ActuatorFault> {
+        if self.is_held {
+            return Ok(());
+        }
+        if self.shared.permission.load(Ordering::SeqCst) != PERMITTED {
+            return Err(ActuatorFault::NotConnected);
+        }
+        self.shared.is_wanted.store(true, Ordering::SeqCst);
+        if let Some((notice, plant)) = self.shared.notice.get() {
+            notice.taking(plant);
+        }
+        self.is_held = true;
+        Ok(())
+    }
+
     fn give(&mut self, order: Order) -> Result<(), ActuatorFault> {
         // Full: the bus hangs.
         let given = self.orders.push(order);
@@ -77,7 +100,7 @@ impl Actuator<Surfaces> for ServoActuator {
     }
 
     fn apply(&mut self, _: &Tick, surfaces: &Surfaces) -> Result<(), ActuatorFault> {
-        self.is_held = true;
+        self.take()?;
         self.give(Order::Apply(*surfaces))
     }
 
@@ -85,6 +108,7 @@ impl Actuator<Surfaces> for ServoActuator {
         if self.is_held {
             self.give(Order::Release)?;
             self.is_held = false;
+            self.shared.is_wanted.store(false, Ordering::SeqCst);
         }
         Ok(())
     }

@@ -9,15 +9,18 @@
 //! | `channel` | [`ServoChannel`]: from a surface to a pulse |
 //! | `actuator` | [`ServoActuator`]: the loop's end |
 //! | `thread` | [`ServoThread`]: what is written, and when |
+//! | `authority` | [`ServoAuthority`]: who has control, and how it is given back from outside |
 //! | `pwm`, `pca9685` | [`SysfsPwm`], [`Pca9685`]: where it is written |
 
 mod actuator;
+mod authority;
 mod channel;
 mod pca9685;
 mod pwm;
 mod thread;
 
 pub use actuator::ServoActuator;
+pub use authority::{ReleasePulses, ServoAuthority, ServoControl};
 pub use channel::{Drives, ServoChannel, ServoError};
 pub use pca9685::{Pca9685, Pca9685Settings};
 pub use pwm::{PwmOutput, SysfsPwm};

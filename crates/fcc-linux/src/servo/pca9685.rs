@@ -72,14 +72,28 @@ impl Pca9685<I2cdev> {
     /// See [`open`](Self::open), and when there is no such bus.
     pub fn open_at(bus: &Path, settings: Pca9685Settings) -> Result<Self, DeviceError> {
         let claim = claim(bus, settings.address.into())?;
-        let opened = I2cdev::new(bus).map_err(|error| DeviceError::Open {
-            device: bus.display().to_string(),
-            source: io::Error::from(error),
-        });
-        let mut this = Self::open(opened?, settings)?;
+        let mut this = Self::open(open(bus)?, settings)?;
         this.claim = Some(claim);
         Ok(this)
     }
+
+    /// Opens the bus of a chip that another process has set up.
+    ///
+    /// # Errors
+    /// See [`of_another_process`](Self::of_another_process).
+    pub fn of_another_process_at(
+        bus: &Path,
+        settings: Pca9685Settings,
+    ) -> Result<Self, DeviceError> {
+        Self::of_another_process(open(bus)?, settings)
+    }
+}
+
+fn open(bus: &Path) -> Result<I2cdev, DeviceError> {
+    I2cdev::new(bus).map_err(|error| DeviceError::Open {
+        device: bus.display().to_string(),
+        source: io::Error::from(error),
+    })
 }
 
 /// round(oscillator / (4096 x rate)) - 1, 3 at least (7.3.5, equation 1).
@@ -94,21 +108,38 @@ impl<B: I2c<Error: BusError>> Pca9685<B> {
     /// # Errors
     /// When nothing answers, or an output is none.
     pub fn open(bus: B, settings: Pca9685Settings) -> Result<Self, DeviceError> {
+        let mut this = Self::checked(bus, settings)?;
+        this.set_up()?;
+        Ok(this)
+    }
+
+    /// A chip that another process has set up, whose pulses go on until others are
+    /// written; it is set up if it has lost that.
+    ///
+    /// # Errors
+    /// See [`open`](Self::open).
+    pub fn of_another_process(bus: B, settings: Pca9685Settings) -> Result<Self, DeviceError> {
+        let mut this = Self::checked(bus, settings)?;
+        if !this.is_set_up()? {
+            this.set_up()?;
+        }
+        Ok(this)
+    }
+
+    fn checked(bus: B, settings: Pca9685Settings) -> Result<Self, DeviceError> {
         if let Some(output) = settings.outputs.iter().find(|output| **output >= OUTPUTS) {
             return Err(DeviceError::Refused {
                 device: settings.device,
                 what: format!("it has no output {output}: choose 0 to 15"),
             });
         }
-        let mut this = Self {
+        Ok(Self {
             bus,
             prescale: prescale(settings.oscillator_hz, settings.rate_hz),
             settings,
             checked: Instant::now(),
             claim: None,
-        };
-        this.set_up()?;
-        Ok(this)
+        })
     }
 
     /// The rate can be set only while it sleeps.
@@ -143,17 +174,21 @@ impl<B: I2c<Error: BusError>> Pca9685<B> {
             return Ok(());
         }
         self.checked = Instant::now();
-        let mut mode = [0];
-        let address = self.settings.address;
-        let read = self.bus.write_read(address, &[MODE1], &mut mode);
-        read.map_err(|error| self.error("reading MODE1", error))?;
-        if mode == [AUTO_INCREMENT] {
+        if self.is_set_up()? {
             return Ok(());
         }
         Err(DeviceError::Refused {
             device: self.settings.device.clone(),
             what: "it has lost its settings: check the power of the chip (VCC)".into(),
         })
+    }
+
+    fn is_set_up(&mut self) -> Result<bool, DeviceError> {
+        let mut mode = [0];
+        let address = self.settings.address;
+        let read = self.bus.write_read(address, &[MODE1], &mut mode);
+        read.map_err(|error| self.error("reading MODE1", error))?;
+        Ok(mode == [AUTO_INCREMENT])
     }
 
     fn send(&mut self, bytes: &[u8]) -> Result<(), DeviceError> {

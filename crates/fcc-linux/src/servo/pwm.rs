@@ -46,6 +46,8 @@ struct Output {
     duty_ns: Option<u64>,
     /// That no other daemon drives it.
     claim: Option<File>,
+    /// Whether this was written here.
+    is_known: bool,
 }
 
 impl SysfsPwm {
@@ -59,6 +61,22 @@ impl SysfsPwm {
         let open = |output: &PwmOutput| Output::open(output, period_ns);
         let outputs = outputs.iter().map(open).collect::<Result<_, _>>()?;
         Ok(Self { outputs })
+    }
+}
+
+impl SysfsPwm {
+    /// Outputs that another process has set up, which go on until a pulse is
+    /// written.
+    pub fn of_another_process(outputs: &[PwmOutput]) -> Self {
+        let outputs = outputs.iter().map(|output| Output {
+            folder: output.folder(),
+            duty_ns: None,
+            is_known: false,
+            claim: None,
+        });
+        Self {
+            outputs: outputs.collect(),
+        }
     }
 }
 
@@ -77,6 +95,7 @@ impl Output {
             folder,
             duty_ns: None,
             claim: None,
+            is_known: true,
         };
         let mut waited = Duration::ZERO;
         while let Err(error) = this.set_up(period_ns) {
@@ -115,17 +134,17 @@ impl Output {
 
     fn set(&mut self, pulse_us: Option<f64>) -> io::Result<()> {
         let duty_ns = pulse_us.map(|us| (us * 1e3).round() as u64);
-        if duty_ns == self.duty_ns {
+        if self.is_known && duty_ns == self.duty_ns {
             return Ok(());
         }
         if let Some(duty_ns) = duty_ns {
             write(&self.folder.join("duty_cycle"), &duty_ns.to_string())?;
         }
-        if duty_ns.is_some() != self.duty_ns.is_some() {
+        if !self.is_known || duty_ns.is_some() != self.duty_ns.is_some() {
             let enable = if duty_ns.is_some() { "1" } else { "0" };
             write(&self.folder.join("enable"), enable)?;
         }
-        self.duty_ns = duty_ns;
+        (self.duty_ns, self.is_known) = (duty_ns, true);
         Ok(())
     }
 

@@ -1,13 +1,14 @@
 //! The thread that writes a servo's pulses.
 
-use core::sync::atomic::{AtomicBool, AtomicI32, AtomicU64, Ordering};
+use core::sync::atomic::{AtomicBool, AtomicI32, AtomicU8, AtomicU64, Ordering};
 use core::time::Duration;
 use std::io;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::thread;
 use std::time::Instant;
 
 use fcc_core::flight::Surfaces;
+use fcc_core::framework::{PlantId, TakeoverNotice};
 use rtrb::{Consumer, RingBuffer};
 
 use super::{Drives, ServoActuator, ServoChannel};
@@ -83,6 +84,15 @@ impl ServoSettings {
             heartbeat_every: Duration::from_millis(20),
         }
     }
+
+    /// The pulses while nobody has control, µs.
+    pub fn released_pulses(&self) -> Vec<Option<f64>> {
+        let pulse = |channel: &ServoChannel| match self.released {
+            Released::Failsafe => Some(channel.pulse_us(channel.failsafe)),
+            Released::Off => None,
+        };
+        self.channels.iter().map(pulse).collect()
+    }
 }
 
 /// What the loop wants.
@@ -101,7 +111,26 @@ pub(super) struct Shared {
     pub(super) given: AtomicU64,
     pub(super) taken: AtomicU64,
     pub(super) end: AtomicBool,
+    /// Whether the loop wants control, and whether pulses of its outputs were, or
+    /// are being, written since the last release.
+    pub(super) is_wanted: AtomicBool,
+    pub(super) is_driven: AtomicBool,
+    /// [`PERMITTED`] or [`PERMITTED_AFTER_CHECK`].
+    pub(super) permission: AtomicU8,
+    /// Is told before control is taken.
+    pub(super) notice: OnceLock<(&'static dyn TakeoverNotice, PlantId)>,
 }
+
+impl Shared {
+    /// Whether the loop has control, or its last pulses may still be there.
+    pub(super) fn is_held(&self) -> bool {
+        self.is_wanted.load(Ordering::SeqCst) || self.is_driven.load(Ordering::SeqCst)
+    }
+}
+
+pub(super) const PERMITTED: u8 = 0;
+/// Not yet.
+pub(super) const PERMITTED_AFTER_CHECK: u8 = 1;
 
 pub(super) const CONNECTED: i32 = 0;
 pub(super) const NOT_OPEN: i32 = -1;
@@ -152,6 +181,10 @@ impl ServoThread {
             given: AtomicU64::new(0),
             taken: AtomicU64::new(0),
             end: AtomicBool::new(false),
+            is_wanted: AtomicBool::new(false),
+            is_driven: AtomicBool::new(false),
+            permission: AtomicU8::new(PERMITTED),
+            notice: OnceLock::new(),
         });
         let writer = Writer {
             wanted: Wanted::Released,
@@ -220,6 +253,9 @@ impl<O: FnMut() -> Result<ServoBus, DeviceError>> Writer<O> {
             }
             let written = self.open_and_write(taken > 0);
             self.report(written.as_ref().err());
+            if written.is_ok() && self.bus.is_some() && matches!(self.wanted, Wanted::Released) {
+                self.shared.is_driven.store(false, Ordering::SeqCst);
+            }
             self.shared.taken.fetch_add(taken, Ordering::Release);
             if is_ending {
                 return;
@@ -233,7 +269,10 @@ impl<O: FnMut() -> Result<ServoBus, DeviceError>> Writer<O> {
         let mut taken = 0;
         while let Ok(order) = self.orders.pop() {
             self.wanted = match order {
-                Order::Apply(surfaces) => Wanted::Followed(surfaces),
+                Order::Apply(surfaces) => {
+                    self.shared.is_driven.store(true, Ordering::SeqCst);
+                    Wanted::Followed(surfaces)
+                }
                 Order::Release => Wanted::Released,
             };
             self.heard = Instant::now();

@@ -74,6 +74,38 @@ fn an_icm42688_gives_the_mean_of_its_fifo() {
     assert!((p.to_degrees() - 20.0).abs() < 1e-9 && q == 0.0 && r == 0.0);
 }
 
+/// The time stamp of a packet, its last two bytes.
+fn stamped(mut packet: [u8; 16], stamp: u16) -> [u8; 16] {
+    packet[14..].copy_from_slice(&stamp.to_be_bytes());
+    packet
+}
+
+/// At 1 kHz the stamps are 937.5 apart: 30/32 of 1,000 (DS-000347, "FIFO timestamp
+/// interval scaling"). They overflow at 65,536.
+#[test]
+fn the_stamps_of_an_icm42688_are_its_own_clock() {
+    let board = icm42688();
+    let mut chip = Icm42688::new(board.spi(0), &mut NoDelay).unwrap();
+    let at = |number: u32| {
+        let stamp = (65_000.0 + 937.5 * f64::from(number)) as u32 as u16;
+        stamped(packet([0, 0, 2_048], [0; 3]), stamp)
+    };
+    let mut times = Vec::new();
+    for first in [0, 4, 8] {
+        fill(&board, &[0, 1, 2, 3].map(|after| at(first + after)));
+        times.push(measured(&mut chip).stamp.unwrap().as_secs_f64());
+    }
+    // The mean of 0, 1, 2 and 3 ms, and of those after them, to a count.
+    for (time_s, expected_s) in times.into_iter().zip([0.0015, 0.0055, 0.0095]) {
+        assert!((time_s - expected_s).abs() < 2e-6, "{time_s} s");
+    }
+    // Of an external synchronization: header bits 3 and 2 are 11.
+    let mut other = at(12);
+    other[0] = 0x6C;
+    fill(&board, &[other]);
+    assert_eq!(measured(&mut chip).stamp, None);
+}
+
 #[test]
 fn a_fifo_that_overflowed_or_is_out_of_step_is_emptied() {
     let board = icm42688();

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use embedded_hal::i2c::{ErrorType, I2c, Operation};
 use fcc_linux::chip::{ChipKind, Wiring};
-use fcc_linux::probe::{Found, chips};
+use fcc_linux::probe::{Found, chips, spi_chip};
 use nix::errno::Errno;
 
-use crate::board::Fault;
+use crate::board::{Board, Fault};
 
 /// A bus with chips: what each sends after what was written to it.
 #[derive(Default)]
@@ -103,4 +103,30 @@ fn nothing_is_changed_in_a_chip_with_registers() {
     }
     assert_eq!(found(&mut bus), []);
     assert!(bus.written.len() >= 7 && bus.written.iter().all(|bytes| bytes.len() == 1));
+}
+
+/// `WHO_AM_I` of an ICM-42688-P and of an MPU-9250, the number of a BMP390, and what
+/// a line without a chip shows.
+#[test]
+fn a_chip_on_spi_is_recognized_by_its_number() {
+    let path = Path::new("/dev/spidev0.0");
+    for (registers, expected) in [
+        ([(0x75, 0x47)], Some(ChipKind::Icm42688)),
+        ([(0x75, 0x71)], Some(ChipKind::Mpu6050)),
+        ([(0x00, 0x60)], Some(ChipKind::Bmp388)),
+        ([(0x75, 0xFF)], None),
+        ([(0x75, 0x00)], None),
+    ] {
+        let mut board = Board::with(&registers);
+        let found = spi_chip(&mut board, path).map(|found| match found {
+            Found::Chip {
+                kind,
+                wiring: Wiring::Spi { path: at },
+                is_certain: true,
+            } if at == path => kind,
+            other => panic!("{other:?}"),
+        });
+        assert_eq!(found, expected, "{registers:x?}");
+        assert_eq!(board.state().written, [] as [Vec<u8>; 0]);
+    }
 }

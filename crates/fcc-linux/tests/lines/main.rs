@@ -1,14 +1,17 @@
-//! The requirements of a sensor, for receivers on lines that are pulled out and
-//! put back: pseudo-terminals of the kernel.
+//! The requirements of a sensor, for receivers that are pulled out and put back: on
+//! lines, which are pseudo-terminals of the kernel, and by gpsd.
 #![allow(
+    clippy::expect_used,
     clippy::indexing_slicing,
     clippy::panic,
     clippy::unwrap_used,
     reason = "helper functions of tests"
 )]
 
+mod gpsd;
 mod pty;
 mod speaking;
+mod watched;
 
 use fcc_conformance::{SensorBench, VanishingSource, sensor_conformance};
 use fcc_core::flight::{GnssFix, Measurements};
@@ -86,7 +89,7 @@ macro_rules! bench {
             }
 
             fn sensor(&mut self) -> &mut dyn Sensor<Measurements> {
-                &mut self.0.sensor
+                &mut self.0.watched.sensor
             }
 
             fn provide(&mut self) {

@@ -4,53 +4,20 @@ use std::fs::{self, File};
 use std::io::Write;
 use std::os::unix::fs::symlink;
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicI64, Ordering};
-use std::sync::mpsc::{self, Receiver, Sender};
-use std::time::Duration;
 
-use fcc_conformance::Ticks;
-use fcc_core::framework::Time;
-use fcc_linux::{DeviceError, DeviceSensor, DeviceThread, Measured, Sample, Source};
+use fcc_linux::{DeviceError, Measured, Source};
 use nix::pty::openpty;
 use nix::unistd::ttyname;
 use tempfile::TempDir;
 
-/// No test waits as long as this, unless something is wrong.
-const AT_MOST: Duration = Duration::from_secs(20);
+use crate::watched::{Clock, Watched};
 
-/// A source, and when it has handed over what it read.
-struct Watched<S> {
-    source: S,
-    has_given: bool,
-    handed_over: Sender<()>,
-}
-
-impl<S: Source> Source for Watched<S> {
-    type Value = S::Value;
-
-    fn read(&mut self) -> Result<Option<Sample<S::Value>>, DeviceError> {
-        if self.has_given {
-            let _ = self.handed_over.send(());
-        }
-        let read = self.source.read();
-        self.has_given = matches!(read, Ok(Some(_)));
-        read
-    }
-}
-
-/// A line, and the sensor that reads it. The clock is that of the test's ticks.
+/// A line, and the sensor that reads it.
 pub(crate) struct Line<V> {
-    pub(crate) sensor: DeviceSensor<V>,
+    pub(crate) watched: Watched<V>,
     device: Option<File>,
     folder: TempDir,
-    handed_over: Receiver<()>,
-    clock: Arc<AtomicI64>,
-    now: Ticks,
 }
-
-/// The device's clock.
-pub(crate) type Clock = Box<dyn Fn() -> Time + Send>;
 
 impl<V: Measured> Line<V> {
     pub(crate) fn new<S: Source<Value = V> + 'static>(
@@ -58,30 +25,10 @@ impl<V: Measured> Line<V> {
     ) -> Self {
         let folder = TempDir::new().unwrap();
         let path = folder.path().join("line");
-        let (handing_over, handed_over) = mpsc::channel();
-        let clock = Arc::new(AtomicI64::new(0));
-        let shown = Arc::clone(&clock);
-        let opens = move || {
-            let shown = Arc::clone(&shown);
-            let clock = move || Time::from_nanos(shown.load(Ordering::Relaxed));
-            Ok(Watched {
-                source: open(path.clone(), Box::new(clock))?,
-                has_given: true,
-                handed_over: handing_over.clone(),
-            })
-        };
-        let pause = Duration::from_millis(1);
-        let sensor = DeviceThread::new("line")
-            .pauses(pause, pause)
-            .start(opens)
-            .unwrap();
         let mut line = Self {
-            sensor,
+            watched: Watched::new(move |clock| open(path.clone(), clock)),
             device: None,
             folder,
-            handed_over,
-            clock,
-            now: Ticks::default(),
         };
         line.plug_in();
         line
@@ -94,7 +41,7 @@ impl<V: Measured> Line<V> {
         let _ = fs::remove_file(&path);
         symlink(ttyname(&pair.slave).unwrap(), path).unwrap();
         self.device = Some(pair.master.into());
-        self.handed_over.recv_timeout(AT_MOST).unwrap();
+        self.watched.settle();
     }
 
     /// The line is gone.
@@ -105,11 +52,10 @@ impl<V: Measured> Line<V> {
     /// The device sends, a moment before the next tick; it has been read then, if
     /// it is there.
     pub(crate) fn send(&mut self, bytes: &[u8]) {
-        let taken = self.now.next_tick().woke - Duration::from_millis(1);
-        self.clock.store(taken.as_nanos(), Ordering::Relaxed);
+        self.watched.next();
         if let Some(device) = &mut self.device {
             device.write_all(bytes).unwrap();
-            self.handed_over.recv_timeout(AT_MOST).unwrap();
+            self.watched.settle();
         }
     }
 }

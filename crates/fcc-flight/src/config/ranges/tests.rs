@@ -43,16 +43,25 @@ fn every_number_has_a_range() {
 /// The same for the sensors of a board.
 #[test]
 fn every_number_of_a_sensor_has_a_range() {
-    for kind in ["iio"].into_iter().chain(ChipKind::ALL.map(ChipKind::key)) {
-        let of_pitot = match kind {
-            "ms4525do" => "range_psi = 1\n",
-            "iio" => "device = \"mpu6050\"\n",
-            _ => "",
+    let lines = ["gnss-serial", "gpsd", "rc-receiver", "gpio-switch"];
+    for kind in ["iio"]
+        .into_iter()
+        .chain(ChipKind::ALL.map(ChipKind::key))
+        .chain(lines)
+    {
+        let keys = match kind {
+            "ms4525do" => "rate_hz = 20\nrange_psi = 1\n",
+            "iio" => "rate_hz = 20\ndevice = \"mpu6050\"\n",
+            "gnss-serial" | "rc-receiver" => "path = \"/dev/ttyS0\"\n",
+            "gpsd" => "",
+            "gpio-switch" => "line = 17\n",
+            _ => "rate_hz = 20\n",
         };
-        let text = format!(
-            "actuator = []\n[[sensor]]\nkind = \"{kind}\"\n{of_pitot}rate_hz = 20\n\
-             [sensor.calibration.gnss]\ndelay_ms = 1\n"
-        );
+        let calibration = match kind {
+            "rc-receiver" | "gpio-switch" => "",
+            _ => "[sensor.calibration.gnss]\ndelay_ms = 1\n",
+        };
+        let text = format!("[built-in]\n[[sensor]]\nkind = \"{kind}\"\n{keys}{calibration}");
         let config = Config::parse(&text, "test").unwrap();
         let mut missing = Vec::new();
         walk(

@@ -71,6 +71,19 @@ fn an_error_of_a_line_is_reported_with_its_line_and_what_to_do() {
             "test:5: sensor[0].baud: is 10: choose 1200 to 4000000",
         ),
         (
+            "\"gpsd\"\naddress = \"localhost\"\n",
+            "test:4: sensor[0].address: is no address: give host and port, such as \
+             \"localhost:2947\"",
+        ),
+        (
+            "\"gpio-switch\"\n",
+            "test:2: sensor[0].line: is missing: give the line's number, `gpioinfo` lists them",
+        ),
+        (
+            "\"gpio-switch\"\nline = 17\ndebounce_ms = 300\n",
+            "test:5: sensor[0].debounce_ms: is 300: choose 0 to 200",
+        ),
+        (
             "\"rc-receiver\"\npath = \"/dev/ttyS0\"\nswitch_channel = 0\n",
             "test:5: sensor[0].switch_channel: is 0: choose 1 to 16, or -1 to -16",
         ),
@@ -109,8 +122,11 @@ fn a_negative_channel_is_reversed_and_without_one_no_stick_is_read() {
 #[test]
 fn servos_and_lines_are_restored_unchanged() {
     let text = "[built-in]\n[[sensor]]\nkind = \"gnss-serial\"\npath = \"/dev/ttyS0\"\n\
+                [[sensor]]\nkind = \"gpsd\"\ndevice = \"/dev/ttyACM0\"\n\
                 [[sensor]]\nkind = \"rc-receiver\"\npath = \"/dev/ttyS1\"\nprotocol = \"crsf\"\n\
+                [[sensor]]\nkind = \"gpio-switch\"\nline = 17\npull = \"none\"\n\
                 [[actuator]]\nkind = \"servos\"\npca9685 = \"/dev/i2c-1\"\n\
+                [actuator.heartbeat]\nline = 22\n\
                 [[actuator.channel]]\ndrives = \"aileron\"\noutput = 3\nslew_per_s = 2.5\n";
     let written = Config::parse(text, "test").unwrap().to_toml().unwrap();
     let again = Config::parse(&written, "again").unwrap();

@@ -1,5 +1,8 @@
 //! What is connected to a board.
 
+mod live;
+mod spi;
+
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -9,6 +12,8 @@ use nix::errno::Errno;
 
 use crate::chip::{BusError, ChipKind, Wiring, sdp3x};
 use crate::iio::{Channels, Quantity, Roots};
+
+pub use spi::{spi, spi_chip};
 
 /// Something that was found.
 #[derive(Clone, PartialEq, Debug)]
@@ -80,11 +85,11 @@ impl Found {
 /// Looks at the kernel's devices and at all I²C buses.
 ///
 /// Chips that have a number are asked for it, and nothing is written to a chip
-/// but which register is read. An SPI bus cannot be searched: without an address
-/// every chip there would have to be guessed.
+/// but which register is read. What is on SPI is found by [`spi`], and not here:
+/// a chip there has no address, so another one may misunderstand a question.
 pub fn probe(roots: &Roots) -> Vec<Found> {
     let mut found = devices(roots);
-    for path in buses(&roots.dev) {
+    for path in numbered(&roots.dev, "i2c-") {
         match I2cdev::new(&path) {
             Ok(mut bus) => found.extend(chips(&mut bus, &path)),
             Err(error) => {
@@ -119,15 +124,17 @@ pub fn devices(roots: &Roots) -> Vec<Found> {
     measuring.collect()
 }
 
-/// The I²C buses, in the order of their numbers.
-fn buses(dev: &Path) -> Vec<PathBuf> {
+/// Devices with this name and a number, in the order of their numbers.
+fn numbered(dev: &Path, prefix: &str) -> Vec<PathBuf> {
     let entries = dev.read_dir().into_iter().flatten().flatten();
     let numbered = entries.filter_map(|entry| {
         let name = entry.file_name().into_string().ok()?;
-        let number: u32 = name.strip_prefix("i2c-")?.parse().ok()?;
-        Some((number, entry.path()))
+        // Of SPI those of the bus and of the chip select.
+        let numbers = name.strip_prefix(prefix)?.split('.');
+        let numbers: Vec<u32> = numbers.map(|one| one.parse().ok()).collect::<Option<_>>()?;
+        Some((numbers, entry.path()))
     });
-    let mut all: Vec<(u32, PathBuf)> = numbered.collect();
+    let mut all: Vec<(Vec<u32>, PathBuf)> = numbered.collect();
     all.sort();
     all.into_iter().map(|(_, path)| path).collect()
 }

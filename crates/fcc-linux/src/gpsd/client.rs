@@ -1,0 +1,170 @@
+//! gpsd as a source of fixes.
+
+use core::fmt;
+use core::time::Duration;
+use std::io::{self, ErrorKind, Read, Write};
+use std::net::{TcpStream, ToSocketAddrs};
+use std::time::Instant;
+
+use fcc_core::flight::GnssFix;
+use fcc_core::framework::Time;
+use nix::errno::Errno;
+
+use super::{Lines, Report};
+use crate::{DeviceError, Sample, Source, WAIT};
+
+const CONNECTED_WITHIN: Duration = Duration::from_secs(1);
+/// With a receiver gpsd reports every second, even without a fix. A connection
+/// that is cut without a word is noticed by this, too.
+const SILENT: Duration = Duration::from_secs(10);
+const PROTOCOL: u32 = 3;
+
+/// Where gpsd is, and which of its receivers is used.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct GpsdSettings {
+    /// Host and port, such as `localhost:2947`.
+    pub address: String,
+    /// The path by which gpsd knows the receiver, such as `/dev/ttyACM0`; all of
+    /// them without.
+    pub device: Option<String>,
+}
+
+/// A connection to gpsd: a [`Source`] of fixes.
+///
+/// A fix is taken when its line was read; a known delay is the calibration's.
+pub struct Gpsd {
+    stream: TcpStream,
+    settings: GpsdSettings,
+    clock: Box<dyn Fn() -> Time + Send>,
+    lines: Lines,
+    heard: Instant,
+}
+
+impl fmt::Debug for Gpsd {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Gpsd")
+            .field("settings", &self.settings)
+            .finish_non_exhaustive()
+    }
+}
+
+/// What gpsd is asked for: its reports, as JSON.
+const WATCH: &[u8] = b"?WATCH={\"enable\":true,\"json\":true};\n";
+
+impl Gpsd {
+    /// Connects, and asks for reports; `clock` is the loop's,
+    /// [`monotonic`](crate::monotonic).
+    ///
+    /// # Errors
+    /// When nothing listens there, or the host is unknown.
+    pub fn open(
+        settings: &GpsdSettings,
+        clock: impl Fn() -> Time + Send + 'static,
+    ) -> Result<Self, DeviceError> {
+        let opened = connect(&settings.address).and_then(|mut stream| {
+            stream.set_read_timeout(Some(WAIT))?;
+            stream.set_write_timeout(Some(CONNECTED_WITHIN))?;
+            stream.write_all(WATCH)?;
+            Ok(stream)
+        });
+        Ok(Self {
+            stream: opened.map_err(|source| DeviceError::Open {
+                device: name(settings),
+                source,
+            })?,
+            settings: settings.clone(),
+            clock: Box::new(clock),
+            lines: Lines::default(),
+            heard: Instant::now(),
+        })
+    }
+
+    /// The newest fix of what was received.
+    fn parse(&mut self, bytes: &[u8]) -> Result<Option<GnssFix>, DeviceError> {
+        let (mut newest, mut trouble) = (None, None);
+        let device = name(&self.settings);
+        let wanted = self.settings.device.as_ref();
+        let refused = |what: String| DeviceError::Refused {
+            device: device.clone(),
+            what,
+        };
+        self.lines.push(bytes, |line| match Report::read(line) {
+            Ok(Report::Fix { device, fix }) if wanted.is_none() || device.as_ref() == wanted => {
+                newest = fix.or(newest);
+            }
+            Ok(Report::Version { protocol }) if protocol != PROTOCOL => {
+                trouble = Some(refused(format!(
+                    "it speaks version {protocol} of its protocol, not {PROTOCOL}: install \
+                     another version of gpsd"
+                )));
+            }
+            Ok(Report::Error(message)) => {
+                trouble = Some(refused(format!("it reports: {}", message.escape_debug())));
+            }
+            Ok(_) => {}
+            Err(_) => {
+                trouble = Some(DeviceError::Malformed {
+                    device: device.clone(),
+                    what: "a line is not of gpsd's JSON: check that gpsd has this address",
+                });
+            }
+        });
+        match (newest, trouble) {
+            (None, Some(trouble)) => Err(trouble),
+            (newest, _) => Ok(newest),
+        }
+    }
+}
+
+/// By the first of the host's addresses that answers.
+fn connect(address: &str) -> io::Result<TcpStream> {
+    let mut failed = Errno::EADDRNOTAVAIL.into();
+    for address in address.to_socket_addrs()? {
+        match TcpStream::connect_timeout(&address, CONNECTED_WITHIN) {
+            Ok(stream) => return Ok(stream),
+            Err(error) => failed = error,
+        }
+    }
+    Err(failed)
+}
+
+fn name(settings: &GpsdSettings) -> String {
+    format!("gpsd at {}", settings.address)
+}
+
+impl Source for Gpsd {
+    type Value = GnssFix;
+
+    fn read(&mut self) -> Result<Option<Sample<GnssFix>>, DeviceError> {
+        let mut buffer = [0; 4_096];
+        let failed = |source| DeviceError::Io {
+            device: name(&self.settings),
+            doing: "reading",
+            source,
+        };
+        let length = match self.stream.read(&mut buffer) {
+            // It ended, or was ended.
+            Ok(0) => return Err(failed(Errno::ECONNRESET.into())),
+            Ok(length) => length,
+            Err(error) if is_nothing(&error) => 0,
+            Err(error) => return Err(failed(error)),
+        };
+        if length > 0 {
+            self.heard = Instant::now();
+        } else if self.heard.elapsed() > SILENT {
+            return Err(DeviceError::Refused {
+                device: name(&self.settings),
+                what: "it reports nothing: check that it has a receiver (`gpsmon` shows it)".into(),
+            });
+        }
+        let fix = self.parse(buffer.get(..length).unwrap_or_default())?;
+        Ok(fix.map(|fix| Sample::new((self.clock)(), fix)))
+    }
+}
+
+fn is_nothing(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
+    )
+}

@@ -1,0 +1,147 @@
+//! What a line of gpsd says.
+
+use fcc_core::flight::{GnssFix, Position, Velocity};
+use serde::Deserialize;
+
+use crate::serial::velocity_over_ground;
+
+/// What a line says, as far as it is used.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Report {
+    /// Time, position and velocity (`TPV`).
+    Fix {
+        /// The receiver's path, such as `/dev/ttyACM0`.
+        device: Option<String>,
+        /// Its fix; none if it has no three-dimensional one that it measured.
+        fix: Option<GnssFix>,
+    },
+    /// What gpsd says it is (`VERSION`).
+    Version {
+        /// The protocol's, 3.
+        protocol: u32,
+    },
+    /// It refuses what it was asked (`ERROR`).
+    Error(String),
+    /// Something else, such as satellites.
+    Other,
+}
+
+/// A line that gpsd does not write.
+#[derive(thiserror::Error, Clone, Copy, PartialEq, Eq, Debug)]
+#[error("this is no line of gpsd's JSON")]
+pub struct NotGpsd;
+
+/// The classes and members that are used, by their names in `gpsd_json(5)`.
+#[derive(Deserialize)]
+#[serde(tag = "class")]
+enum Object {
+    #[serde(rename = "TPV")]
+    Tpv(Box<Tpv>),
+    #[serde(rename = "VERSION")]
+    Version { proto_major: u32 },
+    #[serde(rename = "ERROR")]
+    Error { message: String },
+    #[serde(other)]
+    Other,
+}
+
+/// Degrees, metres, m/s. What is not known is missing.
+#[derive(Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+#[derive(Default)]
+struct Tpv {
+    device: Option<String>,
+    /// 0 and 1 none, 2 two-dimensional, 3 three-dimensional.
+    mode: u8,
+    /// 5 dead reckoning, 8 simulated; missing for a usual fix.
+    status: Option<u8>,
+    lat: Option<f64>,
+    lon: Option<f64>,
+    /// Above mean sea level.
+    #[serde(rename = "altMSL")]
+    alt_msl: Option<f64>,
+    /// The same before gpsd 3.20.
+    alt: Option<f64>,
+    vel_n: Option<f64>,
+    vel_e: Option<f64>,
+    vel_d: Option<f64>,
+    /// Over the ground, with the direction from true north.
+    speed: Option<f64>,
+    track: Option<f64>,
+    climb: Option<f64>,
+    /// Estimated errors: horizontal, of longitude and latitude, vertical, of the
+    /// speed.
+    eph: Option<f64>,
+    epx: Option<f64>,
+    epy: Option<f64>,
+    epv: Option<f64>,
+    eps: Option<f64>,
+}
+
+const THREE_DIMENSIONAL: u8 = 3;
+const DEAD_RECKONING: u8 = 5;
+const SIMULATED: u8 = 8;
+
+impl Report {
+    /// Reads a line.
+    ///
+    /// # Errors
+    /// When it is not JSON, has no class, or a member of another type.
+    pub fn read(line: &[u8]) -> Result<Self, NotGpsd> {
+        Ok(match serde_json::from_slice(line).map_err(|_| NotGpsd)? {
+            Object::Tpv(tpv) => Self::Fix {
+                fix: tpv.fix(),
+                device: tpv.device,
+            },
+            Object::Version { proto_major } => Self::Version {
+                protocol: proto_major,
+            },
+            Object::Error { message } => Self::Error(message),
+            Object::Other => Self::Other,
+        })
+    }
+}
+
+impl Tpv {
+    fn fix(&self) -> Option<GnssFix> {
+        let is_measured = self.mode == THREE_DIMENSIONAL
+            && !matches!(self.status, Some(DEAD_RECKONING | SIMULATED));
+        let within = |angle: Option<f64>, most: f64| angle.filter(|angle| angle.abs() <= most);
+        let position = Position {
+            latitude_rad: within(self.lat, 90.0)?.to_radians(),
+            longitude_rad: within(self.lon, 180.0)?.to_radians(),
+            altitude_m: self.alt_msl.or(self.alt)?,
+        };
+        let across = self.epx.zip(self.epy).map(|(x, y)| x.max(y));
+        is_measured.then_some(GnssFix {
+            position,
+            velocity: self.velocity()?,
+            horizontal_accuracy_m: error(self.eph.or(across)),
+            vertical_accuracy_m: error(self.epv),
+            speed_accuracy_mps: error(self.eps),
+        })
+    }
+
+    fn velocity(&self) -> Option<Velocity> {
+        if let (Some(north_mps), Some(east_mps), Some(down_mps)) =
+            (self.vel_n, self.vel_e, self.vel_d)
+        {
+            return Some(Velocity {
+                north_mps,
+                east_mps,
+                down_mps,
+            });
+        }
+        let [north_mps, east_mps] = velocity_over_ground(self.speed?, self.track)?;
+        Some(Velocity {
+            north_mps,
+            east_mps,
+            down_mps: -self.climb?,
+        })
+    }
+}
+
+/// 0 if it is not known.
+fn error(estimated: Option<f64>) -> f64 {
+    estimated.filter(|error| *error >= 0.0).unwrap_or(0.0)
+}
