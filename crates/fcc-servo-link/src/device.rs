@@ -160,6 +160,10 @@ impl<P: Port> Sensor<Measurements> for ServoBoardSensor<P> {
     reason = "a method that is not passed on would have its default"
 )]
 impl<P: Port> Actuator<Surfaces> for ServoBoardActuator<P> {
+    fn ready(&self) -> Result<(), ActuatorFault> {
+        self.0.ready()
+    }
+
     fn apply(&mut self, tick: &Tick, outputs: &Surfaces) -> Result<(), ActuatorFault> {
         self.0.apply(tick, outputs)
     }

@@ -6,6 +6,10 @@ use super::{
     Cause, Controller, EventKind, Flags, LoopCommand, Readings, SourceChange, Stage, State,
 };
 
+/// Without a condition of the controller.
+const NOT_ENGAGED: &str = "not engaged: control was released at the same time, ticks overrun, or \
+                           an actuator is not ready";
+
 impl<O: Copy> EventKind<O> {
     /// The event as text for users, with its conditions and commands named by
     /// the controller.
@@ -42,11 +46,9 @@ impl<C: Controller> fmt::Display for EventDescription<C> {
                 C::write_command(&command, f)
             }
             EventKind::StopRequested => f.write_str("stop requested"),
-            EventKind::EngageRefused { engage_inhibits } if engage_inhibits.is_empty() => f
-                .write_str(
-                    "not engaged: control was released at the same time, ticks overrun, or an \
-                     actuator is not ready",
-                ),
+            EventKind::EngageRefused { engage_inhibits } if engage_inhibits.is_empty() => {
+                f.write_str(NOT_ENGAGED)
+            }
             EventKind::EngageRefused { engage_inhibits } => {
                 f.write_str("not engaged: ")?;
                 name_flags::<C>(f, engage_inhibits)
