@@ -12,6 +12,7 @@ use crate::controls::Controls;
 use crate::open::{OpenError, XPlane, bind, local_ports};
 use crate::port_watch::{ClosedPort, MOST_PORTS};
 use crate::probe::Probe;
+use crate::program::Program;
 use crate::protocol::rref;
 use crate::quantity::{OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES};
 use crate::source_filter;
@@ -27,6 +28,9 @@ const CLEAR_FOR: Duration = Duration::from_millis(500);
 const LISTEN_FOR: Duration = Duration::from_millis(20);
 /// After this many refusals in a row the simulator counts as unreachable.
 const REFUSALS: u32 = 4;
+/// A simulator of another user, whose process cannot be looked at, has ended after its
+/// port was closed for so long.
+const ENDED_AFTER: Duration = Duration::from_secs(3);
 /// The rate at which the readback is requested, Hz.
 const READ_BACK_HZ: u16 = 20;
 /// The indices of the readback, distinct from those of a sensor's
@@ -41,6 +45,8 @@ pub(crate) struct Expected {
     pub(crate) port: Option<u16>,
     /// Whose socket that is, of a simulator on this machine.
     pub(crate) user: Option<u32>,
+    /// The program that listened at the simulator's port, if it is known.
+    pub(crate) program: Option<Program>,
 }
 
 impl XPlane {
@@ -116,6 +122,8 @@ struct Conversation {
     /// Asks whether the expected port is closed, of another machine's.
     closed: Option<ClosedPort>,
     has_answered: bool,
+    /// Since when no program has the simulator's port.
+    closed_since: Option<Instant>,
 }
 
 impl Conversation {
@@ -163,6 +171,7 @@ impl Conversation {
             sockets: is_of_this_machine(simulator).then(|| UdpSockets::sending_from(ip)),
             closed: asked.and_then(ClosedPort::of),
             has_answered: false,
+            closed_since: None,
         })
     }
 
@@ -245,15 +254,25 @@ impl Conversation {
         self.listening.as_ref().is_some_and(Probe::is_refused)
     }
 
-    /// Whether no program has the simulator's port, as this machine knows of its
-    /// own. Of another one it is not known: a firewall that rejects what it does
-    /// not let through reports the same.
+    /// Whether the simulator has ended: no program has its port, as this machine
+    /// knows of its own, and the one that had it is gone; if that is not known, after
+    /// a while. Of another machine it is not known: a firewall that rejects what it
+    /// does not let through reports the same.
     fn has_ended(&mut self) -> bool {
         let port = self.simulator.port();
-        self.sockets.as_mut().is_some_and(|sockets| {
+        let is_closed = self.sockets.as_mut().is_some_and(|sockets| {
             sockets.look();
             sockets.user_of(port).is_ok_and(|user| user.is_none())
-        })
+        });
+        if !is_closed {
+            self.closed_since = None;
+            return false;
+        }
+        let since = *self.closed_since.get_or_insert_with(Instant::now);
+        match self.expected.program {
+            Some(program) => program.has_ended(),
+            None => since.elapsed() >= ENDED_AFTER,
+        }
     }
 
     fn end(mut self) {
@@ -352,24 +371,44 @@ mod tests {
     use super::*;
 
     /// A firewall that rejects what it does not let through reports the same as a
-    /// machine on which no program has the port.
+    /// machine on which no program has the port; and a simulator or a relay that lives
+    /// may close its port for a while.
     #[test]
-    fn only_this_machine_knows_that_no_program_has_the_port() {
-        let closed = UdpSocket::bind("127.0.0.1:0")
-            .unwrap()
-            .local_addr()
+    fn only_this_machine_knows_that_the_program_at_the_port_has_ended() {
+        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+        let closed = socket.local_addr().unwrap();
+        let mut sockets = UdpSockets::sending_from(closed.ip());
+        sockets.look();
+        let alive = sockets.program_at(closed.port());
+        assert!(alive.is_some());
+        drop(socket);
+        let mut child = std::process::Command::new("sleep")
+            .arg("60")
+            .spawn()
             .unwrap();
+        let ended = Program::of(child.id());
+        assert!(ended.is_some());
+        child.kill().unwrap();
+        child.wait().unwrap();
         let config = XPlaneConfig::default();
-        for (is_here, expected) in [(true, Released::Unreachable), (false, Released::Refused)] {
-            let expecting = Expected::default();
+        for (is_here, program, expected) in [
+            (true, ended, Released::Unreachable),
+            (true, alive, Released::Refused),
+            (true, None, Released::Unreachable),
+            (false, ended, Released::Refused),
+        ] {
+            let expecting = Expected {
+                program,
+                ..Expected::default()
+            };
             let mut conversation = Conversation::open(&config, closed, expecting, None).unwrap();
             if !is_here {
                 conversation.sockets = None;
             }
             let mut controls = Controls::new(&config).unwrap();
-            let within = Duration::from_secs(2);
+            let within = Duration::from_secs(5);
             let released = retry_until_released(&mut conversation, &mut controls, within, || false);
-            assert_eq!(released, expected);
+            assert_eq!(released, expected, "{program:?}");
         }
     }
 }

@@ -7,6 +7,7 @@ use crate::config::XPlaneConfig;
 use crate::link::Control;
 use crate::missing::Missing;
 use crate::no_answer::{InWords, Why};
+use crate::program::Program;
 use crate::silence::Silence;
 use crate::simulator::SimulatorState;
 use crate::status::{Trouble, XPlaneStatus};
@@ -66,11 +67,13 @@ impl Default for Reported {
 }
 
 impl Reported {
-    /// A description of what has changed; none if there is nothing to report.
+    /// A description of what has changed; none if there is nothing to report. While
+    /// the `program` at the simulator's port lives, the simulator has not ended.
     pub(crate) fn change(
         &mut self,
         status: &XPlaneStatus,
         config: &XPlaneConfig,
+        program: Option<Program>,
     ) -> Option<String> {
         if let Some(text) = self.change_of_announced(status) {
             return Some(text);
@@ -83,7 +86,7 @@ impl Reported {
         }
         match self.trouble {
             Some((Trouble::Silent(simulator), since)) => {
-                self.cause_of_silence(status, config, simulator, since)
+                self.cause_of_silence(status, config, program, (simulator, since))
             }
             Some((trouble, since)) => {
                 let worth =
@@ -109,14 +112,15 @@ impl Reported {
         &mut self,
         status: &XPlaneStatus,
         config: &XPlaneConfig,
-        simulator: SocketAddr,
-        since: Instant,
+        program: Option<Program>,
+        (simulator, since): (SocketAddr, Instant),
     ) -> Option<String> {
         let silence = self
             .silence
             .get_or_insert_with(|| Silence::begin(config, status, simulator));
         let why = silence.look(status);
-        if why == Why::PortClosed && status.link().free_if_gone() {
+        let is_gone = program.is_none_or(|program| program.has_ended());
+        if why == Why::PortClosed && is_gone && status.link().free_if_gone() {
             // Nobody confirms this one.
             self.control = Control::Free;
             return Some(format!(

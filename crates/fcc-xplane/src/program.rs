@@ -1,0 +1,94 @@
+//! The program that has a port of this machine (proc(5)).
+//!
+//! A port that is closed is not the end of a simulator: it may open another one, or a
+//! relay before it may be started again, and its controls stay held. That the process
+//! is gone is.
+
+use std::fs;
+use std::path::Path;
+
+/// Of the fields of `/proc/PID/stat` after the name in parentheses: the state, and the
+/// time of the start in clock ticks (fields 3 and 22).
+const STATE: usize = 0;
+const STARTED: usize = 19;
+
+/// A process that has a socket. Its number may be given to another one later, which
+/// has another time of start.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) struct Program {
+    process: u32,
+    started: u64,
+}
+
+impl Program {
+    /// The process that has the socket with this inode; none if it belongs to another
+    /// user, whose descriptors only root may list. Not in a tick.
+    pub(crate) fn with_socket(inode: u64) -> Option<Self> {
+        let link = format!("socket:[{inode}]");
+        let processes = fs::read_dir("/proc").ok()?.flatten();
+        processes
+            .filter(|entry| has_open(&entry.path(), &link))
+            .find_map(|entry| Self::of(entry.file_name().to_str()?.parse().ok()?))
+    }
+
+    /// The process with this number.
+    pub(crate) fn of(process: u32) -> Option<Self> {
+        let started = started(process)?;
+        Some(Self { process, started })
+    }
+
+    /// Whether the process is gone, or only its exit code is still there.
+    pub(crate) fn has_ended(&self) -> bool {
+        started(self.process) != Some(self.started)
+    }
+}
+
+fn has_open(process: &Path, link: &str) -> bool {
+    let open = fs::read_dir(process.join("fd")).into_iter().flatten();
+    open.flatten()
+        .filter_map(|entry| fs::read_link(entry.path()).ok())
+        .any(|target| target.as_os_str() == link)
+}
+
+/// When a process was started, unless it has ended.
+fn started(process: u32) -> Option<u64> {
+    let stat = fs::read(format!("/proc/{process}/stat")).ok()?;
+    let stat = String::from_utf8_lossy(&stat);
+    // Its name may contain anything.
+    let (_, rest) = stat.rsplit_once(')')?;
+    let fields: Vec<&str> = rest.split_ascii_whitespace().collect();
+    let has_ended = matches!(*fields.get(STATE)?, "Z" | "X");
+    (!has_ended).then_some(fields.get(STARTED)?.parse().ok()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::UdpSocket;
+    use std::os::unix::fs::MetadataExt as _;
+    use std::process::Command;
+
+    use super::*;
+
+    #[test]
+    fn a_program_is_found_by_its_socket_and_ends_with_its_process() {
+        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+        let inode = |socket: &UdpSocket| {
+            let descriptor = std::os::fd::AsRawFd::as_raw_fd(socket);
+            fs::metadata(format!("/proc/self/fd/{descriptor}"))
+                .unwrap()
+                .ino()
+        };
+        let own = Program::with_socket(inode(&socket)).unwrap();
+        assert_eq!(own.process, std::process::id());
+        drop(socket);
+        assert!(!own.has_ended(), "a port that is closed is no end");
+
+        let mut child = Command::new("sleep").arg("60").spawn().unwrap();
+        let program = Program::of(child.id()).unwrap();
+        assert!(!program.has_ended());
+        child.kill().unwrap();
+        while !program.has_ended() {}
+        child.wait().unwrap();
+        assert!(program.has_ended());
+    }
+}
