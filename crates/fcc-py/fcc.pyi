@@ -956,6 +956,14 @@ class Machine:
     @property
     def setpoints(self) -> Setpoints: ...
     @property
+    def learned_airframe(self) -> dict[str, float] | None:
+        """What was learned of the aircraft: the keys of `[autopilot.airframe]`.
+
+        None before a minute with an airspeed sensor that is believed and a throttle that is
+        read back.
+        """
+
+    @property
     def estimate(self) -> Estimate: ...
     @property
     def tick(self) -> int: ...

@@ -219,6 +219,18 @@ def _add_raw(commands: Any) -> None:
         help="fly through a servo board, on a line that gets each bit wrong with this probability",
     )
     raw.add_argument(
+        "--learned",
+        type=ranges.file_to_write,
+        metavar="FILE",
+        help="write what was learned of the aircraft here, [autopilot.airframe] in TOML",
+    )
+    raw.add_argument(
+        "--airframe",
+        type=Path,
+        metavar="FILE",
+        help="fly without an airspeed sensor, by what --learned wrote here in another flight",
+    )
+    raw.add_argument(
         "--out",
         type=ranges.file_to_write,
         metavar="FILE",
@@ -235,6 +247,8 @@ def _raw(options: argparse.Namespace) -> int:
 
     line = None if options.board is None else raw_flight.BoardLine(options.board)
     try:
+        learned = options.airframe
+        airframe = None if learned is None else raw_flight.read_learned(learned)
         flight = raw_flight.fly(
             options.sensors,
             navigation=options.navigation,
@@ -242,8 +256,9 @@ def _raw(options: argparse.Namespace) -> int:
             seed=options.seed,
             turbulence=options.turbulence,
             board=line,
+            airframe=airframe,
         )
-    except FlightError as error:
+    except (FlightError, OSError, ValueError) as error:
         say(f"{error}", to=sys.stderr)
         return 1
     if line is not None:
@@ -265,6 +280,9 @@ def _raw(options: argparse.Namespace) -> int:
     if options.json is not None:
         figures = {"navigation": options.navigation, "errors": errors, **flight.score}
         options.json.write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
+    if options.learned is not None and flight.learned is not None:
+        raw_flight.write_learned(options.learned, flight.learned)
+        say(f"written to {options.learned}")
     if options.out is not None:
         raw_flight.save(options.out, arrays)
         say(f"written to {options.out}")

@@ -9,6 +9,8 @@ others. The arrays are for navigation to be judged on.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -16,6 +18,7 @@ import fcc
 import numpy as np
 import numpy.typing as npt
 
+from .configurations import value_of, with_values
 from .lockstep_board import BoardedLockstepRig, BoardLine
 from .lockstep_rig import Conditions, LockstepRig
 from .pattern import TimedPattern
@@ -27,17 +30,17 @@ from .score import Score, score
 from .standin import Settings
 from .units import FT_TO_M, KT_TO_MPS
 
-_LATITUDE_DEG = 45.0
+RAW_LATITUDE_DEG = 45.0
 """Where navigation has a horizontal field and a convergence of meridians."""
 
 _WIND = Weather(wind_from_deg=230.0, wind_kt=12.0)
 
 LIGHT_TURBULENCE = 3
 
-_STANDBY_S = 20.0
+RAW_STANDBY_S = 20.0
 """Level flight in which navigation settles."""
 
-_MEASURED = frozenset(
+MEASURED = frozenset(
     {"attitude", "heading", "body_rates", "specific_force", "airspeed", "altitude"}
 )
 """Readings of sensors that measure what control needs."""
@@ -78,10 +81,23 @@ _TRUTH = (
 )
 """The values of the state that are kept; the heading is true."""
 
+LEARNED = ("axial_offset", "full_thrust_ratio", "zero_lift_angle_deg", "one_g_angle_deg")
+"""What is learned of an aircraft: the keys of `[autopilot.airframe]`."""
+
 _ESTIMATE = ("roll_rad", "pitch_rad", "heading_rad", "altitude_m", "airspeed_mps")
 """The values of navigation's estimate that are kept."""
 
-__all__ = ["BoardLine", "RawFlight", "fly", "save"]
+__all__ = [
+    "MEASURED",
+    "RAW_LATITUDE_DEG",
+    "RAW_STANDBY_S",
+    "BoardLine",
+    "RawFlight",
+    "fly",
+    "read_learned",
+    "save",
+    "write_learned",
+]
 
 Arrays = dict[str, npt.NDArray[np.float64]]
 
@@ -92,6 +108,8 @@ class RawFlight:
 
     arrays: Arrays
     score: Score
+    learned: dict[str, float] | None
+    """What was learned of the aircraft: the keys of `[autopilot.airframe]`."""
 
     def errors(self) -> dict[str, float]:
         """Return the RMS errors of navigation while the pattern was flown."""
@@ -125,11 +143,13 @@ def fly(
     seed: int = 1,
     turbulence: int = LIGHT_TURBULENCE,
     board: BoardLine | None = None,
+    airframe: Mapping[str, float] | None = None,
 ) -> RawFlight:
     """Fly the timed pattern; return the raw readings, the truth and the estimate.
 
     `navigation` is `measured` for ideal sensors, or how attitude is computed from the raw ones:
     `kalman`, `thesis`. It is flown in 12 kt of wind, and turbulence of JSBSim's severity, 0 to 7.
+    With `airframe`, what another flight has learned (`RawFlight.learned`), there is no pitot tube.
     With `board` the pitot tube, the switch and the surfaces are a servo board's, at the other end
     of this line.
     Of each sensor there are `NAME_t_s`, when its readings arrived, `NAME_UNIT`, (n,) or (n, m),
@@ -139,17 +159,21 @@ def fly(
     """
     pattern = TimedPattern()
     weather = replace(_WIND, turbulence_severity=turbulence)
-    plant = Plant(aircraft, seed=seed, weather=weather, latitude_deg=_LATITUDE_DEG)
+    plant = Plant(aircraft, seed=seed, weather=weather, latitude_deg=RAW_LATITUDE_DEG)
     north, east, down = FIELD_UT
-    machine = fcc.Machine(
+    config = (
         '[guidance]\nmode = "timed-pattern"\n'
         f'[navigation]\nmethod = "{navigation}"\nmagnetic_field_ut = [{north}, {east}, {down}]\n'
     )
+    machine = fcc.Machine(with_values(config, _learned_keys(airframe or {})))
     by_raw = navigation != "measured"
+    without = MEASURED if by_raw else frozenset()
+    if airframe is not None:
+        without |= {"airspeed", "differential_pressure"}
     conditions = Conditions(
         raw_sensors=sensors,
         calibration=calibrate(sensors, seed, FIELD_UT) if by_raw else None,
-        without=_MEASURED if by_raw else frozenset(),
+        without=without,
     )
     settings = Settings(aircraft=aircraft, seed=seed)
     rig = (
@@ -166,7 +190,7 @@ def fly(
         estimate.append(tuple(getattr(found, name) for name in _ESTIMATE))
         return False
 
-    rig.fly_to(rig.time_s + _STANDBY_S, keep)
+    rig.fly_to(rig.time_s + RAW_STANDBY_S, keep)
     rig.set_switch(on=True)
     engaged_s = rig.time_s
     rig.fly_to(engaged_s + 1.0, keep)
@@ -191,7 +215,31 @@ def fly(
             arrays[f"{kind}_{name}"] = table[:, column]
     flown = rig.truth()
     captured = flown.captured_at(engaged_s)
-    return RawFlight(arrays, score(flown.trace(), pattern.legs(legs, engaged_s, captured)))
+    return RawFlight(
+        arrays,
+        score(flown.trace(), pattern.legs(legs, engaged_s, captured)),
+        machine.learned_airframe,
+    )
+
+
+def write_learned(path: Path, learned: Mapping[str, float]) -> None:
+    """Write what was learned, as it stands in a configuration file."""
+    path.write_text(with_values("", _learned_keys(learned)), encoding="utf-8")
+
+
+def read_learned(path: Path) -> dict[str, float]:
+    """Read what `write_learned` wrote. Raises OSError, and ValueError if it is something else."""
+    text = path.read_text(encoding="utf-8")
+    keys = _learned_keys(dict.fromkeys(LEARNED, 0.0))
+    found = {key: value_of(text, key, math.nan) for key in keys}
+    missing = [key for key, value in found.items() if math.isnan(value)]
+    if missing:
+        raise ValueError(f"{path}: {missing[0]} is missing: give a file that --learned has written")
+    return dict(zip(LEARNED, found.values(), strict=True))
+
+
+def _learned_keys(learned: Mapping[str, float]) -> dict[str, float]:
+    return {f"autopilot.airframe.{name}": value for name, value in learned.items()}
 
 
 def save(path: Path, arrays: Arrays) -> None:

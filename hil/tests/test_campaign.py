@@ -9,6 +9,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import fcc
 import numpy as np
 import pytest
 from distributed import LocalCluster
@@ -18,8 +19,9 @@ from fcc_hil.actuation import Actuation, Servos
 from fcc_hil.aircraft import by_name
 from fcc_hil.campaign.air import strength
 from fcc_hil.campaign.aircraft import AIRCRAFT
-from fcc_hil.campaign.draw import HOLD_S, LEG_S, Bounds, Flight, Gust, draw
+from fcc_hil.campaign.draw import HOLD_S, LEG_S, Bounds, Fault, Flight, Gust, draw
 from fcc_hil.campaign.flying import Task, fly_task
+from fcc_hil.campaign.raw_faults import RawFaults
 from fcc_hil.campaign.verdict import judge, largest_pitch_rate_sd_degps
 from fcc_hil.loading import Loading
 from fcc_hil.motion import longest_s
@@ -27,6 +29,7 @@ from fcc_hil.pattern import Leg
 from fcc_hil.plant import Plant, Weather
 from fcc_hil.state import Controls
 from fcc_hil.truth import COLUMNS, TRUTH_HZ, Truth
+from fcc_hil.units import KT_TO_MPS
 from fcc_hil.workers import local_workers, on_dask
 
 USUAL = Bounds()
@@ -242,3 +245,42 @@ def test_a_reader_that_leaves_ends_it_silently() -> None:
     ended = subprocess.run(words, stdout=write, stderr=subprocess.PIPE, text=True, check=False)
     os.close(write)
     assert ended.stderr == ""
+
+
+def test_by_raw_sensors_it_is_the_same_flight_without_what_they_bring_themselves() -> None:
+    for number in range(40):
+        measured, raw = draw(number, 3, USUAL), draw(number, 3, Bounds(raw_sensors="phone"))
+        assert (raw.noise, raw.biases, raw.sensor_delay_ticks) == (1.0, {}, 0)
+        assert raw.delay_ms == pytest.approx(measured.delay_ms, abs=10.0)
+        assert (raw.receiver is None) == (measured.receiver is None)
+        same = ("loading", "airspeed_kt", "weather", "gusts", "fault", "orders", "is_pattern")
+        assert [getattr(raw, name) for name in same] == [getattr(measured, name) for name in same]
+
+
+def test_a_flight_by_raw_sensors_is_judged_and_can_be_flown_again() -> None:
+    # A pitot tube that is off, in the aircraft with a configuration of its own.
+    bounds = Bounds(raw_sensors="board")
+    task = next(
+        Task(number, 31, bounds)
+        for number in range(3, 2_000, 5)
+        if (fault := draw(number, 31, bounds).fault) and fault.what == "airspeed frozen"
+    )
+    outcome = fly_task(task)
+    assert not {"lost", "stall", "below Vs", "not flown", "not engaged"} & set(
+        outcome.verdict.broken
+    )
+    assert outcome.command.endswith(f"--flight {task.number} --seed 31 --raw board")
+
+
+def test_of_a_raw_sensor_fails_what_the_quantity_comes_from() -> None:
+    values = fcc.Measurements()
+    values.static_pressure_pa, values.differential_pressure_pa = 101_325.0, 1_000.0
+    since_s = [4.0]
+    faults = RawFaults(Fault("altitude lost briefly", 5.0, 0.5), lambda: since_s[0])
+    for since_s[0], is_lost in ((4.0, False), (5.2, True)):
+        values.static_pressure_pa = 101_325.0
+        faults(values, 0.0)
+        assert np.isnan(values.static_pressure_pa) == is_lost
+    # 20 m/s more than 40.4 m/s (q = V^2 rho / 2) of a standard atmosphere.
+    RawFaults(Fault("airspeed biased", 0.0, None, 20.0 / KT_TO_MPS), lambda: 1.0)(values, 0.0)
+    assert values.differential_pressure_pa == pytest.approx(0.5 * 1.225 * 60.4**2, rel=0.02)

@@ -12,6 +12,7 @@ import pytest
 from fcc_hil.lockstep_rig import Conditions, LockstepRig
 from fcc_hil.plant import Plant, Weather
 from fcc_hil.raw_calibration import calibrate
+from fcc_hil.raw_faults import Fault, lost, repeated
 from fcc_hil.raw_sensors import FIELD_UT, READINGS
 from fcc_hil.standin import Settings
 
@@ -22,29 +23,6 @@ END_S = 150.0
 MEASURED = frozenset(
     {"attitude", "heading", "body_rates", "specific_force", "airspeed", "altitude"}
 )
-
-Fault = Callable[[fcc.Measurements], None]
-
-
-def lost(*readings: str) -> Fault:
-    def fault(values: fcc.Measurements) -> None:
-        for name in (value for reading in readings for value in READINGS[reading]):
-            setattr(values, name, math.nan)
-
-    return fault
-
-
-def repeated(reading: str) -> Fault:
-    kept: list[float] = []
-
-    def fault(values: fcc.Measurements) -> None:
-        given = [getattr(values, name) for name in READINGS[reading]]
-        if not kept and all(math.isfinite(value) for value in given):
-            kept.extend(given)
-        for name, value in zip(READINGS[reading], kept, strict=False):
-            setattr(values, name, value)
-
-    return fault
 
 
 def compass_turned(by_deg: float) -> Fault:

@@ -229,10 +229,14 @@ pub struct ReplayArgs {
     /// Write both flights, tick by tick, into a CSV file
     #[arg(long, value_name = "OUT", requires = "config", value_parser = output())]
     pub csv: Option<PathBuf>,
+    /// Print what the flight has learned of the aircraft: the section
+    /// `[autopilot.airframe]` of a configuration for flights without an airspeed sensor
+    #[arg(long, conflicts_with_all = ["config", "csv"])]
+    pub airframe: bool,
     /// Run the recorded raw readings through navigation by this method, or several
     /// with commas, and show its differences and its innovations
     #[arg(long, value_name = "METHOD", value_delimiter = ',', value_parser = navigation(),
-          conflicts_with_all = ["config", "csv"])]
+          conflicts_with_all = ["config", "csv", "airframe"])]
     pub navigation: Vec<NavigationMethod>,
     /// With --navigation: write a page with its plots beside those of the flight
     #[arg(long, value_name = "OUT.html", requires = "navigation", value_parser = output())]

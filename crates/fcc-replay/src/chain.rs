@@ -102,7 +102,7 @@ impl Chain {
     /// [`bytes`](Self::bytes) read.
     pub fn replay<C: Controller>(
         &self,
-        replay: Replay<C>,
+        replay: &mut Replay<C>,
         compare: impl FnMut(&RecordOf<C>, &RecordOf<C>),
         progress: impl FnMut(u64),
     ) -> Replayed {

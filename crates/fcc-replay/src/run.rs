@@ -42,6 +42,11 @@ impl<C: Controller> Replay<C> {
         })
     }
 
+    /// The controller, after what was replayed so far.
+    pub const fn controller(&self) -> &C {
+        self.machine.controller()
+    }
+
     /// Takes the next message of a recording. For a record, performs its tick
     /// again and returns the new record.
     ///
@@ -109,7 +114,7 @@ pub struct NotReplayed {
 /// Replays a recording as far as possible, and gives `compare` each tick as
 /// recorded and as replayed.
 pub fn run<C: Controller>(
-    mut replay: Replay<C>,
+    replay: &mut Replay<C>,
     messages: impl IntoIterator<Item = MessageOf<C>>,
     mut compare: impl FnMut(&RecordOf<C>, &RecordOf<C>),
 ) -> Run {

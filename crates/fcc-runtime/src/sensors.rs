@@ -74,18 +74,18 @@ impl<M: Readings + Copy + Default> Sensors<M> {
         controller: &C,
         events: &mut Events<C::Command>,
     ) {
-        for ((index, watched), by) in (0..).zip(&mut self.all).zip(&mut self.preferred) {
+        // There are no more than a reading's source can name.
+        for ((index, watched), by) in (0_u8..).zip(&mut self.all).zip(&mut self.preferred) {
             let result = watched.sensor.sample(tick, &mut watched.own);
             self.faults += u64::from(result.is_err());
-            watched.note(index, result, tick, events);
-            by.plausible = controller.plausible(&watched.own);
+            watched.note(index.into(), result, tick, events);
+            by.plausible = controller.plausible(index, &watched.own);
         }
         let by = Preference {
             now: tick.woke,
             sensors: &self.preferred,
             reading: 0,
         };
-        // There are no more than a reading's source can name.
         for (place, watched) in (0_u8..).zip(&self.all) {
             if place == 0 {
                 *into = watched.own;

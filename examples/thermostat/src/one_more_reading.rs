@@ -217,7 +217,7 @@ fn the_reading_is_recorded_shared_shown_and_replayed() {
     let mut same = Identity::of::<after::Tank>();
     let chain = Chain::open::<after::Tank>(&status.files).unwrap();
     let replayed = chain.replay(
-        replay(),
+        &mut replay(),
         |recorded, again| same.take(recorded, again),
         |_| {},
     );
@@ -233,7 +233,7 @@ fn the_reading_is_recorded_shared_shown_and_replayed() {
         record.measurements.inflow_mps.value += 1.0;
     }
     let mut other = Identity::of::<after::Tank>();
-    run(replay(), messages, |recorded, again| {
+    run(&mut replay(), messages, |recorded, again| {
         other.take(recorded, again);
     });
     assert_eq!(other.first.unwrap().tick, TICKS);

@@ -26,7 +26,7 @@ pub(crate) fn replay(files: &[PathBuf], out: &mut dyn Write) -> Result<ExitCode,
     let period = Duration::try_from_secs_f64(1.0 / chain.about().rate_hz)?;
     let mut identity = Identity::of::<Thermostat>();
     let replayed = chain.replay(
-        replay_of(&config, period)?,
+        &mut replay_of(&config, period)?,
         |recorded, again| identity.take(recorded, again),
         |_| {},
     );
@@ -90,8 +90,8 @@ pub(crate) mod tests {
 
     fn identity(config: &Config, messages: &[MessageOf<Thermostat>]) -> Identity {
         let mut identity = Identity::of::<Thermostat>();
-        let replay = replay_of(config, PERIOD).unwrap();
-        let run = run(replay, messages.iter().copied(), |recorded, again| {
+        let mut replay = replay_of(config, PERIOD).unwrap();
+        let run = run(&mut replay, messages.iter().copied(), |recorded, again| {
             identity.take(recorded, again);
         });
         assert_eq!((run.ticks, run.unflown), (TICKS, None));
@@ -151,8 +151,8 @@ pub(crate) mod tests {
             ..Config::default()
         };
         let mut deviation = Deviation::of::<Thermostat>();
-        let replay = replay_of(&warmer, PERIOD).unwrap();
-        run(replay, messages.iter().copied(), |recorded, other| {
+        let mut replay = replay_of(&warmer, PERIOD).unwrap();
+        run(&mut replay, messages.iter().copied(), |recorded, other| {
             deviation.take(recorded, other);
         });
         let names = deviation.quantities.iter().map(|q| (&*q.name, q.unit));

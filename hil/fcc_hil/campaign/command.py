@@ -55,6 +55,11 @@ def add(commands: Any) -> None:
         help="the greatest severity (%(default)s)",
     )
     campaign.add_argument(
+        "--raw",
+        choices=("phone", "board"),
+        help="fly by the raw sensors of this alone, calibrated on the ground",
+    )
+    campaign.add_argument(
         "--least-clean",
         type=ranges.number(0.0, 100.0, "%"),
         default=98.0,
@@ -88,7 +93,7 @@ def _campaign(parser: argparse.ArgumentParser, options: argparse.Namespace) -> i
     from . import report  # noqa: PLC0415 - needs the module fcc, which other commands do not
     from .flying import Task, fly_task  # noqa: PLC0415
 
-    bounds = Bounds(options.delay_ms, options.turbulence)
+    bounds = Bounds(options.delay_ms, options.turbulence, options.raw)
     if options.flight is not None:
         return _one(options, bounds)
     tasks = [Task(number, options.seed, bounds) for number in range(options.flights)]
@@ -114,6 +119,7 @@ def _campaign(parser: argparse.ArgumentParser, options: argparse.Namespace) -> i
         title = (
             f"{len(outcomes)} flights, seed {options.seed}, delay to {bounds.delay_ms:g} ms, "
             f"turbulence to {bounds.turbulence}"
+            + (f", {bounds.raw_sensors}" if bounds.raw_sensors else "")
         )
         draw_picture(options.picture, outcomes, title)
     return 1 if 100.0 * report.clean_share(outcomes) < options.least_clean else 0

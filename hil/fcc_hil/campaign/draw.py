@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -39,6 +39,10 @@ FAULTS = (
 )
 
 
+RAW_RECEIVER = Receiver(period_ticks=int(TRUTH_HZ) // 5, delay_ticks=5, sigma_mps=0.1)
+"""That of the raw sensors: 5 fixes a second, 120 ms late."""
+
+
 @dataclass(frozen=True)
 class Bounds:
     """The severest conditions of a campaign."""
@@ -47,6 +51,8 @@ class Bounds:
     """From a measurement to the effect of the command, in all, without servos."""
     turbulence: int = 4
     """After MIL-F-8785C, 0..7."""
+    raw_sensors: str | None = None
+    """Flown by these alone, phone or board; None for sensors that measure what control needs."""
 
 
 @dataclass(frozen=True)
@@ -131,7 +137,27 @@ class Flight:
 
 
 def draw(number: int, seed: int, bounds: Bounds) -> Flight:
-    """Draw flight `number` of a campaign's `seed`. The aircraft take turns."""
+    """Draw flight `number` of a campaign's `seed`. The aircraft take turns.
+
+    By raw sensors it is the same flight, but for what these bring themselves: noise, biases, the
+    delay of measurements, and how often a receiver gives a fix.
+    """
+    flight = _draw(number, seed, bounds)
+    if bounds.raw_sensors is None:
+        return flight
+    late_steps = round(flight.sensor_delay_ticks * STEPS_PER_SECOND / TRUTH_HZ)
+    outputs = flight.actuation
+    return replace(
+        flight,
+        noise=1.0,
+        biases={},
+        sensor_delay_ticks=0,
+        actuation=replace(outputs, latency_steps=outputs.latency_steps + late_steps),
+        receiver=None if flight.receiver is None else RAW_RECEIVER,
+    )
+
+
+def _draw(number: int, seed: int, bounds: Bounds) -> Flight:
     random = np.random.default_rng([seed, number])
     limits = list(AIRCRAFT.values())[number % len(AIRCRAFT)]
     loading = _loading(random, limits)

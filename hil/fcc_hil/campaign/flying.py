@@ -12,11 +12,14 @@ from typing import Any
 import fcc
 
 from ..aircraft import by_name
-from ..configurations import configuration, with_values
+from ..configurations import configuration, with_values, without_section
 from ..lockstep_rig import Conditions, LockstepRig
 from ..noise import NoiseLevels
 from ..pattern import Leg, SetPoints
 from ..plant import Plant, TrimError
+from ..raw_calibration import calibrate
+from ..raw_flight import MEASURED, RAW_LATITUDE_DEG, RAW_STANDBY_S
+from ..raw_sensors import FIELD_UT
 from ..rig import Event
 from ..sensor_faults import Faults
 from ..settings import Settings
@@ -24,6 +27,7 @@ from ..truth import Truth
 from ..units import FT_TO_M, KT_TO_MPS, wrap_heading
 from .air import mover
 from .draw import HOLD_S, LEG_S, Bounds, Fault, Flight, Order, draw
+from .raw_faults import RawFaults
 from .verdict import Verdict, judge
 
 _ENGAGES_WITHIN_S = 10.0
@@ -54,6 +58,8 @@ class Outcome:
             bounds += f" --delay-ms {flight.bounds.delay_ms:g}"
         if flight.bounds.turbulence != usual.turbulence:
             bounds += f" --turbulence {flight.bounds.turbulence}"
+        if flight.bounds.raw_sensors is not None:
+            bounds += f" --raw {flight.bounds.raw_sensors}"
         return f"fcc campaign --flight {flight.number} --seed {flight.seed}{bounds}"
 
     def document(self) -> dict[str, Any]:
@@ -122,7 +128,7 @@ def config_of(flight: Flight) -> str:
     With the flight's pattern, and the stalling speed of the greatest weight.
     """
     first = flight.orders[0]
-    values: dict[str, float | str] = {
+    values: dict[str, float | str | list[float]] = {
         "guidance.mode": "timed-pattern",
         # The first command ends the pattern.
         "guidance.hold_s": HOLD_S if flight.is_pattern else 10.0 * HOLD_S,
@@ -131,7 +137,13 @@ def config_of(flight: Flight) -> str:
         "guidance.climb_ft": first.climb_ft if flight.is_pattern else 0.0,
         "autopilot.envelope.stall_airspeed_kt": flight.limits.stall_setting_kt,
     }
-    return with_values(configuration(flight.aircraft), values)
+    text = configuration(flight.aircraft)
+    if flight.bounds.raw_sensors is not None:
+        # Where X-Plane is the source, there are no raw readings.
+        text = without_section(text, "x-plane")
+        values["navigation.method"] = "kalman"
+        values["navigation.magnetic_field_ut"] = list(FIELD_UT)
+    return with_values(text, values)
 
 
 def _rig(flight: Flight) -> LockstepRig:
@@ -140,27 +152,43 @@ def _rig(flight: Flight) -> LockstepRig:
     )
     # One flight's turbulence and noise are not another's.
     seed = (flight.seed * 10_007 + flight.number) % 2**31
-    plant = Plant(aircraft, seed=seed, weather=flight.weather)
+    sensors = flight.bounds.raw_sensors
+    by_raw = sensors is not None
+    plant = Plant(
+        aircraft,
+        seed=seed,
+        weather=flight.weather,
+        latitude_deg=RAW_LATITUDE_DEG if by_raw else 0.0,
+    )
     usual = NoiseLevels()
     levels = NoiseLevels(**{name: flight.noise * sigma for name, sigma in asdict(usual).items()})
     engaged_s = [math.inf]
+    falsify = RawFaults(flight.fault, lambda: plant.time_s - engaged_s[0]) if by_raw else None
     conditions = Conditions(
         levels=levels,
         sensor_delay_ticks=flight.sensor_delay_ticks,
-        receiver=flight.receiver,
+        receiver=None if by_raw else flight.receiver,
         actuation=flight.actuation,
         gust=mover(flight.gusts, lambda: plant.time_s - engaged_s[0]) if flight.gusts else None,
+        raw_sensors=sensors,
+        calibration=None if sensors is None else calibrate(sensors, seed, FIELD_UT),
+        raw_fault=falsify,
+        without=MEASURED if by_raw else frozenset(),
     )
-    settings = Settings(aircraft=flight.aircraft, seed=seed, noise=True)
+    if by_raw and flight.receiver is None:
+        conditions = replace(conditions, without=conditions.without | {"gnss"})
+    settings = Settings(aircraft=flight.aircraft, seed=seed, noise=not by_raw)
     rig = LockstepRig(settings, plant, fcc.Machine(config_of(flight)), conditions)
     faults = Faults(lambda: rig.time_s, rig.set_faults, seed)
     for name, by in flight.biases.items():
         faults.bias(name, by=by)
     rig.prepare()
+    if by_raw:
+        rig.fly_to(RAW_STANDBY_S)
     _engage(rig)
     engaged_s[0] = rig.time_s
     if flight.fault is not None:
-        _put_in(flight.fault, faults)
+        _put_in(flight.fault, faults, by_raw=by_raw)
     return rig
 
 
@@ -175,12 +203,16 @@ def _engage(rig: LockstepRig) -> None:
             rig.fly_to(rig.time_s + _TRIES_FOR_S)
 
 
-def _put_in(fault: Fault, faults: Faults) -> None:
-    """Put a sensor's fault in; the engine is failed by `_fly`."""
+def _put_in(fault: Fault, faults: Faults, *, by_raw: bool) -> None:
+    """Put a sensor's fault in; the engine is failed by `_fly`, one raw sensor by `RawFaults`."""
     when: dict[str, Any] = {"after": fault.begins_s, "lasts": fault.lasts_s}
     sensor = fault.what.split()[0]
     if fault.what == "samples lost":
         faults.loss("everything", share=fault.amount, **when)
+    elif sensor == "everything":
+        faults.loss(sensor, **when)
+    elif by_raw:
+        return
     elif fault.what.endswith("frozen"):
         faults.freeze(sensor, **when)
     elif fault.what.endswith("biased"):

@@ -93,6 +93,7 @@ def document(outcomes: Sequence[Outcome], seed: int, bounds: Bounds) -> dict[str
         "seed": seed,
         "delay_ms": bounds.delay_ms,
         "turbulence": bounds.turbulence,
+        "raw_sensors": bounds.raw_sensors,
         "clean_share": clean_share(outcomes),
         "flights": [outcome.document() for outcome in outcomes],
     }

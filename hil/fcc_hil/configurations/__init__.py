@@ -34,7 +34,7 @@ def value_of(text: str, key: str, default: float) -> float:
     return float(node)
 
 
-def with_values(text: str, values: Mapping[str, float | str]) -> str:
+def with_values(text: str, values: Mapping[str, float | str | list[float]]) -> str:
     """Return a configuration with dotted keys set; comments and order are kept."""
     document = _parsed(text)
     for key, value in values.items():
@@ -48,6 +48,13 @@ def with_values(text: str, values: Mapping[str, float | str]) -> str:
                 raise ValueError(f"configuration: {key}: '{section}' is no section")
             node = inner
         node[leaf] = value
+    return tomlkit.dumps(document)
+
+
+def without_section(text: str, name: str) -> str:
+    """Return a configuration without one of its sections, if it has it."""
+    document = _parsed(text)
+    document.pop(name, None)
     return tomlkit.dumps(document)
 
 

@@ -255,10 +255,10 @@ pub trait Controller: Send {
     /// Whether these outputs may be sent: all finite and within their ranges.
     fn outputs_are_valid(&self, outputs: &Self::Outputs) -> bool;
 
-    /// The plausible readings of one of several sensors: a bit for each, in the
-    /// order of the measurements. Another is used only if no sensor has a fresh
-    /// plausible one. All of them by default.
-    fn plausible(&self, _measurements: &Self::Measurements) -> Flags {
+    /// The plausible readings of one of several sensors, by its number in the loop: a
+    /// bit for each, in the order of the measurements. Another is used only if no
+    /// sensor has a fresh plausible one. All of them by default.
+    fn plausible(&self, _sensor: u8, _measurements: &Self::Measurements) -> Flags {
         Flags::ALL
     }
 

@@ -9,7 +9,7 @@ use fcc_core::flight::inertial::{
 };
 use fcc_core::flight::orientation::earth_to_body;
 use fcc_core::flight::{BodyRates, GnssFix, MagneticField, Measurements, SpecificForce};
-use fcc_core::framework::Reading;
+use fcc_core::framework::{Reading, Time};
 
 use super::flight::Flight;
 use super::noise::Random;
@@ -33,6 +33,55 @@ fn straight(time_s: f64) -> (f64, f64, f64) {
     } else {
         (0.0, 0.0, 50.0)
     }
+}
+
+/// What the sensors of a small computer give of the truth, these rates, rad/s, and this
+/// field, µT; now and then a receiver's fix, too.
+pub(super) fn readings(
+    truth: &super::flight::Truth,
+    now: Time,
+    rates: [f64; 3],
+    field: [f64; 3],
+    has_fix: bool,
+) -> Measurements {
+    let [x_ut, y_ut, z_ut] = field;
+    let [x_mps2, y_mps2, z_mps2] = truth.force;
+    let mut measured = Measurements {
+        raw_body_rates: Reading::new(
+            BodyRates {
+                roll_radps: rates[0],
+                pitch_radps: rates[1],
+                yaw_radps: rates[2],
+            },
+            now,
+        ),
+        raw_specific_force: Reading::new(
+            SpecificForce {
+                x_mps2,
+                y_mps2,
+                z_mps2,
+            },
+            now,
+        ),
+        magnetic_field: Reading::new(MagneticField { x_ut, y_ut, z_ut }, now),
+        static_pressure_pa: Reading::new(pressure_pa(truth.place.altitude_m), now),
+        // At 500 m, 1.17 kg/m³.
+        differential_pressure_pa: Reading::new(0.5 * 1.167 * 50.0 * 50.0, now),
+        ..Measurements::default()
+    };
+    if has_fix {
+        let mut fix = GnssFix::default();
+        fix.position.latitude_rad = truth.place.latitude_rad;
+        fix.position.longitude_rad = truth.place.longitude_rad;
+        fix.position.altitude_m = truth.place.altitude_m;
+        [
+            fix.velocity.north_mps,
+            fix.velocity.east_mps,
+            fix.velocity.down_mps,
+        ] = truth.velocity;
+        measured.gnss = Reading::new(fix, now);
+    }
+    measured
 }
 
 /// Flies with a fault from 30 s until `until_s`; the times at which gyroscopes began
@@ -69,43 +118,7 @@ fn doubted(
         if since_s >= 0.0 && truth.time_s < until_s {
             fault(&mut rates, &mut field, since_s, &mut random);
         }
-        let [x_ut, y_ut, z_ut] = field;
-        let [x_mps2, y_mps2, z_mps2] = truth.force;
-        let mut measured = Measurements {
-            raw_body_rates: Reading::new(
-                BodyRates {
-                    roll_radps: rates[0],
-                    pitch_radps: rates[1],
-                    yaw_radps: rates[2],
-                },
-                now,
-            ),
-            raw_specific_force: Reading::new(
-                SpecificForce {
-                    x_mps2,
-                    y_mps2,
-                    z_mps2,
-                },
-                now,
-            ),
-            magnetic_field: Reading::new(MagneticField { x_ut, y_ut, z_ut }, now),
-            static_pressure_pa: Reading::new(pressure_pa(truth.place.altitude_m), now),
-            // At 500 m, 1.17 kg/m³.
-            differential_pressure_pa: Reading::new(0.5 * 1.167 * 50.0 * 50.0, now),
-            ..Measurements::default()
-        };
-        if tick % 8 == 0 {
-            let mut fix = GnssFix::default();
-            fix.position.latitude_rad = truth.place.latitude_rad;
-            fix.position.longitude_rad = truth.place.longitude_rad;
-            fix.position.altitude_m = truth.place.altitude_m;
-            [
-                fix.velocity.north_mps,
-                fix.velocity.east_mps,
-                fix.velocity.down_mps,
-            ] = truth.velocity;
-            measured.gnss = Reading::new(fix, now);
-        }
+        let measured = readings(&truth, now, rates, field, tick % 8 == 0);
         navigation.step(now, &measured);
         if navigation.doubts_gyroscopes() != was_doubted {
             was_doubted = !was_doubted;

@@ -14,3 +14,4 @@ mod matched;
 mod noise;
 mod sensors;
 mod thesis;
+mod units;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use fcc_core::flight::Autopilot;
-use fcc_flight::config::Config;
+use fcc_flight::config::{AirframeSection, Config};
 use fcc_flight::replay::{recorded_config, replay as replay_of};
 use fcc_record::{OpenError, create_output, unless_left};
 use fcc_replay::{Chain, ChainError, Comparison, Csv, Deviation, Identity, Replayed};
@@ -88,11 +88,11 @@ fn run(
     let begin = |path| Csv::begin::<Autopilot>(BufWriter::new(create_output(path, &inputs)?));
     let mut table = csv.map(begin).transpose().map_err(refused)?;
     let mut written = Ok(());
-    let replay = replay_of(&config).map_err(|error| format!("the loop's timer: {error}"))?;
+    let mut replay = replay_of(&config).map_err(|error| format!("the loop's timer: {error}"))?;
     let bar = progress::bar(chain.bytes(), "replaying");
     let began = Instant::now();
     let replayed = chain.replay(
-        replay,
+        &mut replay,
         |recorded, again| {
             comparison.take(recorded, again);
             if let (Some(table), Ok(())) = (&mut table, &written) {
@@ -105,6 +105,9 @@ fn run(
     let finished = written.and_then(|()| table.map_or(Ok(()), Csv::finish));
     unless_left(finished).map_err(refused)?;
     remarks.extend(csv.map(|csv| format!("written: {}", csv.display())));
+    if args.airframe {
+        remarks.push(learned(replay.controller()));
+    }
     let took_s = began.elapsed().as_secs_f64();
     let about = chain.about();
     Ok(Outcome {
@@ -115,6 +118,21 @@ fn run(
         comparison,
         remarks,
     })
+}
+
+/// What the flight has learned of the aircraft, as a section of a configuration.
+fn learned(autopilot: &Autopilot) -> String {
+    autopilot.learned_airframe().map_or_else(
+        || {
+            "nothing was learned of the aircraft: it takes a minute with an airspeed sensor \
+             that is believed, and a throttle that is read back"
+                .to_owned()
+        },
+        |learned| {
+            let section = AirframeSection::from(learned).to_toml();
+            format!("learned of the aircraft, for flights without an airspeed sensor:\n{section}")
+        },
+    )
 }
 
 fn remarks(chain: &Chain) -> Vec<String> {

@@ -139,7 +139,7 @@ impl Sensor<Measurements> for Second {
 pub(crate) fn again(config: &Config, messages: &[FlightMessage]) -> (Run, Identity) {
     let mut identity = Identity::of::<Autopilot>();
     let run = run(
-        replay(config).unwrap(),
+        &mut replay(config).unwrap(),
         messages.iter().copied(),
         |recorded, again| {
             identity.take(recorded, again);

@@ -39,7 +39,7 @@ fn assert_identical(config: &Config, messages: &[FlightMessage]) -> Vec<State> {
 fn deviation(config: &Config, messages: &[FlightMessage]) -> Deviation {
     let mut deviation = Deviation::of::<Autopilot>();
     run(
-        replay(config).unwrap(),
+        &mut replay(config).unwrap(),
         messages.iter().copied(),
         |recorded, other| {
             deviation.take(recorded, other);

@@ -74,7 +74,7 @@ fn a_replay_reproduces_which_sensor_was_used() {
     let messages = flown(true, true);
     let mut used = 0;
     run(
-        replay(&rough()).unwrap(),
+        &mut replay(&rough()).unwrap(),
         messages.iter().copied(),
         |recorded, again| {
             assert_eq!(recorded.measurements, again.measurements);

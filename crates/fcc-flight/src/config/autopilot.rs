@@ -9,7 +9,7 @@ use fcc_core::flight::{AutopilotConfig, Scale};
 use fcc_core::units::{FOOT_M, GRAVITY_MPS2, KNOT_MPS};
 use serde::{Deserialize, Serialize};
 
-use super::GuidanceSection;
+use super::{AirframeSection, GuidanceSection};
 
 /// `[autopilot]`: gains and limits. Omitted keys have the values for a Cessna
 /// 172.
@@ -27,6 +27,9 @@ pub struct AutopilotSection {
     pub scale: ScaleSection,
     /// The limits of the loops' commands.
     pub envelope: EnvelopeSection,
+    /// What was learned of the aircraft, for flights without an airspeed sensor.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub airframe: Option<AirframeSection>,
     /// How sensors are combined.
     pub navigation: NavigationSection,
     /// Heading, bank, aileron, rudder.
@@ -46,6 +49,7 @@ impl Default for AutopilotSection {
             trim: core.trims,
             scale: ScaleSection::default(),
             envelope: EnvelopeSection::from(&core.envelope),
+            airframe: None,
             navigation: NavigationSection::from(&core.navigation),
             heading: HeadingSection::from(&core.heading),
             altitude: AltitudeSection::from(&core.altitude),
@@ -67,6 +71,7 @@ impl AutopilotSection {
             reference_airspeed_mps: self.reference_airspeed_kt * KNOT_MPS,
             assumed_latency_s: self.assumed_latency_ms * 1e-3,
             trims: self.trim,
+            airframe: self.airframe.map(Into::into),
             max_age,
             frozen_after,
             navigation: NavigationConfig::from(&self.navigation),

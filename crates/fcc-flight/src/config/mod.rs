@@ -5,6 +5,7 @@
 //! conversion to the core's. Optional keys have defaults; a value out of its
 //! range is refused with line, key and range.
 
+mod airframe;
 mod altimeter;
 mod as_text;
 mod autopilot;
@@ -49,6 +50,7 @@ use fcc_sim::SimConfig;
 use fcc_timer::RealtimeRequest;
 use serde::{Deserialize, Serialize};
 
+pub use airframe::AirframeSection;
 pub use altimeter::AltimeterSection;
 pub use autopilot::AutopilotSection;
 pub use board::{BoardSensor, ChipSection, IioSection, OutputChoice};

@@ -9,8 +9,8 @@ use toml::de::DeValue;
 
 use super::places::Places;
 use super::{
-    Config, Problem, SensorEntry, XPlaneSection, board, calibration, gpio, gpsd, lines, navigation,
-    relations, servo_board,
+    Config, Problem, SensorEntry, XPlaneSection, airframe, board, calibration, gpio, gpsd, lines,
+    navigation, relations, servo_board,
 };
 
 /// Key, smallest and largest value.
@@ -162,6 +162,7 @@ fn ranges() -> impl Iterator<Item = &'static (&'static str, f64, f64)> {
         .iter()
         .chain(calibration::RANGES)
         .chain(navigation::RANGES)
+        .chain(airframe::RANGES)
         .chain(board::RANGES)
         .chain(servo_board::RANGES)
         .chain(lines::RANGES)

@@ -157,8 +157,8 @@ impl Controller for Pilot {
         self.autopilot.outputs_are_valid(outputs)
     }
 
-    fn plausible(&self, measurements: &Measurements) -> Flags {
-        self.autopilot.plausible(measurements)
+    fn plausible(&self, sensor: u8, measurements: &Measurements) -> Flags {
+        self.autopilot.plausible(sensor, measurements)
     }
 
     fn switch(&self, measurements: &Measurements) -> Reading<Switch> {

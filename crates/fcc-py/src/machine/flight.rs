@@ -5,6 +5,7 @@ use std::sync::Mutex;
 
 use fcc_core::flight::{Autopilot, AutopilotConfig, Surfaces};
 use fcc_core::framework::{LoopCommand, Switch};
+use fcc_flight::config::AirframeSection;
 use fcc_flight::flight::about;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -95,6 +96,21 @@ machine_class! {
             with_plant(&sample, lockstep.next_s(), readback, switch)
         });
         Ok(lockstep.step(sample).map(PySurfaces::from))
+    }
+
+    /// What was learned of the aircraft, as the keys of `[autopilot.airframe]` by their
+    /// names; `None` before a minute with an airspeed sensor that is believed and a
+    /// throttle that is read back.
+    #[getter]
+    fn learned_airframe(&self) -> Option<HashMap<&'static str, f64>> {
+        let learned = self.lockstep().controller().learned_airframe()?;
+        let section = AirframeSection::from(learned);
+        Some(HashMap::from([
+            ("axial_offset", section.axial_offset),
+            ("full_thrust_ratio", section.full_thrust_ratio),
+            ("zero_lift_angle_deg", section.zero_lift_angle_deg),
+            ("one_g_angle_deg", section.one_g_angle_deg),
+        ]))
     }
 
     /// Commands another airspeed (m/s), heading (rad) or altitude (m): above sea

@@ -181,6 +181,11 @@ impl<C: Recorded> Lockstep<C> {
         self.machine.controller().estimated()
     }
 
+    /// The controller.
+    pub const fn controller(&self) -> &C {
+        self.machine.controller()
+    }
+
     /// When the next tick is due, s on a clock that begins at 0.
     pub const fn next_s(&self) -> f64 {
         self.next_s

@@ -39,7 +39,7 @@ pub fn replay<'py, C: Telemetry>(
     };
     let compared = py.detach(|| -> Result<Compared, String> {
         let chain = Chain::open::<C>(&paths).map_err(|error| error.to_string())?;
-        let replay = make(&chain)?;
+        let mut replay = make(&chain)?;
         let mut identity = is_same.then(Identity::of::<C>);
         let mut deviation = (!is_same).then(Deviation::of::<C>);
         let compare = |recorded: &_, again: &_| {
@@ -51,7 +51,7 @@ pub fn replay<'py, C: Telemetry>(
             }
         };
         Ok(Compared {
-            replayed: chain.replay(replay, compare, |_| {}),
+            replayed: chain.replay(&mut replay, compare, |_| {}),
             identical: identity.as_ref().map(Identity::is_identical),
             identity,
             deviation,

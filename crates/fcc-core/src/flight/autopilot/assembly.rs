@@ -2,7 +2,7 @@
 
 use super::super::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop};
 use super::super::inertial::RawNavigation;
-use super::super::navigation::{FrozenDetector, Navigation, Replacement};
+use super::super::navigation::{FrozenDetector, LearnedAirframe, Navigation, Replacement};
 use super::{
     ActiveMode, Actuation, AltitudeReference, Autopilot, AutopilotConfig, Degraded, Following,
     KeptTrims, Measurements, PilotTakeover, PlantClock, ReadingAges, Recovery, Setpoints, Surfaces,
@@ -21,7 +21,8 @@ impl Autopilot {
                 .for_aircraft(
                     config.reference_airspeed_mps,
                     config.airspeed.throttle_per_mps2,
-                ),
+                )
+                .for_learned(config.airframe),
             replacement: Replacement::new(config.navigation.attitude_tau_s),
             frozen: FrozenDetector::new(config.frozen_after.as_secs_f64()),
             guidance: ActiveMode::None,
@@ -53,6 +54,13 @@ impl Autopilot {
             is_at_floor: false,
             config,
         }
+    }
+
+    /// What this flight has learned of the aircraft, as
+    /// [`AutopilotConfig::airframe`] of another one takes it; none before a minute with
+    /// an airspeed sensor that is believed and a known throttle.
+    pub fn learned_airframe(&self) -> Option<LearnedAirframe> {
+        self.navigation.learned_airframe()
     }
 
     /// The configuration.

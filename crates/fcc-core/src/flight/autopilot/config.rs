@@ -6,7 +6,7 @@ use crate::flight::Altimeter;
 use crate::flight::control::{AirspeedConfig, AltitudeConfig, Envelope, HeadingConfig};
 use crate::flight::guidance::{GuidanceConfig, TimedPatternConfig};
 use crate::flight::inertial::RawNavigationConfig;
-use crate::flight::navigation::NavigationConfig;
+use crate::flight::navigation::{LearnedAirframe, NavigationConfig};
 use crate::framework::Flags;
 
 use super::{FailsafeConfig, StickTakeover};
@@ -63,6 +63,10 @@ pub struct AutopilotConfig {
     /// How attitude and the other quantities that control needs are computed
     /// from raw readings; `None` if sensors measure them.
     pub raw_navigation: Option<RawNavigationConfig>,
+    /// What another flight has learned of the aircraft: where no sensor measures the
+    /// airspeed, it is flown by forces, motion and the velocity over the ground. `None`:
+    /// without an airspeed sensor it does not engage.
+    pub airframe: Option<LearnedAirframe>,
     /// Navigation's time constants.
     pub navigation: NavigationConfig,
     /// The mode that is flown once engaged.
@@ -96,6 +100,7 @@ impl Default for AutopilotConfig {
             level_and_trim: Duration::from_secs(10),
             failsafe: FailsafeConfig::default(),
             raw_navigation: None,
+            airframe: None,
             navigation: NavigationConfig::default(),
             guidance: GuidanceConfig::TimedPattern(TimedPatternConfig::default()),
             heading: HeadingConfig::default(),

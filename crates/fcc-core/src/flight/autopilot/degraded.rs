@@ -131,6 +131,9 @@ const FORCES_NEED: Flags = Flags::from_bits(
     flags::ATTITUDE.bits() | flags::SPECIFIC_FORCE.bits() | flags::ALTITUDE.bits(),
 );
 const ACCURATE_RATIO: f64 = 0.05;
+/// ... and where there never was a sensor, so that the limits have been that much narrower
+/// from the beginning.
+const FLYABLE_RATIO: f64 = 0.1;
 
 /// What is held without these quantities.
 pub(super) fn held_without(lost: Flags) -> Held {
@@ -259,12 +262,22 @@ impl Autopilot {
     /// forces and motion does while it is accurate, and nothing is lost that it
     /// comes from.
     pub(super) fn unreplaced(&self, lost: Flags) -> Flags {
-        let estimate = self.navigation.estimate();
-        let accurate_mps = ACCURATE_RATIO * self.config.reference_airspeed_mps;
-        let is_known = estimate.airspeed_source == AirspeedSource::Forces
-            && estimate.airspeed_uncertainty_mps < accurate_mps
-            && !lost.intersects(FORCES_NEED);
+        let is_known = self.is_accurate(ACCURATE_RATIO) && !lost.intersects(FORCES_NEED);
         lost.keeping(flags::AIRSPEED, !is_known)
+    }
+
+    fn is_accurate(&self, ratio: f64) -> bool {
+        let estimate = self.navigation.estimate();
+        let accurate_mps = ratio * self.config.reference_airspeed_mps;
+        estimate.airspeed_source == AirspeedSource::Forces
+            && estimate.airspeed_uncertainty_mps < accurate_mps
+    }
+
+    /// Whether the airspeed is known by forces and motion, of an aircraft that is learned
+    /// and has no sensor of it; none of any other.
+    pub(super) fn knows_airspeed_by_forces(&self) -> Option<bool> {
+        let has_none = self.config.airframe.is_some() && self.accepted.airspeed_mps.is_never();
+        has_none.then(|| self.is_accurate(FLYABLE_RATIO))
     }
 
     /// Follows a failsafe: for how long it has lasted, and whether all is good

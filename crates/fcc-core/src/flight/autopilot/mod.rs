@@ -371,13 +371,17 @@ impl Controller for Autopilot {
         outputs.is_valid()
     }
 
-    fn plausible(&self, measurements: &Measurements) -> Flags {
+    fn plausible(&self, sensor: u8, measurements: &Measurements) -> Flags {
         let plausible = plausibility_gate(
             &mut self.accepted.clone(),
             measurements,
             &self.gate_limits(),
         );
-        plausible.keeping(flags::AIRSPEED, self.permits_airspeed(measurements))
+        let plausible = plausible.keeping(flags::AIRSPEED, self.permits_airspeed(measurements));
+        match &self.raw {
+            Some(raw) => raw.permitted(sensor, plausible),
+            None => plausible,
+        }
     }
 
     fn switch(&self, measurements: &Measurements) -> Reading<Switch> {

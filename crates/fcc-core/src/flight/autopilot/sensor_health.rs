@@ -107,7 +107,11 @@ impl Autopilot {
         taken.into_iter().fold(by_gyroscopes, |old, (flag, taken)| {
             let reading = Reading::new((), taken);
             let is_known = match flag {
-                flags::AIRSPEED => self.navigation.airspeed_doubt().map(|_| true),
+                flags::AIRSPEED => self
+                    .navigation
+                    .airspeed_doubt()
+                    .map(|_| true)
+                    .or_else(|| self.knows_airspeed_by_forces()),
                 flags::ALTITUDE => self.navigation.altitude_doubt(),
                 _ => None,
             };

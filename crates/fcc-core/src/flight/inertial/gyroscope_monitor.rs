@@ -109,6 +109,15 @@ impl GyroscopeMonitor {
         self.is_doubted
     }
 
+    /// From here on the samples are those of other gyroscopes.
+    pub(super) fn change(&mut self) {
+        self.is_doubted = false;
+        self.bias = Vector3::zeros();
+        self.turning = FieldTurning::new();
+        self.known = 0;
+        self.agreeing = Agreeing::default();
+    }
+
     /// Takes a sample of the gyroscopes, rad/s, and what is known of their bias.
     pub(super) fn add_rates(&mut self, taken: Time, rates: [f64; 3], known: &Solution) {
         if !self.is_doubted {

@@ -22,6 +22,7 @@ mod observation;
 mod raw_navigation;
 mod stuck;
 mod thesis;
+mod units;
 
 pub use earth::{gravity_mps2, metres_per_radian};
 pub use kalman::{Innovation, KalmanConfig, KalmanNavigation};

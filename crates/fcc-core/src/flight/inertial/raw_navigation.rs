@@ -3,15 +3,19 @@
 //! place of sensors that measure these.
 
 mod readings;
+mod several;
 
 use core::time::Duration;
 
-use libm::{atan2, hypot};
-use readings::{attitude_of, either, force_of, is_certain, rates_of};
+use libm::atan2;
+use readings::{
+    attitude_of, either, force_of, is_certain, is_elsewhere, is_new, rates_of, repeats,
+};
 
 use super::field_rates::FieldRates;
 use super::gyroscope_monitor::GyroscopeMonitor;
-use super::stuck::{MOVED_FIELD, MOVED_FORCE, MOVED_MPS, MOVED_RATE, StuckSensor};
+use super::stuck::{MOVED_FIELD, MOVED_FORCE, MOVED_RATE, StuckSensor};
+use super::units::Units;
 use super::{
     GeodeticPosition, InertialNavigation, Innovation, KalmanConfig, KalmanNavigation, Observation,
     Solution, ThesisNavigation, earth_field_ut,
@@ -20,8 +24,7 @@ use crate::blocks::wrap_two_pi;
 use crate::flight::atmosphere::{calibrated_airspeed_mps, pressure_altitude_m};
 use crate::flight::navigation::is_possible_fix;
 use crate::flight::orientation::euler_from_quaternion;
-use crate::flight::{BodyRates, GnssFix, Measurements, PlantState, Velocity};
-use crate::framework::schema::{Schema, in_range};
+use crate::flight::{BodyRates, GnssFix, Measurements, Velocity};
 use crate::framework::{Reading, Time};
 
 /// A heading less certain than this is none, rad.
@@ -115,6 +118,8 @@ pub struct RawNavigation {
     used: Measurements,
     stuck_force: StuckSensor,
     stuck_rates: StuckSensor,
+    accelerometers: Units,
+    gyroscopes: Units,
     /// The gyroscopes' last sample, used or not.
     rates_read: Reading<BodyRates>,
     gyroscope: GyroscopeMonitor,
@@ -158,6 +163,8 @@ impl RawNavigation {
             used: Measurements::default(),
             stuck_force: StuckSensor::default(),
             stuck_rates: StuckSensor::default(),
+            accelerometers: Units::default(),
+            gyroscopes: Units::default(),
             rates_read: Reading::default(),
             gyroscope: GyroscopeMonitor::new(),
             field_rates: FieldRates::default(),
@@ -267,6 +274,7 @@ impl RawNavigation {
             self.stuck_rates
                 .step(r.taken, rates, [force, field], [MOVED_FORCE, MOVED_FIELD]);
         let repeats_fix = repeats(&self.used.gnss.value, &raw.gnss.value);
+        self.follow_units(raw, repeats_force, repeats_rates);
         if !repeats_force && is_new(&mut self.used.raw_specific_force, &f, now) {
             self.take(f.taken, Observation::SpecificForce(force));
         }
@@ -383,34 +391,6 @@ impl RawNavigation {
 
 fn declination_rad([north, east, _]: [f64; 3]) -> f64 {
     atan2(east, north)
-}
-
-/// Whether the plant is another, or was put somewhere else.
-fn is_elsewhere(measured: &Measurements) -> bool {
-    let state = measured.plant.value.state;
-    !measured.plant.is_never() && matches!(state, PlantState::Jumped | PlantState::Reloaded)
-}
-
-/// Whether a reading is later than the last one, not of the future, and possible;
-/// then it becomes the last one.
-fn is_new<T: Schema>(last: &mut Reading<T>, reading: &Reading<T>, now: Time) -> bool {
-    let is_later = !reading.is_never() && reading.taken > last.taken && reading.taken <= now;
-    let is_new = is_later && in_range(&reading.value);
-    if is_new {
-        *last = *reading;
-    }
-    is_new
-}
-
-/// Whether a receiver gives the place again that it gave before, although it
-/// says that it moves.
-fn repeats(last: &GnssFix, fix: &GnssFix) -> bool {
-    let Velocity {
-        north_mps,
-        east_mps,
-        ..
-    } = fix.velocity;
-    fix.position == last.position && hypot(north_mps, east_mps) > MOVED_MPS
 }
 
 #[cfg(test)]

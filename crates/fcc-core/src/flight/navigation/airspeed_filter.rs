@@ -2,21 +2,14 @@
 
 use libm::exp;
 
+use super::airframe::AirframePrior;
 use super::force_sample::ForceSample;
 use super::scalar_update::{add_variance, squared, update};
 use super::wind::Wind;
 use crate::blocks::limit_abs;
 
+mod learned;
 mod over_ground;
-
-/// What an [`AirspeedFilter`] must know of the aircraft beforehand.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct AirframePrior {
-    /// The airspeed V₀ at which the ratios below hold, m/s.
-    pub(super) reference_mps: f64,
-    /// Thrust over weight at full throttle and V₀.
-    pub(super) full_thrust_ratio: f64,
-}
 
 /// Parasite and induced drag over weight at V₀, of a lift over drag of 9 there:
 /// light aircraft cruise at 8 to 12 (Roskam and Lan 1997, table 5.1 has others).
@@ -69,6 +62,8 @@ pub(super) const MIN_AIRSPEED_MPS: f64 = 5.0;
 /// attack for 1 g in rad.
 const N: usize = 6;
 type State = super::scalar_update::State<N>;
+/// The last four of them.
+type Models = [f64; 4];
 
 /// The difference of the airspeed that a model has from the filter's, and the
 /// weight of it.
@@ -102,22 +97,17 @@ pub(super) struct AirspeedFilter {
 }
 
 impl AirspeedFilter {
-    /// A filter that begins at a sensor's airspeed.
-    pub(super) fn new(prior: AirframePrior, airspeed_mps: f64, sample: &ForceSample) -> Self {
-        let q = squared(airspeed_mps / prior.reference_mps);
-        let path = sample.climb_rate_mps * sample.sqrt_density / airspeed_mps;
-        let zero_lift_rad =
-            sample.upward.angle_of_attack_rad(path) - LIFT_ANGLE_RAD * sample.up / q;
-        let x = [
-            airspeed_mps,
-            0.0,
-            0.0,
-            prior.full_thrust_ratio,
-            zero_lift_rad,
-            LIFT_ANGLE_RAD,
-        ];
-        let thrust_sd = 0.5 * prior.full_thrust_ratio;
-        let sds = [1.0, 1.0, 0.0, thrust_sd, 0.052, 0.25 * LIFT_ANGLE_RAD];
+    /// A filter that begins at an airspeed with this standard deviation, m/s.
+    pub(super) fn new(
+        prior: AirframePrior,
+        (airspeed_mps, sd_mps): (f64, f64),
+        sample: &ForceSample,
+    ) -> Self {
+        let ([offset, thrust, zero_lift_rad, angle], sds) = match prior.learned {
+            Some(learned) => learned::models(learned),
+            None => Self::unlearned(prior, airspeed_mps, sample),
+        };
+        let x = [airspeed_mps, 0.0, offset, thrust, zero_lift_rad, angle];
         let mut filter = Self {
             prior,
             x,
@@ -128,9 +118,29 @@ impl AirspeedFilter {
             lift: Vote::default(),
             wind: Wind::new(),
         };
+        let [offset, thrust, zero_lift, angle] = sds;
+        let sds = [sd_mps, 1.0, offset, thrust, zero_lift, angle];
         add_variance(&mut filter.covariance, sds.map(squared));
         filter.learn_offset(sample);
         filter
+    }
+
+    /// The models of an aircraft of which nothing was learned, and their standard
+    /// deviations.
+    fn unlearned(
+        prior: AirframePrior,
+        airspeed_mps: f64,
+        sample: &ForceSample,
+    ) -> (Models, Models) {
+        let q = squared(airspeed_mps / prior.reference_mps);
+        let path = sample.climb_rate_mps * sample.sqrt_density / airspeed_mps;
+        let zero_lift_rad =
+            sample.upward.angle_of_attack_rad(path) - LIFT_ANGLE_RAD * sample.up / q;
+        let thrust = prior.full_thrust_ratio;
+        (
+            [0.0, thrust, zero_lift_rad, LIFT_ANGLE_RAD],
+            [0.0, 0.5 * thrust, 0.052, 0.25 * LIFT_ANGLE_RAD],
+        )
     }
 
     pub(super) const fn airspeed_mps(&self) -> f64 {
@@ -206,7 +216,7 @@ impl AirspeedFilter {
     /// The offset of the axial force follows from a throttle that is known only
     /// now.
     pub(super) fn learn_offset(&mut self, sample: &ForceSample) {
-        if let Some((thrust, _)) = sample.thrust {
+        if let Some((thrust, _)) = sample.thrust.filter(|_| self.prior.learned.is_none()) {
             self.x[2] = 0.0;
             self.x[2] = sample.forward - self.axial_of(self.x, thrust, sample.up);
             self.kept[2] = self.x[2];

@@ -1,6 +1,6 @@
 //! Whether the airspeed sensor is believed, and the airspeed without it.
 
-use super::airspeed_filter::AirframePrior;
+use super::airframe::AirframePrior;
 use super::airspeed_reason::{Doubt, DoubtReason, Reference};
 use super::filter_bank::FilterBank;
 use super::force_sample::{ForceSample, acceleration_mps2};
@@ -11,6 +11,7 @@ use crate::blocks::{LowPass, smoothing_factor};
 
 mod compare;
 mod ground;
+mod sensorless;
 mod static_port;
 mod step;
 
@@ -245,9 +246,13 @@ impl AirspeedMonitor {
             ..input.sample
         };
         let Some(mut bank) = self.bank else {
-            if let Some((mps, _)) = input.sensor_mps.filter(|(mps, _)| *mps > 1.2 * least_mps) {
-                self.bank = Some(FilterBank::new(self.prior, mps, &sample));
-            }
+            self.bank = match input.sensor_mps {
+                Some((mps, _)) if mps > 1.2 * least_mps => {
+                    Some(FilterBank::new(self.prior, mps, &sample))
+                }
+                Some(_) => None,
+                None => self.begin_by_forces(input, &sample),
+            };
             return;
         };
         if self.doubt.is_some() && input.sensor_mps.is_none() {
@@ -260,6 +265,7 @@ impl AirspeedMonitor {
             filter.accelerate(acceleration, dt_s);
         }
         self.add(&sample, input.sensor_mps, dt_s);
+        bank.is_by_forces &= input.sensor_mps.is_none();
         let holds = sample.models_hold();
         self.upset_s = if holds {
             if self.upset_s > LONG_UPSET_S {
@@ -362,6 +368,8 @@ impl AirspeedMonitor {
         }
         if self.doubt.is_none() && sensor_s > 0.0 {
             bank.believing.correct_by_sensor(sensor_sum_mps / sensor_s);
+        }
+        if self.doubt.is_none() && (sensor_s > 0.0 || bank.is_by_forces) {
             let seen = (2.0 * squared(bank.believing.vertical_wind_mps())).min(MOST_GUSTS_MPS2);
             self.gusts_mps2 += smoothing_factor(passed_s, GUSTS_OVER_S)
                 * (seen + LEAST_GUSTS_MPS2 - self.gusts_mps2);

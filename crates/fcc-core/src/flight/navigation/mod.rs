@@ -7,6 +7,7 @@
 
 mod agreement;
 mod air_data;
+mod airframe;
 mod airspeed_filter;
 mod airspeed_monitor;
 mod airspeed_reason;
@@ -42,7 +43,7 @@ use crate::blocks::LowPass;
 use crate::framework::Time;
 use crate::units::{GRAVITY_MPS2, KNOT_MPS};
 use agreement::Agreement;
-use airspeed_filter::AirframePrior;
+use airframe::{AirframePrior, CESSNA_172, FULL_THRUST_SHARE};
 use airspeed_monitor::{AirspeedMonitor, MonitorInput};
 use altitude_monitor::AltitudeMonitor;
 use force_sample::{ForceSample, in_g};
@@ -52,6 +53,7 @@ use sample_tracker::{SampleTracker, is_current};
 
 pub(crate) use agreement::Contradictions;
 pub use air_data::AirspeedChannel;
+pub use airframe::LearnedAirframe;
 pub(crate) use airspeed_reason::{Doubt, DoubtReason};
 pub use attitude::AttitudeChannel;
 pub use config::NavigationConfig;
@@ -138,6 +140,7 @@ impl Navigation {
         self.airframe = AirframePrior {
             reference_mps: reference_airspeed_mps,
             full_thrust_ratio: FULL_THRUST_SHARE / (throttle_per_mps2 * GRAVITY_MPS2),
+            ..self.airframe
         };
         self.monitor = AirspeedMonitor::new(self.airframe);
         self
@@ -388,13 +391,3 @@ impl Navigation {
 
 /// The stalling speed of a Cessna 172, m/s (53 kt).
 const STALL_AIRSPEED_MPS: f64 = 53.0 * KNOT_MPS;
-
-/// The aircraft of the default gains: 100 kt, throttle for 1 g of 3.63.
-const CESSNA_172: AirframePrior = AirframePrior {
-    reference_mps: 51.444_444,
-    full_thrust_ratio: 0.25,
-};
-
-/// Thrust over weight at full throttle, from the throttle per g in cruise: thrust
-/// is proportional to the square of the throttle, whose slope is 1 at a half.
-const FULL_THRUST_SHARE: f64 = 0.9;

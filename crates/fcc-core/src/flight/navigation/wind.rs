@@ -95,8 +95,8 @@ impl Wind {
     }
 
     /// Processes a reading, `dt_s` after the last, with the indicated airspeed of
-    /// a sensor that is believed, m/s.
-    pub(super) fn step(&mut self, read: &OverGround, sensor_mps: Option<f64>, dt_s: f64) {
+    /// a sensor that is believed, m/s, and its standard deviation beside gusts.
+    pub(super) fn step(&mut self, read: &OverGround, sensor_mps: Option<(f64, f64)>, dt_s: f64) {
         self.predict(read, dt_s);
         let [north, east, scale, turned] = self.x;
         let (sin, cos) = (
@@ -112,7 +112,8 @@ impl Wind {
         let gusts = squared(LEAST_GUSTS_MPS) + squared(read.gusts_mps);
         let per_reading = (2.0 * CORRELATED_S / dt_s).max(1.0);
         let mut changed = false;
-        if let Some(sensor_mps) = sensor_mps {
+        if let Some((sensor_mps, sd_mps)) = sensor_mps {
+            let gusts = gusts + squared(sd_mps / read.sqrt_density);
             let level = squared(sensor_mps / read.sqrt_density) - squared(read.climb_rate_mps);
             let sensor_mps = sqrt(level.max(0.0));
             let by = along_mps - sensor_mps * (1.0 + scale);
@@ -154,6 +155,12 @@ impl Wind {
             *scale = 0.0;
         }
         self.covariance[2] = [0.0, 0.0, squared(SCALE_SD), 0.0];
+    }
+
+    /// The airspeed that takes the place of a sensor's is wrong by this share of it, one
+    /// standard deviation.
+    pub(super) fn expect_error(&mut self, share: f64) {
+        self.covariance[2][2] = squared(share);
     }
 
     /// The true airspeed, m/s, and its standard deviation.

@@ -1,3 +1,4 @@
+use fcc_core::flight::navigation::LearnedAirframe;
 use fcc_linux::chip::ChipKind;
 
 use super::*;
@@ -23,6 +24,15 @@ fn every_number_has_a_range() {
         section.engage_at_s = Some(2.0);
     }
     config.engage.stick_takeover = Some(0.3);
+    config.autopilot.airframe = Some(
+        LearnedAirframe {
+            axial_offset: 0.0,
+            full_thrust_ratio: 0.3,
+            zero_lift_angle_rad: 0.0,
+            one_g_angle_rad: 0.05,
+        }
+        .into(),
+    );
     config.realtime.cpu_dma_latency_us = Some(0);
     let us = Some(1);
     config.budget = BudgetSection {

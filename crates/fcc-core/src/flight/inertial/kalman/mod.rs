@@ -139,6 +139,16 @@ impl KalmanNavigation {
         self.filter.turn_by_field(turns_by_field);
     }
 
+    /// From here on the rates are those of other gyroscopes.
+    pub fn change_gyroscopes(&mut self) {
+        self.filter.change_gyroscopes();
+    }
+
+    /// From here on the specific force is that of other accelerometers.
+    pub fn change_accelerometers(&mut self) {
+        self.filter.change_accelerometers();
+    }
+
     fn process(&mut self, sample: Sample) {
         if let Some(step) = self.inputs.take(&sample, &self.history, 0) {
             self.rest_or_advance(&step);

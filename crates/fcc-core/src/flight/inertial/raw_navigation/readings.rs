@@ -1,8 +1,15 @@
-//! What a solution says in the place of readings.
+//! Which readings are new, and what a solution says in the place of others.
+
+use libm::hypot;
+
+use super::super::stuck::MOVED_MPS;
 
 use crate::flight::inertial::Solution;
 use crate::flight::orientation::euler_from_quaternion;
-use crate::flight::{Attitude, BodyRates, SpecificForce};
+use crate::flight::{
+    Attitude, BodyRates, GnssFix, Measurements, PlantState, SpecificForce, Velocity,
+};
+use crate::framework::schema::{Schema, in_range};
 use crate::framework::{Reading, Time};
 
 /// Roll and pitch less certain than this are none, rad.
@@ -75,4 +82,32 @@ pub(super) fn is_certain(sigma: f64, usable: f64) -> bool {
 /// A bias that the method does not know is none.
 pub(super) fn known(bias: f64) -> f64 {
     if bias.is_finite() { bias } else { 0.0 }
+}
+
+/// Whether the plant is another, or was put somewhere else.
+pub(super) fn is_elsewhere(measured: &Measurements) -> bool {
+    let state = measured.plant.value.state;
+    !measured.plant.is_never() && matches!(state, PlantState::Jumped | PlantState::Reloaded)
+}
+
+/// Whether a reading is later than the last one, not of the future, and possible;
+/// then it becomes the last one.
+pub(super) fn is_new<T: Schema>(last: &mut Reading<T>, reading: &Reading<T>, now: Time) -> bool {
+    let is_later = !reading.is_never() && reading.taken > last.taken && reading.taken <= now;
+    let is_new = is_later && in_range(&reading.value);
+    if is_new {
+        *last = *reading;
+    }
+    is_new
+}
+
+/// Whether a receiver gives the place again that it gave before, although it
+/// says that it moves.
+pub(super) fn repeats(last: &GnssFix, fix: &GnssFix) -> bool {
+    let Velocity {
+        north_mps,
+        east_mps,
+        ..
+    } = fix.velocity;
+    fix.position == last.position && hypot(north_mps, east_mps) > MOVED_MPS
 }

@@ -1,5 +1,7 @@
+use libm::hypot;
+
 use super::*;
-use crate::flight::{BodyRates, MagneticField, Position, SpecificForce};
+use crate::flight::{BodyRates, MagneticField, PlantState, Position, SpecificForce};
 
 /// At rest, the nose to magnetic east.
 fn raw(now: Time, [north_ut, down_ut]: [f64; 2]) -> Measurements {

@@ -1,5 +1,6 @@
 use libm::{cos, sin};
 
+use super::super::airframe::LearnedAirframe;
 use super::super::force_sample::acceleration_mps2;
 use super::super::upward::Upward;
 use super::*;
@@ -7,6 +8,7 @@ use super::*;
 const PRIOR: AirframePrior = AirframePrior {
     reference_mps: 51.444,
     full_thrust_ratio: 0.25,
+    learned: None,
 };
 
 fn rad(deg: f64) -> f64 {
@@ -59,7 +61,7 @@ fn the_angle_of_attack_is_right_inverted() {
 #[test]
 fn the_airspeed_is_found_in_a_turn_with_60_degrees_of_bank() {
     let level = level_turn(0.0);
-    let mut filter = AirspeedFilter::new(PRIOR, 51.444, &level);
+    let mut filter = AirspeedFilter::new(PRIOR, (51.444, 1.0), &level);
     for _ in 0..300 {
         filter.correct(&level, 0.1);
         filter.correct_by_sensor(51.444);
@@ -76,4 +78,33 @@ fn the_airspeed_is_found_in_a_turn_with_60_degrees_of_bank() {
         "{}",
         filter.airspeed_mps()
     );
+}
+
+/// Of the aircraft above: without lift at no angle; its drag at half throttle, 0.125, 0.09
+/// and 0.02 of the weight, leaves that offset.
+const LEARNED: LearnedAirframe = LearnedAirframe {
+    axial_offset: -0.015,
+    full_thrust_ratio: 0.25,
+    zero_lift_angle_rad: 0.0,
+    one_g_angle_rad: LIFT_ANGLE_RAD,
+};
+
+/// 20 kt wrong at first, in level flight and in a turn, without any sensor.
+#[test]
+fn a_learned_aircraft_shows_its_airspeed_without_a_sensor() {
+    for (bank_deg, begins_mps) in [(0.0, 41.2), (0.0, 61.7), (30.0, 61.7)] {
+        let sample = level_turn(bank_deg);
+        let prior = AirframePrior {
+            learned: Some(LEARNED),
+            ..PRIOR
+        };
+        let mut filter = AirspeedFilter::new(prior, (begins_mps, 7.0), &sample);
+        for _ in 0..600 {
+            filter.accelerate(acceleration_mps2(&sample, filter.airspeed_mps()), 0.1);
+            filter.correct(&sample, 0.1);
+        }
+        let error_mps = filter.airspeed_mps() - 51.444;
+        assert!(error_mps.abs() < 1.5, "{bank_deg}: {error_mps}");
+        assert!(error_mps.abs() < filter.sd_mps(), "{bank_deg}");
+    }
 }

@@ -13,6 +13,8 @@ const LOST_S: f64 = 1.5;
 /// airspeed at which a difference from the forces counts, must last for this time, s.
 const ERROR_SDS: f64 = 3.5;
 const DOUBTED_AFTER_S: f64 = 5.0;
+/// That of the airspeed then, m/s.
+const RIGHT_SD_MPS: f64 = 1.0;
 
 impl AirspeedMonitor {
     /// Whether the velocity over the ground, with the wind as it was when the older copy
@@ -45,7 +47,14 @@ impl AirspeedMonitor {
         let read = &read;
         let passed_s = core::mem::take(&mut self.ground_s).min(LOST_S);
         let believed = input.sensor_mps.filter(|_| self.doubt.is_none());
-        let believed_mps = believed.map(|(mps, _)| mps);
+        let believed_mps = believed.map(|(mps, _)| (mps, 0.0));
+        if bank.is_by_forces {
+            let forces = &bank.older;
+            let found = (forces.airspeed_mps(), forces.sd_mps());
+            bank.believing.wind.step(read, Some(found), passed_s);
+            bank.believing.correct_by_ground(read, passed_s);
+            return false;
+        }
         bank.believing.wind.step(read, believed_mps, passed_s);
         bank.older.wind.step(read, None, passed_s);
         bank.younger.wind.step(read, None, passed_s);
@@ -75,7 +84,7 @@ impl AirspeedMonitor {
         self.contradicted_s = 0.0;
         // What the models have learned came from that sensor.
         let right_mps = sensor_mps * (1.0 + error);
-        bank.older = AirspeedFilter::new(self.prior, right_mps, sample);
+        bank.older = AirspeedFilter::new(self.prior, (right_mps, RIGHT_SD_MPS), sample);
         bank.older.wind = bank.believing.wind;
         (bank.younger, bank.younger_s) = (bank.older, 0.0);
         self.difference.reset(sensor_mps - right_mps);

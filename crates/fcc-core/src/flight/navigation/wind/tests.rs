@@ -27,7 +27,7 @@ fn flown(reads: f64, variation_deg: f64) -> Wind {
         let at_s = f64::from(tick) * DT_S;
         let turned_deg = 90.0 * libm::floor(at_s / 90.0) + (3.0 * (at_s % 90.0)).min(90.0);
         let read = over_ground(76.0 + turned_deg, variation_deg);
-        wind.step(&read, Some(reads * KT * AIRSPEED_KT), DT_S);
+        wind.step(&read, Some((reads * KT * AIRSPEED_KT, 0.0)), DT_S);
     }
     wind
 }
@@ -73,7 +73,7 @@ fn the_error_of_the_sensor_is_uncertain_in_straight_flight() {
         let reads = 1.0 + 0.1 * f64::from(tick) / 3_000.0;
         wind.step(
             &over_ground(76.0, 0.0),
-            Some(reads * KT * AIRSPEED_KT),
+            Some((reads * KT * AIRSPEED_KT, 0.0)),
             DT_S,
         );
     }
