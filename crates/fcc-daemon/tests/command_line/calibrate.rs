@@ -201,3 +201,34 @@ fn a_terminal_shows_the_coverage_and_an_interruption_changes_nothing() {
     assert!(seen.contains("interrupted: nothing was changed"), "{seen}");
     assert!(!folder.path().join(FILE).exists());
 }
+
+/// A gyroscope of the kernel's Industrial I/O: what devices give has the time of
+/// the loop's clock.
+#[test]
+fn a_sensor_of_the_kernel_is_calibrated_in_real_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let device = folder.path().join("iio:device0");
+    fs::create_dir(&device).unwrap();
+    for (file, content) in [
+        ("name", "imu"),
+        ("in_anglvel_x_raw", "10"),
+        ("in_anglvel_y_raw", "0"),
+        ("in_anglvel_z_raw", "-20"),
+        ("in_anglvel_scale", "0.001"),
+    ] {
+        fs::write(device.join(file), content).unwrap();
+    }
+    let sensor = format!(
+        "actuator = []\n[[sensor]]\nkind = \"iio\"\ndevice = \"imu\"\nsysfs = {:?}\n",
+        folder.path()
+    );
+    fs::write(folder.path().join("raw.toml"), sensor).unwrap();
+    let words = ["calibrate", "gyroscope", "raw.toml", "--json"];
+    let done = fccd(folder.path(), &words).output().unwrap();
+    assert!(done.status.success(), "{}", said(&done));
+    let found: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+    assert_eq!(found["found"]["place"], "sensor[0]");
+    // 0.01 and -0.02 rad/s.
+    let bias = &found["found"]["keys"]["gyroscope"]["bias_degps"];
+    assert_eq!(bias.to_string(), "[0.5729578,0.0,-1.14591559]");
+}

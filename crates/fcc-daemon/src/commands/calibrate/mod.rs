@@ -15,6 +15,7 @@ use fcc_flight::calibrate::{
     CalibrationFile, CalibrationKind, CalibrationSession, Entry, SessionError, apply,
 };
 use fcc_flight::config::Config;
+use fcc_linux::monotonic;
 use indicatif::ProgressBar;
 use serde::Serialize;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
@@ -131,7 +132,13 @@ fn guide(
         if !args.lockstep {
             thread::sleep(due.saturating_sub(begun.elapsed()));
         }
-        let now = Time::from_nanos(i64::try_from(due.as_nanos()).unwrap_or(i64::MAX));
+        // Devices stamp what they give on the loop's clock, and nothing is used
+        // that was taken after the tick.
+        let now = if args.lockstep {
+            Time::from_nanos(i64::try_from(due.as_nanos()).unwrap_or(i64::MAX))
+        } else {
+            monotonic()
+        };
         let tick = Tick {
             number,
             scheduled: now,
