@@ -232,3 +232,49 @@ fn a_sensor_of_the_kernel_is_calibrated_in_real_time() {
     let bias = &found["found"]["keys"]["gyroscope"]["bias_degps"];
     assert_eq!(bias.to_string(), "[0.5729578,0.0,-1.14591559]");
 }
+
+/// A servo board over UDP that gives 6 Pa, as X-Plane gives a dataref: a
+/// subscription is `RREF`, a zero, the frequency, a number and the name, and the
+/// answer the number and the value.
+#[test]
+fn the_pitot_tube_of_a_servo_board_is_calibrated() {
+    use std::net::UdpSocket;
+    use std::thread;
+    use std::time::Duration;
+
+    let board = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let every = Some(Duration::from_millis(20));
+    board.set_read_timeout(every).unwrap();
+    let address = board.local_addr().unwrap();
+    thread::spawn(move || {
+        let mut subscribed = None;
+        let mut bytes = [0; 2048];
+        loop {
+            if let Ok((length, from)) = board.recv_from(&mut bytes) {
+                let name = b"fccd/servo_board/differential_pressure_pa";
+                let asked = bytes[..length].windows(name.len()).any(|part| part == name);
+                if asked && bytes.starts_with(b"RREF\0") && bytes[5..9] != [0; 4] {
+                    subscribed = Some((from, [bytes[9], bytes[10], bytes[11], bytes[12]]));
+                }
+            }
+            if let Some((to, number)) = subscribed {
+                let value = 6.0_f32.to_le_bytes();
+                let answer = [b"RREF,".as_slice(), &number, &value].concat();
+                let _ = board.send_to(&answer, to);
+            }
+        }
+    });
+    let folder = tempfile::tempdir().unwrap();
+    let config = format!(
+        "[servo-board]\naddress = \"{address}\"\n[[sensor]]\nkind = \"servo-board\"\n\
+         [[sensor]]\nkind = \"x-plane\"\nsimulator = \"127.0.0.1:9\"\n\
+         [[actuator]]\nkind = \"servo-board\"\n"
+    );
+    fs::write(folder.path().join("raw.toml"), config).unwrap();
+    let words = ["calibrate", "airspeed", "raw.toml"];
+    let done = fccd(folder.path(), &words).output().unwrap();
+    assert!(done.status.success(), "{}", said(&done));
+    let stored = fs::read_to_string(folder.path().join(FILE)).unwrap();
+    assert!(stored.contains("place = \"servo-board\""), "{stored}");
+    assert!(stored.contains("bias_pa = 6.0"), "{stored}");
+}

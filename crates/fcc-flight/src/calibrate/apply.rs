@@ -115,14 +115,15 @@ fn staleness(config: &Config, entry: &Entry, unix_s: u64) -> Option<String> {
 
 /// Puts an entry's keys over those of its place.
 fn put(config: &mut Config, entry: &Entry) -> Result<(), String> {
-    let Some(section) = config.calibration_of(&entry.place) else {
+    let mut sources = config.raw_sources().into_iter();
+    let Some(source) = sources.find(|source| source.place == entry.place) else {
         return Ok(());
     };
-    let mut values = Table::try_from(*section).map_err(|error| error.to_string())?;
+    let mut values = Table::try_from(source.calibration).map_err(|error| error.to_string())?;
     over(&mut values, &entry.keys);
-    *section = values
-        .try_into()
-        .map_err(|error: toml::de::Error| error.message().to_owned())?;
+    let section = values.try_into();
+    let section = section.map_err(|error: toml::de::Error| error.message().to_owned())?;
+    config.set_calibration(&entry.place, section);
     Ok(())
 }
 

@@ -36,14 +36,14 @@ pub struct Entry {
     /// aligned: `mounting` and `rotation_deg`.
     #[serde(default, skip_serializing_if = "Table::is_empty")]
     pub aligned_with: Table,
-    /// The keys below the place's `calibration` and their values.
+    /// The keys of the place's calibration and their values.
     pub keys: Table,
 }
 
 /// When something was found, and by what.
 #[derive(Clone, Debug)]
 pub(super) struct Circumstances<'a> {
-    pub(super) source: &'a RawSource<'a>,
+    pub(super) source: &'a RawSource,
     pub(super) unix_s: u64,
     pub(super) temperature_k: Option<f64>,
     pub(super) accelerometer: Axes,

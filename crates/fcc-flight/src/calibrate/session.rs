@@ -23,8 +23,8 @@ const LOOKING_S: f64 = 0.5;
 pub enum SessionError {
     /// Nothing gives raw readings.
     #[error(
-        "the configuration has no raw sensors: give built-in.raw_sensors, or list sensors that \
-         have a calibration"
+        "the configuration has no raw sensors: give built-in.raw_sensors, or list sensors of a \
+         board or the servo board"
     )]
     NoSources,
     /// There is no such source.
@@ -100,21 +100,26 @@ impl CalibrationSession {
         let mut length_s = None;
         let mut opened = Vec::new();
         for source in sources {
-            if let Some(board) = config.board_sensor_of(&source.place) {
-                let (sensor, _) = uncalibrated(&board)?;
-                opened.push(Opened {
-                    place: source.place,
-                    sensor: Box::new(sensor),
-                    measured: Measurements::default(),
-                });
+            let sensor: Box<dyn Sensor<Measurements>> = if let Some(board) =
+                config.board_sensor_of(&source.place)
+            {
+                Box::new(uncalibrated(&board)?.0)
             } else if let Some(handled) = in_hands(config, &source, kind, fault) {
                 length_s = Some(handled.length_s());
-                opened.push(Opened {
-                    place: source.place,
-                    sensor: Box::new(handled),
-                    measured: Measurements::default(),
-                });
-            }
+                Box::new(handled)
+            } else if let (true, Some(section)) = (source.is_servo_board(), &config.servo_board) {
+                // Its actuator sends nothing unless it is driven.
+                let (sensor, _) =
+                    fcc_servo_link::open(&section.to_link(0)).map_err(AssemblyError::from)?;
+                sensor
+            } else {
+                continue;
+            };
+            opened.push(Opened {
+                place: source.place,
+                sensor,
+                measured: Measurements::default(),
+            });
         }
         Ok(Self {
             kind,
@@ -166,7 +171,7 @@ impl CalibrationSession {
     }
 
     /// The key of the source that is calibrated, and which sensor it is.
-    pub fn source(&self) -> Option<RawSource<'_>> {
+    pub fn source(&self) -> Option<RawSource> {
         let (at, _) = self.chosen.as_ref()?;
         let place = &self.opened.get(*at)?.place;
         let mut sources = self.config.raw_sources().into_iter();
@@ -262,7 +267,7 @@ impl CalibrationSession {
 /// The sensors of the built-in aircraft in a simulated person's hands.
 fn in_hands(
     config: &Config,
-    source: &RawSource<'_>,
+    source: &RawSource,
     kind: CalibrationKind,
     fault: Option<HandlingFault>,
 ) -> Option<HandledSensors> {
