@@ -121,9 +121,9 @@ fn put(config: &mut Config, entry: &Entry) -> Result<(), String> {
     };
     let mut values = Table::try_from(source.calibration).map_err(|error| error.to_string())?;
     over(&mut values, &entry.keys);
-    let section = values.try_into();
+    let section: Result<CalibrationSection, _> = values.try_into();
     let section = section.map_err(|error: toml::de::Error| error.message().to_owned())?;
-    config.set_calibration(&entry.place, section);
+    config.set_calibration(&entry.place, &section);
     Ok(())
 }
 
@@ -140,6 +140,7 @@ fn over(values: &mut Table, keys: &Table) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::LockedCalibrationFile;
     use super::*;
 
     const DAY: u64 = 86_400;
@@ -170,9 +171,9 @@ mod tests {
     fn stored(entries: &[Entry]) -> (tempfile::TempDir, PathBuf) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("state").join("fccd.calibration.toml");
-        let mut file = CalibrationFile::default();
+        let mut file = LockedCalibrationFile::open(path.clone()).unwrap();
         for entry in entries {
-            file.add(entry.clone(), &path).unwrap();
+            file.add(entry.clone()).unwrap();
         }
         (folder, path)
     }
@@ -284,6 +285,11 @@ mod tests {
             CalibrationFile::read(&path).unwrap().calibration,
             [of("2.0")]
         );
+        let first = LockedCalibrationFile::open(path.clone()).unwrap();
+        let second = LockedCalibrationFile::open(path.clone()).unwrap_err();
+        assert!(second.to_string().contains("another fccd calibrate"));
+        drop(first);
+        assert!(LockedCalibrationFile::open(path.clone()).is_ok());
         let link = path.with_file_name("link.calibration.toml");
         std::os::unix::fs::symlink(&path, &link).unwrap();
         let error = CalibrationFile::read(&link).unwrap_err().to_string();

@@ -113,7 +113,7 @@ impl Config {
     }
 
     /// Gives a source another calibration.
-    pub(crate) fn set_calibration(&mut self, place: &str, calibration: CalibrationSection) {
+    pub(crate) fn set_calibration(&mut self, place: &str, calibration: &CalibrationSection) {
         if place == SERVO_BOARD {
             if let Some(section) = &mut self.servo_board {
                 section.differential_pressure = calibration.differential_pressure;
@@ -129,7 +129,7 @@ impl Config {
             entry.and_then(|(_, entry)| entry.calibration_mut())
         };
         if let Some(section) = section {
-            *section = calibration;
+            *section = *calibration;
         }
     }
 
@@ -203,8 +203,8 @@ mod tests {
         );
         let mut of = CalibrationSection::default();
         of.magnetometer.bias_ut = [1.0, 2.0, 3.0];
-        config.set_calibration("sensor[2]", of);
-        config.set_calibration("sensor[1]", of);
+        config.set_calibration("sensor[2]", &of);
+        config.set_calibration("sensor[1]", &of);
         let biases = config.raw_sources();
         let biases = biases.iter().map(|of| of.calibration.magnetometer.bias_ut);
         assert_eq!(
@@ -227,7 +227,7 @@ mod tests {
         let mut of = source.calibration;
         assert_eq!(of.differential_pressure.bias_pa, 2.0);
         of.differential_pressure.bias_pa = -3.5;
-        config.set_calibration("servo-board", of);
+        config.set_calibration("servo-board", &of);
         let written = config.to_toml().unwrap();
         assert!(written.contains("bias_pa = -3.5"), "{written}");
     }

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use fcc_core::flight::calibration::{GuidedCalibration, MountingWay, Next};
 use fcc_core::framework::{Tick, Time};
 use fcc_flight::calibrate::{
-    CalibrationFile, CalibrationKind, CalibrationSession, Entry, SessionError, apply,
+    CalibrationKind, CalibrationSession, Entry, LockedCalibrationFile, SessionError, apply,
 };
 use fcc_flight::config::Config;
 use fcc_linux::monotonic;
@@ -51,7 +51,6 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<Exit, Failure> {
     let (mut config, _) = Config::load_with_text(&args.config)?;
     let path = config.calibration_file();
     let wrong = |error| Failure::new(format_args!("{}: {error}", path.display()));
-    let mut file = CalibrationFile::read(&path).map_err(wrong)?;
     apply_calibration(&mut config)?;
     let way = if args.level_only {
         MountingWay::LevelOnly
@@ -67,19 +66,22 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<Exit, Failure> {
             "--lockstep is for the built-in aircraft, whose time follows that of the loop",
         ));
     }
+    // Before the first step: what cannot be stored need not be measured.
+    let file = (!args.dry_run).then(|| LockedCalibrationFile::open(path.clone()));
+    let file = file.transpose().map_err(wrong)?;
     guide(args, &config, &mut session)?;
     let found = session.finish().map_err(|refusal| {
         let kind = args.kind.name();
         let message = format_args!("no calibration of the {kind}: {refusal}. Nothing was changed");
         Failure::of(Exit::CalibrationRefused, message.to_string())
     })?;
-    let stored = (!args.dry_run).then(|| path.display().to_string());
-    if !args.dry_run {
-        file.add(found.clone(), &path).map_err(wrong)?;
+    let is_stored = file.is_some();
+    if let Some(mut file) = file {
+        file.add(found.clone()).map_err(wrong)?;
     }
     let printed = Printed {
         found: &found,
-        file: stored,
+        file: is_stored.then(|| path.display().to_string()),
     };
     if args.json {
         return Ok(output::json(&printed, Exit::Success));
