@@ -32,12 +32,13 @@ pub enum CalibrationFileError {
         "is of another version of fccd ({0}, and this one reads {VERSION}): remove it, and calibrate again"
     )]
     Version(u32),
-    /// It was damaged, or edited.
+    /// It was damaged, or edited; there may be a copy of the one before.
     #[error(
-        "is damaged, or was edited: put back its copy with the extension old.toml, or remove it \
-         and calibrate again; values of your own belong into the configuration's calibration"
+        "is damaged, or was edited: {}remove it and calibrate again; values of your own belong \
+         into the configuration's calibration",
+        .0.as_ref().map_or_else(String::new, |copy| format!("put back {}, or ", copy.display()))
     )]
-    Damaged,
+    Damaged(Option<PathBuf>),
     /// A value cannot be used.
     #[error("cannot be used: {0}; remove it, and calibrate again")]
     Unusable(String),
@@ -54,7 +55,7 @@ impl From<Unsealed> for CalibrationFileError {
         match unsealed {
             Unsealed::Foreign => Self::Foreign,
             Unsealed::Version(version) => Self::Version(version),
-            Unsealed::Damaged => Self::Damaged,
+            Unsealed::Damaged => Self::Damaged(None),
         }
     }
 }
@@ -75,16 +76,27 @@ impl CalibrationFile {
     /// When it cannot be read, is damaged, or was not written by this program.
     pub fn read(path: &Path) -> Result<Self, CalibrationFileError> {
         match fcc_record::read_own_file(path, MOST_BYTES) {
-            Ok(bytes) => Self::decode(&bytes),
-            Err(error) if error.kind() == ErrorKind::NotFound => Ok(Self::default()),
+            Ok(bytes) => Self::decode(&bytes).map_err(|error| match error {
+                CalibrationFileError::Damaged(_) => {
+                    let copy = backup(path);
+                    CalibrationFileError::Damaged(copy.exists().then_some(copy))
+                }
+                other => other,
+            }),
+            // Without its folder it does not exist either; who writes there says so.
+            Err(error)
+                if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) =>
+            {
+                Ok(Self::default())
+            }
             Err(error) => Err(CalibrationFileError::Unreadable(error)),
         }
     }
 
     fn decode(bytes: &[u8]) -> Result<Self, CalibrationFileError> {
         let body = sealed::open(NAME, VERSION, bytes)?;
-        let text = std::str::from_utf8(body).map_err(|_| CalibrationFileError::Damaged)?;
-        toml::from_str(text).map_err(|_| CalibrationFileError::Damaged)
+        let text = std::str::from_utf8(body).map_err(|_| CalibrationFileError::Damaged(None))?;
+        toml::from_str(text).map_err(|_| CalibrationFileError::Damaged(None))
     }
 }
 
