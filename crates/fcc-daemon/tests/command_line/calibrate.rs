@@ -83,7 +83,10 @@ fn all_kinds_are_found_stored_and_flown() {
 #[test]
 fn poor_handling_is_refused_and_changes_nothing() {
     let folder = tempfile::tempdir().unwrap();
-    with_config(folder.path(), "");
+    // As if its accelerometer had been calibrated and mounted.
+    let given = "[built-in.calibration.accelerometer]\nbias_mps2 = [1.25, 1.23, 0.18]\n\
+                 rotation_deg = [-0.6, 0.5, 0.0]\n";
+    with_config(folder.path(), given);
     for (kind, fault, expected) in [
         ("accelerometer", "ends-early", "of 12 are there"),
         ("gyroscope", "restless", "while it was to lie still"),
@@ -142,11 +145,9 @@ fn a_damaged_file_and_another_sensors_are_not_used() {
     fs::write(&path, good.replace("unix_s = 1", "unix_s = 2")).unwrap();
     for refused in [fly(&[]), calibrate(folder.path(), &["airspeed"])] {
         assert_eq!(refused.status.code(), Some(1), "{}", said(&refused));
-        assert!(
-            said(&refused).contains("is damaged, or was edited"),
-            "{}",
-            said(&refused)
-        );
+        // There is no copy of a first one.
+        let expected = "is damaged, or was edited: remove it and calibrate again";
+        assert!(said(&refused).contains(expected), "{}", said(&refused));
     }
     with_config(folder.path(), "[calibration]\nenabled = false\n");
     let without = fly(&[]);
@@ -200,6 +201,56 @@ fn a_terminal_shows_the_coverage_and_an_interruption_changes_nothing() {
     assert_eq!(child.wait().unwrap().code(), Some(1));
     assert!(seen.contains("interrupted: nothing was changed"), "{seen}");
     assert!(!folder.path().join(FILE).exists());
+}
+
+#[test]
+fn an_order_in_which_errors_remain_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    with_config(folder.path(), "");
+    let refused = |kind: &str, expected: &str| {
+        let refused = calibrate(folder.path(), &[kind]);
+        assert_eq!(refused.status.code(), Some(18), "{}", said(&refused));
+        assert!(said(&refused).contains(expected), "{}", said(&refused));
+    };
+    let first = "calibrate the accelerometer of built-in first";
+    refused("magnetometer", first);
+    refused("mounting", first);
+    assert!(
+        calibrate(folder.path(), &["accelerometer"])
+            .status
+            .success()
+    );
+    refused("magnetometer", "calibrate the mounting of built-in first");
+    assert!(calibrate(folder.path(), &["mounting"]).status.success());
+    let done = calibrate(folder.path(), &["magnetometer"]);
+    assert!(done.status.success(), "{}", said(&done));
+    // What was found counts only where it is used.
+    with_config(folder.path(), "[calibration]\nenabled = false\n");
+    refused("mounting", "calibration.enabled is false");
+    let done = calibrate(folder.path(), &["gyroscope"]);
+    let printed = String::from_utf8_lossy(&done.stdout).into_owned();
+    assert!(printed.contains("flights do not use it"), "{printed}");
+}
+
+#[test]
+fn what_cannot_be_stored_is_refused_before_the_first_step() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("file"), "").unwrap();
+    for (file, code, expected) in [
+        ("/proc/x.toml", 1, "fccd: /proc/x.toml: cannot be written: "),
+        ("file/x.toml", 1, "fccd: file/x.toml: cannot be written: "),
+        ("", 2, "calibration.file: is no name of a file"),
+    ] {
+        let section = format!("[calibration]\nfile = {file:?}\n");
+        with_config(folder.path(), &section);
+        let refused = calibrate(folder.path(), &["gyroscope"]);
+        assert_eq!(refused.status.code(), Some(code), "{}", said(&refused));
+        assert!(said(&refused).contains(expected), "{}", said(&refused));
+        assert!(!said(&refused).contains("hands off"), "{}", said(&refused));
+    }
+    with_config(folder.path(), "");
+    let refused = calibrate(folder.path(), &["gyroscope", "--level-only"]);
+    assert_eq!(refused.status.code(), Some(2), "{}", said(&refused));
 }
 
 /// A gyroscope of the kernel's Industrial I/O: what devices give has the time of

@@ -32,10 +32,14 @@ const REDRAW_EVERY: Duration = Duration::from_millis(100);
 pub(super) fn apply_calibration(config: &mut Config) -> Result<(), Failure> {
     let applied = apply(config, unix_s())
         .map_err(|(file, error)| Failure::new(format_args!("{}: {error}", file.display())))?;
-    for remark in applied.remarks {
+    say(&applied.remarks);
+    Ok(())
+}
+
+fn say(remarks: &[String]) {
+    for remark in remarks {
         output::message(format_args!("fccd: {remark}"));
     }
-    Ok(())
 }
 
 /// What is printed with `--json`.
@@ -44,14 +48,21 @@ struct Printed<'a> {
     found: &'a Entry,
     /// Where it was stored; none if nothing was changed.
     file: Option<String>,
+    /// Whether flights use what is stored.
+    enabled: bool,
 }
 
 /// Calibrates a sensor.
 pub(super) fn calibrate(args: &CalibrateArgs) -> Result<Exit, Failure> {
-    let (mut config, _) = Config::load_with_text(&args.config)?;
+    let (config, _) = Config::load_with_text(&args.config)?;
+    if args.level_only && args.kind != CalibrationKind::Mounting {
+        return Err(Failure::of(
+            Exit::Usage,
+            "--level-only is for the mounting: leave it out",
+        ));
+    }
     let path = config.calibration_file();
     let wrong = |error| Failure::new(format_args!("{}: {error}", path.display()));
-    apply_calibration(&mut config)?;
     let way = if args.level_only {
         MountingWay::LevelOnly
     } else {
@@ -59,7 +70,8 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<Exit, Failure> {
     };
     let place = args.sensor.clone();
     let session = CalibrationSession::open(&config, args.kind, way, place, args.fault, unix_s());
-    let mut session = session.map_err(|error| Failure::of(Exit::Usage, error))?;
+    let mut session = session.map_err(failure)?;
+    say(session.remarks());
     if args.lockstep && session.length_s().is_none() {
         return Err(Failure::of(
             Exit::Usage,
@@ -82,6 +94,7 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<Exit, Failure> {
     let printed = Printed {
         found: &found,
         file: is_stored.then(|| path.display().to_string()),
+        enabled: config.calibration.enabled,
     };
     if args.json {
         return Ok(output::json(&printed, Exit::Success));
@@ -101,7 +114,12 @@ fn text(printed: &Printed<'_>) -> String {
     let kind = printed.found.kind.name();
     let keys = toml::to_string(keys).unwrap_or_default();
     let stored = match &printed.file {
-        Some(file) => format!("stored in {file}; flights use it instead of the same keys"),
+        Some(file) if printed.enabled => {
+            format!("stored in {file}; flights use it instead of the same keys")
+        }
+        Some(file) => {
+            format!("stored in {file}; flights do not use it, for calibration.enabled is false")
+        }
         None => "not stored (--dry-run)".to_owned(),
     };
     format!(
@@ -148,19 +166,22 @@ fn guide(
             dt_s: period.as_secs_f64(),
             ..Tick::default()
         };
-        session.tick(&tick).map_err(|error| {
-            let exit = match error {
-                SessionError::Silent(_) => Exit::Failure,
-                _ => Exit::Usage,
-            };
-            Failure::of(exit, error)
-        })?;
+        session.tick(&tick).map_err(failure)?;
         screen.show(args.kind, session);
         let is_complete = session.guided().is_some_and(GuidedCalibration::is_complete);
         if is_complete || due.as_secs_f64() >= limit_s {
             return Ok(());
         }
     }
+}
+
+fn failure(error: SessionError) -> Failure {
+    let exit = match error {
+        SessionError::Silent(_) | SessionError::File { .. } => Exit::Failure,
+        SessionError::Order { .. } => Exit::CalibrationRefused,
+        _ => Exit::Usage,
+    };
+    Failure::of(exit, error)
 }
 
 fn stopped_by_signals() -> Result<Arc<AtomicBool>, Failure> {
