@@ -93,7 +93,7 @@ fn poor_handling_is_refused_and_changes_nothing() {
         (
             "magnetometer",
             "magnet",
-            "no calibration of the magnetometer: ",
+            "by which the samples have one strength",
         ),
     ] {
         let refused = calibrate(folder.path(), &[kind, "--fault", fault]);

@@ -173,6 +173,13 @@ mod tests {
                      (up to 500 ms)";
         assert!(message.starts_with(words), "{message}");
         Config::parse(&format!("{RAW}longest_delay_ms = 400\n{late}"), "f").unwrap();
+        let board = "[navigation]\nmethod = \"kalman\"\n[servo-board]\nserial = \"/dev/ttyUSB0\"\n\
+                     [servo-board.differential_pressure]\ndelay_ms = 400\n\
+                     [[sensor]]\nkind = \"icm42688\"\nspi = \"/dev/spidev0.0\"\n\
+                     [[sensor]]\nkind = \"servo-board\"\n[[actuator]]\nkind = \"servo-board\"\n";
+        let words = "f:6: servo-board.differential_pressure.delay_ms: is 400";
+        let message = refused(board);
+        assert!(message.starts_with(words), "{message}");
         // It says nothing of what navigation does not use, or is not used.
         for text in [
             format!("{RAW}[built-in.calibration.range]\ndelay_ms = 900\n"),
