@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use toml::{Table, Value};
 
-use super::entry::turn;
+use super::entry::{given_of, turn};
 use super::{CalibrationFile, CalibrationFileError, CalibrationKind, Entry};
 use crate::config::{CalibrationSection, Config};
 use fcc_core::flight::calibration::Axes;
@@ -71,17 +71,33 @@ pub fn apply(config: &mut Config, unix_s: u64) -> Result<Applied, (PathBuf, Cali
     Ok(applied)
 }
 
-/// Why an entry is of other sensors, if it is.
+/// Why an entry is of other sensors, or of another configuration of them, if it is.
 fn what_differs(config: &Config, entry: &Entry) -> Option<String> {
     let sources = config.raw_sources();
     let Some(source) = sources.iter().find(|source| source.place == entry.place) else {
         return Some(format!("{} gives no raw readings here", entry.place));
     };
-    (source.sensor != entry.sensor).then(|| {
-        format!(
-            "it was made for {}, and here is {}",
-            entry.sensor, source.sensor
-        )
+    if source.sensor != entry.sensor {
+        let (made_for, here) = (&entry.sensor, &source.sensor);
+        return Some(format!("it was made for {made_for}, and here is {here}"));
+    }
+    let now = given_of(config, &entry.place, &entry.keys);
+    let changed = changed_key(&now, &entry.replaced)?;
+    // What was found may be given in the configuration, too.
+    (now != entry.keys).then(|| {
+        let key = source.calibration_key();
+        format!("{key}.{changed} was changed since; calibrate it again, or change that back")
+    })
+}
+
+/// The first key of another value than before.
+fn changed_key(now: &Table, before: &Table) -> Option<String> {
+    let mut keys = before.iter();
+    keys.find_map(|(key, before)| match (now.get(key), before) {
+        (Some(Value::Table(now)), Value::Table(before)) => {
+            Some(format!("{key}.{}", changed_key(now, before)?))
+        }
+        (now, before) => (now != Some(before)).then(|| key.clone()),
     })
 }
 
@@ -115,14 +131,15 @@ fn staleness(config: &Config, entry: &Entry, unix_s: u64) -> Option<String> {
 
 /// Puts an entry's keys over those of its place.
 fn put(config: &mut Config, entry: &Entry) -> Result<(), String> {
-    let Some(section) = config.calibration_of(&entry.place) else {
+    let mut sources = config.raw_sources().into_iter();
+    let Some(source) = sources.find(|source| source.place == entry.place) else {
         return Ok(());
     };
-    let mut values = Table::try_from(*section).map_err(|error| error.to_string())?;
+    let mut values = Table::try_from(source.calibration).map_err(|error| error.to_string())?;
     over(&mut values, &entry.keys);
-    *section = values
-        .try_into()
-        .map_err(|error: toml::de::Error| error.message().to_owned())?;
+    let section: Result<CalibrationSection, _> = values.try_into();
+    let section = section.map_err(|error: toml::de::Error| error.message().to_owned())?;
+    config.set_calibration(&entry.place, &section);
     Ok(())
 }
 
@@ -139,6 +156,7 @@ fn over(values: &mut Table, keys: &Table) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::LockedCalibrationFile;
     use super::*;
 
     const DAY: u64 = 86_400;
@@ -162,6 +180,7 @@ mod tests {
             unit: kind.unit().to_owned(),
             temperature_k: None,
             aligned_with: Table::new(),
+            replaced: Table::new(),
             keys: toml::from_str(keys).unwrap(),
         }
     }
@@ -169,9 +188,9 @@ mod tests {
     fn stored(entries: &[Entry]) -> (tempfile::TempDir, PathBuf) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("state").join("fccd.calibration.toml");
-        let mut file = CalibrationFile::default();
+        let mut file = LockedCalibrationFile::open(path.clone()).unwrap();
         for entry in entries {
-            file.add(entry.clone(), &path).unwrap();
+            file.add(entry.clone()).unwrap();
         }
         (folder, path)
     }
@@ -232,6 +251,31 @@ mod tests {
     }
 
     #[test]
+    fn what_is_given_after_it_was_found_counts() {
+        let turned = "[accelerometer]\nmounting = \"forward-left-up\"\n";
+        let mut found = entry(CalibrationKind::Mounting, turned);
+        found.replaced = toml::from_str(&turned.replace("left-up", "right-down")).unwrap();
+        let (_folder, path) = stored(&[found]);
+        let changed = "the calibration of the mounting is not used: \
+                       built-in.calibration.accelerometer.mounting was changed since";
+        for (given, flown, expected) in [
+            ("forward-right-down", "forward-left-up", "calibrated by"),
+            ("forward-left-up", "forward-left-up", "calibrated by"),
+            ("right-backward-down", "right-backward-down", changed),
+        ] {
+            let more = format!("[built-in.calibration.accelerometer]\nmounting = \"{given}\"\n");
+            let mut config = config(&path, &more);
+            let applied = apply(&mut config, 1_795_387_800).unwrap();
+            let [said] = &applied.remarks[..] else {
+                panic!("{applied:?}");
+            };
+            assert!(said.starts_with(expected), "{said}");
+            let mounting = config.built_in.unwrap().calibration.accelerometer.mounting;
+            assert_eq!(mounting.to_string(), flown);
+        }
+    }
+
+    #[test]
     fn a_file_that_cannot_be_used_is_refused_and_changes_nothing() {
         let bias = |bias: &str| {
             entry(
@@ -277,12 +321,23 @@ mod tests {
             )
         };
         let (_folder, path) = stored(&[of("1.0"), of("2.0")]);
-        let old = CalibrationFile::read(&path.with_extension("old.toml")).unwrap();
+        let copy = path.with_extension("old.toml");
+        let old = CalibrationFile::read(&copy).unwrap();
         assert_eq!(old.calibration, [of("1.0")]);
         assert_eq!(
             CalibrationFile::read(&path).unwrap().calibration,
             [of("2.0")]
         );
+        std::fs::write(&path, "").unwrap();
+        let damaged = CalibrationFile::read(&path).unwrap_err().to_string();
+        let put_back = format!("put back {}, or remove it", copy.display());
+        assert!(damaged.contains(&put_back), "{damaged}");
+        std::fs::copy(&copy, &path).unwrap();
+        let first = LockedCalibrationFile::open(path.clone()).unwrap();
+        let second = LockedCalibrationFile::open(path.clone()).unwrap_err();
+        assert!(second.to_string().contains("another fccd calibrate"));
+        drop(first);
+        assert!(LockedCalibrationFile::open(path.clone()).is_ok());
         let link = path.with_file_name("link.calibration.toml");
         std::os::unix::fs::symlink(&path, &link).unwrap();
         let error = CalibrationFile::read(&link).unwrap_err().to_string();

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::CalibrationKind;
-use crate::config::RawSource;
+use crate::config::{Config, RawSource};
 
 /// What was found of one sensor, in the configuration's own keys.
 #[derive(Clone, PartialEq, Debug, Deserialize, Serialize)]
@@ -36,14 +36,20 @@ pub struct Entry {
     /// aligned: `mounting` and `rotation_deg`.
     #[serde(default, skip_serializing_if = "Table::is_empty")]
     pub aligned_with: Table,
-    /// The keys below the place's `calibration` and their values.
+    /// The values that the configuration had of the same keys: others given since
+    /// count instead of what was found.
+    #[serde(default, skip_serializing_if = "Table::is_empty")]
+    pub replaced: Table,
+    /// The keys of the place's calibration and their values.
     pub keys: Table,
 }
 
 /// When something was found, and by what.
 #[derive(Clone, Debug)]
 pub(super) struct Circumstances<'a> {
-    pub(super) source: &'a RawSource<'a>,
+    pub(super) source: &'a RawSource,
+    /// The configuration without what was found before.
+    pub(super) given: &'a Config,
     pub(super) unix_s: u64,
     pub(super) temperature_k: Option<f64>,
     pub(super) accelerometer: Axes,
@@ -57,6 +63,7 @@ impl Entry {
             } => turn(at.accelerometer.mounting, &at.accelerometer.rotation),
             _ => Table::new(),
         };
+        let keys = keys(&found.values);
         Self {
             kind,
             place: at.source.place.clone(),
@@ -69,7 +76,8 @@ impl Entry {
             unit: kind.unit().to_owned(),
             temperature_k: at.temperature_k.map(rounded),
             aligned_with,
-            keys: keys(&found.values),
+            replaced: given_of(at.given, &at.source.place, &keys),
+            keys,
         }
     }
 
@@ -93,6 +101,26 @@ fn list(values: impl IntoIterator<Item = f64>) -> Value {
 
 fn section(name: &str, keys: Table) -> (String, Value) {
     (name.to_owned(), Value::Table(keys))
+}
+
+/// The values that a configuration has of these keys of a place's calibration.
+pub(super) fn given_of(config: &Config, place: &str, keys: &Table) -> Table {
+    let mut sources = config.raw_sources().into_iter();
+    let source = sources.find(|source| source.place == place);
+    // A configuration that was read can be written.
+    let values = source.and_then(|source| Table::try_from(source.calibration).ok());
+    values.map_or_else(Table::new, |values| same_keys(values, keys))
+}
+
+fn same_keys(values: Table, keys: &Table) -> Table {
+    let same = values.into_iter().filter_map(|(key, value)| {
+        let value = match (value, keys.get(&key)?) {
+            (Value::Table(inner), Value::Table(keys)) => Value::Table(same_keys(inner, keys)),
+            (value, _) => value,
+        };
+        Some((key, value))
+    });
+    same.collect()
 }
 
 /// A mounting as the configuration has it.

@@ -1,8 +1,10 @@
 //! The file of what was found: TOML below a first line with its checksum.
 
+use std::fs::File;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
+use fcc_telemetry::file_lock::try_lock;
 use serde::{Deserialize, Serialize};
 
 use super::Entry;
@@ -30,18 +32,22 @@ pub enum CalibrationFileError {
         "is of another version of fccd ({0}, and this one reads {VERSION}): remove it, and calibrate again"
     )]
     Version(u32),
-    /// It was damaged, or edited.
+    /// It was damaged, or edited; there may be a copy of the one before.
     #[error(
-        "is damaged, or was edited: put back its copy with the extension old.toml, or remove it \
-         and calibrate again; values of your own belong into the configuration's calibration"
+        "is damaged, or was edited: {}remove it and calibrate again; values of your own belong \
+         into the configuration's calibration",
+        .0.as_ref().map_or_else(String::new, |copy| format!("put back {}, or ", copy.display()))
     )]
-    Damaged,
+    Damaged(Option<PathBuf>),
     /// A value cannot be used.
     #[error("cannot be used: {0}; remove it, and calibrate again")]
     Unusable(String),
     /// It cannot be written.
     #[error("cannot be written: {0}")]
     Unwritable(#[source] io::Error),
+    /// Another program changes it.
+    #[error("another fccd calibrate stores in it: wait until that one has ended")]
+    Locked,
 }
 
 impl From<Unsealed> for CalibrationFileError {
@@ -49,7 +55,7 @@ impl From<Unsealed> for CalibrationFileError {
         match unsealed {
             Unsealed::Foreign => Self::Foreign,
             Unsealed::Version(version) => Self::Version(version),
-            Unsealed::Damaged => Self::Damaged,
+            Unsealed::Damaged => Self::Damaged(None),
         }
     }
 }
@@ -70,10 +76,61 @@ impl CalibrationFile {
     /// When it cannot be read, is damaged, or was not written by this program.
     pub fn read(path: &Path) -> Result<Self, CalibrationFileError> {
         match fcc_record::read_own_file(path, MOST_BYTES) {
-            Ok(bytes) => Self::decode(&bytes),
-            Err(error) if error.kind() == ErrorKind::NotFound => Ok(Self::default()),
+            Ok(bytes) => Self::decode(&bytes).map_err(|error| match error {
+                CalibrationFileError::Damaged(_) => {
+                    let copy = backup(path);
+                    CalibrationFileError::Damaged(copy.exists().then_some(copy))
+                }
+                other => other,
+            }),
+            // Without its folder it does not exist either; who writes there says so.
+            Err(error)
+                if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) =>
+            {
+                Ok(Self::default())
+            }
             Err(error) => Err(CalibrationFileError::Unreadable(error)),
         }
+    }
+
+    fn decode(bytes: &[u8]) -> Result<Self, CalibrationFileError> {
+        let body = sealed::open(NAME, VERSION, bytes)?;
+        let text = std::str::from_utf8(body).map_err(|_| CalibrationFileError::Damaged(None))?;
+        toml::from_str(text).map_err(|_| CalibrationFileError::Damaged(None))
+    }
+}
+
+/// The file, locked against other programs until this is dropped.
+#[derive(Debug)]
+pub struct LockedCalibrationFile {
+    content: CalibrationFile,
+    path: PathBuf,
+    _lock: File,
+}
+
+impl LockedCalibrationFile {
+    /// Locks a file and reads it; its folder is created if it is missing.
+    ///
+    /// # Errors
+    /// As [`CalibrationFile::read`], or when nothing can be written in its folder,
+    /// or another program has locked it.
+    pub fn open(path: PathBuf) -> Result<Self, CalibrationFileError> {
+        if let Some(folder) = path.parent()
+            && !folder.as_os_str().is_empty()
+        {
+            fcc_record::create_folder(folder).map_err(CalibrationFileError::Unwritable)?;
+        }
+        let lock = fcc_record::open_lock(&path.with_extension("lock"))
+            .map_err(CalibrationFileError::Unwritable)?;
+        // Not every file system has locks.
+        if !try_lock(&lock).unwrap_or(true) {
+            return Err(CalibrationFileError::Locked);
+        }
+        Ok(Self {
+            content: CalibrationFile::read(&path)?,
+            path,
+            _lock: lock,
+        })
     }
 
     /// Adds what was found, instead of what was found before of the same, and
@@ -82,33 +139,22 @@ impl CalibrationFile {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn add(&mut self, entry: Entry, path: &Path) -> Result<(), CalibrationFileError> {
+    pub fn add(&mut self, entry: Entry) -> Result<(), CalibrationFileError> {
         let is_other = |old: &Entry| (old.kind, &old.place) != (entry.kind, &entry.place);
-        self.calibration.retain(is_other);
-        self.calibration.push(entry);
-        self.write(path).map_err(CalibrationFileError::Unwritable)
+        self.content.calibration.retain(is_other);
+        self.content.calibration.push(entry);
+        self.write().map_err(CalibrationFileError::Unwritable)
     }
 
-    fn write(&self, path: &Path) -> io::Result<()> {
-        if let Some(folder) = path.parent()
-            && !folder.as_os_str().is_empty()
-        {
-            fcc_record::create_folder(folder)?;
-        }
-        match fcc_record::read_own_file(path, MOST_BYTES) {
-            Ok(old) => sealed::replace(&backup(path), "old.new", &old)?,
+    fn write(&self) -> io::Result<()> {
+        match fcc_record::read_own_file(&self.path, MOST_BYTES) {
+            Ok(old) => sealed::replace(&backup(&self.path), "old.new", &old)?,
             Err(error) if error.kind() == ErrorKind::NotFound => {}
             Err(error) => return Err(error),
         }
-        let body = toml::to_string(self).map_err(io::Error::other)?;
+        let body = toml::to_string(&self.content).map_err(io::Error::other)?;
         let bytes = sealed::seal(NAME, VERSION, body.as_bytes());
-        sealed::replace(path, "toml.new", &bytes)
-    }
-
-    fn decode(bytes: &[u8]) -> Result<Self, CalibrationFileError> {
-        let body = sealed::open(NAME, VERSION, bytes)?;
-        let text = std::str::from_utf8(body).map_err(|_| CalibrationFileError::Damaged)?;
-        toml::from_str(text).map_err(|_| CalibrationFileError::Damaged)
+        sealed::replace(&self.path, "toml.new", &bytes)
     }
 }
 

@@ -20,7 +20,7 @@ pub use apply::{Applied, apply};
 pub use entry::Entry;
 #[cfg(fuzzing)]
 pub use file::read_calibration;
-pub use file::{CalibrationFile, CalibrationFileError};
+pub use file::{CalibrationFile, CalibrationFileError, LockedCalibrationFile};
 pub use session::{CalibrationSession, SessionError};
 
 /// What can be calibrated.

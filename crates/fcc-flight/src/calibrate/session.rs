@@ -1,5 +1,7 @@
 //! The sensors of a configuration, uncalibrated, and the calibration of one.
 
+use std::path::PathBuf;
+
 use fcc_core::flight::Measurements;
 use fcc_core::flight::calibration::{
     Axes, EarthField, GuidedCalibration, GuidedKind, MountingWay, Refusal,
@@ -8,8 +10,8 @@ use fcc_core::framework::{Reading, Sensor, Tick};
 use fcc_sim::{HandledSensors, HandlingFault, HandlingTask, SimConfig};
 
 use super::entry::Circumstances;
-use super::{CalibrationKind, Entry};
-use crate::config::{Config, RawSource};
+use super::{Applied, CalibrationFileError, CalibrationKind, Entry, apply};
+use crate::config::{AccelerometerSection, CalibrationSection, Config, RawSource};
 use crate::flight::{AssemblyError, uncalibrated};
 
 /// For so long the sensors may take to give something, s.
@@ -23,8 +25,8 @@ const LOOKING_S: f64 = 0.5;
 pub enum SessionError {
     /// Nothing gives raw readings.
     #[error(
-        "the configuration has no raw sensors: give built-in.raw_sensors, or list sensors that \
-         have a calibration"
+        "the configuration has no raw sensors: give built-in.raw_sensors, or list sensors of a \
+         board or the servo board"
     )]
     NoSources,
     /// There is no such source.
@@ -34,6 +36,29 @@ pub enum SessionError {
         given: String,
         /// What there is.
         there: String,
+    },
+    /// What was found before cannot be used.
+    #[error("{}: {error}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        error: CalibrationFileError,
+    },
+    /// Another calibration comes before.
+    #[error(
+        "no calibration of the {kind}: calibrate the {before} of {place} first, or give its \
+         numbers in the configuration{disabled}. Nothing was changed"
+    )]
+    Order {
+        /// What was to be calibrated.
+        kind: &'static str,
+        /// What comes before.
+        before: &'static str,
+        /// The source that it is of.
+        place: String,
+        /// Why what was found does not count, if it does not.
+        disabled: &'static str,
     },
     /// A sensor could not be opened.
     #[error(transparent)]
@@ -57,7 +82,11 @@ struct Opened {
 pub struct CalibrationSession {
     kind: CalibrationKind,
     way: MountingWay,
+    /// As it is in its file.
+    given: Config,
+    /// With what was found before.
     config: Config,
+    before: Applied,
     asked: Option<String>,
     opened: Vec<Opened>,
     /// Which of them is calibrated.
@@ -69,21 +98,25 @@ pub struct CalibrationSession {
 }
 
 impl CalibrationSession {
-    /// Opens the sensors. `config` has what was found before; `place` is one of
-    /// [`Config::raw_sources`], if not the first that gives something is meant.
-    /// The built-in aircraft's are in the hands of a simulated person. `unix_s`
+    /// Opens the sensors. What was found before is put over `given`, as of a
+    /// flight; `place` is one of [`Config::raw_sources`], if not the first that
+    /// gives something is meant. The built-in aircraft's are in the hands of a simulated person. `unix_s`
     /// is the present time.
     ///
     /// # Errors
-    /// When there are none, or none of this name, or one cannot be opened.
+    /// When there are none, or none of this name, or one cannot be opened, or
+    /// what was found before is damaged.
     pub fn open(
-        config: &Config,
+        given: &Config,
         kind: CalibrationKind,
         way: MountingWay,
         place: Option<String>,
         fault: Option<HandlingFault>,
         unix_s: u64,
     ) -> Result<Self, SessionError> {
+        let mut config = given.clone();
+        let before = apply(&mut config, unix_s)
+            .map_err(|(path, error)| SessionError::File { path, error })?;
         let sources = config.raw_sources();
         if sources.is_empty() {
             return Err(SessionError::NoSources);
@@ -100,26 +133,33 @@ impl CalibrationSession {
         let mut length_s = None;
         let mut opened = Vec::new();
         for source in sources {
-            if let Some(board) = config.board_sensor_of(&source.place) {
-                let (sensor, _) = uncalibrated(&board)?;
-                opened.push(Opened {
-                    place: source.place,
-                    sensor: Box::new(sensor),
-                    measured: Measurements::default(),
-                });
-            } else if let Some(handled) = in_hands(config, &source, kind, fault) {
+            let sensor: Box<dyn Sensor<Measurements>> = if let Some(board) =
+                config.board_sensor_of(&source.place)
+            {
+                Box::new(uncalibrated(&board)?.0)
+            } else if let Some(handled) = in_hands(&config, &source, kind, fault) {
                 length_s = Some(handled.length_s());
-                opened.push(Opened {
-                    place: source.place,
-                    sensor: Box::new(handled),
-                    measured: Measurements::default(),
-                });
-            }
+                Box::new(handled)
+            } else if let (true, Some(section)) = (source.is_servo_board(), &config.servo_board) {
+                // Its actuator sends nothing unless it is driven.
+                let (sensor, _) =
+                    fcc_servo_link::open(&section.to_link(0)).map_err(AssemblyError::from)?;
+                sensor
+            } else {
+                continue;
+            };
+            opened.push(Opened {
+                place: source.place,
+                sensor,
+                measured: Measurements::default(),
+            });
         }
         Ok(Self {
             kind,
             way,
-            config: config.clone(),
+            given: given.clone(),
+            config,
+            before,
             asked: place,
             opened,
             chosen: None,
@@ -128,6 +168,11 @@ impl CalibrationSession {
             length_s,
             unix_s,
         })
+    }
+
+    /// What of earlier calibrations is used, for users.
+    pub fn remarks(&self) -> &[String] {
+        &self.before.remarks
     }
 
     /// After so many seconds a simulated person has finished, or given up; none
@@ -139,7 +184,7 @@ impl CalibrationSession {
     /// Reads the sensors in a tick.
     ///
     /// # Errors
-    /// When nothing has arrived.
+    /// When nothing has arrived, or another calibration comes before.
     pub fn tick(&mut self, tick: &Tick) -> Result<(), SessionError> {
         self.since_s += tick.dt_s;
         for opened in &mut self.opened {
@@ -147,7 +192,7 @@ impl CalibrationSession {
             let _ = opened.sensor.sample(tick, &mut opened.measured);
         }
         if self.chosen.is_none() && self.since_s >= LOOKING_S {
-            self.choose();
+            self.choose()?;
         }
         let together = self.chosen.as_ref().map(|(at, _)| self.together(*at));
         match (&mut self.chosen, together) {
@@ -166,7 +211,7 @@ impl CalibrationSession {
     }
 
     /// The key of the source that is calibrated, and which sensor it is.
-    pub fn source(&self) -> Option<RawSource<'_>> {
+    pub fn source(&self) -> Option<RawSource> {
         let (at, _) = self.chosen.as_ref()?;
         let place = &self.opened.get(*at)?.place;
         let mut sources = self.config.raw_sources().into_iter();
@@ -189,6 +234,7 @@ impl CalibrationSession {
         let source = self.source().ok_or(Refusal::Silent)?;
         let at = Circumstances {
             source: &source,
+            given: &self.given,
             unix_s: self.unix_s,
             temperature_k: guided.temperature_k(),
             accelerometer: self.accelerometer,
@@ -196,20 +242,24 @@ impl CalibrationSession {
         Ok(Entry::new(self.kind, &found, &at))
     }
 
-    fn choose(&mut self) {
+    fn choose(&mut self) -> Result<(), SessionError> {
         let is_asked = |opened: &Opened| self.asked.as_ref().is_none_or(|of| *of == opened.place);
         let gives = |opened: &Opened| is_asked(opened) && self.kind.is_in(&opened.measured);
         let Some(at) = self.opened.iter().position(gives) else {
-            return;
+            return Ok(());
         };
         let is_force = |opened: &&Opened| !opened.measured.raw_specific_force.is_never();
         let chosen = self.opened.get(at).filter(is_force);
         let force = chosen.or_else(|| self.opened.iter().find(is_force));
         let sources = self.config.raw_sources();
-        let accelerometer = force.and_then(|force| {
-            let source = sources.iter().find(|source| source.place == force.place)?;
-            Some(Axes::from(&source.calibration.accelerometer))
+        let source = force.and_then(|force| {
+            let mut sources = sources.iter();
+            sources.find(|source| source.place == force.place)
         });
+        if let Some(source) = source {
+            self.check_order(source)?;
+        }
+        let accelerometer = source.map(|source| Axes::from(&source.calibration.accelerometer));
         let kind = match self.kind {
             CalibrationKind::Accelerometer => GuidedKind::Accelerometer,
             CalibrationKind::Gyroscope => GuidedKind::Gyroscope,
@@ -225,6 +275,54 @@ impl CalibrationSession {
         };
         self.accelerometer = accelerometer.unwrap_or_default();
         self.chosen = Some((at, Box::new(GuidedCalibration::new(&kind))));
+        Ok(())
+    }
+
+    /// Whether what this one builds on was found, or is given: both are found with
+    /// the accelerometer as it is calibrated and mounted.
+    fn check_order(&self, force: &RawSource) -> Result<(), SessionError> {
+        let needed: &[_] = match self.kind {
+            CalibrationKind::Magnetometer => {
+                &[CalibrationKind::Accelerometer, CalibrationKind::Mounting]
+            }
+            CalibrationKind::Mounting => &[CalibrationKind::Accelerometer],
+            _ => &[],
+        };
+        let given = force.calibration.accelerometer;
+        let usual = CalibrationSection::default().accelerometer;
+        let mounted = AccelerometerSection {
+            mounting: given.mounting,
+            rotation_deg: given.rotation_deg,
+            ..usual
+        };
+        let calibrated = AccelerometerSection {
+            mounting: usual.mounting,
+            rotation_deg: usual.rotation_deg,
+            delay_ms: usual.delay_ms,
+            ..given
+        };
+        for before in needed {
+            let is_given = match before {
+                CalibrationKind::Mounting => mounted != usual,
+                _ => calibrated != usual,
+            };
+            let mut used = self.before.used.iter();
+            let is_found = used.any(|of| of.kind == *before && of.place == force.place);
+            if !is_given && !is_found {
+                let disabled = if self.given.calibration.enabled {
+                    ""
+                } else {
+                    "; calibration.enabled is false, so nothing that was found is used"
+                };
+                return Err(SessionError::Order {
+                    kind: self.kind.name(),
+                    before: before.name(),
+                    place: force.place.clone(),
+                    disabled,
+                });
+            }
+        }
+        Ok(())
     }
 
     /// What is known of the earth's field: the configured one, or that of the
@@ -262,7 +360,7 @@ impl CalibrationSession {
 /// The sensors of the built-in aircraft in a simulated person's hands.
 fn in_hands(
     config: &Config,
-    source: &RawSource<'_>,
+    source: &RawSource,
     kind: CalibrationKind,
     fault: Option<HandlingFault>,
 ) -> Option<HandledSensors> {

@@ -4,7 +4,10 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::{BoardSensor, BuiltInSection, CalibrationSection, Config, RawSensorsChoice};
+use super::{
+    BoardSensor, BuiltInSection, CalibrationSection, Config, RawSensorsChoice, SensorEntry,
+    ServoBoardSection,
+};
 
 /// `[calibration]`.
 #[derive(Clone, PartialEq, Debug, Deserialize, Serialize)]
@@ -33,19 +36,33 @@ impl Default for CalibrationFileSection {
 
 /// A source of raw readings that has a calibration.
 #[derive(Clone, PartialEq, Debug)]
-pub struct RawSource<'a> {
-    /// Its key, to which `.calibration` belongs.
+pub struct RawSource {
+    /// Its key in the configuration.
     pub place: String,
     /// Which sensors these are: others have another calibration.
     pub sensor: String,
     /// Its calibration.
-    pub calibration: &'a CalibrationSection,
+    pub calibration: CalibrationSection,
 }
 
-impl RawSource<'_> {
+impl RawSource {
     /// Whether it is the built-in aircraft.
     pub fn is_built_in(&self) -> bool {
         self.place == BUILT_IN
+    }
+
+    /// Whether it is the servo board, whose calibration is that of its pitot tube
+    /// alone.
+    pub fn is_servo_board(&self) -> bool {
+        self.place == SERVO_BOARD
+    }
+
+    /// The key of its calibration in the configuration.
+    pub fn calibration_key(&self) -> String {
+        if self.is_servo_board() {
+            return self.place.clone();
+        }
+        format!("{}.calibration", self.place)
     }
 }
 
@@ -67,7 +84,7 @@ impl Config {
     }
 
     /// The sources of raw readings, in their order of preference.
-    pub fn raw_sources(&self) -> Vec<RawSource<'_>> {
+    pub fn raw_sources(&self) -> Vec<RawSource> {
         let built_in = self.built_in.as_ref().and_then(built_in);
         // Those of the list come first.
         let sensors = self.sensors().enumerate();
@@ -75,11 +92,14 @@ impl Config {
             if entry.is_simulator() {
                 return built_in.clone();
             }
+            if matches!(entry, SensorEntry::ServoBoard(_)) {
+                return self.servo_board.as_ref().map(servo_board);
+            }
             let board = entry.board()?;
             Some(RawSource {
                 place: listed(at),
                 sensor: board.describe(),
-                calibration: board.calibration(),
+                calibration: *board.calibration(),
             })
         });
         sources.collect()
@@ -92,17 +112,25 @@ impl Config {
         given.or_else(|| self.simulated_field_ut())
     }
 
-    /// The calibration of a source.
-    pub(crate) fn calibration_of(&mut self, place: &str) -> Option<&mut CalibrationSection> {
-        if place == BUILT_IN {
-            return self
-                .built_in
-                .as_mut()
-                .map(|section| &mut section.calibration);
+    /// Gives a source another calibration.
+    pub(crate) fn set_calibration(&mut self, place: &str, calibration: &CalibrationSection) {
+        if place == SERVO_BOARD {
+            if let Some(section) = &mut self.servo_board {
+                section.differential_pressure = calibration.differential_pressure;
+            }
+            return;
         }
         let mut entries = self.sensor.iter_mut().enumerate();
-        let (_, entry) = entries.find(|(at, _)| listed(*at) == place)?;
-        entry.calibration_mut()
+        let section = if place == BUILT_IN {
+            let section = self.built_in.as_mut();
+            section.map(|section| &mut section.calibration)
+        } else {
+            let entry = entries.find(|(at, _)| listed(*at) == place);
+            entry.and_then(|(_, entry)| entry.calibration_mut())
+        };
+        if let Some(section) = section {
+            *section = *calibration;
+        }
     }
 
     /// The sensor of a board that is the source of this place.
@@ -114,13 +142,27 @@ impl Config {
 }
 
 const BUILT_IN: &str = "built-in";
+const SERVO_BOARD: &str = "servo-board";
 
 /// The key of an entry of `[[sensor]]`.
 fn listed(at: usize) -> String {
     format!("sensor[{at}]")
 }
 
-fn built_in(section: &BuiltInSection) -> Option<RawSource<'_>> {
+fn servo_board(section: &ServoBoardSection) -> RawSource {
+    let at = match (&section.serial, &section.address) {
+        (Some(path), _) => path.display().to_string(),
+        (None, Some(address)) => address.to_string(),
+        (None, None) => String::new(),
+    };
+    RawSource {
+        place: SERVO_BOARD.to_owned(),
+        sensor: format!("servo board at {at}"),
+        calibration: section.calibration(),
+    }
+}
+
+fn built_in(section: &BuiltInSection) -> Option<RawSource> {
     let set = match section.raw_sensors {
         RawSensorsChoice::None => return None,
         RawSensorsChoice::Phone => "phone",
@@ -129,13 +171,13 @@ fn built_in(section: &BuiltInSection) -> Option<RawSource<'_>> {
     Some(RawSource {
         place: BUILT_IN.to_owned(),
         sensor: format!("simulated {set}, seed {}", section.seed),
-        calibration: &section.calibration,
+        calibration: section.calibration,
     })
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::config::Config;
+    use crate::config::{CalibrationSection, Config};
 
     const BOARD: &str = "actuator = []\n[navigation]\nmethod = \"kalman\"\n\
          [[sensor]]\nkind = \"icm42688\"\nspi = \"/dev/spidev0.0\"\n\
@@ -159,15 +201,35 @@ mod tests {
                 ("sensor[3]", "IIO bmp380"),
             ]
         );
-        let of = config.calibration_of("sensor[2]").unwrap();
+        let mut of = CalibrationSection::default();
         of.magnetometer.bias_ut = [1.0, 2.0, 3.0];
-        assert!(config.calibration_of("sensor[1]").is_none());
+        config.set_calibration("sensor[2]", &of);
+        config.set_calibration("sensor[1]", &of);
         let biases = config.raw_sources();
         let biases = biases.iter().map(|of| of.calibration.magnetometer.bias_ut);
         assert_eq!(
             biases.collect::<Vec<_>>(),
             [[0.0; 3], [1.0, 2.0, 3.0], [0.0; 3]]
         );
+    }
+
+    #[test]
+    fn a_servo_board_is_a_source_whose_pitot_tube_is_calibrated() {
+        let text = "[servo-board]\nserial = \"/dev/ttyUSB0\"\n[[sensor]]\nkind = \"x-plane\"\n\
+                    [[sensor]]\nkind = \"servo-board\"\n[[actuator]]\nkind = \"servo-board\"\n\
+                    [servo-board.differential_pressure]\nbias_pa = 2.0\n";
+        let mut config = Config::parse(text, "test").unwrap();
+        let [source] = &config.raw_sources()[..] else {
+            panic!("{:?}", config.raw_sources());
+        };
+        let found = (source.place.as_str(), source.sensor.as_str());
+        assert_eq!(found, ("servo-board", "servo board at /dev/ttyUSB0"));
+        let mut of = source.calibration;
+        assert_eq!(of.differential_pressure.bias_pa, 2.0);
+        of.differential_pressure.bias_pa = -3.5;
+        config.set_calibration("servo-board", &of);
+        let written = config.to_toml().unwrap();
+        assert!(written.contains("bias_pa = -3.5"), "{written}");
     }
 
     #[test]

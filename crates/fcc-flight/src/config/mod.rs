@@ -56,7 +56,7 @@ pub use autopilot::AutopilotSection;
 pub use board::{BoardSensor, ChipSection, IioSection, OutputChoice};
 pub use budget::{BudgetSection, OverloadSection, WatchdogSection};
 pub use built_in::{BuiltInSection, GustsChoice, RawSensorsChoice};
-pub use calibration::CalibrationSection;
+pub use calibration::{AccelerometerSection, CalibrationSection};
 pub use calibration_file::{CalibrationFileSection, RawSource};
 pub use cpu::CpuChoice;
 pub use devices::{ActuatorEntry, NoKeys, SensorEntry};

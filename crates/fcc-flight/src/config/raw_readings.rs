@@ -21,19 +21,20 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     let sources = config.raw_sources();
     let delays = config.navigation.is_by_filter();
     for source in &sources {
-        check_axes(&source.place, source.calibration, report);
+        let key = source.calibration_key();
+        check_axes(&key, &source.calibration, report);
         if delays {
-            check_delays(config, &source.place, source.calibration, report);
+            check_delays(config, &key, &source.calibration, report);
         }
     }
     if let Some(section) = &config.built_in
         && !sources.iter().any(RawSource::is_built_in)
     {
-        check_axes("built-in", &section.calibration, report);
+        check_axes("built-in.calibration", &section.calibration, report);
     }
 }
 
-fn check_axes(place: &str, of: &CalibrationSection, report: &mut impl FnMut(&[&str], String)) {
+fn check_axes(section: &str, of: &CalibrationSection, report: &mut impl FnMut(&[&str], String)) {
     for (sensor, axes) in [
         ("accelerometer", Axes::from(&of.accelerometer)),
         ("gyroscope", Axes::from(&of.gyroscope)),
@@ -42,7 +43,7 @@ fn check_axes(place: &str, of: &CalibrationSection, report: &mut impl FnMut(&[&s
         let (least, most) = axes.multiplies();
         let permitted = Axes::MULTIPLIES;
         if !permitted.contains(&least) || !permitted.contains(&most) {
-            let key = |name: &str| format!("{place}.calibration.{sensor}.{name}");
+            let key = |name: &str| format!("{section}.{sensor}.{name}");
             let message = format!(
                 "multiplies what is measured, with scale, by {least:.2} along one direction and by \
                  {most:.2} along another: choose values with {} to {} along all; of axes that are \
@@ -57,14 +58,14 @@ fn check_axes(place: &str, of: &CalibrationSection, report: &mut impl FnMut(&[&s
 
 fn check_delays(
     config: &Config,
-    place: &str,
+    section: &str,
     of: &CalibrationSection,
     report: &mut impl FnMut(&[&str], String),
 ) {
     let longest_ms = config.navigation.longest_delay_ms;
     for (sensor, delay_ms) in of.delays_of_navigation() {
         if delay_ms > longest_ms {
-            let key = format!("{place}.calibration.{sensor}.delay_ms");
+            let key = format!("{section}.{sensor}.delay_ms");
             let message = format!(
                 "is {delay_ms}, and navigation.longest_delay_ms is {longest_ms}: choose at most \
                  that, or a longer one (up to {} ms): navigation does not use what comes later",
@@ -172,6 +173,13 @@ mod tests {
                      (up to 500 ms)";
         assert!(message.starts_with(words), "{message}");
         Config::parse(&format!("{RAW}longest_delay_ms = 400\n{late}"), "f").unwrap();
+        let board = "[navigation]\nmethod = \"kalman\"\n[servo-board]\nserial = \"/dev/ttyUSB0\"\n\
+                     [servo-board.differential_pressure]\ndelay_ms = 400\n\
+                     [[sensor]]\nkind = \"icm42688\"\nspi = \"/dev/spidev0.0\"\n\
+                     [[sensor]]\nkind = \"servo-board\"\n[[actuator]]\nkind = \"servo-board\"\n";
+        let words = "f:6: servo-board.differential_pressure.delay_ms: is 400";
+        let message = refused(board);
+        assert!(message.starts_with(words), "{message}");
         // It says nothing of what navigation does not use, or is not used.
         for text in [
             format!("{RAW}[built-in.calibration.range]\ndelay_ms = 900\n"),

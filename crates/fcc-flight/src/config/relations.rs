@@ -73,7 +73,9 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
 /// No file of Unix has a NUL in its name.
 fn paths(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     let state_file = config.restart.state_file.as_deref();
+    let calibration_file = config.calibration.file.as_deref();
     let paths = [
+        ("calibration.file", calibration_file),
         ("recording.folder", Some(config.recording.folder.as_path())),
         ("restart.state_file", state_file),
     ];
@@ -84,6 +86,10 @@ fn paths(config: &Config, report: &mut impl FnMut(&[&str], String)) {
                 "has a NUL character: choose a path without".to_owned(),
             );
         }
+    }
+    if calibration_file.is_some_and(|path| path.file_name().is_none()) {
+        let message = "is no name of a file: give one, or leave it out".to_owned();
+        report(&["calibration.file"], message);
     }
 }
 

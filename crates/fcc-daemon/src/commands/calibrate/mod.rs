@@ -12,9 +12,10 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use fcc_core::flight::calibration::{GuidedCalibration, MountingWay, Next};
 use fcc_core::framework::{Tick, Time};
 use fcc_flight::calibrate::{
-    CalibrationFile, CalibrationKind, CalibrationSession, Entry, SessionError, apply,
+    CalibrationKind, CalibrationSession, Entry, LockedCalibrationFile, SessionError, apply,
 };
 use fcc_flight::config::Config;
+use fcc_linux::monotonic;
 use indicatif::ProgressBar;
 use serde::Serialize;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
@@ -31,10 +32,14 @@ const REDRAW_EVERY: Duration = Duration::from_millis(100);
 pub(super) fn apply_calibration(config: &mut Config) -> Result<(), Failure> {
     let applied = apply(config, unix_s())
         .map_err(|(file, error)| Failure::new(format_args!("{}: {error}", file.display())))?;
-    for remark in applied.remarks {
+    say(&applied.remarks);
+    Ok(())
+}
+
+fn say(remarks: &[String]) {
+    for remark in remarks {
         output::message(format_args!("fccd: {remark}"));
     }
-    Ok(())
 }
 
 /// What is printed with `--json`.
@@ -43,15 +48,21 @@ struct Printed<'a> {
     found: &'a Entry,
     /// Where it was stored; none if nothing was changed.
     file: Option<String>,
+    /// Whether flights use what is stored.
+    enabled: bool,
 }
 
 /// Calibrates a sensor.
 pub(super) fn calibrate(args: &CalibrateArgs) -> Result<Exit, Failure> {
-    let (mut config, _) = Config::load_with_text(&args.config)?;
+    let (config, _) = Config::load_with_text(&args.config)?;
+    if args.level_only && args.kind != CalibrationKind::Mounting {
+        return Err(Failure::of(
+            Exit::Usage,
+            "--level-only is for the mounting: leave it out",
+        ));
+    }
     let path = config.calibration_file();
     let wrong = |error| Failure::new(format_args!("{}: {error}", path.display()));
-    let mut file = CalibrationFile::read(&path).map_err(wrong)?;
-    apply_calibration(&mut config)?;
     let way = if args.level_only {
         MountingWay::LevelOnly
     } else {
@@ -59,26 +70,31 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<Exit, Failure> {
     };
     let place = args.sensor.clone();
     let session = CalibrationSession::open(&config, args.kind, way, place, args.fault, unix_s());
-    let mut session = session.map_err(|error| Failure::of(Exit::Usage, error))?;
+    let mut session = session.map_err(failure)?;
+    say(session.remarks());
     if args.lockstep && session.length_s().is_none() {
         return Err(Failure::of(
             Exit::Usage,
             "--lockstep is for the built-in aircraft, whose time follows that of the loop",
         ));
     }
+    // Before the first step: what cannot be stored need not be measured.
+    let file = (!args.dry_run).then(|| LockedCalibrationFile::open(path.clone()));
+    let file = file.transpose().map_err(wrong)?;
     guide(args, &config, &mut session)?;
     let found = session.finish().map_err(|refusal| {
         let kind = args.kind.name();
         let message = format_args!("no calibration of the {kind}: {refusal}. Nothing was changed");
         Failure::of(Exit::CalibrationRefused, message.to_string())
     })?;
-    let stored = (!args.dry_run).then(|| path.display().to_string());
-    if !args.dry_run {
-        file.add(found.clone(), &path).map_err(wrong)?;
+    let is_stored = file.is_some();
+    if let Some(mut file) = file {
+        file.add(found.clone()).map_err(wrong)?;
     }
     let printed = Printed {
         found: &found,
-        file: stored,
+        file: is_stored.then(|| path.display().to_string()),
+        enabled: config.calibration.enabled,
     };
     if args.json {
         return Ok(output::json(&printed, Exit::Success));
@@ -98,7 +114,12 @@ fn text(printed: &Printed<'_>) -> String {
     let kind = printed.found.kind.name();
     let keys = toml::to_string(keys).unwrap_or_default();
     let stored = match &printed.file {
-        Some(file) => format!("stored in {file}; flights use it instead of the same keys"),
+        Some(file) if printed.enabled => {
+            format!("stored in {file}; flights use it instead of the same keys")
+        }
+        Some(file) => {
+            format!("stored in {file}; flights do not use it, for calibration.enabled is false")
+        }
         None => "not stored (--dry-run)".to_owned(),
     };
     format!(
@@ -131,7 +152,13 @@ fn guide(
         if !args.lockstep {
             thread::sleep(due.saturating_sub(begun.elapsed()));
         }
-        let now = Time::from_nanos(i64::try_from(due.as_nanos()).unwrap_or(i64::MAX));
+        // Devices stamp what they give on the loop's clock, and nothing is used
+        // that was taken after the tick.
+        let now = if args.lockstep {
+            Time::from_nanos(i64::try_from(due.as_nanos()).unwrap_or(i64::MAX))
+        } else {
+            monotonic()
+        };
         let tick = Tick {
             number,
             scheduled: now,
@@ -139,19 +166,22 @@ fn guide(
             dt_s: period.as_secs_f64(),
             ..Tick::default()
         };
-        session.tick(&tick).map_err(|error| {
-            let exit = match error {
-                SessionError::Silent(_) => Exit::Failure,
-                _ => Exit::Usage,
-            };
-            Failure::of(exit, error)
-        })?;
+        session.tick(&tick).map_err(failure)?;
         screen.show(args.kind, session);
         let is_complete = session.guided().is_some_and(GuidedCalibration::is_complete);
         if is_complete || due.as_secs_f64() >= limit_s {
             return Ok(());
         }
     }
+}
+
+fn failure(error: SessionError) -> Failure {
+    let exit = match error {
+        SessionError::Silent(_) | SessionError::File { .. } => Exit::Failure,
+        SessionError::Order { .. } => Exit::CalibrationRefused,
+        _ => Exit::Usage,
+    };
+    Failure::of(exit, error)
 }
 
 fn stopped_by_signals() -> Result<Arc<AtomicBool>, Failure> {
