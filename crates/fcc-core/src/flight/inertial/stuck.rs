@@ -59,10 +59,12 @@ impl StuckSensor {
 /// An axis that turns faster than this, rad/s (6 °/s), is not at rest: beyond the bias
 /// of any gyroscope that is used here.
 const TURNS_RADPS: f64 = 0.1;
-/// A rate that is repeated so often, and for so long, s, is not used,
+/// A rate that is repeated so often, and for so long, s, is not used.
 const HELD: (u32, f64) = (4, 0.1);
-/// and after so often, while the other axes change, one axis is stuck.
+/// An axis is stuck after so many repeats over so long, s, in which another axis changes
+/// or the rate is more than the second one, rad/s (57 °/s).
 const STUCK: (u32, f64) = (8, 0.2);
+const FAST_RADPS: f64 = 1.0;
 
 /// Notices that one axis of the gyroscopes gives a rate to the last bit again and
 /// again: one that is stuck, or at the end of its range.
@@ -79,9 +81,9 @@ pub(super) struct StuckAxis {
 #[derive(Clone, Copy, Debug, Default)]
 struct Repeated {
     since: Time,
-    /// Samples that repeated it, and of those the ones in which another axis changed.
+    /// Samples that repeated it, and of those the ones that no driver has given again.
     all: u32,
-    alone: u32,
+    measured: u32,
 }
 
 impl Repeated {
@@ -98,7 +100,8 @@ impl StuckAxis {
         for ((axis, rate), before) in self.axes.iter_mut().zip(sample).zip(self.sample) {
             if rate == before && libm::fabs(rate) > TURNS_RADPS {
                 axis.all = axis.all.saturating_add(1);
-                axis.alone = axis.alone.saturating_add(u32::from(changed));
+                let is_measured = changed || libm::fabs(rate) > FAST_RADPS;
+                axis.measured = axis.measured.saturating_add(u32::from(is_measured));
             } else {
                 *axis = Repeated {
                     since: taken,
@@ -110,7 +113,7 @@ impl StuckAxis {
         let any = |lasts: fn(&Repeated, Time) -> bool| self.axes.iter().any(|a| lasts(a, taken));
         (
             any(|axis, taken| axis.lasts(taken, axis.all, HELD)),
-            any(|axis, taken| axis.lasts(taken, axis.alone, STUCK)),
+            any(|axis, taken| axis.lasts(taken, axis.measured, STUCK)),
         )
     }
 }
@@ -131,11 +134,13 @@ mod tests {
     }
 
     #[test]
-    fn an_axis_that_alone_repeats_a_rate_is_stuck() {
+    fn an_axis_that_measures_one_rate_is_stuck() {
         let noise = |tick: u32| f64::from(tick % 3) * 0.001;
         assert_eq!(after(|tick| [1.0, noise(tick), 0.0]), (true, true));
         // A driver that gives its last sample again.
-        assert_eq!(after(|_| [1.0, 0.02, 0.0]), (true, false));
+        assert_eq!(after(|_| [0.9, 0.02, 0.0]), (true, false));
+        // All of them at the end of their range.
+        assert_eq!(after(|_| [4.36, 4.36, 4.36]), (true, true));
         // The bias of a coarse sensor at rest, and a turn.
         assert_eq!(after(|tick| [0.05, noise(tick), 0.0]), (false, false));
         let turns = |tick| [1.0 + noise(tick), noise(tick), 0.0];
