@@ -172,6 +172,64 @@ fn they_are_believed_again_when_they_have_agreed_while_turning() {
     assert_eq!(doubted(bank_only, stuck, 45.0, 110.0).len(), 1);
 }
 
+/// What an aircraft does whose autopilot believes that it rolls to the right.
+fn rolls_to_the_left(time_s: f64) -> (f64, f64, f64) {
+    if time_s < FAILS_S {
+        turns(time_s)
+    } else {
+        (-0.7 * (time_s - FAILS_S).min(1.5), 0.0, 50.0)
+    }
+}
+
+/// 32767 steps of a gyroscope of ±250 °/s, which has 131 LSB/(°/s) (product
+/// specification of the MPU-6000 and MPU-6050, revision 3.4, section 6.1).
+const FULL_SCALE: f64 = 32767.0 / 131.0 * std::f64::consts::PI / 180.0;
+
+const STUCK_AXES: [(&str, Fault); 5] = [
+    ("roll at 1 rad/s", |rates, _, _, _| rates[0] = 1.000_027),
+    ("roll at full scale", |rates, _, _, _| rates[0] = FULL_SCALE),
+    ("pitch at full scale", |rates, _, _, _| {
+        rates[1] = -FULL_SCALE;
+    }),
+    ("yaw at full scale", |rates, _, _, _| rates[2] = FULL_SCALE),
+    ("all at full scale", |rates, _, _, _| {
+        *rates = [FULL_SCALE; 3];
+    }),
+];
+
+#[test]
+fn an_axis_stuck_at_a_rate_is_doubted_at_once_and_while_it_lasts() {
+    for (name, fault) in STUCK_AXES {
+        let changes = doubted(straight, fault, 40.0, 40.0);
+        // Eight repeats at 40 Hz.
+        assert_eq!(changes.len(), 1, "{name}: {changes:?}");
+        assert!((0.19..0.26).contains(&changes[0]), "{name}: {changes:?}");
+    }
+    // Then it turns without the fault.
+    let changes = doubted(turns, STUCK_AXES[0].1, 45.0, 110.0);
+    assert_eq!(changes.len(), 2, "{changes:?}");
+    assert!(changes[1] > 15.0, "{changes:?}");
+}
+
+#[test]
+fn a_rate_far_beyond_the_turn_of_the_aircraft_is_doubted() {
+    let roll: Fault = |rates, _, _, random| rates[0] = FULL_SCALE + random.normal(0.003);
+    let changes = doubted(rolls_to_the_left, roll, 34.0, 34.0);
+    assert_eq!(changes.len(), 1, "{changes:?}");
+    assert!(changes[0] < 2.0, "{changes:?}");
+}
+
+#[test]
+fn a_coarse_gyroscope_is_believed_in_a_steady_turn() {
+    let steady = |time_s: f64| (0.8 * (time_s / 20.0).min(1.0), 0.0, 50.0);
+    // Of ±2000 °/s: 16.4 LSB/(°/s), by the same table.
+    let coarse: Fault = |rates, _, _, _| {
+        let step = (1.0 / 16.4_f64).to_radians();
+        *rates = rates.map(|rate| (rate / step).round() * step);
+    };
+    assert!(doubted(steady, coarse, 60.0, 60.0).is_empty());
+}
+
 const MAGNETOMETER: [(&str, Fault); 9] = [
     ("none", |_, _, _, _| {}),
     ("frozen", |_, field, _, _| *field = [20.0, -10.0, 43.0]),

@@ -230,8 +230,12 @@ impl Window {
         if spread <= 0.0 || strength_squared <= 0.0 {
             return None;
         }
-        let scattered = self.steady.squared - self.steady.sum.norm_squared() / n;
-        let left = (scattered - by_error.norm_squared() * spread).max(0.0);
+        // A rate that is very wrong bends the one, a fast turn the other.
+        let left = |line: &Line, slope: Vector3<f64>| {
+            let scattered = line.squared - line.sum.norm_squared() / n;
+            (scattered - slope.norm_squared() * spread).max(0.0)
+        };
+        let left = left(&self.steady, by_error).min(left(&self.body, by_field));
         // Two parameters of each of three axes are fitted.
         let sample_variance = left / (3.0 * (n - 2.0));
         let per_slope = lasted_s / strength_squared;

@@ -7,12 +7,16 @@
 //! gyroscopes do may be that of a frozen magnetometer as well: nothing is decided.
 //! With gyroscopes that are really wrong that does not last, because an autopilot
 //! that follows them turns the aircraft.
+//!
+//! An axis that gives one rate to the last bit while the others change is wrong without
+//! the field.
 
 use libm::{acos, sqrt};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::Solution;
 use super::field_turning::{FieldTurning, Turning};
+use super::stuck::StuckAxis;
 use crate::framework::Time;
 
 /// They contradict each other beyond this angle, rad (12°), of several windows, the
@@ -28,6 +32,9 @@ const CONTRADICTS_SIGMAS: f64 = 5.0;
 /// so many standard deviations.
 const FIELD_TURNS_SHARE: f64 = 0.4;
 const NOISE_SIGMAS: f64 = 3.0;
+/// Instead of the share by this angle, rad (30°), without the window in which it turns the most: within
+/// that one it may have been frozen.
+const FIELD_TURNS_RAD: f64 = 0.52;
 /// Of so many windows, 2.4 s, each number from the latest on is looked at: gyroscopes
 /// that are wrong by a little take longer.
 const WINDOWS: usize = 12;
@@ -75,6 +82,8 @@ pub(super) struct GyroscopeMonitor {
     expected_last: Time,
     is_field_sound: bool,
     is_doubted: bool,
+    axes: StuckAxis,
+    is_stuck: bool,
     agreeing: Agreeing,
 }
 
@@ -100,6 +109,8 @@ impl GyroscopeMonitor {
             expected_last: Time::NEVER,
             is_field_sound: false,
             is_doubted: false,
+            axes: StuckAxis::default(),
+            is_stuck: false,
             agreeing: Agreeing::default(),
         }
     }
@@ -115,16 +126,22 @@ impl GyroscopeMonitor {
         self.bias = Vector3::zeros();
         self.turning = FieldTurning::new();
         self.known = 0;
+        self.axes = StuckAxis::default();
+        self.is_stuck = false;
         self.agreeing = Agreeing::default();
     }
 
-    /// Takes a sample of the gyroscopes, rad/s, and what is known of their bias.
-    pub(super) fn add_rates(&mut self, taken: Time, rates: [f64; 3], known: &Solution) {
+    /// Takes a new sample of the gyroscopes, rad/s, and what is known of their bias;
+    /// whether it is to be used.
+    pub(super) fn add_rates(&mut self, taken: Time, rates: [f64; 3], known: &Solution) -> bool {
+        let (is_held, is_stuck) = self.axes.step(taken, rates);
+        self.is_stuck = is_stuck;
         if !self.is_doubted {
             self.bias = Vector3::from(known.gyroscope_bias_radps.map(finite));
         }
         self.turning
             .add_rates(taken, Vector3::from(rates) - self.bias);
+        !is_held && !self.is_doubted
     }
 
     /// Takes a sample of the magnetic field, µT, body axes, and what is known of
@@ -132,6 +149,9 @@ impl GyroscopeMonitor {
     pub(super) fn add_field(&mut self, taken: Time, field: [f64; 3], known: &Solution) {
         let own = Vector3::from(known.body_field_ut.map(finite));
         let field = Vector3::from(field);
+        let flies = Vector3::from(known.velocity_mps).norm() > FLIES_MPS;
+        // Attitude is found by a field that is sound; without one there is none.
+        self.is_doubted |= self.is_stuck && self.is_field_sound && flies;
         let Some(turning) = self.turning.add_field(taken, field, own) else {
             return;
         };
@@ -155,8 +175,9 @@ impl GyroscopeMonitor {
         }
         self.known = (self.known + 1).min(WINDOWS);
         if self.contradicts(earth_ut) {
-            let flies = Vector3::from(known.velocity_mps).norm() > FLIES_MPS;
             self.is_doubted |= flies;
+            self.agreeing = Agreeing::default();
+        } else if self.is_stuck {
             self.agreeing = Agreeing::default();
         } else if self.is_doubted {
             self.agree(taken, &turning);
@@ -190,7 +211,7 @@ impl GyroscopeMonitor {
     fn contradicts(&self, earth_ut: f64) -> bool {
         let (mut error, mut shown) = (Vector3::zeros(), Vector3::zeros());
         let (mut by_field, mut by_rates, mut variance) = (0.0, 0.0, 0.0);
-        let mut largest = Vector3::zeros();
+        let (mut largest, mut most_shown) = (Vector3::zeros(), Vector3::zeros());
         let (mut weakest_ut, mut strongest_ut) = (f64::INFINITY, 0.0_f64);
         self.windows.iter().take(self.known).any(|window| {
             error += window.error;
@@ -204,6 +225,9 @@ impl GyroscopeMonitor {
             if wrong > largest.norm() {
                 largest = window.error;
             }
+            if turned > most_shown.norm() {
+                most_shown = window.shown;
+            }
             weakest_ut = weakest_ut.min(window.strength_ut);
             strongest_ut = strongest_ut.max(window.strength_ut);
             let angle = error.norm();
@@ -211,7 +235,8 @@ impl GyroscopeMonitor {
                 && (error - largest).norm() > 0.5 * CONTRADICTS_RAD
                 && angle > CONTRADICTS_SHARE * by_field.max(by_rates)
                 && angle > CONTRADICTS_SIGMAS * sqrt(variance)
-                && shown.norm() > FIELD_TURNS_SHARE * angle
+                && (shown.norm() > FIELD_TURNS_SHARE * angle
+                    || (shown - most_shown).norm() > FIELD_TURNS_RAD)
                 && shown.norm() > NOISE_SIGMAS * sqrt(variance)
                 && strongest_ut - weakest_ut < STEADY_STRENGTH_SHARE * earth_ut
         })

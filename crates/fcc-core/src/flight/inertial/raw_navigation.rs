@@ -278,12 +278,12 @@ impl RawNavigation {
         if !repeats_force && is_new(&mut self.used.raw_specific_force, &f, now) {
             self.take(f.taken, Observation::SpecificForce(force));
         }
-        if !repeats_rates && is_new(&mut self.rates_read, &r, now) {
-            self.gyroscope.add_rates(r.taken, rates, &self.solution);
-            if !self.gyroscope.is_doubted() {
-                self.used.raw_body_rates = r;
-                self.take(r.taken, Observation::Rates(rates));
-            }
+        if !repeats_rates
+            && is_new(&mut self.rates_read, &r, now)
+            && self.gyroscope.add_rates(r.taken, rates, &self.solution)
+        {
+            self.used.raw_body_rates = r;
+            self.take(r.taken, Observation::Rates(rates));
         }
         if is_new(&mut self.used.magnetic_field, &m, now) {
             self.gyroscope.add_field(m.taken, field, &self.solution);

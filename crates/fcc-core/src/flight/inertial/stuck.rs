@@ -1,4 +1,4 @@
-//! A raw sensor that repeats its last sample.
+//! A raw sensor that repeats its last sample, or one axis of it.
 
 use crate::framework::Time;
 
@@ -53,5 +53,97 @@ impl StuckSensor {
                     .any(|(now, then)| libm::fabs(now - then) > enough)
             });
         has_moved && taken.since(self.since).as_secs_f64() >= SAME_FOR_S
+    }
+}
+
+/// An axis that turns faster than this, rad/s (6 °/s), is not at rest: beyond the bias
+/// of any gyroscope that is used here.
+const TURNS_RADPS: f64 = 0.1;
+/// A rate that is repeated so often, and for so long, s, is not used.
+const HELD: (u32, f64) = (4, 0.1);
+/// An axis is stuck after so many repeats over so long, s, in which another axis changes
+/// or the rate is more than the second one, rad/s (57 °/s).
+const STUCK: (u32, f64) = (8, 0.2);
+const FAST_RADPS: f64 = 1.0;
+
+/// Notices that one axis of the gyroscopes gives a rate to the last bit again and
+/// again: one that is stuck, or at the end of its range.
+///
+/// No aircraft turns so evenly: at 2000 °/s of range and 16 bits, repeats need an
+/// angular acceleration of less than 0.3 °/s² for 0.2 s, and no noise. At rest a coarse
+/// sensor may repeat its bias.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct StuckAxis {
+    sample: [f64; 3],
+    axes: [Repeated; 3],
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Repeated {
+    since: Time,
+    /// Samples that repeated it, and of those the ones that no driver has given again.
+    all: u32,
+    measured: u32,
+}
+
+impl Repeated {
+    fn lasts(self, taken: Time, count: u32, (least, least_s): (u32, f64)) -> bool {
+        count >= least && taken.since(self.since).as_secs_f64() >= least_s
+    }
+}
+
+impl StuckAxis {
+    /// Takes a new sample, rad/s; whether it is held, so that it says nothing, and
+    /// whether an axis is stuck.
+    pub(super) fn step(&mut self, taken: Time, sample: [f64; 3]) -> (bool, bool) {
+        let changed = sample != self.sample;
+        for ((axis, rate), before) in self.axes.iter_mut().zip(sample).zip(self.sample) {
+            if rate == before && libm::fabs(rate) > TURNS_RADPS {
+                axis.all = axis.all.saturating_add(1);
+                let is_measured = changed || libm::fabs(rate) > FAST_RADPS;
+                axis.measured = axis.measured.saturating_add(u32::from(is_measured));
+            } else {
+                *axis = Repeated {
+                    since: taken,
+                    ..Repeated::default()
+                };
+            }
+        }
+        self.sample = sample;
+        let any = |lasts: fn(&Repeated, Time) -> bool| self.axes.iter().any(|a| lasts(a, taken));
+        (
+            any(|axis, taken| axis.lasts(taken, axis.all, HELD)),
+            any(|axis, taken| axis.lasts(taken, axis.measured, STUCK)),
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Samples at 40 Hz, as many as an axis is stuck after: what is said of the last.
+    fn after(sample: impl Fn(u32) -> [f64; 3]) -> (bool, bool) {
+        let mut axes = StuckAxis::default();
+        let mut said = (false, false);
+        for tick in 0..=STUCK.0 {
+            let taken = Time::from_nanos(i64::from(tick) * 25_000_000);
+            said = axes.step(taken, sample(tick));
+        }
+        said
+    }
+
+    #[test]
+    fn an_axis_that_measures_one_rate_is_stuck() {
+        let noise = |tick: u32| f64::from(tick % 3) * 0.001;
+        assert_eq!(after(|tick| [1.0, noise(tick), 0.0]), (true, true));
+        // A driver that gives its last sample again.
+        assert_eq!(after(|_| [0.9, 0.02, 0.0]), (true, false));
+        // All of them at the end of their range.
+        assert_eq!(after(|_| [4.36, 4.36, 4.36]), (true, true));
+        // The bias of a coarse sensor at rest, and a turn.
+        assert_eq!(after(|tick| [0.05, noise(tick), 0.0]), (false, false));
+        let turns = |tick| [1.0 + noise(tick), noise(tick), 0.0];
+        assert_eq!(after(turns), (false, false));
     }
 }
