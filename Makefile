@@ -89,7 +89,7 @@ test-upsets: $(STAMPS)/python-module ## Recover from 100 drawn upsets, and fly 6
 # The app's classes and its native library, on this machine's Java. Its own report of
 # what native code does wrong (-Xcheck:jni) is in the output and no failure by itself.
 ANDROID := target/android
-test-android: $(STAMPS)/rust $(STAMPS)/java ## Test the app's native library under Java (5 minutes)
+test-android: build $(STAMPS)/python $(STAMPS)/java ## Test the app's native library under Java, and fly JSBSim by it (10 minutes)
 	@mkdir -p $(ANDROID)/faulty
 	cargo build --locked -p fcc-android --features fault-injection
 	cp $(TARGET)/debug/libfcc_android.so $(ANDROID)/faulty/
@@ -97,6 +97,8 @@ test-android: $(STAMPS)/rust $(STAMPS)/java ## Test the app's native library und
 	cd android/host-tests && mvn --quiet --batch-mode -Dlibrary=$(abspath $(TARGET))/debug test \
 	    > $(abspath $(ANDROID))/host-tests.log 2>&1 || { cat $(abspath $(ANDROID))/host-tests.log; exit 1; }
 	@! grep -E 'WARNING in native method|WARNING: JNI|FATAL ERROR in native' $(ANDROID)/host-tests.log
+	FCC_ANDROID=$(abspath android/host-tests/fccd) FCC_ANDROID_LIBRARY=$(abspath $(TARGET))/debug \
+	    FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil/tests/test_android.py
 
 android-check: $(STAMPS)/rust $(STAMPS)/android ## Check and link the app's native library for phones, without an NDK (10 minutes)
 	./scripts/android-check $(TARGET)
