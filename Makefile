@@ -39,7 +39,7 @@ STAMPS   := .stamps
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-upsets test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
+.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-upsets test-android android-check test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -86,6 +86,23 @@ UPSETS := hil/tests/test_drawn_upsets.py \
 test-upsets: $(STAMPS)/python-module ## Recover from 100 drawn upsets, and fly 60 flights of climbing turns in turbulence (5 minutes)
 	FCCD_UPSETS=100 FCCD_CLIMBING_TURNS=20 $(PYTHON) -m pytest --capture=no $(UPSETS)
 
+# The app's classes and its native library, on this machine's Java. Its own report of
+# what native code does wrong (-Xcheck:jni) is in the output and no failure by itself.
+ANDROID := target/android
+test-android: build $(STAMPS)/python $(STAMPS)/java ## Test the app's native library under Java, and fly JSBSim by it (10 minutes)
+	@mkdir -p $(ANDROID)/faulty
+	cargo build --locked -p fcc-android --features fault-injection
+	cp $(TARGET)/debug/libfcc_android.so $(ANDROID)/faulty/
+	cargo build --locked -p fcc-android
+	cd android/host-tests && mvn --quiet --batch-mode -Dlibrary=$(abspath $(TARGET))/debug test \
+	    > $(abspath $(ANDROID))/host-tests.log 2>&1 || { cat $(abspath $(ANDROID))/host-tests.log; exit 1; }
+	@! grep -E 'WARNING in native method|WARNING: JNI|FATAL ERROR in native' $(ANDROID)/host-tests.log
+	FCC_ANDROID=$(abspath android/host-tests/fccd) FCC_ANDROID_LIBRARY=$(abspath $(TARGET))/debug \
+	    FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil/tests/test_android.py
+
+android-check: $(STAMPS)/rust $(STAMPS)/android ## Check and link the app's native library for phones, without an NDK (10 minutes)
+	./scripts/android-check $(TARGET)
+
 faulty: $(STAMPS)/rust
 	cargo build --locked --release -p fcc-daemon --features fault-injection
 	cp $(FCCD) $(FAULTY)
@@ -99,9 +116,9 @@ lint-rust: $(STAMPS)/rust
 
 lint-python: $(STAMPS)/python-module
 	$(PYTHON) -m ruff check hil deploy
-	$(PYTHON) -m ruff check --config hil/pyproject.toml crates/fcc-py/fcc.pyi scripts/known-advisories
+	$(PYTHON) -m ruff check --config hil/pyproject.toml crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check
 	$(PYTHON) -m ruff format --check hil deploy
-	$(PYTHON) -m ruff format --config hil/pyproject.toml --check crates/fcc-py/fcc.pyi scripts/known-advisories
+	$(PYTHON) -m ruff format --config hil/pyproject.toml --check crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check
 	cd hil && ../$(PYTHON) -m mypy
 	cd deploy/vm && MYPYPATH=../../hil/tests ../../$(PYTHON) -m mypy --config-file ../../hil/pyproject.toml .
 
@@ -230,7 +247,7 @@ doc: $(STAMPS)/rust ## Build the API documentation
 	cargo doc --locked --workspace --no-deps --all-features
 
 # Crates that are not published: the Python module is published as a wheel.
-PRIVATE := fcc-py pendulum servo-board-firmware thermostat bench-tick
+PRIVATE := fcc-android fcc-py pendulum servo-board-firmware thermostat bench-tick
 # Where they are built from their packages. cargo takes a package of the same
 # version for the same, so what an earlier run unpacked and built is removed.
 PACKAGED := $(TARGET)/packaged
@@ -307,6 +324,17 @@ $(STAMPS)/cross: $(STAMPS)/rust
 	    ./scripts/apt-install gcc-aarch64-linux-gnu libc6-dev-arm64-cross \
 	        gcc-arm-linux-gnueabihf libc6-dev-armhf-cross
 	rustup target add $(BOARDS) $(MICROCONTROLLERS)
+	@mkdir -p $(STAMPS) && touch $@
+
+$(STAMPS)/java:
+	@command -v javac >/dev/null && command -v mvn >/dev/null || ./scripts/apt-install openjdk-17-jdk-headless maven
+	@mkdir -p $(STAMPS) && touch $@
+
+# C of libraries is compiled with the headers of the cross compilers.
+$(STAMPS)/android: $(STAMPS)/cross
+	@command -v clang-19 >/dev/null && command -v ld.lld-19 >/dev/null && command -v llvm-nm-19 >/dev/null || \
+	    ./scripts/apt-install clang-19 lld-19 llvm-19
+	rustup target add aarch64-linux-android armv7-linux-androideabi
 	@mkdir -p $(STAMPS) && touch $@
 
 $(STAMPS)/qemu:

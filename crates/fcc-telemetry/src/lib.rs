@@ -1,5 +1,5 @@
 //! Records and events of a flight, what is generated from their declaration,
-//! timing statistics, and the score.
+//! commands from outside, timing statistics, and the score.
 //!
 //! The crates above use them independently of one another: `fcc-record` writes
 //! and reads files, `fcc-live` shares memory with other programs, `fcc-report`
@@ -9,6 +9,7 @@
 
 #[cfg(feature = "flight")]
 mod altitude;
+mod command;
 pub mod file_lock;
 #[cfg(feature = "flight")]
 mod flight;
@@ -28,6 +29,10 @@ pub mod units;
 
 #[cfg(feature = "flight")]
 pub use altitude::ShownAltitude;
+pub use command::{
+    Command, Commandable, CommandableSetpoint, InvalidCommand, OutsideLimits, PendingCommand,
+    PlantLimits, SentCommands, Verdict,
+};
 pub use fcc_timer::not_started;
 pub use instance::{Instance, InstanceError};
 pub use message::describe_event;

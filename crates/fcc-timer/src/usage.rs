@@ -2,8 +2,10 @@
 //!
 //! The difference of two readings is the cost of the work between them. None
 //! of these functions allocates.
+#![allow(unsafe_code)]
 
-use nix::sys::resource::{UsageWho, getrusage};
+use std::mem::MaybeUninit;
+
 use nix::sys::time::TimeValLike as _;
 use nix::time::{ClockId, clock_gettime};
 
@@ -51,14 +53,20 @@ impl PageFaults {
 /// locked memory has none.
 #[must_use]
 pub fn page_faults() -> PageFaults {
-    // The call can fail for a bad argument only.
-    getrusage(UsageWho::RUSAGE_THREAD).map_or_else(
-        |_| PageFaults::default(),
-        |usage| PageFaults {
-            minor: usage.minor_page_faults() as u64,
-            major: usage.major_page_faults() as u64,
-        },
-    )
+    // RUSAGE_THREAD (getrusage(2)), which neither libc nor nix has for Android.
+    let this_thread = 1;
+    let mut usage = MaybeUninit::<libc::rusage>::zeroed();
+    // SAFETY: the kernel writes one rusage through the pointer, during the call.
+    // The call can fail for a bad argument only; then the zeros stay, which are
+    // a valid value of plain numbers.
+    let usage = unsafe {
+        libc::getrusage(this_thread, usage.as_mut_ptr());
+        usage.assume_init()
+    };
+    PageFaults {
+        minor: usage.ru_minflt as u64,
+        major: usage.ru_majflt as u64,
+    }
 }
 
 #[cfg(test)]

@@ -15,10 +15,19 @@ use std::net::IpAddr;
 use std::os::fd::AsFd;
 use std::sync::{Mutex, PoisonError};
 
-use nix::libc::{BPF_ABS, BPF_H, BPF_JEQ, BPF_JMP, BPF_K, BPF_LD, BPF_RET, BPF_W};
 use socket2::{SockFilter, SockRef, Socket};
 
 use crate::link::SharedState;
+
+// Codes of instructions (linux/bpf_common.h), which libc does not have for Android.
+const BPF_LD: u32 = 0x00;
+const BPF_JMP: u32 = 0x05;
+const BPF_RET: u32 = 0x06;
+const BPF_W: u32 = 0x00;
+const BPF_H: u32 = 0x08;
+const BPF_ABS: u32 = 0x20;
+const BPF_JEQ: u32 = 0x10;
+const BPF_K: u32 = 0x00;
 
 /// Offsets from here on count from the network header, others from UDP's
 /// (linux/filter.h).

@@ -148,6 +148,7 @@ impl From<&RealtimeSection> for RealtimeRequest {
     fn from(section: &RealtimeSection) -> Self {
         Self {
             priority: (section.priority > 0).then_some(section.priority),
+            nice: None,
             cpu: section.cpu.map(CpuRequest::from),
             cpu_dma_latency_us: section.cpu_dma_latency_us,
             lock_memory: section.lock_memory,

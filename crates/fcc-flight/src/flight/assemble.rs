@@ -3,12 +3,10 @@
 use std::io::{self, ErrorKind};
 use std::sync::Arc;
 
-#[cfg(feature = "live")]
-use fcc_core::flight::AutopilotConfig;
 use fcc_core::flight::{Autopilot, Measurements, Surfaces};
 use fcc_core::framework::{Actuator, ControlAuthority, Sensor};
 #[cfg(feature = "live")]
-use fcc_live::{PlantLimits, SentCommands, StartPublisher};
+use fcc_live::{SentCommands, StartPublisher};
 use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation, TruthHandle};
 use fcc_xplane::{OpenError, XPlane, XPlaneAuthority, XPlaneConfig, XPlaneStatus};
@@ -18,7 +16,7 @@ use super::calibrated::Calibrated;
 use super::control_override::ControlOverride;
 use super::event_log::EventLog;
 #[cfg(feature = "live")]
-use super::limits::{altitudes_m, heights_m};
+use super::limits::setpoint_limits;
 use super::lines::line_sensor;
 #[cfg(feature = "live")]
 use super::live::Live;
@@ -290,12 +288,12 @@ impl Assembly {
             #[cfg(feature = "live")]
             observers.push(Box::new(Live::<Autopilot>::new(
                 config,
-                SentCommands::new(limits(autopilot)),
+                SentCommands::new(setpoint_limits(autopilot)),
                 self.publisher.take(),
             )));
             #[cfg(feature = "live")]
             if config.telemetry.commands && config.rights.has_commanders() {
-                let socket = CommandSocket::<Autopilot>::new(config, limits(autopilot));
+                let socket = CommandSocket::<Autopilot>::new(config, setpoint_limits(autopilot));
                 observers.push(Box::new(socket));
             }
         }
@@ -307,22 +305,6 @@ impl Assembly {
         observers.push(Box::new(EventLog::default()));
         observers
     }
-}
-
-/// What an aircraft permits of the set points of other programs.
-#[cfg(feature = "live")]
-fn limits(autopilot: &AutopilotConfig) -> PlantLimits {
-    vec![
-        ("airspeed_mps", Ok(autopilot.envelope.allowed_airspeeds())),
-        ("altitude_m", Ok(altitudes_m(autopilot))),
-        (
-            "height_m",
-            heights_m(autopilot).ok_or(
-                "a height needs the elevation of its field: set altimeter.field_elevation_ft in \
-                 the configuration, or give an altitude",
-            ),
-        ),
-    ]
 }
 
 #[cfg(test)]

@@ -1,9 +1,26 @@
-//! What an aircraft permits of commanded altitudes.
+//! What an aircraft permits of commanded set points.
 
 use std::ops::RangeInclusive;
 
 use fcc_core::flight::AutopilotConfig;
+use fcc_telemetry::PlantLimits;
 use fcc_telemetry::units::COMMANDED_ALTITUDE_M;
+
+/// What an aircraft permits of the set points that are commanded from outside its
+/// program.
+pub fn setpoint_limits(autopilot: &AutopilotConfig) -> PlantLimits {
+    vec![
+        ("airspeed_mps", Ok(autopilot.envelope.allowed_airspeeds())),
+        ("altitude_m", Ok(altitudes_m(autopilot))),
+        (
+            "height_m",
+            heights_m(autopilot).ok_or(
+                "a height needs the elevation of its field: set altimeter.field_elevation_ft in \
+                 the configuration, or give an altitude",
+            ),
+        ),
+    ]
+}
 
 /// The altitudes above mean sea level that may be commanded, m: none below the
 /// floor and its margin, to a hundredth, as a message gives them.

@@ -47,7 +47,7 @@ pub use flapping::Flapping;
 pub use fly::{FlyError, fly};
 pub use ground::Impact;
 pub use host::Host;
-pub use limits::{altitudes_m, heights_m};
+pub use limits::{altitudes_m, heights_m, setpoint_limits};
 pub use observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 #[cfg(feature = "live")]
 pub use other_users::{OtherUserError, command_another_users, command_of};

@@ -2,7 +2,7 @@
 //!
 //! The thesis handled such a signal in a signal handler, in which few functions
 //! may be called. Here there is no handler: the real-time signal is sent to the
-//! loop's own thread, blocked there, and received with `sigwaitinfo`.
+//! loop's own thread, blocked there, and received with `sigtimedwait`.
 
 mod interval;
 mod signal;

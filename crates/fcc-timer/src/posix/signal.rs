@@ -56,12 +56,15 @@ impl TimerSignal {
         let awaited = only(self.claim.0);
         loop {
             let mut info = MaybeUninit::<libc::siginfo_t>::zeroed();
-            // SAFETY: both pointers are to live values of the types called for.
-            let answer = unsafe { libc::sigwaitinfo(&raw const awaited, info.as_mut_ptr()) };
+            // SAFETY: both pointers are to live values of the types called for, and
+            // without a time the call waits until there is a signal: that is
+            // sigwaitinfo, which libc does not have for Android.
+            let answer =
+                unsafe { libc::sigtimedwait(&raw const awaited, info.as_mut_ptr(), ptr::null()) };
             match Errno::result(answer) {
                 Ok(_) => {}
                 Err(Errno::EINTR) => continue,
-                Err(errno) => return Err(os_error("sigwaitinfo")(errno)),
+                Err(errno) => return Err(os_error("sigtimedwait")(errno)),
             }
             // SAFETY: plain data, zeroed above and filled in by the call.
             let info = unsafe { info.assume_init() };

@@ -12,6 +12,8 @@ pub struct RealtimeGranted {
     pub policy: &'static str,
     /// Priority under `SCHED_FIFO`, 1..=99; 0 under `SCHED_OTHER`.
     pub priority: i32,
+    /// Nice value, -20..=19; without effect under `SCHED_FIFO`.
+    pub nice: i8,
     /// The CPU, if the thread may run on one only.
     pub cpu: Option<usize>,
     /// Why this CPU, or why none; empty if none was requested.

@@ -14,6 +14,7 @@ pub mod cpus;
 mod granted;
 mod latency;
 mod memory;
+mod nice;
 mod scheduling;
 mod slack;
 mod stack;
@@ -47,6 +48,9 @@ pub struct RealtimeRequest {
     /// `SCHED_FIFO` with this priority, 1..=99. The kernel's own interrupt
     /// threads are at 50.
     pub priority: Option<u8>,
+    /// The nice value if the thread does not get `SCHED_FIFO`, -20..=19; where
+    /// the kernel refuses it, the nearest that it permits.
+    pub nice: Option<i8>,
     /// The CPU to run on.
     pub cpu: Option<CpuRequest>,
     /// Whether to keep all pages of the process in memory. Pages mapped now are
@@ -146,10 +150,16 @@ impl RealtimeRequest {
         if let Some(priority) = self.priority {
             denied.extend(scheduling::become_fifo(priority).err());
         }
+        if let Some(nice) = self.nice
+            && scheduling::policy() == "SCHED_OTHER"
+        {
+            denied.extend(nice::set_nearest(nice).err());
+        }
 
         let granted = RealtimeGranted {
             policy: scheduling::policy(),
             priority: scheduling::static_priority(),
+            nice: nice::get(),
             cpu: scheduling::only_cpu(),
             cpu_reason,
             cpu_latency,

@@ -88,7 +88,7 @@ pub fn take_priority_from(thread: i32) -> std::io::Result<()> {
         libc::syscall(
             libc::SYS_sched_setscheduler,
             thread,
-            libc::SCHED_OTHER | libc::SCHED_RESET_ON_FORK,
+            libc::SCHED_NORMAL | libc::SCHED_RESET_ON_FORK,
             &raw const param,
         )
     };
@@ -100,7 +100,8 @@ pub(super) fn policy() -> &'static str {
     // SAFETY: the call takes no pointer.
     let answer = unsafe { libc::syscall(libc::SYS_sched_getscheduler, THIS_THREAD) };
     match answer as libc::c_int & !libc::SCHED_RESET_ON_FORK {
-        libc::SCHED_OTHER => "SCHED_OTHER",
+        // As the kernel names what POSIX names SCHED_OTHER.
+        libc::SCHED_NORMAL => "SCHED_OTHER",
         libc::SCHED_FIFO => "SCHED_FIFO",
         libc::SCHED_RR => "SCHED_RR",
         libc::SCHED_BATCH => "SCHED_BATCH",

@@ -1,6 +1,9 @@
 //! How much the kernel may delay a wake-up.
+//!
+//! nix has no `prctl` for Android.
+#![allow(unsafe_code)]
 
-use nix::sys::prctl;
+use nix::errno::Errno;
 
 use super::DeniedRequest;
 
@@ -15,8 +18,9 @@ pub(super) fn set(slack_ns: u64) -> Result<(), DeniedRequest> {
     if slack_ns == 0 {
         return Err(denied("0 means the kernel's default".to_owned()));
     }
-    prctl::set_timerslack(slack_ns as libc::c_ulong)
-        .map_err(|errno| denied(format!("{errno:?}")))?;
+    // SAFETY: the call takes a number and no pointer.
+    let answer = unsafe { libc::prctl(libc::PR_SET_TIMERSLACK, slack_ns as libc::c_ulong) };
+    Errno::result(answer).map_err(|errno| denied(format!("{errno:?}")))?;
     match get() {
         Some(granted_ns) if granted_ns <= slack_ns => Ok(()),
         granted => Err(denied(format!("reads back as {granted:?}"))),
@@ -25,7 +29,6 @@ pub(super) fn set(slack_ns: u64) -> Result<(), DeniedRequest> {
 
 /// The timer slack of the calling thread, ns.
 pub(super) fn get() -> Option<u64> {
-    prctl::get_timerslack()
-        .ok()
-        .and_then(|slack_ns| u64::try_from(slack_ns).ok())
+    // SAFETY: the call takes no argument.
+    u64::try_from(unsafe { libc::prctl(libc::PR_GET_TIMERSLACK) }).ok()
 }

@@ -3,8 +3,8 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
+use crate::units::{Shown, number};
 use fcc_core::framework::schema::unit;
-use fcc_telemetry::units::{Shown, number};
 use serde::{Deserialize, Serialize};
 
 /// A value this close to a limit counts as on it: a round limit in knots or
@@ -80,7 +80,7 @@ impl fmt::Display for OutsideLimits {
 mod tests {
     use std::f64::consts::TAU;
 
-    use fcc_telemetry::units::AVIATION;
+    use crate::units::AVIATION;
 
     use super::*;
 

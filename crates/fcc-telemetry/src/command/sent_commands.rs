@@ -3,8 +3,8 @@
 
 use std::collections::VecDeque;
 
+use crate::describe_event;
 use fcc_core::framework::{EventKind, EventOf, LoopCommand, State};
-use fcc_telemetry::describe_event;
 
 use super::{Command, Commandable, InvalidCommand, PendingCommand, PlantLimits, Verdict};
 

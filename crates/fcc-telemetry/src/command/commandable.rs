@@ -2,8 +2,8 @@
 
 use std::ops::RangeInclusive;
 
+use crate::Telemetry;
 use fcc_core::framework::LoopCommand;
-use fcc_telemetry::Telemetry;
 
 use super::{Command, InvalidCommand, OutsideLimits};
 
@@ -101,10 +101,10 @@ impl Command {
 
 #[cfg(feature = "flight")]
 mod flight {
-    use fcc_core::flight::{Autopilot, AutopilotCommand};
-    use fcc_telemetry::units::{
+    use crate::units::{
         COMMANDED_ALTIMETER_SETTING_PA, COMMANDED_ALTITUDE_M, COMMANDED_HEADING_RAD,
     };
+    use fcc_core::flight::{Autopilot, AutopilotCommand};
 
     use super::{Commandable, CommandableSetpoint};
 
@@ -158,8 +158,8 @@ mod flight {
 
 #[cfg(all(test, feature = "flight"))]
 mod tests {
+    use crate::units::AVIATION;
     use fcc_core::flight::{ALTIMETER_SETTINGS_PA, Autopilot, AutopilotCommand};
-    use fcc_telemetry::units::AVIATION;
 
     use super::*;
 

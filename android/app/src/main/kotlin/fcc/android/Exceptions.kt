@@ -1,0 +1,22 @@
+package fcc.android
+
+/** What the native library throws; the message is for the user. */
+sealed class FccException(message: String) : Exception(message)
+
+/** The configuration cannot be flown: every problem with its line and key. */
+class ConfigException(message: String) : FccException(message)
+
+/** A flight did not begin. */
+class FlightException(message: String) : FccException(message)
+
+/** A command was refused, or nothing flies. */
+class CommandException(message: String) : FccException(message)
+
+/** The recordings cannot be listed. */
+class RecordingException(message: String) : FccException(message)
+
+/** The flight computer is closed. */
+class ClosedException(message: String) : FccException(message)
+
+/** An error of the library itself. */
+class InternalException(message: String) : FccException(message)

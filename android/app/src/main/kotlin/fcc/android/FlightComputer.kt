@@ -1,0 +1,61 @@
+package fcc.android
+
+import java.io.File
+
+/**
+ * A flight control computer: one configuration, flown any number of times.
+ *
+ * [config] is the text that `fccd` reads from its file; [recordings] replaces its
+ * `recording.folder`. All methods may be called from any thread. Of [start],
+ * [stop], [close] and the commands each may wait, and none is for the thread that
+ * draws.
+ *
+ * @throws ConfigException if the configuration cannot be flown.
+ */
+class FlightComputer(config: String, recordings: File, listener: Listener? = null) : AutoCloseable {
+    private val handle = Native.create(config, recordings.path, listener)
+
+    /**
+     * Begins a flight; returns when its loop runs.
+     *
+     * @throws FlightException if it flies already, or cannot.
+     */
+    fun start() = Native.start(handle)
+
+    /**
+     * Ends the flight, if there is one; returns when the controls are released and
+     * the recording is finished: within some seconds if the plant does not answer.
+     */
+    fun stop() = Native.stop(handle)
+
+    /** The state now, as JSON: see docs/android.md. Never waits for the loop. */
+    fun state(): String = Native.state(handle)
+
+    /**
+     * Engages; the tick that did.
+     *
+     * @throws CommandException with the reasons if it may not engage.
+     */
+    fun engage(): Long = Native.command(handle, "\"Engage\"")
+
+    /** Disengages and releases the controls; the tick that did. */
+    fun disengage(): Long = Native.command(handle, "\"Disengage\"")
+
+    /**
+     * Changes set points, by the names that docs/android.md lists; the tick that
+     * did.
+     *
+     * @throws CommandException if one is unknown or out of its limits, or if it is
+     * not engaged.
+     */
+    fun set(setpoints: Map<String, Double>): Long =
+        Native.command(handle, setpoints.entries.joinToString(",", "{\"Set\":[", "]}") { (name, value) ->
+            "[\"$name\",$value]"
+        })
+
+    /** The recordings in the folder, oldest first, as JSON: as `fccd list --json` prints them. */
+    fun recordings(): String = Native.recordings(handle)
+
+    /** Ends the flight, and frees what is native; without effect the second time. */
+    override fun close() = Native.close(handle)
+}

@@ -1,0 +1,225 @@
+package fcc.android
+
+import java.io.File
+import java.net.DatagramSocket
+import java.net.InetAddress
+import java.util.concurrent.Executors
+import java.util.concurrent.TimeUnit
+import org.json.JSONArray
+import org.junit.Assert.assertEquals
+import org.junit.Assert.assertFalse
+import org.junit.Assert.assertNotNull
+import org.junit.Assert.assertNull
+import org.junit.Assert.assertThrows
+import org.junit.Assert.assertTrue
+import org.junit.Test
+
+class FlightComputerTest {
+    @Test
+    fun `it flies, obeys commands and leaves a whole recording`() {
+        val recordings = folder()
+        val heard = Heard()
+        FlightComputer(BUILT_IN, recordings, heard).use { computer ->
+            assertFalse(computer.json().getBoolean("flying"))
+            assertNull(computer.now())
+            computer.start()
+            assertTrue(computer.json().getBoolean("flying"))
+            eventually("nothing inhibits engaging") {
+                computer.now()?.getJSONArray("engage_inhibits")?.isEmpty ?: false
+            }
+            val engaged = computer.engage()
+            eventually("engaged") { computer.now()!!.getString("state") == "engaged" }
+            assertTrue(computer.set(mapOf("heading_rad" to 1.0, "altitude_m" to 1_000.0)) > engaged)
+            eventually("the set points are shown") {
+                val desired = computer.now()!!.optJSONObject("desired")
+                desired != null && desired.getDouble("altitude_m") == 1_000.0
+            }
+            val now = computer.now()!!
+            // The trimmed aircraft: level, and about as fast as it was set up.
+            assertTrue(now.getDouble("airspeed_mps") in 40.0..70.0)
+            assertTrue(Math.abs(now.getDouble("roll_rad")) < 0.6)
+            computer.disengage()
+            eventually("standby") { computer.now()!!.getString("state") == "standby" }
+            eventually("the timing is known") { !computer.json().isNull("timing") }
+            computer.stop()
+
+            val end = computer.json()
+            assertFalse(end.getBoolean("flying"))
+            val outcome = end.getJSONObject("outcome")
+            assertTrue(outcome.getBoolean("released"))
+            val recording = outcome.getJSONObject("recording")
+            assertEquals(0, recording.getLong("not_recorded"))
+            assertEquals(outcome.getJSONObject("timing").getLong("ticks"), recording.getLong("ticks"))
+            val listed = JSONArray(computer.recordings())
+            assertEquals(1, listed.length())
+            assertEquals("whole", listed.getJSONObject(0).getString("file"))
+            assertEquals("built-in", listed.getJSONObject(0).getString("plant"))
+            assertEquals(recording.getLong("ticks"), listed.getJSONObject(0).getLong("ticks"))
+        }
+        assertNotNull(heard.ending())
+        assertEquals(listOf("standby", "engaged", "standby", "stopped"), heard.states.toList())
+        assertFalse(heard.threads.any { it.contains("loop") })
+        assertTrue(heard.reports.any { "engaged" in it })
+    }
+
+    /** SCHED_FIFO or the lowest nice value that is granted, as the kernel says it. */
+    @Test
+    fun `what the loop's thread was granted is what the kernel says`() {
+        FlightComputer(BUILT_IN, folder()).use { computer ->
+            computer.start()
+            val granted = computer.json().getJSONObject("granted")
+            val loop = File("/proc/self/task").listFiles()!!.single {
+                File(it, "comm").readText().trim() == "fcc-loop"
+            }
+            // Fields 19 and 41 of proc_pid_stat(5), the first two before the name's end.
+            val fields = File(loop, "stat").readText().substringAfterLast(") ").split(" ")
+            assertEquals(fields[19 - 3].toInt(), granted.getInt("nice"))
+            val policy = if (fields[41 - 3].toInt() == 1) "SCHED_FIFO" else "SCHED_OTHER"
+            assertEquals(policy, granted.getString("policy"))
+        }
+    }
+
+    @Test
+    fun `a bad configuration is refused with the line and the key`() {
+        val wrong = assertThrows(ConfigException::class.java) {
+            FlightComputer("[built-in]\n[loop]\nrate_hz = -1\n", folder())
+        }
+        assertTrue(wrong.message, "3" in wrong.message!! && "loop.rate_hz" in wrong.message!!)
+        assertThrows(ConfigException::class.java) { FlightComputer("no = toml =", folder()) }
+        assertThrows(ConfigException::class.java) { FlightComputer("", folder()) }
+    }
+
+    @Test
+    fun `a port that another program has is an exception`() {
+        DatagramSocket(0, InetAddress.getByName("127.0.0.1")).use { taken ->
+            val config = "[x-plane]\nsimulator = \"127.0.0.1:9\"\nlocal_port = ${taken.localPort}\n"
+            FlightComputer(config, folder()).use { computer ->
+                val refused = assertThrows(FlightException::class.java) { computer.start() }
+                assertTrue(refused.message, "X-Plane" in refused.message!!)
+                assertFalse(computer.json().getBoolean("flying"))
+            }
+        }
+    }
+
+    @Test
+    fun `a command that makes no sense is refused with the reason`() {
+        FlightComputer(BUILT_IN, folder()).use { computer ->
+            val refused = { act: () -> Unit ->
+                assertThrows(CommandException::class.java) { act() }.message!!
+            }
+            assertTrue("start" in refused { computer.engage() })
+            computer.start()
+            eventually("ready") { computer.now()?.getJSONArray("engage_inhibits")?.isEmpty ?: false }
+            assertTrue("while engaged" in refused { computer.set(mapOf("heading_rad" to 1.0)) })
+            computer.engage()
+            assertTrue("choose" in refused { computer.set(mapOf("airspeed_mps" to 900.0)) })
+            assertTrue("room_c" in refused { computer.set(mapOf("room_c" to 20.0)) })
+            assertTrue("no command" in refused { computer.set(mapOf("heading_rad" to Double.NaN)) })
+            assertTrue("flies already" in assertThrows(FlightException::class.java) { computer.start() }.message!!)
+        }
+    }
+
+    @Test
+    fun `after it is closed every method says so, in any thread`() {
+        val computer = FlightComputer(BUILT_IN, folder())
+        computer.start()
+        computer.close()
+        computer.close()
+        val methods = listOf<() -> Unit>(
+            { computer.start() },
+            { computer.stop() },
+            { computer.state() },
+            { computer.engage() },
+            { computer.recordings() },
+        )
+        for (method in methods) {
+            assertThrows(ClosedException::class.java) { method() }
+        }
+        assertThrows(ClosedException::class.java) { Native.state(Long.MIN_VALUE) }
+        val another = Executors.newSingleThreadExecutor()
+        another.submit { assertThrows(ClosedException::class.java) { computer.state() } }.get()
+        another.shutdown()
+        eventually("its threads have ended: ${ownThreads()}") { ownThreads().isEmpty() }
+    }
+
+    @Test
+    fun `it is stopped and closed from other threads, at once`() {
+        repeat(20) {
+            val computer = FlightComputer(BUILT_IN, folder(), Heard())
+            computer.start()
+            val others = Executors.newFixedThreadPool(4)
+            val asked = listOf(
+                others.submit { runCatching { computer.stop() } },
+                others.submit { runCatching { computer.engage() } },
+                others.submit { runCatching { repeat(100) { computer.state() } } },
+                others.submit { computer.close() },
+            )
+            asked.forEach { it.get(20, TimeUnit.SECONDS) }
+            others.shutdown()
+            assertThrows(ClosedException::class.java) { computer.state() }
+        }
+    }
+
+    @Test
+    fun `a listener may stop the flight, and what it throws is its own`() {
+        lateinit var computer: FlightComputer
+        val ended = java.util.concurrent.CountDownLatch(1)
+        val listener = object : Listener {
+            override fun stateChanged(state: String) {
+                if (state == "standby") computer.stop()
+                throw IllegalStateException("the listener's own")
+            }
+
+            override fun reported(text: String) = throw OutOfMemoryError("of the listener")
+
+            override fun ended(reason: String) = ended.countDown()
+        }
+        computer = FlightComputer(BUILT_IN, folder(), listener)
+        computer.use {
+            it.start()
+            assertTrue(ended.await(10, TimeUnit.SECONDS))
+            assertFalse(it.json().getBoolean("flying"))
+        }
+    }
+
+    @Test
+    fun `it starts and stops a thousand times`() {
+        val recordings = folder()
+        // Fast, so that a stop does not wait long for a tick. To lock all memory of a
+        // Java process takes 0.2 s, and phones refuse it.
+        val config = "$BUILT_IN[recording]\nenabled = false\n[loop]\nrate_hz = 500\n" +
+            "[realtime]\nlock_memory = false\n"
+        FlightComputer(config, recordings, Heard()).use { computer ->
+            repeat(1_000) {
+                computer.start()
+                computer.stop()
+            }
+            assertTrue(computer.json().getJSONObject("outcome").getBoolean("released"))
+        }
+        eventually("its threads have ended: ${ownThreads()}") { ownThreads().isEmpty() }
+    }
+
+    @Test
+    fun `ten thousand calls leave no reference`() {
+        val nothing = folder()
+        FlightComputer("$BUILT_IN[recording]\nenabled = false\n", nothing, Heard()).use { computer ->
+            computer.start()
+            val call = { _: Int ->
+                computer.state()
+                runCatching { computer.set(mapOf("heading_rad" to Double.NaN)) }
+                computer.recordings()
+                runCatching { FlightComputer("wrong", nothing) }
+                Unit
+            }
+            repeat(10) { call(it) }
+            val before = globalReferences()
+            repeat(2_500) { call(it) }
+            assertTrue(globalReferences() <= before)
+        }
+        val before = globalReferences()
+        repeat(100) { FlightComputer(BUILT_IN, folder(), Heard()).close() }
+        eventually("the listeners are let go: ${globalReferences()} after $before") {
+            globalReferences() <= before
+        }
+    }
+}

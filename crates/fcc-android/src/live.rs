@@ -1,0 +1,326 @@
+//! The state for the screens: written by the thread that reads the loop's
+//! messages, read by the app's threads. The loop's thread never waits for it.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use fcc_core::flight::{Autopilot, AutopilotCommand};
+use fcc_core::framework::{Controller, EventKind, Flags, Reading, State};
+use fcc_flight::flight::{
+    Access, Conclusion, EventEntry, Facts, Flapping, FlightTime, Observer, Outcome, Report, Reports,
+};
+use fcc_record::RecorderStatus;
+use fcc_telemetry::{FlightEvent, FlightRecord, Realtime, ShownAltitude, TimingReport};
+use fcc_timer::{Expiry, TimerError, TimingStats};
+use serde::Serialize;
+
+use crate::listener::{Notice, Notifier};
+
+/// The newest reports that are kept: a screen of them.
+const MOST_REPORTS: usize = 50;
+/// How often the statistics of the timing are computed.
+const TIMING_EVERY: Duration = Duration::from_millis(500);
+
+/// What a screen shows. Its JSON is described in docs/android.md.
+#[derive(Clone, Debug, Default, Serialize)]
+struct Shown {
+    /// Whether a loop runs.
+    flying: bool,
+    /// A loop hangs in this process, and nothing flies in it again.
+    hung: bool,
+    /// What the user should know about the configuration.
+    remarks: Vec<String>,
+    /// The newest tick; none before the first.
+    now: Option<Now>,
+    /// What the kernel granted the loop's thread; none before a flight.
+    granted: Option<Granted>,
+    /// Of the flight so far; none before its first second is over.
+    timing: Option<TimingReport>,
+    recording: Option<Recording>,
+    /// The newest events and remarks, oldest first.
+    reports: VecDeque<EventEntry>,
+    /// The outcome of the last flight, as `fccd run --json` prints it; none
+    /// before, or if it ended by an error of the program.
+    outcome: Option<serde_json::Value>,
+    /// Why the last flight ended.
+    ending: Option<String>,
+}
+
+/// A tick.
+#[derive(Clone, Debug, Serialize)]
+struct Now {
+    /// Since the loop's first tick.
+    time_s: f64,
+    tick: u64,
+    /// `standby`, `engaged`, `failsafe` or `stopped`.
+    state: String,
+    /// Guidance's mode and progress.
+    mode: String,
+    /// How long it is engaged; none while it is not.
+    engaged_for_s: Option<f64>,
+    /// Why it cannot engage.
+    engage_inhibits: Vec<&'static str>,
+    faults: Vec<&'static str>,
+    roll_rad: Option<f64>,
+    pitch_rad: Option<f64>,
+    heading_rad: Option<f64>,
+    airspeed_mps: Option<f64>,
+    /// Above `altitude_reference`.
+    altitude_m: Option<f64>,
+    climb_rate_mps: f64,
+    altitude_reference: &'static str,
+    altimeter_setting_hpa: Option<f64>,
+    /// Set points; none while it does not control.
+    desired: Option<Desired>,
+    lateness_us: f64,
+    missed: u64,
+    overruns: u64,
+    records_dropped: u64,
+}
+
+/// Set points.
+#[derive(Clone, Debug, Serialize)]
+struct Desired {
+    heading_rad: f64,
+    airspeed_mps: f64,
+    /// Above the same as the altitude.
+    altitude_m: f64,
+}
+
+/// What the kernel granted.
+#[derive(Clone, Debug, Serialize)]
+struct Granted {
+    /// Without effect under `SCHED_FIFO`.
+    nice: i8,
+    #[serde(flatten)]
+    realtime: Realtime,
+}
+
+/// The state of the recorder.
+#[derive(Clone, Debug, Serialize)]
+struct Recording {
+    file: Option<String>,
+    ticks: u64,
+    bytes: u64,
+    not_recorded: u64,
+    stopped: Option<String>,
+}
+
+impl From<&RecorderStatus> for Recording {
+    fn from(status: &RecorderStatus) -> Self {
+        Self {
+            file: status.file.as_ref().map(|file| file.display().to_string()),
+            ticks: status.ticks,
+            bytes: status.bytes,
+            not_recorded: status.not_recorded,
+            stopped: status.stopped.clone(),
+        }
+    }
+}
+
+/// The state that is shared with the app's threads.
+pub(crate) struct Live(Mutex<Shown>);
+
+impl Live {
+    pub(crate) fn new(remarks: Vec<String>) -> Self {
+        Self(Mutex::new(Shown {
+            remarks,
+            ..Shown::default()
+        }))
+    }
+
+    pub(crate) fn to_json(&self) -> String {
+        let shown = self.lock().clone();
+        // A struct of numbers and texts can be written.
+        serde_json::to_string(&shown).unwrap_or_default()
+    }
+
+    /// Whether a loop of this process hangs.
+    pub(crate) fn is_hung(&self) -> bool {
+        self.lock().hung
+    }
+
+    /// The flight is over, or did not begin.
+    pub(crate) fn end(&self, outcome: Option<&Outcome>, ending: &str) {
+        let mut shown = self.lock();
+        shown.flying = false;
+        shown.hung |= outcome.is_some_and(|outcome| outcome.conclusion == Conclusion::Hung);
+        shown.outcome = outcome.and_then(|outcome| serde_json::to_value(outcome).ok());
+        shown.ending = Some(ending.to_owned());
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Shown> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Writes the state of a flight, and tells the app's listener.
+pub(crate) struct LiveObserver {
+    live: Arc<Live>,
+    notifier: Notifier,
+    timing: TimingStats,
+    timed: Instant,
+    timer: &'static str,
+    realtime: Realtime,
+    /// The newest record that is not in the state yet.
+    newest: Option<(FlightRecord, FlightTime)>,
+    missed: u64,
+    state: Option<State>,
+    flapping: Flapping,
+}
+
+impl LiveObserver {
+    /// For a loop of this period.
+    ///
+    /// # Errors
+    /// When no statistics can be kept for it.
+    pub(crate) fn new(
+        live: &Arc<Live>,
+        notifier: &Notifier,
+        period: Duration,
+    ) -> Result<Self, TimerError> {
+        Ok(Self {
+            live: Arc::clone(live),
+            notifier: notifier.clone(),
+            timing: TimingStats::new(period)?,
+            timed: Instant::now(),
+            timer: "",
+            realtime: Realtime::default(),
+            newest: None,
+            missed: 0,
+            state: None,
+            flapping: Flapping::default(),
+        })
+    }
+
+    fn keep(&self, text: &str, at: &FlightTime) {
+        let mut shown = self.live.lock();
+        if shown.reports.len() >= MOST_REPORTS {
+            shown.reports.pop_front();
+        }
+        shown.reports.push_back(EventEntry {
+            time_s: at.time_s,
+            tick: at.tick,
+            text: text.to_owned(),
+        });
+        drop(shown);
+        self.notifier.tell(Notice::Report(text.to_owned()));
+    }
+}
+
+impl Observer<Autopilot> for LiveObserver {
+    fn begin(&mut self, facts: &Facts<'_>, _: &mut Reports) {
+        self.timer = facts.timer;
+        self.realtime = facts.granted.map(Realtime::from).unwrap_or_default();
+        let mut shown = self.live.lock();
+        *shown = Shown {
+            flying: true,
+            remarks: std::mem::take(&mut shown.remarks),
+            granted: facts.granted.map(|granted| Granted {
+                nice: granted.nice,
+                realtime: self.realtime.clone(),
+            }),
+            ..Shown::default()
+        };
+    }
+
+    fn record(&mut self, record: &FlightRecord, at: &FlightTime) {
+        let tick = &record.tick;
+        self.timing.record(&Expiry {
+            number: tick.number,
+            scheduled_ns: tick.scheduled.as_nanos(),
+            woke_ns: tick.woke.as_nanos(),
+            missed: tick.missed,
+            early_wake_ns: record.early_wake_ns,
+            ..Expiry::default()
+        });
+        self.missed += tick.missed;
+        self.newest = Some((*record, *at));
+        for line in self
+            .flapping
+            .summaries(at.time_s, false)
+            .collect::<Vec<_>>()
+        {
+            self.keep(&line, at);
+        }
+        let state = record.state.state();
+        if self.state.replace(state) != Some(state) {
+            self.notifier.tell(Notice::State(state.to_string()));
+        }
+    }
+
+    fn event(&mut self, event: &FlightEvent, words: &str, at: &FlightTime) {
+        let is_own_command = matches!(event.kind, EventKind::CommandReceived(_));
+        if !is_own_command && self.flapping.passes(&event.kind, words, at.time_s) {
+            self.keep(words, at);
+        }
+    }
+
+    fn report(&mut self, report: &Report, at: &FlightTime) {
+        match report {
+            Report::Remark(words) | Report::Mention(words) => self.keep(words, at),
+            Report::Recording(status) => self.live.lock().recording = Some(status.into()),
+        }
+    }
+
+    fn poll(&mut self, _: &mut Access<'_, AutopilotCommand>) {
+        let Some((record, at)) = self.newest.take() else {
+            return;
+        };
+        let timing = (self.timed.elapsed() >= TIMING_EVERY).then(|| {
+            self.timed = Instant::now();
+            TimingReport::new(self.timer, &self.timing.summary(), self.realtime.clone())
+        });
+        let now = Now::of(&record, &at, self.missed);
+        let mut shown = self.live.lock();
+        shown.now = Some(now);
+        if timing.is_some() {
+            shown.timing = timing;
+        }
+    }
+}
+
+impl Now {
+    fn of(record: &FlightRecord, at: &FlightTime, missed: u64) -> Self {
+        let measured = &record.measurements;
+        let altitude = ShownAltitude::of(record);
+        let desired = &record.setpoints;
+        let state = record.state.state();
+        Self {
+            time_s: at.time_s,
+            tick: record.tick.number,
+            state: state.to_string(),
+            mode: desired.guidance.to_string(),
+            engaged_for_s: at.engaged_at_s.map(|engaged_s| at.time_s - engaged_s),
+            engage_inhibits: names(record.engage_inhibits),
+            faults: names(record.faults),
+            roll_rad: known(&measured.attitude).map(|_| record.estimate.roll_rad),
+            pitch_rad: known(&measured.attitude).map(|_| record.estimate.pitch_rad),
+            heading_rad: known(&measured.heading_rad),
+            airspeed_mps: known(&measured.airspeed_mps),
+            altitude_m: known(&measured.altitude_m).map(|pressure_m| pressure_m - altitude.datum_m),
+            climb_rate_mps: record.estimate.climb_rate_mps,
+            altitude_reference: altitude.reference,
+            altimeter_setting_hpa: altitude.setting_hpa,
+            desired: state.holds_control().then_some(Desired {
+                heading_rad: desired.heading_rad,
+                airspeed_mps: desired.airspeed_mps,
+                altitude_m: desired.altitude_m - altitude.datum_m,
+            }),
+            lateness_us: record.tick.lateness().as_secs_f64() * 1e6,
+            missed,
+            overruns: record.overruns,
+            records_dropped: record.records_dropped,
+        }
+    }
+}
+
+/// A value that was measured at least once.
+fn known<T: Copy>(reading: &Reading<T>) -> Option<T> {
+    (!reading.is_never()).then_some(reading.value)
+}
+
+fn names(flags: Flags) -> Vec<&'static str> {
+    flags.iter().map(Autopilot::flag_name).collect()
+}

@@ -1,0 +1,125 @@
+//! The native methods of `fcc.android.Native`.
+//!
+//! Each catches its panics, and throws an exception for an error: see
+//! [`Throw`](crate::failure::Throw). Their names are Java's (JNI specification,
+//! "Resolving Native Method Names").
+#![allow(unsafe_code, reason = "Java finds a method by its symbol's name")]
+#![allow(non_snake_case, reason = "names of methods are Java's")]
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use jni::objects::{JClass, JObject, JString};
+use jni::sys::jlong;
+use jni::{Env, EnvUnowned};
+
+use crate::computer::Computer;
+use crate::failure::{Failure, Throw};
+use crate::handles::Handles;
+use crate::listener::Notifier;
+
+/// All that the app has open.
+static COMPUTERS: Handles<Computer> = Handles::new();
+
+/// Checks a configuration; the handle of a new flight control computer.
+#[unsafe(no_mangle)]
+pub extern "system" fn Java_fcc_android_Native_create<'local>(
+    mut env: EnvUnowned<'local>,
+    _: JClass<'local>,
+    config: JString<'local>,
+    recordings: JString<'local>,
+    listener: JObject<'local>,
+) -> jlong {
+    env.with_env(|env| -> Result<jlong, Failure> {
+        let config = config.try_to_string(env)?;
+        let recordings = PathBuf::from(recordings.try_to_string(env)?);
+        let notifier = Notifier::of(env, &listener)?
+            .map_err(|error| Failure::Flight(format!("no thread for the listener: {error}")))?;
+        Ok(COMPUTERS.add(Computer::create(config, recordings, notifier)?))
+    })
+    .resolve::<Throw>()
+}
+
+/// Begins a flight; returns when its loop runs.
+#[unsafe(no_mangle)]
+pub extern "system" fn Java_fcc_android_Native_start<'local>(
+    mut env: EnvUnowned<'local>,
+    _: JClass<'local>,
+    handle: jlong,
+) {
+    env.with_env(|_| COMPUTERS.get(handle)?.start())
+        .resolve::<Throw>();
+}
+
+/// Ends the flight, and waits until it has ended.
+#[unsafe(no_mangle)]
+pub extern "system" fn Java_fcc_android_Native_stop<'local>(
+    mut env: EnvUnowned<'local>,
+    _: JClass<'local>,
+    handle: jlong,
+) {
+    env.with_env(|_| -> Result<(), Failure> {
+        COMPUTERS.get(handle)?.stop();
+        Ok(())
+    })
+    .resolve::<Throw>();
+}
+
+/// The state now, as JSON.
+#[unsafe(no_mangle)]
+pub extern "system" fn Java_fcc_android_Native_state<'local>(
+    mut env: EnvUnowned<'local>,
+    _: JClass<'local>,
+    handle: jlong,
+) -> JString<'local> {
+    env.with_env(|env| text(env, COMPUTERS.get(handle)?.state()))
+        .resolve::<Throw>()
+}
+
+/// Sends a command, as JSON; the tick that read it.
+#[unsafe(no_mangle)]
+pub extern "system" fn Java_fcc_android_Native_command<'local>(
+    mut env: EnvUnowned<'local>,
+    _: JClass<'local>,
+    handle: jlong,
+    command: JString<'local>,
+) -> jlong {
+    env.with_env(|env| -> Result<jlong, Failure> {
+        let command = command.try_to_string(env)?;
+        Ok(COMPUTERS.get(handle)?.command(&command)? as jlong)
+    })
+    .resolve::<Throw>()
+}
+
+/// The recordings, as JSON.
+#[unsafe(no_mangle)]
+pub extern "system" fn Java_fcc_android_Native_recordings<'local>(
+    mut env: EnvUnowned<'local>,
+    _: JClass<'local>,
+    handle: jlong,
+) -> JString<'local> {
+    env.with_env(|env| text(env, COMPUTERS.get(handle)?.recordings()?))
+        .resolve::<Throw>()
+}
+
+/// Ends the flight, and closes the handle; without effect on one that is closed.
+#[unsafe(no_mangle)]
+pub extern "system" fn Java_fcc_android_Native_close<'local>(
+    mut env: EnvUnowned<'local>,
+    _: JClass<'local>,
+    handle: jlong,
+) {
+    env.with_env(|_| -> Result<(), Failure> {
+        // Other threads may still use it, and its last user drops it.
+        if let Some(computer) = COMPUTERS.remove(handle) {
+            computer.stop();
+            drop(Arc::into_inner(computer));
+        }
+        Ok(())
+    })
+    .resolve::<Throw>();
+}
+
+fn text<'local>(env: &mut Env<'local>, words: String) -> Result<JString<'local>, Failure> {
+    Ok(env.new_string(words)?)
+}
