@@ -7,8 +7,11 @@ import ctypes
 import os
 import random
 import resource
+import select
 import signal
+import socket
 import subprocess
+import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -132,6 +135,87 @@ def full_pipe() -> Iterator[int]:
     finally:
         os.close(reader)
         os.close(writer)
+
+
+def test_a_helper_does_not_wait_for_a_debugger_that_is_stopped(fccd: Path, tmp_path: Path) -> None:
+    """The kernel ends a process that is traced only when the tracer goes on."""
+    with flight(fccd, tmp_path) as (simulator, daemon):
+        engage(simulator, daemon)
+        words = ["strace", "-f", "-p", str(daemon.pid), "-e", "trace=none", "-o", "/dev/null"]
+        with subprocess.Popen(words, stderr=subprocess.DEVNULL) as tracer:
+            status = Path(f"/proc/{daemon.pid}/status")
+            wait_until(lambda: f"TracerPid:\t{tracer.pid}" in status.read_text(), "it is traced")
+            tracer.send_signal(signal.SIGSTOP)
+            try:
+                daemon.send(signal.SIGKILL)
+                assert_released(simulator)
+                assert status.exists(), "it has not ended yet"
+            finally:
+                tracer.kill()
+
+
+class Relay(threading.Thread):
+    """A program at the simulator's port that passes everything on, as port forwarding does."""
+
+    def __init__(self, simulator: int) -> None:
+        super().__init__(daemon=True)
+        self._to = ("127.0.0.1", simulator)
+        self._answers = _bound(0)
+        self._listening: socket.socket | None = _bound(0)
+        self.port: int = self._listening.getsockname()[1]
+        self._daemon: tuple[str, int] | None = None
+        self._lock = threading.Lock()
+
+    def run(self) -> None:
+        while True:
+            with self._lock:
+                listening = self._listening
+            sockets = [self._answers] if listening is None else [self._answers, listening]
+            with contextlib.suppress(OSError, ValueError):
+                for ready in select.select(sockets, [], [], 0.01)[0]:
+                    datagram, sender = ready.recvfrom(65_535)
+                    if ready is listening:
+                        self._daemon = sender
+                        self._answers.sendto(datagram, self._to)
+                    elif self._daemon is not None:
+                        self._answers.sendto(datagram, self._daemon)
+
+    def close(self) -> None:
+        with self._lock:
+            assert self._listening is not None
+            self._listening.close()
+            self._listening = None
+
+    def open(self) -> None:
+        with self._lock:
+            self._listening = _bound(self.port)
+
+
+def _bound(port: int) -> socket.socket:
+    bound = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    bound.bind(("127.0.0.1", port))
+    bound.setblocking(False)
+    return bound
+
+
+@pytest.mark.parametrize("by", [signal.SIGTERM, signal.SIGKILL])
+def test_a_port_that_is_closed_is_not_the_end_of_a_simulator(
+    fccd: Path, tmp_path: Path, by: signal.Signals
+) -> None:
+    """It was taken for that, and the controls stayed held with exit code 0."""
+    with StandInProcess(Settings(port=0)) as simulator:
+        relay = Relay(simulator.port)
+        relay.start()
+        config = write_config(tmp_path, relay.port)
+        with start(fccd, tmp_path, config) as daemon:
+            engage(simulator, daemon)
+            relay.close()
+            ending = daemon.end(by, within_s=8.0)
+            assert simulator.progress().overridden
+            assert "has ended, and nothing holds" not in daemon.log
+            assert ending.exit_code != SUCCESS
+            relay.open()
+            assert_released(simulator)
 
 
 def test_a_helper_does_not_wait_for_a_daemon_that_has_given_up(fccd: Path, tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ use std::os::unix::process::parent_id;
 
 use nix::errno::Errno;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
+use nix::sys::signal::Signal;
 
 /// How often the daemon is looked at, should the signal of its end be missed, ms.
 const LOOK_EVERY_MS: u16 = 1_000;
@@ -18,6 +19,9 @@ const LOOK_EVERY_MS: u16 = 1_000;
 /// killed daemon stays open. Its main thread has ended by then: that is the end,
 /// too. The kernel reports it by the signal that
 /// [`begin_helper`](super::begin_helper) asks for, which interrupts the wait.
+///
+/// A killed process also stays while a debugger that is stopped itself traces it, or
+/// while its cgroup is frozen. Its signal, which nobody can take back, is pending then.
 pub(crate) struct DaemonPipe {
     daemon: u32,
 }
@@ -30,9 +34,9 @@ impl DaemonPipe {
         }
     }
 
-    /// Whether its main thread has ended.
+    /// Whether its main thread has ended, or must.
     fn has_ended(&self) -> bool {
-        parent_id() != self.daemon || is_zombie(self.daemon)
+        parent_id() != self.daemon || is_zombie(self.daemon) || is_killed(self.daemon)
     }
 }
 
@@ -61,6 +65,20 @@ fn is_zombie(process: u32) -> bool {
     let after_name = stat.iter().rposition(|byte| *byte == b')');
     let state = after_name.and_then(|at| stat.get(at + 2));
     matches!(state, Some(b'Z' | b'X'))
+}
+
+/// Whether SIGKILL is pending for a process (the masks `SigPnd` and `ShdPnd` in
+/// hexadecimal digits, `proc_pid_status(5)`).
+fn is_killed(process: u32) -> bool {
+    let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
+    let masks = status.lines().filter_map(|line| {
+        let mask = line
+            .strip_prefix("SigPnd:")
+            .or(line.strip_prefix("ShdPnd:"))?;
+        u64::from_str_radix(mask.trim(), 16).ok()
+    });
+    let killed = 1 << (Signal::SIGKILL as u32 - 1);
+    masks.fold(0, |all, mask| all | mask) & killed != 0
 }
 
 #[cfg(test)]

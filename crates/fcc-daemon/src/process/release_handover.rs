@@ -30,6 +30,9 @@ use super::plant_file;
 const ENDS_WITHIN: Duration = Duration::from_millis(200);
 const LOOK_EVERY: Duration = Duration::from_millis(1);
 
+/// The command of a release helper.
+pub(super) const RELEASE_HELPER: &str = "release-helper";
+
 fn name(plant: &PlantId) -> String {
     format!("{}.helper", plant_file::name(plant))
 }
@@ -71,7 +74,18 @@ fn helper_of(file: &File, except: Option<u32>) -> Option<Pid> {
     let is_locked = lock.l_type != libc::F_UNLCK as libc::c_short;
     // Not positive: of another namespace of processes.
     let is_other = lock.l_pid > 1 && u32::try_from(lock.l_pid).ok() != except;
-    (is_locked && is_other).then(|| Pid::from_raw(lock.l_pid))
+    (is_locked && is_other && may_be_helper(lock.l_pid)).then(|| Pid::from_raw(lock.l_pid))
+}
+
+/// Whether a process is a release helper, by its command line; if that cannot be read,
+/// it may be. Another program of this user that has locked the file is let alone.
+fn may_be_helper(process: i32) -> bool {
+    let words = fs::read(format!("/proc/{process}/cmdline"));
+    words.map_or(true, |words| {
+        words
+            .split(|byte| *byte == 0)
+            .any(|word| word == RELEASE_HELPER.as_bytes())
+    })
 }
 
 /// Ends the helper that releases, or would release, `plant`, if there is one

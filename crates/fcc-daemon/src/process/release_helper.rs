@@ -23,7 +23,7 @@ use fcc_telemetry::{RunFolder, not_started};
 use super::notice::Notice;
 use super::own_program::own_program;
 use super::plant_file::PlantFile;
-use super::release_handover::HelperLock;
+use super::release_handover::{HelperLock, RELEASE_HELPER};
 use super::told::Told;
 
 /// How long a helper repeats the release: a simulator that loads scenery hangs
@@ -53,7 +53,7 @@ impl ReleaseHelper {
         held: Option<PlantId>,
     ) -> io::Result<Self> {
         let line = in_one_line(config)?;
-        let child = own_program("release-helper")
+        let child = own_program(RELEASE_HELPER)
             .stdin(Stdio::piped())
             .spawn()
             .map_err(not_started)?;
