@@ -1,7 +1,7 @@
 //! The native methods of `fcc.android.Native`.
 //!
 //! Each catches its panics, and throws an exception for an error: see
-//! [`Throw`](crate::failure::Throw). Their names are Java's (JNI specification,
+//! `Throw`. Their names are Java's (JNI specification,
 //! "Resolving Native Method Names").
 #![allow(unsafe_code, reason = "Java finds a method by its symbol's name")]
 #![allow(non_snake_case, reason = "names of methods are Java's")]
