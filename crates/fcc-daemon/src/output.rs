@@ -38,16 +38,21 @@ pub(crate) fn json<T: Serialize>(value: &T, exit: Exit) -> Exit {
 
 /// Prints a result as bytes.
 pub(crate) fn bytes(bytes: &[u8], exit: Exit) -> Exit {
-    printed(
-        standard_output().and_then(|mut out| out.write_all(bytes)),
-        exit,
-    )
+    printed(StandardOutput.write_all(bytes), exit)
 }
 
-/// Standard output as a file: [`io::Stdout`] takes an output that is not open for
-/// writing (EBADF) for one that was written.
-pub(crate) fn standard_output() -> io::Result<File> {
-    io::stdout().as_fd().try_clone_to_owned().map(File::from)
+/// Standard output without what [`io::Stdout`] does: it takes an output that is not
+/// open for writing (EBADF) for one that was written.
+struct StandardOutput;
+
+impl Write for StandardOutput {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        Ok(nix::unistd::write(io::stdout(), bytes)?)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }
 
 /// The exit code after printing a result.
@@ -62,7 +67,8 @@ pub(crate) fn printed(printing: io::Result<()>, exit: Exit) -> Exit {
 /// closed, or the terminal was (EIO of a device, and not of a disk).
 fn has_left(error: &io::Error) -> bool {
     let is_device = || {
-        let found = standard_output().and_then(|output| output.metadata());
+        let output = io::stdout().as_fd().try_clone_to_owned().map(File::from);
+        let found = output.and_then(|output| output.metadata());
         found.is_ok_and(|found| found.file_type().is_char_device())
     };
     error.kind() == ErrorKind::BrokenPipe
