@@ -63,5 +63,5 @@ pub(crate) fn describe(record: &FlightRecord) -> Option<String> {
 
 /// Whole degrees, 0 to 359, as on a compass card.
 fn compass(heading_rad: f64) -> f64 {
-    heading_rad.to_degrees().round().rem_euclid(360.0)
+    heading_rad.to_degrees().round().rem_euclid(360.0) + 0.0
 }
