@@ -103,6 +103,10 @@ pub(super) fn is_locked() -> bool {
     target_pointer_width = "64",
     expect(clippy::unnecessary_cast, reason = "32-bit systems count in 32 bits")
 )]
+#[allow(
+    clippy::cast_lossless,
+    reason = "a limit has 32 bits on 32-bit Android"
+)]
 fn limit() -> Option<u64> {
     let (soft, _) = getrlimit(Resource::RLIMIT_MEMLOCK).unwrap_or((0, 0));
     let exempt = || {
