@@ -28,6 +28,7 @@ from daemon_under_test import (
     wait_until,
     write_config,
 )
+from other_user import needs_two_users
 
 from fcc_hil.cockpit import OVERRIDE_JOYSTICK
 from fcc_hil.fly import ENGAGE_SWITCH
@@ -35,6 +36,7 @@ from fcc_hil.process import StandInProcess
 from fcc_hil.standin import Settings
 
 SUCCESS = 0
+NOT_RELEASED = 5
 CUT_OFF = "an earlier flight was cut off and may have left the controls held"
 KILLS = int(os.environ.get("FCCD_KILLS", "4"))
 """How many flights are killed; 100 take ten minutes: `make test-attacks`."""
@@ -198,24 +200,47 @@ def _bound(port: int) -> socket.socket:
     return bound
 
 
+WITHOUT_CAPABILITIES = ["setpriv", "--bounding-set=-all", "--inh-caps=-all"]
+"""So that it cannot look at a process that has them, as at one of another user."""
+
+
 @pytest.mark.parametrize("by", [signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize("sees", ["it", pytest.param("it not", marks=needs_two_users)])
 def test_a_port_that_is_closed_is_not_the_end_of_a_simulator(
-    fccd: Path, tmp_path: Path, by: signal.Signals
+    fccd: Path, tmp_path: Path, by: signal.Signals, sees: str
 ) -> None:
     """It was taken for that, and the controls stayed held with exit code 0."""
     with StandInProcess(Settings(port=0)) as simulator:
         relay = Relay(simulator.port)
         relay.start()
         config = write_config(tmp_path, relay.port)
-        with start(fccd, tmp_path, config) as daemon:
+        words: list[str | Path] = [fccd, "run", "--config", config, "--json"]
+        with DaemonUnderTest(words if sees == "it" else WITHOUT_CAPABILITIES + words, tmp_path) as (
+            daemon
+        ):
             engage(simulator, daemon)
             relay.close()
             ending = daemon.end(by, within_s=8.0)
+            # Longer than a release that is believed to be over.
+            time.sleep(4.0)
             assert simulator.progress().overridden
             assert "has ended, and nothing holds" not in daemon.log
-            assert ending.exit_code != SUCCESS
+            assert ending.exit_code == (NOT_RELEASED if by is signal.SIGTERM else -by)
             relay.open()
             assert_released(simulator)
+
+
+def test_a_helper_that_does_not_read_is_replaced(fccd: Path, tmp_path: Path) -> None:
+    with flight(fccd, tmp_path) as (simulator, daemon):
+        daemon.wait_until_ready()
+        (helper,) = daemon.helpers()
+        os.kill(helper, signal.SIGSTOP)
+        engage(simulator, daemon)
+        daemon.wait_for("the release helper did not read what it was told, and was started again")
+        (other,) = daemon.helpers()
+        assert other != helper
+        daemon.end(signal.SIGKILL)
+        assert_released(simulator)
 
 
 def test_a_helper_does_not_wait_for_a_daemon_that_has_given_up(fccd: Path, tmp_path: Path) -> None:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import signal
 import subprocess
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from daemon_under_test import wait_until, write_config
+from daemon_under_test import helpers_of, start, wait_until, write_config
+from test_release_helper import CUT_OFF
 
 from fcc_hil.cockpit import OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES
 from fcc_hil.process import StandInProcess
@@ -57,6 +60,21 @@ def test_a_deflection_of_a_killed_identification_is_released(fccd: Path, tmp_pat
         identification.kill()
         identification.wait()
         wait_until(lambda: are_set(simulator, 0.0), "the controls are released")
+
+
+def test_a_deflection_is_released_by_the_next_start_if_its_helper_is_killed_too(
+    fccd: Path, tmp_path: Path
+) -> None:
+    with holding(fccd, tmp_path, "identify", "--by-hand") as (simulator, identification):
+        (helper,) = helpers_of(identification.pid)
+        os.kill(helper, signal.SIGKILL)
+        identification.kill()
+        identification.wait()
+        time.sleep(1.0)
+        assert are_set(simulator, 1.0)
+        with start(fccd, tmp_path, tmp_path / "fccd.toml") as daemon:
+            assert "they are released" in daemon.wait_for(CUT_OFF)
+            wait_until(lambda: are_set(simulator, 0.0), "the controls are released")
 
 
 def test_ctrl_z_does_not_stop_a_deflection(fccd: Path, tmp_path: Path) -> None:

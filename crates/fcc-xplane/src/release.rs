@@ -28,9 +28,6 @@ const CLEAR_FOR: Duration = Duration::from_millis(500);
 const LISTEN_FOR: Duration = Duration::from_millis(20);
 /// After this many refusals in a row the simulator counts as unreachable.
 const REFUSALS: u32 = 4;
-/// A simulator of another user, whose process cannot be looked at, has ended after its
-/// port was closed for so long.
-const ENDED_AFTER: Duration = Duration::from_secs(3);
 /// The rate at which the readback is requested, Hz.
 const READ_BACK_HZ: u16 = 20;
 /// The indices of the readback, distinct from those of a sensor's
@@ -45,7 +42,8 @@ pub(crate) struct Expected {
     pub(crate) port: Option<u16>,
     /// Whose socket that is, of a simulator on this machine.
     pub(crate) user: Option<u32>,
-    /// The program that listened at the simulator's port, if it is known.
+    /// The program that listened at the simulator's port, if it is known: that of
+    /// another user cannot be looked at.
     pub(crate) program: Option<Program>,
 }
 
@@ -122,8 +120,6 @@ struct Conversation {
     /// Asks whether the expected port is closed, of another machine's.
     closed: Option<ClosedPort>,
     has_answered: bool,
-    /// Since when no program has the simulator's port.
-    closed_since: Option<Instant>,
 }
 
 impl Conversation {
@@ -171,7 +167,6 @@ impl Conversation {
             sockets: is_of_this_machine(simulator).then(|| UdpSockets::sending_from(ip)),
             closed: asked.and_then(ClosedPort::of),
             has_answered: false,
-            closed_since: None,
         })
     }
 
@@ -255,24 +250,17 @@ impl Conversation {
     }
 
     /// Whether the simulator has ended: no program has its port, as this machine
-    /// knows of its own, and the one that had it is gone; if that is not known, after
-    /// a while. Of another machine it is not known: a firewall that rejects what it
-    /// does not let through reports the same.
+    /// knows of its own, and the one that had it is gone. Of another machine it is not
+    /// known, since a firewall that rejects what it does not let through reports the
+    /// same; nor of a program that cannot be looked at.
     fn has_ended(&mut self) -> bool {
         let port = self.simulator.port();
         let is_closed = self.sockets.as_mut().is_some_and(|sockets| {
             sockets.look();
             sockets.user_of(port).is_ok_and(|user| user.is_none())
         });
-        if !is_closed {
-            self.closed_since = None;
-            return false;
-        }
-        let since = *self.closed_since.get_or_insert_with(Instant::now);
-        match self.expected.program {
-            Some(program) => program.has_ended(),
-            None => since.elapsed() >= ENDED_AFTER,
-        }
+        let is_gone = |program: Program| program.has_ended();
+        is_closed && self.expected.program.is_some_and(is_gone)
     }
 
     fn end(mut self) {

@@ -67,8 +67,8 @@ impl Default for Reported {
 }
 
 impl Reported {
-    /// A description of what has changed; none if there is nothing to report. While
-    /// the `program` at the simulator's port lives, the simulator has not ended.
+    /// A description of what has changed; none if there is nothing to report. Only the
+    /// end of the `program` at the simulator's port is known to be the simulator's end.
     pub(crate) fn change(
         &mut self,
         status: &XPlaneStatus,
@@ -119,7 +119,7 @@ impl Reported {
             .silence
             .get_or_insert_with(|| Silence::begin(config, status, simulator));
         let why = silence.look(status);
-        let is_gone = program.is_none_or(|program| program.has_ended());
+        let is_gone = program.is_some_and(|program| program.has_ended());
         if why == Why::PortClosed && is_gone && status.link().free_if_gone() {
             // Nobody confirms this one.
             self.control = Control::Free;

@@ -11,7 +11,9 @@ use super::release_helper::ReleaseHelper;
 
 /// A helper that was started, or could not be, is not started again before this.
 const AGAIN_AFTER: Duration = Duration::from_secs(1);
-/// A helper that has ended is started again this often.
+/// A helper that has not read what it was told for so long hangs, or is stopped.
+const READS_WITHIN: Duration = Duration::from_secs(5);
+/// A helper that has ended, or hangs, is started again this often.
 const TIMES_AGAIN: u32 = 5;
 
 /// The release helper of a flight, and what to do if there is none.
@@ -19,6 +21,8 @@ pub(super) struct KeptHelper {
     helper: Option<ReleaseHelper>,
     /// The last start, or attempt.
     started: Instant,
+    /// Since when it had read all that it was told.
+    read: Instant,
     /// How often it may still be started again.
     again: u32,
     /// The last attempt has failed.
@@ -32,6 +36,7 @@ impl KeptHelper {
         Self {
             helper: None,
             started: Instant::now(),
+            read: Instant::now(),
             again: TIMES_AGAIN,
             is_missing: false,
             untold: None,
@@ -47,6 +52,7 @@ impl KeptHelper {
         held: Option<PlantId>,
     ) -> bool {
         self.started = Instant::now();
+        self.read = self.started;
         match ReleaseHelper::start(config, notice, held) {
             Ok(helper) => {
                 self.helper = Some(helper);
@@ -65,8 +71,8 @@ impl KeptHelper {
         self.helper.is_some()
     }
 
-    /// Starts it again if it has ended, for example killed for want of memory,
-    /// or could not be started; whether a new one was started.
+    /// Starts it again if it has ended, for example killed for want of memory, or
+    /// hangs, or could not be started; whether a new one was started.
     pub(super) fn keep(
         &mut self,
         config: &Config,
@@ -80,18 +86,17 @@ impl KeptHelper {
         if self.started.elapsed() < AGAIN_AFTER {
             return false;
         }
-        if self
-            .helper
-            .as_mut()
-            .is_some_and(|helper| !helper.has_ended())
-        {
-            return false;
-        }
-        let has_ended = self.helper.take().is_some();
+        let ended = match self.helper.as_mut().map(ReleaseHelper::has_ended) {
+            Some(true) => Some("had ended"),
+            Some(false) if !self.has_read(notice) => Some("did not read what it was told"),
+            Some(false) => return false,
+            None => None,
+        };
+        self.end();
         if self.again == 0 {
-            if has_ended {
+            if let Some(why) = ended {
                 report(format!(
-                    "the release helper has ended again, and is not started any more: {BY_HAND}"
+                    "the release helper {why}, too often: it is not started any more; {BY_HAND}"
                 ));
             }
             return false;
@@ -101,12 +106,19 @@ impl KeptHelper {
         }
         // A failed attempt does not count: it took no pipe.
         self.again -= 1;
-        report(if has_ended {
-            "the release helper had ended, and was started again".to_owned()
-        } else {
-            "the release helper, which could not be started before, was started".to_owned()
-        });
+        report(ended.map_or_else(
+            || "the release helper, which could not be started before, was started".to_owned(),
+            |why| format!("the release helper {why}, and was started again"),
+        ));
         true
+    }
+
+    /// Whether it has read what it was told, lately.
+    fn has_read(&mut self, notice: &Notice) -> bool {
+        if notice.is_read() {
+            self.read = Instant::now();
+        }
+        self.read.elapsed() < READS_WITHIN
     }
 
     pub(super) fn id(&self) -> Option<u32> {

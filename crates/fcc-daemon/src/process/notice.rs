@@ -158,6 +158,13 @@ impl Notice {
         self.send(&Line::Over);
     }
 
+    /// Whether the last helper has read all that it was told.
+    pub(super) fn is_read(&self) -> bool {
+        let pipe = self.helpers.iter().next_back();
+        let unread = pipe.map(rustix::io::ioctl_fionread);
+        !unread.is_some_and(|bytes| bytes.is_ok_and(|bytes| bytes > 0))
+    }
+
     /// To the last helper: the others have ended. A pipe that is full belongs
     /// to one that is stopped.
     fn send(&self, line: &Line) {

@@ -9,9 +9,14 @@ use std::fs::{self, File, TryLockError};
 use std::io;
 use std::os::unix::fs::{FileExt, MetadataExt};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use fcc_core::framework::PlantId;
+use fcc_core::framework::{ControlAuthority, PlantId};
+use fcc_flight::config::Config;
+use fcc_flight::flight::authority_without_connection;
 use fcc_telemetry::RunFolder;
+
+use crate::output;
 
 /// Where the two numbers are in the file, each 8 bytes, little-endian.
 const TAKEN_AT: u64 = 0;
@@ -114,6 +119,46 @@ impl PlantFile {
     pub(super) fn remove_if_released(&self) {
         if self.file.try_lock().is_ok() && !self.is_held() {
             let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
+/// Marks a plant as held for the next daemon, of a program without a loop. It locks
+/// nothing: the daemon that it has started may fly the plant in between.
+pub(crate) struct Mark {
+    authority: Option<Arc<dyn ControlAuthority>>,
+    folder: Option<RunFolder>,
+    file: Option<PlantFile>,
+}
+
+impl Mark {
+    /// For the plant of this configuration.
+    pub(crate) fn of(config: &Config) -> Self {
+        Self {
+            authority: authority_without_connection(config),
+            folder: RunFolder::of_this_process(&mut |why| output::message(why)),
+            file: None,
+        }
+    }
+
+    /// Control of this plant is taken, with this number as the release helper knows it.
+    pub(crate) fn set(&mut self, plant: &PlantId, number: u64) {
+        // The daemon may have removed the file since.
+        self.file = self
+            .authority
+            .as_ref()
+            .zip(self.folder.as_ref())
+            .and_then(|(authority, folder)| PlantFile::open(folder, &authority.unique(plant)).ok());
+        if let Some(file) = &self.file {
+            file.take(number);
+        }
+    }
+
+    /// Its release is confirmed.
+    pub(crate) fn remove(&mut self, number: u64) {
+        if let Some(file) = self.file.take() {
+            file.release(number);
+            file.remove_if_released();
         }
     }
 }

@@ -294,18 +294,6 @@ mod tests {
     }
 
     #[test]
-    fn an_unreachable_simulator_holds_nothing() {
-        let simulator = simulator();
-        let script = script(&simulator, "");
-        drop(simulator);
-        let released = run_release_helper(script.as_bytes())
-            .unwrap()
-            .unwrap()
-            .released;
-        assert_eq!(released, Released::Unreachable);
-    }
-
-    #[test]
     fn invalid_input_is_refused_with_a_message() {
         let error = run_release_helper("what?\n".as_bytes()).unwrap_err();
         assert!(error.to_string().contains("not a configuration"), "{error}");

@@ -26,7 +26,7 @@ fn only_this_machine_knows_that_the_program_at_the_port_has_ended() {
     for (is_here, program, expected) in [
         (true, ended, Released::Unreachable),
         (true, alive, Released::Refused),
-        (true, None, Released::Unreachable),
+        (true, None, Released::Refused),
         (false, ended, Released::Refused),
     ] {
         let expecting = Expected {

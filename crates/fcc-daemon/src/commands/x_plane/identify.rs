@@ -10,7 +10,7 @@ use super::{Failure, not_begun, request};
 use crate::cli::x_plane::IdentifyArgs;
 use crate::exit::Exit;
 use crate::output;
-use crate::process::{Notice, start_helper};
+use crate::process::{Mark, Notice, start_helper};
 
 /// Measures the responses, and prints gains.
 pub(super) fn identify(args: &IdentifyArgs) -> Result<Exit, Failure> {
@@ -21,13 +21,20 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<Exit, Failure> {
     } else {
         FlownBy::Daemon
     };
-    // It releases the controls that the measurement itself has taken if this
+    // They tell others of the controls that the measurement itself has taken, if this
     // process is killed, or X-Plane has not confirmed their release.
     let notice = Notice::of_this_process();
     let _helper = start_helper(&config, notice, None);
+    let mut mark = Mark::of(&config);
     let mut held = |plant: Option<PlantId>| match plant {
-        Some(plant) => notice.taking(&plant),
-        None => notice.release(notice.number()),
+        Some(plant) => {
+            notice.taking(&plant);
+            mark.set(&plant, notice.number());
+        }
+        None => {
+            notice.release(notice.number());
+            mark.remove(notice.number());
+        }
     };
     let result = carry_out(request, by, &mut terminal, &mut held);
     drop(terminal);
