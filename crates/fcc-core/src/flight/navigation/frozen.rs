@@ -274,15 +274,15 @@ impl FrozenDetector {
         let is_said = !(self.roll.is_frozen || self.pitch.is_frozen || self.heading.is_frozen);
         let stuck = self.rates.iter_mut().zip(&mut self.unsaid).zip(values);
         let turned = angles.into_iter().zip(before).zip(said);
-        let mut exceeds = false;
         for (((stuck, unsaid), value), ((is, was), said)) in stuck.zip(turned) {
             if stuck.has_changed([value], EXACTLY, rates.taken, dt_s) || !is_said {
                 *unsaid = LeakyIntegrator::default();
             } else {
                 unsaid.add(wrap_pi(is - was) - said * dt_s, TURNED_RAD, 0.0, dt_s);
             }
-            exceeds |= unsaid.exceeds(TURNED_RAD, 0.0);
         }
+        let mut unsaid = self.unsaid.iter();
+        let exceeds = unsaid.any(|unsaid| unsaid.exceeds(TURNED_RAD, 0.0));
         for stuck in &mut self.rates {
             stuck.update(exceeds, self.after_s);
         }
