@@ -14,10 +14,12 @@ use super::{Lines, Report};
 use crate::{DeviceError, Sample, Source, WAIT};
 
 const CONNECTED_WITHIN: Duration = Duration::from_secs(1);
-/// With a receiver gpsd reports every second, even without a fix. A connection
+/// With a receiver gpsd writes a line every second, even without a fix. A connection
 /// that is cut without a word is noticed by this, too.
 const SILENT: Duration = Duration::from_secs(10);
 const PROTOCOL: u32 = 3;
+/// Of its receivers, in a message.
+const MOST_LISTED: usize = 4;
 
 /// Where gpsd is, and which of its receivers is used.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -81,16 +83,25 @@ impl Gpsd {
 
     /// The newest fix of what was received.
     fn parse(&mut self, bytes: &[u8]) -> Result<Option<GnssFix>, DeviceError> {
-        let (mut newest, mut trouble) = (None, None);
+        let (mut newest, mut trouble, mut heard) = (None, None, self.heard);
         let device = name(&self.settings);
         let wanted = self.settings.device.as_ref();
         let refused = |what: String| DeviceError::Refused {
             device: device.clone(),
             what,
         };
-        self.lines.push(bytes, |line| match Report::read(line) {
+        let mut take = |line: &[u8]| match Report::read(line) {
             Ok(Report::Fix { device, fix }) if wanted.is_none() || device.as_ref() == wanted => {
                 newest = fix.or(newest);
+            }
+            Ok(Report::Devices(all)) => {
+                trouble = wanted.filter(|path| !all.contains(path)).map(|path| {
+                    refused(format!(
+                        "it has no receiver {path}, but {}: choose `device` of these, or start it \
+                         with that one",
+                        listed(&all)
+                    ))
+                });
             }
             Ok(Report::Version { protocol }) if protocol != PROTOCOL => {
                 trouble = Some(refused(format!(
@@ -108,7 +119,12 @@ impl Gpsd {
                     what: "a line is not of gpsd's JSON: check that gpsd has this address",
                 });
             }
+        };
+        self.lines.push(bytes, |line| {
+            heard = Instant::now();
+            take(line);
         });
+        self.heard = heard;
         match (newest, trouble) {
             (None, Some(trouble)) => Err(trouble),
             (newest, _) => Ok(newest),
@@ -126,6 +142,16 @@ fn connect(address: &str) -> io::Result<TcpStream> {
         }
     }
     Err(failed)
+}
+
+/// What another program lists, for a message.
+fn listed(paths: &[String]) -> String {
+    if paths.is_empty() {
+        return "none".to_owned();
+    }
+    let shown = paths.iter().take(MOST_LISTED);
+    let shown: Vec<_> = shown.map(|path| path.escape_debug().to_string()).collect();
+    shown.join(", ")
 }
 
 fn name(settings: &GpsdSettings) -> String {
@@ -149,15 +175,13 @@ impl Source for Gpsd {
             Err(error) if is_nothing(&error) => 0,
             Err(error) => return Err(failed(error)),
         };
-        if length > 0 {
-            self.heard = Instant::now();
-        } else if self.heard.elapsed() > SILENT {
+        let fix = self.parse(buffer.get(..length).unwrap_or_default())?;
+        if self.heard.elapsed() > SILENT {
             return Err(DeviceError::Refused {
                 device: name(&self.settings),
                 what: "it reports nothing: check that it has a receiver (`gpsmon` shows it)".into(),
             });
         }
-        let fix = self.parse(buffer.get(..length).unwrap_or_default())?;
         Ok(fix.map(|fix| Sample::new((self.clock)(), fix)))
     }
 }

@@ -231,6 +231,26 @@ fn of_two_receivers_the_chosen_one_is_used() {
     assert!(error_of(&line, Some("/dev/ttyACM0")).starts_with("reading: "));
 }
 
+/// Written by gpsd 3.22 for a receiver of gpsfake.
+const DEVICES: &str = r#"{"class":"DEVICES","devices":[{"class":"DEVICE","path":"/dev/pts/1","driver":"NMEA0183","activated":"2026-11-23T06:17:13.357Z","flags":1,"native":0,"bps":4800,"parity":"N","stopbits":1,"cycle":1.00}]}"#;
+
+#[test]
+fn a_receiver_that_gpsd_does_not_have_is_named() {
+    let has = |device| error_of(&format!("{DEVICES}\n{TPV}\n"), Some(device));
+    assert_eq!(has("/dev/pts/1"), "a fix");
+    let has = |says: &str| error_of(&format!("{says}\n"), Some("/dev/ttyACM0"));
+    assert_eq!(
+        has(DEVICES),
+        "it has no receiver /dev/ttyACM0, but /dev/pts/1: choose `device` of these, or start it \
+         with that one"
+    );
+    let none = has(r#"{"class":"DEVICES","devices":[]}"#);
+    assert!(
+        none.starts_with("it has no receiver /dev/ttyACM0, but none: "),
+        "{none}"
+    );
+}
+
 /// A second of a receiver: a sentence with its checksum, the exclusive or of what
 /// is between `$` and `*`.
 fn second(number: u32) -> String {
