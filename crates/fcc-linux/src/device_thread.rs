@@ -38,7 +38,8 @@ const END_WITHIN: Duration = Duration::from_secs(1);
 /// ```
 #[derive(Clone, Debug)]
 pub struct DeviceThread {
-    name: &'static str,
+    kind: &'static str,
+    name: String,
     silent_after: Duration,
     fallback_after: Duration,
     pauses: (Duration, Duration),
@@ -46,15 +47,23 @@ pub struct DeviceThread {
 }
 
 impl DeviceThread {
-    /// A thread for a device with this name, which is that of its sensor.
-    pub fn new(name: &'static str) -> Self {
+    /// A thread for a device of this kind, which is the name of its sensor, too.
+    pub fn new(kind: &'static str) -> Self {
         Self {
-            name,
+            kind,
+            name: kind.to_owned(),
             silent_after: Duration::from_millis(500),
             fallback_after: FALLBACK_AFTER,
             pauses: (Duration::from_millis(100), Duration::from_secs(2)),
             status: DeviceStatus::default(),
         }
+    }
+
+    /// Another name of its sensor: which of several of its kind it is.
+    #[must_use]
+    pub fn named(mut self, name: String) -> Self {
+        self.name = name;
+        self
     }
 
     /// After how long without a sample silence is a fault; 500 ms by default.
@@ -103,7 +112,7 @@ impl DeviceThread {
             status: self.status,
         };
         let thread = thread::Builder::new()
-            .name(self.name.chars().take(15).collect())
+            .name(self.kind.chars().take(15).collect())
             .stack_size(STACK_BYTES)
             .spawn(move || reader.run())?;
         Ok(DeviceSensor {

@@ -88,6 +88,11 @@ impl ChipKind {
         }
     }
 
+    /// Whether it is an inertial unit: an accelerometer with gyroscopes.
+    pub const fn is_inertial(self) -> bool {
+        matches!(self, Self::Icm42688 | Self::Mpu6050)
+    }
+
     /// The addresses that it may have, the usual one first.
     pub const fn addresses(self) -> &'static [u8] {
         match self {
