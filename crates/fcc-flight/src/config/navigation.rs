@@ -6,6 +6,8 @@ use std::time::Duration;
 use fcc_core::flight::inertial::{MagneticNorth, RawNavigationConfig, RawNavigationMethod};
 use serde::{Deserialize, Serialize};
 
+use super::{BoardSensor, Config, RawSensorsChoice, SensorEntry};
+
 /// The middle of the World Magnetic Model 2025: a small computer may not know
 /// the date, and a declination changes by 0.1 to 0.2° a year.
 const MIDDLE_OF_THE_MODEL: f64 = 2027.5;
@@ -56,6 +58,40 @@ impl Default for NavigationSection {
 
 /// As far back as the filter keeps samples.
 pub(super) const LONGEST_DELAY_MS: f64 = 500.0;
+
+/// Reports a method that has nothing to compute attitude from. A program's own
+/// aircraft stands in the place of a simulator's, and gives what it likes.
+pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
+    let needs = match config.navigation.method {
+        NavigationMethod::Measured => return,
+        NavigationMethod::Kalman => "gyroscopes",
+        NavigationMethod::Thesis => "an accelerometer",
+    };
+    if config.is_without_simulator() && !config.has_inertial_unit() {
+        let message = format!(
+            "computes attitude with {needs}, and no sensor has them: add one with kind = \"icm42688\", \
+             \"mpu6050\" or \"iio\", or choose \"measured\" to read the others without engaging"
+        );
+        report(&["navigation.method"], message);
+    }
+}
+
+impl Config {
+    /// Whether a sensor may have an accelerometer and gyroscopes. What a driver of
+    /// the kernel gives is known only when it is opened.
+    pub(super) fn has_inertial_unit(&self) -> bool {
+        let is_simulated = self
+            .built_in
+            .as_ref()
+            .is_some_and(|section| section.raw_sensors != RawSensorsChoice::None);
+        let mut boards = self.sensor.iter().filter_map(SensorEntry::board);
+        is_simulated
+            || boards.any(|board| match board {
+                BoardSensor::Chip(kind, _) => kind.is_inertial(),
+                BoardSensor::Iio(_) => true,
+            })
+    }
+}
 
 /// Key, smallest and largest value, as in the table of all keys.
 pub(super) const RANGES: &[(&str, f64, f64)] = &[
@@ -150,6 +186,41 @@ mod tests {
             remarks.iter().any(|remark| remark.contains("raw_sensors")),
             "{remarks:?}"
         );
+    }
+
+    #[test]
+    fn a_board_without_an_inertial_unit_is_refused() {
+        let with = |method: &str, kinds: &[&str]| {
+            let sensors = kinds.iter().fold(String::new(), |text, kind| {
+                format!("{text}[[sensor]]\nkind = \"{kind}\"\n")
+            });
+            let text = format!("actuator = []\n[navigation]\nmethod = \"{method}\"\n{sensors}");
+            Config::parse(&text, "f").map_err(|error| error.to_string())
+        };
+        let others = ["bmp388", "qmc5883l", "ms4525do", "gpsd", "x-plane"];
+        let words = "f:3: navigation.method: computes attitude with gyroscopes, and no sensor has \
+                     them: add one with kind = \"icm42688\"";
+        let refused = with("kalman", &others).unwrap_err();
+        assert!(refused.starts_with(words), "{refused}");
+        let refused = with("thesis", &others).unwrap_err();
+        assert!(refused.contains("with an accelerometer"), "{refused}");
+        with("measured", &others).unwrap();
+        for unit in ["icm42688", "mpu6050", "iio\"\ndevice = \"mpu6050"] {
+            with("kalman", &["bmp388", unit]).unwrap();
+        }
+    }
+
+    #[test]
+    fn beside_the_built_in_aircraft_it_is_a_remark() {
+        let text = "[built-in]\n[navigation]\nmethod = \"kalman\"\n[[sensor]]\nkind = ";
+        let says = |kind: &str| {
+            let text = format!("{text}{kind}\n");
+            let remarks = Config::parse(&text, "f").unwrap().remarks(&text);
+            let mut remarks = remarks.iter();
+            remarks.any(|remark| remark.contains("built-in.raw_sensors is \"none\""))
+        };
+        assert!(says("\"bmp388\""));
+        assert!(!says("\"icm42688\""));
     }
 
     #[test]
