@@ -109,6 +109,7 @@ impl DeviceThread {
             producer,
             end: Arc::clone(&handle),
             pauses: self.pauses,
+            silent_after: self.silent_after,
             status: self.status,
         };
         let thread = thread::Builder::new()
@@ -132,19 +133,42 @@ impl DeviceThread {
 
 /// A device's state, for programs that show it; not for a tick.
 #[derive(Clone, Debug, Default)]
-pub struct DeviceStatus(Arc<Mutex<Option<String>>>);
+pub struct DeviceStatus(Arc<Mutex<State>>);
+
+#[derive(Debug, Default)]
+struct State {
+    trouble: Option<String>,
+    waits_for: Option<&'static str>,
+}
 
 impl DeviceStatus {
-    /// What is wrong with the device now, and what to do; `None` if it is read.
+    /// What is wrong with the device now, where, and what to do; `None` if nothing
+    /// is.
     pub fn trouble(&self) -> Option<String> {
-        self.lock().clone()
+        self.lock().trouble.clone()
+    }
+
+    /// What a device that works waits for ([`Source::waits_for`]); `None` if it is
+    /// read, or something is wrong with it.
+    pub fn waits_for(&self) -> Option<&'static str> {
+        self.lock().waits_for
     }
 
     pub(crate) fn set(&self, error: Option<&DeviceError>) {
-        *self.lock() = error.map(ToString::to_string);
+        *self.lock() = State {
+            trouble: error.map(ToString::to_string),
+            waits_for: None,
+        };
     }
 
-    fn lock(&self) -> MutexGuard<'_, Option<String>> {
+    fn set_waiting(&self, waits_for: &'static str) {
+        *self.lock() = State {
+            trouble: None,
+            waits_for: Some(waits_for),
+        };
+    }
+
+    fn lock(&self) -> MutexGuard<'_, State> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -184,6 +208,7 @@ struct Reader<S: Source, O> {
     producer: Producer<Message<S::Value>>,
     end: Arc<AtomicBool>,
     pauses: (Duration, Duration),
+    silent_after: Duration,
     status: DeviceStatus,
 }
 
@@ -214,14 +239,22 @@ impl<S: Source, O: FnMut() -> Result<S, DeviceError>> Reader<S, O> {
     fn read(&mut self, source: &mut S) -> Ended {
         let mut delivered = false;
         let mut malformed = 0;
+        let (mut latest, mut waits) = (Instant::now(), false);
         while !self.is_to_end() {
             match source.read() {
-                Ok(None) => {}
+                Ok(None) if waits || latest.elapsed() < self.silent_after => {}
+                Ok(None) => {
+                    if let Some(what) = source.waits_for() {
+                        self.status.set_waiting(what);
+                        waits = true;
+                    }
+                }
                 Ok(Some(sample)) => {
-                    if !delivered || malformed > 0 {
+                    if !delivered || malformed > 0 || waits {
                         self.status.set(None);
                     }
                     (delivered, malformed) = (true, 0);
+                    (latest, waits) = (Instant::now(), false);
                     self.send(Message::Sample(sample));
                 }
                 Err(error @ DeviceError::Malformed { .. }) => {

@@ -231,6 +231,12 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
                 if let Some(message) = section.wrong_address() {
                     wrong("address", message);
                 }
+                if section.device.as_ref().is_some_and(String::is_empty) {
+                    wrong(
+                        "device",
+                        "is empty: leave it out to use all receivers of gpsd",
+                    );
+                }
                 continue;
             }
             Some(LineSensor::Switch(section)) => {

@@ -280,6 +280,7 @@ impl Config {
                     .to_owned(),
             );
         }
+        remarks.extend(self.airspeed_remark());
         remarks.extend(self.stick_remark());
         if self.actuators().is_empty() {
             remarks.push(NO_ACTUATOR.to_owned());

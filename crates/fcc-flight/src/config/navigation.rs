@@ -93,6 +93,33 @@ impl Config {
     }
 }
 
+impl Config {
+    /// That a board has nothing to find its airspeed with, if it certainly has not.
+    pub(super) fn airspeed_remark(&self) -> Option<String> {
+        let gives_airspeed = |entry: &SensorEntry| match entry.board() {
+            Some(BoardSensor::Chip(kind, _)) => kind.measures_airspeed(),
+            // Not known before it is opened.
+            Some(BoardSensor::Iio(_)) => true,
+            None => matches!(entry, SensorEntry::XPlane(_) | SensorEntry::ServoBoard(_)),
+        };
+        let is_by_board =
+            self.is_without_simulator() && self.navigation.method != NavigationMethod::Measured;
+        if !is_by_board || self.sensor.iter().any(gives_airspeed) {
+            return None;
+        }
+        let lacks = match (self.autopilot.airframe, self.receivers().next()) {
+            (Some(_), Some(_)) => return None,
+            (Some(_), None) => "no satellite receiver",
+            (None, Some(_)) => "no [autopilot.airframe]",
+            (None, None) => "neither a satellite receiver nor [autopilot.airframe]",
+        };
+        Some(format!(
+            "no sensor measures the airspeed, and there is {lacks} to fly without one: nothing \
+             will engage (docs/navigation.md, without an airspeed sensor)"
+        ))
+    }
+}
+
 /// Key, smallest and largest value, as in the table of all keys.
 pub(super) const RANGES: &[(&str, f64, f64)] = &[
     ("navigation.longest_delay_ms", 0.0, LONGEST_DELAY_MS),
@@ -221,6 +248,38 @@ mod tests {
         };
         assert!(says("\"bmp388\""));
         assert!(!says("\"icm42688\""));
+    }
+
+    #[test]
+    fn without_airspeed_a_receiver_and_what_was_learned_are_needed() {
+        let says = |more: &str| {
+            let unit = "[[sensor]]\nkind = \"icm42688\"\n";
+            let text = format!("actuator = []\n[navigation]\nmethod = \"kalman\"\n{unit}{more}");
+            let mut remarks = Config::parse(&text, "f")
+                .unwrap()
+                .remarks(&text)
+                .into_iter();
+            let found = remarks.find_map(|remark| {
+                let (_, lacks) = remark.split_once("airspeed, and there is ")?;
+                lacks
+                    .split_once(" to fly")
+                    .map(|(lacks, _)| lacks.to_owned())
+            });
+            found.unwrap_or_default()
+        };
+        let receiver = "[[sensor]]\nkind = \"gpsd\"\n";
+        let learned = "[autopilot.airframe]\naxial_offset = 0.0\nfull_thrust_ratio = 0.25\n\
+                       zero_lift_angle_deg = -2.0\none_g_angle_deg = 4.0\n";
+        let neither = "neither a satellite receiver nor [autopilot.airframe]";
+        for (more, lacks) in [
+            (String::new(), neither),
+            (receiver.to_owned(), "no [autopilot.airframe]"),
+            (learned.to_owned(), "no satellite receiver"),
+            (format!("{receiver}{learned}"), ""),
+            ("[[sensor]]\nkind = \"sdp3x\"\n".to_owned(), ""),
+        ] {
+            assert_eq!(says(&more), lacks, "{more}");
+        }
     }
 
     #[test]

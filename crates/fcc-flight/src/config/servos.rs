@@ -7,6 +7,7 @@ use fcc_linux::servo::{Drives, PwmOutput, Released, ServoChannel, ServoError, Se
 use fcc_telemetry::units::number;
 use serde::{Deserialize, Serialize};
 
+use super::gpio::HIGHEST_LINE;
 use super::{ActuatorEntry, Config, HeartbeatSection};
 
 /// Servos, and where their pulses are written.
@@ -194,7 +195,12 @@ impl ServosSection {
                 format!("is {value}: choose {least} to {most}")
             })
         };
+        let line = self
+            .heartbeat
+            .as_ref()
+            .map_or(0, |heartbeat| heartbeat.line);
         for (key, value, least, most) in [
+            ("heartbeat.line", f64::from(line), 0.0, HIGHEST_LINE),
             ("address", f64::from(self.address), 64.0, 127.0),
             ("oscillator_mhz", self.oscillator_mhz, 20.0, 30.0),
             ("rate_hz", self.rate_hz, 40.0, 333.0),

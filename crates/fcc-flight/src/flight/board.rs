@@ -92,17 +92,21 @@ impl DeviceReporter {
 impl<C: Controller> Observer<C> for DeviceReporter {
     fn poll(&mut self, access: &mut Access<'_, C::Command>) {
         for device in &mut self.0 {
+            let (kind, name) = (device.kind, &device.name);
             let trouble = device.status.trouble();
+            let trouble = trouble.map(|trouble| format!("{kind}: {trouble}"));
+            let waits_for = device.status.waits_for();
+            let trouble = trouble.or_else(|| waits_for.map(|what| format!("{name}: {what}")));
             let is_quiet = device
                 .quiet_until
                 .is_some_and(|until| Instant::now() < until);
             if is_quiet || trouble == device.reported {
                 continue;
             }
-            access.reports.remark(match &trouble {
-                Some(trouble) => format!("{}: {trouble}", device.kind),
-                None => format!("{} is read", device.name),
-            });
+            let is_read = || format!("{name} is read");
+            access
+                .reports
+                .remark(trouble.clone().unwrap_or_else(is_read));
             device.reported = trouble;
             device.quiet_until = Some(Instant::now() + QUIET);
         }

@@ -11,6 +11,7 @@ use fcc_core::framework::Time;
 use nix::errno::Errno;
 
 use super::{Lines, Report};
+use crate::source::NO_FIX;
 use crate::{DeviceError, Sample, Source, WAIT};
 
 const CONNECTED_WITHIN: Duration = Duration::from_secs(1);
@@ -18,8 +19,9 @@ const CONNECTED_WITHIN: Duration = Duration::from_secs(1);
 /// that is cut without a word is noticed by this, too.
 const SILENT: Duration = Duration::from_secs(10);
 const PROTOCOL: u32 = 3;
-/// Of its receivers, in a message.
+/// Of its receivers, and characters of its words, in a message.
 const MOST_LISTED: usize = 4;
+const MOST_QUOTED: usize = 200;
 
 /// Where gpsd is, and which of its receivers is used.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -40,6 +42,7 @@ pub struct Gpsd {
     clock: Box<dyn Fn() -> Time + Send>,
     lines: Lines,
     heard: Instant,
+    is_without_fix: bool,
 }
 
 impl fmt::Debug for Gpsd {
@@ -78,12 +81,14 @@ impl Gpsd {
             clock: Box::new(clock),
             lines: Lines::default(),
             heard: Instant::now(),
+            is_without_fix: false,
         })
     }
 
     /// The newest fix of what was received.
     fn parse(&mut self, bytes: &[u8]) -> Result<Option<GnssFix>, DeviceError> {
         let (mut newest, mut trouble, mut heard) = (None, None, self.heard);
+        let mut is_without_fix = self.is_without_fix;
         let device = name(&self.settings);
         let wanted = self.settings.device.as_ref();
         let refused = |what: String| DeviceError::Refused {
@@ -92,6 +97,7 @@ impl Gpsd {
         };
         let mut take = |line: &[u8]| match Report::read(line) {
             Ok(Report::Fix { device, fix }) if wanted.is_none() || device.as_ref() == wanted => {
+                is_without_fix = fix.is_none();
                 newest = fix.or(newest);
             }
             Ok(Report::Devices(all)) => {
@@ -110,7 +116,7 @@ impl Gpsd {
                 )));
             }
             Ok(Report::Error(message)) => {
-                trouble = Some(refused(format!("it reports: {}", message.escape_debug())));
+                trouble = Some(refused(format!("it reports: {}", quoted(&message))));
             }
             Ok(_) => {}
             Err(_) => {
@@ -124,7 +130,7 @@ impl Gpsd {
             heard = Instant::now();
             take(line);
         });
-        self.heard = heard;
+        (self.heard, self.is_without_fix) = (heard, is_without_fix);
         match (newest, trouble) {
             (None, Some(trouble)) => Err(trouble),
             (newest, _) => Ok(newest),
@@ -150,12 +156,19 @@ fn listed(paths: &[String]) -> String {
         return "none".to_owned();
     }
     let shown = paths.iter().take(MOST_LISTED);
-    let shown: Vec<_> = shown.map(|path| path.escape_debug().to_string()).collect();
+    let shown: Vec<_> = shown.map(|path| quoted(path)).collect();
     shown.join(", ")
 }
 
+/// The beginning of another program's text.
+fn quoted(text: &str) -> String {
+    let first: String = text.chars().take(MOST_QUOTED).collect();
+    first.escape_debug().to_string()
+}
+
+/// Its messages are among those of gpsd, as those of a line are.
 fn name(settings: &GpsdSettings) -> String {
-    format!("gpsd at {}", settings.address)
+    settings.address.clone()
 }
 
 impl Source for Gpsd {
@@ -183,6 +196,10 @@ impl Source for Gpsd {
             });
         }
         Ok(fix.map(|fix| Sample::new((self.clock)(), fix)))
+    }
+
+    fn waits_for(&self) -> Option<&'static str> {
+        self.is_without_fix.then_some(NO_FIX)
     }
 }
 

@@ -32,6 +32,10 @@ fn an_error_of_servos_is_reported_with_its_line_and_what_to_do() {
              its own",
         ),
         (
+            format!("pwm = \"/p\"\nheartbeat = {{ line = 70000 }}\n{servo}"),
+            "test:5: actuator[0].heartbeat.line: is 70000: choose 0 to 1023",
+        ),
+        (
             format!("pca9685 = \"/dev/i2c-1\"\npwm = \"/p\"\n{servo}"),
             "test:5: actuator[0].pwm: is given together with pca9685: keep one",
         ),
@@ -108,6 +112,15 @@ fn an_error_of_a_line_is_reported_with_its_line_and_what_to_do() {
             "\"gpsd\"\naddress = \"localhost\"\n",
             "test:4: sensor[0].address: is no address: give host and port, such as \
              \"localhost:2947\"",
+        ),
+        (
+            "\"gpsd\"\naddress = \"gpsd://localhost:2947\"\n",
+            "test:4: sensor[0].address: is no address: give host and port, such as \
+             \"localhost:2947\"",
+        ),
+        (
+            "\"gpsd\"\naddress = \"[::1]:2947\"\ndevice = \"\"\n",
+            "test:5: sensor[0].device: is empty: leave it out to use all receivers of gpsd",
         ),
         (
             "\"gpio-switch\"\n",
