@@ -55,21 +55,20 @@ fn devices(config: &Config) -> Vec<(String, String)> {
         if let Some(heartbeat) = &section.heartbeat {
             takes(shown(&heartbeat.pin()));
         }
-        match &section.pca9685 {
-            Some(bus) => takes(format!("{} {:#04x}", bus.display(), section.address)),
-            // Those of one entry are checked with it.
-            None => {
-                let mut outputs = section.pwm_outputs();
-                outputs.sort_by(|a, b| (&a.chip, a.number).cmp(&(&b.chip, b.number)));
-                outputs.dedup();
-                for output in outputs {
-                    takes(format!(
-                        "{} output {}",
-                        output.chip.display(),
-                        output.number
-                    ));
-                }
-            }
+        if let Some(bus) = &section.pca9685 {
+            takes(format!("{} {:#04x}", bus.display(), section.address));
+            continue;
+        }
+        // Those of one entry are checked with it.
+        let mut outputs = section.pwm_outputs();
+        outputs.sort_by(|a, b| (&a.chip, a.number).cmp(&(&b.chip, b.number)));
+        outputs.dedup();
+        for output in outputs {
+            takes(format!(
+                "{} output {}",
+                output.chip.display(),
+                output.number
+            ));
         }
     }
     all
