@@ -229,7 +229,10 @@ def write_learned(path: Path, learned: Mapping[str, float]) -> None:
 
 def read_learned(path: Path) -> dict[str, float]:
     """Read what `write_learned` wrote. Raises OSError, and ValueError if it is something else."""
-    text = path.read_text(encoding="utf-8")
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path} is no text: give a file that --learned has written") from error
     keys = _learned_keys(dict.fromkeys(LEARNED, 0.0))
     found = {key: value_of(text, key, math.nan) for key in keys}
     missing = [key for key, value in found.items() if math.isnan(value)]

@@ -47,3 +47,6 @@ def test_what_was_learned_is_written_and_read(tmp_path: Path) -> None:
     file.write_text("[autopilot.airframe]\naxial_offset = 0.0\n", encoding="utf-8")
     with pytest.raises(ValueError, match=r"autopilot\.airframe\.full_thrust_ratio is missing"):
         read_learned(file)
+    file.write_bytes(b"\xa7\x00")
+    with pytest.raises(ValueError, match=r"learned\.toml is no text: give a file that --learned"):
+        read_learned(file)

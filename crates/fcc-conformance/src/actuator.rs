@@ -261,7 +261,7 @@ pub fn an_actuator_runs_in_a_thread_it_was_not_made_in<B: ActuatorBench>() {
 /// An actuator's name is constant and has one line.
 pub fn its_name_stays<B: ActuatorBench>() {
     let mut run = Run::<B>::new();
-    let name = run.bench.actuator().name();
+    let name = run.bench.actuator().name().to_owned();
     assert!(!name.trim().is_empty() && !name.contains('\n'), "{name:?}");
     run.assert_applies();
     assert_eq!(run.bench.actuator().name(), name);

@@ -209,7 +209,7 @@ pub fn a_sensor_runs_in_a_thread_it_was_not_made_in<B: SensorBench>() {
 /// A sensor's name is constant and has one line.
 pub fn its_name_stays<B: SensorBench>() {
     let mut run = Run::<B>::new();
-    let name = run.bench.sensor().name();
+    let name = run.bench.sensor().name().to_owned();
     assert!(!name.trim().is_empty() && !name.contains('\n'), "{name:?}");
     run.connect(B::CONNECTED_AFTER);
     assert_eq!(run.bench.sensor().name(), name);

@@ -135,7 +135,7 @@ impl Sensor<Measurements> for Failing {
         Ok(())
     }
 
-    fn name(&self) -> &'static str {
+    fn name(&self) -> &str {
         self.0.name()
     }
 }
@@ -156,7 +156,7 @@ impl Actuator<Surfaces> for Sticking {
         self.0.release()
     }
 
-    fn name(&self) -> &'static str {
+    fn name(&self) -> &str {
         self.0.name()
     }
 }

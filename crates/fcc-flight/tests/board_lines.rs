@@ -1,6 +1,7 @@
 //! A flight with a satellite receiver, which is pulled out and put back, and with
 //! servos: on a line, which is a pseudo-terminal, and by the real gpsd, to which
-//! gpsfake plays a receiver. The folder of PWM is a stand-in.
+//! gpsfake plays a receiver. The folder of PWM is a stand-in. Also a calibration that
+//! reads such a receiver.
 #![cfg(test)]
 #![allow(clippy::expect_used, reason = "helper functions of tests")]
 
@@ -11,11 +12,15 @@ use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex};
+use std::time::Duration;
 
 use fcc_core::flight::Autopilot;
-use fcc_core::framework::{Controller, LoopCommand, RecordOf, State, Time};
+use fcc_core::flight::calibration::MountingWay;
+use fcc_core::framework::{Controller, LoopCommand, RecordOf, State, Tick, Time};
+use fcc_flight::calibrate::{CalibrationKind, CalibrationSession};
 use fcc_flight::config::Config;
 use fcc_flight::flight::{Access, FlightTime, Length, Observer, Pace, Plan, Report, assemble, fly};
+use fcc_linux::monotonic;
 use nix::pty::openpty;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::{Pid, ttyname};
@@ -280,4 +285,67 @@ fn fly_it(way: Way) {
     // A tenth of 500 us beyond the middle; idle.
     assert_eq!(duty(folder.path(), 0), "1550000");
     assert_eq!(duty(folder.path(), 1), "1000000");
+}
+
+/// The strength of the earth's field, by which a magnetometer is calibrated, is that
+/// of the place where the receiver is.
+#[test]
+fn a_magnetometer_is_calibrated_where_the_receiver_is() {
+    assert_eq!(place_in("magnetometer", ""), Some(220.4));
+    // What is not asked for is not opened.
+    let given = "magnetic_field_ut = [21.1, 0.0, 45.3]\n";
+    assert_eq!(place_in("magnetometer", given), None);
+    assert_eq!(place_in("accelerometer", ""), None);
+}
+
+/// The altitude of the fix that a calibration of this kind has after a second.
+fn place_in(kind: &str, navigation: &str) -> Option<f64> {
+    let kind = CalibrationKind::ALL
+        .into_iter()
+        .find(|one| one.name() == kind);
+    let folder = TempDir::new().unwrap();
+    for (file, content) in [
+        ("name", "unit"),
+        ("in_accel_x_raw", "0"),
+        ("in_accel_y_raw", "0"),
+        ("in_accel_z_raw", "-10"),
+        ("in_magn_x_raw", "20"),
+        ("in_magn_y_raw", "0"),
+        ("in_magn_z_raw", "45"),
+    ] {
+        let path = folder.path().join("iio:device0").join(file);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, content).unwrap();
+    }
+    for (file, scale) in [("in_accel_scale", "0.980665"), ("in_magn_scale", "0.01")] {
+        fs::write(folder.path().join("iio:device0").join(file), scale).unwrap();
+    }
+    let mut receiver = Way::Line.plug_in(folder.path());
+    let receiver_entry = Way::Line.entry(folder.path());
+    let sysfs = folder.path().display();
+    let text = format!(
+        "actuator = []\n[navigation]\nmethod = \"kalman\"\n{navigation}[calibration]\n\
+         file = \"{sysfs}/none.toml\"\n\
+         [[sensor]]\nkind = \"iio\"\ndevice = \"unit\"\nsysfs = \"{sysfs}\"\n\
+         [sensor.calibration.accelerometer]\nbias_mps2 = [0.0, 0.0, 0.1]\n\
+         rotation_deg = [0.0, 1.0, 0.0]\n[[sensor]]\n{receiver_entry}"
+    );
+    let config = Config::parse(&text, "test").unwrap();
+    let way = MountingWay::LevelAndNoseUp;
+    let mut session = CalibrationSession::open(&config, kind.unwrap(), way, None, None, 0).unwrap();
+    for number in 1..=40 {
+        receiver.speak();
+        std::thread::sleep(Duration::from_millis(25));
+        let now = monotonic();
+        let tick = Tick {
+            number,
+            scheduled: now,
+            woke: now,
+            dt_s: 0.025,
+            ..Tick::default()
+        };
+        session.tick(&tick).unwrap();
+    }
+    let fix = session.measured().unwrap().gnss;
+    (!fix.is_never()).then_some(fix.value.position.altitude_m)
 }

@@ -104,7 +104,7 @@ impl Observer<Autopilot> for Watching {
                 }
             }
             Step::Back => {
-                if pressure.taken > self.gone_since && self.was_said("IIO is read") {
+                if pressure.taken > self.gone_since && self.was_said("IIO bmp388 is read") {
                     access.commands.send(LoopCommand::Stop).unwrap();
                     self.step = Step::Over;
                 }
@@ -157,7 +157,7 @@ fn fly_it() {
     let at = |words: &str| all.iter().position(|remark| remark.contains(words));
     let pulled = at("in_pressure_input: reading: No such file or directory");
     let absent = at("no device is called \"bmp388\", there is only mpu6050");
-    let back = at("IIO is read");
+    let back = at("IIO bmp388 is read");
     assert!(pulled.or(absent).is_some(), "{all:?}");
     assert!(back > pulled.or(absent), "{all:?}");
 }

@@ -26,7 +26,7 @@ const MOST_AHEAD: Duration = Duration::from_millis(10);
 #[derive(Debug)]
 pub struct DeviceSensor<V> {
     pub(crate) messages: Consumer<Message<V>>,
-    pub(crate) name: &'static str,
+    pub(crate) name: String,
     pub(crate) silent_after: Duration,
     pub(crate) fallback_after: Duration,
     pub(crate) newest: Time,
@@ -99,7 +99,7 @@ impl<V: Measured> Sensor<Measurements> for DeviceSensor<V> {
         self.fallback_after
     }
 
-    fn name(&self) -> &'static str {
-        self.name
+    fn name(&self) -> &str {
+        &self.name
     }
 }

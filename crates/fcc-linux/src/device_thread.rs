@@ -38,7 +38,8 @@ const END_WITHIN: Duration = Duration::from_secs(1);
 /// ```
 #[derive(Clone, Debug)]
 pub struct DeviceThread {
-    name: &'static str,
+    kind: &'static str,
+    name: String,
     silent_after: Duration,
     fallback_after: Duration,
     pauses: (Duration, Duration),
@@ -46,15 +47,23 @@ pub struct DeviceThread {
 }
 
 impl DeviceThread {
-    /// A thread for a device with this name, which is that of its sensor.
-    pub fn new(name: &'static str) -> Self {
+    /// A thread for a device of this kind, which is the name of its sensor, too.
+    pub fn new(kind: &'static str) -> Self {
         Self {
-            name,
+            kind,
+            name: kind.to_owned(),
             silent_after: Duration::from_millis(500),
             fallback_after: FALLBACK_AFTER,
             pauses: (Duration::from_millis(100), Duration::from_secs(2)),
             status: DeviceStatus::default(),
         }
+    }
+
+    /// Another name of its sensor: which of several of its kind it is.
+    #[must_use]
+    pub fn named(mut self, name: String) -> Self {
+        self.name = name;
+        self
     }
 
     /// After how long without a sample silence is a fault; 500 ms by default.
@@ -100,10 +109,11 @@ impl DeviceThread {
             producer,
             end: Arc::clone(&handle),
             pauses: self.pauses,
+            silent_after: self.silent_after,
             status: self.status,
         };
         let thread = thread::Builder::new()
-            .name(self.name.chars().take(15).collect())
+            .name(self.kind.chars().take(15).collect())
             .stack_size(STACK_BYTES)
             .spawn(move || reader.run())?;
         Ok(DeviceSensor {
@@ -123,19 +133,42 @@ impl DeviceThread {
 
 /// A device's state, for programs that show it; not for a tick.
 #[derive(Clone, Debug, Default)]
-pub struct DeviceStatus(Arc<Mutex<Option<String>>>);
+pub struct DeviceStatus(Arc<Mutex<State>>);
+
+#[derive(Debug, Default)]
+struct State {
+    trouble: Option<String>,
+    waits_for: Option<&'static str>,
+}
 
 impl DeviceStatus {
-    /// What is wrong with the device now, and what to do; `None` if it is read.
+    /// What is wrong with the device now, where, and what to do; `None` if nothing
+    /// is.
     pub fn trouble(&self) -> Option<String> {
-        self.lock().clone()
+        self.lock().trouble.clone()
+    }
+
+    /// What a device that works waits for ([`Source::waits_for`]); `None` if it is
+    /// read, or something is wrong with it.
+    pub fn waits_for(&self) -> Option<&'static str> {
+        self.lock().waits_for
     }
 
     pub(crate) fn set(&self, error: Option<&DeviceError>) {
-        *self.lock() = error.map(ToString::to_string);
+        *self.lock() = State {
+            trouble: error.map(ToString::to_string),
+            waits_for: None,
+        };
     }
 
-    fn lock(&self) -> MutexGuard<'_, Option<String>> {
+    fn set_waiting(&self, waits_for: &'static str) {
+        *self.lock() = State {
+            trouble: None,
+            waits_for: Some(waits_for),
+        };
+    }
+
+    fn lock(&self) -> MutexGuard<'_, State> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -175,6 +208,7 @@ struct Reader<S: Source, O> {
     producer: Producer<Message<S::Value>>,
     end: Arc<AtomicBool>,
     pauses: (Duration, Duration),
+    silent_after: Duration,
     status: DeviceStatus,
 }
 
@@ -205,14 +239,22 @@ impl<S: Source, O: FnMut() -> Result<S, DeviceError>> Reader<S, O> {
     fn read(&mut self, source: &mut S) -> Ended {
         let mut delivered = false;
         let mut malformed = 0;
+        let (mut latest, mut waits) = (Instant::now(), false);
         while !self.is_to_end() {
             match source.read() {
-                Ok(None) => {}
+                Ok(None) if waits || latest.elapsed() < self.silent_after => {}
+                Ok(None) => {
+                    if let Some(what) = source.waits_for() {
+                        self.status.set_waiting(what);
+                        waits = true;
+                    }
+                }
                 Ok(Some(sample)) => {
-                    if !delivered || malformed > 0 {
+                    if !delivered || malformed > 0 || waits {
                         self.status.set(None);
                     }
                     (delivered, malformed) = (true, 0);
+                    (latest, waits) = (Instant::now(), false);
                     self.send(Message::Sample(sample));
                 }
                 Err(error @ DeviceError::Malformed { .. }) => {

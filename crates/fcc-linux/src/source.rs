@@ -23,7 +23,17 @@ pub trait Source {
     /// After [`DeviceError::Malformed`] it is read again, after any other error
     /// closed, and opened anew after a pause.
     fn read(&mut self) -> Result<Option<Sample<Self::Value>>, DeviceError>;
+
+    /// What it waits for, if it works and says that it has no sample yet, as a
+    /// receiver without a fix does: and what to do about that.
+    fn waits_for(&self) -> Option<&'static str> {
+        None
+    }
 }
+
+/// What receivers of satellites wait for.
+pub(crate) const NO_FIX: &str = "it has no three-dimensional fix: give its antenna a free view of \
+                                 the sky, and wait; the first takes minutes";
 
 /// What was measured, and when, on the loop's clock.
 #[derive(Clone, Copy, PartialEq, Debug)]

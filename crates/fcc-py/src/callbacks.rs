@@ -108,7 +108,7 @@ impl Sensor<Measurements> for CallbackSensor {
         self.sensor.warm_up(tick);
     }
 
-    fn name(&self) -> &'static str {
+    fn name(&self) -> &str {
         self.sensor.name()
     }
 }

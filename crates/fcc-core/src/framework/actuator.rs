@@ -66,8 +66,8 @@ pub trait Actuator<A>: Send {
     /// last outputs; the rules of a tick apply. Does nothing by default.
     fn warm_up(&self, _tick: &Tick, _outputs: &A) {}
 
-    /// The actuator's name, for events and reports.
-    fn name(&self) -> &'static str;
+    /// The actuator's name, for events and reports: which one it is. Constant, one line.
+    fn name(&self) -> &str;
 }
 
 schema! {

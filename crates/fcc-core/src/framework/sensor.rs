@@ -62,8 +62,8 @@ pub trait Sensor<M>: Send {
     /// time; the rules of a tick apply. Does nothing by default.
     fn warm_up(&self, _tick: &Tick) {}
 
-    /// The sensor's name, for events and reports.
-    fn name(&self) -> &'static str;
+    /// The sensor's name, for events and reports: which one it is. Constant, one line.
+    fn name(&self) -> &str;
 }
 
 schema! {

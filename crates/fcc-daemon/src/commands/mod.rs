@@ -89,7 +89,7 @@ fn carry_out(command: Action) -> Result<Exit, Failure> {
         Action::Calibrate(args) => calibrate::calibrate(&args)?,
         Action::Check(args) => check::check(&args),
         Action::Doctor(args) => doctor::doctor(&args)?,
-        Action::Probe(args) => probe::probe(&args),
+        Action::Probe(args) => probe::probe(&args)?,
         Action::XPlane(args) => x_plane::x_plane(&args)?,
         Action::Report(args) => report::report(&args)?,
         #[cfg(feature = "live")]

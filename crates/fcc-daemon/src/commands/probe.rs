@@ -4,22 +4,29 @@ use std::fmt::Write as _;
 
 use fcc_flight::probe::{Connected, ProbeRequest, Values, connected};
 
+use super::failure::Failure;
 use crate::cli::ProbeArgs;
 use crate::exit::Exit;
 use crate::output;
 
 /// Lists what is connected, and the lines of a configuration that read it.
-pub(super) fn probe(args: &ProbeArgs) -> Exit {
+pub(super) fn probe(args: &ProbeArgs) -> Result<Exit, Failure> {
+    if !args.root.is_dir() {
+        return Err(Failure::usage(format_args!(
+            "--root {}: this is no folder: give the one with the machine's files",
+            args.root.display()
+        )));
+    }
     let request = ProbeRequest {
         live: args.live,
         spi: args.spi,
     };
     let found = connected(&args.root, request);
-    if args.json {
+    Ok(if args.json {
         output::json(&found, Exit::Success)
     } else {
         output::result(text(&found), Exit::Success)
-    }
+    })
 }
 
 fn text(found: &[Connected]) -> String {

@@ -68,3 +68,19 @@ fn a_machine_without_sensors_is_told_what_to_do() {
         "{text}"
     );
 }
+
+#[test]
+fn a_root_that_is_no_folder_is_refused() {
+    let root = TempDir::new().unwrap();
+    fs::write(root.path().join("file"), "").unwrap();
+    for path in ["nowhere", "file"] {
+        let refused = fccd(root.path(), &["probe", "--root", path])
+            .output()
+            .unwrap();
+        assert_eq!(refused.status.code(), Some(2), "{refused:?}");
+        let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+        let expected = format!("--root {path}: this is no folder");
+        assert!(said.starts_with(&expected), "{said}");
+        assert!(refused.stdout.is_empty(), "{refused:?}");
+    }
+}

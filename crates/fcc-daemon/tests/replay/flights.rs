@@ -116,7 +116,7 @@ impl Sensor<Measurements> for Silenced {
         sampled
     }
 
-    fn name(&self) -> &'static str {
+    fn name(&self) -> &str {
         self.inner.name()
     }
 }

@@ -12,7 +12,7 @@ use fcc_sim::{HandledSensors, HandlingFault, HandlingTask, SimConfig};
 use super::entry::Circumstances;
 use super::{Applied, CalibrationFileError, CalibrationKind, Entry, apply};
 use crate::config::{AccelerometerSection, CalibrationSection, Config, RawSource};
-use crate::flight::{AssemblyError, uncalibrated};
+use crate::flight::{AssemblyError, line_sensor, uncalibrated};
 
 /// For so long the sensors may take to give something, s.
 const OPENING_S: f64 = 5.0;
@@ -75,6 +75,16 @@ struct Opened {
     place: String,
     sensor: Box<dyn Sensor<Measurements>>,
     measured: Measurements,
+}
+
+impl Opened {
+    fn new(place: String, sensor: Box<dyn Sensor<Measurements>>) -> Self {
+        Self {
+            place,
+            sensor,
+            measured: Measurements::default(),
+        }
+    }
 }
 
 /// The sensors of a configuration, uncalibrated, and the calibration of one. No
@@ -148,11 +158,13 @@ impl CalibrationSession {
             } else {
                 continue;
             };
-            opened.push(Opened {
-                place: source.place,
-                sensor,
-                measured: Measurements::default(),
-            });
+            opened.push(Opened::new(source.place, sensor));
+        }
+        // Where it is, is asked for the strength of the field alone.
+        if kind == CalibrationKind::Magnetometer && config.earth_field_ut().is_none() {
+            for (place, receiver) in config.receivers() {
+                opened.push(Opened::new(place, line_sensor(&receiver)?.0));
+            }
         }
         Ok(Self {
             kind,

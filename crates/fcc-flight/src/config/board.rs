@@ -213,6 +213,14 @@ pub enum BoardSensor<'a> {
 }
 
 impl<'a> BoardSensor<'a> {
+    /// Its kind, for events and reports.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Chip(kind, _) => kind.name(),
+            Self::Iio(_) => "IIO",
+        }
+    }
+
     /// Which device it is: another one at its place has another calibration.
     pub fn describe(&self) -> String {
         match self {
@@ -222,7 +230,7 @@ impl<'a> BoardSensor<'a> {
                     format!("{} at {} {address:#04x}", kind.name(), path.display())
                 }
             },
-            Self::Iio(section) => format!("IIO {}", section.device),
+            Self::Iio(section) => format!("{} {}", self.name(), section.device),
         }
     }
 

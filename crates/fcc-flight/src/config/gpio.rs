@@ -112,9 +112,12 @@ impl HeartbeatSection {
     }
 }
 
+/// More than any chip has.
+pub(super) const HIGHEST_LINE: f64 = 1_023.0;
+
 /// Key, smallest and largest value, as in the table of all keys.
 pub(super) const RANGES: &[(&str, f64, f64)] = &[
-    ("gpio-switch.line", 0.0, 1_023.0),
+    ("gpio-switch.line", 0.0, HIGHEST_LINE),
     ("gpio-switch.debounce_ms", 0.0, 200.0),
     ("gpio-switch.silent_after_ms", 50.0, 60_000.0),
     ("gpio-switch.fallback_after_ms", 10.0, 60_000.0),

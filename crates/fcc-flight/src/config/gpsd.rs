@@ -47,9 +47,13 @@ impl GpsdSection {
 
     /// Why the address is none, if it is not.
     pub(super) fn wrong_address(&self) -> Option<&'static str> {
+        let is_host = |host: &str| {
+            let fits = |byte: u8| byte.is_ascii_alphanumeric() || b"-._:[]%".contains(&byte);
+            !host.is_empty() && host.bytes().all(fits)
+        };
         let parts = self.address.rsplit_once(':');
         let is_one = parts.is_some_and(|(host, port)| {
-            !host.is_empty() && port.parse::<u16>().is_ok_and(|port| port > 0)
+            is_host(host) && port.parse::<u16>().is_ok_and(|port| port > 0)
         });
         (!is_one).then_some("is no address: give host and port, such as \"localhost:2947\"")
     }

@@ -144,6 +144,33 @@ pub enum LineSensor<'a> {
 }
 
 impl LineSensor<'_> {
+    /// Its kind, for events and reports.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Gnss(_) => "GNSS receiver",
+            Self::Gpsd(_) => "gpsd",
+            Self::Rc(_) => "RC receiver",
+            Self::Switch(_) => "engage switch",
+        }
+    }
+
+    /// Which one it is.
+    pub fn describe(&self) -> String {
+        let place = match self {
+            Self::Gnss(section) => section.path.display().to_string(),
+            Self::Gpsd(section) => match &section.device {
+                Some(device) => format!("{} {device}", section.address),
+                None => section.address.clone(),
+            },
+            Self::Rc(section) => section.path.display().to_string(),
+            Self::Switch(section) => {
+                let pin = section.pin();
+                format!("{} line {}", pin.chip.display(), pin.line)
+            }
+        };
+        format!("{} at {place}", self.name())
+    }
+
     /// After how long without a sample it is silent, and without a reading the
     /// next sensor is used.
     pub fn patience(&self) -> (Duration, Duration) {
@@ -157,6 +184,19 @@ impl LineSensor<'_> {
             Duration::from_millis(silent_ms),
             Duration::from_millis(fallback_ms),
         )
+    }
+}
+
+impl Config {
+    /// The satellite receivers, each with its key.
+    pub(crate) fn receivers(&self) -> impl Iterator<Item = (String, LineSensor<'_>)> {
+        let listed = self.sensor.iter().enumerate();
+        listed.filter_map(|(at, entry)| match entry.line()? {
+            line @ (LineSensor::Gnss(_) | LineSensor::Gpsd(_)) => {
+                Some((format!("sensor[{at}]"), line))
+            }
+            LineSensor::Rc(_) | LineSensor::Switch(_) => None,
+        })
     }
 }
 
@@ -190,6 +230,12 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
             Some(LineSensor::Gpsd(section)) => {
                 if let Some(message) = section.wrong_address() {
                     wrong("address", message);
+                }
+                if section.device.as_ref().is_some_and(String::is_empty) {
+                    wrong(
+                        "device",
+                        "is empty: leave it out to use all receivers of gpsd",
+                    );
                 }
                 continue;
             }

@@ -35,6 +35,7 @@ mod rights;
 mod runtime;
 mod servo_board;
 mod servos;
+mod shared_devices;
 mod similar;
 mod telemetry;
 mod values;
@@ -259,7 +260,7 @@ impl Config {
         }
         if let Some(section) = &self.built_in
             && section.raw_sensors == RawSensorsChoice::None
-            && !self.has_board()
+            && !self.has_inertial_unit()
             && self.navigation.method != NavigationMethod::Measured
         {
             remarks.push(
@@ -279,6 +280,7 @@ impl Config {
                     .to_owned(),
             );
         }
+        remarks.extend(self.airspeed_remark());
         remarks.extend(self.stick_remark());
         if self.actuators().is_empty() {
             remarks.push(NO_ACTUATOR.to_owned());

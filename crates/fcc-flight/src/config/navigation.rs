@@ -6,6 +6,8 @@ use std::time::Duration;
 use fcc_core::flight::inertial::{MagneticNorth, RawNavigationConfig, RawNavigationMethod};
 use serde::{Deserialize, Serialize};
 
+use super::{BoardSensor, Config, RawSensorsChoice, SensorEntry};
+
 /// The middle of the World Magnetic Model 2025: a small computer may not know
 /// the date, and a declination changes by 0.1 to 0.2° a year.
 const MIDDLE_OF_THE_MODEL: f64 = 2027.5;
@@ -56,6 +58,67 @@ impl Default for NavigationSection {
 
 /// As far back as the filter keeps samples.
 pub(super) const LONGEST_DELAY_MS: f64 = 500.0;
+
+/// Reports a method that has nothing to compute attitude from. A program's own
+/// aircraft stands in the place of a simulator's, and gives what it likes.
+pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
+    let needs = match config.navigation.method {
+        NavigationMethod::Measured => return,
+        NavigationMethod::Kalman => "gyroscopes",
+        NavigationMethod::Thesis => "an accelerometer",
+    };
+    if config.is_without_simulator() && !config.has_inertial_unit() {
+        let message = format!(
+            "computes attitude with {needs}, and no sensor has them: add one with kind = \"icm42688\", \
+             \"mpu6050\" or \"iio\", or choose \"measured\" to read the others without engaging"
+        );
+        report(&["navigation.method"], message);
+    }
+}
+
+impl Config {
+    /// Whether a sensor may have an accelerometer and gyroscopes. What a driver of
+    /// the kernel gives is known only when it is opened.
+    pub(super) fn has_inertial_unit(&self) -> bool {
+        let is_simulated = self
+            .built_in
+            .as_ref()
+            .is_some_and(|section| section.raw_sensors != RawSensorsChoice::None);
+        let mut boards = self.sensor.iter().filter_map(SensorEntry::board);
+        is_simulated
+            || boards.any(|board| match board {
+                BoardSensor::Chip(kind, _) => kind.is_inertial(),
+                BoardSensor::Iio(_) => true,
+            })
+    }
+}
+
+impl Config {
+    /// That a board has nothing to find its airspeed with, if it certainly has not.
+    pub(super) fn airspeed_remark(&self) -> Option<String> {
+        let gives_airspeed = |entry: &SensorEntry| match entry.board() {
+            Some(BoardSensor::Chip(kind, _)) => kind.measures_airspeed(),
+            // Not known before it is opened.
+            Some(BoardSensor::Iio(_)) => true,
+            None => matches!(entry, SensorEntry::XPlane(_) | SensorEntry::ServoBoard(_)),
+        };
+        let is_by_board =
+            self.is_without_simulator() && self.navigation.method != NavigationMethod::Measured;
+        if !is_by_board || self.sensor.iter().any(gives_airspeed) {
+            return None;
+        }
+        let lacks = match (self.autopilot.airframe, self.receivers().next()) {
+            (Some(_), Some(_)) => return None,
+            (Some(_), None) => "no satellite receiver",
+            (None, Some(_)) => "no [autopilot.airframe]",
+            (None, None) => "neither a satellite receiver nor [autopilot.airframe]",
+        };
+        Some(format!(
+            "no sensor measures the airspeed, and there is {lacks} to fly without one: nothing \
+             will engage (docs/navigation.md, without an airspeed sensor)"
+        ))
+    }
+}
 
 /// Key, smallest and largest value, as in the table of all keys.
 pub(super) const RANGES: &[(&str, f64, f64)] = &[
@@ -150,6 +213,73 @@ mod tests {
             remarks.iter().any(|remark| remark.contains("raw_sensors")),
             "{remarks:?}"
         );
+    }
+
+    #[test]
+    fn a_board_without_an_inertial_unit_is_refused() {
+        let with = |method: &str, kinds: &[&str]| {
+            let sensors = kinds.iter().fold(String::new(), |text, kind| {
+                format!("{text}[[sensor]]\nkind = \"{kind}\"\n")
+            });
+            let text = format!("actuator = []\n[navigation]\nmethod = \"{method}\"\n{sensors}");
+            Config::parse(&text, "f").map_err(|error| error.to_string())
+        };
+        let others = ["bmp388", "qmc5883l", "ms4525do", "gpsd", "x-plane"];
+        let words = "f:3: navigation.method: computes attitude with gyroscopes, and no sensor has \
+                     them: add one with kind = \"icm42688\"";
+        let refused = with("kalman", &others).unwrap_err();
+        assert!(refused.starts_with(words), "{refused}");
+        let refused = with("thesis", &others).unwrap_err();
+        assert!(refused.contains("with an accelerometer"), "{refused}");
+        with("measured", &others).unwrap();
+        for unit in ["icm42688", "mpu6050", "iio\"\ndevice = \"mpu6050"] {
+            with("kalman", &["bmp388", unit]).unwrap();
+        }
+    }
+
+    #[test]
+    fn beside_the_built_in_aircraft_it_is_a_remark() {
+        let text = "[built-in]\n[navigation]\nmethod = \"kalman\"\n[[sensor]]\nkind = ";
+        let says = |kind: &str| {
+            let text = format!("{text}{kind}\n");
+            let remarks = Config::parse(&text, "f").unwrap().remarks(&text);
+            let mut remarks = remarks.iter();
+            remarks.any(|remark| remark.contains("built-in.raw_sensors is \"none\""))
+        };
+        assert!(says("\"bmp388\""));
+        assert!(!says("\"icm42688\""));
+    }
+
+    #[test]
+    fn without_airspeed_a_receiver_and_what_was_learned_are_needed() {
+        let says = |more: &str| {
+            let unit = "[[sensor]]\nkind = \"icm42688\"\n";
+            let text = format!("actuator = []\n[navigation]\nmethod = \"kalman\"\n{unit}{more}");
+            let mut remarks = Config::parse(&text, "f")
+                .unwrap()
+                .remarks(&text)
+                .into_iter();
+            let found = remarks.find_map(|remark| {
+                let (_, lacks) = remark.split_once("airspeed, and there is ")?;
+                lacks
+                    .split_once(" to fly")
+                    .map(|(lacks, _)| lacks.to_owned())
+            });
+            found.unwrap_or_default()
+        };
+        let receiver = "[[sensor]]\nkind = \"gpsd\"\n";
+        let learned = "[autopilot.airframe]\naxial_offset = 0.0\nfull_thrust_ratio = 0.25\n\
+                       zero_lift_angle_deg = -2.0\none_g_angle_deg = 4.0\n";
+        let neither = "neither a satellite receiver nor [autopilot.airframe]";
+        for (more, lacks) in [
+            (String::new(), neither),
+            (receiver.to_owned(), "no [autopilot.airframe]"),
+            (learned.to_owned(), "no satellite receiver"),
+            (format!("{receiver}{learned}"), ""),
+            ("[[sensor]]\nkind = \"sdp3x\"\n".to_owned(), ""),
+        ] {
+            assert_eq!(says(&more), lacks, "{more}");
+        }
     }
 
     #[test]

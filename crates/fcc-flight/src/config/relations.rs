@@ -5,7 +5,7 @@ use fcc_core::flight::control::Envelope;
 use super::autopilot::EnvelopeSection;
 use super::{
     ActuatorEntry, AutopilotSection, Config, NavigationMethod, SensorEntry, board, lines,
-    raw_readings, servo_board, servos,
+    navigation, raw_readings, servo_board, servos, shared_devices,
 };
 
 /// Of `SCHED_FIFO` (sched(7)).
@@ -63,11 +63,13 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     connections(config, report);
     rights(config, report);
     lists(config, report);
+    navigation::check(config, report);
     raw_readings::check(config, report);
     board::check(config, report);
     servo_board::check(config, report);
     lines::check(config, report);
     servos::check(config, report);
+    shared_devices::check(config, report);
 }
 
 /// No file of Unix has a NUL in its name.

@@ -7,6 +7,7 @@ use fcc_linux::servo::{Drives, PwmOutput, Released, ServoChannel, ServoError, Se
 use fcc_telemetry::units::number;
 use serde::{Deserialize, Serialize};
 
+use super::gpio::HIGHEST_LINE;
 use super::{ActuatorEntry, Config, HeartbeatSection};
 
 /// Servos, and where their pulses are written.
@@ -194,7 +195,12 @@ impl ServosSection {
                 format!("is {value}: choose {least} to {most}")
             })
         };
+        let line = self
+            .heartbeat
+            .as_ref()
+            .map_or(0, |heartbeat| heartbeat.line);
         for (key, value, least, most) in [
+            ("heartbeat.line", f64::from(line), 0.0, HIGHEST_LINE),
             ("address", f64::from(self.address), 64.0, 127.0),
             ("oscillator_mhz", self.oscillator_mhz, 20.0, 30.0),
             ("rate_hz", self.rate_hz, 40.0, 333.0),
@@ -270,6 +276,43 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     for (at, entry) in config.actuators().iter().enumerate() {
         if let ActuatorEntry::Servos(section) = entry {
             section.check(&mut |key, message| report(&[&format!("actuator[{at}].{key}")], message));
+        }
+    }
+    undriven(config, report);
+}
+
+/// What control takes pitch and bank by: without one of them nothing can be flown.
+const NEEDED: [(DrivesChoice, &str); 2] = [
+    (DrivesChoice::Elevator, "elevator"),
+    (DrivesChoice::Aileron, "aileron"),
+];
+
+/// Reports surfaces without which there is no control, if servos alone drive them.
+fn undriven(config: &Config, report: &mut impl FnMut(&[&str], String)) {
+    let entries = config.actuators().iter();
+    let sections = entries.map(|entry| match entry {
+        ActuatorEntry::Servos(section) => Some(section.as_ref()),
+        ActuatorEntry::Simulator(_) | ActuatorEntry::ServoBoard(_) => None,
+    });
+    // Others drive all surfaces.
+    let Some(sections) = sections.collect::<Option<Vec<&ServosSection>>>() else {
+        return;
+    };
+    let Some(last) = sections.len().checked_sub(1) else {
+        return;
+    };
+    // That is said of its own.
+    if sections.iter().any(|section| section.channels.is_empty()) {
+        return;
+    }
+    for (surface, name) in NEEDED {
+        let mut channels = sections.iter().flat_map(|section| &section.channels);
+        if !channels.any(|channel| channel.drives == surface) {
+            let message = format!(
+                "has no servo that drives the {name}, without which nothing can be flown: add \
+                 [[actuator.channel]] with drives = \"{name}\" and its output"
+            );
+            report(&[&format!("actuator[{last}].channel")], message);
         }
     }
 }

@@ -81,7 +81,7 @@ pub enum AssemblyError {
     )]
     Device {
         /// The device.
-        name: &'static str,
+        name: String,
         /// The operating system's error.
         source: io::Error,
     },

@@ -12,13 +12,11 @@ use super::calibrated::Calibrated;
 use super::observer::{Access, Observer};
 use crate::config::BoardSensor;
 
-/// The name of a sensor of the kernel: which device it is, is in the
-/// configuration.
-const IIO: &str = "IIO";
-
 /// A device, and its state for programs.
 pub(crate) struct WatchedDevice {
-    name: &'static str,
+    /// Its kind: what is wrong with it says where.
+    kind: &'static str,
+    name: String,
     status: DeviceStatus,
     /// What was reported last, and when something else may be.
     reported: Option<String>,
@@ -26,8 +24,9 @@ pub(crate) struct WatchedDevice {
 }
 
 impl WatchedDevice {
-    pub(super) const fn new(name: &'static str, status: DeviceStatus) -> Self {
+    pub(super) const fn new(kind: &'static str, name: String, status: DeviceStatus) -> Self {
         Self {
+            kind,
             name,
             status,
             reported: None,
@@ -57,12 +56,10 @@ pub(super) fn board_sensor(
 pub(crate) fn uncalibrated(
     board: &BoardSensor<'_>,
 ) -> Result<(DeviceSensor<RawValues>, WatchedDevice), AssemblyError> {
-    let name = match board {
-        BoardSensor::Chip(kind, _) => kind.name(),
-        BoardSensor::Iio(_) => IIO,
-    };
+    let (kind, name) = (board.name(), board.describe());
     let (silent_after, fallback_after) = board.patience();
-    let thread = DeviceThread::new(name)
+    let thread = DeviceThread::new(kind)
+        .named(name.clone())
         .silent_after(silent_after)
         .fallback_after(fallback_after);
     let status = thread.status();
@@ -76,10 +73,10 @@ pub(crate) fn uncalibrated(
             thread.start(move || Iio::open(&config))
         }
     };
-    let sensor: DeviceSensor<RawValues> =
-        started.map_err(|source| AssemblyError::Device { name, source })?;
-    let watched = WatchedDevice::new(name, status);
-    Ok((sensor, watched))
+    match started {
+        Ok(sensor) => Ok((sensor, WatchedDevice::new(kind, name, status))),
+        Err(source) => Err(AssemblyError::Device { name, source }),
+    }
 }
 
 /// Reports what is wrong with a device, and when it is read again: the loop's
@@ -95,17 +92,21 @@ impl DeviceReporter {
 impl<C: Controller> Observer<C> for DeviceReporter {
     fn poll(&mut self, access: &mut Access<'_, C::Command>) {
         for device in &mut self.0 {
+            let (kind, name) = (device.kind, &device.name);
             let trouble = device.status.trouble();
+            let trouble = trouble.map(|trouble| format!("{kind}: {trouble}"));
+            let waits_for = device.status.waits_for();
+            let trouble = trouble.or_else(|| waits_for.map(|what| format!("{name}: {what}")));
             let is_quiet = device
                 .quiet_until
                 .is_some_and(|until| Instant::now() < until);
             if is_quiet || trouble == device.reported {
                 continue;
             }
-            access.reports.remark(match &trouble {
-                Some(trouble) => format!("{}: {trouble}", device.name),
-                None => format!("{} is read", device.name),
-            });
+            let is_read = || format!("{name} is read");
+            access
+                .reports
+                .remark(trouble.clone().unwrap_or_else(is_read));
             device.reported = trouble;
             device.quiet_until = Some(Instant::now() + QUIET);
         }
@@ -122,12 +123,9 @@ mod tests {
     #[test]
     fn an_observer_of_devices_conforms() {
         observer_conforms(|| {
-            Box::new(DeviceReporter::new(vec![WatchedDevice {
-                name: "BMP388",
-                status: DeviceStatus::default(),
-                reported: None,
-                quiet_until: None,
-            }]))
+            let name = "BMP388 at /dev/i2c-1 0x76".to_owned();
+            let device = WatchedDevice::new("BMP388", name, DeviceStatus::default());
+            Box::new(DeviceReporter::new(vec![device]))
         });
     }
 }

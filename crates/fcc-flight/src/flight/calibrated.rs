@@ -44,7 +44,7 @@ impl<S: Sensor<Measurements> + ?Sized> Sensor<Measurements> for Calibrated<S> {
         self.sensor.warm_up(tick);
     }
 
-    fn name(&self) -> &'static str {
+    fn name(&self) -> &str {
         self.sensor.name()
     }
 }

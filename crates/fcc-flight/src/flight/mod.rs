@@ -48,6 +48,7 @@ pub use fly::{FlyError, fly};
 pub use ground::Impact;
 pub use host::Host;
 pub use limits::{altitudes_m, heights_m, setpoint_limits};
+pub(crate) use lines::line_sensor;
 pub use observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 #[cfg(feature = "live")]
 pub use other_users::{OtherUserError, command_another_users, command_of};

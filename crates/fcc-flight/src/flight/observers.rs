@@ -141,7 +141,7 @@ impl Names {
 
 /// Unique names: of several devices with one name, all but the first get a
 /// number.
-fn distinct(names: impl Iterator<Item = &'static str>) -> Vec<String> {
+fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut seen: Vec<&str> = Vec::new();
     names
         .map(|name| {
@@ -164,6 +164,7 @@ mod tests {
     use super::super::recording::{FlightRecorder, RecordingRequest};
     use super::super::restart::{RestartKeeper, RestartRequest};
     use super::super::scorer::Scorer;
+    use super::Names;
     use crate::config::Config;
     use fcc_core::flight::Autopilot;
     #[cfg(feature = "live")]
@@ -178,6 +179,37 @@ mod tests {
             std::process::id()
         );
         Config::parse(&text, "test").unwrap()
+    }
+
+    #[test]
+    fn devices_of_one_kind_are_told_apart_by_their_places() {
+        let text = "[[sensor]]\nkind = \"bmp388\"\ni2c = \"/nowhere/i2c-1\"\n\
+             [[sensor]]\nkind = \"bmp388\"\ni2c = \"/nowhere/i2c-1\"\naddress = 0x77\n\
+             [[sensor]]\nkind = \"icm42688\"\nspi = \"/nowhere/spidev0.0\"\n\
+             [[sensor]]\nkind = \"iio\"\ndevice = \"bmp280\"\nsysfs = \"/nowhere\"\n\
+             [[sensor]]\nkind = \"gnss-serial\"\npath = \"/nowhere/ttyAMA0\"\n\
+             [[sensor]]\nkind = \"gpsd\"\naddress = \"localhost:1\"\ndevice = \"/dev/ttyACM1\"\n\
+             [[sensor]]\nkind = \"gpio-switch\"\nchip = \"/nowhere/gpiochip0\"\nline = 17\n\
+             [[sensor]]\nkind = \"x-plane\"\n\
+             [[sensor]]\nkind = \"x-plane\"\nlocal_port = 0\n\
+             [[actuator]]\nkind = \"servos\"\npca9685 = \"/nowhere/i2c-2\"\n\
+             [[actuator.channel]]\ndrives = \"elevator\"\noutput = 0\n\
+             [[actuator.channel]]\ndrives = \"aileron\"\noutput = 1\n";
+        let assembly = assemble(&Config::parse(text, "test").unwrap()).unwrap();
+        let names = Names::of(&assembly);
+        let expected = [
+            "BMP388 at /nowhere/i2c-1 0x76",
+            "BMP388 at /nowhere/i2c-1 0x77",
+            "ICM-42688-P at /nowhere/spidev0.0",
+            "IIO bmp280",
+            "GNSS receiver at /nowhere/ttyAMA0",
+            "gpsd at localhost:1 /dev/ttyACM1",
+            "engage switch at /nowhere/gpiochip0 line 17",
+            "X-Plane",
+            "X-Plane 2",
+        ];
+        assert_eq!(names.sensors, expected);
+        assert_eq!(names.actuators, ["servos at /nowhere/i2c-2"]);
     }
 
     #[test]

@@ -27,8 +27,9 @@ pub(super) struct Servos {
 /// Starts the thread that writes to servos. Outputs that are not there are no
 /// error: they may be, later.
 pub(super) fn servos(section: &ServosSection) -> Result<Servos, AssemblyError> {
-    let thread = ServoThread::new(SERVOS, section.to_linux());
-    let device = WatchedDevice::new(SERVOS, thread.status());
+    let name = format!("{SERVOS} at {}", section.place().display());
+    let thread = ServoThread::new(name.clone(), section.to_linux());
+    let device = WatchedDevice::new(SERVOS, name.clone(), thread.status());
     let section = section.clone();
     let open = move || {
         let outputs = outputs(&section, Set::Up)?;
@@ -42,10 +43,7 @@ pub(super) fn servos(section: &ServosSection) -> Result<Servos, AssemblyError> {
         Ok(ServoBus { outputs, heartbeat })
     };
     let actuator = thread.start(open);
-    let actuator = actuator.map_err(|source| AssemblyError::Device {
-        name: SERVOS,
-        source,
-    })?;
+    let actuator = actuator.map_err(|source| AssemblyError::Device { name, source })?;
     Ok(Servos {
         control: actuator.control(),
         actuator: Box::new(actuator),

@@ -52,7 +52,7 @@ impl Sensor<Measurements> for TruthRecorder {
         self.sensor.warm_up(tick);
     }
 
-    fn name(&self) -> &'static str {
+    fn name(&self) -> &str {
         self.sensor.name()
     }
 }

@@ -88,6 +88,16 @@ impl ChipKind {
         }
     }
 
+    /// Whether it is an inertial unit: an accelerometer with gyroscopes.
+    pub const fn is_inertial(self) -> bool {
+        matches!(self, Self::Icm42688 | Self::Mpu6050)
+    }
+
+    /// Whether it is a pitot tube's.
+    pub const fn measures_airspeed(self) -> bool {
+        matches!(self, Self::Ms4525do | Self::Sdp3x)
+    }
+
     /// The addresses that it may have, the usual one first.
     pub const fn addresses(self) -> &'static [u8] {
         match self {

@@ -90,10 +90,7 @@ impl GpioLine {
         }
         match builder.request() {
             Ok(request) => Ok(Self { request, device }),
-            Err(error) => Err(DeviceError::Open {
-                source: io_error(&error),
-                device,
-            }),
+            Err(error) => Err(not_claimed(device, io_error(&error))),
         }
     }
 
@@ -126,6 +123,25 @@ impl HeartbeatLine for GpioLine {
     }
 }
 
+/// Why a line could not be claimed: what the kernel says of lines in particular.
+fn not_claimed(device: String, source: io::Error) -> DeviceError {
+    let what = match source.raw_os_error().map(Errno::from_raw) {
+        Some(Errno::EBUSY) => {
+            "another program or a driver of the kernel has this line, `gpioinfo` shows which: end \
+             that, or choose another line"
+        }
+        Some(Errno::EINVAL) => {
+            "the chip has no such line, `gpioinfo` lists them, or no resistor for it: choose \
+             pull = \"none\", with one of your own"
+        }
+        _ => return DeviceError::Open { device, source },
+    };
+    DeviceError::Refused {
+        device,
+        what: what.to_owned(),
+    }
+}
+
 /// The operating system's error behind one of the crate's.
 fn io_error(error: &gpiocdev::Error) -> io::Error {
     match error {
@@ -141,6 +157,25 @@ fn io_error(error: &gpiocdev::Error) -> io::Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The errors of `GPIO_V2_GET_LINE_IOCTL` (the kernel's userspace API manual).
+    #[test]
+    fn a_line_that_is_taken_or_missing_is_explained() {
+        for (errno, expected) in [
+            (Errno::EBUSY, "/dev/gpiochip0, line 7: another program or a"),
+            (
+                Errno::EINVAL,
+                "/dev/gpiochip0, line 7: the chip has no such line, ",
+            ),
+            (
+                Errno::EACCES,
+                "cannot open /dev/gpiochip0, line 7: Permission denied",
+            ),
+        ] {
+            let error = not_claimed("/dev/gpiochip0, line 7".to_owned(), errno.into());
+            assert!(error.to_string().starts_with(expected), "{error}");
+        }
+    }
 
     #[test]
     fn a_chip_that_is_missing_or_none_is_explained() {

@@ -11,13 +11,17 @@ use fcc_core::framework::Time;
 use nix::errno::Errno;
 
 use super::{Lines, Report};
+use crate::source::NO_FIX;
 use crate::{DeviceError, Sample, Source, WAIT};
 
 const CONNECTED_WITHIN: Duration = Duration::from_secs(1);
-/// With a receiver gpsd reports every second, even without a fix. A connection
+/// With a receiver gpsd writes a line every second, even without a fix. A connection
 /// that is cut without a word is noticed by this, too.
 const SILENT: Duration = Duration::from_secs(10);
 const PROTOCOL: u32 = 3;
+/// Of its receivers, and characters of its words, in a message.
+const MOST_LISTED: usize = 4;
+const MOST_QUOTED: usize = 200;
 
 /// Where gpsd is, and which of its receivers is used.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -38,6 +42,7 @@ pub struct Gpsd {
     clock: Box<dyn Fn() -> Time + Send>,
     lines: Lines,
     heard: Instant,
+    is_without_fix: bool,
 }
 
 impl fmt::Debug for Gpsd {
@@ -76,21 +81,33 @@ impl Gpsd {
             clock: Box::new(clock),
             lines: Lines::default(),
             heard: Instant::now(),
+            is_without_fix: false,
         })
     }
 
     /// The newest fix of what was received.
     fn parse(&mut self, bytes: &[u8]) -> Result<Option<GnssFix>, DeviceError> {
-        let (mut newest, mut trouble) = (None, None);
+        let (mut newest, mut trouble, mut heard) = (None, None, self.heard);
+        let mut is_without_fix = self.is_without_fix;
         let device = name(&self.settings);
         let wanted = self.settings.device.as_ref();
         let refused = |what: String| DeviceError::Refused {
             device: device.clone(),
             what,
         };
-        self.lines.push(bytes, |line| match Report::read(line) {
+        let mut take = |line: &[u8]| match Report::read(line) {
             Ok(Report::Fix { device, fix }) if wanted.is_none() || device.as_ref() == wanted => {
+                is_without_fix = fix.is_none();
                 newest = fix.or(newest);
+            }
+            Ok(Report::Devices(all)) => {
+                trouble = wanted.filter(|path| !all.contains(path)).map(|path| {
+                    refused(format!(
+                        "it has no receiver {path}, but {}: choose `device` of these, or start it \
+                         with that one",
+                        listed(&all)
+                    ))
+                });
             }
             Ok(Report::Version { protocol }) if protocol != PROTOCOL => {
                 trouble = Some(refused(format!(
@@ -99,7 +116,7 @@ impl Gpsd {
                 )));
             }
             Ok(Report::Error(message)) => {
-                trouble = Some(refused(format!("it reports: {}", message.escape_debug())));
+                trouble = Some(refused(format!("it reports: {}", quoted(&message))));
             }
             Ok(_) => {}
             Err(_) => {
@@ -108,7 +125,12 @@ impl Gpsd {
                     what: "a line is not of gpsd's JSON: check that gpsd has this address",
                 });
             }
+        };
+        self.lines.push(bytes, |line| {
+            heard = Instant::now();
+            take(line);
         });
+        (self.heard, self.is_without_fix) = (heard, is_without_fix);
         match (newest, trouble) {
             (None, Some(trouble)) => Err(trouble),
             (newest, _) => Ok(newest),
@@ -128,8 +150,25 @@ fn connect(address: &str) -> io::Result<TcpStream> {
     Err(failed)
 }
 
+/// What another program lists, for a message.
+fn listed(paths: &[String]) -> String {
+    if paths.is_empty() {
+        return "none".to_owned();
+    }
+    let shown = paths.iter().take(MOST_LISTED);
+    let shown: Vec<_> = shown.map(|path| quoted(path)).collect();
+    shown.join(", ")
+}
+
+/// The beginning of another program's text.
+fn quoted(text: &str) -> String {
+    let first: String = text.chars().take(MOST_QUOTED).collect();
+    first.escape_debug().to_string()
+}
+
+/// Its messages are among those of gpsd, as those of a line are.
 fn name(settings: &GpsdSettings) -> String {
-    format!("gpsd at {}", settings.address)
+    settings.address.clone()
 }
 
 impl Source for Gpsd {
@@ -149,16 +188,18 @@ impl Source for Gpsd {
             Err(error) if is_nothing(&error) => 0,
             Err(error) => return Err(failed(error)),
         };
-        if length > 0 {
-            self.heard = Instant::now();
-        } else if self.heard.elapsed() > SILENT {
+        let fix = self.parse(buffer.get(..length).unwrap_or_default())?;
+        if self.heard.elapsed() > SILENT {
             return Err(DeviceError::Refused {
                 device: name(&self.settings),
                 what: "it reports nothing: check that it has a receiver (`gpsmon` shows it)".into(),
             });
         }
-        let fix = self.parse(buffer.get(..length).unwrap_or_default())?;
         Ok(fix.map(|fix| Sample::new((self.clock)(), fix)))
+    }
+
+    fn waits_for(&self) -> Option<&'static str> {
+        self.is_without_fix.then_some(NO_FIX)
     }
 }
 

@@ -20,6 +20,8 @@ pub enum Report {
         /// The protocol's, 3.
         protocol: u32,
     },
+    /// The receivers that it has, by their paths (`DEVICES`).
+    Devices(Vec<String>),
     /// It refuses what it was asked (`ERROR`).
     Error(String),
     /// Something else, such as satellites.
@@ -39,10 +41,17 @@ enum Object {
     Tpv(Box<Tpv>),
     #[serde(rename = "VERSION")]
     Version { proto_major: u32 },
+    #[serde(rename = "DEVICES")]
+    Devices { devices: Vec<Device> },
     #[serde(rename = "ERROR")]
     Error { message: String },
     #[serde(other)]
     Other,
+}
+
+#[derive(Deserialize)]
+struct Device {
+    path: Option<String>,
 }
 
 /// Degrees, metres, m/s. What is not known is missing.
@@ -96,6 +105,9 @@ impl Report {
             Object::Version { proto_major } => Self::Version {
                 protocol: proto_major,
             },
+            Object::Devices { devices } => {
+                Self::Devices(devices.into_iter().filter_map(|one| one.path).collect())
+            }
             Object::Error { message } => Self::Error(message),
             Object::Other => Self::Other,
         })

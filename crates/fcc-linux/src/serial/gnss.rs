@@ -7,6 +7,7 @@ use fcc_core::flight::{GnssFix, Measurements};
 use fcc_core::framework::{Reading, Time};
 
 use super::{Epochs, Frames, LineSettings, Nmea, SerialLine, Ubx, UbxMessage, configuration};
+use crate::source::NO_FIX;
 use crate::{DeviceError, Measured, Sample, Source};
 
 /// Sentences are used if there was no message in UBX for so long: in them the
@@ -43,6 +44,7 @@ pub struct GnssReceiver {
     configured: Time,
     refused: bool,
     not_understood: usize,
+    is_without_fix: bool,
 }
 
 impl fmt::Debug for GnssReceiver {
@@ -83,6 +85,7 @@ impl GnssReceiver {
             configured: Time::NEVER,
             refused: false,
             not_understood: 0,
+            is_without_fix: false,
         })
     }
 
@@ -159,9 +162,10 @@ impl Source for GnssReceiver {
         let has_only_nmea = now.since(self.last_ubx) > UBX_SILENT;
         let fix = found.by_ubx.or(found.by_nmea.filter(|_| has_only_nmea));
         if let Some(fix) = fix {
-            self.not_understood = 0;
+            (self.not_understood, self.is_without_fix) = (0, false);
             return Ok(Some(Sample::new(now, fix)));
         }
+        self.is_without_fix |= found.messages > 0;
         match self.trouble(&found, length, damaged) {
             Some(what) => Err(DeviceError::Malformed {
                 device: self.line.path().display().to_string(),
@@ -169,6 +173,10 @@ impl Source for GnssReceiver {
             }),
             None => Ok(None),
         }
+    }
+
+    fn waits_for(&self) -> Option<&'static str> {
+        self.is_without_fix.then_some(NO_FIX)
     }
 }
 

@@ -23,7 +23,7 @@ const END_WITHIN: Duration = Duration::from_secs(1);
 /// When it is dropped the servos are released, and the thread ends.
 #[derive(Debug)]
 pub struct ServoActuator {
-    name: &'static str,
+    name: String,
     orders: Producer<Order>,
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
@@ -32,7 +32,7 @@ pub struct ServoActuator {
 
 impl ServoActuator {
     pub(super) const fn new(
-        name: &'static str,
+        name: String,
         orders: Producer<Order>,
         shared: Arc<Shared>,
         thread: JoinHandle<()>,
@@ -113,8 +113,8 @@ impl Actuator<Surfaces> for ServoActuator {
         Ok(())
     }
 
-    fn name(&self) -> &'static str {
-        self.name
+    fn name(&self) -> &str {
+        &self.name
     }
 }
 

@@ -135,10 +135,12 @@ pub(super) const PERMITTED_AFTER_CHECK: u8 = 1;
 pub(super) const CONNECTED: i32 = 0;
 pub(super) const NOT_OPEN: i32 = -1;
 
+const THREAD: &str = "servos";
+
 /// How the thread of servos is started.
 #[derive(Clone, Debug)]
 pub struct ServoThread {
-    name: &'static str,
+    name: String,
     settings: ServoSettings,
     pause: Duration,
     status: DeviceStatus,
@@ -146,9 +148,9 @@ pub struct ServoThread {
 
 impl ServoThread {
     /// A thread for servos with this name, which is that of their actuator.
-    pub fn new(name: &'static str, settings: ServoSettings) -> Self {
+    pub fn new(name: impl Into<String>, settings: ServoSettings) -> Self {
         Self {
-            name,
+            name: name.into(),
             settings,
             pause: OPENED_EVERY,
             status: DeviceStatus::default(),
@@ -205,7 +207,7 @@ impl ServoThread {
             status: self.status,
         };
         let thread = thread::Builder::new()
-            .name(self.name.chars().take(15).collect())
+            .name(THREAD.to_owned())
             .stack_size(STACK_BYTES)
             .spawn(move || writer.run())?;
         Ok(ServoActuator::new(self.name, orders, shared, thread))

@@ -1,18 +1,14 @@
-//! gpsd: what its lines say, the requirements of a sensor with a stand-in for it,
-//! and the real gpsd with gpsfake, which plays a receiver.
+//! gpsd: what its lines say, and the requirements of a sensor with a stand-in for it.
 
-use std::fs;
 use std::io::Write;
 use std::net::{TcpListener, TcpStream};
-use std::process::{Child, Command, Stdio};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use fcc_conformance::{SensorBench, VanishingSource, sensor_conformance};
 use fcc_core::flight::{GnssFix, Measurements};
 use fcc_core::framework::{Sensor, Time};
 use fcc_linux::gpsd::{Gpsd, GpsdSettings, Report};
-use fcc_linux::{DeviceError, Source, monotonic};
-use tempfile::TempDir;
+use fcc_linux::{DeviceThread, Source, monotonic};
 
 use super::PATIENCE;
 use crate::watched::{AT_MOST, Watched};
@@ -27,7 +23,7 @@ fn fix(line: &str) -> Option<GnssFix> {
     }
 }
 
-fn assert_near(found: f64, expected: f64, within: f64) {
+pub(super) fn assert_near(found: f64, expected: f64, within: f64) {
     assert!(
         (found - expected).abs() <= within,
         "{found}, not {expected}"
@@ -98,7 +94,7 @@ fn what_gpsd_does_not_write_is_refused() {
     assert_eq!(Report::read(sky.as_bytes()), Ok(Report::Other));
 }
 
-fn settings(port: u16) -> GpsdSettings {
+pub(super) fn settings(port: u16) -> GpsdSettings {
     GpsdSettings {
         address: format!("localhost:{port}"),
         device: None,
@@ -187,7 +183,7 @@ fn error_of(says: &str, device: Option<&str>) -> String {
             Ok(None) => {}
             Ok(Some(_)) => return "a fix".to_owned(),
             Err(error) => {
-                let name = format!("gpsd at {}: ", settings.address);
+                let name = format!("{}: ", settings.address);
                 return error.to_string().replace(&name, "");
             }
         }
@@ -218,9 +214,61 @@ fn what_is_wrong_is_said_with_what_to_do() {
     let missing = Gpsd::open(&settings(1), monotonic).unwrap_err().to_string();
     assert_eq!(
         missing,
-        "cannot open gpsd at localhost:1: Connection refused (os error 111); nothing listens \
+        "cannot open localhost:1: Connection refused (os error 111); nothing listens \
          there: start it, and check the address"
     );
+}
+
+#[test]
+fn a_long_text_of_another_program_is_cut() {
+    let says = format!(
+        "{{\"class\":\"ERROR\",\"message\":\"{}\"}}\n",
+        "E".repeat(5_000)
+    );
+    assert_eq!(
+        error_of(&says, None),
+        format!("it reports: {}", "E".repeat(200))
+    );
+}
+
+/// Indoors a receiver reports for hours that it has no fix: after a while that is said, and
+/// no longer that gpsd was not there.
+#[test]
+fn a_receiver_without_a_fix_is_no_fault() {
+    let free = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = free.local_addr().unwrap().port();
+    drop(free);
+    let thread = DeviceThread::new("gpsd").silent_after(Duration::from_millis(300));
+    let status = thread.status();
+    let of = settings(port);
+    let _sensor = thread.start(move || Gpsd::open(&of, monotonic)).unwrap();
+    let until = |expected: &dyn Fn() -> bool| {
+        let begun = Instant::now();
+        while !expected() && begun.elapsed() < AT_MOST {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        assert!(expected(), "{status:?}");
+    };
+    until(&|| {
+        status
+            .trouble()
+            .is_some_and(|said| said.contains("nothing listens"))
+    });
+    let listener = TcpListener::bind(("127.0.0.1", port)).unwrap();
+    let (mut stream, _) = listener.accept().unwrap();
+    let searching = TPV.replace(r#""mode":3"#, r#""mode":1"#);
+    stream
+        .write_all(format!("{searching}\n").as_bytes())
+        .unwrap();
+    until(&|| {
+        status
+            .waits_for()
+            .is_some_and(|said| said.contains("no three-dimensional fix"))
+    });
+    assert_eq!(status.trouble(), None);
+    stream.write_all(format!("{TPV}\n").as_bytes()).unwrap();
+    until(&|| status.waits_for().is_none());
+    assert_eq!(status.trouble(), None);
 }
 
 #[test]
@@ -231,118 +279,22 @@ fn of_two_receivers_the_chosen_one_is_used() {
     assert!(error_of(&line, Some("/dev/ttyACM0")).starts_with("reading: "));
 }
 
-/// A second of a receiver: a sentence with its checksum, the exclusive or of what
-/// is between `$` and `*`.
-fn second(number: u32) -> String {
-    let sentence = |text: String| {
-        let sum = text.bytes().fold(0, |sum, byte| sum ^ byte);
-        format!("${text}*{sum:02X}\r\n")
-    };
-    [
-        format!("GNRMC,1011{number:02}.00,A,4257.00000,N,08752.80000,W,102.754,166.50,221126,,,A"),
-        format!("GNGGA,1011{number:02}.00,4257.00000,N,08752.80000,W,1,14,0.7,220.4,M,-34.4,M,,"),
-        "GNGSA,A,3,01,02,03,04,05,06,07,08,09,10,11,12,1.2,0.7,1.0".to_owned(),
-    ]
-    .map(sentence)
-    .concat()
-}
+/// Written by gpsd 3.22 for a receiver of gpsfake.
+const DEVICES: &str = r#"{"class":"DEVICES","devices":[{"class":"DEVICE","path":"/dev/pts/1","driver":"NMEA0183","activated":"2026-11-23T06:17:13.357Z","flags":1,"native":0,"bps":4800,"parity":"N","stopbits":1,"cycle":1.00}]}"#;
 
-/// gpsfake, with the gpsd that it starts.
-struct Real {
-    gpsfake: Child,
-    port: u16,
-    log: TempDir,
-}
-
-impl Real {
-    fn start(port: u16) -> Self {
-        let log = TempDir::new().unwrap();
-        let path = log.path().join("receiver.nmea");
-        let seconds: String = (0..60).map(second).collect();
-        fs::write(&path, format!("# a receiver\n{seconds}")).unwrap();
-        Self {
-            gpsfake: Self::gpsfake(port, &path),
-            port,
-            log,
-        }
-    }
-
-    /// gpsd ends with it, at SIGTERM.
-    fn gpsfake(port: u16, log: &std::path::Path) -> Child {
-        Command::new("gpsfake")
-            .args(["--nowait", "--quiet", "--cycle", "0.02", "--port"])
-            .arg(port.to_string())
-            .arg(log)
-            .stdin(Stdio::null())
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("gpsd and gpsd-clients are installed: `make test-rust` does it")
-    }
-
-    fn end(&mut self) {
-        let pid = nix::unistd::Pid::from_raw(self.gpsfake.id().cast_signed());
-        let _ = nix::sys::signal::kill(pid, nix::sys::signal::Signal::SIGTERM);
-        let _ = self.gpsfake.wait();
-    }
-
-    fn again(&mut self) {
-        self.gpsfake = Self::gpsfake(self.port, &self.log.path().join("receiver.nmea"));
-    }
-}
-
-impl Drop for Real {
-    fn drop(&mut self) {
-        self.end();
-    }
-}
-
-/// Opens it until it is there, and reads until there is a fix.
-fn fix_of(settings: &GpsdSettings) -> (Gpsd, GnssFix) {
-    let begun = Instant::now();
-    while begun.elapsed() < AT_MOST {
-        let Ok(mut gpsd) = Gpsd::open(settings, monotonic) else {
-            std::thread::sleep(std::time::Duration::from_millis(50));
-            continue;
-        };
-        while let Ok(read) = gpsd.read() {
-            if let Some(sample) = read {
-                return (gpsd, sample.value);
-            }
-        }
-    }
-    panic!("no fix");
-}
-
-/// Position and altitude are those of the sentences, and 102.754 kt to 166.5° is
-/// -51.40 and 12.34 m/s.
 #[test]
-fn the_real_gpsd_gives_the_fix_of_its_receiver_again_after_it_was_ended() {
-    let free = TcpListener::bind("127.0.0.1:0").unwrap();
-    let port = free.local_addr().unwrap().port();
-    drop(free);
-    let mut real = Real::start(port);
-    for is_last in [false, true] {
-        let (mut gpsd, fix) = fix_of(&settings(port));
-        assert_near(fix.position.latitude_rad.to_degrees(), 42.95, 1e-8);
-        assert_near(fix.position.longitude_rad.to_degrees(), -87.88, 1e-8);
-        assert_eq!(fix.position.altitude_m, 220.4);
-        assert_near(fix.velocity.north_mps, -51.40, 0.005);
-        assert_near(fix.velocity.east_mps, 12.34, 0.005);
-        assert_eq!(fix.velocity.down_mps, 0.0);
-        real.end();
-        let ended = loop {
-            if let Err(error) = gpsd.read() {
-                break error;
-            }
-        };
-        assert!(matches!(ended, DeviceError::Io { .. }), "{ended}");
-        assert!(matches!(
-            Gpsd::open(&settings(port), monotonic),
-            Err(DeviceError::Open { .. })
-        ));
-        if !is_last {
-            real.again();
-        }
-    }
+fn a_receiver_that_gpsd_does_not_have_is_named() {
+    let has = |device| error_of(&format!("{DEVICES}\n{TPV}\n"), Some(device));
+    assert_eq!(has("/dev/pts/1"), "a fix");
+    let has = |says: &str| error_of(&format!("{says}\n"), Some("/dev/ttyACM0"));
+    assert_eq!(
+        has(DEVICES),
+        "it has no receiver /dev/ttyACM0, but /dev/pts/1: choose `device` of these, or start it \
+         with that one"
+    );
+    let none = has(r#"{"class":"DEVICES","devices":[]}"#);
+    assert!(
+        none.starts_with("it has no receiver /dev/ttyACM0, but none: "),
+        "{none}"
+    );
 }

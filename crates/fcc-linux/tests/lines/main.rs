@@ -10,6 +10,7 @@
 
 mod gpsd;
 mod pty;
+mod real_gpsd;
 mod speaking;
 mod watched;
 

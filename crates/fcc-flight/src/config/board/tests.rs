@@ -97,7 +97,7 @@ fn an_error_is_reported_with_its_line_and_what_to_do() {
 
 #[test]
 fn raw_readings_alone_do_not_engage() {
-    let text = "actuator = []\n[[sensor]]\nkind = \"bmp180\"\n";
+    let text = "actuator = []\n[[sensor]]\nkind = \"mpu6050\"\n";
     let remarks = |text: &str| Config::parse(text, "test").unwrap().remarks(text);
     let about_raw =
         |remark: &String| remark.starts_with("the sensors of a board give raw readings");

@@ -32,17 +32,22 @@ fn an_error_of_servos_is_reported_with_its_line_and_what_to_do() {
              its own",
         ),
         (
+            format!("pwm = \"/p\"\nheartbeat = {{ line = 70000 }}\n{servo}"),
+            "test:5: actuator[0].heartbeat.line: is 70000: choose 0 to 1023",
+        ),
+        (
             format!("pca9685 = \"/dev/i2c-1\"\npwm = \"/p\"\n{servo}"),
             "test:5: actuator[0].pwm: is given together with pca9685: keep one",
         ),
     ] {
+        // The simulator drives the surfaces that these servos do not.
+        let keys = format!("{keys}[[actuator]]\nkind = \"simulator\"\n");
         assert_eq!(lines(&format!("{begin}{keys}")), [expected]);
     }
-    let none = lines(&format!("{begin}pwm = \"/p\"\n"));
-    assert!(
-        none[0].contains("actuator[0].channel: is missing"),
-        "{none:?}"
-    );
+    let [none] = &lines(&format!("{begin}pwm = \"/p\"\n"))[..] else {
+        panic!("one line");
+    };
+    assert!(none.contains("actuator[0].channel: is missing"), "{none}");
     let nowhere = lines(&format!("{begin}{servo}"));
     assert!(
         nowhere[0].contains("actuator[0].pwm: is missing"),
@@ -56,6 +61,39 @@ fn an_error_of_servos_is_reported_with_its_line_and_what_to_do() {
         kind[0].starts_with("test:6: actuator[0].channel[0].drives: "),
         "{kind:?}"
     );
+}
+
+#[test]
+fn servos_that_cannot_fly_an_aircraft_are_refused() {
+    let servos = |surfaces: &[&str]| {
+        let channels = surfaces.iter().enumerate().map(|(output, drives)| {
+            format!("[[actuator.channel]]\ndrives = \"{drives}\"\noutput = {output}\n")
+        });
+        let channels: String = channels.collect();
+        format!("[[actuator]]\nkind = \"servos\"\npwm = \"/p\"\n{channels}")
+    };
+    let begin = "[[sensor]]\nkind = \"x-plane\"\n";
+    let lacks = |surfaces: &[&str]| lines(&format!("{begin}{}", servos(surfaces)));
+    assert_eq!(
+        lacks(&["aileron", "throttle"]),
+        [
+            "test:6: actuator[0].channel: has no servo that drives the elevator, without which \
+             nothing can be flown: add [[actuator.channel]] with drives = \"elevator\" and its \
+             output"
+        ]
+    );
+    let [elevator, aileron] = &lacks(&["rudder", "throttle"])[..] else {
+        panic!("two lines");
+    };
+    assert!(elevator.contains("drives the elevator"), "{elevator}");
+    assert!(aileron.contains("drives the aileron"), "{aileron}");
+    for complete in [
+        servos(&["elevator", "aileron"]),
+        servos(&["elevator"]) + &servos(&["aileron"]).replace("/p", "/q"),
+        servos(&["throttle"]) + "[[actuator]]\nkind = \"simulator\"\n[built-in]\n",
+    ] {
+        Config::parse(&format!("{begin}{complete}"), "test").unwrap();
+    }
 }
 
 #[test]
@@ -74,6 +112,15 @@ fn an_error_of_a_line_is_reported_with_its_line_and_what_to_do() {
             "\"gpsd\"\naddress = \"localhost\"\n",
             "test:4: sensor[0].address: is no address: give host and port, such as \
              \"localhost:2947\"",
+        ),
+        (
+            "\"gpsd\"\naddress = \"gpsd://localhost:2947\"\n",
+            "test:4: sensor[0].address: is no address: give host and port, such as \
+             \"localhost:2947\"",
+        ),
+        (
+            "\"gpsd\"\naddress = \"[::1]:2947\"\ndevice = \"\"\n",
+            "test:5: sensor[0].device: is empty: leave it out to use all receivers of gpsd",
         ),
         (
             "\"gpio-switch\"\n",
@@ -127,7 +174,8 @@ fn servos_and_lines_are_restored_unchanged() {
                 [[sensor]]\nkind = \"gpio-switch\"\nline = 17\npull = \"none\"\n\
                 [[actuator]]\nkind = \"servos\"\npca9685 = \"/dev/i2c-1\"\n\
                 [actuator.heartbeat]\nline = 22\n\
-                [[actuator.channel]]\ndrives = \"aileron\"\noutput = 3\nslew_per_s = 2.5\n";
+                [[actuator.channel]]\ndrives = \"aileron\"\noutput = 3\nslew_per_s = 2.5\n\
+                [[actuator.channel]]\ndrives = \"elevator\"\noutput = 4\n";
     let written = Config::parse(text, "test").unwrap().to_toml().unwrap();
     let again = Config::parse(&written, "again").unwrap();
     assert_eq!(again.to_toml().unwrap(), written);
