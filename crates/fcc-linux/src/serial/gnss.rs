@@ -3,11 +3,11 @@
 use core::fmt;
 use core::time::Duration;
 
-use fcc_core::flight::{GnssFix, Measurements};
-use fcc_core::framework::{Reading, Time};
+use fcc_core::flight::GnssFix;
+use fcc_core::framework::Time;
 
 use super::{Epochs, Frames, LineSettings, Nmea, SerialLine, Ubx, UbxMessage, configuration};
-use crate::{DeviceError, Measured, Sample, Source};
+use crate::{DeviceError, Sample, Source};
 
 /// Sentences are used if there was no message in UBX for so long: in them the
 /// vertical speed is worse, and the accuracies may be missing.
@@ -169,11 +169,5 @@ impl Source for GnssReceiver {
             }),
             None => Ok(None),
         }
-    }
-}
-
-impl Measured for GnssFix {
-    fn write(sample: &Sample<Self>, into: &mut Measurements) {
-        into.gnss = Reading::new(sample.value, sample.taken);
     }
 }

@@ -1,0 +1,6 @@
+//! The phone's sensors with a `libandroid.so` that plays what phones do.
+#![allow(clippy::indexing_slicing, reason = "helper functions of tests")]
+
+mod conformance;
+mod fake;
+mod phones;
