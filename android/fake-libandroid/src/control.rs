@@ -12,6 +12,8 @@ use crate::played::{Fed, PLAYED, Played};
 
 /// Where datagrams are listened for, on this machine alone.
 const PORT: &str = "FAKE_LIBANDROID_PORT";
+/// A file of lines that are obeyed before the first sensor is asked for.
+const SCRIPT: &str = "FAKE_LIBANDROID_SCRIPT";
 /// The longest datagram.
 const LONGEST: usize = 65_536;
 
@@ -56,10 +58,13 @@ pub(crate) unsafe extern "C" fn fake_libandroid_control(text: *const c_char) -> 
     if matches!(obeyed, Ok(Ok(()))) { 0 } else { -1 }
 }
 
-/// Begins to listen for datagrams, if that is asked for.
+/// Reads the script, and begins to listen for datagrams, if that is asked for.
 pub(crate) fn listen() {
     static BEGUN: Once = Once::new();
     BEGUN.call_once(|| {
+        let script = std::env::var_os(SCRIPT).and_then(|path| std::fs::read_to_string(path).ok());
+        // What is wrong with it shows in the test.
+        let _ = script.map(|lines| obey(&lines));
         let port = std::env::var(PORT)
             .ok()
             .and_then(|port| port.parse::<u16>().ok());

@@ -1,8 +1,9 @@
 //! A `libandroid.so` for tests on a PC: loopers, event queues and sensors, which do what
 //! a test tells them. Never shipped.
 //!
-//! What they are to do is JSON, from `fake_libandroid_control` or, if the environment
-//! has `FAKE_LIBANDROID_PORT`, in datagrams to that port, an object in each line:
+//! What they are to do is JSON, an object in each line: from `fake_libandroid_control`,
+//! from the file that the environment names as `FAKE_LIBANDROID_SCRIPT`, or in datagrams
+//! to its `FAKE_LIBANDROID_PORT`, with which sensors give nothing but what they are fed:
 //!
 //! ```json
 //! {"package": "fcc.android", "type": 16, "sensor": {"jitter_us": 5000}}

@@ -4,7 +4,7 @@ use fcc_core::flight::control::Envelope;
 
 use super::autopilot::EnvelopeSection;
 use super::{
-    ActuatorEntry, AutopilotSection, Config, NavigationMethod, SensorEntry, board, lines,
+    ActuatorEntry, AutopilotSection, Config, NavigationMethod, SensorEntry, board, lines, phone,
     raw_readings, servo_board, servos,
 };
 
@@ -67,6 +67,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     board::check(config, report);
     servo_board::check(config, report);
     lines::check(config, report);
+    phone::check(config, report);
     servos::check(config, report);
 }
 

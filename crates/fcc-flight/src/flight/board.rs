@@ -60,6 +60,7 @@ pub(crate) fn uncalibrated(
     let name = match board {
         BoardSensor::Chip(kind, _) => kind.name(),
         BoardSensor::Iio(_) => IIO,
+        BoardSensor::Phone(_) => return Err(AssemblyError::NoPhone),
     };
     let (silent_after, fallback_after) = board.patience();
     let thread = DeviceThread::new(name)
@@ -75,6 +76,7 @@ pub(crate) fn uncalibrated(
             let config = section.to_linux();
             thread.start(move || Iio::open(&config))
         }
+        BoardSensor::Phone(_) => return Err(AssemblyError::NoPhone),
     };
     let sensor: DeviceSensor<RawValues> =
         started.map_err(|source| AssemblyError::Device { name, source })?;
