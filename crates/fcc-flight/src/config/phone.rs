@@ -113,6 +113,9 @@ mod tests {
         assert_eq!(mounting.to_string(), "left-forward-down");
         let again = Config::parse(&config.to_toml().unwrap(), "again").unwrap();
         assert_eq!(again.to_toml().unwrap(), config.to_toml().unwrap());
+        // As in the thesis' experiment: airspeed, switch and surfaces are X-Plane's.
+        let with_x_plane = PHONE.replace("actuator = []", "[x-plane]\nengage_switch = \"a/b\"");
+        Config::parse(&with_x_plane, "test").unwrap();
         let twice = format!("{PHONE}[[sensor]]\nkind = \"phone\"\n");
         assert_eq!(
             Config::parse(&twice, "test").unwrap_err().to_string(),

@@ -52,10 +52,14 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
                 .to_owned(),
         );
     }
-    if config.x_plane.is_some() && config.navigation.method != NavigationMethod::Measured {
+    if config.x_plane.is_some()
+        && !config.has_board()
+        && config.navigation.method != NavigationMethod::Measured
+    {
         report(
             &["navigation.method", "x-plane"],
-            "computes attitude from raw readings, and X-Plane gives none: choose \"measured\""
+            "computes attitude from raw readings, and X-Plane gives none: choose \"measured\", or \
+             list sensors that give some"
                 .to_owned(),
         );
     }
