@@ -23,6 +23,7 @@ pub(crate) struct Event {
 /// How a sensor is played.
 #[derive(Clone, PartialEq, Debug, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[allow(clippy::struct_excessive_bools, reason = "each is another fault")]
 pub(crate) struct Played {
     /// Whether the phone has it.
     is_there: bool,

@@ -13,6 +13,10 @@ use super::{CalibrationSection, Config, SensorEntry};
 /// out of it. How the phone lies in the aircraft is the calibration's `mounting`.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
+#[allow(
+    clippy::struct_excessive_bools,
+    reason = "each is a key of the configuration"
+)]
 pub struct PhoneSection {
     /// Events in a second that each sensor is asked for.
     pub rate_hz: f64,

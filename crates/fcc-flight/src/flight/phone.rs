@@ -29,11 +29,14 @@ pub struct OpenPhone {
     pub devices: Vec<(&'static str, DeviceStatus)>,
 }
 
+/// A sensor, and the devices that it is made of.
+pub(super) type WatchedSensor = (Box<dyn Sensor<Measurements>>, Vec<WatchedDevice>);
+
 /// The phone's sensors, calibrated.
 pub(super) fn phone_sensor(
     section: &PhoneSection,
     host: Option<&mut dyn PhoneHost>,
-) -> Result<(Box<dyn Sensor<Measurements>>, Vec<WatchedDevice>), AssemblyError> {
+) -> Result<WatchedSensor, AssemblyError> {
     let host = host.ok_or(AssemblyError::NoPhone)?;
     let opened = host.open(section);
     let opened = opened.map_err(|source| AssemblyError::Device {
