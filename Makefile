@@ -89,11 +89,11 @@ test-upsets: $(STAMPS)/python-module ## Recover from 100 drawn upsets, and fly 6
 # The app's classes and its native library, on this machine's Java. Its own report of
 # what native code does wrong (-Xcheck:jni) is in the output and no failure by itself.
 ANDROID := target/android
-test-android: build $(STAMPS)/python $(STAMPS)/java ## Test the app's native library under Java, and fly JSBSim by it (10 minutes)
+test-android: build $(STAMPS)/python-module $(STAMPS)/java ## Test the app's native library under Java, and fly JSBSim by it (10 minutes)
 	@mkdir -p $(ANDROID)/faulty
 	cargo build --locked -p fcc-android --features fault-injection
 	cp $(TARGET)/debug/libfcc_android.so $(ANDROID)/faulty/
-	cargo build --locked -p fcc-android
+	cargo build --locked -p fcc-android -p fake-libandroid
 	cd android/host-tests && mvn --quiet --batch-mode -Dlibrary=$(abspath $(TARGET))/debug test \
 	    > $(abspath $(ANDROID))/host-tests.log 2>&1 || { cat $(abspath $(ANDROID))/host-tests.log; exit 1; }
 	@! grep -E 'WARNING in native method|WARNING: JNI|FATAL ERROR in native' $(ANDROID)/host-tests.log
@@ -247,7 +247,7 @@ doc: $(STAMPS)/rust ## Build the API documentation
 	cargo doc --locked --workspace --no-deps --all-features
 
 # Crates that are not published: the Python module is published as a wheel.
-PRIVATE := fcc-android fcc-py pendulum servo-board-firmware thermostat bench-tick
+PRIVATE := fake-libandroid fcc-android fcc-phone fcc-py pendulum servo-board-firmware thermostat bench-tick
 # Where they are built from their packages. cargo takes a package of the same
 # version for the same, so what an earlier run unpacked and built is removed.
 PACKAGED := $(TARGET)/packaged

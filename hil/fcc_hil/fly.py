@@ -50,6 +50,8 @@ class Plan:
     legs: int = 8
     pattern: TimedPattern = field(default_factory=TimedPattern)
     engage_switch: str = ENGAGE_SWITCH
+    steady_s: float = _STEADY_S
+    """Level flight before the switch goes on, in which navigation settles."""
     actions: tuple[tuple[float, str], ...] = ()
     """What a person or the simulator does (`actions`), each with its time in s after engaging, in
     real time; ascending."""
@@ -138,8 +140,8 @@ def fly(plan: Plan, notify: Callable[[str], None]) -> Flight:
         _await(
             simulator,
             daemon,
-            lambda progress: progress.time_s >= start_s + _STEADY_S,
-            _STEADY_S + _ENGAGE_S,
+            lambda progress: progress.time_s >= start_s + plan.steady_s,
+            _PATIENCE * plan.steady_s + _ENGAGE_S,
             "simulated time has stopped",
         )
         engaged_at_s = simulator.write(plan.engage_switch, 1.0)

@@ -117,6 +117,10 @@ def request_real_time() -> str:
 def _simulator(settings: Settings) -> StandIn:
     if settings.board:
         return BoardedStandIn(settings)
+    if settings.phone is not None:
+        from .phoned import PhonedStandIn  # noqa: PLC0415 - needs the module fcc
+
+        return PhonedStandIn(settings)
     return AttendedStandIn(settings) if settings.person else StandIn(settings)
 
 

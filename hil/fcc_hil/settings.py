@@ -98,6 +98,9 @@ class Settings:
     board: str = ""
     """The servo board between the computer and the surfaces (`boarded`): `udp`, or the path that
     is to lead to its serial line; empty for none."""
+    phone: tuple[int, int] | None = None
+    """The phone aboard (`phoned`): the UDP ports of its fake libandroid, and of the app for its
+    positions; None for none."""
     misbehaves_in: tuple[int, ...] = ()
     """The steps of that check in which it misbehaves (`misbehaviour`); needs the person."""
 

@@ -1,26 +1,35 @@
 """The app's classes and native library, in a Java process: they fly JSBSim as the daemon does.
 
-Only in `make test-android`, which builds them and sets FCC_ANDROID to the program that has the
-command line of `fccd run`.
+By X-Plane's own sensors, and by those of a phone. Only in `make test-android`, which builds them
+and sets FCC_ANDROID to the program that has the command line of `fccd run`.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
+import time
 from pathlib import Path
+from typing import Any
 
 import pytest
-from daemon_under_test import write_config
+from daemon_under_test import wait_until, write_config
 from test_daemon_flights import free_port
 
-from fcc_hil.daemon import command
-from fcc_hil.fly import Plan, fly
+from fcc_hil.cockpit import ENGAGE_SWITCH
+from fcc_hil.daemon import Daemon, command
+from fcc_hil.fly import Flight, Plan, fly
 from fcc_hil.pattern import TimedPattern
+from fcc_hil.process import StandInProcess
+from fcc_hil.servo_board import FAILSAFE_AFTER_S, Control
 from fcc_hil.settings import Settings
+from fcc_hil.state import Controls
 
 PROGRAM = os.environ.get("FCC_ANDROID")
+CUT_OFF = 8
+"""fccd's exit code for a recording that does not end as one does."""
 pytestmark = pytest.mark.skipif(PROGRAM is None, reason="make test-android builds it")
 
 
@@ -41,11 +50,116 @@ def test_the_pattern_is_flown_in_a_java_process_and_replayed_to_the_last_bit(
     assert flown.report is not None
     assert flown.report["released"]
     assert flown.report["recording"]["not_recorded"] == 0
-    (recording,) = recordings.glob("*.mcap")
-    replayed = subprocess.run(
-        [fccd, "replay", "--json", recording], check=True, capture_output=True, text=True
+    assert_replayed(fccd, recordings, flown)
+
+
+def test_the_pattern_is_flown_by_the_phones_raw_sensors(
+    fccd: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Airspeed and switch are the simulator's, as the thesis' were those of the servo board."""
+    from fcc_hil.phoned import MOUNTING  # noqa: PLC0415 - needs the module fcc
+    from fcc_hil.raw_flight import RAW_STANDBY_S  # noqa: PLC0415
+    from fcc_hil.raw_sensors import FIELD_UT  # noqa: PLC0415
+
+    assert PROGRAM is not None
+    port, sensors_port, positions_port = free_port(), free_port(), free_port()
+    monkeypatch.setenv("FAKE_LIBANDROID_PORT", str(sensors_port))
+    monkeypatch.setenv("FCC_POSITIONS_PORT", str(positions_port))
+    mountings = "".join(
+        f'calibration.{sensor}.mounting = "{MOUNTING}"\n'
+        for sensor in ("accelerometer", "gyroscope", "magnetometer")
     )
-    result = json.loads(replayed.stdout)
+    pattern = TimedPattern(hold_s=5.0)
+    config = write_config(
+        tmp_path,
+        port,
+        guidance=f'mode = "timed-pattern"\nhold_s = {pattern.hold_s}',
+        others=f'[navigation]\nmethod = "kalman"\nmagnetic_field_ut = {list(FIELD_UT)}\n'
+        f'[[sensor]]\nkind = "phone"\n{mountings}',
+    )
+    recordings = tmp_path / "recordings"
+    words = [*command(Path(PROGRAM), config), "--recordings", str(recordings)]
+    settings = Settings(
+        port=port,
+        phone=(sensors_port, positions_port),
+        frame_rate_hz=100.0,
+        frame_rates_hz=None,
+    )
+    plan = Plan(words, settings, legs=2, pattern=pattern, steady_s=RAW_STANDBY_S)
+    flown = fly(plan, print)
+    assert [failure for failure in flown.failures if "missed" not in failure] == []
+    assert flown.report is not None
+    assert flown.report["released"]
+    print(json.dumps(flown.figures))
+    # The most of six flights in lockstep by the same sensors (docs/navigation.md).
+    for leg in flown.figures["legs"]:
+        assert leg["altitude_rms_ft"] <= 6.2
+        assert leg["airspeed_error_kt"] <= 13.9
+        assert leg["heading_rms_deg"] <= 12.0
+    assert_replayed(fccd, recordings, flown)
+
+
+def test_a_servo_board_centres_the_surfaces_of_an_app_that_is_killed(
+    fccd: Path, tmp_path: Path
+) -> None:
+    """Android kills an app with all of its processes, so nothing here can release for it."""
+    assert PROGRAM is not None
+    recordings = tmp_path / "recordings"
+    with StandInProcess(Settings(port=0, board="udp")) as aircraft:
+        config = tmp_path / "fccd.toml"
+        config.write_text(
+            f'[servo-board]\naddress = "127.0.0.1:{aircraft.board_port()}"\n'
+            '[[sensor]]\nkind = "servo-board"\n'
+            f'[[sensor]]\nkind = "x-plane"\nsimulator = "127.0.0.1:{aircraft.port}"\n'
+            'engage_switch = "no/such/switch"\n'
+            '[[actuator]]\nkind = "servo-board"\n'
+        )
+        words = [*command(Path(PROGRAM), config), "--recordings", str(recordings)]
+        with Daemon(words) as app:
+            engage_board(aircraft)
+            time.sleep(3.0)
+            app.stop(signal.SIGKILL)
+        wait_until(
+            lambda: aircraft.board_changes()[-1].control is Control.FAILSAFE,
+            "the board is in failsafe",
+            15.0,
+        )
+        change = aircraft.board_changes()[-1]
+    assert change.driven == Controls()
+    assert change.silent_before_s < FAILSAFE_AFTER_S <= change.silent_s
+    # What was recorded until a second before is there.
+    (recording,) = recordings.glob("*.mcap")
+    result = replayed(fccd, recording, CUT_OFF)
+    assert result["ticks"] > 2.0 * 40.0
+    assert result["identity"]["differing"] == 0
+
+
+def engage_board(aircraft: StandInProcess) -> None:
+    """Move the board's switch until the app has control: it may not be ready at first."""
+    for _ in range(15):
+        aircraft.write(ENGAGE_SWITCH, 0.0)
+        time.sleep(1.0)
+        aircraft.write(ENGAGE_SWITCH, 1.0)
+        time.sleep(1.0)
+        changes = aircraft.board_changes()
+        if changes and changes[-1].control is Control.HELD:
+            return
+    pytest.fail("not engaged within 30 s")
+
+
+def replayed(fccd: Path, recording: Path, exit_code: int = 0) -> Any:
+    """Return what a replay of a recording finds."""
+    words = [str(fccd), "replay", "--json", str(recording)]
+    finished = subprocess.run(words, check=False, capture_output=True, text=True)
+    assert finished.returncode == exit_code, finished.stderr
+    return json.loads(finished.stdout)
+
+
+def assert_replayed(fccd: Path, recordings: Path, flown: Flight) -> None:
+    """Assert that the only recording is whole, and that a replay has the same bits."""
+    assert flown.report is not None
+    (recording,) = recordings.glob("*.mcap")
+    result = replayed(fccd, recording)
     assert result["ticks"] == flown.report["timing"]["ticks"]
     assert result["identity"]["outputs"] > 0
     assert result["identity"]["differing"] == 0

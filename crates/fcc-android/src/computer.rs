@@ -6,6 +6,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use fcc_flight::calibrate;
 use fcc_flight::config::Config;
+use fcc_phone::PositionReport;
 use fcc_record::Listed;
 use fcc_telemetry::Command;
 
@@ -21,6 +22,8 @@ const CONFIG_NAME: &str = "configuration";
 pub(crate) struct Computer {
     config: Config,
     text: String,
+    /// The app's, to which Android gives its sensors.
+    package: String,
     live: Arc<Live>,
     notifier: Notifier,
     flight: Mutex<Option<Flight>>,
@@ -28,13 +31,14 @@ pub(crate) struct Computer {
 
 impl Computer {
     /// Checks a configuration, a text as `fccd` reads from its file; `recordings`
-    /// is the folder that replaces `recording.folder`.
+    /// is the folder that replaces `recording.folder`, `package` the app's name.
     ///
     /// # Errors
     /// When it cannot be flown: every problem with its line and key.
     pub(crate) fn create(
         text: String,
         recordings: PathBuf,
+        package: String,
         notifier: Notifier,
     ) -> Result<Self, Failure> {
         let wrong = |error: &dyn std::fmt::Display| Failure::Config(error.to_string());
@@ -52,6 +56,7 @@ impl Computer {
         Ok(Self {
             config,
             text,
+            package,
             live: Arc::new(Live::new(remarks)),
             notifier,
             flight: Mutex::new(None),
@@ -79,7 +84,13 @@ impl Computer {
                     .to_owned(),
             ));
         }
-        let begun = Flight::begin(&self.config, &self.text, &self.live, &self.notifier)?;
+        let begun = Flight::begin(
+            &self.config,
+            &self.text,
+            &self.package,
+            &self.live,
+            &self.notifier,
+        )?;
         *flight = Some(begun);
         Ok(())
     }
@@ -110,6 +121,14 @@ impl Computer {
         commander
             .ok_or_else(|| Failure::Command("nothing flies: start first".to_owned()))?
             .command(command)
+    }
+
+    /// Hands a position in, for a flight by the phone's sensors.
+    pub(crate) fn position(&self, report: PositionReport) {
+        let phone = self.flight().as_ref().map(|flight| flight.phone().clone());
+        if let Some(phone) = phone {
+            phone.positions().send(report);
+        }
     }
 
     /// The state now, as JSON.

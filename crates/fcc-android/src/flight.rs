@@ -8,13 +8,17 @@ use std::sync::{Arc, OnceLock};
 use std::thread::{self, JoinHandle};
 
 use fcc_flight::config::Config;
-use fcc_flight::flight::{Host, Length, Outcome, Pace, Plan, RecordingRequest, assemble, fly};
+use fcc_flight::flight::{
+    Host, Length, Outcome, Pace, Plan, RecordingRequest, assemble_on_phone, fly,
+};
+use fcc_phone::{Phone, PhoneHandle};
 use fcc_runtime::StopHandle;
 
 use crate::commands::{Commander, Commands};
 use crate::failure::{Failure, panic_message};
 use crate::listener::{Notice, Notifier};
 use crate::live::{Live, LiveObserver};
+use crate::phone::AppPhone;
 
 /// The nice value that the loop asks for where it is refused `SCHED_FIFO`: that
 /// of Android's most urgent threads (`THREAD_PRIORITY_URGENT_AUDIO`).
@@ -29,6 +33,7 @@ pub(crate) struct Flight {
     thread: JoinHandle<()>,
     stop: StopRequest,
     commander: Commander,
+    phone: PhoneHandle,
 }
 
 impl Flight {
@@ -39,11 +44,14 @@ impl Flight {
     pub(crate) fn begin(
         config: &Config,
         text: &str,
+        package: &str,
         live: &Arc<Live>,
         notifier: &Notifier,
     ) -> Result<Self, Failure> {
         let stop = StopRequest::default();
         let (begun, has_begun) = sync_channel(1);
+        let phone = AppPhone(Phone::new(package));
+        let handle = phone.0.handle();
         let of_flight = Conduct {
             config: config.clone(),
             text: text.to_owned(),
@@ -51,6 +59,7 @@ impl Flight {
             notifier: notifier.clone(),
             stop: stop.clone(),
             begun: begun.clone(),
+            phone,
         };
         let (live, notifier) = (Arc::clone(live), notifier.clone());
         let thread = thread::Builder::new()
@@ -75,6 +84,7 @@ impl Flight {
                 thread,
                 stop,
                 commander,
+                phone: handle,
             }),
             Ok(Err(why)) => {
                 let _ = thread.join();
@@ -92,6 +102,11 @@ impl Flight {
     /// Its end for commands.
     pub(crate) fn commander(&self) -> Commander {
         self.commander.clone()
+    }
+
+    /// The phone's sensors, for the app.
+    pub(crate) fn phone(&self) -> &PhoneHandle {
+        &self.phone
     }
 
     /// Ends it, and waits until it has ended.
@@ -139,18 +154,25 @@ struct Conduct {
     notifier: Notifier,
     stop: StopRequest,
     begun: Begun,
+    phone: AppPhone,
 }
 
 impl Conduct {
     /// Assembles the flight, and flies it to its end.
-    fn conduct(self) -> Result<Outcome, String> {
+    fn conduct(mut self) -> Result<Outcome, String> {
         let config = &self.config;
-        let mut assembly = assemble(config).map_err(|error| error.to_string())?;
+        let assembly = assemble_on_phone(config, &mut self.phone);
+        let mut assembly = assembly.map_err(|error| error.to_string())?;
         assembly.loop_config.realtime.nice = Some(NICE);
         let recording = RecordingRequest::of(config, Some(self.text));
         let (commander, commands) = Commands::new(assembly.autopilot.config());
-        let observer = LiveObserver::new(&self.live, &self.notifier, config.tick.period())
-            .map_err(|error| error.to_string())?;
+        let observer = LiveObserver::new(
+            &self.live,
+            &self.notifier,
+            self.phone.0.handle(),
+            config.tick.period(),
+        )
+        .map_err(|error| error.to_string())?;
         let plan = Plan {
             pace: Pace::RealTime,
             length: Length::Open,

@@ -16,6 +16,7 @@
 //! | `handles` | numbers for what Java holds; a closed one is refused |
 //! | `computer` | one configuration, flown any number of times |
 //! | `flight` | one flight in a thread of its own |
+//! | `phone` | the phone's sensors in a flight |
 //! | `live` | the state for the screens |
 //! | `commands` | commands of the app, and what became of them |
 //! | `listener` | calls of the app's listener, from a thread of its own |
@@ -31,3 +32,4 @@ mod handles;
 mod listener;
 mod live;
 pub mod native;
+mod phone;

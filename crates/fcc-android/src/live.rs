@@ -10,15 +10,18 @@ use fcc_core::framework::{Controller, EventKind, Flags, Reading, State};
 use fcc_flight::flight::{
     Access, Conclusion, EventEntry, Facts, Flapping, FlightTime, Observer, Outcome, Report, Reports,
 };
+use fcc_phone::{PhoneHandle, SensorHealth};
 use fcc_record::RecorderStatus;
-use fcc_telemetry::{FlightEvent, FlightRecord, Realtime, ShownAltitude, TimingReport};
-use fcc_timer::{Expiry, TimerError, TimingStats};
+use fcc_telemetry::{FlightEvent, FlightRecord, Realtime, ShownAltitude, TimingReport, expiry_of};
+use fcc_timer::{TimerError, TimingStats};
 use serde::Serialize;
 
 use crate::listener::{Notice, Notifier};
 
 /// The newest reports that are kept: a screen of them.
 const MOST_REPORTS: usize = 50;
+/// How often the phone's sensors are shown.
+const SENSORS_EVERY: Duration = Duration::from_millis(200);
 /// How often the statistics of the timing are computed.
 const TIMING_EVERY: Duration = Duration::from_millis(500);
 
@@ -38,6 +41,8 @@ struct Shown {
     /// Of the flight so far; none before its first second is over.
     timing: Option<TimingReport>,
     recording: Option<Recording>,
+    /// The phone's sensors, of a flight by them.
+    sensors: Vec<SensorHealth>,
     /// The newest events and remarks, oldest first.
     reports: VecDeque<EventEntry>,
     /// The outcome of the last flight, as `fccd run --json` prints it; none
@@ -168,6 +173,8 @@ pub(crate) struct LiveObserver {
     missed: u64,
     state: Option<State>,
     flapping: Flapping,
+    phone: PhoneHandle,
+    sensors_seen: Instant,
 }
 
 impl LiveObserver {
@@ -178,6 +185,7 @@ impl LiveObserver {
     pub(crate) fn new(
         live: &Arc<Live>,
         notifier: &Notifier,
+        phone: PhoneHandle,
         period: Duration,
     ) -> Result<Self, TimerError> {
         Ok(Self {
@@ -191,6 +199,8 @@ impl LiveObserver {
             missed: 0,
             state: None,
             flapping: Flapping::default(),
+            phone,
+            sensors_seen: Instant::now(),
         })
     }
 
@@ -227,14 +237,7 @@ impl Observer<Autopilot> for LiveObserver {
 
     fn record(&mut self, record: &FlightRecord, at: &FlightTime) {
         let tick = &record.tick;
-        self.timing.record(&Expiry {
-            number: tick.number,
-            scheduled_ns: tick.scheduled.as_nanos(),
-            woke_ns: tick.woke.as_nanos(),
-            missed: tick.missed,
-            early_wake_ns: record.early_wake_ns,
-            ..Expiry::default()
-        });
+        self.timing.record(&expiry_of(record));
         self.missed += tick.missed;
         self.newest = Some((*record, *at));
         for line in self
@@ -265,6 +268,11 @@ impl Observer<Autopilot> for LiveObserver {
     }
 
     fn poll(&mut self, _: &mut Access<'_, AutopilotCommand>) {
+        if self.sensors_seen.elapsed() >= SENSORS_EVERY {
+            self.sensors_seen = Instant::now();
+            let sensors = self.phone.sensors();
+            self.live.lock().sensors = sensors;
+        }
         let Some((record, at)) = self.newest.take() else {
             return;
         };
@@ -287,6 +295,16 @@ impl Now {
         let altitude = ShownAltitude::of(record);
         let desired = &record.setpoints;
         let state = record.state.state();
+        let estimate = &record.estimate;
+        // What no sensor measures, navigation knows from raw readings; before the first
+        // of them its estimate is of zeros.
+        let is_by_raw = !measured.raw_body_rates.is_never()
+            && [estimate.roll_rad, estimate.pitch_rad, estimate.heading_rad] != [0.0; 3];
+        let has_attitude = !measured.attitude.is_never() || is_by_raw;
+        let altitude_m = known(&measured.altitude_m)
+            .or((!measured.static_pressure_pa.is_never()).then_some(estimate.altitude_m));
+        let airspeed_mps = known(&measured.airspeed_mps)
+            .or((!measured.differential_pressure_pa.is_never()).then_some(estimate.airspeed_mps));
         Self {
             time_s: at.time_s,
             tick: record.tick.number,
@@ -295,12 +313,12 @@ impl Now {
             engaged_for_s: at.engaged_at_s.map(|engaged_s| at.time_s - engaged_s),
             engage_inhibits: names(record.engage_inhibits),
             faults: names(record.faults),
-            roll_rad: known(&measured.attitude).map(|_| record.estimate.roll_rad),
-            pitch_rad: known(&measured.attitude).map(|_| record.estimate.pitch_rad),
-            heading_rad: known(&measured.heading_rad),
-            airspeed_mps: known(&measured.airspeed_mps),
-            altitude_m: known(&measured.altitude_m).map(|pressure_m| pressure_m - altitude.datum_m),
-            climb_rate_mps: record.estimate.climb_rate_mps,
+            roll_rad: has_attitude.then_some(estimate.roll_rad),
+            pitch_rad: has_attitude.then_some(estimate.pitch_rad),
+            heading_rad: known(&measured.heading_rad).or(is_by_raw.then_some(estimate.heading_rad)),
+            airspeed_mps,
+            altitude_m: altitude_m.map(|pressure_m| pressure_m - altitude.datum_m),
+            climb_rate_mps: estimate.climb_rate_mps,
             altitude_reference: altitude.reference,
             altimeter_setting_hpa: altitude.setting_hpa,
             desired: state.holds_control().then_some(Desired {

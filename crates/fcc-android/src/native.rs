@@ -5,12 +5,17 @@
 //! "Resolving Native Method Names").
 #![allow(unsafe_code, reason = "Java finds a method by its symbol's name")]
 #![allow(non_snake_case, reason = "names of methods are Java's")]
+#![allow(
+    clippy::too_many_arguments,
+    reason = "a position has as many, and an object would be read field by field"
+)]
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use fcc_phone::PositionReport;
 use jni::objects::{JClass, JObject, JString};
-use jni::sys::jlong;
+use jni::sys::{jdouble, jlong};
 use jni::{Env, EnvUnowned};
 
 use crate::computer::Computer;
@@ -28,14 +33,16 @@ pub extern "system" fn Java_fcc_android_Native_create<'local>(
     _: JClass<'local>,
     config: JString<'local>,
     recordings: JString<'local>,
+    package: JString<'local>,
     listener: JObject<'local>,
 ) -> jlong {
     env.with_env(|env| -> Result<jlong, Failure> {
         let config = config.try_to_string(env)?;
         let recordings = PathBuf::from(recordings.try_to_string(env)?);
+        let package = package.try_to_string(env)?;
         let notifier = Notifier::of(env, &listener)?
             .map_err(|error| Failure::Flight(format!("no thread for the listener: {error}")))?;
-        Ok(COMPUTERS.add(Computer::create(config, recordings, notifier)?))
+        Ok(COMPUTERS.add(Computer::create(config, recordings, package, notifier)?))
     })
     .resolve::<Throw>()
 }
@@ -89,6 +96,41 @@ pub extern "system" fn Java_fcc_android_Native_command<'local>(
         Ok(COMPUTERS.get(handle)?.command(&command)? as jlong)
     })
     .resolve::<Throw>()
+}
+
+/// Hands a position of the location service in; without effect while nothing flies
+/// by it. What is not known is not a number.
+#[unsafe(no_mangle)]
+pub extern "system" fn Java_fcc_android_Native_position<'local>(
+    mut env: EnvUnowned<'local>,
+    _: JClass<'local>,
+    handle: jlong,
+    elapsed_realtime_ns: jlong,
+    latitude_deg: jdouble,
+    longitude_deg: jdouble,
+    altitude_m: jdouble,
+    speed_mps: jdouble,
+    bearing_deg: jdouble,
+    horizontal_accuracy_m: jdouble,
+    vertical_accuracy_m: jdouble,
+    speed_accuracy_mps: jdouble,
+) {
+    let known = |number: jdouble| (!number.is_nan()).then_some(number);
+    env.with_env(|_| -> Result<(), Failure> {
+        COMPUTERS.get(handle)?.position(PositionReport {
+            elapsed_realtime_ns,
+            latitude_deg,
+            longitude_deg,
+            altitude_m,
+            speed_mps,
+            bearing_deg: known(bearing_deg),
+            horizontal_accuracy_m: known(horizontal_accuracy_m),
+            vertical_accuracy_m: known(vertical_accuracy_m),
+            speed_accuracy_mps: known(speed_accuracy_mps),
+        });
+        Ok(())
+    })
+    .resolve::<Throw>();
 }
 
 /// The recordings, as JSON.

@@ -34,8 +34,7 @@
 //!
 //! | module | contents |
 //! |---|---|
-//! | `source` | what a device gives: [`Source`], [`Sample`], [`Measured`], [`RawValues`] |
-//! | `device_thread`, `device_sensor` | the thread that opens, reads and reopens a device; the sensor that takes what it read |
+//! | [`fcc_device`] | the thread that opens, reads and reopens a device, the sensor that takes what it read, errors, the loop's clock |
 //! | [`chip`] | chips on I²C and SPI |
 //! | [`serial`] | satellite and RC receivers on serial lines |
 //! | [`gpsd`] | fixes from the service gpsd |
@@ -43,17 +42,12 @@
 //! | [`servo`] | servos |
 //! | [`probe`] | what is connected |
 //! | [`iio`] | the kernel's own drivers of chips |
-//! | `error`, `pace` | [`DeviceError`]: what went wrong, where, what to do; when a sample is due |
-//! | `clock`, `device_clock` | the loop's clock; a device's own on it |
+//! | `pace`, `device_clock` | when a sample is due; a device's own clock on the loop's |
 #![forbid(unsafe_code)]
 
 pub mod chip;
 mod claim;
-mod clock;
 mod device_clock;
-mod device_sensor;
-mod device_thread;
-mod error;
 pub mod gpio;
 pub mod gpsd;
 pub mod iio;
@@ -61,10 +55,8 @@ mod pace;
 pub mod probe;
 pub mod serial;
 pub mod servo;
-mod source;
 
-pub use clock::{Clock, monotonic};
-pub use device_sensor::DeviceSensor;
-pub use device_thread::{DeviceStatus, DeviceThread};
-pub use error::DeviceError;
-pub use source::{Measured, RawValues, Sample, Source, WAIT};
+pub use fcc_device::{
+    Clock, DeviceError, DeviceSensor, DeviceStatus, DeviceThread, Measured, RawValues, Sample,
+    Source, WAIT, monotonic,
+};

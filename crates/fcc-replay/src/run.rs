@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use fcc_core::framework::{Controller, Message, MessageOf, RecordOf, State, Tick};
 use fcc_runtime::{Link, LoopConfig, Machine, Parts};
-use fcc_timer::{Expiry, TimerError};
+use fcc_telemetry::expiry_of;
+use fcc_timer::TimerError;
 use rtrb::Producer;
 use serde::Serialize;
 
@@ -71,15 +72,8 @@ impl<C: Controller> Replay<C> {
         }
         // The ring is empty: the sensor reads it in every tick.
         let _ = self.measured.push(recorded.measurements);
-        let expiry = Expiry {
-            number: tick.number,
-            scheduled_ns: tick.scheduled.as_nanos(),
-            woke_ns: tick.woke.as_nanos(),
-            missed: tick.missed,
-            early_wake_ns: recorded.early_wake_ns,
-            ..Expiry::default()
-        };
-        self.machine.tick_again(expiry, recorded.stages);
+        self.machine
+            .tick_again(expiry_of(recorded), recorded.stages);
         while self.link.messages.receive().is_some() {}
         Ok(Some(self.machine.record()))
     }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use fcc_core::framework::{
     EventKind, EventOf, Message, MessageOf, Readings, RecordOf, State, Tick, Time,
 };
-use fcc_timer::{Expiry, TimerError, TimingStats};
+use fcc_timer::{TimerError, TimingStats};
 
 use super::box_plot::BoxPlot;
 use super::continuity::{Continuity, Follows};
@@ -22,8 +22,8 @@ use super::reported::{Addition, Reported};
 use super::states::States;
 use super::thesis::ThesisFigures;
 use fcc_record::{Damage, Item, Recording, Remark};
-use fcc_telemetry::TimingReport;
 use fcc_telemetry::schema::Leaves;
+use fcc_telemetry::{TimingReport, expiry_of};
 
 /// Takes the messages of a recording in their order, and keeps the data of a
 /// report.
@@ -162,14 +162,7 @@ impl<C: Reported> Survey<C> {
         }
         let lateness_us = tick.lateness().as_secs_f64() * 1e6;
         self.lateness.trace.push(time_s, Some(lateness_us));
-        timing.record(&Expiry {
-            number: tick.number,
-            scheduled_ns,
-            woke_ns: tick.woke.as_nanos(),
-            missed: tick.missed,
-            early_wake_ns: record.early_wake_ns,
-            ..Expiry::default()
-        });
+        timing.record(&expiry_of(record));
         self.page_faults = self.page_faults.max(record.page_faults);
         self.durations.record(record);
         self.states.take(time_s, record.state.state());

@@ -46,4 +46,4 @@ pub use run_folder::RunFolder;
 #[cfg(feature = "flight")]
 pub use score::{FlightScore, Leg, LegScore, Sample, ScoreError, ScoredBy, score};
 pub use telemetry::Telemetry;
-pub use timing::{Denial, Lateness, Period, Realtime, TimingReport};
+pub use timing::{Denial, Lateness, Period, Realtime, TimingReport, expiry_of};

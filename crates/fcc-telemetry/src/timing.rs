@@ -2,9 +2,24 @@
 
 use std::fmt;
 
+use fcc_core::framework::Record;
 use fcc_timer::realtime::LatencyLimit;
-use fcc_timer::{RealtimeGranted, TimingSummary};
+use fcc_timer::{Expiry, RealtimeGranted, TimingSummary};
 use serde::Serialize;
+
+/// The deadline that a tick served, from its record: for statistics outside of the
+/// loop. What only the timer knows, such as the time that it spun, is 0.
+pub fn expiry_of<M, E, S, O>(record: &Record<M, E, S, O>) -> Expiry {
+    let tick = &record.tick;
+    Expiry {
+        number: tick.number,
+        scheduled_ns: tick.scheduled.as_nanos(),
+        woke_ns: tick.woke.as_nanos(),
+        missed: tick.missed,
+        early_wake_ns: record.early_wake_ns,
+        ..Expiry::default()
+    }
+}
 
 /// Timing of the loop.
 #[derive(Clone, PartialEq, Debug, Serialize)]
@@ -200,5 +215,31 @@ impl fmt::Display for Denial {
             write!(f, ": {}", self.remedy)?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fcc_core::framework::{Record, State, Tick, Time};
+
+    use super::*;
+
+    #[test]
+    fn the_deadline_of_a_record_is_that_of_its_tick() {
+        let tick = Tick {
+            number: 7,
+            scheduled: Time::from_nanos(175_000_000),
+            woke: Time::from_nanos(175_040_000),
+            missed: 2,
+            dt_s: 0.075,
+        };
+        let record = Record::<f64, f64, f64, f64> {
+            early_wake_ns: 30_000,
+            ..Record::new(tick, State::Standby)
+        };
+        let expiry = expiry_of(&record);
+        assert_eq!(expiry.lateness_ns(), 40_000);
+        assert_eq!((expiry.number, expiry.missed), (7, 2));
+        assert_eq!(expiry.early_wake_ns, 30_000);
     }
 }

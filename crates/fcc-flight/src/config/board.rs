@@ -11,7 +11,7 @@ use fcc_linux::chip::{ChipConfig, ChipKind, Wiring};
 use fcc_linux::iio::{IioConfig, Roots};
 use serde::{Deserialize, Serialize};
 
-use super::{CalibrationSection, Config, SensorEntry};
+use super::{CalibrationSection, Config, PhoneSection, SensorEntry};
 
 /// The bus of a Raspberry Pi's header, if none is given.
 const USUAL_I2C: &str = "/dev/i2c-1";
@@ -210,6 +210,8 @@ pub enum BoardSensor<'a> {
     Chip(ChipKind, &'a ChipSection),
     /// A driver of the kernel.
     Iio(&'a IioSection),
+    /// The phone that the program runs on.
+    Phone(&'a PhoneSection),
 }
 
 impl<'a> BoardSensor<'a> {
@@ -231,6 +233,7 @@ impl<'a> BoardSensor<'a> {
                 }
             },
             Self::Iio(section) => format!("{} {}", self.name(), section.device),
+            Self::Phone(_) => "phone".to_owned(),
         }
     }
 
@@ -239,6 +242,7 @@ impl<'a> BoardSensor<'a> {
         match self {
             Self::Chip(_, section) => &section.calibration,
             Self::Iio(section) => &section.calibration,
+            Self::Phone(section) => &section.calibration,
         }
     }
 
@@ -248,6 +252,7 @@ impl<'a> BoardSensor<'a> {
         let (silent_ms, fallback_ms) = match self {
             Self::Chip(_, section) => (section.silent_after_ms, section.fallback_after_ms),
             Self::Iio(section) => (section.silent_after_ms, section.fallback_after_ms),
+            Self::Phone(section) => return section.patience(),
         };
         (
             Duration::from_millis(silent_ms),
@@ -269,7 +274,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
                 let message = "is missing: give the name of the device, `fccd probe` lists them";
                 report(&[&format!("sensor[{at}].device")], message.to_owned());
             }
-            Some(BoardSensor::Iio(_)) | None => {}
+            Some(BoardSensor::Iio(_) | BoardSensor::Phone(_)) | None => {}
         }
     }
 }
@@ -305,7 +310,7 @@ pub(super) fn is_of_kind(range_of: &str, key: &str, kind: &str) -> bool {
     match range_of {
         "chip" => is_chip,
         "built-in" => {
-            (is_chip || matches!(kind, "iio" | "gnss-serial" | "gpsd"))
+            (is_chip || matches!(kind, "iio" | "phone" | "gnss-serial" | "gpsd"))
                 && key.starts_with("calibration.")
         }
         of_one => of_one == kind,
@@ -324,6 +329,7 @@ impl SensorEntry {
             | Self::RcReceiver(_)
             | Self::GpioSwitch(_) => None,
             Self::Iio(section) => Some(&mut section.calibration),
+            Self::Phone(section) => Some(&mut section.calibration),
             Self::Icm42688(section)
             | Self::Mpu6050(section)
             | Self::Bmp388(section)
@@ -345,6 +351,7 @@ impl SensorEntry {
             | Self::RcReceiver(_)
             | Self::GpioSwitch(_) => return None,
             Self::Iio(section) => return Some(BoardSensor::Iio(section)),
+            Self::Phone(section) => return Some(BoardSensor::Phone(section)),
             Self::Icm42688(section) => (ChipKind::Icm42688, section),
             Self::Mpu6050(section) => (ChipKind::Mpu6050, section),
             Self::Bmp388(section) => (ChipKind::Bmp388, section),

@@ -9,7 +9,7 @@ use toml::de::DeTable;
 use super::read::{Entry, Reader};
 use super::{
     ChipSection, Config, GnssSerialSection, GpioSwitchSection, GpsdSection, IioSection,
-    RcReceiverSection, ServosSection, XPlaneSection,
+    PhoneSection, RcReceiverSection, ServosSection, XPlaneSection,
 };
 
 /// One entry of `[[sensor]]`: a kind, and that kind's keys.
@@ -22,6 +22,8 @@ pub enum SensorEntry {
     XPlane(Box<XPlaneSection>),
     /// A driver of the kernel.
     Iio(Box<IioSection>),
+    /// The phone that the program runs on.
+    Phone(Box<PhoneSection>),
     /// An ICM-42688-P, an accelerometer and gyroscope.
     Icm42688(Box<ChipSection>),
     /// An MPU-6050, 6500, 9250 or 9255, an accelerometer and gyroscope.
@@ -119,6 +121,7 @@ impl Entry for SensorEntry {
         "simulator",
         "x-plane",
         "iio",
+        "phone",
         "icm42688",
         "mpu6050",
         "bmp388",
@@ -142,6 +145,7 @@ impl Entry for SensorEntry {
         match kind {
             "x-plane" => reader.table(keys, 1).map(Self::XPlane),
             "iio" => reader.table(keys, 1).map(Self::Iio),
+            "phone" => reader.table(keys, 1).map(Self::Phone),
             "servo-board" => reader.table(keys, 1).map(Self::ServoBoard),
             "gnss-serial" => reader.table(keys, 1).map(Self::GnssSerial),
             "gpsd" => reader.table(keys, 1).map(Self::Gpsd),
@@ -224,7 +228,7 @@ mod tests {
         assert_eq!(
             kind,
             "test:5: sensor[1].kind: is \"gyroscope\": choose one of \"simulator\", \"x-plane\", \"iio\", \
-             \"icm42688\", \"mpu6050\", \"bmp388\", \"bmp180\", \"ms4525do\", \"sdp3x\", \
+             \"phone\", \"icm42688\", \"mpu6050\", \"bmp388\", \"bmp180\", \"ms4525do\", \"sdp3x\", \
              \"qmc5883l\", \"servo-board\", \"gnss-serial\", \"gpsd\", \"rc-receiver\", \
              \"gpio-switch\""
         );

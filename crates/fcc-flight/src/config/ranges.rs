@@ -10,7 +10,7 @@ use toml::de::DeValue;
 use super::places::Places;
 use super::{
     Config, Problem, SensorEntry, XPlaneSection, airframe, board, calibration, gpio, gpsd, lines,
-    navigation, relations, servo_board,
+    navigation, phone, relations, servo_board,
 };
 
 /// Key, smallest and largest value.
@@ -168,6 +168,7 @@ fn ranges() -> impl Iterator<Item = &'static (&'static str, f64, f64)> {
         .chain(lines::RANGES)
         .chain(gpsd::RANGES)
         .chain(gpio::RANGES)
+        .chain(phone::RANGES)
 }
 
 /// Smallest and largest value of a numeric key.

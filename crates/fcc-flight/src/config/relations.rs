@@ -5,7 +5,7 @@ use fcc_core::flight::control::Envelope;
 use super::autopilot::EnvelopeSection;
 use super::{
     ActuatorEntry, AutopilotSection, Config, NavigationMethod, SensorEntry, board, lines,
-    navigation, raw_readings, servo_board, servos, shared_devices,
+    navigation, phone, raw_readings, servo_board, servos, shared_devices,
 };
 
 /// Of `SCHED_FIFO` (sched(7)).
@@ -52,10 +52,14 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
                 .to_owned(),
         );
     }
-    if config.x_plane.is_some() && config.navigation.method != NavigationMethod::Measured {
+    if config.x_plane.is_some()
+        && !config.has_board()
+        && config.navigation.method != NavigationMethod::Measured
+    {
         report(
             &["navigation.method", "x-plane"],
-            "computes attitude from raw readings, and X-Plane gives none: choose \"measured\""
+            "computes attitude from raw readings, and X-Plane gives none: choose \"measured\", or \
+             list sensors that give some"
                 .to_owned(),
         );
     }
@@ -68,6 +72,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     board::check(config, report);
     servo_board::check(config, report);
     lines::check(config, report);
+    phone::check(config, report);
     servos::check(config, report);
     shared_devices::check(config, report);
 }

@@ -23,6 +23,7 @@ use super::live::Live;
 use super::observer::Observer;
 #[cfg(feature = "live")]
 use super::other_users::CommandSocket;
+use super::phone::{PhoneHost, phone_sensor};
 use super::plan::Pace;
 use super::recording::{FlightRecorder, RecordingRequest};
 use super::restart::{RestartKeeper, RestartRequest};
@@ -85,6 +86,12 @@ pub enum AssemblyError {
         /// The operating system's error.
         source: io::Error,
     },
+    /// The configuration has the sensors of a phone, and the program runs on none.
+    #[error(
+        "a sensor is of the kind \"phone\", and this program has no phone: fly it in the Android app, \
+         or list other sensors"
+    )]
+    NoPhone,
     /// The link to the servo board could not be opened.
     #[error("servo board: {0}")]
     ServoBoard(#[from] fcc_servo_link::OpenError),
@@ -117,6 +124,24 @@ struct Plant {
 /// # Errors
 /// When the aircraft or a sensor cannot be created.
 pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
+    assemble_with(config, None)
+}
+
+/// Assembles a flight in a program that runs on a phone, and can read its sensors.
+///
+/// # Errors
+/// As [`assemble`].
+pub fn assemble_on_phone(
+    config: &Config,
+    phone: &mut dyn PhoneHost,
+) -> Result<Assembly, AssemblyError> {
+    assemble_with(config, Some(phone))
+}
+
+fn assemble_with(
+    config: &Config,
+    mut phone: Option<&mut dyn PhoneHost>,
+) -> Result<Assembly, AssemblyError> {
     let loop_config = config.loop_config();
     let mut plant = match config.aircraft() {
         Some(Aircraft::BuiltIn(section)) => {
@@ -140,6 +165,11 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
                 }));
             }
             SensorEntry::ServoBoard(_) => sensors.append(&mut servo_board.sensors),
+            SensorEntry::Phone(section) => {
+                let (sensor, mut watched) = phone_sensor(section, phone.take())?;
+                sensors.push(sensor);
+                devices.append(&mut watched);
+            }
             other => {
                 let board = other.board().map(|board| board_sensor(&board));
                 let line = other.line().map(|line| line_sensor(&line));

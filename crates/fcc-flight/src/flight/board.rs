@@ -72,6 +72,7 @@ pub(crate) fn uncalibrated(
             let config = section.to_linux();
             thread.start(move || Iio::open(&config))
         }
+        BoardSensor::Phone(_) => return Err(AssemblyError::NoPhone),
     };
     match started {
         Ok(sensor) => Ok((sensor, WatchedDevice::new(kind, name, status))),

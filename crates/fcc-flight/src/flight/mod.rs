@@ -30,6 +30,7 @@ mod observers;
 #[cfg(feature = "live")]
 mod other_users;
 mod outcome;
+mod phone;
 mod pilot;
 mod plan;
 mod recording;
@@ -40,7 +41,9 @@ mod scorer;
 mod servos;
 mod truth_recorder;
 
-pub use assemble::{Assembly, AssemblyError, assemble, authority_without_connection};
+pub use assemble::{
+    Assembly, AssemblyError, assemble, assemble_on_phone, authority_without_connection,
+};
 pub(crate) use board::uncalibrated;
 pub use control_override::ControlOverride;
 pub use flapping::Flapping;
@@ -55,6 +58,7 @@ pub use other_users::{OtherUserError, command_another_users, command_of};
 #[cfg(all(fuzzing, feature = "live"))]
 pub use other_users::{answer_as_received, line_of_parts};
 pub use outcome::{Conclusion, EventEntry, Outcome, RecordingOutcome};
+pub use phone::{OpenPhone, PhoneHost};
 pub use pilot::Pilot;
 pub use plan::{Length, Pace, Plan};
 pub use recording::{RecordingRequest, about};

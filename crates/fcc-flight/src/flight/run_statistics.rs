@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use fcc_core::framework::{Cause, Controller, EventKind, Message, MessageOf, RecordOf, State};
 use fcc_runtime::{Ending, LoopReport};
-use fcc_timer::{Expiry, RealtimeGranted, TimerError, TimingStats};
+use fcc_telemetry::expiry_of;
+use fcc_timer::{RealtimeGranted, TimerError, TimingStats};
 
 use super::hang::Hung;
 
@@ -37,15 +38,7 @@ impl<C: Controller> RunStatistics<C> {
     pub(super) fn take(&mut self, message: &MessageOf<C>) {
         match message {
             Message::Tick(record) => {
-                let tick = &record.tick;
-                self.timing.record(&Expiry {
-                    number: tick.number,
-                    scheduled_ns: tick.scheduled.as_nanos(),
-                    woke_ns: tick.woke.as_nanos(),
-                    missed: tick.missed,
-                    early_wake_ns: record.early_wake_ns,
-                    ..Expiry::default()
-                });
+                self.timing.record(&expiry_of(record));
                 self.ticks += 1;
                 self.last = *record;
             }

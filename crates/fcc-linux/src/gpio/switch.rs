@@ -2,12 +2,11 @@
 
 use core::time::Duration;
 
-use fcc_core::flight::Measurements;
-use fcc_core::framework::{Reading, Switch};
+use fcc_core::framework::Switch;
 
 use super::{Debounce, LevelLine};
 use crate::pace::Pace;
-use crate::{Clock, DeviceError, Measured, Sample, Source};
+use crate::{Clock, DeviceError, Sample, Source};
 
 /// How often the line is read: the loop knows the position from the age of the
 /// latest sample, so an edge alone would not do.
@@ -48,16 +47,5 @@ impl<L: LevelLine> Source for GpioSwitch<L> {
             let switch = if is_on { Switch::On } else { Switch::Off };
             Sample::new(now, switch)
         }))
-    }
-}
-
-impl Measured for Switch {
-    fn write(sample: &Sample<Self>, into: &mut Measurements) {
-        into.engage_switch = Reading::new(sample.value, sample.taken);
-    }
-
-    /// The latest: positions have no mean.
-    fn merged(_: &Sample<Self>, later: &Sample<Self>) -> Option<Sample<Self>> {
-        Some(*later)
     }
 }

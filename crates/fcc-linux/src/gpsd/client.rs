@@ -8,10 +8,10 @@ use std::time::Instant;
 
 use fcc_core::flight::GnssFix;
 use fcc_core::framework::Time;
+use fcc_device::NO_FIX;
 use nix::errno::Errno;
 
 use super::{Lines, Report};
-use crate::source::NO_FIX;
 use crate::{DeviceError, Sample, Source, WAIT};
 
 const CONNECTED_WITHIN: Duration = Duration::from_secs(1);

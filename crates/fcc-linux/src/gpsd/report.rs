@@ -1,9 +1,8 @@
 //! What a line of gpsd says.
 
 use fcc_core::flight::{GnssFix, Position, Velocity};
+use fcc_device::velocity_over_ground;
 use serde::Deserialize;
-
-use crate::serial::velocity_over_ground;
 
 /// What a line says, as far as it is used.
 #[derive(Clone, PartialEq, Debug)]

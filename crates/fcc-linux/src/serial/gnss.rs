@@ -3,12 +3,12 @@
 use core::fmt;
 use core::time::Duration;
 
-use fcc_core::flight::{GnssFix, Measurements};
-use fcc_core::framework::{Reading, Time};
+use fcc_core::flight::GnssFix;
+use fcc_core::framework::Time;
+use fcc_device::NO_FIX;
 
 use super::{Epochs, Frames, LineSettings, Nmea, SerialLine, Ubx, UbxMessage, configuration};
-use crate::source::NO_FIX;
-use crate::{DeviceError, Measured, Sample, Source};
+use crate::{DeviceError, Sample, Source};
 
 /// Sentences are used if there was no message in UBX for so long: in them the
 /// vertical speed is worse, and the accuracies may be missing.
@@ -177,11 +177,5 @@ impl Source for GnssReceiver {
 
     fn waits_for(&self) -> Option<&'static str> {
         self.is_without_fix.then_some(NO_FIX)
-    }
-}
-
-impl Measured for GnssFix {
-    fn write(sample: &Sample<Self>, into: &mut Measurements) {
-        into.gnss = Reading::new(sample.value, sample.taken);
     }
 }

@@ -28,7 +28,6 @@ pub use epoch::Epochs;
 pub use frames::{Begin, Frames, Protocol};
 pub use gnss::{GnssReceiver, GnssSettings};
 pub use line::{LineSettings, SerialLine};
-pub(crate) use nmea::velocity_over_ground;
 pub use nmea::{Nmea, Sentence};
 pub use pilot::{Pilot, RcChannel, RcChannels, RcValues};
 pub use rc::{RcProtocol, RcReceiver};

@@ -8,6 +8,7 @@
 use core::str;
 
 use fcc_core::flight::Position;
+use fcc_device::velocity_over_ground;
 
 use super::{Begin, Protocol};
 
@@ -16,9 +17,6 @@ const HEADER: usize = 7;
 /// `*` and two digits.
 const CHECKSUM: usize = 3;
 const MPS_PER_KNOT: f64 = 1_852.0 / 3_600.0;
-/// Receivers leave out the course of what hardly moves; faster than this they
-/// have none for another reason, m/s.
-const STANDING_MPS: f64 = 0.5;
 
 /// The protocol, as far as it is used.
 #[derive(Clone, Copy, Debug)]
@@ -131,16 +129,6 @@ fn velocity(knots: &str, course: &str) -> Option<[f64; 2]> {
         course => Some(number(course)?),
     };
     velocity_over_ground(number(knots)? * MPS_PER_KNOT, course_deg)
-}
-
-/// North and east, m/s, of a speed and its course from true north; a receiver that
-/// stands has no course.
-pub(crate) fn velocity_over_ground(speed_mps: f64, course_deg: Option<f64>) -> Option<[f64; 2]> {
-    let Some(course_deg) = course_deg else {
-        return (speed_mps < STANDING_MPS).then_some([0.0; 2]);
-    };
-    let (sin, cos) = libm::sincos(course_deg.to_radians());
-    Some([speed_mps * cos, speed_mps * sin])
 }
 
 /// Time, latitude, N or S, longitude, E or W, quality, satellites, dilution,

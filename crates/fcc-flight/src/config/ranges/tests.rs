@@ -54,7 +54,7 @@ fn every_number_has_a_range() {
 #[test]
 fn every_number_of_a_sensor_has_a_range() {
     let lines = ["gnss-serial", "gpsd", "rc-receiver", "gpio-switch"];
-    for kind in ["iio"]
+    for kind in ["iio", "phone"]
         .into_iter()
         .chain(ChipKind::ALL.map(ChipKind::key))
         .chain(lines)
@@ -63,7 +63,7 @@ fn every_number_of_a_sensor_has_a_range() {
             "ms4525do" => "rate_hz = 20\nrange_psi = 1\n",
             "iio" => "rate_hz = 20\ndevice = \"mpu6050\"\n",
             "gnss-serial" | "rc-receiver" => "path = \"/dev/ttyS0\"\n",
-            "gpsd" => "",
+            "gpsd" | "phone" => "",
             "gpio-switch" => "line = 17\n",
             _ => "rate_hz = 20\n",
         };

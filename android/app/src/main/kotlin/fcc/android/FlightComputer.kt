@@ -6,14 +6,20 @@ import java.io.File
  * A flight control computer: one configuration, flown any number of times.
  *
  * [config] is the text that `fccd` reads from its file; [recordings] replaces its
- * `recording.folder`. All methods may be called from any thread. Of [start],
+ * `recording.folder`; [packageName] is the app's, to which Android gives the phone's
+ * sensors. All methods may be called from any thread. Of [start],
  * [stop], [close] and the commands each may wait, and none is for the thread that
  * draws.
  *
  * @throws ConfigException if the configuration cannot be flown.
  */
-class FlightComputer(config: String, recordings: File, listener: Listener? = null) : AutoCloseable {
-    private val handle = Native.create(config, recordings.path, listener)
+class FlightComputer(
+    config: String,
+    recordings: File,
+    listener: Listener? = null,
+    packageName: String = "fcc.android",
+) : AutoCloseable {
+    private val handle = Native.create(config, recordings.path, packageName, listener)
 
     /**
      * Begins a flight; returns when its loop runs.
@@ -52,6 +58,36 @@ class FlightComputer(config: String, recordings: File, listener: Listener? = nul
         Native.command(handle, setpoints.entries.joinToString(",", "{\"Set\":[", "]}") { (name, value) ->
             "[\"$name\",$value]"
         })
+
+    /**
+     * Hands a position of the location service in, for a flight with a sensor of the
+     * kind `phone`; without effect otherwise. The names are those of
+     * `android.location.Location`; NaN is what it does not know. [altitudeM] is above
+     * mean sea level, and [bearingDeg] may be NaN only while it stands.
+     */
+    @Suppress("LongParameterList")
+    fun position(
+        elapsedRealtimeNs: Long,
+        latitudeDeg: Double,
+        longitudeDeg: Double,
+        altitudeM: Double,
+        speedMps: Double,
+        bearingDeg: Double = Double.NaN,
+        horizontalAccuracyM: Double = Double.NaN,
+        verticalAccuracyM: Double = Double.NaN,
+        speedAccuracyMps: Double = Double.NaN,
+    ) = Native.position(
+        handle,
+        elapsedRealtimeNs,
+        latitudeDeg,
+        longitudeDeg,
+        altitudeM,
+        speedMps,
+        bearingDeg,
+        horizontalAccuracyM,
+        verticalAccuracyM,
+        speedAccuracyMps,
+    )
 
     /** The recordings in the folder, oldest first, as JSON: as `fccd list --json` prints them. */
     fun recordings(): String = Native.recordings(handle)

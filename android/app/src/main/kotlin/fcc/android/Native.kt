@@ -12,7 +12,7 @@ internal object Native {
     }
 
     @JvmStatic
-    external fun create(config: String, recordings: String, listener: Listener?): Long
+    external fun create(config: String, recordings: String, packageName: String, listener: Listener?): Long
 
     @JvmStatic
     external fun start(handle: Long)
@@ -25,6 +25,21 @@ internal object Native {
 
     @JvmStatic
     external fun command(handle: Long, command: String): Long
+
+    @JvmStatic
+    @Suppress("LongParameterList")
+    external fun position(
+        handle: Long,
+        elapsedRealtimeNs: Long,
+        latitudeDeg: Double,
+        longitudeDeg: Double,
+        altitudeM: Double,
+        speedMps: Double,
+        bearingDeg: Double,
+        horizontalAccuracyM: Double,
+        verticalAccuracyM: Double,
+        speedAccuracyMps: Double,
+    )
 
     @JvmStatic
     external fun recordings(handle: Long): String

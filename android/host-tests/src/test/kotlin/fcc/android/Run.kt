@@ -1,6 +1,10 @@
 package fcc.android
 
 import java.io.File
+import java.net.DatagramPacket
+import java.net.DatagramSocket
+import java.net.InetAddress
+import kotlin.concurrent.thread
 import kotlin.system.exitProcess
 import org.json.JSONObject
 
@@ -36,9 +40,31 @@ fun main(words: Array<String>) {
         },
     )
     computer.start()
+    System.getenv("FCC_POSITIONS_PORT")?.let { handPositionsIn(computer, it.toInt()) }
     // A screen that draws, and a collector of garbage that has work.
     while (true) {
         computer.state()
         Thread.sleep(33)
+    }
+}
+
+/** As the location service would: datagrams with the values of a position, as JSON. */
+private fun handPositionsIn(computer: FlightComputer, port: Int) {
+    val socket = DatagramSocket(port, InetAddress.getLoopbackAddress())
+    thread(isDaemon = true, name = "positions") {
+        val packet = DatagramPacket(ByteArray(65_536), 65_536)
+        while (true) {
+            packet.length = 65_536
+            socket.receive(packet)
+            val position = JSONObject(String(packet.data, 0, packet.length))
+            computer.position(
+                elapsedRealtimeNs = position.getLong("elapsed_realtime_ns"),
+                latitudeDeg = position.getDouble("latitude_deg"),
+                longitudeDeg = position.getDouble("longitude_deg"),
+                altitudeM = position.getDouble("altitude_m"),
+                speedMps = position.getDouble("speed_mps"),
+                bearingDeg = position.getDouble("bearing_deg"),
+            )
+        }
     }
 }

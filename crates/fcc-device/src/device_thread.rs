@@ -32,7 +32,7 @@ const END_WITHIN: Duration = Duration::from_secs(1);
 ///
 /// ```
 /// # use core::time::Duration;
-/// # use fcc_linux::DeviceThread;
+/// # use fcc_device::DeviceThread;
 /// let slow = DeviceThread::new("GNSS").silent_after(Duration::from_secs(2));
 /// # drop(slow);
 /// ```
@@ -154,7 +154,8 @@ impl DeviceStatus {
         self.lock().waits_for
     }
 
-    pub(crate) fn set(&self, error: Option<&DeviceError>) {
+    /// Sets what is wrong with it; `None` if it is used.
+    pub fn set(&self, error: Option<&DeviceError>) {
         *self.lock() = State {
             trouble: error.map(ToString::to_string),
             waits_for: None,

@@ -19,7 +19,7 @@ pub fn monotonic() -> Time {
 ///
 /// ```
 /// use fcc_core::framework::Time;
-/// use fcc_linux::Clock;
+/// use fcc_device::Clock;
 ///
 /// let stopped = Clock::new(|| Time::from_nanos(5));
 /// assert_eq!(stopped.now(), Time::from_nanos(5));

@@ -3,7 +3,7 @@
 use core::time::Duration;
 
 use fcc_core::flight::{BodyRates, MagneticField, Measurements, SpecificForce};
-use fcc_core::framework::{Reading, Time};
+use fcc_core::framework::{Reading, Switch, Time};
 
 use crate::DeviceError;
 
@@ -32,7 +32,7 @@ pub trait Source {
 }
 
 /// What receivers of satellites wait for.
-pub(crate) const NO_FIX: &str = "it has no three-dimensional fix: give its antenna a free view of \
+pub const NO_FIX: &str = "it has no three-dimensional fix: give its antenna a free view of \
                                  the sky, and wait; the first takes minutes";
 
 /// What was measured, and when, on the loop's clock.
@@ -184,6 +184,17 @@ impl Measured for RawValues {
         let between_ns = (later.taken - earlier.taken) as f64 * weight;
         let after = Duration::from_nanos(between_ns.max(0.0) as u64);
         Some(Sample::new(earlier.taken + after, value))
+    }
+}
+
+impl Measured for Switch {
+    fn write(sample: &Sample<Self>, into: &mut Measurements) {
+        into.engage_switch = Reading::new(sample.value, sample.taken);
+    }
+
+    /// The latest: positions have no mean.
+    fn merged(_: &Sample<Self>, later: &Sample<Self>) -> Option<Sample<Self>> {
+        Some(*later)
     }
 }
 

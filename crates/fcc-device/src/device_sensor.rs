@@ -41,6 +41,11 @@ impl<V: Measured> DeviceSensor<V> {
         self.messages.slots()
     }
 
+    /// Whether there was ever a sample.
+    pub const fn has_delivered(&self) -> bool {
+        !self.newest.is_never()
+    }
+
     /// The next message for this tick, if there is one.
     fn next(&mut self, woke: Time) -> Option<Message<V>> {
         if let Ok(Message::Sample(sample)) = self.messages.peek()

@@ -1,5 +1,6 @@
 //! What can go wrong with a device.
 
+use core::time::Duration;
 use std::io;
 
 use fcc_core::framework::SensorFault;
@@ -50,6 +51,25 @@ pub enum DeviceError {
         /// What is impossible, and what to choose instead.
         what: String,
     },
+    /// Its time stamps are of no clock that is known here.
+    #[error(
+        "{device}: its time stamps are of no known clock: the youngest was {age_s:.3} s old when \
+         it arrived"
+    )]
+    WrongClock {
+        /// Which.
+        device: String,
+        /// How old the youngest stamp was, s; negative if it was of the future.
+        age_s: f64,
+    },
+    /// It gives nothing any more.
+    #[error("{device}: it has given nothing for {after:?}, and is opened anew")]
+    Stalled {
+        /// Which.
+        device: String,
+        /// For how long.
+        after: Duration,
+    },
     /// What it gave is not valid: a wrong checksum, a value out of range.
     #[error("{device}: {what}")]
     Malformed {
@@ -64,7 +84,8 @@ impl DeviceError {
     /// The same for the loop.
     pub fn fault(&self) -> SensorFault {
         match self {
-            Self::Malformed { .. } => SensorFault::Malformed,
+            Self::Malformed { .. } | Self::WrongClock { .. } => SensorFault::Malformed,
+            Self::Stalled { .. } => SensorFault::Silent,
             _ => SensorFault::Io {
                 errno: self.errno(),
             },
@@ -72,13 +93,14 @@ impl DeviceError {
     }
 
     /// The operating system's number of the error, or the one that is closest.
-    pub(crate) fn errno(&self) -> i32 {
+    pub fn errno(&self) -> i32 {
         match self {
             Self::Open { source, .. } | Self::Io { source, .. } => {
                 source.raw_os_error().unwrap_or(Errno::EIO as i32)
             }
             Self::WrongChip { .. } | Self::Refused { .. } => Errno::ENODEV as i32,
-            Self::Malformed { .. } => Errno::EBADMSG as i32,
+            Self::Stalled { .. } => Errno::ETIMEDOUT as i32,
+            Self::Malformed { .. } | Self::WrongClock { .. } => Errno::EBADMSG as i32,
         }
     }
 }

@@ -1,0 +1,53 @@
+//! The sensors of the phone that the program runs on: what opens them is the host's.
+
+use std::io;
+
+use fcc_core::flight::Measurements;
+use fcc_core::framework::Sensor;
+use fcc_linux::DeviceStatus;
+
+use super::assemble::AssemblyError;
+use super::board::WatchedDevice;
+use super::calibrated::Calibrated;
+use crate::config::PhoneSection;
+
+/// A host that runs on a phone.
+pub trait PhoneHost {
+    /// Starts the threads that read the phone's sensors. One that the phone lacks is no
+    /// error.
+    ///
+    /// # Errors
+    /// When a thread cannot be started.
+    fn open(&mut self, phone: &PhoneSection) -> io::Result<OpenPhone>;
+}
+
+/// The phone's sensors, uncalibrated.
+pub struct OpenPhone {
+    /// All of them as one, in Android's axes.
+    pub sensor: Box<dyn Sensor<Measurements>>,
+    /// The name and the state of each.
+    pub devices: Vec<(&'static str, DeviceStatus)>,
+}
+
+/// A sensor, and the devices that it is made of.
+pub(super) type WatchedSensor = (Box<dyn Sensor<Measurements>>, Vec<WatchedDevice>);
+
+/// The phone's sensors, calibrated.
+pub(super) fn phone_sensor(
+    section: &PhoneSection,
+    host: Option<&mut dyn PhoneHost>,
+) -> Result<WatchedSensor, AssemblyError> {
+    let host = host.ok_or(AssemblyError::NoPhone)?;
+    let opened = host.open(section);
+    let opened = opened.map_err(|source| AssemblyError::Device {
+        name: "phone",
+        source,
+    })?;
+    let sensor: Box<dyn Sensor<Measurements>> = match section.calibration.to_core() {
+        Some(calibration) => Box::new(Calibrated::new(opened.sensor, &calibration)),
+        None => opened.sensor,
+    };
+    let devices = opened.devices.into_iter();
+    let watched = devices.map(|(name, status)| WatchedDevice::new(name, status));
+    Ok((sensor, watched.collect()))
+}

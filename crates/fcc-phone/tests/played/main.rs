@@ -1,0 +1,7 @@
+//! The phone's sensors with a `libandroid.so` that plays what phones do.
+#![cfg(test)]
+#![allow(clippy::indexing_slicing, reason = "helper functions of tests")]
+
+mod conformance;
+mod fake;
+mod phones;
