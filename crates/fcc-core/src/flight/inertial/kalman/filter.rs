@@ -179,6 +179,9 @@ impl Filter {
         for axis in ATTITUDE..ATTITUDE + 3 {
             self.limit_variance(axis, UNKNOWN_ANGLE);
         }
+        for axis in WIND..WIND + 2 {
+            self.limit_variance(axis, p::LARGEST_WIND * p::LARGEST_WIND);
+        }
     }
 
     pub(super) fn add_variance(&mut self, from: usize, count: usize, variance: f64) {
