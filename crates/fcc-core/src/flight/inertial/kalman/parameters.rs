@@ -94,14 +94,15 @@ pub(super) const ATTACK: Noise = Noise::new(1.0, 5.0);
 pub(super) const ATTACK_SHARE: f64 = 0.12;
 /// Below this airspeed, m/s, nothing flies, and the sensor shows its offset.
 pub(super) const LEAST_AIRSPEED: f64 = 7.0;
-/// Wind of which nothing is known, each axis, m/s; its random walk, m/s/√s; and how
-/// uncertain it becomes at most, m/s. Turbulence of σ is for some seconds a walk of
-/// σ √(2 V/L): 1.8 for severe turbulence of 4 m/s at 55 m/s, with the scale length L
-/// of 533 m (MIL-F-8785C, Dryden's form above 2,000 ft). With a steadier wind a gust
-/// from the side would be taken for a turn of the nose.
+/// Wind of which nothing is known, each axis, m/s, and how uncertain it becomes at most.
 pub(super) const WIND: f64 = 7.0;
-pub(super) const WIND_WALK: f64 = 2.0;
 pub(super) const LARGEST_WIND: f64 = 10.0;
+/// Severe turbulence, m/s, and its scale length, m (MIL-F-8785C: 1,750 ft above 2,000 ft):
+/// for some seconds it is a random walk of σ √(2 V/L) at the airspeed V, 1.8 m/s/√s at
+/// 55 m/s. If the wind were steadier, gusts from the side would be taken for turns of the
+/// nose.
+pub(super) const TURBULENCE: f64 = 4.0;
+pub(super) const TURBULENCE_LENGTH_M: f64 = 533.0;
 
 /// The velocity of something of which only the inertial sensors are known: a
 /// hand's, m/s; the acceleration with which velocities end, m/s²: a hand turns
