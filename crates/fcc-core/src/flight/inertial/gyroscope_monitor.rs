@@ -87,14 +87,19 @@ pub(super) struct GyroscopeMonitor {
     expected_since: Time,
     expected_last: Time,
     is_field_sound: bool,
-    /// The first field in flight, the latest one, and whether it has ever counted.
-    flies_since: Time,
-    field_taken: Time,
-    has_counted: bool,
+    awaited: Awaited,
     is_doubted: bool,
     axes: StuckAxis,
     is_stuck: bool,
     agreeing: Agreeing,
+}
+
+/// The first field in flight, the latest one, and whether it has ever counted.
+#[derive(Clone, Copy, Debug, Default)]
+struct Awaited {
+    since: Time,
+    latest: Time,
+    has_counted: bool,
 }
 
 /// What doubted gyroscopes have shown since they last contradicted the field: how far
@@ -118,9 +123,7 @@ impl GyroscopeMonitor {
             expected_since: Time::NEVER,
             expected_last: Time::NEVER,
             is_field_sound: false,
-            flies_since: Time::NEVER,
-            field_taken: Time::NEVER,
-            has_counted: false,
+            awaited: Awaited::default(),
             is_doubted: false,
             axes: StuckAxis::default(),
             is_stuck: false,
@@ -135,10 +138,15 @@ impl GyroscopeMonitor {
 
     /// Whether the gyroscopes cannot be held against the field yet, and soon will be.
     pub(super) fn awaits_field(&self, now: Time) -> bool {
-        !self.flies_since.is_never()
-            && !self.has_counted
-            && self.field_taken.since(self.flies_since).as_secs_f64() < AWAITED_FOR_S
-            && now.since(self.field_taken).as_secs_f64() < SILENT_S
+        let Awaited {
+            since,
+            latest,
+            has_counted,
+        } = self.awaited;
+        !since.is_never()
+            && !has_counted
+            && latest.since(since).as_secs_f64() < AWAITED_FOR_S
+            && now.since(latest).as_secs_f64() < SILENT_S
     }
 
     /// From here on the samples are those of other gyroscopes.
@@ -171,10 +179,10 @@ impl GyroscopeMonitor {
         let own = Vector3::from(known.body_field_ut.map(finite));
         let field = Vector3::from(field);
         let flies = Vector3::from(known.velocity_mps).norm() > FLIES_MPS;
-        if flies && self.flies_since.is_never() {
-            self.flies_since = taken;
+        if flies && self.awaited.since.is_never() {
+            self.awaited.since = taken;
         }
-        self.field_taken = taken;
+        self.awaited.latest = taken;
         // Attitude is found by a field that is sound; without one there is none.
         self.is_doubted |= self.is_stuck && self.is_field_sound && flies;
         let Some(turning) = self.turning.add_field(taken, field, own) else {
@@ -229,7 +237,7 @@ impl GyroscopeMonitor {
         }
         let for_s = taken.since(self.expected_since).as_secs_f64();
         self.is_field_sound |= for_s >= EXPECTED_FOR_S;
-        self.has_counted |= self.is_field_sound;
+        self.awaited.has_counted |= self.is_field_sound;
     }
 
     /// Whether gyroscopes and field contradict each other over the latest windows,

@@ -298,7 +298,7 @@ impl RawNavigation {
             let observation = Observation::DifferentialPressure(pressure.value);
             self.take(pressure.taken, observation);
         }
-        if !repeats.fix
+        if !self.repeats.is_same_place
             && is_possible_fix(&raw.gnss.value)
             && is_new(&mut self.used.gnss, &raw.gnss, now)
         {

@@ -19,7 +19,6 @@ pub(super) struct Repeated {
     pub(super) force: bool,
     pub(super) rates: bool,
     pub(super) field: bool,
-    pub(super) fix: bool,
 }
 
 /// Follows the readings of accelerometers, gyroscopes, magnetometer and receiver.
@@ -29,6 +28,8 @@ pub(super) struct Repeats {
     rates: StuckSensor,
     field: StuckSensor,
     now: Repeated,
+    /// Whether the latest fix is at the place of the one before.
+    pub(super) is_same_place: bool,
     /// Whether the receiver has repeated its place for longer than it may.
     is_place_old: bool,
 }
@@ -76,9 +77,9 @@ impl Repeats {
                 of_field,
                 [MOVED_FORCE, MOVED_RATE],
             ),
-            fix: is_same_place(&used.value, &raw.gnss.value),
         };
-        self.is_place_old = self.now.fix && raw.gnss.taken.since(used.taken) > PLACE_LASTS;
+        self.is_same_place = is_same_place(&used.value, &raw.gnss.value);
+        self.is_place_old = self.is_same_place && raw.gnss.taken.since(used.taken) > PLACE_LASTS;
         self.now
     }
 }
