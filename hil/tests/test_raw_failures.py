@@ -147,6 +147,22 @@ def test_it_is_flown_on(fault: Fault, for_s: float) -> None:
 
 
 @pytest.mark.parametrize(
+    ("fault", "named"),
+    [
+        (repeated("gnss"), "satellite navigation repeats its position in motion and is not used"),
+        (repeated("magnetic_field"), "magnetometer repeats its field in motion and is not used"),
+    ],
+    ids=["receiver", "compass"],
+)
+def test_what_repeats_itself_is_named(fault: Fault, named: str) -> None:
+    """Though it is flown on; and not any more once it measures again."""
+    _, rig, _ = fly(fault, 30.0)
+    begins, ends = (event for event in rig.events if named in event.text)
+    assert FAILS_S < begins.time_s <= FAILS_S + 3.0
+    assert FAILS_S + 30.0 <= ends.time_s <= FAILS_S + 31.0
+
+
+@pytest.mark.parametrize(
     ("fault", "for_s"),
     [
         (lost(*READINGS), 0.5),

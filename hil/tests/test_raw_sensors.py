@@ -151,7 +151,7 @@ def test_ages_say_when_readings_were_taken() -> None:
 def test_a_flight_by_raw_sensors_is_replayed_to_the_last_bit(fccd: Path, tmp_path: Path) -> None:
     config = tmp_path / "raw.toml"
     config.write_text(
-        '[built-in]\ngusts = "light"\nraw_sensors = "board"\nengage_at_s = 6.0\n'
+        '[built-in]\ngusts = "light"\nraw_sensors = "board"\nengage_at_s = 15.0\n'
         '[navigation]\nmethod = "kalman"\n[guidance]\nmode = "timed-pattern"\n'
     )
     words: list[str | Path] = [fccd, "fly", "--lockstep", "--quiet", "--config", config]

@@ -3,6 +3,8 @@
 use fcc_core::flight::inertial::{GeodeticPosition, gravity_mps2, metres_per_radian};
 use fcc_core::flight::orientation::{EulerAngles, earth_to_body, product, quaternion_from_euler};
 
+use super::noise::Random;
+
 /// The angle of attack, which the filter is not told.
 const ATTACK_RAD: f64 = 0.04;
 
@@ -31,6 +33,26 @@ pub(crate) struct Flight {
     pub(crate) now: Truth,
     manoeuvre: Manoeuvre,
     wind: [f64; 2],
+    turbulence: Option<Turbulence>,
+}
+
+/// Air whose horizontal velocity changes: 4 m/s over 533 m, each axis (σ of severe
+/// turbulence, and the scale length of MIL-F-8785C above 2,000 ft), behind a lag of
+/// 2 s, with which the aircraft is carried along.
+struct Turbulence {
+    random: Random,
+    air: [f64; 2],
+    carried: [f64; 2],
+}
+
+impl Turbulence {
+    fn step(&mut self, airspeed: f64, dt_s: f64) {
+        let kept = (-dt_s * airspeed / 533.0).exp();
+        for (air, carried) in self.air.iter_mut().zip(&mut self.carried) {
+            *air = kept * *air + self.random.normal(4.0 * (1.0 - kept * kept).sqrt());
+            *carried += (*air - *carried) * dt_s / 2.0;
+        }
+    }
 }
 
 impl Flight {
@@ -57,9 +79,20 @@ impl Flight {
             },
             manoeuvre,
             wind,
+            turbulence: None,
         };
         flight.set(0.0, heading_rad);
         flight
+    }
+
+    /// The same in turbulence.
+    pub(crate) fn in_turbulence(mut self, seed: u64) -> Self {
+        self.turbulence = Some(Turbulence {
+            random: Random::new(seed),
+            air: [0.0; 2],
+            carried: [0.0; 2],
+        });
+        self
     }
 
     fn set(&mut self, time_s: f64, heading_rad: f64) {
@@ -70,13 +103,14 @@ impl Flight {
             heading_rad,
         };
         let level = airspeed * climb_rad.cos();
+        let gust = self.turbulence.as_ref().map_or([0.0; 2], |air| air.carried);
         let now = &mut self.now;
         now.time_s = time_s;
         now.angles = angles;
         now.quaternion = quaternion_from_euler(angles);
         now.velocity = [
-            level * heading_rad.cos() + self.wind[0],
-            level * heading_rad.sin() + self.wind[1],
+            level * heading_rad.cos() + self.wind[0] + gust[0],
+            level * heading_rad.sin() + self.wind[1] + gust[1],
             -airspeed * climb_rad.sin(),
         ];
         now.airspeed = airspeed;
@@ -93,6 +127,9 @@ impl Flight {
         } else {
             0.0
         };
+        if let Some(turbulence) = &mut self.turbulence {
+            turbulence.step(airspeed, dt_s);
+        }
         self.set(
             before.time_s + dt_s,
             before.angles.heading_rad + turn * dt_s,

@@ -78,6 +78,36 @@ fn ten_minutes_of_turn_do_not_tip_the_horizon() {
     }
 }
 
+/// In turbulence, with and without a receiver: a gust from the side is no turn. A
+/// compass with 1 µT of the aircraft's own field is wrong by 2.7°.
+#[test]
+fn gusts_do_not_turn_the_heading() {
+    fn turning_now_and_then(time_s: f64) -> (f64, f64, f64) {
+        (0.4 * smooth((time_s % 40.0 - 30.0) / 3.0), 0.0, 50.0)
+    }
+    for (receiver, limit_deg) in [(false, 4.0), (true, 1.0)] {
+        let fitted = Fitted {
+            receiver,
+            ..Fitted::default()
+        };
+        let mut squares = 0.0;
+        for seed in 1..=6 {
+            let flight = Flight::new(turning_now_and_then, 1.0, wind_20_kt());
+            let mut run = Run::new(flight.in_turbulence(seed), fitted, seed);
+            run.until(20.0, |_, _| {});
+            let (mut sum, mut steps) = (0.0, 0.0);
+            run.until(140.0, |truth, solution| {
+                let [.., heading] = angle_errors(truth, solution);
+                sum += heading * heading;
+                steps += 1.0;
+            });
+            squares += sum / steps / 6.0;
+        }
+        let rms_deg = squares.sqrt();
+        assert!(rms_deg <= limit_deg, "{rms_deg}°, receiver {receiver}");
+    }
+}
+
 #[test]
 fn a_minute_without_a_receiver_in_20_kt_of_wind_leads_less_than_150_m_away() {
     for airspeed in [true, false] {

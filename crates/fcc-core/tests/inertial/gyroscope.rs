@@ -1,6 +1,7 @@
 //! Gyroscopes that are wrong in ways that their samples alone do not show, and
 //! magnetometers that are.
 
+use std::ops::Range;
 use std::time::Duration;
 
 use fcc_core::flight::atmosphere::pressure_pa;
@@ -92,6 +93,24 @@ fn doubted(
     until_s: f64,
     end_s: f64,
 ) -> Vec<f64> {
+    let faulty_s = FAILS_S..until_s;
+    changes(
+        manoeuvre,
+        fault,
+        faulty_s,
+        end_s,
+        RawNavigation::doubts_gyroscopes,
+    )
+}
+
+/// Flies with a fault for a time; when something changed, after the fault began.
+fn changes(
+    manoeuvre: super::flight::Manoeuvre,
+    fault: Fault,
+    faulty_s: Range<f64>,
+    end_s: f64,
+    what: fn(&RawNavigation) -> bool,
+) -> Vec<f64> {
     let mut flight = Flight::new(manoeuvre, 0.5, [4.0, -3.0]);
     let mut random = Random::new(7);
     let mut navigation = RawNavigation::new(RawNavigationConfig {
@@ -100,7 +119,7 @@ fn doubted(
         north: MagneticNorth::Field(FIELD_UT),
     });
     let mut changes = Vec::new();
-    let mut was_doubted = false;
+    let mut was = false;
     for tick in 0_u32.. {
         flight.step(TICK_S);
         let truth = flight.now;
@@ -114,14 +133,14 @@ fn doubted(
         let noise = random.vector(0.6);
         let field = earth_to_body(truth.quaternion, FIELD_UT);
         let mut field = [0, 1, 2].map(|axis| field[axis] + noise[axis]);
-        let since_s = truth.time_s - FAILS_S;
-        if since_s >= 0.0 && truth.time_s < until_s {
+        let since_s = truth.time_s - faulty_s.start;
+        if faulty_s.contains(&truth.time_s) {
             fault(&mut rates, &mut field, since_s, &mut random);
         }
         let measured = readings(&truth, now, rates, field, tick % 8 == 0);
         navigation.step(now, &measured);
-        if navigation.doubts_gyroscopes() != was_doubted {
-            was_doubted = !was_doubted;
+        if what(&navigation) != was {
+            was = !was;
             changes.push(since_s);
         }
     }
@@ -153,6 +172,51 @@ fn wrong_gyroscopes_are_doubted_within_one_roll_into_a_turn() {
         assert_eq!(changes.len(), 1, "{name}: {changes:?}");
         assert!((0.2..10.0).contains(&changes[0]), "{name}: {changes:?}");
     }
+}
+
+/// The field does not count before it has been where it is expected for 10 s: until
+/// then a wrong gyroscope is not found, and the autopilot is not to engage.
+#[test]
+fn gyroscopes_that_cannot_be_checked_yet_are_waited_for() {
+    fn later(time_s: f64) -> (f64, f64, f64) {
+        turns((time_s - 20.0).max(0.0))
+    }
+    let awaits = |fault: Fault| changes(later, fault, 0.0..40.0, 40.0, RawNavigation::awaits_field);
+    let sound: Fault = |_, _, _, _| {};
+    let inverted: Fault = |rates, _, _, _| rates[0] = -rates[0];
+    for fault in [sound, inverted] {
+        let waits = awaits(fault);
+        assert_eq!(waits.len(), 2, "{waits:?}");
+        assert!(
+            waits[0] < 1.5 && (10.0..13.0).contains(&waits[1]),
+            "{waits:?}"
+        );
+    }
+    // It turns from 20 s on.
+    let found = changes(
+        later,
+        inverted,
+        0.0..40.0,
+        40.0,
+        RawNavigation::doubts_gyroscopes,
+    );
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!((20.0..30.0).contains(&found[0]), "{found:?}");
+    // A field that is not the earth's is not waited for any longer, nor one that is silent.
+    let turning: Fault = |_, field, time_s, _| {
+        let turned = 0.2 * time_s;
+        *field = [40.0 * turned.cos(), 40.0 * turned.sin(), 0.0];
+    };
+    let waits = awaits(turning);
+    assert_eq!(waits.len(), 2, "{waits:?}");
+    assert!((20.0..22.0).contains(&waits[1]), "{waits:?}");
+    let silent: Fault = |_, field, time_s, _| {
+        if time_s > 4.0 {
+            *field = [f64::NAN; 3];
+        }
+    };
+    let waits = awaits(silent);
+    assert!((5.0..5.2).contains(&waits[1]), "{waits:?}");
 }
 
 #[test]

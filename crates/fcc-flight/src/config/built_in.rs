@@ -103,9 +103,9 @@ impl Default for BuiltInSection {
 
 /// When the engage switch is switched on by default, s: sensors that measure
 /// attitude have settled after 1.1 s. Navigation by raw readings has after 2.1 to
-/// 3 s in gusts, and the heading improves for some seconds more.
+/// 3 s in gusts, and its gyroscopes are compared with the magnetic field after some 11 s.
 const ENGAGES_AT_S: f64 = 2.0;
-const ENGAGES_BY_RAW_AT_S: f64 = 10.0;
+const ENGAGES_BY_RAW_AT_S: f64 = 15.0;
 
 impl BuiltInSection {
     /// When the engage switch is switched on, with this navigation.
@@ -197,8 +197,8 @@ mod tests {
     fn the_switch_waits_until_navigation_has_settled() {
         for (text, expected_s) in [
             ("[built-in]\n", 2.0),
-            ("[built-in]\n[navigation]\nmethod = \"kalman\"\n", 10.0),
-            ("[built-in]\n[navigation]\nmethod = \"thesis\"\n", 10.0),
+            ("[built-in]\n[navigation]\nmethod = \"kalman\"\n", 15.0),
+            ("[built-in]\n[navigation]\nmethod = \"thesis\"\n", 15.0),
             (
                 "[built-in]\nengage_at_s = 3\n[navigation]\nmethod = \"kalman\"\n",
                 3.0,

@@ -6,6 +6,7 @@ use super::upset::is_far_from_level;
 use super::{Autopilot, flags};
 use crate::flight::control::ElevatorTrim;
 use crate::flight::guidance::{ActiveMode, ModeInput, Targets};
+use crate::flight::inertial::RawNavigation;
 use crate::flight::{AltitudeReference, Measurements, PlantState, Surfaces};
 use crate::framework::{Flags, Time};
 
@@ -34,6 +35,10 @@ impl Autopilot {
             self.settled_s.is_none_or(|settled_s| {
                 settled_s + ROUNDING_S < self.config.settling.as_secs_f64()
             }),
+        )
+        .with(
+            flags::UNCHECKED_GYROSCOPE,
+            self.raw.as_ref().is_some_and(RawNavigation::awaits_field),
         )
         .with(
             flags::TOO_SLOW,

@@ -122,6 +122,12 @@ pub const DOUBTED_BODY_RATES: Flags = Flags::bit(53);
 pub const IMPOSSIBLE_FIX: Flags = Flags::bit(54);
 /// The magnetic field turns otherwise than the gyroscopes say: they are not used.
 pub const DOUBTED_GYROSCOPE: Flags = Flags::bit(55);
+/// The satellite receiver only repeats its place, and is not used.
+pub const REPEATED_FIX: Flags = Flags::bit(56);
+/// The magnetometer only repeats its field, and is not used.
+pub const REPEATED_FIELD: Flags = Flags::bit(57);
+/// The gyroscopes cannot be held against the magnetic field yet.
+pub const UNCHECKED_GYROSCOPE: Flags = Flags::bit(58);
 /// What of attitude and body rates is doubted.
 pub(super) const DOUBTED_MOTION: Flags =
     Flags::from_bits(DOUBTED_ATTITUDE.bits() | DOUBTED_BODY_RATES.bits());
@@ -163,7 +169,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
 }
 
 /// The text of each bit, lowest first.
-pub(super) const NAMES: [&str; 56] = [
+pub(super) const NAMES: [&str; 59] = [
     "attitude is missing or too old",
     "heading is missing or too old",
     "body rates are missing or too old",
@@ -220,6 +226,9 @@ pub(super) const NAMES: [&str; 56] = [
     "body rates contradict attitude, forces and heading and are not used",
     "satellite navigation gives an impossible position or velocity and is not used",
     "gyroscope contradicts the magnetic field and is not used",
+    "satellite navigation repeats its position in motion and is not used",
+    "magnetometer repeats its field in motion and is not used",
+    "gyroscope is not yet compared with the magnetic field: engage again some seconds later",
 ];
 
 #[cfg(test)]

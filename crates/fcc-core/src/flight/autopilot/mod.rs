@@ -45,7 +45,6 @@ use reading_age::ReadingAges;
 use release::Release;
 pub use resume::Resume;
 pub use scale::Scale;
-use sensor_health::has_impossible_fix;
 use whereabouts::Whereabouts;
 
 use super::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop, Recovery};
@@ -171,13 +170,13 @@ impl Controller for Autopilot {
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         let of_parts = self.actuation.conditions() | self.doubted() | self.trim_conditions();
-        (self.external(tick.woke, self.seen(measurements)) | of_parts)
+        let unused = self.unused_sensors(measurements);
+        (self.external(tick.woke, self.seen(measurements)) | of_parts | unused)
             .with(flags::RECOVERING, self.recovery.is_active())
             .with(flags::UNDERSPEED, self.altitude.gives_up_height())
             .with(flags::STALLS_FASTER, self.recovery.found_stall_mps() > 0.0)
             .with(flags::AT_FLOOR, self.is_at_floor)
             .with(flags::RELEASING, self.release.is_some())
-            .with(flags::IMPOSSIBLE_FIX, has_impossible_fix(measurements))
     }
 
     fn failsafe_goes_on(&self) -> bool {

@@ -20,12 +20,20 @@ const SWITCH_MAX_AGE: Duration = Duration::from_secs(1);
 /// once when it continues, perhaps with another aircraft.
 const SENT_FOR: Duration = Duration::from_millis(250);
 
-/// Whether the latest fix of satellite navigation is that of no aircraft.
-pub(super) fn has_impossible_fix(measured: &Measurements) -> bool {
-    !measured.gnss.is_never() && !is_possible_fix(&measured.gnss.value)
-}
-
 impl Autopilot {
+    /// The raw sensors that are not used, and that control does not need.
+    pub(super) fn unused_sensors(&self, measured: &Measurements) -> Flags {
+        let has_fix = !measured.gnss.is_never();
+        let is = |what: fn(&RawNavigation) -> bool| self.raw.as_ref().is_some_and(what);
+        Flags::NONE
+            .with(
+                flags::IMPOSSIBLE_FIX,
+                has_fix && !is_possible_fix(&measured.gnss.value),
+            )
+            .with(flags::REPEATED_FIX, is(RawNavigation::repeats_place))
+            .with(flags::REPEATED_FIELD, is(RawNavigation::repeats_field))
+    }
+
     /// Whether the gyroscopes are not used, because the magnetic field contradicts them.
     pub(super) fn doubts_gyroscopes(&self) -> bool {
         self.raw

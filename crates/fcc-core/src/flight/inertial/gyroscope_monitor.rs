@@ -65,6 +65,12 @@ const BELIEVED_AFTER_S: f64 = 5.0;
 const TURNS_RAD: f64 = 0.0175;
 const AGREES_SHARE: f64 = 0.4;
 
+/// In flight the field is waited for for so long, s: one that does not count then is
+/// not that of the earth, and gyroscopes are flown unchecked. One that is silent for the
+/// second time, s, is not waited for.
+const AWAITED_FOR_S: f64 = 20.0;
+const SILENT_S: f64 = 1.0;
+
 /// Slower nothing flies, m/s: on the ground there is iron nearby.
 const FLIES_MPS: f64 = 15.0;
 
@@ -81,10 +87,19 @@ pub(super) struct GyroscopeMonitor {
     expected_since: Time,
     expected_last: Time,
     is_field_sound: bool,
+    awaited: Awaited,
     is_doubted: bool,
     axes: StuckAxis,
     is_stuck: bool,
     agreeing: Agreeing,
+}
+
+/// The first field in flight, the latest one, and whether it has ever counted.
+#[derive(Clone, Copy, Debug, Default)]
+struct Awaited {
+    since: Time,
+    latest: Time,
+    has_counted: bool,
 }
 
 /// What doubted gyroscopes have shown since they last contradicted the field: how far
@@ -108,6 +123,7 @@ impl GyroscopeMonitor {
             expected_since: Time::NEVER,
             expected_last: Time::NEVER,
             is_field_sound: false,
+            awaited: Awaited::default(),
             is_doubted: false,
             axes: StuckAxis::default(),
             is_stuck: false,
@@ -118,6 +134,19 @@ impl GyroscopeMonitor {
     /// Whether the gyroscopes are not to be used.
     pub(super) const fn is_doubted(&self) -> bool {
         self.is_doubted
+    }
+
+    /// Whether the gyroscopes cannot be held against the field yet, and soon will be.
+    pub(super) fn awaits_field(&self, now: Time) -> bool {
+        let Awaited {
+            since,
+            latest,
+            has_counted,
+        } = self.awaited;
+        !since.is_never()
+            && !has_counted
+            && latest.since(since).as_secs_f64() < AWAITED_FOR_S
+            && now.since(latest).as_secs_f64() < SILENT_S
     }
 
     /// From here on the samples are those of other gyroscopes.
@@ -150,6 +179,10 @@ impl GyroscopeMonitor {
         let own = Vector3::from(known.body_field_ut.map(finite));
         let field = Vector3::from(field);
         let flies = Vector3::from(known.velocity_mps).norm() > FLIES_MPS;
+        if flies && self.awaited.since.is_never() {
+            self.awaited.since = taken;
+        }
+        self.awaited.latest = taken;
         // Attitude is found by a field that is sound; without one there is none.
         self.is_doubted |= self.is_stuck && self.is_field_sound && flies;
         let Some(turning) = self.turning.add_field(taken, field, own) else {
@@ -204,6 +237,7 @@ impl GyroscopeMonitor {
         }
         let for_s = taken.since(self.expected_since).as_secs_f64();
         self.is_field_sound |= for_s >= EXPECTED_FOR_S;
+        self.awaited.has_counted |= self.is_field_sound;
     }
 
     /// Whether gyroscopes and field contradict each other over the latest windows,

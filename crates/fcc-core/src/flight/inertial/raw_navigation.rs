@@ -3,18 +3,17 @@
 //! place of sensors that measure these.
 
 mod readings;
+mod repeats;
 mod several;
 
 use core::time::Duration;
 
 use libm::atan2;
-use readings::{
-    attitude_of, either, force_of, is_certain, is_elsewhere, is_new, rates_of, repeats,
-};
+use readings::{attitude_of, either, force_of, is_certain, is_elsewhere, is_new, rates_of};
+use repeats::Repeats;
 
 use super::field_rates::FieldRates;
 use super::gyroscope_monitor::GyroscopeMonitor;
-use super::stuck::{MOVED_FIELD, MOVED_FORCE, MOVED_RATE, StuckSensor};
 use super::units::Units;
 use super::{
     GeodeticPosition, InertialNavigation, Innovation, KalmanConfig, KalmanNavigation, Observation,
@@ -116,8 +115,7 @@ pub struct RawNavigation {
     method: Method,
     /// Those that were used last.
     used: Measurements,
-    stuck_force: StuckSensor,
-    stuck_rates: StuckSensor,
+    repeats: Repeats,
     accelerometers: Units,
     gyroscopes: Units,
     /// The gyroscopes' last sample, used or not.
@@ -161,8 +159,7 @@ impl RawNavigation {
                 RawNavigationMethod::Thesis => Method::Thesis(ThesisNavigation::new()),
             },
             used: Measurements::default(),
-            stuck_force: StuckSensor::default(),
-            stuck_rates: StuckSensor::default(),
+            repeats: Repeats::default(),
             accelerometers: Units::default(),
             gyroscopes: Units::default(),
             rates_read: Reading::default(),
@@ -191,6 +188,12 @@ impl RawNavigation {
     /// doubted, and then by the magnetic field.
     pub fn knows_attitude(&self) -> bool {
         !self.doubts_gyroscopes() || self.settled_by_field(self.found.attitude.taken)
+    }
+
+    /// Whether the gyroscopes cannot be held against the magnetic field yet, and soon
+    /// will be: some 10 s after the start, 20 s at most.
+    pub fn awaits_field(&self) -> bool {
+        self.gyroscope.awaits_field(self.latest_inertial())
     }
 
     /// What the method found at the latest inertial sample; its headings are true
@@ -267,25 +270,21 @@ impl RawNavigation {
         let force = [f.value.x_mps2, f.value.y_mps2, f.value.z_mps2];
         let rates = [r.value.roll_radps, r.value.pitch_radps, r.value.yaw_radps];
         let field = [m.value.x_ut, m.value.y_ut, m.value.z_ut];
-        let repeats_force =
-            self.stuck_force
-                .step(f.taken, force, [rates, field], [MOVED_RATE, MOVED_FIELD]);
-        let repeats_rates =
-            self.stuck_rates
-                .step(r.taken, rates, [force, field], [MOVED_FORCE, MOVED_FIELD]);
-        let repeats_fix = repeats(&self.used.gnss.value, &raw.gnss.value);
-        self.follow_units(raw, repeats_force, repeats_rates);
-        if !repeats_force && is_new(&mut self.used.raw_specific_force, &f, now) {
+        let repeats = self
+            .repeats
+            .step(raw, [force, rates, field], &self.used.gnss);
+        self.follow_units(raw, repeats.force, repeats.rates);
+        if !repeats.force && is_new(&mut self.used.raw_specific_force, &f, now) {
             self.take(f.taken, Observation::SpecificForce(force));
         }
-        if !repeats_rates
+        if !repeats.rates
             && is_new(&mut self.rates_read, &r, now)
             && self.gyroscope.add_rates(r.taken, rates, &self.solution)
         {
             self.used.raw_body_rates = r;
             self.take(r.taken, Observation::Rates(rates));
         }
-        if is_new(&mut self.used.magnetic_field, &m, now) {
+        if !repeats.field && is_new(&mut self.used.magnetic_field, &m, now) {
             self.gyroscope.add_field(m.taken, field, &self.solution);
             self.turn_by_field(m.taken, field);
             self.take(m.taken, Observation::MagneticField(field));
@@ -299,7 +298,7 @@ impl RawNavigation {
             let observation = Observation::DifferentialPressure(pressure.value);
             self.take(pressure.taken, observation);
         }
-        if !repeats_fix
+        if !self.repeats.is_same_place
             && is_possible_fix(&raw.gnss.value)
             && is_new(&mut self.used.gnss, &raw.gnss, now)
         {

@@ -175,10 +175,19 @@ impl Filter {
         self.add_variance(BAROMETER_BIAS, 1, walk(p::BAROMETER_WALK));
         self.add_variance(EARTH_FIELD, 3, walk(p::EARTH_FIELD_WALK));
         self.add_variance(BODY_FIELD, 3, walk(p::BODY_FIELD_WALK));
-        self.add_variance(WIND, 2, walk(p::WIND_WALK));
+        self.add_variance(WIND, 2, walk(self.wind_walk()));
         for axis in ATTITUDE..ATTITUDE + 3 {
             self.limit_variance(axis, UNKNOWN_ANGLE);
         }
+        for axis in WIND..WIND + 2 {
+            self.limit_variance(axis, p::LARGEST_WIND * p::LARGEST_WIND);
+        }
+    }
+
+    /// The random walk of the wind, m/s/√s: turbulence that it flies through.
+    fn wind_walk(&self) -> f64 {
+        let airspeed = (self.motion.velocity.xy() - self.wind).norm();
+        p::TURBULENCE * libm::sqrt(2.0 * airspeed / p::TURBULENCE_LENGTH_M)
     }
 
     pub(super) fn add_variance(&mut self, from: usize, count: usize, variance: f64) {

@@ -150,6 +150,8 @@ impl Filter {
         // Iron nearby disturbs the field in the same way as long as nothing moves.
         if self.turns_by_field {
             noise.tau_s = p::FIELD_ALONE_S;
+        } else if self.flies() {
+            noise.tau_s = p::FIELD_ALOFT_S;
         } else if self.stands() {
             noise.tau_s = p::FIELD_AT_REST_S;
         }

@@ -54,6 +54,9 @@ pub(super) const FIELD: Noise = Noise::new(1.0, 10.0);
 pub(super) const FIELD_SHARE: f64 = 0.05;
 /// The same error lasts for this long at rest, s.
 pub(super) const FIELD_AT_REST_S: f64 = 60.0;
+/// ... and for this long in the air, s: no iron comes and goes there, and the
+/// aircraft's own is a state.
+pub(super) const FIELD_ALOFT_S: f64 = 2.0;
 /// ... and for this long where the attitude follows it, s: without gyroscopes.
 pub(super) const FIELD_ALONE_S: f64 = 0.1;
 /// The aircraft's own field that calibration has left, µT, and its random walk,
@@ -91,9 +94,15 @@ pub(super) const ATTACK: Noise = Noise::new(1.0, 5.0);
 pub(super) const ATTACK_SHARE: f64 = 0.12;
 /// Below this airspeed, m/s, nothing flies, and the sensor shows its offset.
 pub(super) const LEAST_AIRSPEED: f64 = 7.0;
-/// Wind of which nothing is known, each axis, m/s, and its random walk, m/s/√s.
+/// Wind of which nothing is known, each axis, m/s, and how uncertain it becomes at most.
 pub(super) const WIND: f64 = 7.0;
-pub(super) const WIND_WALK: f64 = 0.1;
+pub(super) const LARGEST_WIND: f64 = 10.0;
+/// Severe turbulence, m/s, and its scale length, m (MIL-F-8785C: 1,750 ft above 2,000 ft):
+/// for some seconds it is a random walk of σ √(2 V/L) at the airspeed V, 1.8 m/s/√s at
+/// 55 m/s. If the wind were steadier, gusts from the side would be taken for turns of the
+/// nose.
+pub(super) const TURBULENCE: f64 = 4.0;
+pub(super) const TURBULENCE_LENGTH_M: f64 = 533.0;
 
 /// The velocity of something of which only the inertial sensors are known: a
 /// hand's, m/s; the acceleration with which velocities end, m/s²: a hand turns

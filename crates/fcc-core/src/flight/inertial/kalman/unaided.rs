@@ -20,7 +20,7 @@ impl Filter {
     /// V over a typical acceleration. What has an airspeed sensor is no hand: it
     /// may take off, and below the sensor's least airspeed it may be that fast.
     pub(super) fn velocity_ends(&mut self, now: Time) {
-        let is_aided = self.has_receiver() || self.tracks.airspeed.since_used_s(now) < p::UNAIDED_S;
+        let is_aided = self.has_receiver() || self.flies();
         if is_aided || self.tracks.unaided.since_tried_s(now) < INTERVAL_S {
             return;
         }
@@ -84,11 +84,15 @@ impl Filter {
         self.tracks.rest.since_used_s(self.time) < 1.0
     }
 
+    /// Whether there is an airspeed of something that flies.
+    pub(super) fn flies(&self) -> bool {
+        self.tracks.airspeed.since_used_s(self.time) < p::UNAIDED_S
+    }
+
     /// Whether a receiver or an airspeed sensor says that this moves.
     pub(super) fn is_moving(&self) -> bool {
         /// Beyond the noise of a receiver at rest, m/s.
         const MOVING_MPS: f64 = 1.0;
-        let flies = self.tracks.airspeed.since_used_s(self.time) < p::UNAIDED_S;
-        flies || (self.has_receiver() && self.motion.velocity.norm() > MOVING_MPS)
+        self.flies() || (self.has_receiver() && self.motion.velocity.norm() > MOVING_MPS)
     }
 }

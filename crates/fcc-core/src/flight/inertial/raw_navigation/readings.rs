@@ -1,14 +1,8 @@
 //! Which readings are new, and what a solution says in the place of others.
 
-use libm::hypot;
-
-use super::super::stuck::MOVED_MPS;
-
 use crate::flight::inertial::Solution;
 use crate::flight::orientation::euler_from_quaternion;
-use crate::flight::{
-    Attitude, BodyRates, GnssFix, Measurements, PlantState, SpecificForce, Velocity,
-};
+use crate::flight::{Attitude, BodyRates, Measurements, PlantState, SpecificForce};
 use crate::framework::schema::{Schema, in_range};
 use crate::framework::{Reading, Time};
 
@@ -99,15 +93,4 @@ pub(super) fn is_new<T: Schema>(last: &mut Reading<T>, reading: &Reading<T>, now
         *last = *reading;
     }
     is_new
-}
-
-/// Whether a receiver gives the place again that it gave before, although it
-/// says that it moves.
-pub(super) fn repeats(last: &GnssFix, fix: &GnssFix) -> bool {
-    let Velocity {
-        north_mps,
-        east_mps,
-        ..
-    } = fix.velocity;
-    fix.position == last.position && hypot(north_mps, east_mps) > MOVED_MPS
 }

@@ -136,8 +136,46 @@ fn a_place_that_is_repeated_by_a_receiver_that_moves_is_left_out() {
         let mut measured = raw(tick(n), [20.0, 40.0]);
         measured.gnss = Reading::new(fix, tick(n));
         navigation.step(tick(n), &measured);
+        assert!(!navigation.repeats_place());
     }
     assert_eq!(navigation.found().velocity.taken, tick(40));
+}
+
+/// A receiver of one fix a second, which is read five times a second, is healthy; one
+/// that gives the same place for more than two seconds at 50 m/s is not.
+#[test]
+fn a_receiver_that_repeats_its_place_for_seconds_is_named() {
+    let mut navigation = RawNavigation::new(config());
+    for n in 0..800 {
+        let place = if n < 400 { n / 40 } else { 10 };
+        let mut fix = GnssFix::default();
+        fix.velocity.north_mps = 50.0;
+        fix.position.latitude_rad = 0.5 + 8e-6 * place as f64;
+        let mut measured = raw(tick(n), [20.0, 40.0]);
+        measured.gnss = Reading::new(fix, tick(n / 8 * 8));
+        navigation.step(tick(n), &measured);
+        // The last new place was that of tick 400.
+        assert_eq!(navigation.repeats_place(), n >= 488, "{n}");
+    }
+}
+
+/// A driver that repeats its last sample while the aircraft begins to turn, and then
+/// measures again.
+#[test]
+fn a_magnetometer_that_repeats_its_field_in_motion_is_left_out_and_named() {
+    let mut navigation = RawNavigation::new(config());
+    for n in 0..600 {
+        let mut measured = raw(tick(n), [20.0, 40.0]);
+        if n > 200 {
+            measured.raw_body_rates.value.yaw_radps = 0.1;
+        }
+        if n > 400 {
+            measured.magnetic_field.value.x_ut = 1e-3 * n as f64;
+        }
+        navigation.step(tick(n), &measured);
+        // Half a second after it has begun to turn; at rest it may.
+        assert_eq!(navigation.repeats_field(), (201..=400).contains(&n), "{n}");
+    }
 }
 
 /// From Alaska, where magnetic north is 14° to the east, to where it is 5° to the

@@ -1,0 +1,96 @@
+//! Which raw sensors only repeat what they gave before.
+
+use core::time::Duration;
+
+use libm::hypot;
+
+use super::super::stuck::{MOVED_FIELD, MOVED_FORCE, MOVED_MPS, MOVED_RATE, StuckSensor};
+use super::RawNavigation;
+use crate::flight::{GnssFix, Measurements, Velocity};
+use crate::framework::Reading;
+
+/// For so long a place may be repeated: that of a receiver that gives one fix a second
+/// is read several times.
+const PLACE_LASTS: Duration = Duration::from_secs(2);
+
+/// Of the latest readings, which are only repeated.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Repeated {
+    pub(super) force: bool,
+    pub(super) rates: bool,
+    pub(super) field: bool,
+}
+
+/// Follows the readings of accelerometers, gyroscopes, magnetometer and receiver.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Repeats {
+    force: StuckSensor,
+    rates: StuckSensor,
+    field: StuckSensor,
+    now: Repeated,
+    /// Whether the latest fix is at the place of the one before.
+    pub(super) is_same_place: bool,
+    /// Whether the receiver has repeated its place for longer than it may.
+    is_place_old: bool,
+}
+
+impl RawNavigation {
+    /// Whether a magnetometer only repeats its field although the aircraft moves.
+    pub const fn repeats_field(&self) -> bool {
+        self.repeats.now.field
+    }
+
+    /// Whether a receiver has only repeated its place for seconds, although it moves.
+    pub const fn repeats_place(&self) -> bool {
+        self.repeats.is_place_old
+    }
+}
+
+impl Repeats {
+    /// Takes the readings of a tick, force, rates and field as vectors, and the fix that
+    /// was used last.
+    pub(super) fn step(
+        &mut self,
+        raw: &Measurements,
+        [force, rates, field]: [[f64; 3]; 3],
+        used: &Reading<GnssFix>,
+    ) -> Repeated {
+        let of_force = [rates, field];
+        let of_rates = [force, field];
+        let of_field = [force, rates];
+        self.now = Repeated {
+            force: self.force.step(
+                raw.raw_specific_force.taken,
+                force,
+                of_force,
+                [MOVED_RATE, MOVED_FIELD],
+            ),
+            rates: self.rates.step(
+                raw.raw_body_rates.taken,
+                rates,
+                of_rates,
+                [MOVED_FORCE, MOVED_FIELD],
+            ),
+            field: self.field.step(
+                raw.magnetic_field.taken,
+                field,
+                of_field,
+                [MOVED_FORCE, MOVED_RATE],
+            ),
+        };
+        self.is_same_place = is_same_place(&used.value, &raw.gnss.value);
+        self.is_place_old = self.is_same_place && raw.gnss.taken.since(used.taken) > PLACE_LASTS;
+        self.now
+    }
+}
+
+/// Whether a receiver gives the place again that it gave before, although it says that
+/// it moves.
+fn is_same_place(last: &GnssFix, fix: &GnssFix) -> bool {
+    let Velocity {
+        north_mps,
+        east_mps,
+        ..
+    } = fix.velocity;
+    fix.position == last.position && hypot(north_mps, east_mps) > MOVED_MPS
+}
