@@ -220,6 +220,7 @@ impl<'a> BoardSensor<'a> {
         match self {
             Self::Chip(kind, _) => kind.name(),
             Self::Iio(_) => "IIO",
+            Self::Phone(_) => "phone",
         }
     }
 
@@ -233,7 +234,7 @@ impl<'a> BoardSensor<'a> {
                 }
             },
             Self::Iio(section) => format!("{} {}", self.name(), section.device),
-            Self::Phone(_) => "phone".to_owned(),
+            Self::Phone(_) => self.name().to_owned(),
         }
     }
 

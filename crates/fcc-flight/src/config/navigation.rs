@@ -88,7 +88,7 @@ impl Config {
         is_simulated
             || boards.any(|board| match board {
                 BoardSensor::Chip(kind, _) => kind.is_inertial(),
-                BoardSensor::Iio(_) => true,
+                BoardSensor::Iio(_) | BoardSensor::Phone(_) => true,
             })
     }
 }
@@ -100,6 +100,7 @@ impl Config {
             Some(BoardSensor::Chip(kind, _)) => kind.measures_airspeed(),
             // Not known before it is opened.
             Some(BoardSensor::Iio(_)) => true,
+            Some(BoardSensor::Phone(_)) => false,
             None => matches!(entry, SensorEntry::XPlane(_) | SensorEntry::ServoBoard(_)),
         };
         let is_by_board =

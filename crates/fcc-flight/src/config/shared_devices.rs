@@ -35,6 +35,8 @@ fn devices(config: &Config) -> Vec<(String, String)> {
             BoardSensor::Iio(section) => {
                 format!("{} {}", section.sysfs.display(), section.device)
             }
+            // That there is one phone is said of its own.
+            BoardSensor::Phone(_) => String::new(),
         });
         let line = entry.line().and_then(|line| match line {
             LineSensor::Gnss(section) => Some(section.path.display().to_string()),

@@ -40,7 +40,7 @@ pub(super) fn phone_sensor(
     let host = host.ok_or(AssemblyError::NoPhone)?;
     let opened = host.open(section);
     let opened = opened.map_err(|source| AssemblyError::Device {
-        name: "phone",
+        name: "phone".to_owned(),
         source,
     })?;
     let sensor: Box<dyn Sensor<Measurements>> = match section.calibration.to_core() {
@@ -48,6 +48,6 @@ pub(super) fn phone_sensor(
         None => opened.sensor,
     };
     let devices = opened.devices.into_iter();
-    let watched = devices.map(|(name, status)| WatchedDevice::new(name, status));
+    let watched = devices.map(|(name, status)| WatchedDevice::new(name, name.to_owned(), status));
     Ok((sensor, watched.collect()))
 }
