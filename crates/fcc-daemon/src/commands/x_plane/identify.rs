@@ -26,12 +26,11 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<Exit, Failure> {
     let notice = Notice::of_this_process();
     let _helper = start_helper(&config, notice, None);
     let mut mark = Mark::of(&config);
-    let mut held = |plant: Option<PlantId>| match plant {
-        Some(plant) => {
+    let mut held = |plant: Option<PlantId>| {
+        if let Some(plant) = plant {
             notice.taking(&plant);
             mark.set(&plant, notice.number());
-        }
-        None => {
+        } else {
             notice.release(notice.number());
             mark.remove(notice.number());
         }
