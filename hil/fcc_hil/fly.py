@@ -52,6 +52,9 @@ class Plan:
     engage_switch: str = ENGAGE_SWITCH
     steady_s: float = _STEADY_S
     """Level flight before the switch goes on, in which navigation settles."""
+    attempts: int = 1
+    """How often the switch goes on until control is taken: after a pause of a busy machine,
+    navigation by raw sensors settles anew."""
     actions: tuple[tuple[float, str], ...] = ()
     """What a person or the simulator does (`actions`), each with its time in s after engaging, in
     real time; ascending."""
@@ -144,15 +147,7 @@ def fly(plan: Plan, notify: Callable[[str], None]) -> Flight:
             _PATIENCE * plan.steady_s + _ENGAGE_S,
             "simulated time has stopped",
         )
-        engaged_at_s = simulator.write(plan.engage_switch, 1.0)
-        _await(
-            simulator,
-            daemon,
-            lambda progress: progress.overridden,
-            _ENGAGE_S,
-            f"the daemon has not taken the controls {_ENGAGE_S:.0f} s after {plan.engage_switch} "
-            "went to 1; check the engage switch in its configuration",
-        )
+        engaged_at_s = _engage(plan, simulator, daemon)
         _watch(plan, simulator, daemon, engaged_at_s, notify)
         failures = _switch_off(plan, simulator, daemon)
         exit_code = daemon.stop()
@@ -189,6 +184,29 @@ def _await(
         if time.monotonic() > deadline_s:
             raise FlightError(otherwise)
         time.sleep(_LOOK_S)
+
+
+def _engage(plan: Plan, simulator: StandInProcess, daemon: Daemon) -> float:
+    """Switch on; return the simulated time at which that was."""
+    for attempt in range(1, plan.attempts + 1):
+        engaged_at_s = simulator.write(plan.engage_switch, 1.0)
+        try:
+            _await(
+                simulator,
+                daemon,
+                lambda progress: progress.overridden,
+                _ENGAGE_S,
+                f"the daemon has not taken the controls {_ENGAGE_S:.0f} s after "
+                f"{plan.engage_switch} went to 1; check the engage switch in its configuration",
+            )
+        except FlightError:
+            if attempt == plan.attempts or daemon.exit_code is not None:
+                raise
+            simulator.write(plan.engage_switch, 0.0)
+            time.sleep(_ENGAGE_S)
+        else:
+            return engaged_at_s
+    raise ValueError(f"attempts = {plan.attempts}: give at least 1")
 
 
 def _watch(

@@ -82,10 +82,10 @@ def test_the_pattern_is_flown_by_the_phones_raw_sensors(
     settings = Settings(
         port=port,
         phone=(sensors_port, positions_port),
-        frame_rate_hz=100.0,
+        frame_rate_hz=60.0,
         frame_rates_hz=None,
     )
-    plan = Plan(words, settings, legs=2, pattern=pattern, steady_s=RAW_STANDBY_S)
+    plan = Plan(words, settings, legs=2, pattern=pattern, steady_s=RAW_STANDBY_S, attempts=5)
     flown = fly(plan, print)
     assert [failure for failure in flown.failures if "missed" not in failure] == []
     assert flown.report is not None
