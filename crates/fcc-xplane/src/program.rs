@@ -52,13 +52,24 @@ fn has_open(process: &Path, link: &str) -> bool {
 
 /// When a process was started, unless it has ended.
 fn started(process: u32) -> Option<u64> {
-    let stat = fs::read(format!("/proc/{process}/stat")).ok()?;
+    let folder = format!("/proc/{process}");
+    let (has_ended, started) = state(Path::new(&folder))?;
+    // Other threads may outlive the first one.
+    let lives = |thread: &Path| state(thread).is_some_and(|(has_ended, _)| !has_ended);
+    let mut threads = fs::read_dir(format!("{folder}/task")).into_iter().flatten();
+    let is_gone = has_ended && !threads.any(|entry| entry.is_ok_and(|entry| lives(&entry.path())));
+    (!is_gone).then_some(started)
+}
+
+/// Whether a process or thread has ended, and when it was started.
+fn state(folder: &Path) -> Option<(bool, u64)> {
+    let stat = fs::read(folder.join("stat")).ok()?;
     let stat = String::from_utf8_lossy(&stat);
     // Its name may contain anything.
     let (_, rest) = stat.rsplit_once(')')?;
     let fields: Vec<&str> = rest.split_ascii_whitespace().collect();
     let has_ended = matches!(*fields.get(STATE)?, "Z" | "X");
-    (!has_ended).then_some(fields.get(STARTED)?.parse().ok()?)
+    Some((has_ended, fields.get(STARTED)?.parse().ok()?))
 }
 
 #[cfg(test)]

@@ -34,7 +34,7 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use fcc_core::framework::{ControlAuthority, PlantId, TakeoverNotice};
+use fcc_core::framework::{ControlAuthority, PlantId, Released, TakeoverNotice};
 use fcc_flight::config::Config;
 use fcc_flight::flight::Host;
 use fcc_runtime::StopHandle;
@@ -173,9 +173,12 @@ impl Host for Process<'_> {
 
     /// A helper that is not ended here releases after the end of the process:
     /// only then can nothing take control again.
-    fn end(&mut self, released: bool) {
-        if let Some(plant) = self.plant.as_mut().filter(|_| released) {
-            plant.notice.release(plant.notice.number());
+    fn end(&mut self, released: Released) {
+        if let Some(plant) = self.plant.as_mut().filter(|_| released.is_over()) {
+            // One that has ended may have been a relay: the next start looks again.
+            if released == Released::Confirmed {
+                plant.notice.release(plant.notice.number());
+            }
             plant.helper.end();
             plant.lock.remove_files();
         }
@@ -242,6 +245,9 @@ impl Plant {
         if begins || (held.is_some() && self.checked.elapsed() >= CHECK_EVERY) {
             self.checked = Instant::now();
             self.end_earlier_helper();
+            if let Some(plant) = &held {
+                self.notice.store_again(plant);
+            }
         }
         if let Some(plant) = held.filter(|_| begins) {
             self.authority.prepare_release(&plant);

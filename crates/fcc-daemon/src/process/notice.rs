@@ -107,6 +107,14 @@ impl Notice {
         true
     }
 
+    /// Stores once more that this plant is held, if another program has overwritten it.
+    pub(super) fn store_again(&self, plant: &PlantId) {
+        let file = self.files.iter().rfind(|(known, _)| known == plant);
+        if let Some((_, file)) = file.filter(|(_, file)| !self.is_released() && !file.is_held()) {
+            file.take(self.number());
+        }
+    }
+
     /// From now on this helper is told, whose pipe never waits.
     ///
     /// # Errors

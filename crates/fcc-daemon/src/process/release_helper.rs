@@ -164,7 +164,7 @@ pub(crate) fn run_release_helper(
     }
     let released = release(authority.as_ref(), &plant, RELEASE_FOR)?;
     // The next start need not release it.
-    if released.is_over()
+    if released == Released::Confirmed
         && let Some(folder) = folder
         && let Ok(file) = PlantFile::open(&folder, &authority.unique(&plant))
     {
@@ -179,7 +179,8 @@ pub(crate) fn run_release_helper(
 }
 
 /// Releases what is held until that is confirmed. What prevents it may pass: a
-/// network that is down, ports that another program has.
+/// network that is down, ports that another program has; and what has ended may have
+/// been a relay, behind which the simulator is.
 fn release(
     authority: &dyn ControlAuthority,
     plant: &PlantId,
@@ -189,7 +190,7 @@ fn release(
     loop {
         let left = within.saturating_sub(begun.elapsed());
         match authority.release(plant, left, &mut || false) {
-            Err(_) if left > AGAIN_AFTER => thread::sleep(AGAIN_AFTER),
+            Err(_) | Ok(Released::Unreachable) if left > AGAIN_AFTER => thread::sleep(AGAIN_AFTER),
             result => return result,
         }
     }

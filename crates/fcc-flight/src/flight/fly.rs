@@ -270,11 +270,11 @@ fn await_release(
     // After a hang the watchdog has released the controls, but the loop might
     // still take them again, so the host keeps its release helper.
     if matches!(report.ending, Ending::Hung) {
-        host.end(false);
+        host.end(Released::Unconfirmed);
         return report;
     }
     let held = authority.and_then(|authority| authority.held().map(|plant| (authority, plant)));
-    let confirmed = held.is_none_or(|(authority, plant)| {
+    let released = held.map_or(Released::Confirmed, |(authority, plant)| {
         let released = authority.release(&plant, GIVE_BACK_WITHIN, &mut || false);
         let is_over = released.is_ok_and(Released::is_over);
         let continues = if is_over { "" } else { host.continue_release() };
@@ -302,11 +302,11 @@ fn await_release(
                 )
             }
         });
-        is_over
+        released.unwrap_or(Released::Unconfirmed)
     });
-    host.end(confirmed);
+    host.end(released);
     LoopReport {
-        released: report.released && confirmed,
+        released: report.released && released.is_over(),
         ..report
     }
 }

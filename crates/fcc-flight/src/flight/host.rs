@@ -3,7 +3,7 @@
 use std::io;
 use std::sync::Arc;
 
-use fcc_core::framework::{ControlAuthority, PlantId};
+use fcc_core::framework::{ControlAuthority, PlantId, Released};
 use fcc_runtime::StopHandle;
 
 /// What only the host program can do: catch signals, keep other programs from
@@ -62,8 +62,8 @@ pub trait Host {
         ""
     }
 
-    /// The flight is over; whether the release of the controls is confirmed.
-    fn end(&mut self, _released: bool) {}
+    /// The flight is over, and so is the release of the controls, if they were held.
+    fn end(&mut self, _released: Released) {}
 
     /// What ended the flight from outside, as text for users.
     fn interrupted_by(&self) -> Option<&'static str> {
