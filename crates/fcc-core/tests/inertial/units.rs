@@ -131,6 +131,36 @@ fn the_first_of_two_that_is_wrong_is_left_within_seconds() {
     assert!(flown.roll_deg < 5.0, "{}", flown.roll_deg);
 }
 
+/// Put into its socket the wrong way round, and with two wires or keys exchanged.
+#[test]
+fn one_that_is_turned_or_has_swapped_axes_is_left() {
+    let turned: Fault = |measured, unit, _| {
+        if unit == 0 {
+            let rates = &mut measured.raw_body_rates.value;
+            rates.roll_radps *= -1.0;
+            rates.pitch_radps *= -1.0;
+            let force = &mut measured.raw_specific_force.value;
+            force.x_mps2 *= -1.0;
+            force.y_mps2 *= -1.0;
+        }
+    };
+    let swapped: Fault = |measured, unit, _| {
+        if unit == 0 {
+            let rates = &mut measured.raw_body_rates.value;
+            std::mem::swap(&mut rates.roll_radps, &mut rates.yaw_radps);
+        }
+    };
+    for fault in [turned, swapped] {
+        let flown = fly(2, fault);
+        let &[(at_s, 1)] = &flown.changes[..] else {
+            panic!("{:?}", flown.changes)
+        };
+        assert!((0.2..5.0).contains(&at_s), "{at_s}");
+        assert!(!flown.doubted_at_the_end);
+        assert!(flown.roll_deg < 5.0, "{}", flown.roll_deg);
+    }
+}
+
 #[test]
 fn of_three_the_first_two_that_are_wrong_are_left_one_after_the_other() {
     let flown = fly(3, |measured, unit, _| inverted(&[0, 1], measured, unit));
