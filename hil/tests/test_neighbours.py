@@ -194,6 +194,25 @@ def test_what_is_held_is_stored_when_the_run_folder_is_full(
                 assert again.end(signal.SIGTERM).exit_code == SUCCESS
 
 
+def test_a_mark_that_is_overwritten_in_flight_is_stored_again(fccd: Path, tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    run.mkdir(mode=0o700)
+    environment = {"RUNTIME_DIRECTORY": str(run)}
+    with flight(fccd, tmp_path, environment=environment) as (simulator, daemon):
+        engage(simulator, daemon)
+        (mark,) = run.glob(f"X-Plane at 127.0.0.1:{simulator.port} in *")
+        taken = mark.read_bytes()
+        mark.write_bytes(bytes(len(taken)))
+        wait_until(lambda: mark.read_bytes() == taken, "it is stored again")
+        daemon.send(signal.SIGSTOP)
+        kill_helpers(daemon)
+        daemon.end(signal.SIGKILL)
+        simulator.write(ENGAGE_SWITCH, 0.0)
+        with start(fccd, tmp_path, tmp_path / "fccd.toml", environment) as again:
+            assert "they are released" in again.wait_for(CUT_OFF)
+            wait_until(lambda: not simulator.progress().overridden, "they are")
+
+
 def test_a_place_that_another_daemon_took_meanwhile_is_said(fccd: Path, tmp_path: Path) -> None:
     run = tmp_path / "run"
     run.mkdir(mode=0o700)

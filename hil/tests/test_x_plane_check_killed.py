@@ -10,7 +10,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from daemon_under_test import helpers_of, start, wait_until, write_config
+from daemon_under_test import engage, helpers_of, start, wait_until, write_config
 from test_release_helper import CUT_OFF
 
 from fcc_hil.cockpit import OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES
@@ -75,6 +75,26 @@ def test_a_deflection_is_released_by_the_next_start_if_its_helper_is_killed_too(
         with start(fccd, tmp_path, tmp_path / "fccd.toml") as daemon:
             assert "they are released" in daemon.wait_for(CUT_OFF)
             wait_until(lambda: are_set(simulator, 0.0), "the controls are released")
+
+
+def test_nothing_is_deflected_that_another_daemon_flies(fccd: Path, tmp_path: Path) -> None:
+    with StandInProcess(Settings(port=0, version=121_000)) as simulator:
+        config = write_config(tmp_path, simulator.port)
+        with start(fccd, tmp_path, config) as daemon:
+            engage(simulator, daemon)
+            found = subprocess.run(
+                [fccd, "x-plane", "identify", "--by-hand", "--config", config],
+                cwd=tmp_path,
+                stdin=subprocess.DEVNULL,
+                capture_output=True,
+                text=True,
+                timeout=PATIENCE_S,
+                check=False,
+            )
+            assert "another fccd flies this X-Plane: end it first" in found.stderr
+            assert found.returncode == 1
+            assert are_set(simulator, 1.0)
+            assert "engaged -> " not in daemon.log
 
 
 def test_ctrl_z_does_not_stop_a_deflection(fccd: Path, tmp_path: Path) -> None:

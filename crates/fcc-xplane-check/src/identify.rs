@@ -165,7 +165,8 @@ pub enum FlownBy {
 ///
 /// `held` is called with X-Plane before the measurement itself takes its
 /// controls, and with none after X-Plane has confirmed their release: a caller
-/// that is killed between the two needs another process to release them.
+/// that is killed between the two needs another process to release them. If it returns
+/// false, they are not taken.
 ///
 /// # Errors
 /// If it could not begin, or if it was ended: by the envelope, by a control
@@ -174,7 +175,7 @@ pub fn identify(
     request: Request,
     by: FlownBy,
     screen: &mut dyn Screen,
-    held: &mut dyn FnMut(Option<PlantId>),
+    held: &mut dyn FnMut(Option<PlantId>) -> bool,
 ) -> Result<Identified, IdentifyError> {
     let mut bench = open(request, screen)?;
     let found = fly(&mut bench, by, held).map_err(|stop| {
@@ -191,7 +192,7 @@ pub fn identify(
 fn fly(
     bench: &mut Bench<'_>,
     by: FlownBy,
-    held: &mut dyn FnMut(Option<PlantId>),
+    held: &mut dyn FnMut(Option<PlantId>) -> bool,
 ) -> Result<Identified, Stop> {
     begins(bench)?;
     let mut responses = Vec::new();
@@ -199,7 +200,9 @@ fn fly(
     for control in &CONTROLS {
         steady(bench, by)?;
         airspeed_kt = bench.number(Watched::Airspeed);
-        held(plant_at(bench.link.simulator()));
+        if !held(plant_at(bench.link.simulator())) {
+            return failed("another fccd flies this X-Plane: end it first".to_owned());
+        }
         let flown = deflect(bench, control);
         let released = release(bench);
         if released.is_ok() {

@@ -77,6 +77,7 @@ mod tests {
     use std::net::UdpSocket;
     use std::os::unix::fs::MetadataExt as _;
     use std::process::Command;
+    use std::time::{Duration, Instant};
 
     use super::*;
 
@@ -93,6 +94,26 @@ mod tests {
         assert_eq!(own.process, std::process::id());
         drop(socket);
         assert!(!own.has_ended(), "a port that is closed is no end");
+
+        // It ends its first thread, and another one goes on.
+        let script = "import ctypes, platform, threading, time\n\
+                      threading.Thread(target=time.sleep, args=(60,)).start()\n\
+                      ctypes.CDLL(None).syscall(\n\
+                      60 if platform.machine() == 'x86_64' else 93, 0)";
+        let mut child = Command::new("python3")
+            .args(["-c", script])
+            .spawn()
+            .unwrap();
+        let folder = format!("/proc/{}", child.id());
+        let program = Program::of(child.id()).unwrap();
+        let began = Instant::now();
+        while !state(Path::new(&folder)).unwrap().0 {
+            assert!(began.elapsed() < Duration::from_secs(30), "no python3?");
+        }
+        assert!(!program.has_ended(), "its other thread goes on");
+        child.kill().unwrap();
+        child.wait().unwrap();
+        assert!(program.has_ended());
 
         let mut child = Command::new("sleep").arg("60").spawn().unwrap();
         let program = Program::of(child.id()).unwrap();

@@ -123,35 +123,49 @@ impl PlantFile {
     }
 }
 
-/// Marks a plant as held for the next daemon, of a program without a loop. It locks
-/// nothing: the daemon that it has started may fly the plant in between.
+/// Marks a plant as held for the next daemon, of a program without a loop.
 pub(crate) struct Mark {
     authority: Option<Arc<dyn ControlAuthority>>,
     folder: Option<RunFolder>,
+    /// Not if the daemon that it has started flies the plant in between.
+    locks: bool,
     file: Option<PlantFile>,
 }
 
 impl Mark {
-    /// For the plant of this configuration.
-    pub(crate) fn of(config: &Config) -> Self {
+    /// For the plant of this configuration; whether it `locks` the plant, too.
+    pub(crate) fn of(config: &Config, locks: bool) -> Self {
         Self {
             authority: authority_without_connection(config),
             folder: RunFolder::of_this_process(&mut |why| output::message(why)),
+            locks,
             file: None,
         }
     }
 
-    /// Control of this plant is taken, with this number as the release helper knows it.
-    pub(crate) fn set(&mut self, plant: &PlantId, number: u64) {
-        // The daemon may have removed the file since.
-        self.file = self
-            .authority
-            .as_ref()
-            .zip(self.folder.as_ref())
-            .and_then(|(authority, folder)| PlantFile::open(folder, &authority.unique(plant)).ok());
+    /// Control of this plant is to be taken, with this number as the release helper
+    /// will know it. Returns whether no other daemon has it.
+    pub(crate) fn set(&mut self, plant: &PlantId, number: u64) -> bool {
+        let Some((authority, folder)) = self.authority.as_ref().zip(self.folder.as_ref()) else {
+            return true;
+        };
+        let unique = authority.unique(plant);
+        // Anew each time: a daemon may have removed the file since.
+        let opened = if self.locks {
+            PlantFile::locked(folder, &unique)
+        } else {
+            PlantFile::open(folder, &unique).map(Some)
+        };
+        self.file = match opened {
+            Ok(Some(file)) => Some(file),
+            Ok(None) => return false,
+            // As a daemon without a lock flies.
+            Err(_) => None,
+        };
         if let Some(file) = &self.file {
             file.take(number);
         }
+        true
     }
 
     /// Its release is confirmed.

@@ -6,7 +6,7 @@ use std::process::{Output, Stdio};
 
 use super::fccd;
 
-const CONFIG: &str = "[built-in]\nraw_sensors = \"phone\"\nengage_at_s = 6.0\n\
+const CONFIG: &str = "[built-in]\nraw_sensors = \"phone\"\n\
                       [navigation]\nmethod = \"kalman\"\n";
 
 fn with_config(folder: &Path, more: &str) {

@@ -25,14 +25,19 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<Exit, Failure> {
     // process is killed, or X-Plane has not confirmed their release.
     let notice = Notice::of_this_process();
     let _helper = start_helper(&config, notice, None);
-    let mut mark = Mark::of(&config);
+    let mut mark = Mark::of(&config, args.by_hand);
     let mut held = |plant: Option<PlantId>| {
         if let Some(plant) = plant {
-            notice.taking(&plant);
-            mark.set(&plant, notice.number());
+            let number = notice.number().wrapping_add(1);
+            let is_free = mark.set(&plant, number);
+            if is_free {
+                notice.taking(&plant);
+            }
+            is_free
         } else {
             notice.release(notice.number());
             mark.remove(notice.number());
+            true
         }
     };
     let result = carry_out(request, by, &mut terminal, &mut held);
