@@ -200,7 +200,8 @@ def test_a_mark_that_is_overwritten_in_flight_is_stored_again(fccd: Path, tmp_pa
     environment = {"RUNTIME_DIRECTORY": str(run)}
     with flight(fccd, tmp_path, environment=environment) as (simulator, daemon):
         engage(simulator, daemon)
-        (mark,) = run.glob(f"X-Plane at 127.0.0.1:{simulator.port} in *")
+        plant = f"X-Plane at 127.0.0.1:{simulator.port} in "
+        (mark,) = (file for file in run.iterdir() if file.name.removeprefix(plant).isdigit())
         taken = mark.read_bytes()
         mark.write_bytes(bytes(len(taken)))
         wait_until(lambda: mark.read_bytes() == taken, "it is stored again")

@@ -87,16 +87,18 @@ impl KeptHelper {
             return false;
         }
         let ended = match self.helper.as_mut().map(ReleaseHelper::has_ended) {
-            Some(true) => Some("had ended"),
-            Some(false) if !self.has_read(notice) => Some("did not read what it was told"),
+            Some(true) => Some("the release helper had ended, and was started again"),
+            Some(false) if !self.has_read(notice) => {
+                Some("the release helper did not read what it was told, and was started again")
+            }
             Some(false) => return false,
             None => None,
         };
         self.end();
         if self.again == 0 {
-            if let Some(why) = ended {
+            if ended.is_some() {
                 report(format!(
-                    "the release helper {why}, too often: it is not started any more; {BY_HAND}"
+                    "the release helper has ended again, and is not started any more: {BY_HAND}"
                 ));
             }
             return false;
@@ -106,10 +108,8 @@ impl KeptHelper {
         }
         // A failed attempt does not count: it took no pipe.
         self.again -= 1;
-        report(ended.map_or_else(
-            || "the release helper, which could not be started before, was started".to_owned(),
-            |why| format!("the release helper {why}, and was started again"),
-        ));
+        let not_before = "the release helper, which could not be started before, was started";
+        report(ended.unwrap_or(not_before).to_owned());
         true
     }
 
