@@ -157,8 +157,10 @@ def test_it_is_flown_on(fault: Fault, for_s: float) -> None:
 def test_what_repeats_itself_is_named(fault: Fault, named: str) -> None:
     """Though it is flown on; and not any more once it measures again."""
     _, rig, _ = fly(fault, 30.0)
-    begins, ends = (event for event in rig.events if named in event.text)
+    begins, *_, ends = (event for event in rig.events if named in event.text)
+    assert begins.text.startswith("now: ")
     assert FAILS_S < begins.time_s <= FAILS_S + 3.0
+    assert ends.text.startswith("no longer: ")
     assert FAILS_S + 30.0 <= ends.time_s <= FAILS_S + 31.0
 
 
