@@ -7,11 +7,8 @@ import ctypes
 import os
 import random
 import resource
-import select
 import signal
-import socket
 import subprocess
-import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -28,7 +25,6 @@ from daemon_under_test import (
     wait_until,
     write_config,
 )
-from other_user import needs_two_users
 
 from fcc_hil.cockpit import OVERRIDE_JOYSTICK
 from fcc_hil.fly import ENGAGE_SWITCH
@@ -36,7 +32,6 @@ from fcc_hil.process import StandInProcess
 from fcc_hil.standin import Settings
 
 SUCCESS = 0
-NOT_RELEASED = 5
 CUT_OFF = "an earlier flight was cut off and may have left the controls held"
 KILLS = int(os.environ.get("FCCD_KILLS", "4"))
 """How many flights are killed; 100 take ten minutes: `make test-attacks`."""
@@ -154,80 +149,6 @@ def test_a_helper_does_not_wait_for_a_debugger_that_is_stopped(fccd: Path, tmp_p
                 assert status.exists(), "it has not ended yet"
             finally:
                 tracer.kill()
-
-
-class Relay(threading.Thread):
-    """A program at the simulator's port that passes everything on, as port forwarding does."""
-
-    def __init__(self, simulator: int) -> None:
-        super().__init__(daemon=True)
-        self._to = ("127.0.0.1", simulator)
-        self._answers = _bound(0)
-        self._listening: socket.socket | None = _bound(0)
-        self.port: int = self._listening.getsockname()[1]
-        self._daemon: tuple[str, int] | None = None
-        self._lock = threading.Lock()
-
-    def run(self) -> None:
-        while True:
-            with self._lock:
-                listening = self._listening
-            sockets = [self._answers] if listening is None else [self._answers, listening]
-            with contextlib.suppress(OSError, ValueError):
-                for ready in select.select(sockets, [], [], 0.01)[0]:
-                    datagram, sender = ready.recvfrom(65_535)
-                    if ready is listening:
-                        self._daemon = sender
-                        self._answers.sendto(datagram, self._to)
-                    elif self._daemon is not None:
-                        self._answers.sendto(datagram, self._daemon)
-
-    def close(self) -> None:
-        with self._lock:
-            assert self._listening is not None
-            self._listening.close()
-            self._listening = None
-
-    def open(self) -> None:
-        with self._lock:
-            self._listening = _bound(self.port)
-
-
-def _bound(port: int) -> socket.socket:
-    bound = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    bound.bind(("127.0.0.1", port))
-    bound.setblocking(False)
-    return bound
-
-
-WITHOUT_CAPABILITIES = ["setpriv", "--bounding-set=-all", "--inh-caps=-all"]
-"""So that it cannot look at a process that has them, as at one of another user."""
-
-
-@pytest.mark.parametrize("by", [signal.SIGTERM, signal.SIGKILL])
-@pytest.mark.parametrize("sees", ["it", pytest.param("it not", marks=needs_two_users)])
-def test_a_port_that_is_closed_is_not_the_end_of_a_simulator(
-    fccd: Path, tmp_path: Path, by: signal.Signals, sees: str
-) -> None:
-    """It was taken for that, and the controls stayed held with exit code 0."""
-    with StandInProcess(Settings(port=0)) as simulator:
-        relay = Relay(simulator.port)
-        relay.start()
-        config = write_config(tmp_path, relay.port)
-        words: list[str | Path] = [fccd, "run", "--config", config, "--json"]
-        with DaemonUnderTest(words if sees == "it" else WITHOUT_CAPABILITIES + words, tmp_path) as (
-            daemon
-        ):
-            engage(simulator, daemon)
-            relay.close()
-            ending = daemon.end(by, within_s=8.0)
-            # Longer than a release that is believed to be over.
-            time.sleep(4.0)
-            assert simulator.progress().overridden
-            assert "has ended, and nothing holds" not in daemon.log
-            assert ending.exit_code == (NOT_RELEASED if by is signal.SIGTERM else -by)
-            relay.open()
-            assert_released(simulator)
 
 
 def test_a_helper_that_does_not_read_is_replaced(fccd: Path, tmp_path: Path) -> None:
