@@ -171,11 +171,19 @@ class DaemonUnderTest:
         return Ending(exit_code, json.loads(printed) if printed else {}, self.log)
 
 
-def wait_until(holds: Callable[[], bool], what: str, within_s: float = PATIENCE_S) -> None:
-    """Wait until a condition is met; `what` describes it."""
+def wait_until(
+    holds: Callable[[], bool],
+    what: str,
+    within_s: float = PATIENCE_S,
+    *,
+    daemons: Sequence[DaemonUnderTest] = (),
+) -> None:
+    """Wait until a condition is met; `what` describes it, and the daemons' messages why not."""
     deadline_s = time.monotonic() + within_s
     while not holds():
-        assert time.monotonic() < deadline_s, f"not within {within_s:.0f} s: {what}"
+        if time.monotonic() >= deadline_s:
+            logs = "\n".join(daemon.log for daemon in daemons)
+            raise AssertionError(f"not within {within_s:.0f} s: {what}\n{logs}")
         time.sleep(_LOOK_S)
 
 

@@ -285,11 +285,12 @@ def test_whoever_is_killed_the_controls_are_released_in_the_end(fccd: Path, tmp_
             killed_s = time.monotonic()
             simulator.write(ENGAGE_SWITCH, 0.0)
             if order is _daemon or order is _helper:
-                wait_until(lambda: not simulator.progress().overridden, what)
+                wait_until(lambda: not simulator.progress().overridden, what, daemons=[daemon])
                 released_s.append(time.monotonic() - killed_s)
                 continue
             with start(fccd, tmp_path, config) as again:
-                wait_until(lambda: not simulator.progress().overridden, what)
+                both = [daemon, again]
+                wait_until(lambda: not simulator.progress().overridden, what, daemons=both)
                 released_s.append(time.monotonic() - killed_s)
                 again.wait_until_ready()
                 ending: Ending = again.end(signal.SIGTERM)
