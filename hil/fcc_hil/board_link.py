@@ -179,6 +179,8 @@ class RunningBoard:
         )
         self._lock = threading.Lock()
         self._board = ServoBoard()
+        self._last = Control.FREE
+        self._silent_s = 0.0
         self._runs = True
         self._thread = threading.Thread(target=self._run, name="servo-board", daemon=True)
         self._thread.start()
@@ -223,6 +225,8 @@ class RunningBoard:
         with self._lock:
             self._board = ServoBoard()
             self._end.start_again()
+            # Before what waits to be received, which may take control at once.
+            self._note_change(time.monotonic())
 
     def close(self) -> None:
         """End it."""
@@ -234,8 +238,6 @@ class RunningBoard:
         # A microcontroller has nothing else to do: above the simulator, if that is granted.
         with contextlib.suppress(OSError):
             os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(_PRIORITY))
-        last = Control.FREE
-        silent_s = 0.0
         while self._runs:
             with self._lock:
                 now_s = time.monotonic()
@@ -245,9 +247,14 @@ class RunningBoard:
                 reply = board.poll(now_s, self.readings)
                 if reply is not None:
                     self._end.send(reply, board.peer)
-                if board.control is not last:
-                    last = board.control
-                    driven = board.drive(Controls())
-                    self.changes.append(Change(now_s, last, driven, board.silent_s, silent_s))
-                silent_s = board.silent_s
+                self._note_change(now_s)
             time.sleep(_PASS_S)
+
+    def _note_change(self, now_s: float) -> None:
+        board = self._board
+        if board.control is not self._last:
+            self._last = board.control
+            driven = board.drive(Controls())
+            change = Change(now_s, board.control, driven, board.silent_s, self._silent_s)
+            self.changes.append(change)
+        self._silent_s = board.silent_s
