@@ -3,7 +3,6 @@
 //!
 //! ```text
 //! .plan, QGC WPL 110 ─► Plan ─► check ─► problems
-//!                        └────► Route (fcc-core), which a tick reads
 //! ```
 //!
 //! A [`Plan`] is what the file says: degrees, metres and metres per second, in
@@ -13,14 +12,18 @@
 //!
 //! Nothing here runs in a tick: it allocates, and reads files.
 
+mod check;
 mod command;
 mod file;
+mod geodesic;
+mod inside;
 mod item;
 mod plan;
 mod problem;
 mod qgc_plan;
 mod wpl;
 
+pub use check::{Conditions, check};
 pub use file::{FileError, Format, read, read_file, write};
 pub use item::{Altitude, AltitudeDatum, Item, Loiter, LoiterEnd, Place, Speed};
 pub use plan::{

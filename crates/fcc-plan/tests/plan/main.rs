@@ -2,6 +2,8 @@
 #![cfg(test)]
 
 mod any_plan;
+mod checking;
+mod geometry;
 mod reading;
 mod refusals;
 mod round_trip;

@@ -40,8 +40,6 @@ impl LocalPlane {
     /// longitude says which way north is.
     pub fn at(latitude_rad: f64, longitude_rad: f64) -> Self {
         let (north, east) = axes(latitude_rad, longitude_rad);
-        // M and N of the ellipsoid; the formula for degrees of longitude is that
-        // of the equator without its cosine.
         let (meridian, _) = metres_per_radian(latitude_rad, 0.0);
         let prime_vertical = prime_vertical_m(sin(latitude_rad));
         Self {
@@ -69,9 +67,8 @@ impl LocalPlane {
         if across < 1e-6 {
             return chord;
         }
-        let up = self.north.cross(&self.east);
-        // Positive down, with the third axis of north and east.
-        let angle = atan2(across, self.radius_m - from_origin.dot(&up));
+        let down = self.north.cross(&self.east);
+        let angle = atan2(across, self.radius_m - from_origin.dot(&down));
         chord * (self.radius_m * angle / across)
     }
 
