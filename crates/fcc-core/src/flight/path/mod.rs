@@ -3,7 +3,6 @@
 //!
 //! ```text
 //! position ─► LocalPlane ─► Path::nearest ─► L1 or Npfg ─► BankCommand
-//! Route ──────────────────► Follower ─────────┘
 //! ```
 //!
 //! | type | what |
