@@ -7,6 +7,7 @@
 //! | [`navigation`] | position, attitude and motion |
 //! | [`inertial`] | position, attitude and motion from raw sensors |
 //! | [`guidance`] | set points |
+//! | [`path`] | the bank that follows lines, arcs and circles over the ground |
 //! | [`control`] | surfaces and throttle |
 
 mod altimeter;
@@ -19,6 +20,7 @@ pub mod inertial;
 mod measurements;
 pub mod navigation;
 pub mod orientation;
+pub mod path;
 mod plant;
 mod raw_readings;
 mod setpoints;

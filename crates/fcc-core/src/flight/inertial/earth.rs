@@ -6,9 +6,9 @@ use libm::{cos, sin, sqrt};
 use crate::units::GRAVITY_MPS2;
 
 /// The semi-major axis, m.
-const SEMI_MAJOR_AXIS_M: f64 = 6_378_137.0;
+pub(crate) const SEMI_MAJOR_AXIS_M: f64 = 6_378_137.0;
 /// The square of the first eccentricity.
-const ECCENTRICITY_2: f64 = 6.694_379_990_14e-3;
+pub(crate) const ECCENTRICITY_2: f64 = 6.694_379_990_14e-3;
 /// Normal gravity at the equator, m/s², and the constant of Somigliana's
 /// formula.
 const EQUATORIAL_GRAVITY_MPS2: f64 = 9.780_325_335_9;

@@ -24,6 +24,7 @@ mod stuck;
 mod thesis;
 mod units;
 
+pub(crate) use earth::{ECCENTRICITY_2, SEMI_MAJOR_AXIS_M};
 pub use earth::{gravity_mps2, metres_per_radian};
 pub use kalman::{Innovation, KalmanConfig, KalmanNavigation};
 pub use magnetism::{MAGNETIC_MODEL_YEARS, earth_field_ut};

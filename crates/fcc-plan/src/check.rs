@@ -1,0 +1,264 @@
+//! Whether an aircraft can fly a plan, in any wind up to a speed.
+//!
+//! Items are taken in their order; a jump is checked for its target and its end, and
+//! not for the leg that it makes. Turns are those between places; where a loiter
+//! begins or ends there is none.
+
+use fcc_core::flight::path::turn::{Turn, smallest_circle_m};
+
+use crate::inside::{fence_problem, obstacle_problem};
+use crate::item::{Altitude, AltitudeDatum, Item, Loiter, Place, Speed};
+use crate::plan::{Plan, limits};
+use crate::problem::Problem;
+
+/// What flies the plan, and in what wind.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Conditions {
+    /// True airspeed where the plan gives none, m/s.
+    pub airspeed_mps: f64,
+    /// The strongest wind, from any direction, m/s.
+    pub wind_mps: f64,
+    /// The largest bank of a turn, rad, below π/2.
+    pub bank_rad: f64,
+    /// The fastest climb, m/s.
+    pub climb_mps: f64,
+    /// The fastest descent, m/s.
+    pub descent_mps: f64,
+    /// The radius of a loiter whose item has none, m.
+    pub loiter_radius_m: f64,
+}
+
+/// A leg between two places, with its altitudes above sea level, m.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Leg {
+    pub(crate) from: (Place, f64),
+    pub(crate) to: (Place, f64),
+    pub(crate) length_m: f64,
+    pub(crate) course_deg: f64,
+    arrival_deg: f64,
+    /// The number of the item at its end.
+    item: usize,
+    /// Whether there is a turn of the path at its end.
+    turns: bool,
+    airspeed_mps: f64,
+}
+
+/// Checks a plan as a whole.
+///
+/// Altitudes above terrain are a problem: there are no elevations yet.
+///
+/// # Errors
+/// All problems with item and reason, at most [`limits::PROBLEMS`].
+pub fn check(plan: &Plan, conditions: &Conditions) -> Result<(), Vec<Problem>> {
+    let mut problems = Vec::new();
+    if plan.items.is_empty() {
+        problems.push(Problem::of("items", "there are none: give at least one"));
+    }
+    let legs = legs(plan, conditions, &mut problems);
+    for (n, leg) in legs.iter().enumerate() {
+        let next = legs.get(n + 1);
+        let found = [
+            climb(leg, conditions),
+            next.and_then(|next| {
+                turn(
+                    leg,
+                    next,
+                    n.checked_sub(1).and_then(|n| legs.get(n)),
+                    conditions,
+                )
+            }),
+            fence_problem(leg, &plan.fence),
+            obstacle_problem(leg, &plan.obstacles),
+        ];
+        for (field, message) in found.into_iter().flatten() {
+            problems.push(Problem::of_item(leg.item, field, message));
+        }
+    }
+    problems.sort_by_key(|problem| problem.item);
+    problems.truncate(limits::PROBLEMS);
+    if problems.is_empty() {
+        Ok(())
+    } else {
+        Err(problems)
+    }
+}
+
+/// The legs of a plan; what is wrong with single items is noted.
+fn legs(plan: &Plan, conditions: &Conditions, problems: &mut Vec<Problem>) -> Vec<Leg> {
+    let mut legs: Vec<Leg> = Vec::new();
+    let home = plan.home;
+    let mut at = home.map(|home| (home.place, home.altitude_m));
+    let mut airspeed_mps = plan.cruise_mps.unwrap_or(conditions.airspeed_mps);
+    for (n, item) in plan.items.iter().enumerate() {
+        let number = n + 1;
+        let mut note = |field: &str, message: String| {
+            problems.push(Problem::of_item(number, field, message));
+        };
+        match *item {
+            Item::ChangeSpeed {
+                speed: Some(Speed::AirspeedMps(mps)),
+                ..
+            } => airspeed_mps = mps,
+            Item::Jump { to, times } => {
+                if let Some(message) = jump_problem(plan, number, to, times) {
+                    note("jump", message);
+                }
+            }
+            Item::Loiter(loiter) => {
+                if let Some(message) = loiter_problem(&loiter, airspeed_mps, conditions) {
+                    note("radius", message);
+                }
+            }
+            _ => {}
+        }
+        if conditions.wind_mps >= airspeed_mps {
+            let message = format!(
+                "{airspeed_mps:.1} m/s is not more than the wind, {:.1} m/s: give a higher one",
+                conditions.wind_mps
+            );
+            note("airspeed", message);
+        }
+        let altitude_m = match item
+            .altitude()
+            .map(|altitude| above_sea_level(altitude, plan))
+        {
+            Some(Err(message)) => {
+                note("altitude", message.to_owned());
+                None
+            }
+            Some(Ok(m)) => Some(m),
+            None => at.map(|(_, m)| m),
+        };
+        let place = match item {
+            Item::Return => home.map(|home| home.place),
+            Item::LandStart { .. } => None,
+            item => item.place(),
+        };
+        let (Some(place), Some(altitude_m)) = (place, altitude_m) else {
+            continue;
+        };
+        if let Some(from) = at {
+            let (length_m, course_deg, arrival_deg) = from.0.to(place);
+            if length_m > 0.1 {
+                let turns = matches!(item, Item::Waypoint { .. });
+                legs.push(Leg {
+                    from,
+                    to: (place, altitude_m),
+                    length_m,
+                    course_deg,
+                    arrival_deg,
+                    item: number,
+                    turns,
+                    airspeed_mps,
+                });
+            }
+        }
+        at = Some((place, altitude_m));
+    }
+    legs
+}
+
+fn above_sea_level(altitude: Altitude, plan: &Plan) -> Result<f64, &'static str> {
+    match (altitude.above, plan.home) {
+        (AltitudeDatum::SeaLevel, _) => Ok(altitude.m),
+        (AltitudeDatum::Home, Some(home)) => Ok(home.altitude_m + altitude.m),
+        (AltitudeDatum::Home, None) => {
+            Err("is above home, and the plan has no home: set it, or give it above sea level")
+        }
+        (AltitudeDatum::Terrain, _) => Err(
+            "is above terrain, and elevations are not read yet: give it above home or sea level",
+        ),
+    }
+}
+
+fn jump_problem(plan: &Plan, number: usize, to: usize, times: Option<u32>) -> Option<String> {
+    if plan.item(to).is_none() {
+        return Some(format!(
+            "to {to}: there is no such item: give 1 to {}",
+            plan.items.len()
+        ));
+    }
+    if times.is_none() {
+        return Some("never ends: give how often".to_owned());
+    }
+    // Back over items that take no way is a loop without time.
+    let between = plan
+        .items
+        .get(to.saturating_sub(1)..number)
+        .unwrap_or_default();
+    let flies = between
+        .iter()
+        .any(|item| item.place().is_some() || *item == Item::Return);
+    (to <= number && !flies)
+        .then(|| format!("to {to}: nothing is flown between: jump to an item with a place"))
+}
+
+fn loiter_problem(loiter: &Loiter, airspeed_mps: f64, conditions: &Conditions) -> Option<String> {
+    let radius_m = loiter.radius_m.unwrap_or(conditions.loiter_radius_m);
+    let least_m = smallest_circle_m(airspeed_mps, conditions.wind_mps, conditions.bank_rad)?;
+    (radius_m < least_m).then(|| {
+        format!(
+            "{radius_m:.0} m is too small at {airspeed_mps:.1} m/s in {:.1} m/s of wind with {:.0}° \
+             of bank: give at least {:.0} m",
+            conditions.wind_mps,
+            conditions.bank_rad.to_degrees(),
+            least_m.ceil()
+        )
+    })
+}
+
+/// With the wind behind, which gives the least time.
+fn climb(leg: &Leg, conditions: &Conditions) -> Option<(&'static str, String)> {
+    let seconds = leg.length_m / (leg.airspeed_mps + conditions.wind_mps);
+    let rate = (leg.to.1 - leg.from.1) / seconds;
+    let (what, most) = if rate > 0.0 {
+        ("climb", conditions.climb_mps)
+    } else {
+        ("descent", conditions.descent_mps)
+    };
+    (rate.abs() > most).then(|| {
+        let message = format!(
+            "the leg needs a {what} of {:.1} m/s, and {most:.1} m/s is the most: make it longer, \
+             or the difference of altitude smaller",
+            rate.abs()
+        );
+        ("altitude", message)
+    })
+}
+
+/// Whether the turn at the end of a leg has room on it, beside that at its begin, and
+/// on the next one.
+fn turn(
+    leg: &Leg,
+    next: &Leg,
+    before: Option<&Leg>,
+    conditions: &Conditions,
+) -> Option<(&'static str, String)> {
+    let here = turn_of(leg, next, conditions)?;
+    let begins_m = before
+        .and_then(|before| turn_of(before, leg, conditions))
+        .map_or(0.0, |turn| turn.after_m());
+    let lacks = |room_m: f64, needs_m: f64, which: &str| {
+        (needs_m > room_m).then(|| {
+            let message = format!(
+                "the turn needs {needs_m:.0} m of the leg {which}, which has {room_m:.0} m: move a \
+                 waypoint, fly slower, or turn less"
+            );
+            ("turn", message)
+        })
+    };
+    lacks(leg.length_m - begins_m, here.before_m(), "before").or_else(|| {
+        // The last one has no turn that would be checked with it.
+        lacks(next.length_m, here.after_m(), "behind")
+    })
+}
+
+fn turn_of(leg: &Leg, next: &Leg, conditions: &Conditions) -> Option<Turn> {
+    if !leg.turns {
+        return None;
+    }
+    let airspeed = leg.airspeed_mps.max(next.airspeed_mps);
+    let radius_m = smallest_circle_m(airspeed, conditions.wind_mps, conditions.bank_rad)?;
+    let through_deg = (next.course_deg - leg.arrival_deg + 540.0).rem_euclid(360.0) - 180.0;
+    Some(Turn::new(through_deg.to_radians(), radius_m))
+}

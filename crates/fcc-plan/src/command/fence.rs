@@ -1,0 +1,159 @@
+//! Fences and rally points as commands, which is how text files have them.
+
+use super::decode::{RADIUS_M, Refusal};
+use super::{ALTITUDE_M, Command, frame, id};
+use crate::item::Place;
+use crate::plan::{Circle, Fence, Polygon, RallyPoint, limits};
+
+/// The commands that a fence is; its floor and ceiling have none.
+pub(crate) fn fence_commands(fence: &Fence) -> impl Iterator<Item = Command> {
+    let back = fence.return_point.map(|(place, altitude_m)| {
+        let id = id::FENCE_RETURN_POINT;
+        command(id, frame::RELATIVE, 0.0, place, altitude_m)
+    });
+    let polygons = fence.polygons.iter().flat_map(|polygon| {
+        let id = if polygon.inclusion {
+            id::FENCE_POLYGON_INCLUSION
+        } else {
+            id::FENCE_POLYGON_EXCLUSION
+        };
+        let count = polygon.corners.len() as f64;
+        let corners = polygon.corners.iter();
+        corners.map(move |corner| command(id, frame::GLOBAL, count, *corner, 0.0))
+    });
+    let circles = fence.circles.iter().map(|circle| {
+        let id = if circle.inclusion {
+            id::FENCE_CIRCLE_INCLUSION
+        } else {
+            id::FENCE_CIRCLE_EXCLUSION
+        };
+        command(id, frame::GLOBAL, circle.radius_m, circle.centre, 0.0)
+    });
+    back.into_iter().chain(polygons).chain(circles)
+}
+
+/// The commands that rally points are.
+pub(crate) fn rally_commands(rally: &[RallyPoint]) -> impl Iterator<Item = Command> {
+    let one = |point: &RallyPoint| {
+        let (id, frame) = (id::RALLY_POINT, frame::RELATIVE);
+        command(id, frame, 0.0, point.place, point.altitude_m)
+    };
+    rally.iter().map(one)
+}
+
+fn command(id: u16, frame: u8, first: f64, place: Place, altitude_m: f64) -> Command {
+    let (latitude, longitude) = (place.latitude_deg, place.longitude_deg);
+    Command {
+        id,
+        frame,
+        parameters: [first, 0.0, 0.0, 0.0, latitude, longitude, altitude_m],
+    }
+}
+
+/// Puts a fence and rally points together from commands.
+#[derive(PartialEq, Default)]
+pub(crate) struct FenceReader {
+    pub(crate) fence: Fence,
+    pub(crate) rally: Vec<RallyPoint>,
+    /// Corners that the last polygon still lacks.
+    lacks: usize,
+    corners: usize,
+}
+
+impl FenceReader {
+    /// Takes the next command, one of a fence or a rally point.
+    pub(crate) fn take(&mut self, command: &Command) -> Result<(), Refusal> {
+        let inclusion = matches!(
+            command.id,
+            id::FENCE_POLYGON_INCLUSION | id::FENCE_CIRCLE_INCLUSION
+        );
+        match command.id {
+            id::FENCE_POLYGON_INCLUSION | id::FENCE_POLYGON_EXCLUSION => {
+                return self.corner(command, inclusion);
+            }
+            _ => self.complete()?,
+        }
+        let place = command.place()?;
+        let altitude = |name| command.within(7, name, &ALTITUDE_M);
+        match command.id {
+            id::FENCE_CIRCLE_INCLUSION | id::FENCE_CIRCLE_EXCLUSION => {
+                let radius_m = command.within(1, "radius", &RADIUS_M)?;
+                if radius_m == 0.0 {
+                    return refused("parameter 1 (radius)", "0: give the radius in m");
+                }
+                at_most(
+                    "circles of the fence",
+                    self.fence.circles.len(),
+                    limits::FENCES,
+                )?;
+                self.fence.circles.push(Circle {
+                    centre: place,
+                    radius_m,
+                    inclusion,
+                });
+            }
+            id::RALLY_POINT => {
+                at_most("rally points", self.rally.len(), limits::RALLY_POINTS)?;
+                self.rally.push(RallyPoint {
+                    place,
+                    altitude_m: altitude("altitude above home")?,
+                });
+            }
+            id::FENCE_RETURN_POINT => {
+                self.fence.return_point = Some((place, altitude("altitude above home")?));
+            }
+            other => return refused("command", &format!("{other} is not supported")),
+        }
+        Ok(())
+    }
+
+    fn corner(&mut self, command: &Command, inclusion: bool) -> Result<(), Refusal> {
+        let corner = command.place()?;
+        let most = limits::FENCE_CORNERS as f64;
+        let count = command.within(1, "corners of the polygon", &(3.0..=most))?;
+        at_most("corners of the fence", self.corners, limits::FENCE_CORNERS)?;
+        self.corners += 1;
+        let polygons = &mut self.fence.polygons;
+        if self.lacks == 0 {
+            at_most("polygons of the fence", polygons.len(), limits::FENCES)?;
+            self.lacks = count as usize;
+            polygons.push(Polygon {
+                corners: Vec::new(),
+                inclusion,
+            });
+        }
+        if let Some(polygon) = polygons.last_mut() {
+            if polygon.inclusion != inclusion {
+                let what =
+                    "the polygon before this one lacks corners: give as many as parameter 1 says";
+                return refused("command", what);
+            }
+            polygon.corners.push(corner);
+        }
+        self.lacks = self.lacks.saturating_sub(1);
+        Ok(())
+    }
+
+    /// Whether the last polygon has all of its corners.
+    pub(crate) fn complete(&self) -> Result<(), Refusal> {
+        match self.lacks {
+            0 => Ok(()),
+            lacks => refused(
+                "fence",
+                &format!("the polygon lacks {lacks} corners: give as many as parameter 1 says"),
+            ),
+        }
+    }
+}
+
+/// That one more is permitted.
+pub(crate) fn at_most(name: &str, count: usize, most: usize) -> Result<(), Refusal> {
+    if count < most {
+        return Ok(());
+    }
+    refused(name, &format!("more than {most}: give at most so many"))
+}
+
+fn refused<T>(field: &str, message: &str) -> Result<T, Refusal> {
+    Err((field.to_owned(), message.to_owned()))
+}

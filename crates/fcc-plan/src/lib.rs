@@ -1,0 +1,32 @@
+//! Flight plans: what they contain, the files they are in, and whether an
+//! aircraft can fly them.
+//!
+//! ```text
+//! .plan, QGC WPL 110 ─► Plan ─► check ─► problems
+//! ```
+//!
+//! A [`Plan`] is what the file says: degrees, metres and metres per second, in
+//! the numbers of the file, so that a plan that is read and written again is the
+//! same to the last bit and has the same [hash](Plan::hash). Everything else
+//! computes in radians.
+//!
+//! Nothing here runs in a tick: it allocates, and reads files.
+
+mod check;
+mod command;
+mod file;
+mod geodesic;
+mod inside;
+mod item;
+mod plan;
+mod problem;
+mod qgc_plan;
+mod wpl;
+
+pub use check::{Conditions, check};
+pub use file::{FileError, Format, read, read_file, write};
+pub use item::{Altitude, AltitudeDatum, Item, Loiter, LoiterEnd, Place, Speed};
+pub use plan::{
+    Circle, Fence, Home, Identity, Obstacle, Plan, PlanHash, Polygon, RallyPoint, limits,
+};
+pub use problem::Problem;

@@ -1,0 +1,279 @@
+//! Reads a `.plan`.
+
+use std::collections::HashMap;
+
+use jsonc_parser::{ParseOptions, parse_to_serde_value};
+use serde_json::Value;
+
+use super::landing::landing_pattern;
+use super::node::Node;
+use crate::command::{ALTITUDE_M, Command, RADIUS_M, Refusal, SPEED_MPS, at_most, decode, id};
+use crate::item::Item;
+use crate::plan::{Circle, Fence, Home, Obstacle, Plan, Polygon, RallyPoint, limits};
+use crate::problem::{Problem, quoted};
+
+/// JSON with comments, and nothing else that JSON has not.
+const JSON_WITH_COMMENTS: ParseOptions = ParseOptions {
+    allow_comments: true,
+    allow_loose_object_property_names: false,
+    allow_trailing_commas: true,
+    allow_missing_commas: false,
+    allow_single_quoted_strings: false,
+    allow_hexadecimal_numbers: false,
+    allow_unary_plus_numbers: false,
+    allow_bare_decimal_point_numbers: false,
+    allow_non_finite_numbers: false,
+    allow_extended_string_escapes: false,
+};
+
+/// Reads a plan.
+///
+/// # Errors
+/// All problems, at most [`limits::PROBLEMS`].
+pub(crate) fn read(text: &str) -> Result<Plan, Vec<Problem>> {
+    let text = text.trim_start_matches('\u{feff}');
+    let value: Value = parse_to_serde_value(text, &JSON_WITH_COMMENTS)
+        .map_err(|error| vec![Problem::of("", format!("is not JSON: {error}"))])?;
+    let mut reader = Reader::default();
+    let root = Node::root(&value);
+    let done = reader.root(&root);
+    reader.note(done);
+    if reader.problems.is_empty() {
+        return Ok(reader.plan);
+    }
+    reader.problems.truncate(limits::PROBLEMS);
+    Err(reader.problems)
+}
+
+#[derive(Default)]
+struct Reader {
+    plan: Plan,
+    problems: Vec<Problem>,
+}
+
+impl Reader {
+    /// Notes a refusal and continues.
+    fn note<T>(&mut self, result: Result<T, Refusal>) -> Option<T> {
+        let noted = result.map_err(|(field, message)| Problem::of(field, message));
+        noted.map_err(|problem| self.problems.push(problem)).ok()
+    }
+
+    fn root(&mut self, root: &Node<'_>) -> Result<(), Refusal> {
+        let kind = root.key("fileType")?;
+        if kind.text()? != "Plan" {
+            let given = quoted(kind.text()?);
+            return kind.refuse(format!("\"{given}\": give a file with \"Plan\""));
+        }
+        version(root, 1)?;
+        let mission = root.key("mission")?;
+        let done = self.mission(&mission);
+        self.note(done);
+        let done = self.fence(root);
+        self.note(done);
+        let done = self.rally(root);
+        self.note(done);
+        let done = self.own(root);
+        self.note(done);
+        Ok(())
+    }
+
+    fn mission(&mut self, mission: &Node<'_>) -> Result<(), Refusal> {
+        version(mission, 2)?;
+        if let Some(home) = mission.optional("plannedHomePosition")? {
+            let (place, altitude_m) = home.position()?;
+            self.plan.home = Some(Home { place, altitude_m });
+        }
+        if let Some(speed) = mission.optional("cruiseSpeed")? {
+            self.plan.cruise_mps = Some(speed.number(&SPEED_MPS)?);
+        }
+        // From the numbers that jumps name to the numbers of items.
+        let mut numbers = HashMap::new();
+        for node in mission.key("items")?.list()? {
+            let number = self.plan.items.len() + 1;
+            at_most("mission.items", self.plan.items.len(), limits::ITEMS)?;
+            match items_of(&node, number) {
+                Ok((jump_id, items)) => {
+                    numbers.insert(jump_id, number);
+                    self.plan.items.extend(items);
+                }
+                Err(problem) => {
+                    self.problems.push(problem);
+                    // Keeps the numbers of those that follow.
+                    self.plan.items.push(Item::Return);
+                }
+            }
+            if self.problems.len() >= limits::PROBLEMS {
+                return Ok(());
+            }
+        }
+        at_most("mission.items", self.plan.items.len(), limits::ITEMS + 1)?;
+        for (n, item) in self.plan.items.iter_mut().enumerate() {
+            let Item::Jump { to, .. } = item else {
+                continue;
+            };
+            if let Some(number) = numbers.get(to) {
+                *to = *number;
+                continue;
+            }
+            let what = format!("{to}: no item has this doJumpId: give one that is there");
+            let problem = Problem::of_item(n + 1, "parameter 1 (item)", what);
+            self.problems.push(problem);
+        }
+        Ok(())
+    }
+
+    fn fence(&mut self, root: &Node<'_>) -> Result<(), Refusal> {
+        let Some(fence) = root.optional("geoFence")? else {
+            return Ok(());
+        };
+        version(&fence, 2)?;
+        let mut read = Fence::default();
+        let mut corners_of_all = 0;
+        for node in entries(&fence, "polygons")? {
+            at_most(&node.path, read.polygons.len(), limits::FENCES)?;
+            let mut corners = Vec::new();
+            for corner in node.key("polygon")?.list()? {
+                at_most(&corner.path, corners_of_all, limits::FENCE_CORNERS)?;
+                corners_of_all += 1;
+                corners.push(corner.coordinate()?.0);
+            }
+            if corners.len() < 3 {
+                return node.refuse("give at least 3 corners");
+            }
+            let inclusion = node.key("inclusion")?.boolean()?;
+            read.polygons.push(Polygon { corners, inclusion });
+        }
+        for node in entries(&fence, "circles")? {
+            at_most(&node.path, read.circles.len(), limits::FENCES)?;
+            let circle = node.key("circle")?;
+            read.circles.push(Circle {
+                centre: circle.key("center")?.coordinate()?.0,
+                radius_m: radius(&circle)?,
+                inclusion: node.key("inclusion")?.boolean()?,
+            });
+        }
+        if let Some(back) = fence.optional("breachReturn")? {
+            read.return_point = Some(back.position()?);
+        }
+        self.plan.fence = read;
+        Ok(())
+    }
+
+    fn rally(&mut self, root: &Node<'_>) -> Result<(), Refusal> {
+        let Some(rally) = root.optional("rallyPoints")? else {
+            return Ok(());
+        };
+        version(&rally, 2)?;
+        for node in entries(&rally, "points")? {
+            at_most(&node.path, self.plan.rally.len(), limits::RALLY_POINTS)?;
+            let (place, altitude_m) = node.position()?;
+            self.plan.rally.push(RallyPoint { place, altitude_m });
+        }
+        Ok(())
+    }
+
+    /// What the format has no place for.
+    fn own(&mut self, root: &Node<'_>) -> Result<(), Refusal> {
+        let Some(own) = root.optional("fccd")? else {
+            return Ok(());
+        };
+        version(&own, 1)?;
+        let altitude = |key: &str| {
+            let node = own.optional(key)?;
+            node.map(|node| node.number(&ALTITUDE_M)).transpose()
+        };
+        self.plan.fence.floor_m = altitude("floor")?;
+        self.plan.fence.ceiling_m = altitude("ceiling")?;
+        for node in entries(&own, "obstacles")? {
+            at_most(&node.path, self.plan.obstacles.len(), limits::OBSTACLES)?;
+            self.plan.obstacles.push(Obstacle {
+                centre: node.key("center")?.coordinate()?.0,
+                radius_m: radius(&node)?,
+                top_m: node.key("top")?.number(&ALTITUDE_M)?,
+            });
+        }
+        Ok(())
+    }
+}
+
+/// The items that one of the file is, and the number that jumps name it by.
+fn items_of(node: &Node<'_>, number: usize) -> Result<(usize, Vec<Item>), Problem> {
+    let refused = |(field, message): Refusal| Problem::of_item(number, field, message);
+    let kind = node
+        .key("type")
+        .and_then(|kind| kind.text())
+        .map_err(refused)?;
+    let jump_id = match node.optional("doJumpId").map_err(refused)? {
+        Some(jump_id) => usize::from(jump_id.whole(u16::MAX).map_err(refused)?),
+        None => number,
+    };
+    if kind == "SimpleItem" {
+        let command = command(node).map_err(refused)?;
+        return Ok((jump_id, vec![decode(number, &command)?]));
+    }
+    let complex = node.optional("complexItemType").map_err(refused)?;
+    let kind = match complex {
+        Some(kind) => kind.text().map_err(refused)?,
+        None => kind,
+    };
+    if kind == "fwLandingPattern" {
+        let items = landing_pattern(node).map_err(refused)?;
+        return Ok((jump_id, items.to_vec()));
+    }
+    let what = format!(
+        "\"{}\" is not supported: give a SimpleItem or a fwLandingPattern",
+        quoted(kind)
+    );
+    Err(refused((format!("{}.type", node.path), what)))
+}
+
+/// The command of a simple item.
+fn command(node: &Node<'_>) -> Result<Command, Refusal> {
+    let id = node.key("command")?.whole(u16::MAX)?;
+    if id::FENCE_AND_RALLY.contains(&id) {
+        let what = format!("{id} is none of a mission: put it into geoFence or rallyPoints");
+        return node.key("command")?.refuse(what);
+    }
+    let list = node.key("params")?;
+    let numbers = list.list()?.take(8).map(|node| node.number_or_null());
+    let numbers: Vec<f64> = numbers.collect::<Result<_, _>>()?;
+    let Ok(parameters) = numbers.try_into() else {
+        return list.refuse("give 7 numbers");
+    };
+    Ok(Command {
+        id,
+        frame: node.key("frame")?.whole(255)? as u8,
+        parameters,
+    })
+}
+
+/// A radius that is more than nought.
+fn radius(node: &Node<'_>) -> Result<f64, Refusal> {
+    let radius = node.key("radius")?;
+    match radius.number(&RADIUS_M)? {
+        0.0 => radius.refuse("0: give the radius in m"),
+        radius_m => Ok(radius_m),
+    }
+}
+
+/// The entries of a list that may be missing.
+fn entries<'a>(
+    node: &Node<'a>,
+    key: &str,
+) -> Result<impl Iterator<Item = Node<'a>> + use<'a>, Refusal> {
+    let list = node.optional(key)?;
+    let entries = list.map(|list| list.list()).transpose()?;
+    Ok(entries.into_iter().flatten())
+}
+
+/// Only the present version is read: an older one has other keys.
+fn version(node: &Node<'_>, version: u16) -> Result<(), Refusal> {
+    let found = node.key("version")?;
+    match found.whole(u16::MAX)? {
+        number if number == version => Ok(()),
+        other => found.refuse(format!(
+            "{other}: only version {version} is read: open the file with a present \
+             QGroundControl and save it again"
+        )),
+    }
+}

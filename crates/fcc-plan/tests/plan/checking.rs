@@ -1,0 +1,205 @@
+//! Plans that cannot be flown, and why.
+
+use fcc_plan::{
+    Altitude, AltitudeDatum, Circle, Conditions, Home, Item, Loiter, LoiterEnd, Obstacle, Plan,
+    Polygon, check,
+};
+use proptest::prelude::*;
+
+use crate::any_plan::any_plan;
+use crate::place;
+
+const KT: f64 = 1_852.0 / 3_600.0;
+
+fn conditions(wind_kt: f64) -> Conditions {
+    Conditions {
+        airspeed_mps: 100.0 * KT,
+        wind_mps: wind_kt * KT,
+        bank_rad: 30.0_f64.to_radians(),
+        climb_mps: 3.5,
+        descent_mps: 5.0,
+        loiter_radius_m: 1_000.0,
+    }
+}
+
+const fn sea_level(m: f64) -> Altitude {
+    Altitude {
+        m,
+        above: AltitudeDatum::SeaLevel,
+    }
+}
+
+/// North along a meridian from 60° north, km apart, at 1,000 m: a minute of latitude
+/// is 1,861 m there.
+fn waypoint(latitude_deg: f64, longitude_deg: f64, altitude_m: f64) -> Item {
+    Item::Waypoint {
+        place: place(latitude_deg, longitude_deg),
+        altitude: sea_level(altitude_m),
+        radius_m: None,
+    }
+}
+
+fn plan(longitude_deg: f64) -> Plan {
+    Plan {
+        home: Some(Home {
+            place: place(60.0, longitude_deg),
+            altitude_m: 1_000.0,
+        }),
+        items: vec![
+            waypoint(60.1, longitude_deg, 1_000.0),
+            waypoint(60.1, longitude_deg + 0.2, 1_100.0),
+            waypoint(60.0, longitude_deg + 0.2, 1_000.0),
+        ],
+        ..Plan::default()
+    }
+}
+
+fn said(plan: &Plan, wind_kt: f64) -> String {
+    let problems = check(plan, &conditions(wind_kt)).expect_err("no problem");
+    let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
+    lines.join("\n")
+}
+
+fn loiter(radius_m: f64) -> Item {
+    Item::Loiter(Loiter {
+        place: Some(place(60.05, 8.2)),
+        altitude: sea_level(1_000.0),
+        radius_m: Some(radius_m),
+        clockwise: true,
+        end: LoiterEnd::Turns(1.0),
+        leave_towards_next: false,
+    })
+}
+
+/// 100 kt, 30°, 15 kt: (115 kt)²/(g tan 30°) = 618.2 m.
+#[test]
+fn a_loiter_is_refused_with_the_smallest_radius_of_this_wind() {
+    let mut plan = plan(8.0);
+    plan.items.push(loiter(750.0));
+    assert_eq!(check(&plan, &conditions(15.0)), Ok(()));
+    plan.items.push(loiter(600.0));
+    let said = said(&plan, 15.0);
+    assert!(
+        said.starts_with("item 5: radius: 600 m is too small"),
+        "{said}"
+    );
+    assert!(said.ends_with("give at least 619 m"), "{said}");
+}
+
+#[test]
+fn a_turn_needs_room_and_a_climb_time() {
+    assert_eq!(check(&plan(8.0), &conditions(20.0)), Ok(()));
+    let mut short = plan(8.0);
+    // 558 m to the east, and back: 180° need 2 R behind the waypoint.
+    short.items[1] = waypoint(60.1, 8.01, 1_000.0);
+    short.items[2] = waypoint(60.1, 8.0, 1_000.0);
+    let said_of_turn = said(&short, 20.0);
+    assert!(
+        said_of_turn.contains("item 1: turn: the turn needs"),
+        "{said_of_turn}"
+    );
+    let mut steep = plan(8.0);
+    steep.items[1] = waypoint(60.1, 8.2, 2_000.0);
+    let said_of_climb = said(&steep, 0.0);
+    // 11,174 m (60.1° north) at 51.44 m/s: 217 s for 1,000 m.
+    assert!(
+        said_of_climb.contains("a climb of 4.6 m/s"),
+        "{said_of_climb}"
+    );
+}
+
+/// The same fence around the same plan, at Greenwich and across the date line.
+#[test]
+fn the_fence_is_kept_across_the_date_line_as_well() {
+    for longitude in [8.0, 179.9] {
+        let mut plan = plan(longitude);
+        let wrapped = |by: f64| (longitude + by + 540.0).rem_euclid(360.0) - 180.0;
+        for item in &mut plan.items {
+            if let Item::Waypoint { place, .. } = item {
+                place.longitude_deg = wrapped(place.longitude_deg - longitude);
+            }
+        }
+        plan.fence.polygons.push(Polygon {
+            corners: vec![
+                place(59.9, wrapped(-0.1)),
+                place(60.2, wrapped(-0.1)),
+                place(60.2, wrapped(0.3)),
+                place(59.9, wrapped(0.3)),
+            ],
+            inclusion: true,
+        });
+        assert_eq!(check(&plan, &conditions(20.0)), Ok(()), "{longitude}");
+        plan.items[1] = Item::Waypoint {
+            place: place(60.1, wrapped(0.4)),
+            altitude: sea_level(1_000.0),
+            radius_m: None,
+        };
+        let said = said(&plan, 20.0);
+        assert!(said.contains("item 2: fence"), "{said}");
+        assert!(said.contains("outside of the fence"), "{said}");
+    }
+}
+
+#[test]
+fn circles_ceilings_and_obstacles() {
+    let mut fenced = plan(8.0);
+    fenced.fence.circles.push(Circle {
+        centre: place(60.05, 8.0),
+        radius_m: 200.0,
+        inclusion: false,
+    });
+    assert!(said(&fenced, 0.0).contains("item 1: fence"));
+    let mut low = plan(8.0);
+    low.fence.ceiling_m = Some(1_050.0);
+    assert!(said(&low, 0.0).contains("item 2: fence: 1100 m is above its ceiling, 1050 m"));
+    let mut mast = plan(8.0);
+    mast.obstacles.push(Obstacle {
+        centre: place(60.05, 8.001),
+        radius_m: 100.0,
+        top_m: 1_010.0,
+    });
+    assert!(said(&mast, 0.0).contains("item 1: obstacle: the leg comes within 56 m"));
+}
+
+#[test]
+fn jumps_end_and_altitudes_are_known() {
+    let mut plan = plan(8.0);
+    plan.items.push(Item::Jump {
+        to: 9,
+        times: Some(1),
+    });
+    plan.items.push(Item::Jump { to: 1, times: None });
+    plan.items.push(Item::Jump {
+        to: 6,
+        times: Some(1),
+    });
+    plan.items.push(Item::ChangeAltitude {
+        altitude: Altitude {
+            m: 100.0,
+            above: AltitudeDatum::Terrain,
+        },
+    });
+    let said = said(&plan, 0.0);
+    for expected in [
+        "item 4: jump: to 9: there is no such item: give 1 to 7",
+        "item 5: jump: never ends",
+        "item 6: jump: to 6: nothing is flown between",
+        "item 7: altitude: is above terrain",
+    ] {
+        assert!(said.contains(expected), "{expected}: {said}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(20))]
+
+    /// Any plan, anywhere: it ends, without a panic, and no number is not one.
+    #[test]
+    fn any_plan_is_checked(plan in any_plan(), wind_kt in 0.0..150.0_f64) {
+        if let Err(problems) = check(&plan, &conditions(wind_kt)) {
+            for problem in problems {
+                prop_assert!(!problem.message.contains("NaN"), "{}", problem);
+            }
+        }
+    }
+}

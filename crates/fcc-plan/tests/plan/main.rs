@@ -1,0 +1,18 @@
+//! Plans and their files, from outside.
+#![cfg(test)]
+
+mod any_plan;
+mod checking;
+mod geometry;
+mod reading;
+mod refusals;
+mod round_trip;
+
+use fcc_plan::Place;
+
+const fn place(latitude_deg: f64, longitude_deg: f64) -> Place {
+    Place {
+        latitude_deg,
+        longitude_deg,
+    }
+}
