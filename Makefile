@@ -91,7 +91,7 @@ test-upsets: $(STAMPS)/python-module ## Recover from 100 drawn upsets, and fly 6
 # The app's classes and its native library, on this machine's Java. Its own report of
 # what native code does wrong (-Xcheck:jni) is in the output and no failure by itself.
 ANDROID := target/android
-test-android: build $(STAMPS)/python-module $(STAMPS)/java ## Test the app's native library under Java, and fly JSBSim by it (10 minutes)
+test-android: build $(STAMPS)/python-module $(STAMPS)/java $(STAMPS)/aapt ## Test the app and its native library under Java, and fly JSBSim by it (15 minutes)
 	@mkdir -p $(ANDROID)/faulty
 	cargo build --locked -p fcc-android --features fault-injection
 	cp $(TARGET)/debug/libfcc_android.so $(ANDROID)/faulty/
@@ -330,6 +330,11 @@ $(STAMPS)/cross: $(STAMPS)/rust
 
 $(STAMPS)/java:
 	@command -v javac >/dev/null && command -v mvn >/dev/null || ./scripts/apt-install openjdk-17-jdk-headless maven
+	@mkdir -p $(STAMPS) && touch $@
+
+# Compiles the app's resources.
+$(STAMPS)/aapt:
+	@command -v aapt2 >/dev/null || ./scripts/apt-install aapt
 	@mkdir -p $(STAMPS) && touch $@
 
 # C of libraries is compiled with the headers of the cross compilers.

@@ -19,7 +19,7 @@ pub(crate) enum Failure {
     /// A command was refused.
     #[error("{0}")]
     Command(String),
-    /// The recordings cannot be listed.
+    /// The recordings cannot be listed, or one cannot be read.
     #[error("{0}")]
     Recording(String),
     /// The handle is closed, or never was one.

@@ -19,6 +19,7 @@
 //! | `phone` | the phone's sensors in a flight |
 //! | `live` | the state for the screens |
 //! | `commands` | commands of the app, and what became of them |
+//! | `report` | a report on a recording |
 //! | `listener` | calls of the app's listener, from a thread of its own |
 //!
 //! The loop's thread calls nothing of this crate: it fills its ring, and the
@@ -33,3 +34,4 @@ mod listener;
 mod live;
 pub mod native;
 mod phone;
+mod report;

@@ -5,8 +5,8 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use fcc_core::flight::{Autopilot, AutopilotCommand};
-use fcc_core::framework::{Controller, EventKind, Flags, Reading, State};
+use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements};
+use fcc_core::framework::{Controller, EventKind, Flags, Reading, Readings as _, State, Time};
 use fcc_flight::flight::{
     Access, Conclusion, EventEntry, Facts, Flapping, FlightTime, Observer, Outcome, Report, Reports,
 };
@@ -34,6 +34,10 @@ struct Shown {
     hung: bool,
     /// What the user should know about the configuration.
     remarks: Vec<String>,
+    /// The names of what is read, in the order of preference; none before a flight.
+    sources: Vec<String>,
+    /// The names of what is controlled.
+    actuators: Vec<String>,
     /// The newest tick; none before the first.
     now: Option<Now>,
     /// What the kernel granted the loop's thread; none before a flight.
@@ -67,6 +71,8 @@ struct Now {
     /// Why it cannot engage.
     engage_inhibits: Vec<&'static str>,
     faults: Vec<&'static str>,
+    /// What was measured at least once.
+    readings: Vec<ShownReading>,
     roll_rad: Option<f64>,
     pitch_rad: Option<f64>,
     heading_rad: Option<f64>,
@@ -82,6 +88,15 @@ struct Now {
     missed: u64,
     overruns: u64,
     records_dropped: u64,
+}
+
+/// A reading at the tick.
+#[derive(Clone, Debug, Serialize)]
+struct ShownReading {
+    name: &'static str,
+    /// Where in `sources` it is from.
+    source: u8,
+    age_ms: f64,
 }
 
 /// Set points.
@@ -227,6 +242,8 @@ impl Observer<Autopilot> for LiveObserver {
         *shown = Shown {
             flying: true,
             remarks: std::mem::take(&mut shown.remarks),
+            sources: facts.sensors.to_vec(),
+            actuators: facts.actuators.to_vec(),
             granted: facts.granted.map(|granted| Granted {
                 nice: granted.nice,
                 realtime: self.realtime.clone(),
@@ -313,6 +330,7 @@ impl Now {
             engaged_for_s: at.engaged_at_s.map(|engaged_s| at.time_s - engaged_s),
             engage_inhibits: names(record.engage_inhibits),
             faults: names(record.faults),
+            readings: readings(measured, record.tick.woke),
             roll_rad: has_attitude.then_some(estimate.roll_rad),
             pitch_rad: has_attitude.then_some(estimate.pitch_rad),
             heading_rad: known(&measured.heading_rad).or(is_by_raw.then_some(estimate.heading_rad)),
@@ -337,6 +355,23 @@ impl Now {
 /// A value that was measured at least once.
 fn known<T: Copy>(reading: &Reading<T>) -> Option<T> {
     (!reading.is_never()).then_some(reading.value)
+}
+
+fn readings(measured: &Measurements, now: Time) -> Vec<ShownReading> {
+    let mut shown = Vec::new();
+    let mut names = Measurements::NAMES.iter();
+    measured.each_source(&mut |source, taken| {
+        if let Some(name) = names.next()
+            && !taken.is_never()
+        {
+            shown.push(ShownReading {
+                name,
+                source,
+                age_ms: now.since(taken).as_secs_f64() * 1e3,
+            });
+        }
+    });
+    shown
 }
 
 fn names(flags: Flags) -> Vec<&'static str> {

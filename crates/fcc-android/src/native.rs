@@ -22,6 +22,7 @@ use crate::computer::Computer;
 use crate::failure::{Failure, Throw};
 use crate::handles::Handles;
 use crate::listener::Notifier;
+use crate::report;
 
 /// All that the app has open.
 static COMPUTERS: Handles<Computer> = Handles::new();
@@ -142,6 +143,20 @@ pub extern "system" fn Java_fcc_android_Native_recordings<'local>(
 ) -> JString<'local> {
     env.with_env(|env| text(env, COMPUTERS.get(handle)?.recordings()?))
         .resolve::<Throw>()
+}
+
+/// A report on a recording, as JSON.
+#[unsafe(no_mangle)]
+pub extern "system" fn Java_fcc_android_Native_report<'local>(
+    mut env: EnvUnowned<'local>,
+    _: JClass<'local>,
+    file: JString<'local>,
+) -> JString<'local> {
+    env.with_env(|env| {
+        let file = PathBuf::from(file.try_to_string(env)?);
+        text(env, report::of(&file)?)
+    })
+    .resolve::<Throw>()
 }
 
 /// Ends the flight, and closes the handle; without effect on one that is closed.

@@ -12,7 +12,7 @@ class FlightException(message: String) : FccException(message)
 /** A command was refused, or nothing flies. */
 class CommandException(message: String) : FccException(message)
 
-/** The recordings cannot be listed. */
+/** The recordings cannot be listed, or one cannot be read. */
 class RecordingException(message: String) : FccException(message)
 
 /** The flight computer is closed. */

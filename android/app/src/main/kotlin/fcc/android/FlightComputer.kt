@@ -94,4 +94,14 @@ class FlightComputer(
 
     /** Ends the flight, and frees what is native; without effect the second time. */
     override fun close() = Native.close(handle)
+
+    companion object {
+        /**
+         * A report on a recording, as JSON: as `fccd report --json` prints it. Reads the
+         * whole file.
+         *
+         * @throws RecordingException if it is no recording of a flight, or cannot be read.
+         */
+        fun report(recording: File): String = Native.report(recording.path)
+    }
 }

@@ -45,5 +45,8 @@ internal object Native {
     external fun recordings(handle: Long): String
 
     @JvmStatic
+    external fun report(file: String): String
+
+    @JvmStatic
     external fun close(handle: Long)
 }

@@ -25,7 +25,7 @@ class FlightComputerTest {
             computer.start()
             assertTrue(computer.json().getBoolean("flying"))
             eventually("nothing inhibits engaging") {
-                computer.now()?.getJSONArray("engage_inhibits")?.isEmpty ?: false
+                computer.now()?.getJSONArray("engage_inhibits")?.length() == 0
             }
             val engaged = computer.engage()
             eventually("engaged") { computer.now()!!.getString("state") == "engaged" }
@@ -109,7 +109,7 @@ class FlightComputerTest {
             }
             assertTrue("start" in refused { computer.engage() })
             computer.start()
-            eventually("ready") { computer.now()?.getJSONArray("engage_inhibits")?.isEmpty ?: false }
+            eventually("ready") { computer.now()?.getJSONArray("engage_inhibits")?.length() == 0 }
             assertTrue("while engaged" in refused { computer.set(mapOf("heading_rad" to 1.0)) })
             computer.engage()
             assertTrue("choose" in refused { computer.set(mapOf("airspeed_mps" to 900.0)) })

@@ -28,7 +28,7 @@ class InjectedPanicTest {
         val heard = Heard()
         FlightComputer(BUILT_IN, folder(), heard).use { computer ->
             computer.start()
-            eventually("ready") { computer.now()?.getJSONArray("engage_inhibits")?.isEmpty ?: false }
+            eventually("ready") { computer.now()?.getJSONArray("engage_inhibits")?.length() == 0 }
             computer.engage()
             val ending = heard.ending()!!
             assertTrue(ending, "injected panic" in ending)

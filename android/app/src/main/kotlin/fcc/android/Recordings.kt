@@ -1,0 +1,109 @@
+package fcc.android
+
+import android.content.Context
+import java.io.File
+import org.json.JSONArray
+import org.json.JSONObject
+
+/** A file in the folder of recordings. */
+data class RecordingEntry(
+    val file: File,
+    /** When the flight began, in UTC: `2026-11-20T04:21:33Z`; empty if it cannot be read. */
+    val started: String,
+    val plant: String,
+    val part: Int,
+    val durationS: Double,
+    val ticks: Long,
+    val ending: String,
+    val notRecorded: Long,
+    /** `whole`, `damaged`, `cut` or `being-written`. */
+    val wholeness: String,
+    /** Why it cannot be read. */
+    val error: String?,
+) {
+    /** Of the flight that goes on: neither shared nor deleted. */
+    val isBeingWritten get() = wholeness == "being-written"
+
+    companion object {
+        fun of(entry: JSONObject) = RecordingEntry(
+            file = File(entry.getString("path")),
+            started = entry.optString("started"),
+            plant = entry.optString("plant"),
+            part = entry.optInt("part", 1),
+            durationS = entry.optDouble("duration_s", 0.0),
+            ticks = entry.optLong("ticks"),
+            ending = entry.optString("ending"),
+            notRecorded = entry.optLong("not_recorded"),
+            wholeness = entry.optString("file"),
+            error = entry.text("error"),
+        )
+
+        /** Of which nothing is known but the file. */
+        fun named(file: File) = of(JSONObject().put("path", file.path))
+    }
+}
+
+/** What a report says on a recording. */
+data class RecordingReport(
+    val findings: List<String>,
+    val timing: Timing?,
+    val events: List<String>,
+) {
+    companion object {
+        fun of(report: JSONObject) = RecordingReport(
+            findings = report.texts("findings"),
+            timing = report.optJSONObject("timing")?.let(Timing::of),
+            events = report.objects("events").map { "%.1f s: %s".format(it.optDouble("time_s"), it.optString("text")) },
+        )
+    }
+}
+
+/**
+ * The recordings in the app's folder. What is deleted is in a folder of its own until
+ * [empty], and can be restored. None of it is for the thread that draws.
+ */
+class Recordings(private val folder: File) {
+    private val deleted = File(folder, "deleted")
+
+    /**
+     * All of them, the newest first.
+     *
+     * @throws RecordingException if the folder cannot be read.
+     */
+    fun list(): List<RecordingEntry> =
+        FlightComputer(ANY_CONFIGURATION, folder).use { JSONArray(it.recordings()) }
+            .objects()
+            .map(RecordingEntry::of)
+            .reversed()
+
+    /**
+     * Reads a recording, and reports on it.
+     *
+     * @throws RecordingException if it cannot be read.
+     */
+    fun report(file: File) = RecordingReport.of(JSONObject(FlightComputer.report(file)))
+
+    /** The recording of this name, there or not. */
+    fun fileOf(name: String) = File(folder, name)
+
+    /** Whether it is deleted, until it is restored. */
+    fun delete(file: File): Boolean = (deleted.isDirectory || deleted.mkdirs()) && file.renameTo(inDeleted(file))
+
+    /** Whether what was deleted is there again. */
+    fun restore(file: File): Boolean = inDeleted(file).renameTo(file)
+
+    /** Deletes for good. */
+    fun empty() {
+        deleted.listFiles()?.forEach { it.delete() }
+    }
+
+    private fun inDeleted(file: File) = File(deleted, file.name)
+
+    companion object {
+        /** To list files needs none of the user's. */
+        private const val ANY_CONFIGURATION = "[built-in]\n"
+
+        /** The folder; the app's own, which needs no permission. */
+        fun folder(context: Context) = File(context.filesDir, "recordings")
+    }
+}
