@@ -10,6 +10,7 @@ use crate::command::{
     ALTITUDE_M, Command, FenceReader, Refusal, at_most, check, decode, encode, fence_commands, id,
     place, rally_commands,
 };
+use crate::item::Item;
 use crate::plan::{Home, Plan, limits};
 use crate::problem::{Problem, quoted};
 
@@ -50,7 +51,20 @@ pub(crate) fn read(text: &str) -> Result<Plan, Vec<Problem>> {
     if let Err((field, message)) = reader.fence.complete() {
         reader.problems.push(Problem::of(field, message));
     }
+    let items = &reader.plan.items;
+    for (n, item) in items.iter().enumerate() {
+        let Item::Jump { to, .. } = item else {
+            continue;
+        };
+        if *to > items.len() {
+            let what = format!("{to}: there is no such item: give 1 to {}", items.len());
+            reader
+                .problems
+                .push(Problem::of_item(n + 1, "parameter 1 (item)", what));
+        }
+    }
     if !reader.problems.is_empty() {
+        reader.problems.truncate(limits::PROBLEMS);
         return Err(reader.problems);
     }
     reader.plan.fence = reader.fence.fence;

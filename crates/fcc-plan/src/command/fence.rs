@@ -93,6 +93,9 @@ impl FenceReader {
                 });
             }
             id::RALLY_POINT => {
+                if !matches!(command.frame, frame::RELATIVE | frame::RELATIVE_INT) {
+                    return refused("frame", "a rally point is above home: give 3");
+                }
                 at_most("rally points", self.rally.len(), limits::RALLY_POINTS)?;
                 self.rally.push(RallyPoint {
                     place,

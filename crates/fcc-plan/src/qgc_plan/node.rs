@@ -120,9 +120,18 @@ impl<'a> Node<'a> {
             [latitude, longitude, altitude] => (latitude, longitude, Some(altitude)),
             _ => return self.refuse("give [latitude, longitude] or with an altitude"),
         };
+        if (latitude, longitude) == (0.0, 0.0) {
+            return self.refuse("0, 0 means that it is not set: give a place");
+        }
         let place = place(latitude, longitude)
             .map_err(|(name, message)| (format!("{}: {name}", self.path), message))?;
         Ok((place, altitude))
+    }
+
+    /// Whether latitude and longitude are 0: a place that was not set.
+    pub(super) fn is_unset(&self) -> bool {
+        let mut numbers = self.value.as_array().into_iter().flatten().take(2);
+        numbers.all(|number| number.as_f64() == Some(0.0))
     }
 
     /// `[latitude, longitude, altitude]`.

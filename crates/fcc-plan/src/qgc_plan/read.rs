@@ -79,7 +79,8 @@ impl Reader {
 
     fn mission(&mut self, mission: &Node<'_>) -> Result<(), Refusal> {
         version(mission, 2)?;
-        if let Some(home) = mission.optional("plannedHomePosition")? {
+        let home = mission.optional("plannedHomePosition")?;
+        if let Some(home) = home.filter(|home| !home.is_unset()) {
             let (place, altitude_m) = home.position()?;
             self.plan.home = Some(Home { place, altitude_m });
         }

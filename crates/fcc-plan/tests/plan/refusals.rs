@@ -105,6 +105,27 @@ fn a_line_says_item_field_and_what_to_do() {
 }
 
 #[test]
+fn what_has_no_target_or_place_is_refused_by_both() {
+    let said_of_jump = of_line("1 0 3 177 7 1 0 0 0 0 0 1");
+    assert_eq!(
+        said_of_jump,
+        "item 1: parameter 1 (item): 7: there is no such item: give 1 to 1"
+    );
+    let said_of_rally = of_line("1 0 0 5100 0 0 0 0 47 8 90 1");
+    assert!(
+        said_of_rally.contains("frame: a rally point is above home"),
+        "{said_of_rally}"
+    );
+    let plan = r#"{"fileType": "Plan", "version": 1,
+        "mission": {"version": 2, "items": [], "plannedHomePosition": [0, 0, 0]},
+        "rallyPoints": {"version": 2, "points": [[0, 0, 50]]}}"#;
+    assert_eq!(
+        said(plan),
+        "rallyPoints.points[0]: 0, 0 means that it is not set: give a place"
+    );
+}
+
+#[test]
 fn all_problems_are_listed() {
     let lines =
         "1 0 3 16 0 0 0 0 95 8 100 1\n2 0 3 16 0 0 0 0 47 8 100 1\n3 0 3 99 0 0 0 0 47 8 100 1";
