@@ -39,7 +39,7 @@ STAMPS   := .stamps
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-upsets test-android android-check test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
+.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-upsets test-android android-check android-package test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -104,6 +104,9 @@ test-android: build $(STAMPS)/python-module $(STAMPS)/java $(STAMPS)/aapt ## Tes
 
 android-check: $(STAMPS)/rust $(STAMPS)/android ## Check and link the app's native library for phones, without an NDK (10 minutes)
 	./scripts/android-check $(TARGET)
+
+android-package: $(STAMPS)/java $(STAMPS)/aapt ## Put the app together, unsigned and without its native library (after test-android)
+	./scripts/android-package $(TARGET)
 
 faulty: $(STAMPS)/rust
 	cargo build --locked --release -p fcc-daemon --features fault-injection
@@ -332,9 +335,9 @@ $(STAMPS)/java:
 	@command -v javac >/dev/null && command -v mvn >/dev/null || ./scripts/apt-install openjdk-17-jdk-headless maven
 	@mkdir -p $(STAMPS) && touch $@
 
-# Compiles the app's resources.
+# Compile the app's resources, and align its package.
 $(STAMPS)/aapt:
-	@command -v aapt2 >/dev/null || ./scripts/apt-install aapt
+	@command -v aapt2 >/dev/null && command -v zipalign >/dev/null || ./scripts/apt-install aapt zipalign
 	@mkdir -p $(STAMPS) && touch $@
 
 # C of libraries is compiled with the headers of the cross compilers.

@@ -66,7 +66,8 @@ internal class ConnectScreen(
 
     private fun flownRows(state: FlightState): List<Row> {
         if (state.phase == Phase.IDLE) {
-            val ending = state.ending?.let { Row(it, tone = Tone.BAD) }
+            val tone = if (state.sources.isEmpty()) Tone.BAD else Tone.PLAIN
+            val ending = state.ending?.let { Row(activity.getString(R.string.last_flight, it), tone = tone) }
             return listOfNotNull(ending, Row(text(R.string.flown_idle), tone = Tone.DIM))
         }
         if (state.sources.isEmpty()) return emptyList()

@@ -78,10 +78,14 @@ internal class FlyScreen(
             now?.faults?.takeIf { it.isNotEmpty() }?.joinToString(),
             now?.takeIf { !it.hasControl && it.engageInhibits.isNotEmpty() }
                 ?.let { activity.getString(R.string.inhibited, it.engageInhibits.joinToString()) },
-            state.ending.takeIf { state.phase == Phase.IDLE },
+            state.ending?.takeIf { state.phase == Phase.IDLE }
+                ?.let { activity.getString(R.string.last_flight, it) },
         )
         problem.show(lines.distinct().joinToString("\n"))
         problem.showIf(lines.isNotEmpty())
+        // That a flight has ended is no fault; that none began is one.
+        val isEnd = state.phase == Phase.IDLE && state.sources.isNotEmpty() && refusal == null
+        problem.setTextColor(activity.getColor(if (isEnd) R.color.text_dim else R.color.bad))
     }
 
     private fun timingOf(state: FlightState, now: Tick?): String {

@@ -42,13 +42,13 @@ class ScreensTest {
         controller.close()
     }
 
-    private fun switchSays(words: String) =
-        phone.eventually("the switch says $words") {
-            val switch = activity.findViewById<Button>(R.id.engage)
-            // Not before a second finger would be taken for a second wish.
-            phone.pass(600)
-            switch.text.toString() == words && switch.isEnabled
-        }
+    private fun switchSays(words: String) {
+        val switch = activity.findViewById<Button>(R.id.engage)
+        phone.eventually("the switch says $words") { switch.text.toString() == words && switch.isEnabled }
+        // Before that a second finger would be taken for a hasty one.
+        phone.pass(600)
+        assertEquals(words, switch.text.toString())
+    }
 
     @Test
     fun `the switch starts, engages and disengages`() {
