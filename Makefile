@@ -66,12 +66,10 @@ test-rust: $(STAMPS)/rust $(STAMPS)/gpsd
 	    ! cargo tree --locked -p $$crate -e features,no-dev -i fcc-core | grep 'feature "flight"' || \
 	    { echo "$$crate is compiled with an aircraft: see above"; exit 1; }; done
 
-# Most of the time is flights in real time, which wait: one process more than there
-# are processors takes three quarters of the time.
 test-python: faulty $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/systemd
 	cargo build --locked --release -p fcc-daemon -p thermostat
 	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) \
-	    $(PYTHON) -m pytest hil --numprocesses $$(($$(nproc) + 1)) --dist loadfile
+	    $(PYTHON) -m pytest hil --numprocesses auto --dist loadfile
 
 test-x-plane: build $(STAMPS)/python-module ## Run all steps of `fccd x-plane check` in full against the stand-in (3 minutes)
 	FCCD_FULL_CHECK=1 FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil/tests/test_x_plane_check.py

@@ -119,7 +119,10 @@ def everything_of(daemon: DaemonUnderTest) -> dict[str, Any]:
     by_inode = {row[9]: int(row[1].partition(":")[2], 16) for row in rows}
     for pid in processes:
         for descriptor in Path(f"/proc/{pid}/fd").iterdir():
-            target = str(descriptor.readlink())
+            try:
+                target = str(descriptor.readlink())
+            except FileNotFoundError:
+                continue  # It has been closed since.
             if target.startswith("/") and not target.startswith(("/dev/null", "/proc")):
                 paths.add(target)
             port = by_inode.get(target.removeprefix("socket:[").removesuffix("]"))
