@@ -47,7 +47,7 @@ pub(crate) struct Played {
 }
 
 impl Played {
-    /// A phone at rest on a table, its screen up, with what is told of its sensors.
+    /// A phone at rest on a table, its screen up, with the sensors described.
     pub(crate) fn new(package: &'static str, told: &[(i32, Value)]) -> Self {
         let settings = PhoneSettings {
             has_position: false,

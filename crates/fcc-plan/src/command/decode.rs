@@ -190,7 +190,7 @@ fn item(command: &Command) -> Result<Item, Refusal> {
 
 fn waypoint(command: &Command) -> Result<Item, Refusal> {
     let holds = command.parameter(1);
-    // Ground stations round what is nought by their fields.
+    // Less than a second counts as none.
     if holds >= 1.0 {
         let what = format!("{holds} s: an aeroplane cannot stop: use a loiter (19)");
         return Err(("parameter 1 (hold)".to_owned(), what));

@@ -248,7 +248,7 @@ fn command(node: &Node<'_>) -> Result<Command, Refusal> {
     })
 }
 
-/// A radius that is more than nought.
+/// A radius above zero.
 fn radius(node: &Node<'_>) -> Result<f64, Refusal> {
     let radius = node.key("radius")?;
     match radius.number(&RADIUS_M)? {
