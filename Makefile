@@ -36,10 +36,15 @@ VENV     := .venv
 PYTHON   := $(VENV)/bin/python
 STAMPS   := .stamps
 
+# What is built once needs no intermediate results for the next time: several GB.
+ifdef CI
+export CARGO_INCREMENTAL := 0
+endif
+
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-upsets test-android android-check android-package test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
+.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-fences test-landings test-upsets test-android android-check android-package test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -55,6 +60,23 @@ fly-jsbsim: build $(STAMPS)/python ## Fly JSBSim's Cessna over X-Plane's protoco
 	@sed 's/:49000"/:$(PORT)"/' config/x-plane.toml > target/x-plane.toml
 	$(PYTHON) -m fcc_hil fly --aircraft $(AIRCRAFT) --legs $(LEGS) --seed $(SEED) --port $(PORT) \
 	    --fccd $(FCCD) --config target/x-plane.toml --json $(JSON) --plot $(PLOT) $(HARSH)
+
+PLAN ?= config/plans/circuit.waypoints
+WIND ?= 8
+WIND_FROM ?= 270
+
+fly-plan: build ## Fly a plan with the built-in aircraft, as fast as it computes, and draw it (PLAN= WIND= WIND_FROM=)
+	@mkdir -p target
+	@sed 's/^#wind_kt = 0.0/wind_kt = $(WIND)/; s/^#wind_from_deg = 0.0/wind_from_deg = $(WIND_FROM)/' \
+	    config/built-in.toml > target/fly-plan.toml
+	$(FCCD) fly --config target/fly-plan.toml --lockstep --quiet --plan $(PLAN) --recordings target/fly-plan
+	$(FCCD) report --html target/fly-plan.html $$(ls -t target/fly-plan/*.mcap | head -1) > /dev/null
+	@echo "the ground track is in target/fly-plan.html"
+
+fly-plan-jsbsim: $(STAMPS)/python-module ## Fly a plan with JSBSim by raw sensors, in lockstep, scored from its truth (PLAN= WIND= WIND_FROM= SEED= JSON=)
+	@mkdir -p target
+	$(PYTHON) -m fcc_hil plan --plan $(PLAN) --wind $(WIND) --wind-from $(WIND_FROM) --seed $(SEED) \
+	    --json $(if $(filter-out file,$(origin JSON)),$(JSON),target/fly-plan-jsbsim.json) --plot target/fly-plan-jsbsim.png
 
 test: lint test-rust check-cross test-python ## Run every check and every test
 
@@ -86,6 +108,12 @@ UPSETS := hil/tests/test_drawn_upsets.py \
 test-upsets: $(STAMPS)/python-module ## Recover from 100 drawn upsets, and fly 60 flights of climbing turns in turbulence (5 minutes)
 	FCCD_UPSETS=100 FCCD_CLIMBING_TURNS=20 $(PYTHON) -m pytest --capture=no $(UPSETS)
 
+test-fences: $(STAMPS)/python-module ## Fly 20 times against a fence with JSBSim, in 20 kt and turbulence (10 minutes)
+	FCC_FENCES=20 $(PYTHON) -m pytest --capture=no hil/tests/test_contingency.py
+
+test-landings: $(STAMPS)/python-module ## Take off, fly a circuit and land 100 times with JSBSim, in five winds (25 minutes)
+	FCC_LANDINGS=20 $(PYTHON) -m pytest --capture=no --numprocesses auto hil/tests/test_landing.py
+
 # The app's classes and its native library, on this machine's Java. Its own report of
 # what native code does wrong (-Xcheck:jni) is in the output and no failure by itself.
 ANDROID := target/android
@@ -96,9 +124,23 @@ test-android: build $(STAMPS)/python-module $(STAMPS)/java $(STAMPS)/aapt ## Tes
 	cargo build --locked -p fcc-android -p fake-libandroid
 	cd android/host-tests && mvn --quiet --batch-mode -Dlibrary=$(abspath $(TARGET))/debug test \
 	    > $(abspath $(ANDROID))/host-tests.log 2>&1 || { cat $(abspath $(ANDROID))/host-tests.log; exit 1; }
+	for sdk in 28 35; do \
+	    (cd android/host-tests && mvn --quiet --batch-mode --offline -Dlibrary=$(abspath $(TARGET))/debug \
+	        -Dsdk=$$sdk surefire:test@app) > $(abspath $(ANDROID))/host-tests-$$sdk.log 2>&1 || \
+	        { cat $(abspath $(ANDROID))/host-tests-$$sdk.log; exit 1; }; \
+	done
 	@! grep -E 'WARNING in native method|WARNING: JNI|FATAL ERROR in native' $(ANDROID)/host-tests.log
 	FCC_ANDROID=$(abspath android/host-tests/fccd) FCC_ANDROID_LIBRARY=$(abspath $(TARGET))/debug \
 	    FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil/tests/test_android.py
+
+# For bench-android, such as ANDROID_TIMING="--rounds 2 --seconds 20 --rate 100".
+ANDROID_TIMING ?=
+
+bench-android: build $(STAMPS)/python $(STAMPS)/java $(STAMPS)/aapt ## Compare the loop's timing in the app with the daemon's, in turn (35 minutes; ANDROID_TIMING=)
+	cargo build --locked --release -p fcc-android
+	cd android/host-tests && mvn --quiet --batch-mode test-compile
+	FCC_ANDROID_LIBRARY=$(abspath $(TARGET))/release $(PYTHON) -m fcc_hil bench-android --fccd $(FCCD) \
+	    --app android/host-tests/timing-flight --json target/bench-android.json $(ANDROID_TIMING)
 
 android-check: $(STAMPS)/rust $(STAMPS)/android ## Check and link the app's native library for phones, without an NDK (10 minutes)
 	./scripts/android-check $(TARGET)

@@ -10,15 +10,33 @@ The parts between `<schema>` and `</schema>` follow from the schema:
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import Any, Final, TypeAlias, final, overload
+from typing import Any, Final, TypeAlias, TypedDict, final, overload
 
 import numpy as np
 import numpy.typing as npt
+from typing_extensions import Unpack
 
 _Array: TypeAlias = npt.NDArray[np.float64]
 _Records: TypeAlias = npt.NDArray[np.void]
 _Path: TypeAlias = str | PathLike[str]
 _Source: TypeAlias = Sequence[npt.ArrayLike]
+
+class _Commanded(TypedDict, total=False):
+    """Set points of a command; None stays as it is."""
+
+    airspeed_mps: float | None
+    heading_rad: float | None
+    altitude_m: float | None
+    pressure_altitude_m: float | None
+    height_m: float | None
+    altimeter_setting_pa: float | None
+    plan_item: float | None
+    pause: float | None
+    return_home: float | None
+    go_to_latitude_rad: float | None
+    go_to_longitude_rad: float | None
+    go_to_altitude_m: float | None
+    heartbeat_s: float | None
 
 __version__: Final[str]
 MEASUREMENTS: Final[tuple[str, ...]]
@@ -88,6 +106,10 @@ class Measurements:
         gnss_vertical_accuracy_m: float = ...,
         gnss_speed_accuracy_mps: float = ...,
         range_m: float = ...,
+        weight_on_wheels: float = ...,
+        engine_speed_radps: float = ...,
+        battery_voltage_v: float = ...,
+        battery_charge: float = ...,
     ) -> Measurements: ...
     @property
     def pitch_rad(self) -> float:
@@ -347,6 +369,30 @@ class Measurements:
 
     @range_m.setter
     def range_m(self, value: float) -> None: ...
+    @property
+    def weight_on_wheels(self) -> float:
+        """Whether the wheels bear weight: 0 in the air, 1 on the ground."""
+
+    @weight_on_wheels.setter
+    def weight_on_wheels(self, value: float) -> None: ...
+    @property
+    def engine_speed_radps(self) -> float:
+        """Speed of the engine's shaft, rad/s; of the first of several."""
+
+    @engine_speed_radps.setter
+    def engine_speed_radps(self, value: float) -> None: ...
+    @property
+    def battery_voltage_v(self) -> float:
+        """Its voltage, V."""
+
+    @battery_voltage_v.setter
+    def battery_voltage_v(self, value: float) -> None: ...
+    @property
+    def battery_charge(self) -> float:
+        """What is left of its charge, 0 empty, 1 full."""
+
+    @battery_charge.setter
+    def battery_charge(self, value: float) -> None: ...
     # </schema>
     @staticmethod
     def from_array(row: npt.ArrayLike) -> Measurements: ...
@@ -370,6 +416,10 @@ class Surfaces:
         aileron: float = ...,
         rudder: float = ...,
         elevator_trim: float = ...,
+        flaps: float = ...,
+        left_brake: float = ...,
+        right_brake: float = ...,
+        nose_wheel: float = ...,
     ) -> Surfaces: ...
     @property
     def throttle(self) -> float:
@@ -390,6 +440,22 @@ class Surfaces:
     @property
     def elevator_trim(self) -> float:
         """The elevator's trim, positive raises the nose."""
+
+    @property
+    def flaps(self) -> float:
+        """Flaps, 0 up, 1 fully extended; NaN leaves them as they are."""
+
+    @property
+    def left_brake(self) -> float:
+        """The left wheel's brake, 0 released, 1 full; NaN leaves it as it is."""
+
+    @property
+    def right_brake(self) -> float:
+        """The right wheel's brake, likewise."""
+
+    @property
+    def nose_wheel(self) -> float:
+        """The nose wheel's steering, positive to the right."""
 
     # </schema>
     def to_array(self) -> _Array: ...
@@ -431,7 +497,7 @@ class Setpoints:
 
     @property
     def guidance_item(self) -> int:
-        """The present part of the mode: of a pattern, the leg."""
+        """The present part of the mode: of a pattern, the leg; of a plan, the item, from 1."""
 
     @property
     def guidance_elapsed_s(self) -> float:
@@ -460,6 +526,30 @@ class Setpoints:
     @property
     def altitude_above_reference_m(self) -> float:
         """The altitude above what it refers to, m."""
+
+    @property
+    def course_rad(self) -> float:
+        """True course of the path over the ground where it is nearest, rad."""
+
+    @property
+    def cross_track_m(self) -> float:
+        """How far the aircraft is to the right of the path, m."""
+
+    @property
+    def to_go_m(self) -> float:
+        """How far it is to the end of the leg, m; on a circle, to its centre."""
+
+    @property
+    def plan_hash(self) -> int:
+        """The first 64 bits of the SHA-256 of the flight plan; 0 without one."""
+
+    @property
+    def plan_uploaded_unix_s(self) -> int:
+        """When the flight plan was uploaded, s since 1970 (UTC)."""
+
+    @property
+    def contingency(self) -> str:
+        """What the autopilot does by itself, and why."""
 
     # </schema>
     def __eq__(self, other: object, /) -> bool: ...
@@ -545,6 +635,30 @@ class Estimate:
     @property
     def airspeed_uncertainty_mps(self) -> float:
         """Standard deviation of an airspeed that comes from the forces, m/s."""
+
+    @property
+    def latitude_rad(self) -> float:
+        """Latitude by which the modes over the ground fly, rad; 0 before it is known."""
+
+    @property
+    def longitude_rad(self) -> float:
+        """Longitude, likewise, rad."""
+
+    @property
+    def north_mps(self) -> float:
+        """Velocity over the ground towards true north, likewise, m/s."""
+
+    @property
+    def east_mps(self) -> float:
+        """Towards east, m/s."""
+
+    @property
+    def wind_north_mps(self) -> float:
+        """Wind, towards true north, m/s."""
+
+    @property
+    def wind_east_mps(self) -> float:
+        """Towards east, m/s."""
 
     @property
     def reading_age_s(self) -> float:
@@ -860,16 +974,7 @@ class Autopilot:
     def fly(self, measurements: npt.ArrayLike, dt: float = 0.025) -> _Array: ...
     def failsafe(self, measurements: Measurements, dt: float = 0.025) -> Surfaces: ...
     def disengage(self) -> None: ...
-    def command(
-        self,
-        *,
-        airspeed_mps: float | None = None,
-        heading_rad: float | None = None,
-        altitude_m: float | None = None,
-        pressure_altitude_m: float | None = None,
-        height_m: float | None = None,
-        altimeter_setting_pa: float | None = None,
-    ) -> None: ...
+    def command(self, **setpoints: Unpack[_Commanded]) -> None: ...
     @property
     def engaged(self) -> bool: ...
     @property
@@ -926,16 +1031,7 @@ class Machine:
     def engage(self) -> None: ...
     def disengage(self) -> None: ...
     def stop(self) -> None: ...
-    def command(
-        self,
-        *,
-        airspeed_mps: float | None = None,
-        heading_rad: float | None = None,
-        altitude_m: float | None = None,
-        pressure_altitude_m: float | None = None,
-        height_m: float | None = None,
-        altimeter_setting_pa: float | None = None,
-    ) -> None: ...
+    def command(self, **setpoints: Unpack[_Commanded]) -> None: ...
     def events(self) -> list[Event]: ...
     def records(self) -> _Records: ...
     def record_to(
@@ -1144,8 +1240,22 @@ def calibrate(samples: npt.ArrayLike, strength: float) -> dict[str, Any]:
     ValueError with the reason if there is none.
     """
 
+def calibrate_gyroscope(*, gyroscope: _Source, accelerometer: _Source) -> dict[str, Any]:
+    """Find bias, scale and misalignment of a gyroscope that was turned between positions at rest.
+
+    Left alone for 11 s, then by quarter and half turns about each of its axes, with 3 s of rest
+    after each. Both are times in s and samples (n, 3): rad/s as given, m/s2 calibrated and along
+    the same axes. Raises ValueError with the reason if there is none.
+    """
+
 def levelled(force_mps2: npt.ArrayLike) -> list[list[float]]:
     """Find the smallest rotation after which the force (3,) of a level aircraft points up."""
+
+def level_and_nose_up(level_mps2: npt.ArrayLike, nose_up_mps2: npt.ArrayLike) -> list[list[float]]:
+    """Find how sensors are turned, by the forces (3,) of the aircraft level and with its nose up.
+
+    From their axes to the body's. Raises ValueError if both are parallel.
+    """
 
 def constant_dip(down: npt.ArrayLike, field: npt.ArrayLike) -> list[list[float]]:
     """Find the rotation of a magnetometer after which the field's dip is the same everywhere.

@@ -2,7 +2,7 @@
 //! says, unless a later line frees it.
 #![no_main]
 
-use fcc_daemon::held_after;
+use fcc_flight::release::held_after;
 
 libfuzzer_sys::fuzz_target!(|text: &str| {
     let Some((number, plant)) = held_after(text.lines()) else {

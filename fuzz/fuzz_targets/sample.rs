@@ -144,7 +144,7 @@ libfuzzer_sys::fuzz_target!(|flight: Flight| {
                 elevator,
                 aileron,
                 rudder,
-                elevator_trim: None,
+                ..Surfaces::IDLE
             };
             let _ = actuator.apply(&tick, &surfaces);
         }

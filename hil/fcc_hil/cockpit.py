@@ -34,6 +34,11 @@ YOKE_ROLL = _JOYSTICK + "yoke_roll_ratio"
 YOKE_HEADING = _JOYSTICK + "yoke_heading_ratio"
 ELEVATOR_TRIM = "sim/flightmodel/controls/elv_trim"
 """-1 full nose down .. 1 full nose up; needs no override."""
+FLAPS = "sim/cockpit2/controls/flap_ratio"
+"""0 up .. 1 full; needs no override."""
+OVERRIDE_BRAKES = _OVERRIDE + "override_toe_brakes"
+LEFT_BRAKE = "sim/cockpit2/controls/left_brake_ratio"
+RIGHT_BRAKE = "sim/cockpit2/controls/right_brake_ratio"
 SERVO_PITCH = _JOYSTICK + "servo_pitch_ratio"
 SERVO_ROLL = _JOYSTICK + "servo_roll_ratio"
 SERVO_HEADING = _JOYSTICK + "servo_heading_ratio"
@@ -71,13 +76,14 @@ _FULL = (-1.0, 1.0)
 _RANGES = {
     **dict.fromkeys((*YOKE, *_SERVO, *_ARTSTAB, ELEVATOR_TRIM), _FULL),
     THROTTLE_USE: (-1.0, 1.2),
-    THROTTLE_LEVER: (0.0, 1.0),
+    **dict.fromkeys((THROTTLE_LEVER, FLAPS, LEFT_BRAKE, RIGHT_BRAKE), (0.0, 1.0)),
     PITOT_ICE: (0.0, 1.0),
 }
 _NEEDS = {
     **dict.fromkeys(YOKE, OVERRIDE_JOYSTICK),
     **dict.fromkeys(_SERVO, OVERRIDE_AUTOPILOT),
     **dict.fromkeys(_ARTSTAB, OVERRIDE_ARTSTAB),
+    **dict.fromkeys((LEFT_BRAKE, RIGHT_BRAKE), OVERRIDE_BRAKES),
     THROTTLE_USE: OVERRIDE_THROTTLES,
 }
 """The override without which a control belongs to the simulator."""
@@ -143,6 +149,10 @@ class Cockpit:
             OVERRIDE_THROTTLES: 0.0,
             OVERRIDE_ARTSTAB: 0.0,
             OVERRIDE_AUTOPILOT: 0.0,
+            OVERRIDE_BRAKES: 0.0,
+            FLAPS: 0.0,
+            LEFT_BRAKE: 0.0,
+            RIGHT_BRAKE: 0.0,
             SERVOS_ON: 0.0,
             AUTOTHROTTLE_ENABLED: 0.0,
             AUTOTHROTTLE_ON: 0.0,
@@ -163,6 +173,7 @@ class Cockpit:
             (PROPELLER_MODE, _ENGINES, _NORMAL),
         ):
             self._values.update({(name, i): value for i in range(size)})
+        self._moves_flaps = False
         self._return_yoke()
 
     def element(self, path: str) -> Element | None:
@@ -265,14 +276,24 @@ class Cockpit:
             min(1.0, max(-1.0, sum(self._values[part[axis], 0] for part in parts)))
             for axis in range(3)
         )
+        held = self.is_on(OVERRIDE_BRAKES)
         return Controls(
-            pitch, roll, heading, self._values[THROTTLE_USE, 0], self._values[ELEVATOR_TRIM, 0]
+            pitch,
+            roll,
+            heading,
+            self._values[THROTTLE_USE, 0],
+            self._values[ELEVATOR_TRIM, 0],
+            flaps=self._values[FLAPS, 0] if self._moves_flaps else None,
+            # Otherwise they are as the pilot has set them.
+            left_brake=self._values[LEFT_BRAKE, 0] if held else None,
+            right_brake=self._values[RIGHT_BRAKE, 0] if held else None,
         )
 
     def _take(self, time_s: float, element: Element, value: float) -> None:
         name = element[0]
         was_on = self.is_on(name)
         self._values[element] = value
+        self._moves_flaps |= name == FLAPS
         if name in (OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES) and was_on and not self.is_on(name):
             self._release(time_s, name)
         elif name == THROTTLE_LEVER:

@@ -1,4 +1,4 @@
-"""The commands `suite`, `margins`, `tune`, `soak`, `bench-flood`, `raw`, and `campaign`."""
+"""The commands `suite`, `margins`, `tune`, `soak`, `raw`, `campaign`, and two benchmarks."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from . import flood, ranges, raw_command
+from . import app_timing_command, flood, plan_command, ranges, raw_command
 from .aircraft import AIRCRAFT
 from .campaign import command as campaign
 from .printable import say
@@ -112,6 +112,7 @@ def add(commands: Any) -> None:
     campaign.add(commands)
 
     raw_command.add(commands)
+    plan_command.add(commands)
 
     tune = commands.add_parser("tune", help="search gains for an aircraft")
     tune.add_argument(
@@ -185,6 +186,8 @@ def add(commands: Any) -> None:
         "--seconds", type=float, default=30.0, metavar="S", help="of each (%(default)s)"
     )
     floods.set_defaults(run=_flood)
+
+    app_timing_command.add(commands)
 
 
 def _suite(options: argparse.Namespace) -> int:

@@ -124,6 +124,9 @@ _READABLE: dict[str, Getter] = {
     "sim/network/misc/network_time_sec": lambda r: r.network_time_s,
     _T + "framerate_period": lambda r: r.smoothed_period_s,
     "sim/operation/misc/frame_rate_period": lambda r: r.frame_period_s,
+    "sim/cockpit2/engine/indicators/engine_speed_rpm[0]": lambda r: (
+        r.state.engine_speed_radps * 60.0 / math.tau
+    ),
     "sim/flightmodel/failures/onground_any": lambda r: float(r.state.on_ground),
     "sim/aircraft/engine/acf_num_engines": lambda r: float(r.cockpit.engines),
     "sim/version/xplane_internal_version": lambda r: float(r.dialect.version),

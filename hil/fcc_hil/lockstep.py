@@ -69,6 +69,8 @@ def measurements(state: State) -> fcc.Measurements:
         specific_force_z_mps2=state.specific_force_z_mps2,
         airspeed_mps=state.airspeed_mps,
         altitude_m=state.altitude_m,
+        weight_on_wheels=float(state.on_ground),
+        engine_speed_radps=state.engine_speed_radps,
     )
 
 
@@ -85,14 +87,21 @@ def as_surfaces(stand: Controls) -> fcc.Surfaces:
 
 def as_controls(surfaces: fcc.Surfaces) -> Controls:
     """Return the autopilot's outputs, for the plant."""
-    trim = surfaces.elevator_trim
     return Controls(
         elevator=surfaces.elevator,
         aileron=surfaces.aileron,
         rudder=surfaces.rudder,
         throttle=surfaces.throttle,
-        elevator_trim=None if math.isnan(trim) else trim,
+        elevator_trim=_given(surfaces.elevator_trim),
+        flaps=_given(surfaces.flaps),
+        left_brake=_given(surfaces.left_brake),
+        right_brake=_given(surfaces.right_brake),
+        nose_wheel=_given(surfaces.nose_wheel),
     )
+
+
+def _given(value: float) -> float | None:
+    return None if math.isnan(value) else value
 
 
 class _Sensors:

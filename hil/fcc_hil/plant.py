@@ -38,6 +38,8 @@ STEP_S = 1.0 / STEPS_PER_SECOND
 _ELEVATOR_TRIM = "fcs/pitch-trim-cmd-norm"
 """Positive lowers the nose."""
 
+_ENGINE_RPM = "propulsion/engine/engine-rpm"
+
 _SETTLING_S = 60.0
 _SETTLING_MEAN_S = 5.0
 _STANDING_S = 5.0
@@ -124,10 +126,11 @@ class Plant:
         self._controls = Controls()
         self.engines: int = fdm.get_propulsion().get_num_engines()
         self._throttles = [f"fcs/throttle-cmd-norm[{i}]" for i in range(self.engines)]
+        self._has_pistons = fdm.get_property_manager().hasNode(_ENGINE_RPM)
         self._start_engines()
         self.trimmed_by_jsbsim = flies and self.aircraft.trims and self._trim()
         if not flies:
-            self._stand()
+            self._stand(weather)
         elif not self.trimmed_by_jsbsim:
             self._fly_to_steady_state(heading_deg)
         self.trim = Controls(throttle=float(fdm[self._throttles[0]]))
@@ -174,8 +177,23 @@ class Plant:
             rudder=min(1.0, max(-1.0, controls.rudder)),
             throttle=min(1.0, max(0.0, controls.throttle)),
             elevator_trim=self._controls.elevator_trim,
+            flaps=controls.flaps,
+            left_brake=controls.left_brake,
+            right_brake=controls.right_brake,
+            nose_wheel=controls.nose_wheel,
         )
         fdm = self.fdm
+        for path, value in (
+            ("fcs/flap-cmd-norm", controls.flaps),
+            ("fcs/left-brake-cmd-norm", controls.left_brake),
+            ("fcs/right-brake-cmd-norm", controls.right_brake),
+            ("fcs/center-brake-cmd-norm", None if controls.left_brake is None else 0.0),
+        ):
+            if value is not None:
+                fdm[path] = min(1.0, max(0.0, value))
+        # The nose wheel of most aircraft here follows the pedals.
+        steered = controls.rudder if controls.nose_wheel is None else controls.nose_wheel
+        fdm["fcs/steer-cmd-norm"] = min(1.0, max(-1.0, steered))
         if controls.elevator_trim is not None:
             clipped.elevator_trim = min(1.0, max(-1.0, controls.elevator_trim))
             fdm[_ELEVATOR_TRIM] = -clipped.elevator_trim
@@ -228,7 +246,12 @@ class Plant:
             wind_east_mps=f["atmosphere/total-wind-east-fps"] * FT_TO_M,
             wind_down_mps=f["atmosphere/total-wind-down-fps"] * FT_TO_M,
             on_ground=f["gear/wow"] != 0.0,
+            engine_speed_radps=self._engine_rpm() * math.tau / 60.0,
         )
+
+    def _engine_rpm(self) -> float:
+        """Return the speed of a piston engine; 0 of another."""
+        return float(self.fdm[_ENGINE_RPM]) if self._has_pistons else 0.0
 
     def _silence_output(self) -> None:
         """Keep the model from writing its log files, which JSBSim opens even when disabled."""
@@ -264,13 +287,16 @@ class Plant:
         for i in range(self.engines):
             fdm[f"fcs/mixture-cmd-norm[{i}]"] = 1.0
 
-    def _stand(self) -> None:
-        """Let the aircraft settle on its wheels."""
+    def _stand(self, weather: Weather) -> None:
+        """Let the aircraft settle on its wheels, in the wind."""
         fdm = self.fdm
         for brake in ("left", "right", "center"):
             fdm[f"fcs/{brake}-brake-cmd-norm"] = 1.0
         for path in self._throttles:
             fdm[path] = 0.0
+        to_rad = math.radians(weather.wind_from_deg) + math.pi
+        fdm["atmosphere/wind-north-fps"] = weather.wind_kt * KT_TO_MPS / FT_TO_M * math.cos(to_rad)
+        fdm["atmosphere/wind-east-fps"] = weather.wind_kt * KT_TO_MPS / FT_TO_M * math.sin(to_rad)
         for _ in range(round(_STANDING_S * STEPS_PER_SECOND)):
             fdm.run()
 

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .raw_sensors import READINGS
+from .raw_turning import TURN_STEP_S, turned_over
 from .units import STANDARD_GRAVITY_MPS2
 
 Array = npt.NDArray[np.float64]
@@ -74,7 +75,7 @@ class Calibration:
 
 
 def calibrate(sensors: str, seed: int, field_ut: tuple[float, float, float]) -> Calibration:
-    """Hold the sensors still in many attitudes, and fit their calibrations."""
+    """Hold the sensors still in many attitudes, turn them, and fit their calibrations."""
     attitudes = list(
         itertools.product(
             np.radians([-135.0, -90.0, -45.0, 0.0, 45.0, 90.0, 135.0, 180.0]),
@@ -98,18 +99,42 @@ def calibrate(sensors: str, seed: int, field_ut: tuple[float, float, float]) -> 
             still[name] = np.vstack((still[name], np.nanmean(given[name], axis=0)))
     force, field = still["raw_specific_force"], still["magnetic_field"]
     accelerometer = AxesCalibration.of(fcc.calibrate(force, STANDARD_GRAVITY_MPS2))
-    level = attitudes.index((0.0, 0.0, 0.0))
-    accelerometer = accelerometer.turned(fcc.levelled(accelerometer.applied(force[level])))
+    gyroscope = _turned(raw, len(attitudes) * _STEPS * _STEP_S, accelerometer)
+    level, nose_up = (
+        accelerometer.applied(force[attitudes.index((0.0, pitch_rad, 0.0))])
+        for pitch_rad in (0.0, np.radians(40.0))
+    )
+    mounting = fcc.level_and_nose_up(level, nose_up)
+    accelerometer = accelerometer.turned(mounting)
     strength_ut = float(np.linalg.norm(field_ut))
     magnetometer = AxesCalibration.of(fcc.calibrate(field, strength_ut))
     down = -accelerometer.applied(force)
     magnetometer = magnetometer.turned(fcc.constant_dip(down, magnetometer.applied(field)))
     return Calibration(
         accelerometer=accelerometer,
-        gyroscope=AxesCalibration(still["raw_body_rates"].mean(axis=0), np.eye(3)),
+        gyroscope=gyroscope.turned(mounting),
         magnetometer=magnetometer,
         differential_pressure_pa=float(still["differential_pressure"].mean()),
     )
+
+
+def _turned(raw: fcc.RawSensors, start_s: float, accelerometer: AxesCalibration) -> AxesCalibration:
+    """Turn the sensors over by hand, and fit the gyroscope's calibration."""
+    given: dict[str, list[tuple[float, ...]]] = {"raw_body_rates": [], "raw_specific_force": []}
+    steps_of_a_reading = round(_STEP_S / TURN_STEP_S)
+    for number, truth in enumerate(turned_over(start_s), 1):
+        raw.step(truth)
+        if number % steps_of_a_reading == 0:
+            read = fcc.Measurements()
+            for name, arrived_s in raw.read(read).items():
+                if name in given:
+                    given[name].append((arrived_s, *_read(read, name)))
+    rates, force = (np.array(rows) for rows in given.values())
+    found = fcc.calibrate_gyroscope(
+        gyroscope=(rates[:, 0], rates[:, 1:]),
+        accelerometer=(force[:, 0], accelerometer.applied(force[:, 1:])),
+    )
+    return AxesCalibration.of(found)
 
 
 def _read(of: fcc.Measurements, name: str) -> tuple[float, ...]:

@@ -32,6 +32,7 @@ DELAYS_S = {
         "gnss": 0.12,
     },
 }
+DELAYS_S["board-rtk"] = DELAYS_S["board"]
 """What a user would know of the delays: the mean, jitter included."""
 
 

@@ -61,6 +61,8 @@ class State:
     wind_east_mps: float
     wind_down_mps: float
     on_ground: bool
+    engine_speed_radps: float = 0.0
+    """Of the first engine."""
 
 
 @dataclass(slots=True)
@@ -77,3 +79,10 @@ class Controls:
     """0 idle .. 1 full, all engines."""
     elevator_trim: float | None = None
     """-1..1, positive raises the nose; None leaves it where it is."""
+    flaps: float | None = None
+    """0 up .. 1 full; None leaves them as they are."""
+    left_brake: float | None = None
+    """0 released .. 1 full; None leaves it as it is."""
+    right_brake: float | None = None
+    nose_wheel: float | None = None
+    """-1..1, positive to the right; None: it is steered with the rudder."""

@@ -330,6 +330,9 @@ class World:
             rudder=now.rudder + min(most, max(-most, to.rudder - now.rudder)),
             throttle=to.throttle,
             elevator_trim=to.elevator_trim,
+            flaps=to.flaps,
+            left_brake=to.left_brake,
+            right_brake=to.right_brake,
         )
 
     def _remember(self, state: State) -> None:

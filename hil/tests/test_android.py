@@ -30,6 +30,7 @@ from fcc_hil.state import Controls
 PROGRAM = os.environ.get("FCC_ANDROID")
 CUT_OFF = 8
 """fccd's exit code for a recording that does not end as one does."""
+MOST_GROWTH_KIB = 20_000
 pytestmark = pytest.mark.skipif(PROGRAM is None, reason="make test-android builds it")
 
 
@@ -99,10 +100,38 @@ def test_the_pattern_is_flown_by_the_phones_raw_sensors(
     assert_replayed(fccd, recordings, flown)
 
 
+@pytest.mark.parametrize("by", ["the second process", "the next start"])
+def test_x_plane_is_released_when_the_app_is_killed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, by: str
+) -> None:
+    """By its second process; or, if that is killed, too, as by a force stop, at the next start."""
+    assert PROGRAM is not None
+    recordings = tmp_path / "recordings"
+    if by == "the second process":
+        monkeypatch.setenv("FCC_RELEASE_HELPER", "1")
+    with StandInProcess(Settings(port=0)) as simulator:
+        config = write_config(tmp_path, simulator.port)
+        words = [*command(Path(PROGRAM), config), "--recordings", str(recordings)]
+        for _ in range(2):
+            simulator.write(ENGAGE_SWITCH, 0.0)
+            with Daemon(words) as app:
+                engage(simulator)
+                app.stop(signal.SIGKILL)
+            simulator.write(ENGAGE_SWITCH, 0.0)
+            if by == "the next start":
+                time.sleep(2.0)
+                assert simulator.progress().overridden
+                monkeypatch.setenv("FCC_RELEASE_LEFT", "1")
+                left = subprocess.run(words, check=True, capture_output=True, text=True)
+                monkeypatch.delenv("FCC_RELEASE_LEFT")
+                assert f"X-Plane at 127.0.0.1:{simulator.port} was released" in left.stdout
+            wait_until(lambda: not simulator.progress().overridden, "released")
+            wait_until(lambda: not (recordings / "held").exists(), "nothing is left")
+
+
 def test_a_servo_board_centres_the_surfaces_of_an_app_that_is_killed(
     fccd: Path, tmp_path: Path
 ) -> None:
-    """Android kills an app with all of its processes, so nothing here can release for it."""
     assert PROGRAM is not None
     recordings = tmp_path / "recordings"
     with StandInProcess(Settings(port=0, board="udp")) as aircraft:
@@ -132,6 +161,43 @@ def test_a_servo_board_centres_the_surfaces_of_an_app_that_is_killed(
     result = replayed(fccd, recording, CUT_OFF)
     assert result["ticks"] > 2.0 * 40.0
     assert result["identity"]["differing"] == 0
+
+
+def test_a_processor_without_a_library_is_told_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert PROGRAM is not None
+    monkeypatch.setenv("FCC_ANDROID_LIBRARY", str(tmp_path))
+    config = tmp_path / "fccd.toml"
+    config.write_text("[built-in]\n")
+    words = command(Path(PROGRAM), config)
+    ended = subprocess.run(words, check=False, capture_output=True, text=True)
+    assert ended.returncode != 0
+    assert "no native library for this processor" in ended.stderr
+
+
+def test_a_thousand_flights_take_no_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The heap of Java is of one size, so that what remains is what native code has taken."""
+    assert PROGRAM is not None
+    monkeypatch.setenv("JAVA_TOOL_OPTIONS", "-Xms64m -Xmx64m -XX:+AlwaysPreTouch")
+    words = [PROGRAM, "flights", "1000"]
+    ended = subprocess.run(words, check=True, capture_output=True, text=True)
+    after_ten_kib, after_all_kib = (int(line) for line in ended.stdout.split())
+    print(f"after 10 flights {after_ten_kib} KiB, after 1,000 {after_all_kib} KiB")
+    # What Java compiles meanwhile.
+    assert after_all_kib - after_ten_kib < MOST_GROWTH_KIB
+
+
+def engage(simulator: StandInProcess) -> None:
+    """Move the simulator's switch until the app has control: it may not be ready at first."""
+    for _ in range(15):
+        simulator.write(ENGAGE_SWITCH, 0.0)
+        time.sleep(1.0)
+        simulator.write(ENGAGE_SWITCH, 1.0)
+        time.sleep(1.0)
+        if simulator.progress().overridden:
+            return
+    pytest.fail("not engaged within 30 s")
 
 
 def engage_board(aircraft: StandInProcess) -> None:

@@ -187,14 +187,14 @@ def test_ranges_are_reported() -> None:
         (lambda: fcc.Timer(0.01, "hpet")): "choose timerfd, posix or nanosleep",
         (lambda: fcc.Surfaces(throttle=1.2)): "throttle is 1.2: choose 0 to 1",
         (lambda: engaged().command(altitude_m=9e9)): "altitude_m is 9000000000: choose",
-        (lambda: engaged().command(heading_rad=1e308)): "heading_rad is 1e308: choose -12.56",
-        (lambda: fcc.Machine().command(heading_rad=13.0)): "heading_rad is 13: choose -12.56",
+        (lambda: engaged().command(heading_rad=1e308)): "heading_rad is 1e308: choose -12.57",
+        (lambda: fcc.Machine().command(heading_rad=13.0)): "heading_rad is 13: choose -12.57",
         (lambda: fcc.fly(seconds=-1.0)): "seconds is -1",
         (lambda: fcc.Pid(output_min=1.0, output_max=0.0)): "the first must be less",
         (lambda: fcc.euler_from_quaternion([0, 0, 0, 0])): "has the length 0",
         (lambda: fcc.Machine().step(None, missing=["tail"])): "there is no reading 'tail'",
         (lambda: setattr(LEVEL, "pitch_rad", "up")): "pitch_rad: must be real number, not str",
-        (lambda: fcc.Surfaces(flaps=1.0)): "has no 'flaps': choose of throttle, elevator",  # type: ignore[call-arg]
+        (lambda: fcc.Surfaces(slats=1.0)): "has no 'slats': choose of throttle, elevator",  # type: ignore[call-arg]
     }
     for call, words in log.items():
         with pytest.raises((ValueError, TypeError), match=words):

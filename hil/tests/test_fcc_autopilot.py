@@ -51,7 +51,7 @@ def test_a_series_is_its_steps_to_the_last_bit() -> None:
     steps = [one.step(fcc.Measurements.from_array(row)).to_array() for row in rows]
     # Without a trim's position at engaging none is moved: NaN.
     assert np.array_equal(other.fly(rows), np.array(steps), equal_nan=True)
-    assert other.fly(np.empty((0, len(fcc.MEASUREMENTS)))).shape == (0, 5)
+    assert other.fly(np.empty((0, len(fcc.MEASUREMENTS)))).shape == (0, len(fcc.SURFACES))
 
 
 def test_a_fleet_is_its_autopilots_to_the_last_bit() -> None:
@@ -60,7 +60,9 @@ def test_a_fleet_is_its_autopilots_to_the_last_bit() -> None:
     fleet = fcc.Fleet([configs[0], fcc.Config(configs[1])])
     for row in measured[:100]:
         fleet.observe([row, row])
-    fleet.engage([measured[100]] * 2, [[0.6, 0.0, 0.0, 0.0, np.nan]] * 2)
+    # Of the outputs that an aircraft need not have none is known.
+    outputs = [0.6, 0.0, 0.0, 0.0] + [np.nan] * (len(fcc.SURFACES) - 4)
+    fleet.engage([measured[100]] * 2, [outputs] * 2)
     both = np.array([fleet.step([row, row]) for row in measured[101:]])
     for n, config in enumerate(configs):
         alone = engaged(config, measured).fly(measured[101:])

@@ -29,7 +29,7 @@ climb_ft = -400.0
 ENGAGED_S = 3.0
 FLOOR_FT = 2800.0
 MARGIN_FT = 50.0
-LIMITED = "the target altitude is limited by the floor"
+LIMITED = "the target altitude is limited by the floor or the fence"
 
 
 def flown(

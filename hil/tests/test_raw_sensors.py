@@ -17,6 +17,7 @@ from fcc_hil import raw_calibration, raw_flight
 from fcc_hil.lockstep_rig import Conditions, LockstepRig
 from fcc_hil.plant import Plant
 from fcc_hil.raw_sensors import FIELD_UT
+from fcc_hil.raw_turning import turned_over
 from fcc_hil.standin import Settings
 
 EARTH_M = 6_378_137.0
@@ -197,6 +198,40 @@ def test_the_built_in_aircraft_engages_in_gusts_by_default(fccd: Path, tmp_path:
         assert re.search(r"engaged +\d s .* bank +-?\d+° .* airspeed +(?:[89]\d|1\d\d)", said)
 
 
+def test_a_gyroscope_that_is_turned_over_is_calibrated_and_else_refused() -> None:
+    """Scale and cross axes of 2 %, the tolerances of the MPU-3050 (PS-MPU-3050A-00)."""
+    shape = np.array([[1.02, -0.02, 0.01], [0.02, 0.98, 0.015], [-0.01, -0.02, 1.01]])
+    bias = np.array([0.02, -0.01, 0.005])
+    motion = [motion for number, motion in enumerate(turned_over(0.0)) if number % 2 == 0]
+    times_s = np.array([motion.time_s for motion in motion])
+    rates, force = (
+        np.array([[getattr(motion, name) for name in names] for motion in motion])
+        for names in (
+            ("roll_rate_radps", "pitch_rate_radps", "yaw_rate_radps"),
+            [f"specific_force_{axis}_mps2" for axis in "xyz"],
+        )
+    )
+    given = rates @ shape.T + bias
+    found = fcc.calibrate_gyroscope(gyroscope=(times_s, given), accelerometer=(times_s, force))
+    # It is integrated at 100 Hz.
+    assert np.array(found["matrix"]) == pytest.approx(np.linalg.inv(shape), abs=1e-4)
+    assert found["bias"] == pytest.approx(bias, abs=1e-9)
+    assert found["sigma"] < 1e-4
+    assert found["residual_rad"] < 1e-4
+    early = times_s < 30.0
+    with pytest.raises(ValueError, match="ended too early: 0 of 3 are there"):
+        fcc.calibrate_gyroscope(
+            gyroscope=(times_s[early], given[early]),
+            accelerometer=(times_s[early], force[early]),
+        )
+    with pytest.raises(ValueError, match="mounted in another way than the accelerometer"):
+        fcc.calibrate_gyroscope(
+            gyroscope=(times_s, given[:, [1, 2, 0]]), accelerometer=(times_s, force)
+        )
+    with pytest.raises(TypeError):
+        fcc.calibrate_gyroscope(gyroscope=(times_s, given))  # type: ignore[call-arg]
+
+
 def test_calibrate_refuses_with_the_reason() -> None:
     with pytest.raises(ValueError, match="too few samples: take at least 12"):
         fcc.calibrate(np.eye(3), 9.81)
@@ -240,6 +275,13 @@ def test_a_mounting_is_levelled_and_its_dip_made_constant() -> None:
     down, field = turns @ [0.0, 0.0, 1.0], turns @ [21.0, 0.0, 45.0]
     found = np.array(fcc.constant_dip(down, field @ about_y))
     assert found == pytest.approx(about_y, abs=1e-6)
+    # A sensor whose x axis points right; then 30 deg nose up.
+    right = fcc.level_and_nose_up([0.0, 0.0, -9.81], [0.0, -9.81 * 0.5, -9.81 * 0.75**0.5])
+    assert np.array(right) == pytest.approx(
+        np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    )
+    with pytest.raises(ValueError, match="are parallel"):
+        fcc.level_and_nose_up([0.0, 0.0, -9.81], [0.0, 0.0, -9.7])
     with pytest.raises(ValueError, match="down has 40 rows, and field has 39"):
         fcc.constant_dip(down, field[1:])
     with pytest.raises(ValueError, match="give 12 attitudes or more"):

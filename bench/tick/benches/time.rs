@@ -58,6 +58,10 @@ fn stages(criterion: &mut Criterion) {
     group.bench_function("the same from raw sensors", |bencher| {
         bencher.iter_custom(|times| timed(&mut by_raw_sensors, times, Stages::next, Stages::step));
     });
+    let mut by_two_sets = Stages::engaged_by_two_sets();
+    group.bench_function("the same from two sets of them", |bencher| {
+        bencher.iter_custom(|times| timed(&mut by_two_sets, times, Stages::next, Stages::step));
+    });
     group.finish();
 }
 

@@ -41,6 +41,8 @@ pub struct Stages {
     aircraft: Simulation,
     tick: Tick,
     measurements: Measurements,
+    /// How many sets of the same sensors there are.
+    sets: u8,
     sampled: Measurements,
     outputs: Surfaces,
     /// What of the tick has been computed.
@@ -69,6 +71,16 @@ impl Stages {
     /// When it cannot be assembled.
     pub fn engaged_by_raw_sensors() -> Self {
         Self::flying_by(Some(&RawSensorSet::board()))
+    }
+
+    /// The same, with two sets of them that agree.
+    ///
+    /// # Panics
+    /// When it cannot be assembled.
+    pub fn engaged_by_two_sets() -> Self {
+        let mut stages = Self::engaged_by_raw_sensors();
+        stages.sets = 2;
+        stages
     }
 
     fn flying_by(raw_sensors: Option<&RawSensorSet>) -> Self {
@@ -110,6 +122,7 @@ impl Stages {
             aircraft: Simulation::new(&aircraft).expect("a fair configuration"),
             tick: record.tick,
             measurements: Measurements::default(),
+            sets: 1,
             sampled: record.measurements,
             outputs: Surfaces::default(),
             is_seen: true,
@@ -196,6 +209,13 @@ impl Stages {
     /// Measurements become position and motion.
     #[inline(never)]
     pub fn navigation(&mut self) {
+        if self.sets > 1 {
+            for sensor in 0..self.sets {
+                self.autopilot
+                    .observe_sensor(sensor, black_box(&self.measurements));
+                black_box(self.autopilot.plausible(sensor, &self.measurements));
+            }
+        }
         self.autopilot
             .estimate(&self.tick, black_box(&self.measurements));
         self.is_seen = true;

@@ -41,11 +41,7 @@ impl Computer {
         package: String,
         notifier: Notifier,
     ) -> Result<Self, Failure> {
-        let wrong = |error: &dyn std::fmt::Display| Failure::Config(error.to_string());
-        let mut config = Config::parse(&text, CONFIG_NAME).map_err(|error| wrong(&error))?;
-        config.recording.folder = recordings;
-        // There are no other programs to watch it.
-        config.telemetry.enabled = false;
+        let mut config = read(&text, recordings)?;
         let now_s = SystemTime::now()
             .duration_since(UNIX_EPOCH)
             .map_or(0, |since| since.as_secs());
@@ -160,6 +156,19 @@ impl Computer {
     fn flight(&self) -> MutexGuard<'_, Option<Flight>> {
         self.flight.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// The configuration of a text, as the app flies it.
+///
+/// # Errors
+/// When it cannot be flown: every problem with its line and key.
+pub(crate) fn read(text: &str, recordings: PathBuf) -> Result<Config, Failure> {
+    let mut config =
+        Config::parse(text, CONFIG_NAME).map_err(|error| Failure::Config(error.to_string()))?;
+    config.recording.folder = recordings;
+    // There are no other programs to watch it.
+    config.telemetry.enabled = false;
+    Ok(config)
 }
 
 impl Drop for Computer {

@@ -22,6 +22,9 @@ pub(crate) enum Failure {
     /// The recordings cannot be listed, or one cannot be read.
     #[error("{0}")]
     Recording(String),
+    /// A calibration did not begin.
+    #[error("{0}")]
+    Calibration(String),
     /// The handle is closed, or never was one.
     #[error("this flight control computer is closed: create another")]
     Closed,
@@ -37,6 +40,7 @@ impl Failure {
             Self::Flight(_) => jni_str!("fcc/android/FlightException"),
             Self::Command(_) => jni_str!("fcc/android/CommandException"),
             Self::Recording(_) => jni_str!("fcc/android/RecordingException"),
+            Self::Calibration(_) => jni_str!("fcc/android/CalibrationException"),
             Self::Closed => jni_str!("fcc/android/ClosedException"),
             Self::Java(_) => INTERNAL,
         }

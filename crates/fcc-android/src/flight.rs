@@ -7,6 +7,7 @@ use std::sync::mpsc::{SyncSender, sync_channel};
 use std::sync::{Arc, OnceLock};
 use std::thread::{self, JoinHandle};
 
+use fcc_core::framework::{ControlAuthority, Released};
 use fcc_flight::config::Config;
 use fcc_flight::flight::{
     Host, Length, Outcome, Pace, Plan, RecordingRequest, assemble_on_phone, fly,
@@ -19,6 +20,7 @@ use crate::failure::{Failure, panic_message};
 use crate::listener::{Notice, Notifier};
 use crate::live::{Live, LiveObserver};
 use crate::phone::AppPhone;
+use crate::release::{self, Outliving};
 
 /// The nice value that the loop asks for where it is refused `SCHED_FIFO`: that
 /// of Android's most urgent threads (`THREAD_PRIORITY_URGENT_AUDIO`).
@@ -160,6 +162,7 @@ struct Conduct {
 impl Conduct {
     /// Assembles the flight, and flies it to its end.
     fn conduct(mut self) -> Result<Outcome, String> {
+        release::begin_flight();
         let config = &self.config;
         let assembly = assemble_on_phone(config, &mut self.phone);
         let mut assembly = assembly.map_err(|error| error.to_string())?;
@@ -184,19 +187,32 @@ impl Conduct {
             stop: self.stop,
             begun: self.begun,
             commander,
+            config,
+            outliving: None,
         };
         fly(assembly, &config.tick, plan, observers, &mut host).map_err(|error| error.to_string())
     }
 }
 
 /// The app as the host of a flight.
-struct App {
+struct App<'a> {
     stop: StopRequest,
     begun: Begun,
     commander: Commander,
+    config: &'a Config,
+    /// None of a plant that nobody can hold.
+    outliving: Option<Outliving>,
 }
 
-impl Host for App {
+impl Host for App<'_> {
+    fn prepare(&mut self, authority: Option<&Arc<dyn ControlAuthority>>) -> io::Result<()> {
+        let folder = &self.config.recording.folder;
+        self.outliving = authority
+            .map(|authority| Outliving::new(authority, self.config, folder))
+            .transpose()?;
+        Ok(())
+    }
+
     fn attach(&mut self, stop: &StopHandle) -> io::Result<()> {
         self.stop.attach(stop);
         Ok(())
@@ -204,5 +220,26 @@ impl Host for App {
 
     fn started(&mut self) {
         let _ = self.begun.try_send(Ok(self.commander.clone()));
+    }
+
+    fn poll(&mut self, report: &mut dyn FnMut(String)) {
+        if let Some(outliving) = &mut self.outliving {
+            outliving.poll(report);
+        }
+    }
+
+    fn continue_release(&mut self) -> &'static str {
+        match &self.outliving {
+            Some(outliving) if outliving.hand_over() => {
+                "; a second process continues for two minutes"
+            }
+            _ => "",
+        }
+    }
+
+    fn end(&mut self, released: Released) {
+        if let Some(outliving) = &mut self.outliving {
+            outliving.end(released);
+        }
     }
 }

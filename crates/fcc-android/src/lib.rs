@@ -16,15 +16,18 @@
 //! | `handles` | numbers for what Java holds; a closed one is refused |
 //! | `computer` | one configuration, flown any number of times |
 //! | `flight` | one flight in a thread of its own |
+//! | `calibration` | a guided calibration in a thread of its own |
 //! | `phone` | the phone's sensors in a flight |
 //! | `live` | the state for the screens |
 //! | `commands` | commands of the app, and what became of them |
 //! | `report` | a report on a recording |
+//! | `release` | releases the controls if the app is killed |
 //! | `listener` | calls of the app's listener, from a thread of its own |
 //!
 //! The loop's thread calls nothing of this crate: it fills its ring, and the
 //! flight's thread reads it. What Java calls waits for that thread at most.
 
+mod calibration;
 mod commands;
 mod computer;
 mod failure;
@@ -34,4 +37,5 @@ mod listener;
 mod live;
 pub mod native;
 mod phone;
+mod release;
 mod report;

@@ -1,5 +1,9 @@
 //! The command line.
 
+mod calibrate;
+#[cfg(feature = "live")]
+mod command;
+pub mod plan;
 mod values;
 pub mod x_plane;
 
@@ -7,15 +11,17 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
-use fcc_flight::calibrate::{CalibrationKind, HandlingFault};
 use fcc_flight::config::{CpuChoice, EarlyWakeChoice, GustsChoice, NavigationMethod};
 use fcc_telemetry::Instance;
 use fcc_timer::TimerKind;
 
 use crate::exit::exit_codes;
+pub use calibrate::CalibrateArgs;
+#[cfg(feature = "live")]
+pub use command::{CommandArgs, CommandChoice, SetArgs};
+use plan::PlanArgs;
 use values::{
-    calibration_kind, cpu_cap_percent, early_wake, gusts, handling_fault, margin_us, navigation,
-    output, positive_seconds, rate_hz,
+    cpu_cap_percent, early_wake, gusts, margin_us, navigation, output, positive_seconds, rate_hz,
 };
 use x_plane::XPlaneArgs;
 
@@ -57,6 +63,8 @@ pub enum Action {
     Doctor(DoctorArgs),
     /// List the sensors that are connected to this board
     Probe(ProbeArgs),
+    /// Check, show or convert flight plans
+    Plan(PlanArgs),
     /// Check fccd against a running X-Plane
     XPlane(XPlaneArgs),
     /// Report on a recorded flight: tables, and a page with plots
@@ -90,7 +98,7 @@ pub struct FlyArgs {
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
     /// How long to fly from the first engagement on; standby after it counts
-    /// [default: the hold and 8 legs]
+    /// [default: the hold and 8 legs; of a plan until it has landed, or its time is over]
     #[arg(long, value_name = "S", value_parser = positive_seconds, allow_negative_numbers = true)]
     pub seconds: Option<f64>,
     /// Seed of gusts and sensor noise
@@ -98,6 +106,9 @@ pub struct FlyArgs {
     #[arg(long, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64),
           allow_negative_numbers = true)]
     pub seed: Option<u64>,
+    /// Flight plan to fly, of QGroundControl or QGC WPL 110, in place of the pattern
+    #[arg(long, value_name = "FILE")]
+    pub plan: Option<PathBuf>,
     /// Strength of the gusts
     #[arg(long, value_parser = gusts())]
     pub gusts: Option<GustsChoice>,
@@ -125,6 +136,9 @@ pub struct RunArgs {
     /// Configuration file
     #[arg(long, value_name = "FILE")]
     pub config: PathBuf,
+    /// Flight plan to fly once engaged, of QGroundControl or QGC WPL 110
+    #[arg(long, value_name = "FILE")]
+    pub plan: Option<PathBuf>,
     /// Where to record
     #[command(flatten)]
     pub recording: RecordingArgs,
@@ -254,106 +268,6 @@ pub struct TopArgs {
     #[arg(long, value_name = "NAME", default_value_t = Instance::default())]
     pub instance: Instance,
     /// Print one snapshot as JSON and end
-    #[arg(long)]
-    pub json: bool,
-}
-
-/// `fccd command`.
-#[cfg(feature = "live")]
-#[derive(Args, Debug)]
-pub struct CommandArgs {
-    /// The command
-    #[command(subcommand)]
-    pub what: CommandChoice,
-    /// The daemon's name, as given by --instance or in its configuration
-    #[arg(long, value_name = "NAME", default_value_t = Instance::default(), global = true)]
-    pub instance: Instance,
-    /// The user of the daemon, if it is another's and no service; it has to
-    /// permit this one in rights.commanders
-    #[arg(long, value_name = "USER", global = true)]
-    pub of: Option<String>,
-    /// Print the result as JSON
-    #[arg(long, global = true)]
-    pub json: bool,
-}
-
-/// Commands to a flight.
-#[cfg(feature = "live")]
-#[derive(Subcommand, Debug)]
-pub enum CommandChoice {
-    /// Take control with the present state as set points
-    Engage,
-    /// Release the controls
-    Disengage,
-    /// Release the controls and end the daemon
-    Stop,
-    /// Fly to other set points; those not given keep their value
-    Set(SetArgs),
-}
-
-/// `fccd command set`.
-#[cfg(feature = "live")]
-#[derive(Args, Debug)]
-#[group(required = true, multiple = true)]
-pub struct SetArgs {
-    /// Magnetic heading, -360 to 360; turns the shorter way
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
-    pub heading_deg: Option<f64>,
-    /// Altitude above sea level by the altimeter setting
-    #[arg(long, value_name = "FT", allow_negative_numbers = true)]
-    pub altitude_ft: Option<f64>,
-    /// Pressure altitude: flight level 55 is 5500
-    #[arg(long, value_name = "FT", allow_negative_numbers = true)]
-    pub pressure_altitude_ft: Option<f64>,
-    /// Height above the configured field elevation
-    #[arg(long, value_name = "FT", allow_negative_numbers = true)]
-    pub height_ft: Option<f64>,
-    /// Altimeter setting (QNH), 940 to 1060; also in standby
-    #[arg(long, value_name = "HPA")]
-    pub altimeter_hpa: Option<f64>,
-    /// The same in inches of mercury, 27.76 to 31.3
-    #[arg(long, value_name = "INHG", conflicts_with = "altimeter_hpa")]
-    pub altimeter_inhg: Option<f64>,
-    /// Indicated airspeed
-    #[arg(long, value_name = "KT", allow_negative_numbers = true)]
-    pub airspeed_kt: Option<f64>,
-}
-
-/// `fccd calibrate`.
-#[derive(Args, Debug)]
-#[allow(
-    clippy::struct_excessive_bools,
-    reason = "each is a switch of the command line"
-)]
-pub struct CalibrateArgs {
-    /// What to calibrate
-    #[arg(value_name = "KIND", value_parser = calibration_kind())]
-    pub kind: CalibrationKind,
-    /// Configuration file
-    #[arg(value_name = "CONFIG")]
-    pub config: PathBuf,
-    /// The sensor, by its section in the configuration [default: the first
-    /// that gives such readings]
-    #[arg(long, value_name = "SECTION")]
-    pub sensor: Option<String>,
-    /// Of a mounting: only level the aircraft, and keep where the sensors point
-    #[arg(long)]
-    pub level_only: bool,
-    /// Change nothing
-    #[arg(long)]
-    pub dry_run: bool,
-    /// Give up after this time
-    #[arg(long, value_name = "S", default_value_t = 600.0, value_parser = positive_seconds,
-          allow_negative_numbers = true)]
-    pub seconds: f64,
-    /// Of the built-in aircraft, which a simulated person handles: what that
-    /// person does wrong
-    #[arg(long, value_name = "FAULT", value_parser = handling_fault())]
-    pub fault: Option<HandlingFault>,
-    /// Of the built-in aircraft: as fast as the machine can
-    #[arg(long)]
-    pub lockstep: bool,
-    /// Print the result as JSON
     #[arg(long)]
     pub json: bool,
 }

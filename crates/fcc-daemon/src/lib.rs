@@ -18,4 +18,4 @@ mod output;
 mod process;
 
 #[cfg(fuzzing)]
-pub use process::{held_after, use_plant_file};
+pub use process::use_plant_file;

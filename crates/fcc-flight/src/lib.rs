@@ -7,11 +7,13 @@
 //! | [`config`] | reads and checks the configuration file |
 //! | [`flight`] | assembles a flight from a configuration, flies and observes it |
 //! | [`probe`] | what is connected to the machine |
+//! | [`release`] | releases the controls on behalf of a process that was killed |
 //! | [`replay`] | prepares the replay of a recorded flight |
 
 pub mod calibrate;
 pub mod config;
 pub mod flight;
 pub mod probe;
+pub mod release;
 pub mod replay;
 mod sealed;

@@ -29,8 +29,21 @@ pub fn recorded_pattern(about: &About) -> Option<TimedPatternConfig> {
     let config = Config::parse_autopilot(&about.config, "the recording").ok()?;
     match config.guidance {
         GuidanceConfig::TimedPattern(pattern) => Some(pattern),
-        GuidanceConfig::Hold => None,
+        GuidanceConfig::Hold | GuidanceConfig::Plan => None,
     }
+}
+
+/// The flight plan in a recorded configuration, and which it is in words.
+pub fn recorded_plan(about: &About) -> Option<(String, fcc_plan::Plan)> {
+    let config = Config::parse_without_aircraft(&about.config, "the recording").ok()?;
+    let (identity, plan) = (config.plan.identity()?, config.plan.plan()?);
+    let uploaded = fcc_record::timestamp(identity.uploaded_s.saturating_mul(1_000_000_000));
+    let which = format!(
+        "The flight plan {:.12} has {} items and was uploaded {uploaded}.",
+        identity.hash,
+        plan.items.len()
+    );
+    Some((which, plan.clone()))
 }
 
 /// How navigation computes by a method, with the rest of this configuration; none

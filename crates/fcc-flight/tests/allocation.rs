@@ -3,6 +3,7 @@
 //! allocator; nor does a flight in which sensors fail and the aircraft is upset.
 #![cfg(test)]
 
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use fcc_conformance::allocator_calls;
@@ -20,6 +21,7 @@ use fcc_timer::ManualTimer;
 /// records, and what happened.
 fn fly(
     navigation: NavigationMethod,
+    second: Option<Box<dyn Sensor<Measurements>>>,
     sensor: impl Fn(Box<dyn Sensor<Measurements>>) -> Box<dyn Sensor<Measurements>>,
     actuator: impl Fn(Box<dyn Actuator<Surfaces>>) -> Box<dyn Actuator<Surfaces>>,
 ) -> (u64, u32, u32, Vec<String>) {
@@ -53,7 +55,12 @@ fn fly(
                 .unwrap()
                 .with_warm_up(),
         ),
-        sensors: assembly.sensors.into_iter().map(sensor).collect(),
+        sensors: assembly
+            .sensors
+            .into_iter()
+            .map(sensor)
+            .chain(second)
+            .collect(),
         controller: Autopilot::new(autopilot),
         actuators: assembly.actuators.into_iter().map(actuator).collect(),
     };
@@ -85,7 +92,7 @@ fn fly(
 fn ten_thousand_ticks_of_a_flight_do_not_allocate() {
     for navigation in [NavigationMethod::Measured, NavigationMethod::Kalman] {
         let (calls, engaged, records, events) =
-            fly(navigation, |sensor| sensor, |actuator| actuator);
+            fly(navigation, None, |sensor| sensor, |actuator| actuator);
         assert_eq!(calls, 0);
         // It was a flight: 25 s of standby, and engaged to the end.
         assert_eq!(records, 10_000);
@@ -97,6 +104,7 @@ fn ten_thousand_ticks_of_a_flight_do_not_allocate() {
 fn doubts_degraded_flight_and_recoveries_do_not_allocate() {
     let (calls, _, records, events) = fly(
         NavigationMethod::Measured,
+        None,
         |sensor| Box::new(Failing(sensor)),
         |actuator| Box::new(Sticking(actuator)),
     );
@@ -113,6 +121,57 @@ fn doubts_degraded_flight_and_recoveries_do_not_allocate() {
             events.iter().any(|event| event.contains(text)),
             "{text}: {events:#?}"
         );
+    }
+}
+
+#[test]
+fn a_second_filter_for_two_units_that_disagree_does_not_allocate() {
+    let measured = Arc::default();
+    let (calls, _, records, events) = fly(
+        NavigationMethod::Kalman,
+        Some(Box::new(Second(Arc::clone(&measured)))),
+        |sensor| Box::new(Biased(sensor, Arc::clone(&measured))),
+        |actuator| actuator,
+    );
+    assert_eq!(calls, 0);
+    assert_eq!(records, 10_000);
+    let text = "inertial unit of sensor 1 is not used again: another of its kind";
+    assert!(
+        events.iter().any(|event| event.contains(text)),
+        "{events:#?}"
+    );
+}
+
+/// A sensor whose gyroscope is off by 5 °/s in pitch after 100 s.
+struct Biased(Box<dyn Sensor<Measurements>>, Arc<Mutex<Measurements>>);
+
+impl Sensor<Measurements> for Biased {
+    fn sample(&mut self, tick: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
+        let mut measured = self.1.lock().unwrap();
+        self.0.sample(tick, &mut measured)?;
+        *into = *measured;
+        if tick.number >= 4_000 {
+            into.raw_body_rates.value.pitch_radps += 5.0_f64.to_radians();
+        }
+        Ok(())
+    }
+
+    fn name(&self) -> &str {
+        self.0.name()
+    }
+}
+
+/// One beside it that is not.
+struct Second(Arc<Mutex<Measurements>>);
+
+impl Sensor<Measurements> for Second {
+    fn sample(&mut self, _: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
+        *into = *self.0.lock().unwrap();
+        Ok(())
+    }
+
+    fn name(&self) -> &'static str {
+        "second"
     }
 }
 

@@ -15,9 +15,8 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use fcc_core::flight::Autopilot;
-use fcc_core::flight::calibration::MountingWay;
 use fcc_core::framework::{Controller, LoopCommand, RecordOf, State, Tick, Time};
-use fcc_flight::calibrate::{CalibrationKind, CalibrationSession};
+use fcc_flight::calibrate::{CalibrationKind, CalibrationSession, Extent};
 use fcc_flight::config::Config;
 use fcc_flight::flight::{Access, FlightTime, Length, Observer, Pace, Plan, Report, assemble, fly};
 use fcc_linux::monotonic;
@@ -331,8 +330,9 @@ fn place_in(kind: &str, navigation: &str) -> Option<f64> {
          rotation_deg = [0.0, 1.0, 0.0]\n[[sensor]]\n{receiver_entry}"
     );
     let config = Config::parse(&text, "test").unwrap();
-    let way = MountingWay::LevelAndNoseUp;
-    let mut session = CalibrationSession::open(&config, kind.unwrap(), way, None, None, 0).unwrap();
+    let extent = Extent::Whole;
+    let mut session =
+        CalibrationSession::open(&config, kind.unwrap(), extent, None, None, 0).unwrap();
     for number in 1..=40 {
         receiver.speak();
         std::thread::sleep(Duration::from_millis(25));

@@ -71,14 +71,15 @@ pub enum EventCode {
     /// the sensor before); the index is the sensor now.
     SourceChanged = 17,
     /// The controller's mode changed (mode before, mode now). An autopilot's: 0
-    /// none, 1 hold, 2 timed pattern.
+    /// none, 1 hold, 2 timed pattern, 3 plan, 4 loiter, 5 go-to, 6 return.
     ModeChanged = 18,
     /// Conditions that the controller reports while control is held changed
     /// (those that began, those that ended).
     ConditionsChanged = 19,
-    /// The controller noticed something (how long it lasted, ns); the index is
-    /// which. An autopilot's: 1 the simulator stood still, 2 the link was lost, 5
-    /// the simulator's clock is missing.
+    /// The controller noticed something (how long it lasted, ns, how large it was,
+    /// which one of several); the index is which. An autopilot's: 1 the simulator
+    /// stood still, 2 the link was lost, 5 the simulator's clock is missing, 10 an
+    /// item of the plan was reached.
     Noticed = 20,
     /// Control is given back at once (why, one bit each, as in the flags of a
     /// state).
@@ -187,7 +188,11 @@ fn numbers<O: Copy>(event: &framework::Event<O>) -> (EventCode, u32, [u64; 3]) {
         EventKind::Noticed(notice) => (
             EventCode::Noticed,
             notice.kind.into(),
-            [notice.lasted_ns, notice.amount_permille.into(), 0],
+            [
+                notice.lasted_ns,
+                notice.amount_permille.into(),
+                notice.item.into(),
+            ],
         ),
         EventKind::ReleasedAtOnce { conditions } => {
             (EventCode::ReleasedAtOnce, 0, [conditions.bits(), 0, 0])

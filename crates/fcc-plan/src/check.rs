@@ -5,9 +5,11 @@
 //! begins or ends there is none.
 
 use fcc_core::flight::path::turn::{Turn, smallest_circle_m};
+use fcc_core::flight::route::PLANNED_SHARE;
 
-use crate::inside::{fence_problem, obstacle_problem};
-use crate::item::{Altitude, AltitudeDatum, Item, Loiter, Place, Speed};
+use crate::inside::{TurnAway, circles, fence_problem, obstacle_problem};
+use crate::item::{Altitude, AltitudeDatum, Item, Loiter, LoiterEnd, Place, Speed};
+use crate::outline::Outline;
 use crate::plan::{Plan, limits};
 use crate::problem::Problem;
 
@@ -26,7 +28,18 @@ pub struct Conditions {
     pub descent_mps: f64,
     /// The radius of a loiter whose item has none, m.
     pub loiter_radius_m: f64,
+    /// A landing's last leg is straight for so long at least, m.
+    pub final_m: f64,
+    /// How far inside of the fence the aircraft turns away from it at least, m; none if
+    /// it does not.
+    pub fence_margin_m: Option<f64>,
 }
+
+/// What turns add to legs, as a factor; the least speed over the ground, of the
+/// airspeed; and the time for getting onto a leg, s.
+const TURNS: f64 = 1.1;
+const SLOWEST_SHARE: f64 = 0.3;
+const LEAST_S: f64 = 30.0;
 
 /// A leg between two places, with its altitudes above sea level, m.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +53,9 @@ pub(crate) struct Leg {
     item: usize,
     /// Whether there is a turn of the path at its end.
     turns: bool,
-    airspeed_mps: f64,
+    /// How near the turn at its end passes the place, m.
+    within_m: f64,
+    pub(crate) airspeed_mps: f64,
 }
 
 /// Checks a plan as a whole.
@@ -55,25 +70,27 @@ pub fn check(plan: &Plan, conditions: &Conditions) -> Result<(), Vec<Problem>> {
         problems.push(Problem::of("items", "there are none: give at least one"));
     }
     let legs = legs(plan, conditions, &mut problems);
+    let outline = Outline::of(plan);
     for (n, leg) in legs.iter().enumerate() {
-        let next = legs.get(n + 1);
+        let (before, next) = (n.checked_sub(1).and_then(|n| legs.get(n)), legs.get(n + 1));
+        let begins_with = before.and_then(|before| turn_of(before, leg, conditions));
+        let ends_with = next.and_then(|next| turn_of(leg, next, conditions));
+        let begins_m = begins_with.map_or(0.0, |turn| turn.after_m());
+        let ends_m = ends_with.map_or(0.0, |turn| turn.before_m());
+        let turn_away = TurnAway::new(leg, conditions, begins_m, ends_m);
         let found = [
             climb(leg, conditions),
-            next.and_then(|next| {
-                turn(
-                    leg,
-                    next,
-                    n.checked_sub(1).and_then(|n| legs.get(n)),
-                    conditions,
-                )
-            }),
-            fence_problem(leg, &plan.fence),
+            next.zip(ends_with)
+                .and_then(|(next, turn)| room(leg, next, begins_m, &turn)),
+            last_leg(plan, leg, begins_m, conditions),
+            outline.with(|fence| fence_problem(leg, fence, &turn_away)),
             obstacle_problem(leg, &plan.obstacles),
         ];
         for (field, message) in found.into_iter().flatten() {
             problems.push(Problem::of_item(leg.item, field, message));
         }
     }
+    outline.with(|fence| circles(plan, fence, conditions, &mut problems));
     problems.sort_by_key(|problem| problem.item);
     problems.truncate(limits::PROBLEMS);
     if problems.is_empty() {
@@ -83,11 +100,56 @@ pub fn check(plan: &Plan, conditions: &Conditions) -> Result<(), Vec<Problem>> {
     }
 }
 
+/// How long a plan takes at most, s: each leg against the strongest wind, with turns and
+/// loiters; at least a minute.
+pub fn longest_s(plan: &Plan, conditions: &Conditions) -> f64 {
+    let slowest =
+        |airspeed_mps: f64| (airspeed_mps - conditions.wind_mps).max(SLOWEST_SHARE * airspeed_mps);
+    let legs = legs(plan, conditions, &mut Vec::new());
+    let mut of_item = vec![0.0; plan.items.len() + 1];
+    for leg in &legs {
+        if let Some(seconds) = of_item.get_mut(leg.item) {
+            *seconds = TURNS * leg.length_m / slowest(leg.airspeed_mps) + LEAST_S;
+        }
+    }
+    let mut total_s = LEAST_S;
+    for (n, item) in plan.items.iter().enumerate() {
+        total_s += of_item.get(n + 1).copied().unwrap_or(0.0);
+        total_s += match *item {
+            Item::Loiter(loiter) => {
+                let radius_m = loiter.radius_m.unwrap_or(conditions.loiter_radius_m);
+                let turn_s = core::f64::consts::TAU * radius_m / slowest(conditions.airspeed_mps);
+                match loiter.end {
+                    LoiterEnd::Turns(turns) => (turns + 1.0) * turn_s,
+                    LoiterEnd::Seconds(seconds) => seconds + turn_s,
+                    LoiterEnd::Altitude | LoiterEnd::Never => 2.0 * turn_s,
+                }
+            }
+            Item::Jump { to, times } => {
+                let again: f64 = of_item.get(to..=n).unwrap_or_default().iter().sum();
+                again * f64::from(times.unwrap_or(0))
+            }
+            _ => 0.0,
+        };
+    }
+    total_s
+}
+
 /// The legs of a plan; what is wrong with single items is noted.
 fn legs(plan: &Plan, conditions: &Conditions, problems: &mut Vec<Problem>) -> Vec<Leg> {
     let mut legs: Vec<Leg> = Vec::new();
     let home = plan.home;
-    let mut at = home.map(|home| (home.place, home.altitude_m));
+    let takes_off = plan
+        .items
+        .iter()
+        .any(|item| matches!(item, Item::Takeoff { .. }));
+    // Without a take-off it begins in the air, at the altitude of its first item.
+    let first_m = plan.items.iter().find_map(Item::altitude);
+    let first_m = first_m.and_then(|altitude| above_sea_level(altitude, plan).ok());
+    let mut at = home.map(|home| {
+        let begins_m = first_m.filter(|_| !takes_off).unwrap_or(home.altitude_m);
+        (home.place, begins_m)
+    });
     let mut airspeed_mps = plan.cruise_mps.unwrap_or(conditions.airspeed_mps);
     for (n, item) in plan.items.iter().enumerate() {
         let number = n + 1;
@@ -102,6 +164,11 @@ fn legs(plan: &Plan, conditions: &Conditions, problems: &mut Vec<Problem>) -> Ve
             Item::Jump { to, times } => {
                 if let Some(message) = jump_problem(plan, number, to, times) {
                     note("jump", message);
+                }
+            }
+            Item::Takeoff { .. } | Item::Land { .. } => {
+                if let Some((field, message)) = runway_problem(plan, number, item) {
+                    note(field, message);
                 }
             }
             Item::Loiter(loiter) => {
@@ -141,6 +208,10 @@ fn legs(plan: &Plan, conditions: &Conditions, problems: &mut Vec<Problem>) -> Ve
             let (length_m, course_deg, arrival_deg) = from.0.to(place);
             if length_m > 0.1 {
                 let turns = matches!(item, Item::Waypoint { .. });
+                let within_m = match item {
+                    Item::Waypoint { radius_m, .. } => radius_m.unwrap_or(f64::INFINITY),
+                    _ => f64::INFINITY,
+                };
                 legs.push(Leg {
                     from,
                     to: (place, altitude_m),
@@ -149,6 +220,7 @@ fn legs(plan: &Plan, conditions: &Conditions, problems: &mut Vec<Problem>) -> Ve
                     arrival_deg,
                     item: number,
                     turns,
+                    within_m,
                     airspeed_mps,
                 });
             }
@@ -158,7 +230,7 @@ fn legs(plan: &Plan, conditions: &Conditions, problems: &mut Vec<Problem>) -> Ve
     legs
 }
 
-fn above_sea_level(altitude: Altitude, plan: &Plan) -> Result<f64, &'static str> {
+pub(crate) fn above_sea_level(altitude: Altitude, plan: &Plan) -> Result<f64, &'static str> {
     match (altitude.above, plan.home) {
         (AltitudeDatum::SeaLevel, _) => Ok(altitude.m),
         (AltitudeDatum::Home, Some(home)) => Ok(home.altitude_m + altitude.m),
@@ -226,18 +298,54 @@ fn climb(leg: &Leg, conditions: &Conditions) -> Option<(&'static str, String)> {
     })
 }
 
-/// Whether the turn at the end of a leg has room on it, beside that at its begin, and
-/// on the next one.
-fn turn(
+/// Whether a landing's leg leaves time for the glide path after the turn onto it.
+fn last_leg(
+    plan: &Plan,
     leg: &Leg,
-    next: &Leg,
-    before: Option<&Leg>,
+    begins_m: f64,
     conditions: &Conditions,
 ) -> Option<(&'static str, String)> {
-    let here = turn_of(leg, next, conditions)?;
-    let begins_m = before
-        .and_then(|before| turn_of(before, leg, conditions))
-        .map_or(0.0, |turn| turn.after_m());
+    let lands = matches!(plan.item(leg.item), Some(Item::Land { .. }));
+    let straight_m = leg.length_m - begins_m;
+    (lands && straight_m < conditions.final_m).then(|| {
+        let message = format!(
+            "the leg to the landing is straight for {:.0} m behind its turn, and needs {:.0} m: \
+             move the waypoint before it away",
+            straight_m.max(0.0),
+            conditions.final_m
+        );
+        ("approach", message)
+    })
+}
+
+/// What is behind a landing is not flown, and a take-off climbs before it turns.
+fn runway_problem(plan: &Plan, number: usize, item: &Item) -> Option<(&'static str, String)> {
+    /// Above home, m.
+    const LEAST_M: f64 = 30.0;
+    match item {
+        Item::Takeoff { altitude, .. } => {
+            let (home_m, altitude_m) = (plan.home?.altitude_m, above_sea_level(*altitude, plan));
+            (altitude_m.ok()? < home_m + LEAST_M).then(|| {
+                let message = format!("give at least {LEAST_M:.0} m above home: it turns there");
+                ("altitude", message)
+            })
+        }
+        Item::Land { .. } => {
+            let behind = plan.items.get(number..)?;
+            let flown = behind.iter().position(|item| item.place().is_some())?;
+            let message = format!(
+                "item {} is behind a landing, where the flight ends: remove it",
+                number + 1 + flown
+            );
+            Some(("command", message))
+        }
+        _ => None,
+    }
+}
+
+/// Whether the turn at the end of a leg has room on it, beside that at its begin, and
+/// on the next one.
+fn room(leg: &Leg, next: &Leg, begins_m: f64, turn: &Turn) -> Option<(&'static str, String)> {
     let lacks = |room_m: f64, needs_m: f64, which: &str| {
         (needs_m > room_m).then(|| {
             let message = format!(
@@ -247,9 +355,9 @@ fn turn(
             ("turn", message)
         })
     };
-    lacks(leg.length_m - begins_m, here.before_m(), "before").or_else(|| {
+    lacks(leg.length_m - begins_m, turn.before_m(), "before").or_else(|| {
         // The last one has no turn that would be checked with it.
-        lacks(next.length_m, here.after_m(), "behind")
+        lacks(next.length_m, turn.after_m(), "behind")
     })
 }
 
@@ -258,7 +366,12 @@ fn turn_of(leg: &Leg, next: &Leg, conditions: &Conditions) -> Option<Turn> {
         return None;
     }
     let airspeed = leg.airspeed_mps.max(next.airspeed_mps);
-    let radius_m = smallest_circle_m(airspeed, conditions.wind_mps, conditions.bank_rad)?;
+    let bank_rad = (PLANNED_SHARE * conditions.bank_rad.tan()).atan();
+    let radius_m = smallest_circle_m(airspeed, conditions.wind_mps, bank_rad)?;
     let through_deg = (next.course_deg - leg.arrival_deg + 540.0).rem_euclid(360.0) - 180.0;
-    Some(Turn::new(through_deg.to_radians(), radius_m))
+    Some(Turn::within(
+        through_deg.to_radians(),
+        radius_m,
+        leg.within_m,
+    ))
 }

@@ -101,7 +101,13 @@ pub fn read_file(path: &Path) -> Result<Plan, FileError> {
         problems: vec![Problem::of("", message)],
     };
     let mut bytes = Vec::new();
-    let read_in = File::open(path)
+    // A pipe without a writer would be waited for.
+    let is_file = path.metadata().and_then(|found| {
+        let refused = || io::Error::other("it is no file: give one");
+        found.is_file().then_some(()).ok_or_else(refused)
+    });
+    let read_in = is_file
+        .and_then(|()| File::open(path))
         .and_then(|opened| opened.take(limits::FILE_BYTES + 1).read_to_end(&mut bytes));
     if let Err(source) = read_in {
         return Err(FileError::Unreadable { file, source });

@@ -3,6 +3,7 @@
 
 use std::sync::LazyLock;
 
+use fcc_core::flight::path::LocalPlane;
 use geographiclib_rs::{DirectGeodesic as _, Geodesic, InverseGeodesic as _};
 
 use crate::item::Place;
@@ -47,5 +48,18 @@ impl Place {
             latitude_deg,
             longitude_deg,
         }
+    }
+
+    pub(crate) const fn radians(self) -> (f64, f64) {
+        (
+            self.latitude_deg.to_radians(),
+            self.longitude_deg.to_radians(),
+        )
+    }
+
+    /// The plane around it.
+    pub(crate) fn plane(self) -> LocalPlane {
+        let (latitude, longitude) = self.radians();
+        LocalPlane::at(latitude, longitude)
     }
 }

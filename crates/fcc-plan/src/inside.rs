@@ -1,22 +1,25 @@
 //! Whether a leg stays inside the fence and clear of obstacles.
 
-use std::f64::consts::PI;
+use fcc_core::flight::fence::{Bank, Escape, Fence, Shape, Zone};
+use fcc_core::flight::path::turn::smallest_circle_m;
+use fcc_core::flight::route::{OverGround, PLANNED_SHARE, ROLL_LAG_S, RouteConfig};
+use nalgebra::Vector2;
 
-use fcc_core::blocks::wrap_pi;
-use fcc_core::flight::path::LocalPlane;
+use crate::check::{Conditions, Leg};
+use crate::item::{Item, Loiter, Place};
+use crate::plan::{Obstacle, Plan};
+use crate::problem::Problem;
 
-use crate::check::Leg;
-use crate::item::Place;
-use crate::plan::{Fence, Obstacle, Polygon};
-
-/// Points of a leg that are tried, m apart, and how many at most.
+/// Points of a leg that are tried near the fence, m apart, and how many at most.
 const STEP_M: f64 = 50.0;
-const MOST_POINTS: usize = 2_000;
+const MOST_POINTS: f64 = 2_000.0;
+/// Longer than banking takes, s.
+const BANKING_S: f64 = 5.0;
 
 type Found = Option<(&'static str, String)>;
 
-/// What of the fence a leg crosses, at points of it.
-pub(crate) fn fence_problem(leg: &Leg, fence: &Fence) -> Found {
+/// What of the fence a leg crosses, or comes too near to turn away from, at points of it.
+pub(crate) fn fence_problem(leg: &Leg, fence: &Fence<'_>, turn: &TurnAway) -> Found {
     let (low, high) = (leg.from.1.min(leg.to.1), leg.from.1.max(leg.to.1));
     // On the ground at home it is below any floor.
     if let Some(floor) = fence.floor_m.filter(|floor| leg.to.1 < *floor) {
@@ -30,86 +33,161 @@ pub(crate) fn fence_problem(leg: &Leg, fence: &Fence) -> Found {
         let message = format!("{high:.0} m is above its ceiling, {ceiling:.0} m");
         return Some(("fence", message));
     }
-    if fence.polygons.is_empty() && fence.circles.is_empty() {
+    if fence.zones.is_empty() {
         return None;
     }
-    points(leg).find_map(|(place, at_m)| {
-        let why = outside(place, fence)?;
-        let message = format!("{at_m:.0} m along the leg it is {why}: move a waypoint");
-        Some(("fence", message))
-    })
+    let mut at_m = 0.0;
+    loop {
+        let place = leg.from.0.ahead(leg.course_deg, at_m);
+        let (latitude, longitude) = place.radians();
+        let clearance_m = fence.clearance_m(latitude, longitude, Vector2::zeros());
+        let why = outside(fence, place).map(str::to_owned).or_else(|| {
+            let is_straight = (turn.from_m..=leg.length_m - turn.to_m).contains(&at_m);
+            is_straight.then(|| turn.lacks(leg, fence, place, clearance_m))?
+        });
+        if let Some(why) = why {
+            let message = format!("{at_m:.0} m along the leg it is {why}: move a waypoint");
+            return Some(("fence", message));
+        }
+        if at_m >= leg.length_m {
+            return None;
+        }
+        let least_m = STEP_M.max(leg.length_m / MOST_POINTS);
+        at_m = (at_m + (clearance_m - turn.reach_m).max(least_m)).min(leg.length_m);
+    }
 }
 
-/// Points of a leg, and how far along it they are, m.
-fn points(leg: &Leg) -> impl Iterator<Item = (Place, f64)> {
-    let count = ((leg.length_m / STEP_M).ceil() as usize).clamp(1, MOST_POINTS);
-    (0..=count).map(move |n| {
-        let at_m = leg.length_m * n as f64 / count as f64;
-        (leg.from.0.ahead(leg.course_deg, at_m), at_m)
-    })
+/// Circles that leave the fence: those of loiters, and the one after the last item.
+pub(crate) fn circles(
+    plan: &Plan,
+    fence: &Fence<'_>,
+    conditions: &Conditions,
+    problems: &mut Vec<Problem>,
+) {
+    let usual_m = conditions.loiter_radius_m;
+    for (n, item) in plan.items.iter().enumerate() {
+        let (place, radius_m) = match *item {
+            Item::Loiter(Loiter {
+                place: Some(place),
+                radius_m,
+                ..
+            }) => (place, radius_m.unwrap_or(usual_m)),
+            // After its last item the aircraft circles there.
+            Item::Waypoint { place, .. } if n + 1 == plan.items.len() => (place, usual_m),
+            _ => continue,
+        };
+        let (latitude, longitude) = place.radians();
+        let clearance_m = fence.clearance_m(latitude, longitude, Vector2::zeros());
+        let lacks_m = radius_m + conditions.fence_margin_m.unwrap_or(0.0) - clearance_m;
+        if lacks_m > 0.0 {
+            let message = format!(
+                "the circle of {radius_m:.0} m around it needs {lacks_m:.0} m more to the fence: \
+                 move it, or give a smaller radius"
+            );
+            problems.push(Problem::of_item(n + 1, "fence", message));
+        }
+    }
 }
 
 /// Why a place is not permitted.
-fn outside(place: Place, fence: &Fence) -> Option<&'static str> {
-    let in_circle = |centre: Place, radius_m: f64| place.to(centre).0 <= radius_m;
-    let mut inclusions = 0;
-    let mut included = false;
-    for polygon in &fence.polygons {
-        match (polygon.inclusion, contains(polygon, place)) {
-            (false, true) => return Some("inside a polygon to stay outside of"),
-            (false, false) => {}
-            (true, inside) => {
-                inclusions += 1;
-                included |= inside;
-            }
-        }
+fn outside(fence: &Fence<'_>, place: Place) -> Option<&'static str> {
+    let (latitude, longitude) = place.radians();
+    let depth_m = |zone: &Zone<'_>| zone.depth_m(latitude, longitude, Vector2::zeros());
+    let excluded = fence
+        .zones
+        .iter()
+        .find(|zone| !zone.inclusion && depth_m(zone) > 0.0);
+    if let Some(zone) = excluded {
+        return Some(match zone.shape {
+            Shape::Polygon { .. } => "inside a polygon to stay outside of",
+            Shape::Circle { .. } => "inside a circle to stay outside of",
+        });
     }
-    for circle in &fence.circles {
-        match (circle.inclusion, in_circle(circle.centre, circle.radius_m)) {
-            (false, true) => return Some("inside a circle to stay outside of"),
-            (false, false) => {}
-            (true, inside) => {
-                inclusions += 1;
-                included |= inside;
-            }
-        }
-    }
-    (inclusions > 0 && !included).then_some("outside of the fence")
+    let clearance_m = fence.clearance_m(latitude, longitude, Vector2::zeros());
+    (clearance_m < 0.0).then_some("outside of the fence")
 }
 
-/// Whether the corners of a polygon go around a place, by the sum of the angles that
-/// its sides are seen under: across the date line and around a pole as well.
-fn contains(polygon: &Polygon, place: Place) -> bool {
-    let plane = LocalPlane::at(
-        place.latitude_deg.to_radians(),
-        place.longitude_deg.to_radians(),
-    );
-    let bearing = |corner: &Place| {
-        let seen = plane.position_m(
-            corner.latitude_deg.to_radians(),
-            corner.longitude_deg.to_radians(),
-        );
-        seen.y.atan2(seen.x)
-    };
-    let bearings: Vec<f64> = polygon.corners.iter().map(bearing).collect();
-    let next = bearings.iter().cycle().skip(1);
-    let sum: f64 = bearings.iter().zip(next).map(|(a, b)| wrap_pi(b - a)).sum();
-    sum.abs() > PI
+/// Whether an aircraft on a leg can still turn away from the fence, in the strongest wind
+/// from behind.
+pub(crate) struct TurnAway {
+    airspeed_mps: f64,
+    wind_mps: f64,
+    bank_rad: f64,
+    /// How far inside of the fence it stays; none if it is not watched.
+    margin_m: Option<f64>,
+    /// Where farther inside than this there is room for any turn.
+    reach_m: f64,
+    /// The parts at the begin and the end of the leg that are parts of turns.
+    from_m: f64,
+    to_m: f64,
+}
+
+impl TurnAway {
+    /// On a leg between turns that begin or end so far from its ends, m.
+    pub(crate) fn new(leg: &Leg, conditions: &Conditions, from_m: f64, to_m: f64) -> Self {
+        let (airspeed_mps, wind_mps) = (leg.airspeed_mps, conditions.wind_mps);
+        let bank_rad = (PLANNED_SHARE * conditions.bank_rad.tan()).atan();
+        let radius_m = smallest_circle_m(airspeed_mps, wind_mps, bank_rad);
+        let margin_m = conditions.fence_margin_m;
+        let banking_m = BANKING_S * (airspeed_mps + wind_mps);
+        Self {
+            airspeed_mps,
+            wind_mps,
+            bank_rad,
+            margin_m,
+            reach_m: margin_m.map_or(0.0, |margin_m| {
+                2.0 * radius_m.unwrap_or(f64::INFINITY) + banking_m + margin_m
+            }),
+            from_m,
+            to_m,
+        }
+    }
+
+    /// What a place lacks.
+    fn lacks(
+        &self,
+        leg: &Leg,
+        fence: &Fence<'_>,
+        place: Place,
+        clearance_m: f64,
+    ) -> Option<String> {
+        let margin_m = self.margin_m.filter(|_| clearance_m < self.reach_m)?;
+        let (latitude_rad, longitude_rad) = place.radians();
+        let (sin, cos) = place.to(leg.to.0).1.to_radians().sin_cos();
+        let course = Vector2::new(cos, sin);
+        let here = OverGround {
+            latitude_rad,
+            longitude_rad,
+            true_airspeed_mps: self.airspeed_mps,
+            ground_velocity_mps: course * (self.airspeed_mps + self.wind_mps),
+            wind_mps: course * self.wind_mps,
+            ..OverGround::default()
+        };
+        let bank = Bank {
+            now_rad: 0.0,
+            turn_rad: self.bank_rad,
+            rate_radps: RouteConfig::default().bank_rate_radps,
+            lag_s: ROLL_LAG_S,
+        };
+        let escape = Escape::best(fence, &here, &bank)?;
+        (escape.clearance_m < margin_m).then(|| {
+            format!(
+                "too near to the fence to turn away from it with this wind behind: {:.0} m more \
+                 are needed",
+                margin_m - escape.clearance_m
+            )
+        })
+    }
 }
 
 /// An obstacle that a leg meets.
 pub(crate) fn obstacle_problem(leg: &Leg, obstacles: &[Obstacle]) -> Found {
     obstacles.iter().enumerate().find_map(|(n, obstacle)| {
         let centre = obstacle.centre;
-        let plane = LocalPlane::at(
-            centre.latitude_deg.to_radians(),
-            centre.longitude_deg.to_radians(),
-        );
+        let plane = centre.plane();
         let seen = |place: Place| {
-            plane.position_m(
-                place.latitude_deg.to_radians(),
-                place.longitude_deg.to_radians(),
-            )
+            let (latitude, longitude) = place.radians();
+            plane.position_m(latitude, longitude)
         };
         let (from, to) = (seen(leg.from.0), seen(leg.to.0));
         let way = to - from;

@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! .plan, QGC WPL 110 ─► Plan ─► check ─► problems
+//!                         └───► Steps ─► Route, which a tick flies
 //! ```
 //!
 //! A [`Plan`] is what the file says: degrees, metres and metres per second, in
@@ -18,15 +19,18 @@ mod file;
 mod geodesic;
 mod inside;
 mod item;
+mod outline;
 mod plan;
 mod problem;
 mod qgc_plan;
+mod route;
 mod wpl;
 
-pub use check::{Conditions, check};
+pub use check::{Conditions, check, longest_s};
 pub use file::{FileError, Format, read, read_file, write};
 pub use item::{Altitude, AltitudeDatum, Item, Loiter, LoiterEnd, Place, Speed};
 pub use plan::{
     Circle, Fence, Home, Identity, Obstacle, Plan, PlanHash, Polygon, RallyPoint, limits,
 };
 pub use problem::Problem;
+pub use route::Steps;

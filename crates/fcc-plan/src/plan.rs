@@ -134,6 +134,14 @@ impl Plan {
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
 pub struct PlanHash(pub [u8; 32]);
 
+impl PlanHash {
+    /// Its first 64 bits, which are in the record of every tick.
+    pub fn first_64_bits(&self) -> u64 {
+        let first = self.0.iter().take(8);
+        first.fold(0, |bits, byte| bits << 8 | u64::from(*byte))
+    }
+}
+
 impl fmt::Display for PlanHash {
     /// In hexadecimal; with a precision, so many digits of it.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -178,6 +186,7 @@ mod tests {
     #[test]
     fn a_hash_is_shown_in_as_many_digits_as_wanted() {
         let hash = PlanHash([0xab; 32]);
+        assert_eq!(hash.first_64_bits(), 0xabab_abab_abab_abab);
         assert_eq!(format!("{hash:.12}"), "abababababab");
         assert_eq!(hash.to_string().len(), 64);
     }

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 
 use crate::arguments::{Rows, rows, step_s};
-use crate::commanded::Commanded;
+use crate::commanded::{Given, commands};
 use crate::config::autopilot_config;
 use crate::errors;
 use crate::machine::conditions;
@@ -95,6 +95,7 @@ impl PyAutopilot {
             aileron,
             rudder,
             elevator_trim,
+            ..Surfaces::IDLE
         })?;
         this.get()
             .stepped(this.py())
@@ -153,35 +154,20 @@ impl PyAutopilot {
 
     /// Commands another airspeed (m/s), heading (rad) or altitude (m): above sea
     /// level by the altimeter setting, or a pressure altitude, or a height above
-    /// the configured field; ends a pattern. An altimeter setting (Pa) ends none,
-    /// and is also set without being engaged.
-    #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None,
-                        pressure_altitude_m = None, height_m = None,
-                        altimeter_setting_pa = None))]
-    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
-    fn command(
-        &self,
-        py: Python<'_>,
-        airspeed_mps: Option<f64>,
-        heading_rad: Option<f64>,
-        altitude_m: Option<f64>,
-        pressure_altitude_m: Option<f64>,
-        height_m: Option<f64>,
-        altimeter_setting_pa: Option<f64>,
-    ) -> PyResult<()> {
-        let given = Commanded {
-            airspeed_mps,
-            heading_rad,
-            altitude_m,
-            pressure_altitude_m,
-            height_m,
-            altimeter_setting_pa,
-        };
+    /// the configured field; ends a pattern or a plan. An altimeter setting (Pa) and a
+    /// heartbeat (s) end none,
+    /// and are also accepted without being engaged. Of a plan: `plan_item` (0: where it was left), `pause` and
+    /// `return_home` (1), and the three of `go_to_latitude_rad`.
+    #[pyo3(signature = (**setpoints))]
+    fn command(&self, py: Python<'_>, setpoints: Option<Given>) -> PyResult<()> {
         let mut stepped = self.stepped(py);
-        if given.is_more_than_a_setting() {
+        let commands = commands(setpoints, stepped.autopilot.config())?;
+        if commands
+            .iter()
+            .any(fcc_core::flight::AutopilotCommand::is_of_mode)
+        {
             stepped.must_be_engaged()?;
         }
-        let commands = given.checked(stepped.autopilot.config())?;
         stepped.command(commands);
         Ok(())
     }

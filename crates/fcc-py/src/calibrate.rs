@@ -1,11 +1,17 @@
 //! The calibration of a sensor of three axes, from arrays.
 
-use fcc_core::flight::calibration::{self, AxesCalibration, Rotation, fit_strength};
+use fcc_core::flight::calibration::{
+    self, Axes, AxesCalibration, GuidedCalibration, GuidedKind, Rotation, Values, fit_strength,
+};
+use fcc_core::flight::inertial::Observation;
+use fcc_core::flight::{BodyRates, Measurements, SpecificForce};
+use fcc_core::framework::Reading;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arguments::{finite, numbers, shape_words, vector};
+use crate::navigate::inertial_samples;
 
 /// Bias, scale and misalignment by which all samples have one `strength`:
 /// gravity's in m/s² of an accelerometer at rest, the field's in µT of a
@@ -32,14 +38,88 @@ pub(crate) fn calibrate<'py>(
     let fit = py
         .detach(|| fit_strength(&rows, strength))
         .map_err(|error| PyValueError::new_err(format!("samples: {error}")))?;
-    let found = PyDict::new(py);
-    found.set_item("bias", fit.axes.bias)?;
-    found.set_item("scale", fit.axes.scale)?;
-    found.set_item("misalignment", fit.axes.misalignment)?;
-    found.set_item("matrix", AxesCalibration::new(&fit.axes).matrix())?;
+    let found = of_axes(py, &fit.axes)?;
     found.set_item("residual", fit.residual)?;
     found.set_item("bias_sigma", fit.bias_sigma)?;
     found.set_item("spread", fit.spread)?;
+    Ok(found)
+}
+
+/// Bias, scale and misalignment of a gyroscope that was left alone for 11 s and
+/// then turned by quarter and half turns about each of its axes, with 3 s of rest
+/// after each: after a turn gravity has the direction that it had before,
+/// turned by the integrated rates. Both are tuples of times in s and values
+/// (n, 3): rates in rad/s as the gyroscope gives them, and the specific force in
+/// m/s² of an accelerometer that is calibrated, in axes along the gyroscope's.
+///
+/// Returns a dict with `bias` (rad/s), `scale` and `misalignment` as in the
+/// configuration's `calibration`, `matrix` (3 rows: scale and misalignment, of what
+/// is given less the bias), `residual_rad` (RMS of the angles by which gravity's
+/// directions still differ), `sigma` (of the worst of scale and misalignment) and
+/// `bias_sigma`. Raises `ValueError` with the reason if there is no calibration.
+#[pyfunction]
+#[pyo3(signature = (*, gyroscope, accelerometer))]
+pub(crate) fn calibrate_gyroscope<'py>(
+    py: Python<'py>,
+    gyroscope: Bound<'py, PyAny>,
+    accelerometer: Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let samples = inertial_samples(gyroscope, accelerometer)?;
+    let found = py.detach(|| {
+        let mut calibration = Box::new(GuidedCalibration::new(&GuidedKind::Gyroscope {
+            accelerometer: Axes::default(),
+            turn: Rotation::NONE,
+        }));
+        let mut measured = Measurements::default();
+        for (taken, observation) in samples {
+            match observation {
+                Observation::Rates([roll_radps, pitch_radps, yaw_radps]) => {
+                    let rates = BodyRates {
+                        roll_radps,
+                        pitch_radps,
+                        yaw_radps,
+                    };
+                    measured.raw_body_rates = Reading::new(rates, taken);
+                }
+                Observation::SpecificForce([x_mps2, y_mps2, z_mps2]) => {
+                    let force = SpecificForce {
+                        x_mps2,
+                        y_mps2,
+                        z_mps2,
+                    };
+                    measured.raw_specific_force = Reading::new(force, taken);
+                }
+                _ => continue,
+            }
+            calibration.take(&measured);
+        }
+        calibration.finish()
+    });
+    let found = found.map_err(|refusal| PyValueError::new_err(refusal.to_string()))?;
+    let Values::Gyroscope {
+        axes,
+        residual_rad,
+        bias_sigma_radps,
+    } = found.values
+    else {
+        return Err(PyValueError::new_err(
+            "this is no calibration of a gyroscope",
+        ));
+    };
+    let dict = of_axes(py, &axes)?;
+    dict.set_item("residual_rad", residual_rad)?;
+    dict.set_item("sigma", found.sigma)?;
+    dict.set_item("bias_sigma", bias_sigma_radps)?;
+    Ok(dict)
+}
+
+/// Bias, scale and misalignment, and the matrix of both.
+fn of_axes<'py>(py: Python<'py>, axes: &Axes) -> PyResult<Bound<'py, PyDict>> {
+    let found = PyDict::new(py);
+    found.set_item("bias", axes.bias)?;
+    found.set_item("scale", axes.scale)?;
+    found.set_item("misalignment", axes.misalignment)?;
+    found.set_item("matrix", AxesCalibration::new(axes).matrix())?;
     Ok(found)
 }
 
@@ -52,6 +132,24 @@ pub(crate) fn levelled(force_mps2: &Bound<'_, PyAny>) -> PyResult<[[f64; 3]; 3]>
     let Some(Rotation(rows)) = calibration::levelled(force) else {
         return Err(PyValueError::new_err(
             "force_mps2 does not point up: the sensor is mounted in another way",
+        ));
+    };
+    Ok(rows)
+}
+
+/// The rotation of sensors in the aircraft, as a matrix of three rows from their
+/// axes to the body's, by the specific force of the aircraft at rest: level, and
+/// with its nose raised. Raises `ValueError` if both are parallel.
+#[pyfunction]
+pub(crate) fn level_and_nose_up(
+    level_mps2: &Bound<'_, PyAny>,
+    nose_up_mps2: &Bound<'_, PyAny>,
+) -> PyResult<[[f64; 3]; 3]> {
+    let level = vector("level_mps2", level_mps2)?;
+    let nose_up = vector("nose_up_mps2", nose_up_mps2)?;
+    let Some(Rotation(rows)) = calibration::level_and_nose_up(level, nose_up) else {
+        return Err(PyValueError::new_err(
+            "level_mps2 and nose_up_mps2 are parallel: raise the nose by 20° or more",
         ));
     };
     Ok(rows)

@@ -126,7 +126,7 @@ const INVALID: Surfaces = Surfaces {
     elevator: f64::NAN,
     aileron: f64::NAN,
     rudder: f64::NAN,
-    elevator_trim: None,
+    ..Surfaces::IDLE
 };
 
 impl ControlOverride for CallbackController {

@@ -36,6 +36,7 @@ impl PyConfig {
     #[pyo3(signature = (text = ""))]
     fn new(text: &str) -> PyResult<Self> {
         Config::parse_without_aircraft(text, NAME)
+            .and_then(|config| config.with_plan(NAME))
             .map(|config| Self { config })
             .map_err(|error| refused(&error))
     }
@@ -45,6 +46,7 @@ impl PyConfig {
     #[expect(clippy::needless_pass_by_value, reason = "pyo3 passes paths by value")]
     fn load(path: PathBuf) -> PyResult<Self> {
         Config::load(&path)
+            .and_then(|config| config.with_plan(&path.display().to_string()))
             .map(|config| Self { config })
             .map_err(|error| refused(&error))
     }

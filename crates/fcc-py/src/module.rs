@@ -64,7 +64,9 @@ fn fcc(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(formulas::earth_to_body, module)?)?;
 
     module.add_function(wrap_pyfunction!(calibrate::calibrate, module)?)?;
+    module.add_function(wrap_pyfunction!(calibrate::calibrate_gyroscope, module)?)?;
     module.add_function(wrap_pyfunction!(calibrate::levelled, module)?)?;
+    module.add_function(wrap_pyfunction!(calibrate::level_and_nose_up, module)?)?;
     module.add_function(wrap_pyfunction!(calibrate::constant_dip, module)?)?;
     module.add_function(wrap_pyfunction!(navigate::navigate, module)?)?;
 

@@ -44,7 +44,8 @@ const POSSIBLE: [(&str, f64, f64); 14] = [
 /// clipping, delay and jitter. The same seed gives the same errors, to the last
 /// bit.
 ///
-/// `sensors` is "phone", the thesis' of 2011, or "board", a present one;
+/// `sensors` is "phone", the thesis' of 2011, "board", a present one, or
+/// "board-rtk", the same with a position good to 0.5 m;
 /// `field_ut` is the magnetic field in µT, north, east and down, up to 800 each;
 /// without it (21.1, 0, 45.3). `seed` is a whole number, 0 to 2⁶⁴ - 1.
 ///
@@ -72,9 +73,10 @@ impl PyRawSensors {
         let set = match sensors {
             "phone" => RawSensorSet::phone(),
             "board" => RawSensorSet::board(),
+            "board-rtk" => RawSensorSet::board_with_precise_position(),
             other => {
                 return Err(PyValueError::new_err(format!(
-                    "sensors is '{other}': choose \"phone\" or \"board\""
+                    "sensors is '{other}': choose \"phone\", \"board\" or \"board-rtk\""
                 )));
             }
         };

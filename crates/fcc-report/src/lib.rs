@@ -46,8 +46,9 @@ pub use durations::NamedPercentiles;
 pub use events::EventLine;
 #[cfg(feature = "flight")]
 pub use flight::{
-    Difference, FlightAddition, FlightReport, FlightSurvey, MethodResult, NavigationReplay,
-    SourceConsistency, flight_table,
+    AltimeterSettings, Difference, FlightAddition, FlightReport, FlightSurvey, GroundLine,
+    MethodResult, NavigationReplay, PlanLine, PlanLines, PlanPlace, PlanRow, SourceConsistency,
+    flight_table, plan_page, plan_table,
 };
 pub use log_histogram::LogBin;
 pub use origin::{FileEnd, Origin};

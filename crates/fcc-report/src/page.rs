@@ -14,7 +14,7 @@ use super::table::{markup, table, timing_columns};
 use super::terms::capitalized;
 use super::text::percentiles_table;
 
-const STYLE: &str = include_str!("page.css");
+pub(crate) const STYLE: &str = include_str!("page.css");
 /// Zooms the plots; without it the page is the same, but static.
 const SCRIPT: &str = include_str!("page.js");
 

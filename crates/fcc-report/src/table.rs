@@ -194,12 +194,14 @@ pub fn recordings_table(entries: &[Entry]) -> String {
             format!("{:.1} µs", entry.worst_lateness_us),
             entry.state.clone(),
             match entry.file {
-                Wholeness::Whole => "whole",
-                Wholeness::Damaged => "damaged: fccd recover",
-                Wholeness::Cut => "cut: fccd recover",
-                Wholeness::BeingWritten => "being written",
-            }
-            .to_owned(),
+                Wholeness::Whole if entry.not_recorded > 0 => {
+                    format!("whole, {} not recorded", entry.not_recorded)
+                }
+                Wholeness::Whole => "whole".to_owned(),
+                Wholeness::Damaged => "damaged: fccd recover".to_owned(),
+                Wholeness::Cut => "cut: fccd recover".to_owned(),
+                Wholeness::BeingWritten => "being written".to_owned(),
+            },
         ]);
     }
     table.to_string()

@@ -33,7 +33,8 @@ pub struct Machine<C: Controller> {
     pub(crate) timer: Box<dyn Timer>,
     pub(crate) period_s: f64,
     pub(crate) sensors: Sensors<C::Measurements>,
-    pub(crate) controller: C,
+    /// It may be large, and the machine is moved to its thread.
+    pub(crate) controller: Box<C>,
     pub(crate) actuators: Actuators<C::Outputs>,
 
     pub(crate) switch_off: AfterRelease,
@@ -93,7 +94,7 @@ impl<C: Controller> Machine<C> {
             timer: parts.timer,
             period_s: period.as_secs_f64(),
             sensors: Sensors::new(parts.sensors),
-            controller: parts.controller,
+            controller: Box::new(parts.controller),
             actuators: Actuators::new(parts.actuators),
             switch_off: config.switch_off,
             command_needs_switch: config.command_needs_switch,
@@ -244,7 +245,7 @@ impl<C: Controller> Machine<C> {
     fn run_stages(&mut self, tick: &Tick) {
         let command = commands::read(
             &mut self.commands,
-            &mut self.controller,
+            &mut *self.controller,
             tick,
             &mut self.telemetry.events,
         );
@@ -253,7 +254,7 @@ impl<C: Controller> Machine<C> {
         self.sensors.sample(
             tick,
             &mut self.measurements,
-            &self.controller,
+            &mut *self.controller,
             &mut self.telemetry.events,
         );
         self.record.stages.sensors_ns = stopwatch.lap(&*self.timer);

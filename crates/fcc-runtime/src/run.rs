@@ -17,8 +17,13 @@ use crate::report::LoopReport;
 
 /// The name of a loop's own thread, as `top -H` and panic messages show it.
 pub const THREAD_NAME: &str = "fcc-loop";
-/// Given explicitly, so that `RUST_MIN_STACK` does not change it.
-const STACK_BYTES: usize = 2 << 20;
+/// Given explicitly, so that `RUST_MIN_STACK` does not change it. With locked memory all
+/// of it is resident; without optimization every function takes more.
+const STACK_BYTES: usize = if cfg!(debug_assertions) {
+    2 << 20
+} else {
+    1 << 20
+};
 
 /// A loop that has not started.
 ///

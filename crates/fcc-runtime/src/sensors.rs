@@ -51,7 +51,7 @@ impl<M: Readings + Copy + Default> Sensors<M> {
         &mut self,
         tick: &Tick,
         into: &mut M,
-        controller: &C,
+        controller: &mut C,
         events: &mut Events<C::Command>,
     ) {
         if let [only] = &mut self.all[..] {
@@ -71,7 +71,7 @@ impl<M: Readings + Copy + Default> Sensors<M> {
         &mut self,
         tick: &Tick,
         into: &mut M,
-        controller: &C,
+        controller: &mut C,
         events: &mut Events<C::Command>,
     ) {
         // There are no more than a reading's source can name.
@@ -79,6 +79,7 @@ impl<M: Readings + Copy + Default> Sensors<M> {
             let result = watched.sensor.sample(tick, &mut watched.own);
             self.faults += u64::from(result.is_err());
             watched.note(index.into(), result, tick, events);
+            controller.observe_sensor(index, &watched.own);
             by.plausible = controller.plausible(index, &watched.own);
         }
         let by = Preference {

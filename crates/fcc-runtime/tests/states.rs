@@ -201,6 +201,7 @@ fn a_notice_is_an_event() {
         kind: 3,
         lasted_ns: 7,
         amount_permille: 0,
+        item: 2,
     };
     bench.tick(|s| s.notice = Some(notice));
     bench.tick(|s| s.notice = None);

@@ -72,7 +72,7 @@ impl<W: Way> ActuatorBench for Bench<W> {
             elevator: share,
             aileron: -share,
             rudder: 0.5 * share,
-            elevator_trim: None,
+            ..Surfaces::IDLE
         }
     }
 

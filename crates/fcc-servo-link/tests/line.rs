@@ -15,7 +15,7 @@ const OUTPUTS: Surfaces = Surfaces {
     elevator: 0.25,
     aileron: -0.25,
     rudder: 0.125,
-    elevator_trim: None,
+    ..Surfaces::IDLE
 };
 
 fn flown() -> (Bench<SerialLine>, Ticks) {

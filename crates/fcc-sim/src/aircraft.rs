@@ -7,6 +7,7 @@ use crate::aerodynamics::{Deflections, Flow};
 use crate::airframe::Airframe;
 use crate::atmosphere::Air;
 use crate::config::{SimConfig, SimError};
+use crate::gear::{Ground, MOST_SINK_MPS};
 use crate::motion::{self, AirMotion, State};
 use crate::servos::{Servos, deflections};
 use crate::trim::{Trim, trim};
@@ -37,7 +38,11 @@ pub struct Aircraft {
     time_s: f64,
     diverged: bool,
     ground_m: f64,
+    /// It touched the ground faster than its gear withstands.
+    crashes: bool,
     impact_s: Option<f64>,
+    /// The commands with hands off the controls.
+    hands_off: Surfaces,
 }
 
 impl Aircraft {
@@ -56,19 +61,27 @@ impl Aircraft {
         let wind_mps = Vector3::new(-cos_wind, -sin_wind, 0.0) * config.wind.speed_mps;
         let (sin_heading, cos_heading) = libm::sincos(config.heading_rad);
         let through_air = Vector3::new(cos_heading, sin_heading, 0.0) * trim.true_airspeed_mps;
-        let hands_off = hands_off(&trim);
+        let (velocity_mps, altitude_m, pitch_rad, hands_off) = if config.on_runway {
+            let height_m = config.airframe.gear.main.at_m.z;
+            let parked = Surfaces {
+                left_brake: Some(1.0),
+                right_brake: Some(1.0),
+                elevator_trim: Some(0.0),
+                ..Surfaces::IDLE
+            };
+            (Vector3::zeros(), config.ground_m + height_m, 0.0, parked)
+        } else {
+            let flying = through_air + wind_mps;
+            (flying, config.altitude_m, trim.alpha_rad, hands_off(&trim))
+        };
         Ok(Self {
             airframe: config.airframe,
             servos: config.servos,
             trim,
             state: State {
-                position_m: Vector3::new(0.0, 0.0, -config.altitude_m),
-                velocity_mps: through_air + wind_mps,
-                attitude: UnitQuaternion::from_euler_angles(
-                    0.0,
-                    trim.alpha_rad,
-                    config.heading_rad,
-                ),
+                position_m: Vector3::new(0.0, 0.0, -altitude_m),
+                velocity_mps,
+                attitude: UnitQuaternion::from_euler_angles(0.0, pitch_rad, config.heading_rad),
                 rates_radps: Vector3::zeros(),
             },
             positions: hands_off,
@@ -84,7 +97,9 @@ impl Aircraft {
             time_s: 0.0,
             diverged: false,
             ground_m: config.ground_m,
+            crashes: false,
             impact_s: None,
+            hands_off,
         })
     }
 
@@ -147,8 +162,10 @@ impl Aircraft {
             &self.deflections(),
             &self.motion,
             &air,
+            self.ground().as_ref(),
         );
         if next.is_finite() {
+            self.crashes |= next.velocity_mps.z > MOST_SINK_MPS && self.on_wheels_in(&next);
             self.state = next;
         } else {
             self.diverged = true;
@@ -159,8 +176,35 @@ impl Aircraft {
         }
     }
 
+    /// The ground, as far as the gear withstands it.
+    fn ground(&self) -> Option<Ground> {
+        let brake = |brake: Option<f64>| brake.unwrap_or(0.0);
+        let positions = &self.positions;
+        (!self.crashes).then(|| Ground {
+            altitude_m: self.ground_m,
+            brakes: [brake(positions.left_brake), brake(positions.right_brake)],
+            steering: positions.nose_wheel.unwrap_or(positions.rudder),
+        })
+    }
+
+    fn on_wheels_in(&self, state: &State) -> bool {
+        let gear = &self.airframe.gear;
+        self.ground()
+            .is_some_and(|ground| gear.touches(state, &ground))
+    }
+
+    /// Whether a wheel bears weight.
+    pub fn on_wheels(&self) -> bool {
+        self.on_wheels_in(&self.state)
+    }
+
+    /// Height of the centre of gravity above the ground, m.
+    pub fn height_m(&self) -> f64 {
+        self.state.altitude_m() - self.ground_m
+    }
+
     /// When it hit the ground, s of simulated time; its state is then held as it
-    /// was at the impact. It cannot land.
+    /// was at the impact. Its gear withstands a sink rate of 10 ft/s.
     pub fn impact_s(&self) -> Option<f64> {
         self.impact_s
     }
@@ -185,7 +229,7 @@ impl Aircraft {
     pub fn hands_off(&self) -> Surfaces {
         Surfaces {
             elevator_trim: self.positions.elevator_trim,
-            ..hands_off(&self.trim)
+            ..self.hands_off
         }
     }
 
@@ -219,7 +263,15 @@ impl Aircraft {
         let deflections = self.deflections();
         let air = Air::at(state.altitude_m());
         let flow = Flow::of(&state.air_velocity_mps(&self.motion));
-        let slope = motion::derivative(&self.airframe, state, &deflections, &self.motion, &air);
+        let ground = self.ground();
+        let slope = motion::derivative(
+            &self.airframe,
+            state,
+            &deflections,
+            &self.motion,
+            &air,
+            ground.as_ref(),
+        );
         let (roll_rad, pitch_rad, heading_rad) = state.euler_rad();
         let force = slope.specific_force_mps2;
         Truth {

@@ -1,5 +1,6 @@
 //! An aircraft's data: mass, size, derivatives, engine, with sources.
 
+use crate::gear::Gear;
 use crate::units::{
     DEGREE_RAD, FOOT_M, FOOT_POUND_NM, POUND_KG, SLUG_FT2_KGM2, STANDARD_GRAVITY_MPS2,
 };
@@ -29,6 +30,8 @@ pub struct Airframe {
     pub travel: Travel,
     /// Engine and propeller.
     pub propulsion: Propulsion,
+    /// Landing gear.
+    pub gear: Gear,
 }
 
 /// Moments of inertia about the body axes, kg·m².
@@ -247,6 +250,7 @@ impl Airframe {
             rated_torque_nm: 503.3 * FOOT_POUND_NM,
             ..CESSNA_172_PROPULSION
         },
+        gear: Gear::CESSNA_172,
     };
 
     /// Weight, N.

@@ -24,6 +24,9 @@ pub struct SimConfig {
     pub altitude_m: f64,
     /// The level ground, m above mean sea level, -500..=9000.
     pub ground_m: f64,
+    /// Whether it stands on the ground at the start, with idle throttle and its brakes
+    /// set, instead of flying.
+    pub on_runway: bool,
     /// Indicated airspeed at the start, m/s, 10..=150.
     pub indicated_airspeed_mps: f64,
     /// True heading at the start, rad.
@@ -152,6 +155,7 @@ impl Default for SimConfig {
             servos: Servos::default(),
             altitude_m: 3000.0 * FOOT_M,
             ground_m: 0.0,
+            on_runway: false,
             indicated_airspeed_mps: 100.0 * KNOT_MPS,
             heading_rad: 0.0,
             latitude_rad: 0.0,

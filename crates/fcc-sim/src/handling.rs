@@ -25,6 +25,9 @@ use crate::units::STANDARD_GRAVITY_MPS2;
 pub enum HandlingTask {
     /// Leaves them alone, for 15 s.
     LeaveAlone,
+    /// Leaves them alone for 12 s, then turns them by half and quarter turns about
+    /// each of their axes, and lays them down after each.
+    TurnOver,
     /// Holds them with each face up, and with six edges up.
     Places,
     /// Turns them through all directions, for 100 s.
@@ -42,6 +45,8 @@ pub enum HandlingFault {
     Restless,
     /// Has a magnet on the table.
     Magnet,
+    /// Turns them over about their x axis alone.
+    OneAxis,
 }
 
 /// How long an attitude is held, and how long it takes to turn to the next, s.
@@ -49,6 +54,10 @@ const HELD_S: f64 = 4.0;
 const TURNING_S: f64 = 2.0;
 const TUMBLING_S: f64 = 100.0;
 const ALONE_S: f64 = 15.0;
+/// Before the first turn.
+const BEFORE_TURNS_S: f64 = 12.0;
+/// What a hand adds to each turn, rad: its axis and its end are not exact.
+const UNTIDY_RAD: f64 = 0.08;
 /// The longest step of the motion, s.
 const STEP_S: f64 = 0.005;
 /// Rates are differences over this span, s.
@@ -109,6 +118,7 @@ impl HandledSensors {
     pub fn length_s(&self) -> f64 {
         let whole_s = match self.task {
             HandlingTask::LeaveAlone => ALONE_S,
+            HandlingTask::TurnOver => BEFORE_TURNS_S + TURNS.len() as f64 * (HELD_S + TURNING_S),
             HandlingTask::Places => PLACES.len() as f64 * (HELD_S + TURNING_S),
             HandlingTask::Tumble => TUMBLING_S,
             HandlingTask::LevelAndNoseUp => 20.0,
@@ -177,10 +187,16 @@ impl HandledSensors {
 
     /// Which attitude is held, and how far the turn to it has come.
     fn stage(&self, time_s: f64) -> (usize, f64) {
+        let time_s = match self.task {
+            HandlingTask::TurnOver if time_s < BEFORE_TURNS_S => return (0, 1.0),
+            HandlingTask::TurnOver => time_s - BEFORE_TURNS_S,
+            _ => time_s,
+        };
         let each_s = TURNING_S + HELD_S;
         let number = floor(time_s / each_s);
         let share = (time_s - number * each_s) / TURNING_S;
         match self.task {
+            HandlingTask::TurnOver => (number as usize + 1, share.min(1.0)),
             HandlingTask::Places | HandlingTask::LevelAndNoseUp => {
                 (number as usize, share.min(1.0))
             }
@@ -193,6 +209,11 @@ impl HandledSensors {
             return of(0.9 * time_s, 1.4 * sin(0.23 * time_s), 0.11 * time_s);
         }
         let (number, share) = self.stage(time_s);
+        // Slowly at the begin and the end.
+        let share = share * share * (3.0 - 2.0 * share);
+        if self.task == HandlingTask::TurnOver {
+            return self.turned_over(number, share);
+        }
         let pose = |number: usize| match self.task {
             HandlingTask::Places => PLACES.get(number).or(PLACES.last()).copied(),
             HandlingTask::LevelAndNoseUp if number > 1 => Some([0.0, PI / 6.0, 0.0]),
@@ -201,8 +222,30 @@ impl HandledSensors {
         let [from, to] = [number.saturating_sub(1), number]
             .map(pose)
             .map(|angles| angles.map_or([1.0, 0.0, 0.0, 0.0], |[a, b, c]| of(a, b, c)));
-        // Slowly at the begin and the end.
-        between(from, to, share * share * (3.0 - 2.0 * share))
+        between(from, to, share)
+    }
+
+    /// After so many turns over, of the last a share.
+    fn turned_over(&self, count: usize, share: f64) -> [f64; 4] {
+        let mut attitude = of(0.03, -0.05, 0.2);
+        for (number, turn) in (1..=count).zip(TURNS) {
+            let done = if number == count { share } else { 1.0 };
+            let (axis, quarters) = match self.fault {
+                Some(HandlingFault::OneAxis) => (0, turn.1),
+                _ => turn,
+            };
+            let untidy = |of: f64| UNTIDY_RAD * sin(1.7 * number as f64 + 2.1 * of);
+            let vector = [0, 1, 2].map(|of| {
+                let turned = if of == axis {
+                    quarters * FRAC_PI_2
+                } else {
+                    0.0
+                };
+                done * (turned + untidy(f64::from(of)))
+            });
+            attitude = product(attitude, about(vector));
+        }
+        attitude
     }
 
     /// The field around the sensors, north, east and down.
@@ -266,6 +309,35 @@ const PLACES: [[f64; 3]; 12] = [
     [PI - 0.03, FRAC_PI_4 - 0.04, 0.7],
     [0.02, FRAC_PI_4 + 0.03, 0.2],
 ];
+
+/// The axis, x is 0, and the quarter turns about it.
+const TURNS: [(u8, f64); 14] = [
+    (0, 2.0),
+    (1, 2.0),
+    (0, 1.0),
+    (0, 2.0),
+    (2, 2.0),
+    (2, 1.0),
+    (1, 2.0),
+    (2, -2.0),
+    (1, -1.0),
+    (0, -2.0),
+    (1, 2.0),
+    (0, -1.0),
+    (2, 2.0),
+    (2, 1.0),
+];
+
+/// The turn about a vector by its length, rad.
+fn about([x, y, z]: [f64; 3]) -> [f64; 4] {
+    let angle = sqrt(x * x + y * y + z * z);
+    let part = if angle > 0.0 {
+        sin(0.5 * angle) / angle
+    } else {
+        0.5
+    };
+    [cos(0.5 * angle), part * x, part * y, part * z]
+}
 
 fn of(roll_rad: f64, pitch_rad: f64, heading_rad: f64) -> [f64; 4] {
     quaternion_from_euler(EulerAngles {

@@ -48,6 +48,7 @@ pub mod airframe;
 pub mod atmosphere;
 mod config;
 pub mod gauss;
+pub mod gear;
 mod handling;
 mod link;
 pub mod motion;

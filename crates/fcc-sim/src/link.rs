@@ -15,9 +15,9 @@ use crate::truth::{NUMBERS, Truth};
 /// The state shared by sensor, actuator and observers.
 #[derive(Debug, Default)]
 pub(crate) struct SharedState {
-    /// Bits of throttle, elevator, aileron, rudder and elevator trim, NaN for
-    /// none.
-    commands: [AtomicU64; 5],
+    /// Bits of throttle, elevator, aileron, rudder, elevator trim, flaps, brakes and
+    /// nose wheel, NaN for none.
+    commands: [AtomicU64; 9],
     /// Whether the actuator holds the controls.
     held: AtomicBool,
     /// 0 by the script, 1 off, 2 on.
@@ -33,12 +33,17 @@ impl SharedState {
     /// Holds the controls at these commands. A concurrent reader in another
     /// thread may read a mixture of old and new commands.
     pub(crate) fn command(&self, surfaces: &Surfaces) {
+        let given = |value: Option<f64>| value.unwrap_or(f64::NAN);
         let values = [
             surfaces.throttle,
             surfaces.elevator,
             surfaces.aileron,
             surfaces.rudder,
-            surfaces.elevator_trim.unwrap_or(f64::NAN),
+            given(surfaces.elevator_trim),
+            given(surfaces.flaps),
+            given(surfaces.left_brake),
+            given(surfaces.right_brake),
+            given(surfaces.nose_wheel),
         ];
         for (place, value) in self.commands.iter().zip(values) {
             place.store(value.to_bits(), Ordering::Relaxed);
@@ -56,16 +61,31 @@ impl SharedState {
         if !self.held.load(Ordering::Acquire) {
             return None;
         }
-        let [throttle, elevator, aileron, rudder, trim] = self
+        let [
+            throttle,
+            elevator,
+            aileron,
+            rudder,
+            trim,
+            flaps,
+            left,
+            right,
+            nose,
+        ] = self
             .commands
             .each_ref()
             .map(|place| f64::from_bits(place.load(Ordering::Relaxed)));
+        let given = |value: f64| Some(value).filter(|value| !value.is_nan());
         Some(Surfaces {
             throttle,
             elevator,
             aileron,
             rudder,
-            elevator_trim: Some(trim).filter(|trim| !trim.is_nan()),
+            elevator_trim: given(trim),
+            flaps: given(flaps),
+            left_brake: given(left),
+            right_brake: given(right),
+            nose_wheel: given(nose),
         })
     }
 

@@ -11,6 +11,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use crate::aerodynamics::{self, Deflections, Flow};
 use crate::airframe::Airframe;
 use crate::atmosphere::Air;
+use crate::gear::Ground;
 use crate::units::STANDARD_GRAVITY_MPS2;
 
 /// Position and motion of a rigid body.
@@ -94,7 +95,8 @@ impl State {
         sum.is_finite()
     }
 
-    /// The state after `dt_s`, with deflections and air held.
+    /// The state after `dt_s`, with deflections and air held; with `ground` its wheels
+    /// can stand on it.
     #[must_use]
     pub fn after(
         &self,
@@ -103,8 +105,9 @@ impl State {
         deflections: &Deflections,
         motion: &AirMotion,
         air: &Air,
+        ground: Option<&Ground>,
     ) -> Self {
-        let slope = |state: &Self| derivative(airframe, state, deflections, motion, air);
+        let slope = |state: &Self| derivative(airframe, state, deflections, motion, air, ground);
         let k1 = slope(self);
         let k2 = slope(&self.moved(0.5 * dt_s, &k1));
         let k3 = slope(&self.moved(0.5 * dt_s, &k2));
@@ -160,13 +163,14 @@ fn mean_slope(
     (k1 + (k2 + k3) * 2.0 + k4) / 6.0
 }
 
-/// The derivative of a state under deflections and moving air.
+/// The derivative of a state under deflections and moving air, and on the ground.
 pub fn derivative(
     airframe: &Airframe,
     state: &State,
     deflections: &Deflections,
     motion: &AirMotion,
     air: &Air,
+    ground: Option<&Ground>,
 ) -> Derivative {
     let mass = airframe.mass_kg;
     let steady = state
@@ -192,6 +196,13 @@ pub fn derivative(
     let force =
         loads.force_n + Vector3::new(late_lift * through_air.z, 0.0, -late_lift * through_air.x);
     let moment = loads.moment_nm + Vector3::new(0.0, loads.pitch_per_alpha_rate * alpha_rate, 0.0);
+    let (force, moment) = match ground {
+        Some(ground) => {
+            let (on_wheels, about) = airframe.gear.loads(state, ground);
+            (force + on_wheels, moment + about)
+        }
+        None => (force, moment),
+    };
 
     let specific_force_mps2 = force / mass;
     let mut acceleration_mps2 = state.attitude.transform_vector(&specific_force_mps2);

@@ -56,6 +56,10 @@ impl Servos {
             aileron: surface.follow(positions.aileron, commands.aileron),
             rudder: surface.follow(positions.rudder, commands.rudder),
             elevator_trim: commands.elevator_trim.or(positions.elevator_trim),
+            flaps: commands.flaps.or(positions.flaps),
+            left_brake: commands.left_brake.or(positions.left_brake),
+            right_brake: commands.right_brake.or(positions.right_brake),
+            nose_wheel: commands.nose_wheel.or(positions.nose_wheel),
         }
     }
 }

@@ -5,11 +5,16 @@ use std::sync::Arc;
 use fcc_core::flight::{Measurements, Plant, PlantState, Surfaces};
 use fcc_core::framework::{Actuator, ActuatorFault, Reading, Sensor, SensorFault, Switch, Tick};
 
+use libm::cos;
+
 use crate::aircraft::Aircraft;
 use crate::config::{SimConfig, SimError, SwitchScript};
 use crate::link::{SharedState, SwitchHandle, TruthHandle};
 use crate::sensing::{BuiltInRaw, History, Sensors};
 use crate::trim::Trim;
+
+/// Beyond this the range finder gives nothing, m.
+const LONGEST_RANGE_M: f64 = 40.0;
 
 /// One simulated aircraft, in the parts for a loop and its observers.
 #[derive(Debug)]
@@ -129,6 +134,13 @@ impl Sensor<Measurements> for SimSensor {
             .as_ref()
             .map_or(truth, |history| history.delayed(&truth));
         self.sensors.measure(&measured, taken, into);
+        let height_m = self.aircraft.height_m();
+        let down = cos(truth.pitch_rad) * cos(truth.roll_rad);
+        if height_m < LONGEST_RANGE_M * down {
+            into.range_m = Reading::new(height_m.max(0.0) / down, taken);
+        }
+        let weight = f64::from(u8::from(self.aircraft.on_wheels()));
+        into.weight_on_wheels = Reading::new(weight, taken);
         if let Some(raw) = &mut self.raw {
             raw.read(taken, into);
         }

@@ -67,7 +67,7 @@ impl ActuatorBench for Bench {
             elevator: 0.01,
             aileron: f64::from(number % 8) * 0.01 + 0.01,
             rudder: -0.01,
-            elevator_trim: None,
+            ..Surfaces::IDLE
         }
     }
 

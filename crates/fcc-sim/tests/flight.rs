@@ -192,6 +192,7 @@ fn without_air_energy_and_angular_momentum_are_conserved() {
             &Deflections::default(),
             &AirMotion::CALM,
             &Air::at(5_000.0),
+            None,
         );
     }
     // Thrown up with 80 m/s: 20 s later at h + 80·20 - g·20²/2.
@@ -222,7 +223,7 @@ fn full_deflections_leave_the_state_valid() {
                 elevator: sign(70),
                 aileron: sign(110),
                 rudder: sign(170),
-                elevator_trim: None,
+                ..Surfaces::IDLE
             },
             0.025,
         );
@@ -282,7 +283,7 @@ fn substeps_are_short_enough() {
                     elevator: 0.3 * doublet,
                     aileron: doublet,
                     rudder: -doublet,
-                    elevator_trim: None,
+                    ..Surfaces::IDLE
                 },
                 0.025,
             );

@@ -4,7 +4,7 @@
 use fcc_core::flight::Measurements;
 use fcc_core::flight::calibration::{
     Axes, AxesCalibration, EarthField, Found, GuidedCalibration, GuidedKind, MountingWay, Refusal,
-    Values,
+    Rotation, Values,
 };
 use fcc_core::framework::{Sensor as _, Tick, Time};
 use fcc_sim::units::DEGREE_RAD;
@@ -52,6 +52,16 @@ fn calibrate(
         }
     }
     (calibration.finish(), sensors)
+}
+
+/// What is found of the accelerometer.
+fn accelerometer(config: &SimConfig) -> Axes {
+    let places = HandlingTask::Places;
+    let (found, _) = calibrate(config, &GuidedKind::Accelerometer, places, None);
+    match found.unwrap().values {
+        Values::Accelerometer(axes) => axes,
+        other => panic!("{other:?}"),
+    }
 }
 
 fn given(errors: &TrueErrors<3>, truth: [f64; 3]) -> [f64; 3] {
@@ -122,8 +132,8 @@ fn a_gyroscopes_bias_is_found() {
         for seed in 1..=SEEDS {
             let alone = HandlingTask::LeaveAlone;
             let config = config(&set, seed);
-            let (found, sensors) = calibrate(&config, &GuidedKind::Gyroscope, alone, None);
-            let Values::Gyroscope { bias_radps } = found.unwrap().values else {
+            let (found, sensors) = calibrate(&config, &GuidedKind::GyroscopeBias, alone, None);
+            let Values::GyroscopeBias { bias_radps } = found.unwrap().values else {
                 panic!("{name}");
             };
             let [_, errors, _] = sensors.sensors().true_errors();
@@ -135,20 +145,66 @@ fn a_gyroscopes_bias_is_found() {
     }
 }
 
+/// What the calibrated sensors make of a rate and of a force of 1 along an axis:
+/// by how much they differ, at most.
+fn worst_rate(rates: &Axes, forces: &Axes, errors: &[TrueErrors<3>; 3]) -> f64 {
+    let [force_errors, rate_errors, _] = errors;
+    let calibrated = |axes: &Axes, errors: &TrueErrors<3>, truth| {
+        let free = Axes {
+            bias: errors.bias,
+            ..*axes
+        };
+        AxesCalibration::new(&free).applied(given(errors, truth))
+    };
+    let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let pairs = axes.map(|axis| {
+        let rate = calibrated(rates, rate_errors, axis);
+        let force = calibrated(forces, force_errors, axis);
+        [0, 1, 2].map(|part| (rate[part] - force[part]).abs())
+    });
+    pairs.into_iter().flatten().fold(0.0, f64::max)
+}
+
+/// Scale and cross axes of 2 % of the phone, of 0.5 and 1.25 % of the board. While
+/// it is turned for a minute the phone's accelerometer warms up by another 1 mg or
+/// so, 0.06°, and the board's by a tenth of it.
+#[test]
+fn a_gyroscopes_scale_and_misalignment_are_found() {
+    for ((name, set), most) in sets().into_iter().zip([3e-3, 5e-4]) {
+        for seed in 1..=3 {
+            let config = config(&set, seed);
+            let accelerometer = accelerometer(&config);
+            let kind = turned(accelerometer);
+            let (found, sensors) = calibrate(&config, &kind, HandlingTask::TurnOver, None);
+            let found = found.unwrap();
+            let Values::Gyroscope { axes, .. } = found.values else {
+                panic!("{found:?}");
+            };
+            let errors = sensors.sensors().true_errors();
+            let before = worst_rate(&Axes::default(), &accelerometer, &errors);
+            let left = worst_rate(&axes, &accelerometer, &errors);
+            assert!(
+                before > 0.01 && left < most,
+                "{name} {seed}: {before} {left}"
+            );
+            assert!(found.sigma < most, "{name} {seed}: {found:?}");
+        }
+    }
+}
+
+fn turned(accelerometer: Axes) -> GuidedKind {
+    GuidedKind::Gyroscope {
+        accelerometer,
+        turn: Rotation::NONE,
+    }
+}
+
 #[test]
 fn a_magnetometer_is_found_and_aligned() {
     for ((name, set), most_ut) in sets().into_iter().zip([0.6, 0.05]) {
         for seed in 1..=SEEDS {
             let config = config(&set, seed);
-            let (force, _) = calibrate(
-                &config,
-                &GuidedKind::Accelerometer,
-                HandlingTask::Places,
-                None,
-            );
-            let Values::Accelerometer(accelerometer) = force.unwrap().values else {
-                panic!("{name}");
-            };
+            let accelerometer = accelerometer(&config);
             let kind = GuidedKind::Magnetometer {
                 earth: EarthField::Strength(50.0),
                 accelerometer: Some(accelerometer),
@@ -190,11 +246,7 @@ fn a_pitot_tubes_zero_is_found() {
 fn a_mounting_is_found_to_what_misalignment_leaves() {
     for seed in 1..=SEEDS {
         let config = config(&RawSensorSet::board(), seed);
-        let places = HandlingTask::Places;
-        let (force, _) = calibrate(&config, &GuidedKind::Accelerometer, places, None);
-        let Values::Accelerometer(accelerometer) = force.unwrap().values else {
-            panic!("{seed}");
-        };
+        let accelerometer = accelerometer(&config);
         let kind = GuidedKind::Mounting {
             way: MountingWay::LevelAndNoseUp,
             accelerometer,
@@ -251,13 +303,13 @@ fn poor_handling_is_refused_with_the_reason() {
             |of| matches!(of, Refusal::Moved { .. } | Refusal::TooFew { .. }),
         ),
         (
-            GuidedKind::Gyroscope,
+            GuidedKind::GyroscopeBias,
             alone,
             HandlingFault::EndsEarly,
             is_early,
         ),
         (
-            GuidedKind::Gyroscope,
+            GuidedKind::GyroscopeBias,
             alone,
             HandlingFault::Restless,
             |of| matches!(of, Refusal::Moved { .. } | Refusal::TooFew { .. }),
@@ -303,6 +355,28 @@ fn poor_handling_is_refused_with_the_reason() {
                 is_expected(&refused),
                 "{name} {kind:?} {fault:?}: {refused}"
             );
+        }
+    }
+}
+
+#[test]
+fn poor_turning_is_refused_with_the_reason() {
+    for (name, set) in sets() {
+        let config = config(&set, 1);
+        let kind = turned(accelerometer(&config));
+        for fault in [
+            HandlingFault::EndsEarly,
+            HandlingFault::OneAxis,
+            HandlingFault::Restless,
+        ] {
+            let (found, _) = calibrate(&config, &kind, HandlingTask::TurnOver, Some(fault));
+            let refused = found.unwrap_err();
+            let is_expected = match refused {
+                Refusal::TooFew { have, needed } => needed == 1 || have <= 1,
+                Refusal::Moved { .. } => fault == HandlingFault::Restless,
+                _ => false,
+            };
+            assert!(is_expected, "{name} {fault:?}: {refused}");
         }
     }
 }

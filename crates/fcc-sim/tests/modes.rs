@@ -46,7 +46,14 @@ fn modes(airframe: &Airframe, true_mps: f64, altitude_m: f64) -> Modes {
         rates_radps: Vector3::new(x[6], x[7], x[8]),
     };
     let slope = |x: &SVector<f64, 9>| {
-        let change = derivative(airframe, &state_at(x), &deflections, &AirMotion::CALM, &air);
+        let change = derivative(
+            airframe,
+            &state_at(x),
+            &deflections,
+            &AirMotion::CALM,
+            &air,
+            None,
+        );
         let (a, w) = (change.acceleration_mps2, change.angular_radps2);
         // Near zero a small rotation changes by the turn rates.
         SVector::<f64, 9>::from([a.x, a.y, a.z, x[6], x[7], x[8], w.x, w.y, w.z])

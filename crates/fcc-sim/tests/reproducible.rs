@@ -66,7 +66,7 @@ fn hash_of_a_flight(seed: u64) -> u64 {
             elevator: stir,
             aileron: (-measured.attitude.value.roll_rad).clamp(-1.0, 1.0),
             rudder: -stir,
-            elevator_trim: None,
+            ..Surfaces::IDLE
         };
         sim.actuator.apply(&tick, &surfaces).unwrap();
     }

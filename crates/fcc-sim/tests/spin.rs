@@ -52,7 +52,7 @@ const PRO_SPIN: Surfaces = Surfaces {
     elevator: 1.0,
     aileron: 0.0,
     rudder: 1.0,
-    elevator_trim: None,
+    ..Surfaces::IDLE
 };
 
 /// After six turns with full rudder and full up elevator.

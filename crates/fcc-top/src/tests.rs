@@ -48,7 +48,7 @@ fn picture() -> Picture<Autopilot> {
             elevator: -0.5,
             aileron: 1.0,
             rudder: 0.0,
-            elevator_trim: None,
+            ..Surfaces::IDLE
         },
         ..RecordOf::<Autopilot>::default()
     };

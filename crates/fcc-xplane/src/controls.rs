@@ -4,7 +4,8 @@
 //! A release therefore centres the surfaces and then clears the overrides, in
 //! this order. The throttle has no centre position: it stays where it is until
 //! its override is cleared and the lever in the cockpit has control again. The
-//! elevator's trim needs no override, and stays where it is.
+//! elevator's trim and the flaps need no override, and stay where they are. The
+//! brakes' override is set with the first brake that is written.
 
 use fcc_core::flight::Surfaces;
 
@@ -16,6 +17,15 @@ use crate::quantity::{ELEVATOR_TRIM, OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES};
 use crate::quantity::{YOKE_HEADING, YOKE_PITCH, YOKE_ROLL};
 
 const THROTTLE: &str = "sim/flightmodel/engine/ENGN_thro_use";
+const OVERRIDE_BRAKES: &str = "sim/operation/override/override_toe_brakes";
+/// What is written only when it is given: each tick the first ones of what there is.
+pub(crate) const OCCASIONAL: [&str; 5] = [
+    ELEVATOR_TRIM,
+    "sim/cockpit2/controls/flap_ratio",
+    OVERRIDE_BRAKES,
+    "sim/cockpit2/controls/left_brake_ratio",
+    "sim/cockpit2/controls/right_brake_ratio",
+];
 /// Rows of Data Output.
 const ROW_JOYSTICK: i32 = 8;
 const ROW_THROTTLES: i32 = 25;
@@ -25,8 +35,8 @@ const ROW_THROTTLES: i32 = 25;
 pub(crate) const LET_GO_TIMES: usize = 3;
 
 /// Three surfaces, the throttles of eight engines, the maximum of
-/// [`XPlaneConfig::engines`], and the elevator's trim.
-const MOST_WRITES: usize = 12;
+/// [`XPlaneConfig::engines`], and what is occasional.
+const MOST_WRITES: usize = 11 + OCCASIONAL.len();
 
 type Write = Box<[u8; dref::WRITE_BYTES]>;
 
@@ -35,14 +45,17 @@ type Write = Box<[u8; dref::WRITE_BYTES]>;
 pub(crate) struct Controls {
     overrides: [Write; 2],
     encoding: Encoding,
-    /// The elevator's trim beside rows.
-    trim: Write,
+    /// What is occasional, beside rows.
+    occasional: [Write; OCCASIONAL.len()],
+    /// Clears the brakes' override, once it was set.
+    brakes: Write,
+    has_brakes: bool,
 }
 
 #[derive(Clone, Debug)]
 enum Encoding {
     Dref {
-        /// Elevator, aileron, rudder, the throttles, then the elevator's trim:
+        /// Elevator, aileron, rudder, the throttles, then what is occasional:
         /// contiguous, so that one system call can send them.
         writes: Box<[[u8; dref::WRITE_BYTES]]>,
     },
@@ -62,7 +75,7 @@ impl Controls {
                 let writes = yoke
                     .into_iter()
                     .chain(throttles)
-                    .chain([ELEVATOR_TRIM.to_owned()])
+                    .chain(OCCASIONAL.map(str::to_owned))
                     .map(|path| write_to(&path).map(|write| *write))
                     .collect::<Result<_, _>>()?;
                 Encoding::Dref { writes }
@@ -75,7 +88,12 @@ impl Controls {
         Ok(Self {
             overrides: [write_to(OVERRIDE_JOYSTICK)?, write_to(OVERRIDE_THROTTLES)?],
             encoding,
-            trim: write_to(ELEVATOR_TRIM)?,
+            occasional: {
+                let [trim, flaps, overrides, left, right] = OCCASIONAL.map(write_to);
+                [trim?, flaps?, overrides?, left?, right?]
+            },
+            brakes: write_to(OVERRIDE_BRAKES)?,
+            has_brakes: false,
         })
     }
 
@@ -94,15 +112,17 @@ impl Controls {
         surfaces: &Surfaces,
         mut send: impl FnMut(&[u8]) -> Result<(), Errno>,
     ) -> Result<(), Errno> {
+        self.has_brakes |= surfaces.left_brake.or(surfaces.right_brake).is_some();
         self.deflect(Deflections::of(surfaces), &mut send)
     }
 
     /// The number of datagrams that [`set`](Self::set) sends.
     pub(crate) fn messages(&self, surfaces: &Surfaces) -> usize {
-        let trims = usize::from(surfaces.elevator_trim.is_some());
+        let given = Deflections::of(surfaces).occasional;
+        let occasional = given.iter().flatten().count();
         match &self.encoding {
-            Encoding::Dref { writes } => writes.len() - 1 + trims,
-            Encoding::Data { .. } => 1 + trims,
+            Encoding::Dref { writes } => writes.len() - OCCASIONAL.len() + occasional,
+            Encoding::Data { .. } => 1 + occasional,
         }
     }
 
@@ -131,7 +151,10 @@ impl Controls {
             Encoding::Dref { .. } => Ok(()),
             Encoding::Data { .. } => self.deflect(Deflections::AS_THEY_ARE, &mut send),
         };
-        let released = self.set_overrides(0.0, &mut send);
+        let mut released = self.set_overrides(0.0, &mut send);
+        if self.has_brakes {
+            released = released.and(send(self.brakes.as_slice()));
+        }
         centred.and(left).and(released)
     }
 
@@ -158,8 +181,13 @@ impl Controls {
         match &mut self.encoding {
             Encoding::Dref { writes } => {
                 let set = set_values(writes, &to);
-                // All, or all but the trim.
-                if set + 1 >= writes.len() {
+                // None behind the first that is missing.
+                if to
+                    .values(writes.len())
+                    .skip(set)
+                    .all(|value| value.is_none())
+                    && set > 3
+                {
                     return send(writes.get(..set).unwrap_or_default().as_flattened());
                 }
                 for (write, value) in writes.iter().zip(to.values(writes.len())) {
@@ -178,9 +206,11 @@ impl Controls {
                 if let Some(datagram) = data::write(datagram, &rows) {
                     outcome = send(datagram);
                 }
-                if let Some(trim) = to.elevator_trim {
-                    dref::set_value(&mut self.trim, trim);
-                    outcome = outcome.and(send(self.trim.as_slice()));
+                for (write, value) in self.occasional.iter_mut().zip(to.occasional) {
+                    if let Some(value) = value {
+                        dref::set_value(write, value);
+                        outcome = outcome.and(send(write.as_slice()));
+                    }
                 }
             }
         }
@@ -238,7 +268,7 @@ mod tests {
         elevator: 0.5,
         aileron: -0.25,
         rudder: 0.125,
-        elevator_trim: None,
+        ..Surfaces::IDLE
     };
 
     #[test]
@@ -330,6 +360,7 @@ mod tests {
             aileron: f64::INFINITY,
             rudder: -7.0,
             elevator_trim: Some(1.5),
+            ..Surfaces::IDLE
         };
         let writes = named(&sent(|send| controls.set(&surfaces, send).unwrap()));
         let expected = [

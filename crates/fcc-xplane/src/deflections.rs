@@ -3,7 +3,7 @@
 //! The signs are those used throughout: X-Plane's `yoke_pitch_ratio` is
 //! positive nose up, `yoke_roll_ratio` positive right, `yoke_heading_ratio`
 //! positive nose right, each -1..1, and so are the columns of row 8; throttles
-//! are 0..1.
+//! are 0..1. So are flaps and brakes; the nose wheel follows `yoke_heading_ratio`.
 
 use core::iter;
 
@@ -15,38 +15,48 @@ pub(crate) struct Deflections {
     /// Elevator, aileron, rudder.
     pub(crate) yoke: [Option<f32>; 3],
     pub(crate) throttle: Option<f32>,
-    pub(crate) elevator_trim: Option<f32>,
+    /// What is written only when it is given, in the order of
+    /// [`OCCASIONAL`](crate::controls::OCCASIONAL).
+    pub(crate) occasional: [Option<f32>; 5],
 }
 
 impl Deflections {
     pub(crate) const CENTRED: Self = Self {
         yoke: [Some(0.0); 3],
         throttle: None,
-        elevator_trim: None,
+        occasional: [None; 5],
     };
     pub(crate) const AS_THEY_ARE: Self = Self {
         yoke: [None; 3],
         throttle: None,
-        elevator_trim: None,
+        occasional: [None; 5],
     };
 
     /// Limited to their ranges; NaN leaves a control unchanged. The loop has
     /// already checked its outputs; this is the last check before the aircraft.
     pub(crate) fn of(surfaces: &Surfaces) -> Self {
+        let brake = |brake: Option<f64>| brake.and_then(|brake| ratio(brake, 0.0));
+        let brakes = [surfaces.left_brake, surfaces.right_brake].map(brake);
+        let [left, right] = brakes;
+        let overrides = brakes.iter().any(Option::is_some).then_some(1.0);
+        let trim = surfaces.elevator_trim.and_then(|trim| ratio(trim, -1.0));
+        let flaps = surfaces.flaps.and_then(|flaps| ratio(flaps, 0.0));
         Self {
             yoke: yoke_ratios(surfaces),
             throttle: ratio(surfaces.throttle, 0.0),
-            elevator_trim: surfaces.elevator_trim.and_then(|trim| ratio(trim, -1.0)),
+            occasional: [trim, flaps, overrides, left, right],
         }
     }
 
-    /// Elevator, aileron, rudder, the throttle of every engine, then the
-    /// elevator's trim, in as many writes.
+    /// Elevator, aileron, rudder, the throttle of every engine, then what is
+    /// occasional, in as many writes.
     pub(crate) fn values(&self, writes: usize) -> impl Iterator<Item = Option<f32>> {
-        let engines = writes.saturating_sub(4);
+        let engines = writes.saturating_sub(self.yoke.len() + self.occasional.len());
         let throttles = iter::repeat_n(self.throttle, engines);
-        let trim = iter::once(self.elevator_trim);
-        self.yoke.into_iter().chain(throttles).chain(trim)
+        self.yoke
+            .into_iter()
+            .chain(throttles)
+            .chain(self.occasional)
     }
 }
 

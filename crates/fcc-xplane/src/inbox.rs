@@ -17,6 +17,7 @@ use core::time::Duration;
 use fcc_core::flight::{BodyRates, Measurements, PilotControls, Plant, Position, Surfaces};
 use fcc_core::framework::{Reading, Switch, Time};
 
+use crate::aircraft_state;
 use crate::config::DataRows;
 use crate::consistency::ConsistencyCheck;
 use crate::counters::count;
@@ -259,6 +260,7 @@ impl Inbox {
         self.motion.publish(there, &mut self.values, into, link);
         self.publish_attitude(into);
         let values = &mut self.values;
+        aircraft_state::publish(values, into);
         if let Some(([airspeed], taken)) = values.whole(Group::Airspeed) {
             into.airspeed_mps = Reading::new(airspeed, taken);
         }
@@ -276,6 +278,7 @@ impl Inbox {
                 aileron,
                 rudder,
                 elevator_trim: trim.map(|trim| trim.clamp(-1.0, 1.0)),
+                ..Surfaces::IDLE
             };
             into.surfaces = Reading::new(surfaces, taken);
         }
@@ -289,9 +292,6 @@ impl Inbox {
         }
         if let Some(([pitch, roll, yaw], taken)) = values.whole(Group::PilotControls) {
             into.pilot_controls = Reading::new(PilotControls { pitch, roll, yaw }, taken);
-        }
-        if let Some(([pressure_pa], taken)) = values.whole(Group::DifferentialPressure) {
-            into.differential_pressure_pa = Reading::new(pressure_pa, taken);
         }
         if self.clock.last_received() == now {
             self.publish_observations(there, into, link, writing);

@@ -56,6 +56,7 @@
 
 mod actuator;
 mod address;
+mod aircraft_state;
 mod authority;
 mod axial_load;
 mod config;

@@ -91,6 +91,9 @@ pub(crate) enum Quantity {
     PilotRoll,
     PilotYaw,
     DifferentialPressure,
+    Height,
+    EngineSpeed,
+    BatteryVoltage,
 }
 
 impl Quantity {

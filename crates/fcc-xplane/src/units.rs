@@ -29,6 +29,9 @@ pub(crate) enum Unit {
     Gravities,
     InchesOfMercury,
     Pascals,
+    Metres,
+    RevolutionsPerMinute,
+    Volts,
 }
 
 impl Unit {
@@ -43,12 +46,15 @@ impl Unit {
             | Self::MetresPerSecondSquared
             | Self::RadiansPerSecond
             | Self::KilogramsPerCubicMetre
-            | Self::Pascals => value,
+            | Self::Pascals
+            | Self::Metres
+            | Self::Volts => value,
             Self::Degrees => value.to_radians(),
             Self::Knots => value * KNOT_MPS,
             Self::Feet => value * FOOT_M,
             Self::Gravities => value * GRAVITY_MPS2,
             Self::InchesOfMercury => value * INHG_PA,
+            Self::RevolutionsPerMinute => value * (core::f64::consts::TAU / 60.0),
         }
     }
 }

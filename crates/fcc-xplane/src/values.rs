@@ -33,10 +33,14 @@ pub(crate) enum Group {
     Switch,
     PilotControls,
     DifferentialPressure,
+    Wheels,
+    Height,
+    EngineSpeed,
+    BatteryVoltage,
 }
 
 impl Group {
-    const COUNT: usize = 15;
+    const COUNT: usize = 19;
 
     /// All of them, in the order of their numbers.
     const ALL: [Self; Self::COUNT] = [
@@ -55,6 +59,10 @@ impl Group {
         Self::Switch,
         Self::PilotControls,
         Self::DifferentialPressure,
+        Self::Wheels,
+        Self::Height,
+        Self::EngineSpeed,
+        Self::BatteryVoltage,
     ];
 
     /// The quantities of which it is made, in the order of its values.
@@ -83,6 +91,10 @@ impl Group {
             Self::Switch => &[Q::EngageSwitch],
             Self::PilotControls => &[Q::PilotPitch, Q::PilotRoll, Q::PilotYaw],
             Self::DifferentialPressure => &[Q::DifferentialPressure],
+            Self::Wheels => &[Q::OnGround],
+            Self::Height => &[Q::Height],
+            Self::EngineSpeed => &[Q::EngineSpeed],
+            Self::BatteryVoltage => &[Q::BatteryVoltage],
         }
     }
 }

@@ -174,7 +174,7 @@ impl<C: Case> ActuatorBench for Bench<C> {
             elevator: -step,
             aileron: step,
             rudder: -step,
-            elevator_trim: None,
+            ..Surfaces::IDLE
         }
     }
 

@@ -235,7 +235,9 @@ fn rows_of_data_output_give_all_measurements() {
     let subscribed: Vec<_> = bench.simulator.subscribed.values().cloned().collect();
     assert!(subscribed.iter().any(|path| path == SWITCH));
     assert!(subscribed.iter().any(|path| path == OVERRIDE_JOYSTICK));
-    assert!(!subscribed.iter().any(|path| path.starts_with(P)));
+    let of_position = subscribed.iter().filter(|path| path.starts_with(P));
+    let only = format!("{P}y_agl");
+    assert_eq!(of_position.collect::<Vec<_>>(), [&only]);
     assert!(!subscribed.iter().any(|path| path == FLIGHT_TIME));
 
     let mut datagram = b"DATA*".to_vec();

@@ -94,7 +94,8 @@ fn run(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             let timer = TimerKind::Timerfd.build(PERIOD)?;
             let folder = arguments.record.as_deref();
             let live = arguments.live.then_some(&arguments.instance);
-            heat(timer, SECONDS, folder, live, out)?;
+            let report = heat(timer, SECONDS, folder, live, out)?;
+            print_report(&report, out)?;
         }
         Some(Command::Replay { files }) => return replay::replay(&files, out),
         Some(Command::Report { file, html, json }) => {
@@ -175,7 +176,6 @@ fn heat(
     let report = handle.join();
     // For the recording; how the loop ended is in the report.
     receive(&mut link, recorder.as_mut(), live.as_mut(), &mut io::sink());
-    let _ = print_report(&report, out);
     if let Some(recorder) = recorder {
         let recorded = recording::finish(recorder, &report.ending.to_string())?;
         for file in recorded.files {
@@ -216,7 +216,7 @@ fn receive(
 
 fn print_report(report: &LoopReport, out: &mut dyn Write) -> io::Result<()> {
     let timing = &report.timing;
-    writeln!(out, "\nEnded: {}", report.ending)?;
+    writeln!(out, "Ended: {}", report.ending)?;
     writeln!(out, "Runtime  {:8.3} s", timing.runtime_s)?;
     writeln!(out, "Average  {:8.3} ms", timing.period_mean_ms)?;
     writeln!(out, "Median   {:8.3} ms", timing.period_median_ms)?;

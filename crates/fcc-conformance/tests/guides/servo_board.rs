@@ -135,7 +135,7 @@ impl ActuatorBench for Bench {
             elevator: share,
             aileron: -share,
             rudder: 0.5 * share,
-            elevator_trim: None,
+            ..Surfaces::IDLE
         }
     }
 
@@ -184,7 +184,7 @@ fn deflections_become_pulses() {
         elevator: -1.0,
         aileron: 0.5,
         rudder: 0.0,
-        elevator_trim: None,
+        ..Surfaces::IDLE
     };
     let numbers: [u16; 5] = [1, 2_000, 1_000, 1_750, 1_500];
     let bytes: Vec<u8> = numbers.iter().flat_map(|n| n.to_le_bytes()).collect();

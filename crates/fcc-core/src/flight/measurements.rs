@@ -2,7 +2,7 @@
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::{GnssFix, MagneticField, OtherControl, Plant, Surfaces};
+use super::{Battery, GnssFix, MagneticField, OtherControl, Plant, Surfaces};
 use crate::framework::{Reading, Switch};
 use crate::{readings, schema};
 
@@ -105,6 +105,15 @@ schema! {
         /// Distance in m to the ground or an obstacle, along the body's z axis.
         #[field(23)]
         pub range_m: Reading<f64>,
+        /// Whether the wheels bear weight: 0 in the air, 1 on the ground.
+        #[field(24, range = 0.0..=1.0)]
+        pub weight_on_wheels: Reading<f64>,
+        /// Speed of the engine's shaft, rad/s; of the first of several.
+        #[field(25)]
+        pub engine_speed_radps: Reading<f64>,
+        /// The battery that feeds this computer or the aircraft.
+        #[field(26, column = "battery_*")]
+        pub battery: Reading<Battery>,
     }
 }
 
@@ -132,6 +141,9 @@ readings!(Measurements {
     air_temperature_k: "air temperature",
     gnss: "satellite navigation",
     range_m: "range",
+    weight_on_wheels: "weight on wheels",
+    engine_speed_radps: "engine speed",
+    battery: "battery",
 });
 
 schema! {

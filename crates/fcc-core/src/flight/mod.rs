@@ -8,6 +8,7 @@
 //! | [`inertial`] | position, attitude and motion from raw sensors |
 //! | [`guidance`] | set points |
 //! | [`path`] | the bank that follows lines, arcs and circles over the ground |
+//! | [`route`] | the order of legs, turns and circles of a flight plan |
 //! | [`control`] | surfaces and throttle |
 
 mod altimeter;
@@ -15,6 +16,7 @@ pub mod atmosphere;
 mod autopilot;
 pub mod calibration;
 pub mod control;
+pub mod fence;
 pub mod guidance;
 pub mod inertial;
 mod measurements;
@@ -23,18 +25,20 @@ pub mod orientation;
 pub mod path;
 mod plant;
 mod raw_readings;
+pub mod route;
 mod setpoints;
 mod surfaces;
 
 pub use altimeter::{ALTIMETER_SETTINGS_PA, Altimeter, AltitudeReference};
 pub use autopilot::{
-    Autopilot, AutopilotCommand, AutopilotConfig, FailsafeConfig, FailsafeEnd, Resume, Scale,
-    StickTakeover, flags,
+    Autopilot, AutopilotCommand, AutopilotConfig, Contingency, ContingencyAction,
+    ContingencyConfig, FailsafeConfig, FailsafeEnd, ITEM_REACHED, Resume, Scale, StickTakeover,
+    flags,
 };
 pub use measurements::{
     Attitude, BodyRates, Measurements, PilotControls, Position, SpecificForce, Suspect, Velocity,
 };
 pub use plant::{OtherControl, Plant, PlantState};
-pub use raw_readings::{GnssFix, MagneticField};
+pub use raw_readings::{Battery, GnssFix, MagneticField};
 pub use setpoints::Setpoints;
 pub use surfaces::Surfaces;

@@ -1,6 +1,7 @@
-//! The values that only raw sensors give.
+//! The values that only raw sensors give, and those of engine and battery.
 
 use super::{Position, Velocity};
+use crate::framework::schema::in_range;
 use crate::schema;
 
 schema! {
@@ -59,5 +60,36 @@ schema! {
         /// Of each axis of the velocity, m/s.
         #[field(5, range = 0.0..=1e6)]
         pub speed_accuracy_mps: f64,
+    }
+}
+
+schema! {
+    /// A battery; NaN for what is not measured.
+    ///
+    /// ```
+    /// use fcc_core::flight::Battery;
+    ///
+    /// // Three cells of lithium polymer, half empty.
+    /// let battery = Battery { voltage_v: Some(11.4), charge: Some(0.5) };
+    /// assert!(battery.voltage_v.is_some_and(|volts| volts > 3.0 * 3.5));
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub struct Battery {
+        /// Its voltage, V.
+        #[field(1, range = 0.0..=1_000.0)]
+        pub voltage_v: Option<f64>,
+        /// What is left of its charge, 0 empty, 1 full.
+        #[field(2, range = 0.0..=1.0)]
+        pub charge: Option<f64>,
+    }
+}
+
+impl Battery {
+    /// Whether what is measured of it is in its range.
+    pub fn is_valid(&self) -> bool {
+        in_range(&Self {
+            voltage_v: Some(self.voltage_v.unwrap_or(0.0)),
+            charge: Some(self.charge.unwrap_or(0.0)),
+        })
     }
 }

@@ -1,9 +1,9 @@
 //! The autopilot's set points.
 
-use core::f64::consts::TAU;
+use core::f64::consts::{PI, TAU};
 
-use super::AltitudeReference;
 use super::guidance::Progress;
+use super::{AltitudeReference, Contingency};
 use crate::schema;
 
 schema! {
@@ -53,5 +53,24 @@ schema! {
         /// The altitude above what it refers to, m.
         #[field(10)]
         pub altitude_above_reference_m: f64,
+        /// True course of the path over the ground where it is nearest, rad; 0 in a
+        /// mode that follows none.
+        #[field(11, range = -PI..=PI)]
+        pub course_rad: f64,
+        /// How far the aircraft is to the right of the path, m.
+        #[field(12)]
+        pub cross_track_m: f64,
+        /// How far it is to the end of the leg, m; on a circle, to its centre.
+        #[field(13)]
+        pub to_go_m: f64,
+        /// The first 64 bits of the SHA-256 of the flight plan; 0 without one.
+        #[field(14)]
+        pub plan_hash: u64,
+        /// When the flight plan was uploaded, s since 1970 (UTC).
+        #[field(15)]
+        pub plan_uploaded_unix_s: u64,
+        /// What the autopilot does by itself, and why.
+        #[field(16)]
+        pub contingency: Contingency,
     }
 }

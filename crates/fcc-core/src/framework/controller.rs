@@ -255,6 +255,12 @@ pub trait Controller: Send {
     /// Whether these outputs may be sent: all finite and within their ranges.
     fn outputs_are_valid(&self, outputs: &Self::Outputs) -> bool;
 
+    /// Takes what one of several sensors measures, by its number in the loop, before one is
+    /// chosen for each reading. A recording has the chosen readings only, so what this
+    /// changes may affect nothing but [`plausible`](Self::plausible). Not called with one
+    /// sensor.
+    fn observe_sensor(&mut self, _sensor: u8, _measurements: &Self::Measurements) {}
+
     /// The plausible readings of one of several sensors, by its number in the loop: a
     /// bit for each, in the order of the measurements. Another is used only if no
     /// sensor has a fresh plausible one. All of them by default.

@@ -26,6 +26,9 @@ schema! {
         /// it has no size.
         #[field(3)]
         pub amount_permille: u16,
+        /// Which one of several, from 1; 0 if there are not several.
+        #[field(4)]
+        pub item: u16,
     }
 }
 

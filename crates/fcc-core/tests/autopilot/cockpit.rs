@@ -67,7 +67,7 @@ pub(crate) const STANDING: Surfaces = Surfaces {
     elevator: 0.05,
     aileron: -0.02,
     rudder: 0.01,
-    elevator_trim: None,
+    ..Surfaces::IDLE
 };
 
 impl Cockpit {

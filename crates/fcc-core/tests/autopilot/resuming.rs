@@ -51,7 +51,7 @@ fn hold_is_continued_with_the_last_surfaces() {
         elevator: 0.11,
         aileron: 0.03,
         rudder: -0.04,
-        elevator_trim: None,
+        ..Surfaces::IDLE
     };
     let resume = Resume {
         progress: Progress {

@@ -4,7 +4,7 @@
 use fcc_core::blocks::wrap_pi;
 use fcc_core::flight::inertial::Solution;
 use fcc_core::flight::orientation::euler_from_quaternion;
-use fcc_core::units::KNOT_MPS;
+use fcc_core::units::{GRAVITY_MPS2, KNOT_MPS};
 
 use super::flight::{Flight, Truth};
 use super::sensors::{Fitted, Run};
@@ -156,6 +156,33 @@ fn airspeed_and_a_receiver_give_the_wind() {
     let direction = wrap_pi(found_east.atan2(found_north) - east.atan2(north)).to_degrees();
     assert!(speed.abs() <= 1.0, "{speed} m/s");
     assert!(direction.abs() <= 5.0, "{direction}°");
+}
+
+/// A phone's accelerometer ends at 2 g (BMA250), and gusts of more than that lead to a
+/// wrong velocity. What is refused for it raises no doubt of the attitude: beyond 8.6°
+/// (one standard deviation) none would be flown by.
+#[test]
+fn an_accelerometer_at_the_end_of_its_range_does_not_cost_the_attitude() {
+    fn tossed(time_s: f64) -> (f64, f64, f64) {
+        let share = smooth((time_s - 60.0) / 5.0);
+        (0.5, share * 0.15 * (2.2 * time_s).sin(), 50.0)
+    }
+    let fitted = Fitted {
+        force_range: 2.0 * GRAVITY_MPS2,
+        ..Fitted::default()
+    };
+    let mut run = Run::new(Flight::new(tossed, 1.0, wind_20_kt()), fitted, 13);
+    run.until(60.0, |_, _| {});
+    let (mut least_certain, mut largest) = (0.0_f64, 0.0_f64);
+    run.until(180.0, |truth, solution| {
+        let sigma = solution.sigma.roll_rad.max(solution.sigma.pitch_rad);
+        least_certain = least_certain.max(sigma.to_degrees());
+        let [roll, pitch, _] = angle_errors(truth, solution);
+        largest = largest.max(roll).max(pitch);
+    });
+    assert!(least_certain < 8.6, "{least_certain}°");
+    // As ArduPilot's tests of attitude have it.
+    assert!(largest <= 3.0, "{largest}°");
 }
 
 /// It begins in a turn, without a compass: GNSS and airspeed give the heading.

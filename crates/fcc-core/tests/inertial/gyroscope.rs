@@ -111,7 +111,17 @@ fn changes(
     end_s: f64,
     what: fn(&RawNavigation) -> bool,
 ) -> Vec<f64> {
-    let mut flight = Flight::new(manoeuvre, 0.5, [4.0, -3.0]);
+    let flight = Flight::new(manoeuvre, 0.5, [4.0, -3.0]);
+    changes_of(flight, fault, faulty_s, end_s, what)
+}
+
+fn changes_of(
+    mut flight: Flight,
+    fault: Fault,
+    faulty_s: Range<f64>,
+    end_s: f64,
+    what: fn(&RawNavigation) -> bool,
+) -> Vec<f64> {
     let mut random = Random::new(7);
     let mut navigation = RawNavigation::new(RawNavigationConfig {
         method: RawNavigationMethod::Kalman,
@@ -334,5 +344,27 @@ fn a_wrong_magnetometer_does_not_make_gyroscopes_doubted() {
             let changes = doubted(manoeuvre, fault, 70.0, 70.0);
             assert!(changes.is_empty(), "{name}: {changes:?}");
         }
+    }
+}
+
+/// Whatever the direction of the turn against the field's. A turn about a direction that is
+/// close to the field moves it little, and one that is turned by 30° as much as it is turned.
+#[test]
+fn a_compass_that_is_turned_does_not_make_gyroscopes_doubted_on_any_heading() {
+    fn steep(time_s: f64) -> (f64, f64, f64) {
+        let (bank, climb, airspeed) = turns(time_s);
+        (1.6 * bank, climb, airspeed)
+    }
+    let turned: Fault = |_, field, _, _| {
+        let (sin, cos) = 30.0_f64.to_radians().sin_cos();
+        let [x, y, _] = *field;
+        (field[0], field[1]) = (cos * x - sin * y, sin * x + cos * y);
+    };
+    for sixth in 0_u32..6 {
+        let heading_rad = f64::from(sixth) * std::f64::consts::FRAC_PI_3;
+        let flight = Flight::new(steep, heading_rad, [4.0, -3.0]).in_turbulence(sixth.into());
+        let doubted = RawNavigation::doubts_gyroscopes;
+        let changes = changes_of(flight, turned, FAILS_S..90.0, 90.0, doubted);
+        assert!(changes.is_empty(), "{heading_rad}: {changes:?}");
     }
 }

@@ -13,5 +13,6 @@ mod hand;
 mod matched;
 mod noise;
 mod sensors;
+mod several;
 mod thesis;
 mod units;

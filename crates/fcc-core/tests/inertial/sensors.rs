@@ -34,6 +34,8 @@ pub(crate) struct Fitted {
     /// Errors that last: biases of the inertial sensors, the receiver's and the
     /// barometer's slow errors.
     pub(crate) slow_errors: bool,
+    /// The end of the accelerometer's range, m/s².
+    pub(crate) force_range: f64,
 }
 
 impl Default for Fitted {
@@ -45,6 +47,7 @@ impl Default for Fitted {
             receiver_lost_s: (f64::INFINITY, f64::INFINITY),
             compass_turned: (0.0, f64::INFINITY),
             slow_errors: true,
+            force_range: f64::INFINITY,
         }
     }
 }
@@ -105,7 +108,9 @@ impl Run {
         };
         // 0.01 °/s/√Hz, 300 µg/√Hz.
         let rates = noisy(&mut self.random, truth.rates, self.rate_bias, 0.0012);
-        let force = noisy(&mut self.random, truth.force, self.force_bias, 0.02);
+        let range = self.fitted.force_range;
+        let force = noisy(&mut self.random, truth.force, self.force_bias, 0.02)
+            .map(|axis| axis.clamp(-range, range));
         self.navigation.observe(now, Observation::Rates(rates));
         self.navigation
             .observe(now, Observation::SpecificForce(force));

@@ -75,7 +75,7 @@ fn fly(units: usize, fault: Fault) -> Flown {
                 measured
             })
             .collect();
-        let measured = chosen(now, &given, &navigation);
+        let measured = chosen(now, &given, &mut navigation);
         navigation.step(now, &measured);
         let since_s = truth.time_s - FAILS_S;
         if measured.raw_body_rates.source != used {
@@ -93,12 +93,15 @@ fn fly(units: usize, fault: Fault) -> Flown {
 }
 
 /// The readings of the units as the loop chooses of them.
-fn chosen(now: Time, given: &[Measurements], navigation: &RawNavigation) -> Measurements {
+fn chosen(now: Time, given: &[Measurements], navigation: &mut RawNavigation) -> Measurements {
     let preferred: Vec<Preferred> = (0_u8..)
         .zip(given)
-        .map(|(unit, _)| Preferred {
-            fresh_for: Duration::from_millis(100),
-            plausible: navigation.permitted(unit, Flags::ALL),
+        .map(|(unit, measured)| {
+            navigation.observe_sensor(unit, measured);
+            Preferred {
+                fresh_for: Duration::from_millis(100),
+                plausible: navigation.permitted(unit, Flags::ALL),
+            }
         })
         .collect();
     let by = Preference {

@@ -23,10 +23,11 @@ pub(super) fn calibration_kind() -> impl TypedValueParser<Value = CalibrationKin
 }
 
 pub(super) fn handling_fault() -> impl TypedValueParser<Value = HandlingFault> {
-    const FAULTS: [(&str, HandlingFault); 3] = [
+    const FAULTS: [(&str, HandlingFault); 4] = [
         ("ends-early", HandlingFault::EndsEarly),
         ("restless", HandlingFault::Restless),
         ("magnet", HandlingFault::Magnet),
+        ("one-axis", HandlingFault::OneAxis),
     ];
     PossibleValuesParser::new(FAULTS.map(|(name, _)| name)).try_map(|given| {
         let found = FAULTS.into_iter().find(|(name, _)| *name == given);

@@ -8,6 +8,7 @@ use fcc_telemetry::units::{AVIATION, Shown};
 use serde::Serialize;
 
 use super::failure::Failure;
+use crate::cli::plan::PlanOrder;
 use crate::cli::{CommandArgs, CommandChoice, SetArgs};
 use crate::exit::Exit;
 use crate::output;
@@ -136,6 +137,29 @@ impl From<&CommandChoice> for Command {
             CommandChoice::Disengage => Self::Disengage,
             CommandChoice::Stop => Self::Stop,
             CommandChoice::Set(set) => set.into(),
+            CommandChoice::Heartbeat { within_s } => Self::set([("heartbeat_s", *within_s)]),
+            CommandChoice::Plan { what } => what.into(),
+        }
+    }
+}
+
+impl From<&PlanOrder> for Command {
+    fn from(what: &PlanOrder) -> Self {
+        match *what {
+            PlanOrder::Pause => Self::set([("pause", 1.0)]),
+            PlanOrder::Resume => Self::set([("plan_item", 0.0)]),
+            PlanOrder::Item { number } => Self::set([("plan_item", f64::from(number))]),
+            PlanOrder::GoTo {
+                latitude_deg,
+                longitude_deg,
+                altitude_ft,
+            } => Self::set([
+                ("go_to_latitude_rad", latitude_deg.to_radians()),
+                ("go_to_longitude_rad", longitude_deg.to_radians()),
+                ("go_to_altitude_m", altitude_ft * FOOT_M),
+            ]),
+            PlanOrder::Return => Self::set([("return_home", 1.0)]),
+            PlanOrder::GoAround => Self::set([("go_around", 1.0)]),
         }
     }
 }

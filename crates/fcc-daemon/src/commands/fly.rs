@@ -1,7 +1,9 @@
 //! `fccd fly`: the built-in aircraft through the pattern.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use fcc_runtime::SpawnError;
 use signal_hook::consts::{SIGINT, SIGTERM};
@@ -26,16 +28,21 @@ pub(super) fn fly(args: &FlyArgs) -> Result<Exit, Failure> {
     let (mut config, as_given) = configuration(args)?;
     direct(&mut config, &args.recording);
     apply_calibration(&mut config)?;
+    use_plan(&mut config, args.plan.as_deref())?;
+    let length_s = config.plan_length_s().filter(|_| config.flies_plan());
     let plan = Plan {
         pace: if args.lockstep {
             Pace::Lockstep
         } else {
             Pace::RealTime
         },
-        length: Length::Engaged(
-            args.seconds
-                .unwrap_or_else(|| config.guidance.default_length_s()),
-        ),
+        length: match length_s.filter(|_| args.seconds.is_none()) {
+            Some(length_s) => Length::Landed(length_s),
+            None => Length::Engaged(
+                args.seconds
+                    .unwrap_or_else(|| config.guidance.default_length_s()),
+            ),
+        },
     };
     conduct(&config, as_given, plan, args.quiet, args.json)
 }
@@ -101,6 +108,18 @@ fn report(outcome: &Outcome, json: bool) -> Exit {
         return output::json(outcome, exit);
     }
     output::result(outcome::text(outcome), exit)
+}
+
+/// Reads the plan of the command line, or of the configuration, and checks it.
+pub(super) fn use_plan(config: &mut Config, file: Option<&Path>) -> Result<(), Failure> {
+    if let Some(file) = file {
+        config.fly_plan(file.to_owned());
+    }
+    let now = SystemTime::now().duration_since(UNIX_EPOCH);
+    let now_s = now.map_or(0, |since| since.as_secs());
+    config
+        .load_plan(now_s)
+        .map_err(|error| Failure::of(Exit::Usage, error))
 }
 
 /// The command line has priority over the file.

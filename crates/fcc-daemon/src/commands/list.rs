@@ -3,7 +3,7 @@
 use std::io::ErrorKind;
 
 use fcc_flight::config::RecordingSection;
-use fcc_record::{Entry, Listed};
+use fcc_record::{Entry, Listed, Wholeness};
 use fcc_report::recordings_table;
 
 use super::failure::Failure;
@@ -43,7 +43,8 @@ pub(super) fn list(args: &ListArgs) -> Result<Exit, Failure> {
     for error in &errors {
         output::message(error.replace('\n', "\\n"));
     }
-    let exit = if errors.is_empty() {
+    let is_cut = |one: &Listed| matches!(one, Listed::Recording(one) if one.file == Wholeness::Cut);
+    let exit = if errors.is_empty() && !listed.iter().any(is_cut) {
         Exit::Success
     } else {
         Exit::Incomplete

@@ -10,6 +10,7 @@ mod failure;
 mod fly;
 mod list;
 mod outcome;
+mod plan;
 mod probe;
 mod progress;
 #[cfg(feature = "live")]
@@ -90,6 +91,7 @@ fn carry_out(command: Action) -> Result<Exit, Failure> {
         Action::Check(args) => check::check(&args),
         Action::Doctor(args) => doctor::doctor(&args)?,
         Action::Probe(args) => probe::probe(&args)?,
+        Action::Plan(args) => plan::plan(&args)?,
         Action::XPlane(args) => x_plane::x_plane(&args)?,
         Action::Report(args) => report::report(&args)?,
         #[cfg(feature = "live")]

@@ -17,6 +17,9 @@ pub(super) fn text(outcome: &Outcome) -> String {
         text.push_str(&flight_table(flight, outcome.scored_by));
         text.push_str("\n\n");
     }
+    if let Some(why) = &outcome.not_scored {
+        let _ = writeln!(text, "no score: {why}\n");
+    }
     let _ = write!(text, "ended: {}", outcome.ending);
     if outcome.failsafes > 0 {
         let _ = write!(text, "; failsafe {} times", outcome.failsafes);

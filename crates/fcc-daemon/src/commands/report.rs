@@ -1,11 +1,12 @@
 //! `fccd report FILE`: a report on a recording.
 
-use fcc_flight::replay::recorded_pattern;
+use fcc_flight::replay::{recorded_pattern, recorded_plan};
 use fcc_record::Recording;
 use fcc_report::{FlightAddition, FlightReport, FlightSurvey, TABLES};
 use fcc_telemetry::FlightMessage;
 
 use super::failure::Failure;
+use super::plan::lines;
 use super::progress;
 use crate::cli::ReportArgs;
 use crate::exit::Exit;
@@ -31,7 +32,8 @@ pub(super) fn report(args: &ReportArgs) -> Result<Exit, Failure> {
 /// The report, and a line on each file or folder that was written.
 fn make(args: &ReportArgs, recording: &Recording) -> Result<(FlightReport, Vec<String>), String> {
     let bar = progress::bar(recording.bytes(), "reading");
-    let addition = FlightAddition::new(recorded_pattern(recording.about()));
+    let addition = FlightAddition::new(recorded_pattern(recording.about()))
+        .with_plan(recorded_plan(recording.about()).map(|(which, plan)| (which, lines(&plan))));
     let report = FlightSurvey::read(recording, addition, args.csv.as_deref(), |read| {
         bar.set_position(read);
     })?;

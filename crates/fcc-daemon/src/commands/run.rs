@@ -2,7 +2,7 @@
 
 use super::calibrate::apply_calibration;
 use super::failure::Failure;
-use super::fly::{conduct, direct};
+use super::fly::{conduct, direct, use_plan};
 use crate::cli::RunArgs;
 use crate::exit::Exit;
 use crate::process::{RightsError, end_with_parent, give_up};
@@ -30,6 +30,7 @@ pub(super) fn run(args: &RunArgs) -> Result<Exit, Failure> {
         config.telemetry.instance = instance.clone();
     }
     apply_calibration(&mut config)?;
+    use_plan(&mut config, args.plan.as_deref())?;
     let plan = Plan {
         pace: Pace::RealTime,
         length: Length::Open,

@@ -5,7 +5,6 @@
 //! | `release_helper`, `release_handover` | a second process that releases the controls if this one is killed |
 //! | `daemon_pipe` | that process' end of the pipe from this one |
 //! | `kept_helper` | starts that process again if it has ended |
-//! | `told` | what that process is told, line by line |
 //! | `notice` | tells that process, and the plant's file, before control is taken |
 //! | `own_program` | starts this program again, as one of its helpers |
 //! | `plant_file` | a file of this user alone: who may control a plant, and whether it was left held |
@@ -27,7 +26,6 @@ mod release_helper;
 mod rights;
 mod service_unit;
 mod signals;
-mod told;
 
 use std::io;
 use std::sync::Arc;
@@ -58,8 +56,6 @@ pub(crate) use rights::{RightsError, give_up, unknown_names};
 pub(crate) use service_unit::commanders_refused;
 use signals::{BlockedSignals, Caught};
 pub(crate) use signals::{end_with_parent, survive_file_size_limit, tolerate};
-#[cfg(fuzzing)]
-pub use told::held_after;
 
 /// The interval of checks of the lock's file and, while control is held, for a
 /// release helper of an earlier daemon, which would release it.

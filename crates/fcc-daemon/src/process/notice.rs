@@ -1,51 +1,14 @@
 //! What outlives this process learns of a takeover before anything is written
 //! to the plant: the release helper, through its pipe, and the plant's file.
 
-use std::fmt::Debug;
-use std::io::{self, Cursor, Write};
-use std::os::fd::AsFd;
+use std::io;
 use std::process::ChildStdin;
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use fcc_core::framework::{PlantId, TakeoverNotice};
-use nix::fcntl::{FcntlArg, OFlag, fcntl};
+use fcc_flight::release::{Growing, HelperPipes, Line};
 
 use super::plant_file::PlantFile;
-use super::told::Line;
-
-/// Room for helpers that are started again, for plants that beacons name, and
-/// for files that were removed.
-const ROOM: usize = 8;
-/// Room for a line with a plant's name.
-const LINE_BYTES: usize = 128;
-
-/// A list to which one thread adds while others read it without waiting.
-#[derive(Debug)]
-struct Growing<T>([OnceLock<T>; ROOM]);
-
-impl<T> Default for Growing<T> {
-    fn default() -> Self {
-        Self([const { OnceLock::new() }; ROOM])
-    }
-}
-
-impl<T> Growing<T> {
-    /// Whether there was room.
-    fn add(&self, mut value: T) -> bool {
-        for place in &self.0 {
-            match place.set(value) {
-                Ok(()) => return true,
-                Err(back) => value = back,
-            }
-        }
-        false
-    }
-
-    fn iter(&self) -> impl DoubleEndedIterator<Item = &T> {
-        self.0.iter().filter_map(OnceLock::get)
-    }
-}
 
 /// Passes on that control is taken, from the loop's thread, and that it was
 /// released, from the main thread. Each takeover has a number, so that a
@@ -55,7 +18,7 @@ pub(crate) struct Notice {
     taken: AtomicU64,
     /// The last takeover whose release is confirmed.
     released: AtomicU64,
-    helpers: Growing<ChildStdin>,
+    helpers: HelperPipes,
     files: Growing<(PlantId, PlantFile)>,
 }
 
@@ -102,7 +65,7 @@ impl Notice {
         }
         if let Some(plant) = held {
             // The helper makes its lock anew.
-            self.send(&Line::Held(self.number(), plant));
+            self.helpers.send(&Line::Held(self.number(), plant));
         }
         true
     }
@@ -120,14 +83,10 @@ impl Notice {
     /// # Errors
     /// When there were too many already.
     pub(super) fn add_helper(&self, pipe: ChildStdin, held: Option<PlantId>) -> io::Result<()> {
-        let flags = OFlag::from_bits_truncate(fcntl(pipe.as_fd(), FcntlArg::F_GETFL)?);
-        fcntl(&pipe, FcntlArg::F_SETFL(flags | OFlag::O_NONBLOCK))?;
-        if !self.helpers.add(pipe) {
-            return Err(io::Error::other("it was started too often"));
-        }
+        self.helpers.add(pipe.into())?;
         // A takeover meanwhile is told twice, with different numbers.
         if let Some(plant) = held {
-            self.send(&Line::Held(self.number(), plant));
+            self.helpers.send(&Line::Held(self.number(), plant));
         }
         Ok(())
     }
@@ -151,41 +110,25 @@ impl Notice {
         for (_, file) in self.files.iter() {
             file.release(number);
         }
-        self.send(&Line::Free(number));
+        self.helpers.send(&Line::Free(number));
     }
 
     /// Passes on by what the answers of a plant are known. A helper that was
     /// started again does not know it.
     pub(super) fn answers(&self, plant: PlantId, from: u16) {
-        self.send(&Line::Answers(from, plant));
+        self.helpers.send(&Line::Answers(from, plant));
     }
 
     /// Passes on that the flight is over: what is still held is the helper's to
     /// release, from now on.
     pub(super) fn end(&self) {
-        self.send(&Line::Over);
+        self.helpers.send(&Line::Over);
     }
 
     /// Whether the last helper has read all that it was told.
     pub(super) fn is_read(&self) -> bool {
-        let pipe = self.helpers.iter().next_back();
-        let unread = pipe.map(rustix::io::ioctl_fionread);
+        let unread = self.helpers.last().map(rustix::io::ioctl_fionread);
         !unread.is_some_and(|bytes| bytes.is_ok_and(|bytes| bytes > 0))
-    }
-
-    /// To the last helper: the others have ended. A pipe that is full belongs
-    /// to one that is stopped.
-    fn send(&self, line: &Line) {
-        let mut bytes = Cursor::new([0; LINE_BYTES]);
-        if writeln!(bytes, "{line}").is_err() {
-            return;
-        }
-        let length = bytes.position() as usize;
-        if let Some(mut pipe) = self.helpers.iter().next_back()
-            && let Some(line) = bytes.get_ref().get(..length)
-        {
-            let _ = pipe.write(line);
-        }
     }
 }
 
@@ -197,7 +140,7 @@ impl TakeoverNotice for Notice {
         if let Some((_, file)) = file {
             file.take(number);
         }
-        self.send(&Line::Held(number, *plant));
+        self.helpers.send(&Line::Held(number, *plant));
     }
 }
 

@@ -15,23 +15,16 @@ use std::process::{Child, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use fcc_core::framework::{ActuatorFault, ControlAuthority, PlantId, Released};
-use fcc_flight::config::{Config, ConfigError};
+use fcc_core::framework::{ActuatorFault, PlantId, Released};
+use fcc_flight::config::Config;
 use fcc_flight::flight::authority_without_connection;
+use fcc_flight::release::{NoConfigError, Told, from_one_line, in_one_line, release};
 use fcc_telemetry::{RunFolder, not_started};
 
 use super::notice::Notice;
 use super::own_program::own_program;
 use super::plant_file::PlantFile;
 use super::release_handover::{HelperLock, RELEASE_HELPER};
-use super::told::Told;
-
-/// How long a helper repeats the release: a simulator that loads scenery hangs
-/// for some time.
-const RELEASE_FOR: Duration = Duration::from_secs(120);
-
-/// The pause after a release that could not even be tried.
-const AGAIN_AFTER: Duration = Duration::from_millis(100);
 
 /// How long the end of a helper that was killed is waited for.
 const ENDS_WITHIN: Duration = Duration::from_millis(200);
@@ -94,12 +87,6 @@ impl ReleaseHelper {
     }
 }
 
-/// A configuration file as one line: a string of JSON.
-fn in_one_line(config: &Config) -> io::Result<String> {
-    let text = toml::to_string(config).map_err(io::Error::other)?;
-    Ok(serde_json::to_string(&text)?)
-}
-
 /// What a helper had to release.
 #[derive(Debug)]
 pub(crate) struct HelperResult {
@@ -121,8 +108,7 @@ pub(crate) fn run_release_helper(
 ) -> Result<Option<HelperResult>, ReleaseHelperError> {
     let mut lines = from.lines();
     let first = lines.next().ok_or(ReleaseHelperError::Nothing)??;
-    let text: String = serde_json::from_str(&first)?;
-    let config = Config::parse(&text, "standard input")?;
+    let config = from_one_line(&first)?;
     let mut folder = None;
     let authority = authority_without_connection(&config);
     let mut told = Told::default();
@@ -162,7 +148,7 @@ pub(crate) fn run_release_helper(
     if let Some(from) = told.answers_from() {
         authority.expect(&plant, from);
     }
-    let released = release(authority.as_ref(), &plant, RELEASE_FOR)?;
+    let released = release(authority.as_ref(), &plant, &mut || false)?;
     // The next start need not release it.
     if released == Released::Confirmed
         && let Some(folder) = folder
@@ -178,24 +164,6 @@ pub(crate) fn run_release_helper(
     }))
 }
 
-/// Releases what is held until that is confirmed. What prevents it may pass: a
-/// network that is down, ports that another program has; and what has ended may have
-/// been a relay, behind which the simulator is.
-fn release(
-    authority: &dyn ControlAuthority,
-    plant: &PlantId,
-    within: Duration,
-) -> Result<Released, ActuatorFault> {
-    let begun = Instant::now();
-    loop {
-        let left = within.saturating_sub(begun.elapsed());
-        match authority.release(plant, left, &mut || false) {
-            Err(_) | Ok(Released::Unreachable) if left > AGAIN_AFTER => thread::sleep(AGAIN_AFTER),
-            result => return result,
-        }
-    }
-}
-
 /// Why a helper could not do its work.
 #[derive(thiserror::Error, Debug)]
 #[non_exhaustive]
@@ -206,12 +174,9 @@ pub(crate) enum ReleaseHelperError {
     /// The pipe broke before the first line.
     #[error("standard input: {0}")]
     Input(#[from] io::Error),
-    /// The first line is not a string.
-    #[error("the first line is not a configuration as a string of JSON: {0}")]
-    Line(#[from] serde_json::Error),
-    /// The string is not a configuration.
+    /// The first line is not a configuration.
     #[error(transparent)]
-    Config(#[from] ConfigError),
+    Config(#[from] NoConfigError),
     /// Nothing can be sent to the plant.
     #[error("the controls cannot be released: {0}")]
     Release(#[from] ActuatorFault),

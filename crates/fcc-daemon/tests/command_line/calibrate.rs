@@ -31,8 +31,8 @@ fn all_kinds_are_found_stored_and_flown() {
     let folder = tempfile::tempdir().unwrap();
     with_config(folder.path(), "");
     for kind in [
-        "gyroscope",
         "accelerometer",
+        "gyroscope",
         "mounting",
         "magnetometer",
         "airspeed",
@@ -67,7 +67,9 @@ fn all_kinds_are_found_stored_and_flown() {
     ];
     let flown = fccd(folder.path(), &words).output().unwrap();
     assert!(flown.status.success(), "{}", said(&flown));
-    assert!(said(&flown).contains("calibrated by recordings/fccd.calibration.toml: gyroscope of"));
+    assert!(
+        said(&flown).contains("calibrated by recordings/fccd.calibration.toml: accelerometer of")
+    );
     // The recording has the configuration in full: it replays without the file.
     fs::remove_file(folder.path().join(FILE)).unwrap();
     let recording = fs::read_dir(folder.path().join("recordings")).unwrap();
@@ -90,6 +92,7 @@ fn poor_handling_is_refused_and_changes_nothing() {
     for (kind, fault, expected) in [
         ("accelerometer", "ends-early", "of 12 are there"),
         ("gyroscope", "restless", "while it was to lie still"),
+        ("gyroscope", "one-axis", "1 of 3 are there"),
         (
             "magnetometer",
             "magnet",
@@ -106,7 +109,8 @@ fn poor_handling_is_refused_and_changes_nothing() {
         assert!(said(&refused).contains(expected), "{}", said(&refused));
         assert!(said(&refused).contains("Nothing was changed"));
     }
-    let tried = calibrate(folder.path(), &["gyroscope", "--dry-run", "--json"]);
+    let words = ["gyroscope", "--bias-only", "--dry-run", "--json"];
+    let tried = calibrate(folder.path(), &words);
     assert!(tried.status.success(), "{}", said(&tried));
     let found: serde_json::Value = serde_json::from_slice(&tried.stdout).unwrap();
     assert!(
@@ -116,11 +120,42 @@ fn poor_handling_is_refused_and_changes_nothing() {
     assert!(!folder.path().join(FILE).exists());
 }
 
+/// The bias alone keeps scale and misalignment that were found before.
+#[test]
+fn a_bias_alone_keeps_what_turning_found() {
+    let folder = tempfile::tempdir().unwrap();
+    with_config(folder.path(), "");
+    assert!(
+        calibrate(folder.path(), &["accelerometer"])
+            .status
+            .success()
+    );
+    let found = |words: &[&str]| {
+        let done = calibrate(folder.path(), &[words, &["--json"]].concat());
+        assert!(done.status.success(), "{}", said(&done));
+        let printed: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+        let found = &printed["found"];
+        (found["unit"].clone(), found["keys"]["gyroscope"].clone())
+    };
+    let (unit, turned) = found(&["gyroscope"]);
+    assert_eq!(unit, "%");
+    let (unit, alone) = found(&["gyroscope", "--bias-only"]);
+    assert_eq!(unit, "°/s");
+    for key in ["scale", "misalignment"] {
+        assert!(
+            turned[key].is_array() && turned[key] == alone[key],
+            "{key}: {alone}"
+        );
+    }
+    assert!(alone["bias_degps"].is_array());
+}
+
 #[test]
 fn a_damaged_file_and_another_sensors_are_not_used() {
     let folder = tempfile::tempdir().unwrap();
     with_config(folder.path(), "");
-    assert!(calibrate(folder.path(), &["gyroscope"]).status.success());
+    let words = ["gyroscope", "--bias-only"];
+    assert!(calibrate(folder.path(), &words).status.success());
     let fly = |more: &[&str]| {
         let words = [
             "fly",
@@ -215,6 +250,7 @@ fn an_order_in_which_errors_remain_is_refused() {
     let first = "calibrate the accelerometer of built-in first";
     refused("magnetometer", first);
     refused("mounting", first);
+    refused("gyroscope", first);
     assert!(
         calibrate(folder.path(), &["accelerometer"])
             .status
@@ -227,7 +263,7 @@ fn an_order_in_which_errors_remain_is_refused() {
     // What was found counts only where it is used.
     with_config(folder.path(), "[calibration]\nenabled = false\n");
     refused("mounting", "calibration.enabled is false");
-    let done = calibrate(folder.path(), &["gyroscope"]);
+    let done = calibrate(folder.path(), &["gyroscope", "--bias-only"]);
     let printed = String::from_utf8_lossy(&done.stdout).into_owned();
     assert!(printed.contains("flights do not use it"), "{printed}");
 }
@@ -249,8 +285,10 @@ fn what_cannot_be_stored_is_refused_before_the_first_step() {
         assert!(!said(&refused).contains("hands off"), "{}", said(&refused));
     }
     with_config(folder.path(), "");
-    let refused = calibrate(folder.path(), &["gyroscope", "--level-only"]);
-    assert_eq!(refused.status.code(), Some(2), "{}", said(&refused));
+    for words in [["gyroscope", "--level-only"], ["mounting", "--bias-only"]] {
+        let refused = calibrate(folder.path(), &words);
+        assert_eq!(refused.status.code(), Some(2), "{}", said(&refused));
+    }
 }
 
 /// A gyroscope of the kernel's Industrial I/O: what devices give has the time of
@@ -274,7 +312,17 @@ fn a_sensor_of_the_kernel_is_calibrated_in_real_time() {
         folder.path()
     );
     fs::write(folder.path().join("raw.toml"), sensor).unwrap();
-    let words = ["calibrate", "gyroscope", "raw.toml", "--json"];
+    let turned = fccd(folder.path(), &["calibrate", "gyroscope", "raw.toml"]);
+    let refused = { turned }.output().unwrap();
+    assert_eq!(refused.status.code(), Some(1), "{}", said(&refused));
+    assert!(said(&refused).contains("--bias-only"), "{}", said(&refused));
+    let words = [
+        "calibrate",
+        "gyroscope",
+        "--bias-only",
+        "raw.toml",
+        "--json",
+    ];
     let done = fccd(folder.path(), &words).output().unwrap();
     assert!(done.status.success(), "{}", said(&done));
     let found: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();

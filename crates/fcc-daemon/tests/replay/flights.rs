@@ -25,6 +25,8 @@ pub(crate) struct Happenings {
     pub(crate) late: Vec<(u64, Duration)>,
     /// Set the stop flag before this step.
     pub(crate) stop_before: Option<u64>,
+    /// From this tick on the first sensor's gyroscope is wrong by 5 °/s in pitch.
+    pub(crate) biased_from: Option<u64>,
     /// Adds a second sensor with the same measurements, which is never silent.
     pub(crate) seconded: bool,
     /// Length of the flight, steps.
@@ -64,6 +66,7 @@ pub(crate) fn fly(config: &Config, happenings: &Happenings) -> Vec<FlightMessage
         Box::new(Silenced {
             inner,
             silent: happenings.silent.clone(),
+            biased_from: happenings.biased_from,
             measured: Arc::clone(&last),
         }) as Box<dyn Sensor<Measurements>>
     };
@@ -100,6 +103,7 @@ pub(crate) fn fly(config: &Config, happenings: &Happenings) -> Vec<FlightMessage
 struct Silenced {
     inner: Box<dyn Sensor<Measurements>>,
     silent: Vec<RangeInclusive<u64>>,
+    biased_from: Option<u64>,
     /// What it measures.
     measured: Arc<Mutex<Measurements>>,
 }
@@ -113,6 +117,9 @@ impl Sensor<Measurements> for Silenced {
             return Err(SensorFault::Silent);
         }
         *into = *measured;
+        if self.biased_from.is_some_and(|from| tick.number >= from) {
+            into.raw_body_rates.value.pitch_radps += 5.0_f64.to_radians();
+        }
         sampled
     }
 

@@ -2,8 +2,9 @@
 //! is valid, replaces it when it is silent, and a replay reproduces which was
 //! used.
 
+use fcc_core::flight::Autopilot;
 use fcc_core::framework::{EventKind, Flags, Message, SourceChange, State};
-use fcc_flight::config::Config;
+use fcc_flight::config::{Config, NavigationMethod, RawSensorsChoice};
 use fcc_flight::replay::replay;
 use fcc_replay::run;
 use fcc_telemetry::FlightMessage;
@@ -55,7 +56,8 @@ fn a_loss_that_is_failsafe_with_one_sensor_is_flown_through_with_two() {
     let two = flown(true, true);
     let states = assert_identical(&rough(), &two);
     assert_eq!(states, [State::Standby, State::Engaged]);
-    let all = Flags::from_bits(0b1111_1111_1111);
+    // The first twelve readings, and weight on wheels.
+    let all = Flags::from_bits(0b1111_1111_1111 | 1 << 23);
     let (to, back) = ((0, 1), (1, 0));
     let change = |(from, to)| SourceChange {
         readings: all,
@@ -82,6 +84,47 @@ fn a_replay_reproduces_which_sensor_was_used() {
         },
     );
     assert_eq!(used, 76);
+}
+
+/// By raw sensors, of which the first set's gyroscope fails: it is named, left with its
+/// accelerometer, and no other reading changes its sensor.
+#[test]
+fn a_replay_reproduces_that_an_inertial_unit_was_left() {
+    let mut config = rough();
+    config.navigation.method = NavigationMethod::Kalman;
+    if let Some(section) = &mut config.built_in {
+        section.raw_sensors = RawSensorsChoice::Board;
+        section.delay_ms = 0;
+    }
+    let happenings = Happenings {
+        seconded: true,
+        biased_from: Some(1_200),
+        steps: 2_000,
+        ..Happenings::default()
+    };
+    let messages = fly(&config, &happenings);
+    let states = assert_identical(&config, &messages);
+    // Doubted by the magnetic field it is a failsafe, until the next one is used.
+    assert_eq!(states.last(), Some(&State::Engaged));
+    let &[(left_at, change)] = &changes(&messages)[..] else {
+        panic!("{:?}", changes(&messages))
+    };
+    // Raw acceleration and raw body rates.
+    assert_eq!(change.readings, Flags::from_bits(0b11 << 15));
+    assert_eq!((change.from, change.to), (0, 1));
+    assert!((1_200..1_400).contains(&left_at), "{left_at}");
+    let events = messages.iter().filter_map(|message| match message {
+        Message::Event(event) => Some(event.kind.description::<Autopilot>().to_string()),
+        Message::Tick(_) => None,
+    });
+    let events: Vec<_> = events.collect();
+    for text in [
+        "inertial unit of sensor 1 is not used again: ",
+        "an inertial unit was wrong or silent and is not used again",
+    ] {
+        let is_told = events.iter().any(|event| event.contains(text));
+        assert!(is_told, "{text}: {events:#?}");
+    }
 }
 
 /// Configured: an X-Plane that never answers is preferred, and all measurements

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use toml::{Table, Value};
 
-use super::entry::{given_of, turn};
+use super::entry::{given_of, over, turn};
 use super::{CalibrationFile, CalibrationFileError, CalibrationKind, Entry};
 use crate::config::{CalibrationSection, Config};
 use fcc_core::flight::calibration::Axes;
@@ -69,6 +69,46 @@ pub fn apply(config: &mut Config, unix_s: u64) -> Result<Applied, (PathBuf, Cali
         .collect();
     applied.remarks.extend(stale);
     Ok(applied)
+}
+
+/// What a configuration's navigation uses as it comes, if it does: no source has a
+/// calibration of it, and `calibration.enabled` is not false. For users.
+pub fn not_calibrated(config: &Config) -> Option<String> {
+    let sources = config.raw_sources();
+    let is_wanted = config.calibration.enabled && config.navigation.is_by_filter();
+    if sources.is_empty() || !is_wanted {
+        return None;
+    }
+    let none = CalibrationSection::default();
+    let is_calibrated = |differs: fn(&CalibrationSection, &CalibrationSection) -> bool| {
+        sources.iter().any(|one| differs(&one.calibration, &none))
+    };
+    let kinds = [
+        (
+            CalibrationKind::Gyroscope,
+            is_calibrated(|one, none| one.gyroscope != none.gyroscope),
+        ),
+        (
+            CalibrationKind::Accelerometer,
+            is_calibrated(|one, none| one.accelerometer != none.accelerometer),
+        ),
+        (
+            CalibrationKind::Magnetometer,
+            is_calibrated(|one, none| one.magnetometer != none.magnetometer),
+        ),
+    ];
+    let missing: Vec<_> = kinds
+        .iter()
+        .filter(|(_, is_calibrated)| !is_calibrated)
+        .collect();
+    let names: Vec<_> = missing.iter().map(|(kind, _)| kind.name()).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "not calibrated: {}. Attitude and heading may err by several degrees, and flights end in \
+             failsafe: use `fccd calibrate` for what there is of these",
+            names.join(", ")
+        )
+    })
 }
 
 /// Why an entry is of other sensors, or of another configuration of them, if it is.
@@ -143,17 +183,6 @@ fn put(config: &mut Config, entry: &Entry) -> Result<(), String> {
     Ok(())
 }
 
-fn over(values: &mut Table, keys: &Table) {
-    for (key, new) in keys {
-        match (values.get_mut(key), new) {
-            (Some(Value::Table(inner)), Value::Table(keys)) => over(inner, keys),
-            _ => {
-                values.insert(key.clone(), new.clone());
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::LockedCalibrationFile;
@@ -177,7 +206,7 @@ mod tests {
             program: "fccd 0.1.0".to_owned(),
             error: 0.01,
             error_limit: 0.05,
-            unit: kind.unit().to_owned(),
+            unit: "°/s".to_owned(),
             temperature_k: None,
             aligned_with: Table::new(),
             replaced: Table::new(),
@@ -193,6 +222,21 @@ mod tests {
             file.add(entry.clone()).unwrap();
         }
         (folder, path)
+    }
+
+    #[test]
+    fn what_is_flown_uncalibrated_is_said() {
+        let path = std::path::Path::new("none.toml");
+        assert_eq!(not_calibrated(&config(path, "")), None);
+        let kalman = "[navigation]\nmethod = \"kalman\"\n";
+        let said = not_calibrated(&config(path, kalman)).unwrap();
+        assert!(said.starts_with("not calibrated: gyroscope, accelerometer, magnetometer."));
+        let two = format!(
+            "{kalman}[built-in.calibration.gyroscope]\nbias_degps = [1.0, 0.0, 0.0]\n\
+             [built-in.calibration.magnetometer]\nbias_ut = [1.0, 0.0, 0.0]\n"
+        );
+        let said = not_calibrated(&config(path, &two)).unwrap();
+        assert!(said.starts_with("not calibrated: accelerometer."), "{said}");
     }
 
     #[test]

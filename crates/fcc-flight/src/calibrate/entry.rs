@@ -50,6 +50,8 @@ pub(super) struct Circumstances<'a> {
     pub(super) source: &'a RawSource,
     /// The configuration without what was found before.
     pub(super) given: &'a Config,
+    /// What was found before, as far as it is used.
+    pub(super) before: &'a [Entry],
     pub(super) unix_s: u64,
     pub(super) temperature_k: Option<f64>,
     pub(super) accelerometer: Axes,
@@ -63,7 +65,17 @@ impl Entry {
             } => turn(at.accelerometer.mounting, &at.accelerometer.rotation),
             _ => Table::new(),
         };
-        let keys = keys(&found.values);
+        let mut keys = keys(&found.values);
+        if matches!(found.values, Values::GyroscopeBias { .. }) {
+            // Scale and misalignment stay as they were found.
+            let mut before = at.before.iter();
+            let same = before.find(|of| (of.kind, &of.place) == (kind, &at.source.place));
+            if let Some(same) = same {
+                let found = std::mem::replace(&mut keys, same.keys.clone());
+                over(&mut keys, &found);
+            }
+        }
+        let (unit, in_unit) = unit(&found.values);
         Self {
             kind,
             place: at.source.place.clone(),
@@ -71,9 +83,9 @@ impl Entry {
             date: fcc_record::timestamp(at.unix_s.saturating_mul(1_000_000_000)),
             unix_s: at.unix_s,
             program: concat!("fccd ", env!("CARGO_PKG_VERSION")).to_owned(),
-            error: rounded(kind.in_unit(found.quality.error)),
-            error_limit: rounded(kind.in_unit(found.quality.limit)),
-            unit: kind.unit().to_owned(),
+            error: rounded(in_unit * found.quality.error),
+            error_limit: rounded(in_unit * found.quality.limit),
+            unit: unit.to_owned(),
             temperature_k: at.temperature_k.map(rounded),
             aligned_with,
             replaced: given_of(at.given, &at.source.place, &keys),
@@ -86,6 +98,20 @@ impl Entry {
         let (kind, day) = (self.kind.name(), self.date.split('T').next());
         let day = day.unwrap_or_default();
         format!("{kind} of {day}, error {:.3} {}", self.error, self.unit)
+    }
+}
+
+/// What the error of a calibration is in, and by what its value in the core is
+/// multiplied for it.
+fn unit(found: &Values) -> (&'static str, f64) {
+    const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+    match found {
+        Values::Accelerometer(_) => ("m/s²", 1.0),
+        Values::Gyroscope { .. } => ("%", 100.0),
+        Values::GyroscopeBias { .. } => ("°/s", DEGREES),
+        Values::Magnetometer { .. } => ("µT", 1.0),
+        Values::Airspeed { .. } => ("Pa", 1.0),
+        Values::Mounting { .. } => ("°", DEGREES),
     }
 }
 
@@ -123,6 +149,18 @@ fn same_keys(values: Table, keys: &Table) -> Table {
     same.collect()
 }
 
+/// Puts keys over others.
+pub(super) fn over(values: &mut Table, keys: &Table) {
+    for (key, new) in keys {
+        match (values.get_mut(key), new) {
+            (Some(Value::Table(inner)), Value::Table(keys)) => over(inner, keys),
+            _ => {
+                values.insert(key.clone(), new.clone());
+            }
+        }
+    }
+}
+
 /// A mounting as the configuration has it.
 pub(super) fn turn(mounting: Mounting, rotation: &Rotation) -> Table {
     let angles = rotation.angles();
@@ -146,7 +184,14 @@ fn keys(values: &Values) -> Table {
         Values::Accelerometer(axes) => {
             Table::from_iter([section("accelerometer", shape("bias_mps2", axes))])
         }
-        Values::Gyroscope { bias_radps } => {
+        Values::Gyroscope { axes, .. } => {
+            let axes = Axes {
+                bias: axes.bias.map(f64::to_degrees),
+                ..*axes
+            };
+            Table::from_iter([section("gyroscope", shape("bias_degps", &axes))])
+        }
+        Values::GyroscopeBias { bias_radps } => {
             let bias = list(bias_radps.map(f64::to_degrees));
             let keys = Table::from_iter([("bias_degps".to_owned(), bias)]);
             Table::from_iter([section("gyroscope", keys)])

@@ -10,18 +10,33 @@
 mod apply;
 mod entry;
 mod file;
+mod hands;
+mod order;
 mod session;
+mod words;
 
 use fcc_core::flight::Measurements;
 pub use fcc_sim::HandlingFault;
 use serde::{Deserialize, Serialize};
 
-pub use apply::{Applied, apply};
+pub use apply::{Applied, apply, not_calibrated};
 pub use entry::Entry;
 #[cfg(fuzzing)]
 pub use file::read_calibration;
 pub use file::{CalibrationFile, CalibrationFileError, LockedCalibrationFile};
 pub use session::{CalibrationSession, SessionError};
+pub use words::{beforehand, words};
+
+/// How much of a calibration is done.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Extent {
+    /// All of it.
+    #[default]
+    Whole,
+    /// Of a gyroscope the bias, of the mounting roll and pitch: what an aircraft
+    /// that cannot be turned allows.
+    Part,
+}
 
 /// What can be calibrated.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize, Serialize)]
@@ -29,21 +44,23 @@ pub use session::{CalibrationSession, SessionError};
 pub enum CalibrationKind {
     /// Bias, scale and misalignment, held still in twelve positions.
     Accelerometer,
-    /// The bias, left alone.
+    /// Bias, scale and misalignment, left alone and then turned between positions
+    /// at rest; in [part](Extent::Part) the bias.
     Gyroscope,
     /// Hard and soft iron, and how it is turned, turned through all directions.
     Magnetometer,
     /// The zero of the differential pressure, without wind.
     Airspeed,
-    /// How accelerometer and gyroscope are turned in the aircraft.
+    /// How accelerometer and gyroscope are turned in the aircraft; in
+    /// [part](Extent::Part) roll and pitch.
     Mounting,
 }
 
 impl CalibrationKind {
     /// All of them, in the order in which they are best done.
     pub const ALL: [Self; 5] = [
-        Self::Gyroscope,
         Self::Accelerometer,
+        Self::Gyroscope,
         Self::Mounting,
         Self::Magnetometer,
         Self::Airspeed,
@@ -57,26 +74,6 @@ impl CalibrationKind {
             Self::Magnetometer => "magnetometer",
             Self::Airspeed => "airspeed",
             Self::Mounting => "mounting",
-        }
-    }
-
-    /// What the error of such a calibration is in: of the mounting, which the
-    /// core has in rad, in degrees.
-    pub const fn unit(self) -> &'static str {
-        match self {
-            Self::Accelerometer => "m/s²",
-            Self::Gyroscope => "°/s",
-            Self::Magnetometer => "µT",
-            Self::Airspeed => "Pa",
-            Self::Mounting => "°",
-        }
-    }
-
-    /// A value in this unit, of one in the core's.
-    pub const fn in_unit(self, value: f64) -> f64 {
-        match self {
-            Self::Gyroscope | Self::Mounting => value.to_degrees(),
-            Self::Accelerometer | Self::Magnetometer | Self::Airspeed => value,
         }
     }
 

@@ -4,15 +4,17 @@ use std::path::PathBuf;
 
 use fcc_core::flight::Measurements;
 use fcc_core::flight::calibration::{
-    Axes, EarthField, GuidedCalibration, GuidedKind, MountingWay, Refusal,
+    Axes, EarthField, GuidedCalibration, GuidedKind, MountingWay, Refusal, Rotation,
 };
 use fcc_core::framework::{Reading, Sensor, Tick};
-use fcc_sim::{HandledSensors, HandlingFault, HandlingTask, SimConfig};
+use fcc_sim::HandlingFault;
 
 use super::entry::Circumstances;
-use super::{Applied, CalibrationFileError, CalibrationKind, Entry, apply};
-use crate::config::{AccelerometerSection, CalibrationSection, Config, RawSource};
-use crate::flight::{AssemblyError, line_sensor, uncalibrated};
+use super::hands::in_hands;
+use super::order::check_order;
+use super::{Applied, CalibrationFileError, CalibrationKind, Entry, Extent, apply};
+use crate::config::{BoardSensor, Config, RawSource};
+use crate::flight::{AssemblyError, PhoneHost, line_sensor, open_phone, uncalibrated};
 
 /// For so long the sensors may take to give something, s.
 const OPENING_S: f64 = 5.0;
@@ -63,6 +65,12 @@ pub enum SessionError {
     /// A sensor could not be opened.
     #[error(transparent)]
     Open(#[from] AssemblyError),
+    /// A gyroscope is turned without an accelerometer.
+    #[error(
+        "no readings of an accelerometer arrived, which tells how far the gyroscope is turned: \
+         calibrate its bias alone (--bias-only), or list an accelerometer"
+    )]
+    NoAccelerometer,
     /// Nothing arrived.
     #[error(
         "no readings of the {0} arrived: check its wiring, and that it is in the configuration"
@@ -91,7 +99,7 @@ impl Opened {
 /// actuator is opened.
 pub struct CalibrationSession {
     kind: CalibrationKind,
-    way: MountingWay,
+    extent: Extent,
     /// As it is in its file.
     given: Config,
     /// With what was found before.
@@ -119,10 +127,34 @@ impl CalibrationSession {
     pub fn open(
         given: &Config,
         kind: CalibrationKind,
-        way: MountingWay,
+        extent: Extent,
         place: Option<String>,
         fault: Option<HandlingFault>,
         unix_s: u64,
+    ) -> Result<Self, SessionError> {
+        Self::open_with(given, (kind, extent), (place, fault), unix_s, None)
+    }
+
+    /// The same on a phone, of which `phone` opens the sensors.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub fn open_on_phone(
+        given: &Config,
+        kind: CalibrationKind,
+        extent: Extent,
+        unix_s: u64,
+        phone: &mut dyn PhoneHost,
+    ) -> Result<Self, SessionError> {
+        Self::open_with(given, (kind, extent), (None, None), unix_s, Some(phone))
+    }
+
+    fn open_with(
+        given: &Config,
+        (kind, extent): (CalibrationKind, Extent),
+        (place, fault): (Option<String>, Option<HandlingFault>),
+        unix_s: u64,
+        mut phone: Option<&mut dyn PhoneHost>,
     ) -> Result<Self, SessionError> {
         let mut config = given.clone();
         let before = apply(&mut config, unix_s)
@@ -143,11 +175,13 @@ impl CalibrationSession {
         let mut length_s = None;
         let mut opened = Vec::new();
         for source in sources {
-            let sensor: Box<dyn Sensor<Measurements>> = if let Some(board) =
-                config.board_sensor_of(&source.place)
-            {
-                Box::new(uncalibrated(&board)?.0)
-            } else if let Some(handled) = in_hands(&config, &source, kind, fault) {
+            let board = config.board_sensor_of(&source.place);
+            let sensor: Box<dyn Sensor<Measurements>> = if let Some(board) = board {
+                match board {
+                    BoardSensor::Phone(section) => open_phone(section, phone.take())?.sensor,
+                    board => Box::new(uncalibrated(&board)?.0),
+                }
+            } else if let Some(handled) = in_hands(&config, &source, (kind, extent), fault) {
                 length_s = Some(handled.length_s());
                 Box::new(handled)
             } else if let (true, Some(section)) = (source.is_servo_board(), &config.servo_board) {
@@ -168,7 +202,7 @@ impl CalibrationSession {
         }
         Ok(Self {
             kind,
-            way,
+            extent,
             given: given.clone(),
             config,
             before,
@@ -247,6 +281,7 @@ impl CalibrationSession {
         let at = Circumstances {
             source: &source,
             given: &self.given,
+            before: &self.before.used,
             unix_s: self.unix_s,
             temperature_k: guided.temperature_k(),
             accelerometer: self.accelerometer,
@@ -268,20 +303,37 @@ impl CalibrationSession {
             let mut sources = sources.iter();
             sources.find(|source| source.place == force.place)
         });
-        if let Some(source) = source {
-            self.check_order(source)?;
+        let is_turned = (self.kind, self.extent) == (CalibrationKind::Gyroscope, Extent::Whole);
+        match source {
+            Some(source) => check_order(
+                self.kind,
+                self.extent,
+                source,
+                &self.before.used,
+                &self.given,
+            )?,
+            None if is_turned && self.since_s < OPENING_S => return Ok(()),
+            None if is_turned => return Err(SessionError::NoAccelerometer),
+            None => {}
         }
         let accelerometer = source.map(|source| Axes::from(&source.calibration.accelerometer));
         let kind = match self.kind {
             CalibrationKind::Accelerometer => GuidedKind::Accelerometer,
-            CalibrationKind::Gyroscope => GuidedKind::Gyroscope,
+            CalibrationKind::Gyroscope if is_turned => GuidedKind::Gyroscope {
+                accelerometer: accelerometer.unwrap_or_default(),
+                turn: self.turn_of_gyroscope(at),
+            },
+            CalibrationKind::Gyroscope => GuidedKind::GyroscopeBias,
             CalibrationKind::Airspeed => GuidedKind::Airspeed,
             CalibrationKind::Magnetometer => GuidedKind::Magnetometer {
                 earth: self.earth(),
                 accelerometer,
             },
             CalibrationKind::Mounting => GuidedKind::Mounting {
-                way: self.way,
+                way: match self.extent {
+                    Extent::Whole => MountingWay::LevelAndNoseUp,
+                    Extent::Part => MountingWay::LevelOnly,
+                },
                 accelerometer: accelerometer.unwrap_or_default(),
             },
         };
@@ -290,51 +342,13 @@ impl CalibrationSession {
         Ok(())
     }
 
-    /// Whether what this one builds on was found, or is given: both are found with
-    /// the accelerometer as it is calibrated and mounted.
-    fn check_order(&self, force: &RawSource) -> Result<(), SessionError> {
-        let needed: &[_] = match self.kind {
-            CalibrationKind::Magnetometer => {
-                &[CalibrationKind::Accelerometer, CalibrationKind::Mounting]
-            }
-            CalibrationKind::Mounting => &[CalibrationKind::Accelerometer],
-            _ => &[],
-        };
-        let given = force.calibration.accelerometer;
-        let usual = CalibrationSection::default().accelerometer;
-        let mounted = AccelerometerSection {
-            mounting: given.mounting,
-            rotation_deg: given.rotation_deg,
-            ..usual
-        };
-        let calibrated = AccelerometerSection {
-            mounting: usual.mounting,
-            rotation_deg: usual.rotation_deg,
-            delay_ms: usual.delay_ms,
-            ..given
-        };
-        for before in needed {
-            let is_given = match before {
-                CalibrationKind::Mounting => mounted != usual,
-                _ => calibrated != usual,
-            };
-            let mut used = self.before.used.iter();
-            let is_found = used.any(|of| of.kind == *before && of.place == force.place);
-            if !is_given && !is_found {
-                let disabled = if self.given.calibration.enabled {
-                    ""
-                } else {
-                    "; calibration.enabled is false, so nothing that was found is used"
-                };
-                return Err(SessionError::Order {
-                    kind: self.kind.name(),
-                    before: before.name(),
-                    place: force.place.clone(),
-                    disabled,
-                });
-            }
-        }
-        Ok(())
+    /// From the axes of a source's gyroscope to the body's, as far as it is known.
+    fn turn_of_gyroscope(&self, at: usize) -> Rotation {
+        let place = self.opened.get(at).map(|opened| &opened.place);
+        let mut sources = self.config.raw_sources().into_iter();
+        let source = sources.find(|source| Some(&source.place) == place);
+        let axes = source.map(|source| Axes::from(&source.calibration.gyroscope));
+        axes.unwrap_or_default().turn()
     }
 
     /// What is known of the earth's field: the configured one, or that of the
@@ -367,24 +381,4 @@ impl CalibrationSession {
         }
         together
     }
-}
-
-/// The sensors of the built-in aircraft in a simulated person's hands.
-fn in_hands(
-    config: &Config,
-    source: &RawSource,
-    kind: CalibrationKind,
-    fault: Option<HandlingFault>,
-) -> Option<HandledSensors> {
-    let section = config.built_in.as_ref()?;
-    if !source.is_built_in() {
-        return None;
-    }
-    let task = match kind {
-        CalibrationKind::Accelerometer => HandlingTask::Places,
-        CalibrationKind::Gyroscope | CalibrationKind::Airspeed => HandlingTask::LeaveAlone,
-        CalibrationKind::Magnetometer => HandlingTask::Tumble,
-        CalibrationKind::Mounting => HandlingTask::LevelAndNoseUp,
-    };
-    HandledSensors::new(&SimConfig::from(section), task, fault)
 }

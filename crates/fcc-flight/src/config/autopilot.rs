@@ -5,6 +5,7 @@ use std::time::Duration;
 use fcc_core::flight::control::{AirspeedConfig, AltitudeConfig, Envelope, HeadingConfig};
 use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::navigation::NavigationConfig;
+use fcc_core::flight::route::RunwayConfig;
 use fcc_core::flight::{AutopilotConfig, Scale};
 use fcc_core::units::{FOOT_M, GRAVITY_MPS2, KNOT_MPS};
 use serde::{Deserialize, Serialize};
@@ -38,6 +39,8 @@ pub struct AutopilotSection {
     pub altitude: AltitudeSection,
     /// Airspeed, throttle.
     pub airspeed: AirspeedSection,
+    /// Take-off and landing.
+    pub runway: RunwaySection,
 }
 
 impl Default for AutopilotSection {
@@ -54,6 +57,7 @@ impl Default for AutopilotSection {
             heading: HeadingSection::from(&core.heading),
             altitude: AltitudeSection::from(&core.altitude),
             airspeed: AirspeedSection::from(&core.airspeed),
+            runway: RunwaySection::from(&core.route.runway),
         }
     }
 }
@@ -281,6 +285,48 @@ section! {
         pitch_rate_integral_gain => pitch_rate_integral_gain * SI,
         /// Elevator for the load of a turn.
         elevator_per_g => elevator_per_g * SI,
+    }
+}
+
+section! {
+    /// `[autopilot.runway]`: speeds and limits of take-off and landing.
+    RunwaySection for RunwayConfig {
+        /// Indicated airspeed at which the nose is raised.
+        rotate_kt => rotate_mps * KNOT_MPS,
+        /// A take-off that has not reached it within this way brakes.
+        longest_roll_m => longest_roll_m * SI,
+        /// Indicated airspeed of the climb: below it, its pitch is reduced.
+        climb_kt => climb_mps * KNOT_MPS,
+        /// Pitch of the climb, unless the plan gives one.
+        climb_pitch_deg => climb_pitch_rad * DEGREE_RAD,
+        /// Indicated airspeed of the approach, to which half of the head wind is added.
+        approach_kt => approach_mps * KNOT_MPS,
+        /// Angle of the glide path.
+        glide_path_deg => glide_path_rad * DEGREE_RAD,
+        /// In the flare the sink rate is the height over this.
+        flare_s => flare_s * SI,
+        /// The sink rate in which the flare ends.
+        touchdown_fpm => touchdown_mps * FOOT_PER_MINUTE_MPS,
+        /// Flaps of the take-off, 0 to 1.
+        takeoff_flaps => takeoff_flaps * SI,
+        /// Flaps of the landing, 0 to 1.
+        landing_flaps => landing_flaps * SI,
+        /// Brake of the roll-out, 0 to 1.
+        brake => brake * SI,
+        /// The radius of a turn with the nose wheel fully deflected.
+        steering_radius_m => steering_radius_m * SI,
+        /// What the range finder reads on the wheels.
+        height_on_wheels_m => height_on_wheels_m * SI,
+        /// Below this height a landing outside the following limits is given up.
+        decision_height_ft => decision_height_m * FOOT_M,
+        /// Off the centre line.
+        most_cross_track_m => most_cross_track_m * SI,
+        /// Off the glide path.
+        most_off_path_m => most_off_path_m * SI,
+        /// Off the airspeed of the approach.
+        most_off_airspeed_kt => most_off_airspeed_mps * KNOT_MPS,
+        /// Bank.
+        most_bank_deg => most_bank_rad * DEGREE_RAD,
     }
 }
 

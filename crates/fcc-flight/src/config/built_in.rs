@@ -14,12 +14,20 @@ use super::{CalibrationSection, NavigationMethod};
 pub struct BuiltInSection {
     /// At the start.
     pub altitude_ft: f64,
-    /// The level ground, above mean sea level: the flight ends on it.
+    /// The level ground, above mean sea level: a flight ends on it, unless it lands.
     pub ground_ft: f64,
+    /// Whether it begins on the ground, on its wheels; so does a plan with a take-off.
+    pub on_runway: bool,
     /// Indicated, at the start.
     pub airspeed_kt: f64,
     /// At the start.
     pub heading_deg: f64,
+    /// Where it begins; none: where the plan does, or on the equator.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub latitude_deg: Option<f64>,
+    /// Likewise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub longitude_deg: Option<f64>,
     /// Where the wind comes from.
     pub wind_from_deg: f64,
     /// Steady wind.
@@ -86,8 +94,11 @@ impl Default for BuiltInSection {
         Self {
             altitude_ft: 3_000.0,
             ground_ft: 0.0,
+            on_runway: false,
             airspeed_kt: 100.0,
             heading_deg: 0.0,
+            latitude_deg: None,
+            longitude_deg: None,
             wind_from_deg: 0.0,
             wind_kt: 0.0,
             gusts: GustsChoice::None,
@@ -155,8 +166,11 @@ impl From<&BuiltInSection> for SimConfig {
         Self {
             altitude_m: section.altitude_ft * FOOT_M,
             ground_m: section.ground_ft * FOOT_M,
+            on_runway: section.on_runway,
             indicated_airspeed_mps: section.airspeed_kt * KNOT_MPS,
             heading_rad: section.heading_deg.to_radians(),
+            latitude_rad: section.latitude_deg.unwrap_or(0.0).to_radians(),
+            longitude_rad: section.longitude_deg.unwrap_or(0.0).to_radians(),
             wind: Wind {
                 from_rad: section.wind_from_deg.to_radians(),
                 speed_mps: section.wind_kt * KNOT_MPS,

@@ -15,6 +15,8 @@ const CLIMB_FT: f64 = 150.0;
 pub enum GuidanceSection {
     /// Hold the captured values.
     Hold,
+    /// The flight plan of `[plan]`.
+    Plan,
     /// The timed pattern of the thesis.
     TimedPattern {
         /// How long to hold the captured values.
@@ -44,6 +46,7 @@ struct Keys {
 #[serde(rename_all = "kebab-case")]
 enum Mode {
     Hold,
+    Plan,
     TimedPattern,
 }
 
@@ -53,11 +56,12 @@ impl TryFrom<Keys> for GuidanceSection {
     fn try_from(keys: Keys) -> Result<Self, Self::Error> {
         let patterns = [keys.hold_s, keys.leg_s, keys.turn_deg, keys.climb_ft];
         match keys.mode {
-            Mode::Hold if patterns.iter().any(Option::is_some) => Err(
-                "a hold has no hold_s, leg_s, turn_deg or climb_ft: take them out, or choose \
+            Mode::Hold | Mode::Plan if patterns.iter().any(Option::is_some) => Err(
+                "a hold and a plan have no hold_s, leg_s, turn_deg or climb_ft: take them out, or choose \
                  mode = \"timed-pattern\"",
             ),
             Mode::Hold => Ok(Self::Hold),
+            Mode::Plan => Ok(Self::Plan),
             Mode::TimedPattern => Ok(Self::TimedPattern {
                 hold_s: keys.hold_s.unwrap_or(HOLD_S),
                 leg_s: keys.leg_s.unwrap_or(LEG_S),
@@ -77,7 +81,7 @@ impl GuidanceSection {
     /// How long an aircraft is flown by default, s from engaging on.
     pub fn default_length_s(&self) -> f64 {
         match self {
-            Self::Hold => DEFAULT_HOLD_S,
+            Self::Hold | Self::Plan => DEFAULT_HOLD_S,
             Self::TimedPattern { hold_s, leg_s, .. } => hold_s + DEFAULT_LEGS * leg_s,
         }
     }
@@ -98,6 +102,7 @@ impl From<&GuidanceSection> for GuidanceConfig {
     fn from(section: &GuidanceSection) -> Self {
         match *section {
             GuidanceSection::Hold => Self::Hold,
+            GuidanceSection::Plan => Self::Plan,
             GuidanceSection::TimedPattern {
                 hold_s,
                 leg_s,

@@ -14,6 +14,7 @@ mod budget;
 mod built_in;
 mod calibration;
 mod calibration_file;
+mod contingency;
 mod cpu;
 mod devices;
 mod early_wake;
@@ -26,6 +27,7 @@ mod lines;
 mod navigation;
 mod phone;
 mod places;
+mod plan;
 mod ranges;
 mod raw_readings;
 mod read;
@@ -60,6 +62,7 @@ pub use budget::{BudgetSection, OverloadSection, WatchdogSection};
 pub use built_in::{BuiltInSection, GustsChoice, RawSensorsChoice};
 pub use calibration::{AccelerometerSection, CalibrationSection};
 pub use calibration_file::{CalibrationFileSection, RawSource};
+pub use contingency::{ActionChoice, ContingencySection};
 pub use cpu::CpuChoice;
 pub use devices::{ActuatorEntry, NoKeys, SensorEntry};
 pub use early_wake::EarlyWakeChoice;
@@ -70,6 +73,7 @@ pub use guidance::GuidanceSection;
 pub use lines::{GnssSerialSection, LineSensor, ProtocolChoice, RcReceiverSection};
 pub use navigation::{NavigationMethod, NavigationSection};
 pub use phone::PhoneSection;
+pub use plan::{LawChoice, PlanSection};
 pub use recording::RecordingSection;
 pub use restart::{RestartMode, RestartSection};
 pub use rights::RightsSection;
@@ -118,6 +122,10 @@ pub struct Config {
     pub navigation: NavigationSection,
     /// The mode after engaging.
     pub guidance: GuidanceSection,
+    /// The flight plan.
+    pub plan: PlanSection,
+    /// What the autopilot does by itself when a flight cannot go on as commanded.
+    pub contingency: ContingencySection,
     /// The altimeter setting.
     pub altimeter: AltimeterSection,
     /// Gains and limits.
@@ -149,10 +157,11 @@ pub struct Config {
 /// none.
 fn checked(read: read::Read<'_>, file: &str) -> Result<Config, ConfigError> {
     let read::Read {
-        config,
+        mut config,
         mut problems,
         places,
     } = read;
+    problems.extend(config.plan.content_problems());
     if problems.len() < read::MOST_PROBLEMS {
         problems.extend(ranges::check(&config, &places, &problems));
     }
@@ -189,7 +198,6 @@ const MOST_BYTES: u64 = 1_000_000;
 /// That a flight moves nothing is permitted, and said.
 pub(crate) const NO_ACTUATOR: &str =
     "there is no actuator: engaging moves nothing (actuator is an empty list)";
-
 /// How long the thread that reads the loop's messages may be delayed before
 /// records are lost, at 500 Hz or less.
 const FETCHED_WITHIN_S: f64 = 8.0;
@@ -346,6 +354,9 @@ impl Config {
             level_and_trim: Duration::from_secs_f64(self.release.level_and_trim_s),
             failsafe: (&self.failsafe).into(),
             altimeter: (&self.altimeter).into(),
+            plan: self.plan.route(),
+            route: self.plan.route_config(&self.autopilot.runway),
+            contingency: (&self.contingency).into(),
             raw_navigation: self.navigation.to_core(self.simulated_field_ut()),
             ..self.autopilot.to_core(
                 &self.guidance,

@@ -130,7 +130,7 @@ pub(super) const RANGES: &[(&str, f64, f64)] = &[
 
 impl NavigationSection {
     /// Whether raw readings go into the filter, which waits for delayed ones.
-    pub(super) fn is_by_filter(&self) -> bool {
+    pub(crate) fn is_by_filter(&self) -> bool {
         self.method == NavigationMethod::Kalman
     }
 

@@ -4,8 +4,8 @@ use fcc_core::flight::control::Envelope;
 
 use super::autopilot::EnvelopeSection;
 use super::{
-    ActuatorEntry, AutopilotSection, Config, NavigationMethod, SensorEntry, board, lines,
-    navigation, phone, raw_readings, servo_board, servos, shared_devices,
+    ActuatorEntry, AutopilotSection, Config, GuidanceSection, NavigationMethod, SensorEntry, board,
+    lines, navigation, phone, raw_readings, servo_board, servos, shared_devices,
 };
 
 /// Of `SCHED_FIFO` (sched(7)).
@@ -63,6 +63,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
                 .to_owned(),
         );
     }
+    plan(config, report);
     paths(config, report);
     connections(config, report);
     rights(config, report);
@@ -77,12 +78,22 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     shared_devices::check(config, report);
 }
 
+/// A plan that is to be flown is given.
+fn plan(config: &Config, report: &mut impl FnMut(&[&str], String)) {
+    let is_given = config.plan.file.is_some() || config.plan.content.is_some();
+    if matches!(config.guidance, GuidanceSection::Plan) && !is_given {
+        let message = "flies the plan of plan.file: give it, or choose another mode".to_owned();
+        report(&["guidance.mode", "plan.file"], message);
+    }
+}
+
 /// No file of Unix has a NUL in its name.
 fn paths(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     let state_file = config.restart.state_file.as_deref();
     let calibration_file = config.calibration.file.as_deref();
     let paths = [
         ("calibration.file", calibration_file),
+        ("plan.file", config.plan.file.as_deref()),
         ("recording.folder", Some(config.recording.folder.as_path())),
         ("restart.state_file", state_file),
     ];

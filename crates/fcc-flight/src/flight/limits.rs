@@ -19,18 +19,25 @@ pub fn setpoint_limits(autopilot: &AutopilotConfig) -> PlantLimits {
                  the configuration, or give an altitude",
             ),
         ),
+        (
+            "plan_item",
+            autopilot
+                .plan
+                .map(|plan| 0.0..=plan.steps.len() as f64)
+                .ok_or("there is no plan: give plan.file in the configuration"),
+        ),
     ]
 }
 
 /// The altitudes above mean sea level that may be commanded, m: none below the
 /// floor and its margin, to a hundredth, as a message gives them.
-pub fn altitudes_m(autopilot: &AutopilotConfig) -> RangeInclusive<f64> {
+fn altitudes_m(autopilot: &AutopilotConfig) -> RangeInclusive<f64> {
     above(autopilot, 0.0)
 }
 
 /// The heights above the field that may be commanded, m; none if its elevation is
 /// not configured.
-pub fn heights_m(autopilot: &AutopilotConfig) -> Option<RangeInclusive<f64>> {
+fn heights_m(autopilot: &AutopilotConfig) -> Option<RangeInclusive<f64>> {
     let elevation_m = autopilot.altimeter.field_elevation_m?;
     Some(above(autopilot, elevation_m))
 }

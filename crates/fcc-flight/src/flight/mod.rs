@@ -50,7 +50,7 @@ pub use flapping::Flapping;
 pub use fly::{FlyError, fly};
 pub use ground::Impact;
 pub use host::Host;
-pub use limits::{altitudes_m, heights_m, setpoint_limits};
+pub use limits::setpoint_limits;
 pub(crate) use lines::line_sensor;
 pub use observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 #[cfg(feature = "live")]
@@ -58,6 +58,7 @@ pub use other_users::{OtherUserError, command_another_users, command_of};
 #[cfg(all(fuzzing, feature = "live"))]
 pub use other_users::{answer_as_received, line_of_parts};
 pub use outcome::{Conclusion, EventEntry, Outcome, RecordingOutcome};
+pub(crate) use phone::open_phone;
 pub use phone::{OpenPhone, PhoneHost};
 pub use pilot::Pilot;
 pub use plan::{Length, Pace, Plan};

@@ -10,6 +10,8 @@ use super::plan::Length;
 pub(super) enum Over {
     /// Its time has passed.
     Time,
+    /// Its plan has landed.
+    Landed,
     /// The loop entered failsafe.
     Failsafe,
     /// Engaging was refused.
@@ -25,6 +27,8 @@ pub(super) struct Monitor {
     engaged_at_s: Option<f64>,
     failed: bool,
     refused: bool,
+    /// Whether its plan has landed.
+    pub(super) landed: bool,
 }
 
 impl Monitor {
@@ -81,7 +85,7 @@ impl Monitor {
         let time_is_up = match length {
             Length::Open => return None,
             Length::Ticks(ticks) => return (self.at.tick >= ticks).then_some(Over::Time),
-            Length::Engaged(seconds) => self
+            Length::Engaged(seconds) | Length::Landed(seconds) => self
                 .engaged_at_s
                 .is_some_and(|at_s| time_s - at_s >= seconds - ROUNDING_S),
             Length::Whole(seconds) => time_s >= seconds - ROUNDING_S,
@@ -90,6 +94,8 @@ impl Monitor {
             Some(Over::Refused)
         } else if self.failed {
             Some(Over::Failsafe)
+        } else if self.landed && matches!(length, Length::Landed(_)) {
+            Some(Over::Landed)
         } else {
             time_is_up.then_some(Over::Time)
         }

@@ -1,6 +1,7 @@
 //! All observers of a flight.
 
-use fcc_core::flight::{Autopilot, AutopilotCommand};
+use fcc_core::flight::guidance::Mode;
+use fcc_core::flight::{Autopilot, AutopilotCommand, ITEM_REACHED};
 use fcc_core::framework::{EventKind, Message};
 use fcc_runtime::CommandSender;
 use fcc_telemetry::{FlightMessage, describe_event};
@@ -17,6 +18,8 @@ pub(super) struct Observers {
     all: Vec<Box<dyn Observer<Autopilot>>>,
     names: Names,
     pub(super) monitor: Monitor,
+    /// Of the last record.
+    mode: Mode,
     /// Why engaging was refused last.
     pub(super) refusal: Option<String>,
     reports: Reports,
@@ -28,6 +31,7 @@ impl Observers {
             all,
             names,
             monitor: Monitor::default(),
+            mode: Mode::None,
             refusal: None,
             reports: Reports::default(),
         }
@@ -49,11 +53,15 @@ impl Observers {
         let at = self.monitor.take(message);
         match message {
             Message::Tick(record) => {
+                self.mode = record.setpoints.guidance.mode;
                 for observer in &mut self.all {
                     observer.record(record, &at);
                 }
             }
             Message::Event(event) => {
+                // A landing's end is reached when the aircraft stands.
+                self.monitor.landed |= self.mode == Mode::Land
+                    && matches!(event.kind, EventKind::Noticed(notice) if notice.kind == ITEM_REACHED);
                 let words =
                     describe_event::<Autopilot>(event, &self.names.sensors, &self.names.actuators);
                 for observer in &mut self.all {

@@ -19,6 +19,9 @@ pub struct Outcome {
     pub timing: TimingReport,
     /// The score of the pattern; none without a pattern.
     pub flight: Option<FlightScore>,
+    /// Why a pattern has no score.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub not_scored: Option<String>,
     /// The basis of the score.
     pub scored_by: ScoredBy,
     /// The events, in order.
@@ -123,6 +126,7 @@ impl Outcome {
             .with_cpu_time(report.cpu_time.as_secs_f64())
             .with_spin_time(report.timing.spun_s),
             flight: None,
+            not_scored: None,
             scored_by: ScoredBy::Measurement,
             events: Vec::new(),
             ending: report.ending.to_string(),
@@ -171,6 +175,7 @@ impl Outcome {
         self.ending = match (interrupted_by, over) {
             (Some(by), _) => format!("interrupted by {by}"),
             (None, Some(Over::Time)) => "the time to fly is over".to_owned(),
+            (None, Some(Over::Landed)) => "the plan has landed".to_owned(),
             (None, Some(Over::Failsafe)) => {
                 "it entered failsafe, which ends a flight of a given length".to_owned()
             }

@@ -32,17 +32,24 @@ pub struct OpenPhone {
 /// A sensor, and the devices that it is made of.
 pub(super) type WatchedSensor = (Box<dyn Sensor<Measurements>>, Vec<WatchedDevice>);
 
+/// The phone's sensors, uncalibrated.
+pub(crate) fn open_phone(
+    section: &PhoneSection,
+    host: Option<&mut dyn PhoneHost>,
+) -> Result<OpenPhone, AssemblyError> {
+    let host = host.ok_or(AssemblyError::NoPhone)?;
+    host.open(section).map_err(|source| AssemblyError::Device {
+        name: "phone".to_owned(),
+        source,
+    })
+}
+
 /// The phone's sensors, calibrated.
 pub(super) fn phone_sensor(
     section: &PhoneSection,
     host: Option<&mut dyn PhoneHost>,
 ) -> Result<WatchedSensor, AssemblyError> {
-    let host = host.ok_or(AssemblyError::NoPhone)?;
-    let opened = host.open(section);
-    let opened = opened.map_err(|source| AssemblyError::Device {
-        name: "phone".to_owned(),
-        source,
-    })?;
+    let opened = open_phone(section, host)?;
     let sensor: Box<dyn Sensor<Measurements>> = match section.calibration.to_core() {
         Some(calibration) => Box::new(Calibrated::new(opened.sensor, &calibration)),
         None => opened.sensor,

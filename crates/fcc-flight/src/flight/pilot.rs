@@ -157,6 +157,10 @@ impl Controller for Pilot {
         self.autopilot.outputs_are_valid(outputs)
     }
 
+    fn observe_sensor(&mut self, sensor: u8, measurements: &Measurements) {
+        self.autopilot.observe_sensor(sensor, measurements);
+    }
+
     fn plausible(&self, sensor: u8, measurements: &Measurements) -> Flags {
         self.autopilot.plausible(sensor, measurements)
     }

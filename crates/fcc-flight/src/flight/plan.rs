@@ -17,6 +17,8 @@ pub enum Length {
     Open,
     /// This many seconds after the first engagement, standby after it included.
     Engaged(f64),
+    /// When its plan has landed, or so many seconds after the first engagement.
+    Landed(f64),
     /// This many seconds after the first tick.
     Whole(f64),
     /// After this many ticks, missed ones included, whatever happens. In lockstep

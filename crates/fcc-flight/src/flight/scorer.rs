@@ -21,7 +21,7 @@ impl Scorer {
     pub(super) fn new(guidance: &GuidanceConfig, truth: Option<TruthReceiver>) -> Self {
         let pattern = match guidance {
             GuidanceConfig::TimedPattern(pattern) => Some(PatternScorer::new(*pattern)),
-            GuidanceConfig::Hold => None,
+            GuidanceConfig::Hold | GuidanceConfig::Plan => None,
         };
         Self { pattern, truth }
     }
@@ -48,8 +48,19 @@ impl Observer<Autopilot> for Scorer {
             Some(_) => ScoredBy::Truth,
             None => ScoredBy::Measurement,
         };
-        // A flight with an incomplete leg has no score.
-        outcome.flight = self.pattern.as_ref().and_then(PatternScorer::score);
+        let Some((score, failed)) = self.pattern.as_ref().map(PatternScorer::result) else {
+            return;
+        };
+        outcome.not_scored = match &failed {
+            Some(error) => Some(error.to_string()),
+            None if score.legs.is_empty() => Some(
+                "no leg of the timed pattern was flown to its end; commanded set points end it"
+                    .to_owned(),
+            ),
+            None => None,
+        };
+        // A flight with a leg that could not be scored has no score.
+        outcome.flight = failed.is_none().then_some(score);
     }
 }
 

@@ -229,7 +229,7 @@ impl World {
             },
             aileron: if joystick { aileron } else { hands_off.aileron },
             rudder: if joystick { rudder } else { hands_off.rudder },
-            elevator_trim: None,
+            ..Surfaces::IDLE
         }
     }
 

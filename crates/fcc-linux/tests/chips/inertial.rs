@@ -34,9 +34,13 @@ pub(crate) fn packet(force: [i16; 3], rates: [i16; 3]) -> [u8; 16] {
 
 pub(crate) fn fill(board: &Board, packets: &[[u8; 16]]) {
     let bytes = packets.concat();
-    board.put(0x2D, &[0x04]);
-    board.put(0x2E, &(bytes.len() as u16).to_be_bytes());
-    board.state().queues.insert(0x30, bytes.into());
+    let [high, low] = (bytes.len() as u16).to_be_bytes();
+    // At once: a thread that reads meanwhile would find a count without data.
+    let mut state = board.state();
+    state
+        .registers
+        .extend([(0x2D, 0x04), (0x2E, high), (0x2F, low)]);
+    state.queues.insert(0x30, bytes.into());
 }
 
 /// At ±16 g a g has 2,048 LSB, at ±2000 °/s a °/s 16.4 (DS-000347, tables 1 and 2).

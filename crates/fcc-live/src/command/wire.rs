@@ -7,6 +7,8 @@ use super::{COMMANDS_VERSION, Command, InvalidCommand, OutsideLimits, Verdict};
 const MOST_SETPOINTS: usize = 8;
 /// The longest name of one, in bytes.
 const NAME_BYTES: usize = 32;
+/// The longest reason, in bytes: all engage inhibits together are shorter.
+const REASON_BYTES: usize = 952;
 
 /// A command in shared memory.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +43,7 @@ pub(crate) struct Answer {
     /// The name of the set point.
     pub(crate) name: Text<NAME_BYTES>,
     /// The reason for refusing it.
-    pub(crate) text: Text<224>,
+    pub(crate) text: Text<REASON_BYTES>,
 }
 
 const ENGAGE: u32 = 0;
@@ -202,34 +204,33 @@ mod tests {
 
     use super::*;
 
+    /// The part of `docs/telemetry.md` about commands: programs in other languages rely on it.
+    fn documented() -> &'static str {
+        let document = include_str!("../../../../docs/telemetry.md");
+        document.split_once("### Commands").unwrap().1
+    }
+
     #[test]
     fn the_layouts_are_as_documented() {
-        assert_eq!(
-            (size_of::<CommandRequest>(), size_of::<Answer>()),
-            (328, 296)
-        );
-        assert_eq!(
-            [
-                offset_of!(CommandRequest, version),
-                offset_of!(CommandRequest, code),
-                offset_of!(CommandRequest, names),
-                offset_of!(CommandRequest, values),
-            ],
-            [0, 4, 8, 264]
-        );
-        assert_eq!(
-            [
-                offset_of!(Answer, code),
-                offset_of!(Answer, version),
-                offset_of!(Answer, tick),
-                offset_of!(Answer, value),
-                offset_of!(Answer, least),
-                offset_of!(Answer, most),
-                offset_of!(Answer, name),
-                offset_of!(Answer, text),
-            ],
-            [0, 4, 8, 16, 24, 32, 40, 72]
-        );
+        assert!(documented().contains(&format!("command/v{COMMANDS_VERSION}`")));
+        macro_rules! rows {
+            ($of:ty; $($field:ident: $kind:literal)+) => {
+                [
+                    $(format!(
+                        "\n| {} | `{}` | {} | ", offset_of!($of, $field), stringify!($field), $kind
+                    ),)+
+                    format!("\n| {} | | | end |", size_of::<$of>()),
+                ]
+            };
+        }
+        let request = rows!(CommandRequest;
+            version: "u32" code: "u32" names: "char[32][8]" values: "f64[8]");
+        let answer = rows!(Answer;
+            code: "u32" version: "u32" tick: "u64" value: "f64" least: "f64" most: "f64"
+            name: "char[32]" text: "char[952]");
+        for row in request.iter().chain(&answer) {
+            assert!(documented().contains(row), "docs/telemetry.md lacks {row}");
+        }
     }
 
     #[test]
@@ -265,7 +266,7 @@ mod tests {
         request.version = 1;
         let words = request.command().unwrap_err();
         assert!(
-            words.contains("version 2") && words.contains("version 1"),
+            words.contains("version 3") && words.contains("version 1"),
             "{words}"
         );
     }

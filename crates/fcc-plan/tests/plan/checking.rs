@@ -19,6 +19,8 @@ fn conditions(wind_kt: f64) -> Conditions {
         climb_mps: 3.5,
         descent_mps: 5.0,
         loiter_radius_m: 1_000.0,
+        final_m: 1_000.0,
+        fence_margin_m: Some(30.0),
     }
 }
 
@@ -201,5 +203,48 @@ proptest! {
                 prop_assert!(!problem.message.contains("NaN"), "{}", problem);
             }
         }
+    }
+}
+
+/// Landing to the south: 111,412 m for a degree of latitude at 60° (WGS-84).
+#[test]
+fn a_landing_needs_its_last_leg_and_is_the_end() {
+    let land = |latitude_deg: f64| Item::Land {
+        place: place(latitude_deg, 8.2),
+        altitude: sea_level(950.0),
+        abort_altitude_m: None,
+    };
+    let mut landing = plan(8.0);
+    landing.items.push(land(60.0 - 1.2 / 60.0));
+    assert_eq!(check(&landing, &conditions(0.0)), Ok(()));
+    // Straight on for half a minute of latitude.
+    *landing.items.last_mut().unwrap() = land(60.0 - 0.5 / 60.0);
+    let problems = said(&landing, 0.0);
+    let straight = "item 4: approach: the leg to the landing is straight for 928 m";
+    assert!(problems.contains(straight), "{problems}");
+    *landing.items.last_mut().unwrap() = land(60.0 - 1.2 / 60.0);
+    landing.items.push(waypoint(59.9, 8.2, 1_000.0));
+    let problems = said(&landing, 0.0);
+    assert!(
+        problems.contains("item 5 is behind a landing"),
+        "{problems}"
+    );
+}
+
+/// 30 m above home are needed.
+#[test]
+fn a_take_off_climbs_before_it_turns() {
+    let mut low = plan(8.0);
+    for (altitude_m, is_refused) in [(1_029.0, true), (1_031.0, false)] {
+        let takeoff = Item::Takeoff {
+            place: Some(place(60.05, 8.0)),
+            altitude: sea_level(altitude_m),
+            pitch_deg: None,
+        };
+        low.items.insert(0, takeoff);
+        let problems = check(&low, &conditions(0.0)).err().unwrap_or_default();
+        let of_it = problems.iter().any(|problem| problem.item == Some(1));
+        assert_eq!(of_it, is_refused, "{problems:?}");
+        low.items.remove(0);
     }
 }

@@ -3,6 +3,7 @@
 
 mod any_plan;
 mod checking;
+mod flown;
 mod geometry;
 mod reading;
 mod refusals;

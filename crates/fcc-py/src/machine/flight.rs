@@ -13,7 +13,7 @@ use pyo3::types::PyString;
 
 use super::Lockstep;
 use crate::arguments::within;
-use crate::commanded::Commanded;
+use crate::commanded::{Given, commands};
 use crate::config::{configuration, refused};
 use crate::values::{
     PyEstimate, PyMeasurements, PySetpoints, PySurfaces, Values, checked, with_plant,
@@ -115,28 +115,12 @@ machine_class! {
 
     /// Commands another airspeed (m/s), heading (rad) or altitude (m): above sea
     /// level by the altimeter setting, or a pressure altitude, or a height above
-    /// the configured field; ends a pattern. An altimeter setting (Pa) ends none.
-    #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None,
-                        pressure_altitude_m = None, height_m = None,
-                        altimeter_setting_pa = None))]
-    fn command(
-        &self,
-        airspeed_mps: Option<f64>,
-        heading_rad: Option<f64>,
-        altitude_m: Option<f64>,
-        pressure_altitude_m: Option<f64>,
-        height_m: Option<f64>,
-        altimeter_setting_pa: Option<f64>,
-    ) -> PyResult<()> {
-        let given = Commanded {
-            airspeed_mps,
-            heading_rad,
-            altitude_m,
-            pressure_altitude_m,
-            height_m,
-            altimeter_setting_pa,
-        };
-        for command in given.checked(&self.config)? {
+    /// the configured field; ends a pattern or a plan. An altimeter setting (Pa) and a
+    /// heartbeat (s) end none. Of a plan: `plan_item` (0: where it was left), `pause` and
+    /// `return_home` (1), and the three of `go_to_latitude_rad`.
+    #[pyo3(signature = (**setpoints))]
+    fn command(&self, setpoints: Option<Given>) -> PyResult<()> {
+        for command in commands(setpoints, &self.config)? {
             self.lockstep().send(LoopCommand::Controller(command))?;
         }
         Ok(())
@@ -171,7 +155,7 @@ fn surfaces(readback: &Bound<'_, PyAny>) -> PyResult<Surfaces> {
         elevator,
         aileron,
         rudder,
-        elevator_trim: None,
+        ..Surfaces::IDLE
     })
 }
 

@@ -120,6 +120,24 @@ pub(crate) fn navigate<'py>(
     )
 }
 
+/// The samples of a gyroscope and an accelerometer, each as a tuple of times and
+/// values, in the order of their times.
+pub(crate) fn inertial_samples<'py>(
+    gyroscope: Bound<'py, PyAny>,
+    accelerometer: Bound<'py, PyAny>,
+) -> PyResult<Vec<(Time, Observation)>> {
+    let given = Given {
+        gyroscope: Some(gyroscope),
+        accelerometer: Some(accelerometer),
+        ..Given::default()
+    };
+    let sources = Sources::read(&given, None, &Mounting::read(None)?)?;
+    let samples = sources.events.into_iter();
+    Ok(samples
+        .map(|event| (event.arrived, event.observation))
+        .collect())
+}
+
 enum Method {
     Kalman(Box<KalmanNavigation>),
     Thesis(ThesisNavigation),

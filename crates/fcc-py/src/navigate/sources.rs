@@ -44,6 +44,7 @@ const KINDS: [Kind; 8] = [
 ];
 
 /// What was given, in the order of `KINDS`.
+#[derive(Default)]
 pub(super) struct Given<'py> {
     pub(super) gyroscope: Option<Bound<'py, PyAny>>,
     pub(super) accelerometer: Option<Bound<'py, PyAny>>,

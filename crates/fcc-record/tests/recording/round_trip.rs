@@ -1,7 +1,7 @@
 //! What is recorded is read back bit for bit.
 
 use fcc_core::flight::guidance::{Mode, Progress, Targets};
-use fcc_core::flight::{AltitudeReference, AutopilotCommand, Resume, Surfaces};
+use fcc_core::flight::{AltitudeReference, AutopilotCommand, Position, Resume, Surfaces};
 use fcc_core::framework::{
     ActuatorFault, Cause, EventKind, Flags, LoopCommand, Message, Notice, SensorFault, Stage,
     State, Time,
@@ -31,7 +31,7 @@ const RESUME: Resume = Resume {
         elevator: -0.1,
         aileron: 1e-300,
         rudder: 0.3,
-        elevator_trim: None,
+        ..Surfaces::IDLE
     },
     altimeter_setting_pa: Some(102_000.0),
     altitude_reference: AltitudeReference::Field,
@@ -88,6 +88,15 @@ fn commands() -> impl Iterator<Item = LoopCommand<AutopilotCommand>> {
         LoopCommand::Controller(AutopilotCommand::PressureAltitude(1_000.0)),
         LoopCommand::Controller(AutopilotCommand::Height(-3.0)),
         LoopCommand::Controller(AutopilotCommand::AltimeterSetting(99_999.9)),
+        LoopCommand::Controller(AutopilotCommand::Plan(1_000)),
+        LoopCommand::Controller(AutopilotCommand::Pause),
+        LoopCommand::Controller(AutopilotCommand::GoTo(Position {
+            latitude_rad: -0.5,
+            longitude_rad: 3.1,
+            altitude_m: 900.0,
+        })),
+        LoopCommand::Controller(AutopilotCommand::ReturnHome),
+        LoopCommand::Controller(AutopilotCommand::GoAround),
         LoopCommand::Controller(AutopilotCommand::Resume(RESUME)),
         LoopCommand::Controller(AutopilotCommand::Resume(Resume {
             altimeter_setting_pa: None,
@@ -146,6 +155,7 @@ fn every_event_is_restored() {
             kind: u8::MAX,
             lasted_ns: u64::MAX,
             amount_permille: u16::MAX,
+            item: u16::MAX,
         }),
         EventKind::ReleasedAtOnce {
             conditions: Flags::bit(6),

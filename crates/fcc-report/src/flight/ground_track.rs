@@ -1,12 +1,13 @@
 //! The ground track, from measured positions.
 
-use super::track::TrackPoint;
+use super::track::{PlanLines, Track, TrackPoint};
 use crate::events::Weight;
 use crate::plot::Figure;
 use crate::plot::axis::Axis;
 use crate::plot::panel::{Frame, Panel};
 use crate::plot::sheet::{
-    ACTUAL, Anchor, Dot, FAINT, Font, Height, OTHER, SMALL_PX, Sample, Sheet, WIDTH_PX,
+    ACTUAL, Anchor, DESIRED, Dot, FAINT, Font, Height, MARK, OTHER, SMALL_PX, Sample, Sheet,
+    WIDTH_PX,
 };
 use crate::report::RunReport;
 use crate::states::Phase;
@@ -21,13 +22,15 @@ const LEAST_HEIGHT_PX: f64 = 160.0;
 const LEAST_SPAN_M: f64 = 100.0;
 
 /// The ground track; `None` without positions.
-pub(super) fn figure(report: &RunReport, track: &[TrackPoint]) -> Option<Figure> {
+pub(super) fn figure(report: &RunReport, track: &Track, planned: &PlanLines) -> Option<Figure> {
+    let planned = [&planned.path, &planned.fence].map(|lines| track.drawn(lines));
+    let track = track.places();
     if track.is_empty() {
         return None;
     }
-    let map = Map::of(track);
+    let map = Map::of(track, &planned);
     let mut sheet = Sheet::default();
-    map.paint(&mut sheet, report, track);
+    map.paint(&mut sheet, report, track, &planned);
     Some(Figure {
         title: "Ground track".to_owned(),
         caption: "Over the ground, north up, from the first measured position; numbers are \
@@ -36,6 +39,9 @@ pub(super) fn figure(report: &RunReport, track: &[TrackPoint]) -> Option<Figure>
         svg: sheet.finish(TOP_PX + map.height_px + X_LABELS_PX, "Ground track", &[]),
     })
 }
+
+/// Lines of a plan and of its fence, (east, north), m.
+type Planned = [Vec<Vec<(f64, f64)>>; 2];
 
 /// The same scale in both directions.
 struct Map {
@@ -46,15 +52,18 @@ struct Map {
 }
 
 impl Map {
-    fn of(track: &[TrackPoint]) -> Self {
-        let around = |of: fn(&TrackPoint) -> f64| {
-            let low = track.iter().map(of).fold(f64::INFINITY, f64::min);
-            let high = track.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+    fn of(track: &[TrackPoint], planned: &Planned) -> Self {
+        let flown = track.iter().map(|point| (point.east_m, point.north_m));
+        let drawn = planned.iter().flatten().flatten().copied();
+        let all: Vec<_> = flown.chain(drawn).collect();
+        let around = |of: fn(&(f64, f64)) -> f64| {
+            let low = all.iter().map(of).fold(f64::INFINITY, f64::min);
+            let high = all.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
             let reach = (high - low).max(LEAST_SPAN_M) * 0.56;
             let middle = f64::midpoint(low, high);
             (middle - reach, middle + reach)
         };
-        let (east_m, north_m) = (around(|p| p.east_m), around(|p| p.north_m));
+        let (east_m, north_m) = (around(|at| at.0), around(|at| at.1));
         let span = |(low, high): (f64, f64)| high - low;
         let most_width_px = WIDTH_PX - LEFT_PX - 12.0;
         let m_per_px = (span(east_m) / most_width_px).max(span(north_m) / MOST_HEIGHT_PX);
@@ -74,7 +83,13 @@ impl Map {
         }
     }
 
-    fn paint(&self, sheet: &mut Sheet, report: &RunReport, track: &[TrackPoint]) {
+    fn paint(
+        &self,
+        sheet: &mut Sheet,
+        report: &RunReport,
+        track: &[TrackPoint],
+        planned: &Planned,
+    ) {
         let span_m = self.east_m.1 - self.east_m.0;
         let (unit_m, unit) = if span_m > 3_000.0 {
             (1_000.0, "km")
@@ -97,6 +112,20 @@ impl Map {
         let panel = Panel { frame, x, y };
         panel.axes(sheet, true, "");
         let at = |place: &TrackPoint| (place.east_m / unit_m, place.north_m / unit_m);
+        let mut entries = Vec::new();
+        let kinds = [(DESIRED, "plan"), (MARK, "fence")];
+        for (lines, (ink, name)) in planned.iter().zip(kinds) {
+            for line in lines {
+                let line: Vec<_> = line
+                    .iter()
+                    .map(|at| (at.0 / unit_m, at.1 / unit_m))
+                    .collect();
+                panel.line(sheet, &line, ink, 1.2);
+            }
+            if !lines.is_empty() {
+                entries.push((Sample::Line(ink, 1.2), name));
+            }
+        }
         for (phase, places) in stretches(report, track) {
             let (ink, width_px) = match phase {
                 Phase::Engaged => (ACTUAL, 1.4),
@@ -113,13 +142,13 @@ impl Map {
         {
             panel.dot(sheet, at(place), 3.5, dot);
         }
-        let entries = [
+        let flown = [
             (Sample::Line(ACTUAL, 1.4), "engaged"),
             (Sample::Line(OTHER, 1.0), "not engaged"),
             (Sample::Dot(Dot::Open(ACTUAL, 1.2)), "begin"),
             (Sample::Dot(Dot::Filled(ACTUAL)), "end"),
         ];
-        sheet.legend((LEFT_PX, 10.0), entries);
+        sheet.legend((LEFT_PX, 10.0), flown.into_iter().chain(entries));
         number_states(sheet, report, track, &panel, at);
     }
 }

@@ -1,14 +1,15 @@
 //! Additions to a flight's report: the plots of pilots and of the thesis, the
 //! score along a timed pattern, and the ground track.
 
+mod altimeter;
 mod ground_track;
 mod legs;
 mod navigation;
+mod plan_page;
 mod track;
 
 use comfy_table::Table;
 use fcc_core::flight::Autopilot;
-use fcc_core::flight::atmosphere::SEA_LEVEL_PRESSURE_PA;
 use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_core::framework::RecordOf;
 use fcc_telemetry::units::{AVIATION, M_FT, MPS_KT, PA_HPA};
@@ -21,9 +22,12 @@ use super::report::{Report, RunReport};
 use super::reported::{Addition, Reported};
 use super::survey::Survey;
 use super::terms::Terms;
+pub use altimeter::AltimeterSettings;
 pub use legs::flight_table;
 pub use navigation::{Difference, MethodResult, NavigationReplay, SourceConsistency};
+pub use plan_page::{PlanLine, PlanPlace, PlanRow, plan_page, plan_table};
 use track::Track;
+pub use track::{GroundLine, PlanLines};
 
 /// The report on a flight.
 pub type FlightReport = Report<FlightAddition>;
@@ -34,12 +38,6 @@ pub type FlightSurvey = Survey<Autopilot>;
 /// At most this many legs are shown.
 const MOST_LEGS: usize = 16;
 
-/// At most this many altimeter settings are kept.
-const MOST_SETTINGS: usize = 16;
-
-/// The standard altimeter setting.
-const STANDARD_HPA: f64 = SEA_LEVEL_PRESSURE_PA * PA_HPA;
-
 /// Additions to a flight's report.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct FlightAddition {
@@ -48,7 +46,10 @@ pub struct FlightAddition {
     /// Why a part of the flight has no score.
     pub not_scored: Option<String>,
     /// The altimeter settings, each once, in their order, hPa.
-    pub altimeter_settings_hpa: Vec<f64>,
+    pub altimeter_settings_hpa: AltimeterSettings,
+    /// Which flight plan was flown, if there was one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plan: Option<String>,
     /// Navigation by other methods, if it was wanted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub navigation: Option<NavigationReplay>,
@@ -56,6 +57,8 @@ pub struct FlightAddition {
     scorer: Option<PatternScorer>,
     #[serde(skip)]
     track: Track,
+    #[serde(skip)]
+    planned: PlanLines,
 }
 
 impl FlightAddition {
@@ -67,6 +70,17 @@ impl FlightAddition {
         }
     }
 
+    /// Says which flight plan was flown, and draws it.
+    #[must_use]
+    pub fn with_plan(self, plan: Option<(String, PlanLines)>) -> Self {
+        let (plan, planned) = plan.unzip();
+        Self {
+            plan,
+            planned: planned.unwrap_or_default(),
+            ..self
+        }
+    }
+
     /// Runs the raw readings through navigation as well.
     #[must_use]
     pub fn with_navigation(self, navigation: NavigationReplay) -> Self {
@@ -74,29 +88,6 @@ impl FlightAddition {
             navigation: Some(navigation),
             ..self
         }
-    }
-
-    fn set_altimeter(&mut self, setting_hpa: f64) {
-        let settings = &mut self.altimeter_settings_hpa;
-        if setting_hpa > 0.0
-            && settings.last() != Some(&setting_hpa)
-            && settings.len() < MOST_SETTINGS
-        {
-            settings.push(setting_hpa);
-        }
-    }
-
-    /// What the altimeter was set to, if that was not the standard pressure.
-    fn altimeter(&self) -> Option<String> {
-        let settings = &self.altimeter_settings_hpa;
-        if settings.iter().all(|hpa| *hpa == STANDARD_HPA) {
-            return None;
-        }
-        let settings: Vec<_> = settings.iter().map(|hpa| format!("{hpa:.2}")).collect();
-        Some(format!(
-            "The altimeter was set to {} hPa: the altitudes below are pressure altitudes.",
-            settings.join(", then ")
-        ))
     }
 }
 
@@ -119,16 +110,18 @@ impl Addition for FlightAddition {
             unscored.map(|why| format!("A part of the flight could not be scored: {why}."));
         let nowhere = "No position was measured: there is no ground track.";
         let nowhere = self.track.places().is_empty().then(|| nowhere.to_owned());
-        let altimeter = self.altimeter();
-        unscored
+        let altimeter = self.altimeter_settings_hpa.finding();
+        self.plan
+            .clone()
             .into_iter()
+            .chain(unscored)
             .chain(nowhere)
             .chain(altimeter)
             .collect()
     }
 
     fn figures(&self, run: &RunReport) -> Vec<Figure> {
-        let figure = ground_track::figure(run, self.track.places());
+        let figure = ground_track::figure(run, &self.track, &self.planned);
         let navigation = self.navigation.iter();
         figure
             .into_iter()
@@ -182,7 +175,8 @@ impl Reported for Autopilot {
         if let Some(navigation) = &mut addition.navigation {
             navigation.take(record, time_s);
         }
-        addition.set_altimeter(record.setpoints.altimeter_setting_pa * PA_HPA);
+        let setting_hpa = record.setpoints.altimeter_setting_pa * PA_HPA;
+        addition.altimeter_settings_hpa.push(setting_hpa);
         if let Some(scorer) = &mut addition.scorer {
             let sample = Sample::measured(&record.measurements, time_s);
             // The legs lie around the set points that were captured, not around
@@ -264,12 +258,12 @@ mod tests {
     fn settings_are_reported_once_each_and_the_standard_one_is_not() {
         let mut addition = FlightAddition::default();
         for pa in [101_325.0, 101_325.0] {
-            addition.set_altimeter(pa * PA_HPA);
+            addition.altimeter_settings_hpa.push(pa * PA_HPA);
         }
-        assert_eq!(addition.altimeter(), None);
-        addition.set_altimeter(1_020.0);
+        assert_eq!(addition.altimeter_settings_hpa.finding(), None);
+        addition.altimeter_settings_hpa.push(1_020.0);
         assert_eq!(
-            addition.altimeter().unwrap(),
+            addition.altimeter_settings_hpa.finding().unwrap(),
             "The altimeter was set to 1013.25, then 1020.00 hPa: the altitudes below are pressure \
              altitudes."
         );

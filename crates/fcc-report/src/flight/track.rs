@@ -18,6 +18,18 @@ pub(super) struct TrackPoint {
     pub(super) east_m: f64,
 }
 
+/// Places of a line over the ground: latitude and longitude, rad.
+pub type GroundLine = Vec<(f64, f64)>;
+
+/// A flight plan on the ground, for the picture of the track.
+#[derive(Clone, Debug, Default)]
+pub struct PlanLines {
+    /// Its legs and the circles of its loiters.
+    pub path: Vec<GroundLine>,
+    /// Its fence.
+    pub fence: Vec<GroundLine>,
+}
+
 /// A ground track that is being recorded.
 #[derive(Clone, Debug)]
 pub(super) struct Track {
@@ -76,6 +88,22 @@ impl Track {
     /// In ascending time.
     pub(super) fn places(&self) -> &[TrackPoint] {
         &self.places
+    }
+
+    /// Lines in latitude and longitude, rad, as (east, north) from the first position, m.
+    pub(super) fn drawn(&self, lines: &[GroundLine]) -> Vec<Vec<(f64, f64)>> {
+        let place = |(latitude_rad, longitude_rad): &(f64, f64)| {
+            let position = Position {
+                latitude_rad: *latitude_rad,
+                longitude_rad: *longitude_rad,
+                altitude_m: 0.0,
+            };
+            let frame = self.frame?;
+            let at = frame.place(0.0, &position);
+            Some((at.east_m, at.north_m))
+        };
+        let line = |line: &GroundLine| line.iter().filter_map(place).collect();
+        lines.iter().map(line).collect()
     }
 }
 

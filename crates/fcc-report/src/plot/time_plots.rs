@@ -94,7 +94,7 @@ fn named(labels: &[String], title: &str) -> Axis {
 /// Directions are counted beyond full turns, so that no line jumps at north,
 /// unless there are many turns; the labels are 0 to 360.
 fn compass(extent: (f64, f64), title: &str) -> Axis {
-    let label = |at: f64| format!("{:03.0}", at.rem_euclid(360.0).round() % 360.0);
+    let label = |at: f64| format!("{:03.0}", at.rem_euclid(360.0).round() % 360.0 + 0.0);
     if turns_often(extent) {
         return Axis::stepped((0.0, 360.0), 90.0, title, label);
     }

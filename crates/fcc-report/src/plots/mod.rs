@@ -133,12 +133,25 @@ mod tests {
 
     use super::*;
 
-    /// docs/telemetry.md: 0 none, 1 hold, 2 timed pattern.
+    /// docs/telemetry.md: 0 none, 1 hold, 2 timed pattern, 3 plan, 4 loiter, 5 go-to,
+    /// 6 return.
     #[test]
     fn a_mode_is_plotted_by_its_names() {
         let plots = declared::<Autopilot>(&Quantities::of::<RecordOf<Autopilot>>());
         let mut panels = plots.iter().flat_map(|plot| &plot.panels);
         let mode = panels.find(|panel| panel.title() == "mode").unwrap();
-        assert_eq!(mode.labels(), ["none", "hold", "timed pattern"]);
+        let names = [
+            "none",
+            "hold",
+            "timed pattern",
+            "plan",
+            "loiter",
+            "go to",
+            "return",
+            "takeoff",
+            "land",
+            "go around",
+        ];
+        assert_eq!(mode.labels(), names);
     }
 }

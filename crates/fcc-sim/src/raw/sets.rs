@@ -120,7 +120,7 @@ impl RawSensorSet {
             barometer_resolution_pa: 1.0,
             pitot: pitot(0.03, 0.005),
             thermometer: None,
-            gnss: gnss(),
+            gnss: gnss(1.5),
             rangefinder: None,
         }
     }
@@ -194,7 +194,7 @@ impl RawSensorSet {
                 delay_s: 0.1,
                 jitter_s: 0.0,
             }),
-            gnss: gnss(),
+            gnss: gnss(1.5),
             rangefinder: Some(RawSensor {
                 errors: [AxisErrors {
                     white: 0.05,
@@ -207,6 +207,17 @@ impl RawSensorSet {
                 delay_s: 0.02,
                 jitter_s: 0.001,
             }),
+        }
+    }
+}
+
+impl RawSensorSet {
+    /// The board with a position that is good to 0.5 m, as that of a receiver with
+    /// corrections is, or relative to a runway that was recorded in the same hour.
+    pub fn board_with_precise_position() -> Self {
+        Self {
+            gnss: gnss(0.5),
+            ..Self::board()
         }
     }
 }
@@ -244,10 +255,11 @@ fn pitot(delay_s: f64, jitter_s: f64) -> RawSensor<1> {
     }
 }
 
-fn gnss() -> RawSensor<6> {
+/// With a correlated error of the position, m; a third of it is white.
+fn gnss(correlated_m: f64) -> RawSensor<6> {
     let position = AxisErrors {
-        white: 0.5,
-        drift: 1.5,
+        white: correlated_m / 3.0,
+        drift: correlated_m,
         drift_tau_s: 100.0,
         ..AxisErrors::NONE
     };

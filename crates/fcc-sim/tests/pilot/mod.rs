@@ -40,7 +40,7 @@ impl Pilot {
                     elevator: elevator.clamp(-1.0, 1.0),
                     aileron: aileron.clamp(-1.0, 1.0),
                     rudder: (self.rudder + 2.0 * now.sideslip_rad).clamp(-1.0, 1.0),
-                    elevator_trim: None,
+                    ..Surfaces::IDLE
                 },
                 0.025,
             );

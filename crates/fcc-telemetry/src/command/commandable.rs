@@ -11,6 +11,29 @@ use super::{Command, InvalidCommand, OutsideLimits};
 pub trait Commandable: Telemetry<Command: PartialEq> {
     /// These set points, in the order in which they are executed.
     const SETPOINTS: &'static [CommandableSetpoint<Self::Command>];
+
+    /// What is commanded by several values at once, which are given together; executed
+    /// after the set points. None by default.
+    const JOINT: &'static [JointSetpoints<Self::Command>] = &[];
+}
+
+/// Set points that are commanded together.
+#[derive(Clone, Debug)]
+pub struct JointSetpoints<R> {
+    /// Names and permitted values.
+    pub parts: &'static [(&'static str, RangeInclusive<f64>)],
+    /// The command to the controller, of as many values as there are parts.
+    pub command: fn(&[f64]) -> Option<R>,
+    /// The error if only some are given.
+    pub incomplete: &'static str,
+}
+
+impl<R> JointSetpoints<R> {
+    /// The values that a command gives.
+    fn values<'a>(&'a self, command: &'a Command) -> impl Iterator<Item = f64> + 'a {
+        let parts = self.parts.iter();
+        parts.filter_map(|(name, _)| command.value_of(name))
+    }
 }
 
 /// A set point that can be commanded.
@@ -49,11 +72,18 @@ impl Command {
             Self::Stop => return Ok(vec![LoopCommand::Stop]),
             Self::Set(given) => given,
         };
-        let known = || C::SETPOINTS.iter().map(|known| known.name).collect();
+        let joint = || C::JOINT.iter().flat_map(|joint| joint.parts);
+        let known = || {
+            let single = C::SETPOINTS.iter().map(|known| known.name);
+            single.chain(joint().map(|(name, _)| *name)).collect()
+        };
         if given.is_empty() {
             return Err(InvalidCommand::NoSetpoint(known()));
         }
-        let is_unknown = |name: &str| !C::SETPOINTS.iter().any(|known| known.name == name);
+        let is_unknown = |name: &str| {
+            !C::SETPOINTS.iter().any(|known| known.name == name)
+                && !joint().any(|(known, _)| *known == name)
+        };
         if let Some((name, _)) = given.iter().find(|(name, _)| is_unknown(name)) {
             return Err(InvalidCommand::UnknownSetpoint(name.clone(), known()));
         }
@@ -79,6 +109,21 @@ impl Command {
             }
             commands.push(LoopCommand::Controller((known.command)(value)));
         }
+        for joint in C::JOINT {
+            let values: Vec<f64> = joint.values(self).collect();
+            if values.is_empty() {
+                continue;
+            }
+            if values.len() < joint.parts.len() {
+                return Err(InvalidCommand::Alternatives(joint.incomplete));
+            }
+            for ((name, limits), value) in joint.parts.iter().zip(&values) {
+                if let Some(outside) = OutsideLimits::of(name, *value, limits) {
+                    return Err(outside.into());
+                }
+            }
+            commands.extend((joint.command)(&values).map(LoopCommand::Controller));
+        }
         Ok(commands)
     }
 
@@ -87,6 +132,9 @@ impl Command {
         let mut setpoints = C::SETPOINTS.iter();
         matches!(self, Self::Engage)
             || setpoints.any(|known| known.needs_control && self.value_of(known.name).is_some())
+            || C::JOINT
+                .iter()
+                .any(|joint| joint.values(self).next().is_some())
     }
 
     /// The value of a set point, if it changes that.
@@ -104,9 +152,11 @@ mod flight {
     use crate::units::{
         COMMANDED_ALTIMETER_SETTING_PA, COMMANDED_ALTITUDE_M, COMMANDED_HEADING_RAD,
     };
-    use fcc_core::flight::{Autopilot, AutopilotCommand};
+    use core::f64::consts::{FRAC_PI_2, PI};
 
-    use super::{Commandable, CommandableSetpoint};
+    use fcc_core::flight::{Autopilot, AutopilotCommand, Position};
+
+    use super::{Commandable, CommandableSetpoint, JointSetpoints};
 
     const ALTITUDES: &str =
         "several altitudes are given: give an altitude, a pressure altitude or a height";
@@ -123,6 +173,22 @@ mod flight {
             alternatives: Some(ALTITUDES),
         }
     }
+
+    /// Without a value that matters: 1.
+    const fn order(
+        name: &'static str,
+        command: fn(f64) -> AutopilotCommand,
+    ) -> CommandableSetpoint<AutopilotCommand> {
+        CommandableSetpoint {
+            name,
+            limits: 1.0..=1.0,
+            command,
+            needs_control: true,
+            alternatives: Some(MODES),
+        }
+    }
+
+    const MODES: &str = "several modes are given: give one of plan_item, pause and return_home";
 
     impl Commandable for Autopilot {
         const SETPOINTS: &'static [CommandableSetpoint<AutopilotCommand>] = &[
@@ -152,7 +218,46 @@ mod flight {
             altitude("altitude_m", AutopilotCommand::Altitude),
             altitude("pressure_altitude_m", AutopilotCommand::PressureAltitude),
             altitude("height_m", AutopilotCommand::Height),
+            // 0: from where it was left.
+            CommandableSetpoint {
+                name: "plan_item",
+                limits: 0.0..=1_000.0,
+                command: |item| AutopilotCommand::Plan(item as u16),
+                needs_control: true,
+                alternatives: Some(MODES),
+            },
+            order("pause", |_| AutopilotCommand::Pause),
+            order("return_home", |_| AutopilotCommand::ReturnHome),
+            order("go_around", |_| AutopilotCommand::GoAround),
+            // 0 ends the promise.
+            CommandableSetpoint {
+                name: "heartbeat_s",
+                limits: 0.0..=3_600.0,
+                command: AutopilotCommand::Heartbeat,
+                needs_control: false,
+                alternatives: None,
+            },
         ];
+
+        const JOINT: &'static [JointSetpoints<AutopilotCommand>] = &[JointSetpoints {
+            parts: &[
+                ("go_to_latitude_rad", -FRAC_PI_2..=FRAC_PI_2),
+                ("go_to_longitude_rad", -PI..=PI),
+                ("go_to_altitude_m", COMMANDED_ALTITUDE_M),
+            ],
+            command: |values| match *values {
+                [latitude_rad, longitude_rad, altitude_m] => {
+                    Some(AutopilotCommand::GoTo(Position {
+                        latitude_rad,
+                        longitude_rad,
+                        altitude_m,
+                    }))
+                }
+                _ => None,
+            },
+            incomplete: "a place needs all of go_to_latitude_rad, go_to_longitude_rad and \
+                         go_to_altitude_m",
+        }];
     }
 }
 

@@ -35,6 +35,9 @@ fn row(entry: &Entry) -> Option<String> {
         Unit::InchesOfMercury => "inHg",
         Unit::Gravities => "g",
         Unit::Pascals => "Pa",
+        Unit::Metres => "m",
+        Unit::RevolutionsPerMinute => "1/min",
+        Unit::Volts => "V",
     };
     let access = if entry.is_written {
         "written, read back"

@@ -181,7 +181,7 @@ pub(super) const TABLE: &[Entry] = &[
     Entry::new(Quantity::AngleOfAttack, Position("alpha"), Unit::Degrees, [-180.0, 180.0]).in_rows()
         .is("air from below the nose").or_else("no angle of attack, which control does not need"),
     Entry::new(Quantity::OnGround, Dataref("sim/flightmodel/failures/onground_any"), Unit::Flag, [0.0, 1.0])
-        .is("a wheel is on the ground").or_else("not shown"),
+        .is("a wheel is on the ground").or_else("no take-off, and a landing does not brake"),
     Entry::new(Quantity::Version, Dataref("sim/version/xplane_internal_version"), Unit::Number, [0.0, 1e6]).since("10.41")
         .is("115501 for 11.55r01").or_else("not shown"),
     Entry::new(Quantity::EngageSwitch, Place::EngageSwitch, Unit::Flag, [-1e6, 1e6])
@@ -255,4 +255,10 @@ pub(super) const TABLE: &[Entry] = &[
         .is("the same, right pedal").or_else(NO_TAKEOVER),
     Entry::new(Quantity::DifferentialPressure, ServoBoard("fccd/servo_board/differential_pressure_pa"), Unit::Pascals, [-2e4, 2e4])
         .is("of the pitot tube").instead("the airspeed that the board computes"),
+    Entry::new(Quantity::Height, Position("y_agl"), Unit::Metres, [-1e3, 1e6])
+        .is("above the ground; taken for a range finder's").instead("a landing is flown by the runway's elevation"),
+    Entry::new(Quantity::EngineSpeed, Dataref("sim/cockpit2/engine/indicators/engine_speed_rpm[0]"), Unit::RevolutionsPerMinute, [-1e3, 1e6])
+        .is("of the first engine").instead("not shown"),
+    Entry::new(Quantity::BatteryVoltage, Dataref("sim/cockpit2/electrical/battery_voltage_actual_volts[0]"), Unit::Volts, [0.0, 1e3]).since("10.41")
+        .is("of the first battery").instead("not shown"),
 ];

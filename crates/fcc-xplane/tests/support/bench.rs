@@ -18,7 +18,7 @@ pub const SURFACES: Surfaces = Surfaces {
     elevator: 0.1,
     aileron: -0.2,
     rudder: 0.05,
-    elevator_trim: None,
+    ..Surfaces::IDLE
 };
 
 /// Both ends and a loop between them.

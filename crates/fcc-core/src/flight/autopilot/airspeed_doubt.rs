@@ -91,7 +91,9 @@ impl Autopilot {
             None if is_engaged => Some(self.last.throttle),
             None => None,
         };
-        self.navigation.flown_with(throttle, is_engaged);
+        // On the wheels forces and motion say nothing of the air.
+        let is_flying = is_engaged && !self.is_on_runway();
+        self.navigation.flown_with(throttle, is_flying);
     }
 
     /// Prepares the notice of a doubt that has begun, or whose reason is another.

@@ -4,9 +4,10 @@ use super::super::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoo
 use super::super::inertial::RawNavigation;
 use super::super::navigation::{FrozenDetector, LearnedAirframe, Navigation, Replacement};
 use super::{
-    ActiveMode, Actuation, AltitudeReference, Autopilot, AutopilotConfig, Degraded, Following,
-    KeptTrims, Measurements, PilotTakeover, PlantClock, ReadingAges, Recovery, Setpoints, Surfaces,
-    Targets, Time, Whereabouts,
+    ActiveMode, Actuation, AltitudeReference, Autopilot, AutopilotConfig, BankCommand,
+    Contingencies, Degraded, Following, GroundMotion, KeptTrims, Measurements, PilotTakeover,
+    PlantClock, ReadingAges, Recovery, RunwayControl, Setpoints, Surfaces, Targets, Time,
+    Whereabouts,
 };
 use crate::framework::Flags;
 
@@ -26,6 +27,13 @@ impl Autopilot {
             replacement: Replacement::new(config.navigation.attitude_tau_s),
             frozen: FrozenDetector::new(config.frozen_after.as_secs_f64()),
             guidance: ActiveMode::None,
+            ground: GroundMotion::default(),
+            bank: BankCommand::new(config.route.bank_rad, config.route.bank_rate_radps),
+            on_runway: RunwayControl::default(),
+            left_plan: None,
+            contingencies: Contingencies::default(),
+            news: None,
+            told: None,
             targets: Targets::default(),
             capture: None,
             altimeter: config.altimeter,

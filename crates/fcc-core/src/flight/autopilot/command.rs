@@ -5,7 +5,7 @@ use core::fmt;
 use super::{Autopilot, Resume};
 use crate::blocks::wrap_pi;
 use crate::flight::guidance::ModeInput;
-use crate::flight::{ALTIMETER_SETTINGS_PA, AltitudeReference};
+use crate::flight::{ALTIMETER_SETTINGS_PA, AltitudeReference, Position};
 use crate::schema;
 use crate::units::{FOOT_M, HECTOPASCAL_PA, KNOT_MPS};
 
@@ -55,6 +55,30 @@ schema! {
         /// [`ALTIMETER_SETTINGS_PA`]: crate::flight::ALTIMETER_SETTINGS_PA
         #[field(7)]
         AltimeterSetting(altimeter_setting_pa: f64),
+        /// Fly the plan from this item on, from 1; 0: from where it was left, or from
+        /// its begin. Ignored without a plan, or without this item.
+        #[field(8)]
+        Plan(plan_item: u16),
+        /// Wait: circle beside where the aircraft is. A plan is left, and is
+        /// continued by `Plan`.
+        #[field(9)]
+        Pause,
+        /// Fly to a place at an altitude above mean sea level by the altimeter
+        /// setting, and circle around it. Ignored without a position.
+        #[field(10)]
+        GoTo(go_to: Position),
+        /// Fly to the nearest of home and the plan's rally points, and circle
+        /// around it. Ignored without a position.
+        #[field(11)]
+        ReturnHome,
+        /// The next command will follow within this time, s, or this commander is lost;
+        /// 0 ends the promise.
+        #[field(12)]
+        Heartbeat(within_s: f64),
+        /// Give the landing up: climb, and land again. Ignored unless it is landing, and
+        /// on the wheels.
+        #[field(13)]
+        GoAround,
     }
 }
 
@@ -70,10 +94,30 @@ impl fmt::Display for AutopilotCommand {
             Self::AltimeterSetting(pa) => {
                 write!(f, "altimeter setting {:.2} hPa", pa / HECTOPASCAL_PA)
             }
+            Self::Plan(0) => f.write_str("plan, from where it was left"),
+            Self::Plan(item) => write!(f, "plan, item {item}"),
+            Self::Pause => f.write_str("pause"),
+            Self::GoTo(place) => write!(
+                f,
+                "go to {:.6}°, {:.6}°, {:.0} ft",
+                place.latitude_rad.to_degrees(),
+                place.longitude_rad.to_degrees(),
+                place.altitude_m / FOOT_M
+            ),
+            Self::ReturnHome => f.write_str("return home"),
+            Self::Heartbeat(within_s) => write!(f, "heartbeat: the next within {within_s:.1} s"),
+            Self::GoAround => f.write_str("go around"),
             Self::Resume(Resume { progress, .. }) => {
                 write!(f, "resume {progress} after {:.1} s", progress.elapsed_s)
             }
         }
+    }
+}
+
+impl AutopilotCommand {
+    /// Whether it says what is flown: only while engaged.
+    pub const fn is_of_mode(&self) -> bool {
+        !matches!(self, Self::AltimeterSetting(_) | Self::Heartbeat(_))
     }
 }
 
@@ -87,7 +131,15 @@ fn compass_deg(heading_rad: f64) -> f64 {
 impl Autopilot {
     /// Executes a command; one that is not applicable now is ignored.
     pub(super) fn execute(&mut self, command: &AutopilotCommand) {
+        self.contingencies.renew_promise();
+        if command.is_of_mode() {
+            if self.is_too_low_for(command) {
+                return;
+            }
+            self.contingencies.end();
+        }
         match *command {
+            AutopilotCommand::Heartbeat(within_s) => self.contingencies.promise(within_s),
             AutopilotCommand::Airspeed(mps) if mps.is_finite() => {
                 self.targets.airspeed_mps = self.config.envelope.allowed_airspeed(mps);
                 self.change_mode(ModeInput::SetPoint);
@@ -104,6 +156,11 @@ impl Autopilot {
             AutopilotCommand::Height(m) => self.fly_to(AltitudeReference::Field, m),
             AutopilotCommand::AltimeterSetting(pa) => self.set_altimeter(pa),
             AutopilotCommand::Resume(ref resume) => self.resume(resume),
+            AutopilotCommand::Plan(item) => self.fly_plan(item),
+            AutopilotCommand::Pause => self.pause(),
+            AutopilotCommand::GoTo(ref place) => self.go_to(place),
+            AutopilotCommand::ReturnHome => self.return_home(),
+            AutopilotCommand::GoAround => self.go_around(),
             AutopilotCommand::Airspeed(_) | AutopilotCommand::Heading(_) => {}
         }
     }

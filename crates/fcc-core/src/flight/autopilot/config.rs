@@ -7,9 +7,10 @@ use crate::flight::control::{AirspeedConfig, AltitudeConfig, Envelope, HeadingCo
 use crate::flight::guidance::{GuidanceConfig, TimedPatternConfig};
 use crate::flight::inertial::RawNavigationConfig;
 use crate::flight::navigation::{LearnedAirframe, NavigationConfig};
+use crate::flight::route::{Route, RouteConfig};
 use crate::framework::Flags;
 
-use super::{FailsafeConfig, StickTakeover};
+use super::{ContingencyConfig, FailsafeConfig, StickTakeover};
 
 /// The autopilot's configuration.
 ///
@@ -71,6 +72,12 @@ pub struct AutopilotConfig {
     pub navigation: NavigationConfig,
     /// The mode that is flown once engaged.
     pub guidance: GuidanceConfig,
+    /// The flight plan, if there is one.
+    pub plan: Option<Route<'static>>,
+    /// How routes over the ground are flown.
+    pub route: RouteConfig,
+    /// What is done when a flight cannot go on as commanded.
+    pub contingency: ContingencyConfig,
     /// Gains of the heading loop.
     pub heading: HeadingConfig,
     /// Gains of the altitude loop.
@@ -103,6 +110,9 @@ impl Default for AutopilotConfig {
             airframe: None,
             navigation: NavigationConfig::default(),
             guidance: GuidanceConfig::TimedPattern(TimedPatternConfig::default()),
+            plan: None,
+            route: RouteConfig::default(),
+            contingency: ContingencyConfig::default(),
             heading: HeadingConfig::default(),
             altitude: AltitudeConfig::default(),
             airspeed: AirspeedConfig::default(),

@@ -255,7 +255,10 @@ impl Autopilot {
             Flags::from_bits(flags::ATTITUDE.bits() | flags::SPECIFIC_FORCE.bits());
         let no_altitude = self.navigation.altitude_doubt().is_none()
             && (self.stale(now) | self.intermittent()).contains(flags::ALTITUDE);
-        !lost.intersects(MOTION) && !no_altitude && !self.navigation.suspects_motion()
+        !lost.intersects(MOTION)
+            && !no_altitude
+            && !self.is_on_runway()
+            && !self.navigation.suspects_motion()
     }
 
     /// What is lost and not replaced by what counts as measured: an airspeed by

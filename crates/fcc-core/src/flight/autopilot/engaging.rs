@@ -5,7 +5,7 @@ use super::degraded::Degraded;
 use super::upset::is_far_from_level;
 use super::{Autopilot, flags};
 use crate::flight::control::ElevatorTrim;
-use crate::flight::guidance::{ActiveMode, ModeInput, Targets};
+use crate::flight::guidance::{ActiveMode, Mode, ModeInput, Targets};
 use crate::flight::inertial::RawNavigation;
 use crate::flight::{AltitudeReference, Measurements, PlantState, Surfaces};
 use crate::framework::{Flags, Time};
@@ -19,7 +19,8 @@ impl Autopilot {
         let estimate = self.navigation.estimate();
         let contradictions = self.navigation.contradictions();
         (self.unsafe_with(self.stale(now), now, measurements)
-            | self.not_permitted(now, measurements))
+            | self.not_permitted(now, measurements)
+            | self.route_inhibits())
         .with(
             flags::ATTITUDE_AGAINST_RATES,
             contradictions.attitude_and_rates,
@@ -43,6 +44,7 @@ impl Autopilot {
         .with(
             flags::TOO_SLOW,
             estimate.airspeed_mps < self.config.envelope.min_airspeed_mps
+                && !self.begins_on_runway()
                 && !(is_far_from_level(estimate) && self.may_engage_in_upset()),
         )
         .with(
@@ -54,6 +56,7 @@ impl Autopilot {
     /// Engages: what is flown now is held, or the pattern begins.
     pub(super) fn begin_flight(&mut self, now: Time) {
         self.distrusted = Flags::NONE;
+        self.contingencies.reset();
         self.pilot.set_engaged(true);
         self.degraded = Degraded::default();
         let estimate = *self.navigation.estimate();
@@ -87,6 +90,7 @@ impl Autopilot {
         self.last = *standing;
         self.trim.take_over(standing.elevator_trim);
         let estimate = *self.navigation.estimate();
+        self.bank.reset(estimate.roll_rad);
         let schedule = self.schedule();
         self.heading
             .engage(standing.aileron, standing.rudder, &estimate, schedule);
@@ -98,9 +102,15 @@ impl Autopilot {
 
     /// Enters the mode given by the transition table, with the present targets.
     pub(super) fn change_mode(&mut self, input: ModeInput) {
-        let config = &self.config.guidance;
-        if let Some(mode) = self.guidance.mode().after(input, config.mode()) {
-            self.guidance = ActiveMode::enter(mode, config, self.targets);
+        let (config, plan) = (self.config.guidance, self.config.plan);
+        let Some(mode) = self.guidance.mode().after(input, config.mode()) else {
+            return;
+        };
+        if let (Mode::Plan, Some(plan)) = (mode, plan) {
+            self.begin_plan(&plan, 0);
+        } else {
+            self.leave();
+            self.guidance = ActiveMode::enter(mode, &config, self.targets);
         }
     }
 }

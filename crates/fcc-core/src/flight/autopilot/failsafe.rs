@@ -199,7 +199,7 @@ impl Autopilot {
             elevator: self.actuation.elevator(vertical.elevator),
             aileron: lateral.aileron,
             rudder: lateral.rudder,
-            elevator_trim: None,
+            ..Surfaces::IDLE
         }
     }
 
@@ -285,6 +285,7 @@ impl Autopilot {
             aileron: self.heading.aileron_trim(),
             rudder: self.heading.rudder_trim(),
             elevator_trim: self.trim.position(),
+            ..Surfaces::IDLE
         }
     }
 }

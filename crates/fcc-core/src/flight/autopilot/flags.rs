@@ -89,7 +89,7 @@ pub const UNDERSPEED: Flags = Flags::bit(37);
 pub const FROM_THE_FUTURE: Flags = Flags::bit(38);
 /// A quantity is lost, and the flight goes on without it.
 pub const DEGRADED: Flags = Flags::bit(39);
-/// The target altitude is limited by the floor.
+/// The target altitude is limited by the floor, or by the fence.
 pub const AT_FLOOR: Flags = Flags::bit(40);
 /// The pilot moves the controls.
 pub const PILOT_TAKES_OVER: Flags = Flags::bit(41);
@@ -128,6 +128,16 @@ pub const REPEATED_FIX: Flags = Flags::bit(56);
 pub const REPEATED_FIELD: Flags = Flags::bit(57);
 /// The gyroscopes cannot be held against the magnetic field yet.
 pub const UNCHECKED_GYROSCOPE: Flags = Flags::bit(58);
+/// An inertial unit was left for another one.
+pub const LEFT_UNIT: Flags = Flags::bit(59);
+/// Of several magnetometers, barometers or receivers one is wrong.
+pub const WRONG_SENSOR: Flags = Flags::bit(60);
+/// The plan needs a position, and none is measured.
+pub const POSITION: Flags = Flags::bit(61);
+/// The mode over the ground flies by dead reckoning.
+pub const DEAD_RECKONING: Flags = Flags::bit(62);
+/// A plan is to be flown, and there is none.
+pub const NO_PLAN: Flags = Flags::bit(63);
 /// What of attitude and body rates is doubted.
 pub(super) const DOUBTED_MOTION: Flags =
     Flags::from_bits(DOUBTED_ATTITUDE.bits() | DOUBTED_BODY_RATES.bits());
@@ -169,7 +179,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
 }
 
 /// The text of each bit, lowest first.
-pub(super) const NAMES: [&str; 59] = [
+pub(super) const NAMES: [&str; 64] = [
     "attitude is missing or too old",
     "heading is missing or too old",
     "body rates are missing or too old",
@@ -210,7 +220,7 @@ pub(super) const NAMES: [&str; 59] = [
     "too little energy for speed and height: height is given up",
     "a reading is from the future",
     "flying on without a lost quantity",
-    "the target altitude is limited by the floor",
+    "the target altitude is limited by the floor or the fence",
     "the pilot moves the controls",
     "readings arrive too old, by their source's own clock",
     "altitude contradicts the other sensors and is not used",
@@ -229,6 +239,11 @@ pub(super) const NAMES: [&str; 59] = [
     "satellite navigation repeats its position in motion and is not used",
     "magnetometer repeats its field in motion and is not used",
     "gyroscope is not yet compared with the magnetic field: engage again some seconds later",
+    "an inertial unit was wrong or silent and is not used again",
+    "a magnetometer, a barometer or a satellite receiver was wrong and is not used again",
+    "position is missing, which the plan needs",
+    "position is by dead reckoning: satellite navigation is silent",
+    "there is no plan: give plan.file",
 ];
 
 #[cfg(test)]

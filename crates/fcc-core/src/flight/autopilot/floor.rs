@@ -1,13 +1,13 @@
-//! The floor: an altitude below which nothing that is flown leads.
+//! The floor: an altitude below which nothing that is flown leads; and the floor and
+//! ceiling of a plan's fence.
 //!
-//! It limits the target altitude, whether that was captured, commanded, restored
+//! A take-off or a landing leads below them. It limits the target altitude, whether that was captured, commanded, restored
 //! or is part of a pattern: a descent is captured a margin above the floor, and
 //! engaged below it, the aircraft climbs to it. A failsafe that holds no climb,
 //! or a pitch, climbs to it as well. Speed comes before it: an aircraft without
 //! the power to hold its altitude descends, and a glide without a pilot, too.
 
 use super::Autopilot;
-use crate::flight::AltitudeReference;
 use crate::units::GRAVITY_MPS2;
 
 /// A target this far below the lowest altitude is not limited by it, m: a round
@@ -28,19 +28,32 @@ impl Autopilot {
     /// The lowest pressure altitude that is flown to, m; minus infinity without a
     /// floor.
     fn lowest_m(&self) -> f64 {
-        let lowest_m = self.config.envelope.lowest_altitude_m();
-        lowest_m.map_or(f64::NEG_INFINITY, |lowest_m| {
-            // At sea level there is always a datum.
-            let datum_m = self.altimeter.datum_m(AltitudeReference::SeaLevel);
-            lowest_m + datum_m.unwrap_or(0.0)
-        })
+        let margin_m = self.config.contingency.fence_height_margin_m;
+        let fence_m = self.fence().floor_m.map(|floor_m| floor_m + margin_m);
+        let lowest_m = [self.config.envelope.lowest_altitude_m(), fence_m]
+            .into_iter()
+            .flatten()
+            .fold(f64::NEG_INFINITY, f64::max);
+        lowest_m + self.sea_level_m()
     }
 
-    /// Raises the target altitude to the lowest one.
+    /// The highest pressure altitude that is flown to, m; infinite without a ceiling.
+    fn highest_m(&self) -> f64 {
+        let margin_m = self.config.contingency.fence_height_margin_m;
+        let ceiling_m = self.fence().ceiling_m.unwrap_or(f64::INFINITY);
+        ceiling_m - margin_m + self.sea_level_m()
+    }
+
+    /// Raises the target altitude to the lowest one, and lowers it to the highest.
     pub(super) fn keep_above_floor(&mut self) {
-        let lowest_m = self.lowest_m();
-        self.is_at_floor = self.targets.altitude_m < lowest_m - ROUNDING_M;
-        self.targets.altitude_m = self.targets.altitude_m.max(lowest_m);
+        if self.runway().is_some() || self.is_on_runway() {
+            self.is_at_floor = false;
+            self.altitude.pull_out(0.0);
+            return;
+        }
+        let (lowest_m, demanded_m) = (self.lowest_m(), self.targets.altitude_m);
+        self.targets.altitude_m = demanded_m.min(self.highest_m()).max(lowest_m);
+        self.is_at_floor = (self.targets.altitude_m - demanded_m).abs() > ROUNDING_M;
         let pull_out_mps2 = self.pull_out_mps2(lowest_m);
         self.altitude.pull_out(pull_out_mps2);
     }

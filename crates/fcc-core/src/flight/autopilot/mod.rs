@@ -6,13 +6,17 @@ mod assembly;
 mod capture;
 mod command;
 mod config;
+mod contingency;
 mod degraded;
 mod engaging;
 mod failsafe;
 pub mod flags;
 mod floor;
+mod flying;
 mod following;
 mod future;
+mod ground_below;
+mod ground_motion;
 mod notices;
 mod observe;
 mod other_control;
@@ -21,11 +25,14 @@ mod plant_clock;
 mod reading_age;
 mod release;
 mod resume;
+mod routing;
+mod runway;
 mod scale;
 mod sensor_health;
 mod throttle_demand;
 mod upset;
 mod whereabouts;
+mod wrong_sensors;
 
 use core::fmt;
 use core::hint::black_box;
@@ -34,23 +41,29 @@ use actuation::Actuation;
 use capture::Capture;
 pub use command::AutopilotCommand;
 pub use config::AutopilotConfig;
+use contingency::Contingencies;
+pub use contingency::{Contingency, ContingencyAction, ContingencyConfig};
 use degraded::Degraded;
 use failsafe::KeptTrims;
 pub use failsafe::{FailsafeConfig, FailsafeEnd};
 use following::Following;
+use ground_motion::GroundMotion;
 use pilot_takeover::PilotTakeover;
 pub use pilot_takeover::StickTakeover;
 use plant_clock::PlantClock;
 use reading_age::ReadingAges;
 use release::Release;
 pub use resume::Resume;
+pub use routing::ITEM_REACHED;
+use runway::RunwayControl;
 pub use scale::Scale;
 use whereabouts::Whereabouts;
 
 use super::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop, Recovery};
-use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
+use super::guidance::{ActiveMode, Mode, ModeInput, OverGroundMode, Targets};
 use super::inertial::RawNavigation;
 use super::navigation::{Estimate, FrozenDetector, Navigation, Replacement, plausibility_gate};
+use super::path::BankCommand;
 use super::{Altimeter, AltitudeReference, Measurements, Setpoints, Surfaces};
 use crate::blocks::wrap_two_pi;
 use crate::framework::{Controller, Flags, Notice, Reading, Switch, Tick, Time};
@@ -103,6 +116,16 @@ pub struct Autopilot {
     replacement: Replacement,
     frozen: FrozenDetector,
     guidance: ActiveMode,
+    /// Where it is over the ground, and the bank that a mode there commands.
+    ground: GroundMotion,
+    bank: BankCommand,
+    on_runway: RunwayControl,
+    /// The plan that was left for another mode.
+    left_plan: Option<OverGroundMode>,
+    contingencies: Contingencies,
+    /// What guidance has to tell, and as it is told, a tick later.
+    news: Option<Notice>,
+    told: Option<Notice>,
     targets: Targets,
     capture: Option<Capture>,
     altimeter: Altimeter,
@@ -170,10 +193,13 @@ impl Controller for Autopilot {
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         let of_parts = self.actuation.conditions() | self.doubted() | self.trim_conditions();
-        let unused = self.unused_sensors(measurements);
+        let unused = self.unused_sensors(measurements) | self.route_conditions();
         (self.external(tick.woke, self.seen(measurements)) | of_parts | unused)
             .with(flags::RECOVERING, self.recovery.is_active())
-            .with(flags::UNDERSPEED, self.altitude.gives_up_height())
+            .with(
+                flags::UNDERSPEED,
+                self.altitude.gives_up_height() && self.runway().is_none(),
+            )
             .with(flags::STALLS_FASTER, self.recovery.found_stall_mps() > 0.0)
             .with(flags::AT_FLOOR, self.is_at_floor)
             .with(flags::RELEASING, self.release.is_some())
@@ -217,7 +243,9 @@ impl Controller for Autopilot {
             .notice()
             .or_else(|| self.clock.notice())
             .or_else(|| self.degraded_notice())
+            .or_else(|| self.wrong_sensor_notice())
             .or(self.doubt_notice)
+            .or(self.told)
     }
 
     fn write_notice(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -258,63 +286,12 @@ impl Controller for Autopilot {
     }
 
     fn guide(&mut self, _tick: &Tick, _measurements: &Measurements) {
-        let marked = self.navigation.marked_altitude_m();
-        let shift_m = match (&mut self.capture, marked) {
-            (Some(capture), Some(altitude_m)) => capture.shift_m(altitude_m),
-            _ => 0.0,
-        };
-        self.guidance.shift_altitude(shift_m);
-        if let Some(targets) = self.guidance.targets() {
-            self.targets = targets;
-        }
-        self.keep_above_floor();
-        self.guidance
-            .advance(self.navigation.estimate(), self.clock.passed_s());
+        self.meet_contingencies();
+        self.set_targets();
     }
 
     fn control(&mut self, tick: &Tick, _measurements: &Measurements) -> Surfaces {
-        if self.is_silent(tick.woke) {
-            self.last = self.trims();
-            return self.last;
-        }
-        let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
-        self.follow_outputs(&estimate);
-        let (schedule, envelope) = (self.schedule(), self.envelope());
-        if self.accepted.body_rates.value != self.kept_trims.found_with {
-            self.keep_trims();
-        }
-        let recovering = self.recover_from_upset(tick.woke, &estimate);
-        if let Some(outputs) = recovering.or_else(|| self.fly_to_release(&estimate, dt_s)) {
-            self.last = self.with_trim(tick.woke, outputs, Flags::NONE);
-            return self.last;
-        }
-        let to = self.targets;
-        let ordered_mps = self.flyable_airspeed_mps(to.airspeed_mps);
-        self.altitude.order_airspeed(ordered_mps);
-        let (heading, altitude) = (&mut self.heading, &mut self.altitude);
-        let lateral = heading.step(to.heading_rad, &estimate, &envelope, schedule, dt_s);
-        let vertical = altitude.step(to.altitude_m, &estimate, &envelope, schedule, dt_s);
-        let demand = self.throttle_demand(vertical.climb_rate_mps);
-        let throttle = self.airspeed.step(&demand, &estimate, dt_s);
-        self.setpoints = Setpoints {
-            airspeed_mps: self.targets.airspeed_mps,
-            heading_rad: wrap_two_pi(self.targets.heading_rad),
-            altitude_m: self.targets.altitude_m,
-            altitude_reference: self.reference,
-            altitude_above_reference_m: self.targets.altitude_m - self.datum_m(),
-            roll_rad: lateral.roll_rad,
-            climb_rate_mps: vertical.climb_rate_mps,
-            pitch_rad: vertical.pitch_rad,
-            ..self.setpoints
-        };
-        let outputs = Surfaces {
-            throttle,
-            elevator: self.actuation.elevator(vertical.elevator),
-            aileron: lateral.aileron,
-            rudder: lateral.rudder,
-            elevator_trim: None,
-        };
-        self.last = self.with_trim(tick.woke, outputs, Flags::NONE);
+        self.last = self.fly(tick.woke);
         self.last
     }
 
@@ -329,7 +306,8 @@ impl Controller for Autopilot {
             self.actuation
                 .watch(&self.last, &estimate, self.clock.step_s());
         }
-        let outputs = self.safest(tick.woke, &seen);
+        let held = self.safest(tick.woke, &seen);
+        let outputs = self.stop_on_wheels(lost).unwrap_or(held);
         self.last = self.with_trim(tick.woke, outputs, lost);
         self.last
     }
@@ -339,6 +317,8 @@ impl Controller for Autopilot {
         self.degraded = Degraded::default();
         self.pilot.set_engaged(false);
         self.change_mode(ModeInput::Disengage);
+        self.left_plan = None;
+        self.contingencies.reset();
         self.is_at_floor = false;
         self.capture = None;
         self.recovery = Recovery::new();
@@ -353,6 +333,7 @@ impl Controller for Autopilot {
 
     fn estimated(&self) -> Estimate {
         let estimate = self.ages.shown_in(self.navigation.estimate());
+        let estimate = self.ground.shown_in(&estimate);
         self.actuation.shown_in(&estimate)
     }
 
@@ -362,12 +343,18 @@ impl Controller for Autopilot {
         Setpoints {
             guidance,
             altimeter_setting_pa: self.altimeter.setting_pa,
-            ..self.setpoints
+            ..self.with_track(self.setpoints)
         }
     }
 
     fn outputs_are_valid(&self, outputs: &Surfaces) -> bool {
         outputs.is_valid()
+    }
+
+    fn observe_sensor(&mut self, sensor: u8, measurements: &Measurements) {
+        if let Some(raw) = &mut self.raw {
+            raw.observe_sensor(sensor, measurements);
+        }
     }
 
     fn plausible(&self, sensor: u8, measurements: &Measurements) -> Flags {
@@ -385,12 +372,5 @@ impl Controller for Autopilot {
 
     fn switch(&self, measurements: &Measurements) -> Reading<Switch> {
         measurements.engage_switch
-    }
-}
-
-impl Autopilot {
-    /// The measurements of this tick, as they are flown by.
-    fn seen<'a>(&'a self, measured: &'a Measurements) -> &'a Measurements {
-        self.raw.as_ref().map_or(measured, RawNavigation::found)
     }
 }

@@ -2,7 +2,10 @@
 
 use core::fmt;
 
-use super::{airspeed_doubt, degraded, pilot_takeover, plant_clock};
+use super::{
+    airspeed_doubt, contingency, degraded, pilot_takeover, plant_clock, routing, runway,
+    wrong_sensors,
+};
 use crate::framework::Notice;
 
 /// Writes the text of a notice.
@@ -25,6 +28,9 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
             f,
             "nothing can be held any longer: gliding in a gentle turn, with idle throttle"
         ),
+        routing::ITEM_REACHED => write!(f, "item {} of the plan is reached", notice.item),
+        contingency::CONTINGENCY => contingency::write(notice, f),
+        runway::RUNWAY => runway::write(notice, f),
         kind => match pilot_takeover::axis_of(kind) {
             Some(axis) => {
                 let deflection = f64::from(notice.amount_permille) / 1_000.0;
@@ -34,7 +40,9 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
                      deflection from where it rested"
                 )
             }
-            None => airspeed_doubt::write(kind, f),
+            None => {
+                wrong_sensors::write(notice, f).unwrap_or_else(|| airspeed_doubt::write(kind, f))
+            }
         },
     }
 }

@@ -51,7 +51,9 @@ impl Autopilot {
         self.note_throttle(now);
         self.follow_intermittent(step_s);
         let doubted = self.doubts();
+        self.told = self.news.take();
         self.navigate(now, measured, step_s);
+        self.follow_ground(now, step_s);
         self.note_doubt(doubted);
         let known = self.navigation.known();
         self.frozen.step(now, &self.accepted, &known, step_s);

@@ -119,7 +119,7 @@ impl Autopilot {
             elevator: self.actuation.elevator(vertical.elevator),
             aileron: lateral.aileron,
             rudder: lateral.rudder,
-            elevator_trim: None,
+            ..Surfaces::IDLE
         })
     }
 

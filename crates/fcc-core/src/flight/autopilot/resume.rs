@@ -49,7 +49,7 @@ impl Autopilot {
     /// turns, so the target heading is taken within half a turn of the present
     /// heading.
     pub(super) fn resume(&mut self, resume: &Resume) {
-        let (config, mut progress) = (&self.config.guidance, resume.progress);
+        let (config, mut progress) = (self.config.guidance, resume.progress);
         if !progress.is_valid() || !resume.surfaces.is_valid() {
             return;
         }
@@ -57,19 +57,21 @@ impl Autopilot {
         if self.guidance.mode().after(input, config.mode()).is_none() {
             return;
         }
-        let Some(aimed) = ActiveMode::resume(config, &progress).targets() else {
+        if self.resume_over_ground(progress.mode, progress.item) {
+            self.resume_altimeter(resume);
+            self.take_over(&resume.surfaces);
+            return;
+        }
+        let Some(aimed) = ActiveMode::resume(&config, &progress).targets() else {
             return;
         };
         let off_rad = self.navigation.estimate().heading_rad - aimed.heading_rad;
         progress.captured.heading_rad += round(off_rad / TAU) * TAU;
         let airspeed_mps = progress.captured.airspeed_mps;
         progress.captured.airspeed_mps = self.config.envelope.allowed_airspeed(airspeed_mps);
-        self.guidance = ActiveMode::resume(config, &progress);
+        self.guidance = ActiveMode::resume(&config, &progress);
         self.targets = self.guidance.targets().unwrap_or(aimed);
-        let setting_pa = resume.altimeter_setting_pa;
-        if let Some(pa) = setting_pa.filter(|pa| ALTIMETER_SETTINGS_PA.contains(pa)) {
-            self.altimeter.setting_pa = pa;
-        }
+        self.resume_altimeter(resume);
         let reference = resume.altitude_reference;
         let is_known = self.altimeter.datum_m(reference).is_some();
         self.reference = if is_known {
@@ -80,5 +82,12 @@ impl Autopilot {
         // The captured altitude is not refined any further.
         self.capture = None;
         self.take_over(&resume.surfaces);
+    }
+
+    fn resume_altimeter(&mut self, resume: &Resume) {
+        let setting_pa = resume.altimeter_setting_pa;
+        if let Some(pa) = setting_pa.filter(|pa| ALTIMETER_SETTINGS_PA.contains(pa)) {
+            self.altimeter.setting_pa = pa;
+        }
     }
 }

@@ -5,11 +5,11 @@ use core::time::Duration;
 use super::future::is_from_the_future;
 use super::plant_clock::Waiting;
 use super::reading_age::taken_of_needed;
-use super::{Autopilot, flags};
+use super::{Autopilot, flags, wrong_sensors};
 use crate::flight::inertial::RawNavigation;
 use crate::flight::navigation::is_possible_fix;
 use crate::flight::{Measurements, PlantState};
-use crate::framework::{Flags, Reading, Time};
+use crate::framework::{Flags, Notice, Reading, Time};
 
 /// A switch that was read before and is silent for longer than this counts as
 /// lost, since it could not be switched off.
@@ -21,6 +21,11 @@ const SWITCH_MAX_AGE: Duration = Duration::from_secs(1);
 const SENT_FOR: Duration = Duration::from_millis(250);
 
 impl Autopilot {
+    /// The measurements of this tick, as they are flown by.
+    pub(super) fn seen<'a>(&'a self, measured: &'a Measurements) -> &'a Measurements {
+        self.raw.as_ref().map_or(measured, RawNavigation::found)
+    }
+
     /// The raw sensors that are not used, and that control does not need.
     pub(super) fn unused_sensors(&self, measured: &Measurements) -> Flags {
         let has_fix = !measured.gnss.is_never();
@@ -32,6 +37,14 @@ impl Autopilot {
             )
             .with(flags::REPEATED_FIX, is(RawNavigation::repeats_place))
             .with(flags::REPEATED_FIELD, is(RawNavigation::repeats_field))
+            .with(flags::LEFT_UNIT, is(RawNavigation::left_a_unit))
+            .with(flags::WRONG_SENSOR, is(RawNavigation::has_wrong_sensor))
+    }
+
+    /// The notice of a sensor that is not used any more since this tick.
+    pub(super) fn wrong_sensor_notice(&self) -> Option<Notice> {
+        let wrong = self.raw.as_ref()?.wrong_sensor()?;
+        Some(wrong_sensors::notice(wrong))
     }
 
     /// Whether the gyroscopes are not used, because the magnetic field contradicts them.
@@ -88,7 +101,7 @@ impl Autopilot {
     pub(super) fn frozen(&self) -> Flags {
         let airspeed_mps = self.navigation.estimate().airspeed_mps;
         let is_slow = airspeed_mps < self.config.envelope.min_airspeed_mps;
-        if is_slow && !self.pilot.is_engaged() {
+        if is_slow && (!self.pilot.is_engaged() || self.is_on_runway()) {
             Flags::NONE
         } else {
             let doubted = self.doubted();

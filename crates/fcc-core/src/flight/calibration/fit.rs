@@ -240,7 +240,7 @@ fn fit(samples: Samples<'_>, strength: f64) -> Result<StrengthFit, FitError> {
         bias_sigma: sigmas.into(),
         spread,
     };
-    if is_possible(&fit) && fit.residual <= LARGEST_RESIDUAL * strength {
+    if is_possible(&fit.axes) && fit.residual <= LARGEST_RESIDUAL * strength {
         Ok(fit)
     } else {
         Err(FitError::NoFit)
@@ -314,19 +314,26 @@ fn symmetric(step: &Unknowns) -> Matrix3<f64> {
     Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
 }
 
-fn axes(bias: &Vector3<f64>, shape: &Matrix3<f64>) -> Axes {
+/// A bias, and the matrix of scale and misalignment.
+pub(super) fn axes(bias: &Vector3<f64>, shape: &Matrix3<f64>) -> Axes {
     let [kx, ky, kz] = [shape.m11, shape.m22, shape.m33];
-    let [xy, xz, yz] = [shape.m12, shape.m13, shape.m23];
     Axes {
         bias: (*bias).into(),
         scale: [kx, ky, kz],
-        misalignment: [xy / ky, xz / kz, xy / kx, yz / kz, xz / kx, yz / ky],
+        misalignment: [
+            shape.m12 / ky,
+            shape.m13 / kz,
+            shape.m21 / kx,
+            shape.m23 / kz,
+            shape.m31 / kx,
+            shape.m32 / ky,
+        ],
         ..Axes::default()
     }
 }
 
-fn is_possible(fit: &StrengthFit) -> bool {
-    let axes = &fit.axes;
+/// Whether a sensor may be so.
+pub(super) fn is_possible(axes: &Axes) -> bool {
     axes.bias.iter().all(|bias| bias.is_finite())
         && axes.scale.iter().all(|scale| SCALES.contains(scale))
         && axes

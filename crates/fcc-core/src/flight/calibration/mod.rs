@@ -9,6 +9,7 @@ mod alignment;
 mod fit;
 mod guided;
 mod mounting;
+mod turning;
 
 use core::ops::RangeInclusive;
 use core::time::Duration;
@@ -130,9 +131,13 @@ impl Axes {
 impl AxesCalibration {
     /// Works out the calibration.
     pub fn new(of: &Axes) -> Self {
-        let shape = Rotation(of.shape());
+        Self::turned(of, &of.turn())
+    }
+
+    /// The calibration of a sensor, into axes to which `turn` takes its own.
+    pub(crate) fn turned(of: &Axes, turn: &Rotation) -> Self {
         Self {
-            matrix: of.turn().after(&shape),
+            matrix: turn.after(&Rotation(of.shape())),
             bias: of.bias,
             delay: of.delay,
         }

@@ -229,6 +229,29 @@ impl AltitudeLoop {
         )
     }
 
+    /// One step towards a pitch (rad), as far as the airspeed allows it.
+    pub fn hold_pitch(
+        &mut self,
+        pitch_rad: f64,
+        estimate: &Estimate,
+        envelope: &Envelope,
+        schedule: Schedule,
+        dt_s: f64,
+    ) -> PitchCommand {
+        self.limit_pitch(estimate, envelope, dt_s);
+        let pitch_rad = self.pitch.limited(pitch_rad);
+        let climb_rate_mps = estimate.climb_rate_mps;
+        self.climb_rate.reset(climb_rate_mps);
+        self.hold(
+            climb_rate_mps,
+            pitch_rad,
+            estimate,
+            envelope,
+            schedule,
+            dt_s,
+        )
+    }
+
     /// One step towards the pitch expected for a flight path (rad, up) at the
     /// airspeed of the schedule `trimmed`, if the climb rate is not known.
     pub fn hold_path_pitch(

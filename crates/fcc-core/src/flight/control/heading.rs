@@ -219,6 +219,21 @@ impl HeadingLoop {
         self.hold_bank(roll_rad, estimate, schedule, dt_s)
     }
 
+    /// One step towards a bank (rad) that is commanded in place of a heading.
+    pub fn bank_to(
+        &mut self,
+        bank_rad: f64,
+        estimate: &Estimate,
+        envelope: &Envelope,
+        schedule: Schedule,
+        dt_s: f64,
+    ) -> Lateral {
+        self.needed_rad = bank_rad.abs().min(envelope.bank_limit_rad());
+        let roll_rad = limit_abs(bank_rad, envelope.bank_limit_at_rad(estimate));
+        let roll_rad = self.led(roll_rad, dt_s);
+        self.hold_bank(roll_rad, estimate, schedule, dt_s)
+    }
+
     /// The bank that the turn needs, rad, 0 or more: that of the last step.
     pub(crate) const fn needed_bank_rad(&self) -> f64 {
         self.needed_rad

@@ -96,7 +96,7 @@ impl Recovery {
                 elevator: 0.0,
                 aileron: 0.0,
                 rudder: 0.0,
-                elevator_trim: None,
+                ..Surfaces::IDLE
             },
             trimmed_at: 1.0,
             load: LoadLoop::new(),
@@ -234,7 +234,7 @@ impl Recovery {
             elevator: self.load.step(&motion, estimate, inputs, trim, rolls),
             aileron,
             rudder: lateral.rudder,
-            elevator_trim: None,
+            ..Surfaces::IDLE
         }
     }
 
@@ -255,7 +255,7 @@ impl Recovery {
             elevator,
             aileron: self.trims.aileron,
             rudder: -estimate.body_rates.yaw_radps.signum(),
-            elevator_trim: None,
+            ..Surfaces::IDLE
         }
     }
 

@@ -1,7 +1,10 @@
 //! The active guidance mode, stored without heap.
 
-use super::{Guidance, Hold, Mode, Progress, Targets, TimedPattern, TimedPatternConfig};
+use super::{
+    Guidance, Hold, Mode, OverGroundMode, Progress, Targets, TimedPattern, TimedPatternConfig,
+};
 use crate::flight::navigation::Estimate;
+use crate::flight::route::OverGround;
 
 /// The guidance mode after engaging.
 ///
@@ -17,6 +20,8 @@ pub enum GuidanceConfig {
     Hold,
     /// The timed pattern of the thesis.
     TimedPattern(TimedPatternConfig),
+    /// Fly the plan of [`AutopilotConfig::plan`](crate::flight::AutopilotConfig::plan).
+    Plan,
 }
 
 impl GuidanceConfig {
@@ -25,6 +30,7 @@ impl GuidanceConfig {
         match self {
             Self::Hold => Mode::Hold,
             Self::TimedPattern(_) => Mode::TimedPattern,
+            Self::Plan => Mode::Plan,
         }
     }
 }
@@ -41,6 +47,7 @@ impl GuidanceConfig {
 /// assert_eq!(active.progress().mode, Mode::Hold);
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[allow(clippy::large_enum_variant, reason = "there is no heap, and one of it")]
 pub enum ActiveMode {
     /// No mode is active.
     #[default]
@@ -49,6 +56,8 @@ pub enum ActiveMode {
     Hold(Hold),
     /// The timed pattern.
     TimedPattern(TimedPattern),
+    /// A route over the ground.
+    OverGround(OverGroundMode),
 }
 
 /// Evaluates an expression for the active mode, or another without one.
@@ -58,20 +67,21 @@ macro_rules! of_mode {
             ActiveMode::None => $none,
             ActiveMode::Hold($mode) => $of,
             ActiveMode::TimedPattern($mode) => $of,
+            ActiveMode::OverGround($mode) => $of,
         }
     };
 }
 
 impl ActiveMode {
     /// Continues the mode of a progress. No mode is active if that mode is not
-    /// configured.
+    /// configured, or needs a route.
     pub fn resume(config: &GuidanceConfig, progress: &Progress) -> Self {
         match (progress.mode, config) {
             (Mode::Hold, _) => Self::Hold(Hold::resume((), progress)),
             (Mode::TimedPattern, GuidanceConfig::TimedPattern(config)) => {
                 Self::TimedPattern(TimedPattern::resume(*config, progress))
             }
-            (Mode::None, _) | (Mode::TimedPattern, GuidanceConfig::Hold) => Self::None,
+            _ => Self::None,
         }
     }
 
@@ -95,9 +105,36 @@ impl ActiveMode {
         of_mode!(self, mode => Some(mode.targets()), none => None)
     }
 
-    /// See [`Guidance::advance`].
-    pub fn advance(&mut self, estimate: &Estimate, dt_s: f64) {
-        of_mode!(self, mode => mode.advance(estimate, dt_s), none => {});
+    /// See [`Guidance::advance`]; where the aircraft is, if it is known, and the
+    /// pressure altitude of mean sea level, m.
+    pub fn advance(
+        &mut self,
+        estimate: &Estimate,
+        here: Option<&OverGround>,
+        sea_level_m: f64,
+        dt_s: f64,
+    ) {
+        match self {
+            Self::None => {}
+            Self::Hold(mode) => mode.advance(estimate, dt_s),
+            Self::TimedPattern(mode) => mode.advance(estimate, dt_s),
+            Self::OverGround(mode) => mode.advance(estimate, here, sea_level_m, dt_s),
+        }
+    }
+
+    /// The mode that flies over the ground, if it is one.
+    pub const fn over_ground(&self) -> Option<&OverGroundMode> {
+        match self {
+            Self::OverGround(mode) => Some(mode),
+            _ => None,
+        }
+    }
+
+    /// Gives a landing up.
+    pub fn go_around(&mut self) {
+        if let Self::OverGround(mode) = self {
+            mode.go_around();
+        }
     }
 
     /// Its progress.
@@ -105,8 +142,13 @@ impl ActiveMode {
         of_mode!(self, mode => mode.progress(), none => Progress::default())
     }
 
-    /// See [`Guidance::shift_altitude`].
+    /// See [`Guidance::shift_altitude`]. A route's altitudes are above mean sea level,
+    /// whatever was captured.
     pub fn shift_altitude(&mut self, by_m: f64) {
-        of_mode!(self, mode => mode.shift_altitude(by_m), none => {});
+        match self {
+            Self::None | Self::OverGround(_) => {}
+            Self::Hold(mode) => mode.shift_altitude(by_m),
+            Self::TimedPattern(mode) => mode.shift_altitude(by_m),
+        }
     }
 }

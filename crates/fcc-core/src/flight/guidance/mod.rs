@@ -1,7 +1,8 @@
 //! Guidance: the targets of control.
 //!
 //! A [mode](Mode) is a kind of guidance: hold the captured values, fly a
-//! pattern. Each is a [`Guidance`]; [`ActiveMode`] contains the active one, and
+//! pattern, follow a route over the ground. Each is a [`Guidance`] or an
+//! [`OverGroundMode`]; [`ActiveMode`] contains the active one, and
 //! [`Mode::after`] is the transition table of the modes. A mode's state is its
 //! [`Progress`], which is part of the record of every tick, so that it need not
 //! be derived from events.
@@ -11,6 +12,7 @@ mod active;
 mod conformance;
 mod hold;
 mod mode;
+mod over_ground_mode;
 mod pattern;
 mod progress;
 
@@ -19,6 +21,7 @@ use super::navigation::Estimate;
 pub use active::{ActiveMode, GuidanceConfig};
 pub use hold::Hold;
 pub use mode::{Mode, ModeInput};
+pub use over_ground_mode::OverGroundMode;
 pub use pattern::{TimedPattern, TimedPatternConfig};
 pub use progress::Progress;
 

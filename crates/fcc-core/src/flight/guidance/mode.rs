@@ -9,13 +9,29 @@ schema! {
     ///
     /// The complete transition table: rows are modes, columns inputs, `·` means
     /// no change. The configured mode is the one that
-    /// [`GuidanceConfig`](super::GuidanceConfig) names.
+    /// [`GuidanceConfig`](super::GuidanceConfig) names; "any other" is every mode but
+    /// None.
     ///
-    /// | | `Engage` | `SetPoint` | `Resume(mode)` | `Disengage` |
-    /// |---|---|---|---|---|
-    /// | **None** | the configured mode | · | · | None |
-    /// | **Hold** | the configured mode | Hold | the mode, if it is Hold or configured | None |
-    /// | **`TimedPattern`** | the configured mode | Hold | the mode, if it is Hold or configured | None |
+    /// | | `Engage` | `SetPoint` | `Plan` | `Pause` | `GoTo` | `Return` | `GoAround` | `Resume(mode)` | `Disengage` |
+    /// |---|---|---|---|---|---|---|---|---|---|
+    /// | **None** | the configured mode | · | · | · | · | · | · | · | None |
+    /// | **Takeoff** | the configured mode | Hold | Plan | Loiter | `GoTo` | Return | · | the mode; a pattern if it is configured | None |
+    /// | **Land** | the configured mode | Hold | Plan | Loiter | `GoTo` | Return | `GoAround` | the mode; a pattern if it is configured | None |
+    /// | **any other** | the configured mode | Hold | Plan | Loiter | `GoTo` | Return | · | the mode; a pattern if it is configured | None |
+    ///
+    /// A plan changes its mode by itself: from Plan to Takeoff and Land at these items, from
+    /// Takeoff to Plan at its altitude, from Land to `GoAround` outside of the limits of a
+    /// landing, and from there to Plan again. While the wheels are on the ground nothing
+    /// but `Disengage` changes a mode.
+    ///
+    /// | needs | |
+    /// |---|---|
+    /// | Plan, Takeoff, Land, `GoAround` | a plan in the configuration, and a position |
+    /// | Loiter, `GoTo`, Return | a position |
+    ///
+    /// What lacks what it needs changes nothing. A Loiter or `GoTo` that is resumed
+    /// circles where the aircraft is: its place is not part of a
+    /// [`Progress`](super::Progress).
     ///
     /// ```
     /// use fcc_core::flight::guidance::{Mode, ModeInput};
@@ -31,6 +47,20 @@ schema! {
         Hold = 1,
         /// [`TimedPattern`](super::TimedPattern).
         TimedPattern = 2,
+        /// The flight plan, item by item.
+        Plan = 3,
+        /// A circle, to wait: the plan is paused.
+        Loiter = 4,
+        /// To a commanded place, and around it.
+        GoTo = 5,
+        /// Home, or to a nearer place to return to, and around it.
+        Return = 6,
+        /// On the runway, and away from it to the altitude of the plan's item.
+        Takeoff = 7,
+        /// On the glide path, and on the runway to a stop.
+        Land = 8,
+        /// A landing is given up: away from the runway, and to the landing again.
+        GoAround = 9,
     }
 }
 
@@ -49,6 +79,16 @@ pub enum ModeInput {
     Engage,
     /// An airspeed, heading or altitude is commanded.
     SetPoint,
+    /// The plan is to be flown, or continued.
+    Plan,
+    /// The aircraft is to wait.
+    Pause,
+    /// A place is commanded.
+    GoTo,
+    /// The aircraft is to return.
+    Return,
+    /// A landing is to be given up.
+    GoAround,
     /// An interrupted flight is to be continued in this mode.
     Resume(Mode),
     /// The loop disengages.
@@ -57,7 +97,18 @@ pub enum ModeInput {
 
 impl Mode {
     /// Every mode, by its number.
-    pub const ALL: [Self; 3] = [Self::None, Self::Hold, Self::TimedPattern];
+    pub const ALL: [Self; 10] = [
+        Self::None,
+        Self::Hold,
+        Self::TimedPattern,
+        Self::Plan,
+        Self::Loiter,
+        Self::GoTo,
+        Self::Return,
+        Self::Takeoff,
+        Self::Land,
+        Self::GoAround,
+    ];
 
     /// The mode after an input, by the transition table; it is entered again
     /// even if it is the same. None if the input changes nothing.
@@ -66,10 +117,17 @@ impl Mode {
         match (self, input) {
             (_, ModeInput::Engage) => Some(configured),
             (_, ModeInput::Disengage) => Some(Self::None),
-            (Self::None, _) => None,
+            (Self::None, _) | (_, ModeInput::Resume(Self::None)) => None,
             (_, ModeInput::SetPoint) => Some(Self::Hold),
+            (_, ModeInput::Plan) => Some(Self::Plan),
+            (_, ModeInput::Pause) => Some(Self::Loiter),
+            (_, ModeInput::GoTo) => Some(Self::GoTo),
+            (_, ModeInput::Return) => Some(Self::Return),
+            (Self::Land, ModeInput::GoAround) => Some(Self::GoAround),
+            (_, ModeInput::GoAround) => None,
             (_, ModeInput::Resume(mode)) => {
-                (mode == Self::Hold || mode == configured).then_some(mode)
+                let is_pattern = mode == Self::TimedPattern;
+                (!is_pattern || mode == configured).then_some(mode)
             }
         }
     }
@@ -80,6 +138,13 @@ impl Mode {
             Self::None => "none",
             Self::Hold => "hold",
             Self::TimedPattern => "timed-pattern",
+            Self::Plan => "plan",
+            Self::Loiter => "loiter",
+            Self::GoTo => "go-to",
+            Self::Return => "return",
+            Self::Takeoff => "take-off",
+            Self::Land => "land",
+            Self::GoAround => "go-around",
         }
     }
 }
@@ -100,31 +165,58 @@ mod tests {
             assert!(Mode::from_number(number).is_none_or(|mode| mode as u8 == number));
         }
         assert_eq!(Mode::from_number(2), Some(Mode::TimedPattern));
-        assert_eq!(Mode::from_number(3), None);
+        assert_eq!(Mode::from_number(6), Some(Mode::Return));
+        assert_eq!(Mode::from_number(9), Some(Mode::GoAround));
+        assert_eq!(Mode::from_number(10), None);
     }
 
     /// The table of [`Mode`]'s documentation, written out again.
     #[test]
     fn transitions_follow_the_documented_table() {
-        use Mode::{Hold, None as Nothing, TimedPattern};
+        use Mode::{GoAround, GoTo, Hold, Land, Loiter};
+        use Mode::{None as Nothing, Plan, Return, Takeoff, TimedPattern};
         let inputs = [
             ModeInput::Engage,
             ModeInput::SetPoint,
+            ModeInput::Plan,
+            ModeInput::Pause,
+            ModeInput::GoTo,
+            ModeInput::Return,
+            ModeInput::GoAround,
             ModeInput::Resume(Nothing),
             ModeInput::Resume(Hold),
             ModeInput::Resume(TimedPattern),
+            ModeInput::Resume(Plan),
+            ModeInput::Resume(Return),
+            ModeInput::Resume(Takeoff),
             ModeInput::Disengage,
         ];
-        let none = Some(Nothing);
-        for configured in [Hold, TimedPattern] {
-            let starts = Some(configured);
-            let pattern = (configured == TimedPattern).then_some(TimedPattern);
-            let hold = Some(Hold);
-            let rows = [
-                (Nothing, [starts, None, None, None, None, none]),
-                (Hold, [starts, hold, None, hold, pattern, none]),
-                (TimedPattern, [starts, hold, None, hold, pattern, none]),
+        for configured in [Hold, TimedPattern, Plan] {
+            let engaged = [
+                Some(configured),
+                Some(Hold),
+                Some(Plan),
+                Some(Loiter),
+                Some(GoTo),
+                Some(Return),
+                None,
+                None,
+                Some(Hold),
+                (configured == TimedPattern).then_some(TimedPattern),
+                Some(Plan),
+                Some(Return),
+                Some(Takeoff),
+                Some(Nothing),
             ];
+            let mut landing = engaged;
+            landing[6] = Some(GoAround);
+            let mut standby = [None; 14];
+            (standby[0], standby[13]) = (Some(configured), Some(Nothing));
+            let rows = Mode::ALL.map(|mode| match mode {
+                Nothing => (mode, standby),
+                Land => (mode, landing),
+                _ => (mode, engaged),
+            });
             for (mode, expected) in rows {
                 for (input, after) in inputs.into_iter().zip(expected) {
                     assert_eq!(

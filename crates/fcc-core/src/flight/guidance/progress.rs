@@ -21,7 +21,7 @@ schema! {
         /// The mode.
         #[field(1)]
         pub mode: Mode,
-        /// The present part of the mode: of a pattern, the leg.
+        /// The present part of the mode: of a pattern, the leg; of a plan, the item, from 1.
         #[field(2)]
         pub item: u32,
         /// How long it has been active, s of the plant's time.
@@ -47,8 +47,11 @@ impl fmt::Display for Progress {
     /// The mode and its present part: `timed-pattern leg 3`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.mode {
-            Mode::None | Mode::Hold => write!(f, "{}", self.mode),
+            Mode::Plan | Mode::Takeoff | Mode::Land | Mode::GoAround => {
+                write!(f, "{} item {}", self.mode, self.item)
+            }
             Mode::TimedPattern => write!(f, "{} leg {}", self.mode, self.item),
+            _ => write!(f, "{}", self.mode),
         }
     }
 }

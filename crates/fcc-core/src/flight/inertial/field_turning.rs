@@ -34,6 +34,8 @@ pub(super) struct Turning {
     pub(super) shown: Vector3<f64>,
     /// What the gyroscopes have turned less that, across the field, rad.
     pub(super) error: Vector3<f64>,
+    /// How far the gyroscopes have turned in all, along the field as well, rad.
+    pub(super) turned_rad: f64,
     /// The variance of each part of both, by the scatter of the samples, rad².
     pub(super) variance: f64,
     /// The strength of the field, µT, and the scatter of its samples, as a share of
@@ -46,6 +48,7 @@ impl Turning {
     pub(super) const NONE: Self = Self {
         shown: Vector3::new(0.0, 0.0, 0.0),
         error: Vector3::new(0.0, 0.0, 0.0),
+        turned_rad: 0.0,
         variance: 0.0,
         strength_ut: 0.0,
         scatter: 0.0,
@@ -167,7 +170,7 @@ impl FieldTurning {
             if is_full {
                 // Its last sample is the first of the next: a jump is inside of one.
                 window.add(taken, field, attitude);
-                ended = window.turning(lasted_s);
+                ended = window.turning(lasted_s, attitude);
             }
             if is_full || lasted_s > LONGEST_WINDOW_S {
                 self.window = None;
@@ -219,7 +222,7 @@ impl Window {
 
     /// The rotations over `lasted_s` by the slopes of the lines, ω = (dm/dt × m) / m²,
     /// and their variance by what is left of the samples beside them.
-    fn turning(&self, lasted_s: f64) -> Option<Turning> {
+    fn turning(&self, lasted_s: f64, attitude: UnitQuaternion<f64>) -> Option<Turning> {
         let n = self.samples;
         let spread = self.time_squared - self.time * self.time / n;
         let slope = |line: &Line| (line.by_time - line.sum * (self.time / n)) / spread;
@@ -242,6 +245,7 @@ impl Window {
         Some(Turning {
             shown: by_field.cross(&body) * per_slope,
             error: steady.cross(&by_error) * per_slope,
+            turned_rad: self.attitude.angle_to(&attitude),
             variance: sample_variance / spread * lasted_s * lasted_s / strength_squared,
             strength_ut: libm::sqrt(strength_squared),
             scatter: libm::sqrt(left / (3.0 * n) / strength_squared),

@@ -24,7 +24,8 @@ use crate::framework::Time;
 /// current of the aircraft turns the field by less.
 const CONTRADICTS_RAD: f64 = 0.21;
 /// ... and beyond this share of the angle that either has turned: a compass that
-/// is turned by 30° errs by half of it, and so does one with 20 µT of iron.
+/// is turned by 30° errs by half of what the aircraft has turned, 2 sin 15°, whatever part
+/// of that is along the field, and so does one with 20 µT of iron.
 const CONTRADICTS_SHARE: f64 = 0.6;
 /// ... and beyond so many standard deviations.
 const CONTRADICTS_SIGMAS: f64 = 5.0;
@@ -253,7 +254,7 @@ impl GyroscopeMonitor {
             let (turned, wrong) = (window.shown.norm(), window.error.norm());
             shown += window.shown * (wrong / turned.max(1e-9)).min(1.0);
             by_field += turned;
-            by_rates += (window.shown + window.error).norm();
+            by_rates += window.turned_rad;
             // Of both parts across the field.
             variance += 2.0 * window.variance;
             if wrong > largest.norm() {

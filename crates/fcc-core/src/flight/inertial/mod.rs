@@ -29,7 +29,10 @@ pub use earth::{gravity_mps2, metres_per_radian};
 pub use kalman::{Innovation, KalmanConfig, KalmanNavigation};
 pub use magnetism::{MAGNETIC_MODEL_YEARS, earth_field_ut};
 pub use observation::{GeodeticPosition, Observation, ObservationKind, Sigma, Solution};
-pub use raw_navigation::{MagneticNorth, RawNavigation, RawNavigationConfig, RawNavigationMethod};
+pub use raw_navigation::{
+    FoundBy, MagneticNorth, RawNavigation, RawNavigationConfig, RawNavigationMethod, SensorKind,
+    WrongSensor,
+};
 pub use thesis::{PHONE_BELOW, ThesisNavigation};
 
 use crate::framework::Time;

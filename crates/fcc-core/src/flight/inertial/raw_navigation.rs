@@ -2,28 +2,41 @@
 //! of attitude, heading, rates, specific force, airspeed and altitude, in the
 //! place of sensors that measure these.
 
+mod compared;
+mod consistency;
 mod readings;
+mod receiver;
 mod repeats;
+mod sensor_kind;
+mod sensor_monitor;
 mod several;
+mod trial;
 
 use core::time::Duration;
 
 use libm::atan2;
-use readings::{attitude_of, either, force_of, is_certain, is_elsewhere, is_new, rates_of};
+use readings::{
+    attitude_of, either, field_in, force_in, force_of, is_certain, is_elsewhere, is_new, rates_in,
+    rates_of,
+};
 use repeats::Repeats;
+use sensor_monitor::SensorMonitor;
+
+pub use sensor_kind::SensorKind;
+pub use sensor_monitor::{FoundBy, WrongSensor};
 
 use super::field_rates::FieldRates;
 use super::gyroscope_monitor::GyroscopeMonitor;
 use super::units::Units;
 use super::{
-    GeodeticPosition, InertialNavigation, Innovation, KalmanConfig, KalmanNavigation, Observation,
-    Solution, ThesisNavigation, earth_field_ut,
+    InertialNavigation, Innovation, KalmanConfig, KalmanNavigation, Observation, Solution,
+    ThesisNavigation,
 };
 use crate::blocks::wrap_two_pi;
 use crate::flight::atmosphere::{calibrated_airspeed_mps, pressure_altitude_m};
 use crate::flight::navigation::is_possible_fix;
 use crate::flight::orientation::euler_from_quaternion;
-use crate::flight::{BodyRates, GnssFix, Measurements, Velocity};
+use crate::flight::{BodyRates, Measurements};
 use crate::framework::{Reading, Time};
 
 /// A heading less certain than this is none, rad.
@@ -118,8 +131,13 @@ pub struct RawNavigation {
     repeats: Repeats,
     accelerometers: Units,
     gyroscopes: Units,
+    sensors: SensorMonitor,
+    /// Of several the one that is not used any more since the last step.
+    wrong: Option<WrongSensor>,
     /// The gyroscopes' last sample, used or not.
     rates_read: Reading<BodyRates>,
+    /// The fastest of the latest rates that were used, rad/s.
+    fastest_radps: f64,
     gyroscope: GyroscopeMonitor,
     field_rates: FieldRates,
     /// Since when gyroscopes are doubted, if they are.
@@ -147,22 +165,24 @@ impl RawNavigation {
             MagneticNorth::Field(field) => Some(field),
             MagneticNorth::ModelOf(_) => None,
         };
+        let kalman = KalmanConfig {
+            delay: config.delay,
+            earth_field_ut: field,
+        };
         Self {
             config,
             method: match config.method {
-                RawNavigationMethod::Kalman => {
-                    Method::Kalman(KalmanNavigation::new(KalmanConfig {
-                        delay: config.delay,
-                        earth_field_ut: field,
-                    }))
-                }
+                RawNavigationMethod::Kalman => Method::Kalman(KalmanNavigation::new(kalman)),
                 RawNavigationMethod::Thesis => Method::Thesis(ThesisNavigation::new()),
             },
             used: Measurements::default(),
             repeats: Repeats::default(),
             accelerometers: Units::default(),
             gyroscopes: Units::default(),
+            sensors: SensorMonitor::default(),
+            wrong: None,
             rates_read: Reading::default(),
+            fastest_radps: 0.0,
             gyroscope: GyroscopeMonitor::new(),
             field_rates: FieldRates::default(),
             by_field_since: Time::NEVER,
@@ -236,6 +256,7 @@ impl RawNavigation {
             rates = rates_of(&self.used.raw_body_rates, &solution);
             force = force_of(&self.used.raw_specific_force, &solution);
             self.solution = solution;
+            self.judge_sensors(at);
         }
         let fix = self.used.gnss;
         self.found = Measurements {
@@ -267,9 +288,9 @@ impl RawNavigation {
             raw.raw_body_rates,
             raw.magnetic_field,
         );
-        let force = [f.value.x_mps2, f.value.y_mps2, f.value.z_mps2];
-        let rates = [r.value.roll_radps, r.value.pitch_radps, r.value.yaw_radps];
-        let field = [m.value.x_ut, m.value.y_ut, m.value.z_ut];
+        let force = force_in(&f.value);
+        let rates = rates_in(&r.value);
+        let field = field_in(&m.value);
         let repeats = self
             .repeats
             .step(raw, [force, rates, field], &self.used.gnss);
@@ -282,9 +303,12 @@ impl RawNavigation {
             && self.gyroscope.add_rates(r.taken, rates, &self.solution)
         {
             self.used.raw_body_rates = r;
+            self.follow_rates(rates);
             self.take(r.taken, Observation::Rates(rates));
         }
+        let before = self.used.magnetic_field;
         if !repeats.field && is_new(&mut self.used.magnetic_field, &m, now) {
+            self.follow_magnetometers(&before);
             self.gyroscope.add_field(m.taken, field, &self.solution);
             self.turn_by_field(m.taken, field);
             self.take(m.taken, Observation::MagneticField(field));
@@ -341,35 +365,8 @@ impl RawNavigation {
         }
     }
 
-    fn take_fix(&mut self, taken: Time, fix: &GnssFix) {
-        let place = GeodeticPosition {
-            latitude_rad: fix.position.latitude_rad,
-            longitude_rad: fix.position.longitude_rad,
-            altitude_m: fix.position.altitude_m,
-        };
-        if let (MagneticNorth::ModelOf(year), Method::Kalman(navigation)) =
-            (self.config.north, &mut self.method)
-            && !self.knows_field
-            && let Some(field) = earth_field_ut(place, year)
-        {
-            navigation.learn_earth_field(field);
-            self.declination_rad = declination_rad(field);
-            // Where else it flies, the filter follows the field by itself.
-            self.knows_field = true;
-        }
-        self.take(taken, Observation::Position(place));
-        let Velocity {
-            north_mps,
-            east_mps,
-            down_mps,
-        } = fix.velocity;
-        self.take(
-            taken,
-            Observation::Velocity([north_mps, east_mps, down_mps]),
-        );
-    }
-
     fn take(&mut self, taken: Time, observation: Observation) {
+        self.sensors.share(taken, observation);
         match &mut self.method {
             Method::Kalman(navigation) => navigation.observe(taken, observation),
             Method::Thesis(navigation) => navigation.observe(taken, observation),

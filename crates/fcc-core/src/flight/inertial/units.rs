@@ -1,5 +1,6 @@
 //! Several sensors of one kind: one that is used no more is left for good.
 
+use super::FoundBy;
 use crate::framework::Flags;
 
 /// Which sensors of one kind are not used any more, by their number in the loop. The loop
@@ -13,23 +14,36 @@ use crate::framework::Flags;
 pub(super) struct Units {
     used: Option<u8>,
     left: Flags,
+    /// Why the one that is used is left.
+    why: Option<FoundBy>,
 }
 
 impl Units {
-    /// Takes the number of the sensor that a reading is of; whether it is another one than
-    /// before.
-    pub(super) fn use_of(&mut self, sensor: u8) -> bool {
-        let before = self.used.replace(sensor).filter(|before| *before != sensor);
-        if let Some(before) = before {
-            self.left |= bit(before);
-        }
-        before.is_some()
+    /// Takes the number of the sensor that a reading is of; if it is another one than before,
+    /// that one, and why it is not used any more.
+    pub(super) fn use_of(&mut self, sensor: u8) -> Option<(u8, FoundBy)> {
+        let before = self
+            .used
+            .replace(sensor)
+            .filter(|before| *before != sensor)?;
+        self.left |= bit(before);
+        Some((before, self.why.take().unwrap_or(FoundBy::Silence)))
     }
 
-    /// The sensor that is used is not to be used any more, if there is another.
-    pub(super) fn leave(&mut self) {
-        if let Some(sensor) = self.used {
+    /// Why the sensor that is used is not to be used any more, if there is another; none if it
+    /// may be.
+    pub(super) fn judge(&mut self, why: Option<FoundBy>) {
+        self.why = why;
+        if let (Some(sensor), Some(_)) = (self.used, why) {
             self.left |= bit(sensor);
+        }
+    }
+
+    /// Whether a sensor was left, and another one is used.
+    pub(super) const fn left_one(&self) -> bool {
+        match self.used {
+            Some(used) => !self.left.is_empty() && !self.is_left(used),
+            None => false,
         }
     }
 

@@ -157,6 +157,11 @@ impl AirspeedMonitor {
         }
     }
 
+    /// The wind that the filter with the sensor has found, and the variation.
+    pub(super) fn wind(&self) -> Option<([f64; 2], f64)> {
+        self.bank.as_ref()?.believing.wind.found()
+    }
+
     /// The doubt of the sensor, while it lasts.
     pub(super) const fn doubt(&self) -> Option<Doubt> {
         self.doubt

@@ -1,5 +1,7 @@
 //! What navigation knows of the aircraft's motion.
 
+use core::f64::consts::{FRAC_PI_2, PI};
+
 use crate::flight::BodyRates;
 use crate::schema;
 
@@ -87,6 +89,24 @@ schema! {
         /// 0 while the sensor is used.
         #[field(17)]
         pub airspeed_uncertainty_mps: f64,
+        /// Latitude by which the modes over the ground fly, rad; 0 before it is known.
+        #[field(18, range = -FRAC_PI_2..=FRAC_PI_2)]
+        pub latitude_rad: f64,
+        /// Longitude, likewise, rad.
+        #[field(19, range = -PI..=PI)]
+        pub longitude_rad: f64,
+        /// Velocity over the ground towards true north, likewise, m/s.
+        #[field(20)]
+        pub north_mps: f64,
+        /// Towards east, m/s.
+        #[field(21)]
+        pub east_mps: f64,
+        /// Wind, towards true north, m/s.
+        #[field(22)]
+        pub wind_north_mps: f64,
+        /// Towards east, m/s.
+        #[field(23)]
+        pub wind_east_mps: f64,
         /// How old the newest reading was when it arrived, s, by its source's own
         /// clock and relative to the fastest one; 0 if it has none.
         #[field(410)]
@@ -121,6 +141,12 @@ impl Estimate {
         acceleration_mps2: 0.0,
         airspeed_source: AirspeedSource::Sensor,
         airspeed_uncertainty_mps: 0.0,
+        latitude_rad: 0.0,
+        longitude_rad: 0.0,
+        north_mps: 0.0,
+        east_mps: 0.0,
+        wind_north_mps: 0.0,
+        wind_east_mps: 0.0,
         reading_age_s: 0.0,
         reading_jitter_s: 0.0,
     };

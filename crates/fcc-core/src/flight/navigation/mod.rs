@@ -165,6 +165,12 @@ impl Navigation {
         self.monitor.doubt()
     }
 
+    /// The wind towards north and east, m/s, and what true north is off the compass, rad;
+    /// none before it is known.
+    pub(crate) fn wind(&self) -> Option<([f64; 2], f64)> {
+        self.monitor.wind()
+    }
+
     /// How much slower the aircraft is than estimated if a doubted sensor is right, m/s.
     pub(crate) fn may_be_slower_by_mps(&self) -> f64 {
         self.monitor.slower_mps()

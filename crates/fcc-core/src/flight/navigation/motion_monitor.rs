@@ -91,6 +91,8 @@ pub(super) struct MotionMonitor {
     agrees_s: f64,
     /// The time since they were compared last, s.
     passed_s: f64,
+    /// Whether one might be doubted in the last tick.
+    might_doubt: bool,
 }
 
 impl MotionMonitor {
@@ -105,6 +107,7 @@ impl MotionMonitor {
             odds_since_doubt: 0.0,
             agrees_s: 0.0,
             passed_s: 0.0,
+            might_doubt: false,
         }
     }
 
@@ -121,6 +124,12 @@ impl MotionMonitor {
     pub(super) fn step(&mut self, input: &MotionInput, dt_s: f64) -> Option<[f64; 4]> {
         if !input.may_doubt {
             self.doubt = None;
+        }
+        let might_doubt = core::mem::replace(&mut self.might_doubt, input.may_doubt);
+        if input.may_doubt && !might_doubt {
+            // What an attitude that was still found has turned is no failure.
+            self.rotation = None;
+            self.suspicion = None;
         }
         let Some((attitude, rates)) = input.measured else {
             self.rotation = None;
@@ -315,5 +324,57 @@ fn between(from: [f64; 4], to: [f64; 4]) -> [f64; 2] {
         [x * angle / length, y * angle / length]
     } else {
         [0.0; 2]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Straight and level at 55 m/s in light gusts: the heading swings.
+    fn input(roll_rad: f64, time_s: f64, may_doubt: bool) -> MotionInput {
+        let attitude = Attitude {
+            roll_rad,
+            pitch_rad: 0.0,
+        };
+        MotionInput {
+            measured: Some((attitude, BodyRates::default())),
+            flown: EulerAngles {
+                roll_rad,
+                ..EulerAngles::default()
+            },
+            witness: WitnessInput {
+                forward_mps2: Some(0.0),
+                heading_rad: Some(0.02 * (0.5 * time_s).sin()),
+                airspeed_mps: Some(55.0),
+                climb_rate_mps: Some(0.0),
+                angle_of_attack_rad: 0.0,
+                gusts_mps: 0.5,
+            },
+            may_doubt,
+        }
+    }
+
+    fn doubts(jumps_at_s: f64) -> bool {
+        let mut monitor = MotionMonitor::new();
+        (0..4_000_u32).any(|tick| {
+            let time_s = f64::from(tick) * 0.025;
+            let roll_rad = if time_s < jumps_at_s { -0.07 } else { 0.0 };
+            monitor.step(&input(roll_rad, time_s, time_s > 15.0), 0.025);
+            monitor.doubt().is_some()
+        })
+    }
+
+    /// A filter that is switched on finds its attitude, by 4° within a second, which no
+    /// gyroscope shows.
+    #[test]
+    fn an_attitude_that_is_found_before_engaging_is_not_doubted_after_it() {
+        assert!(!doubts(2.0));
+    }
+
+    /// The same in flight.
+    #[test]
+    fn an_attitude_that_jumps_in_flight_is_doubted() {
+        assert!(doubts(20.0));
     }
 }

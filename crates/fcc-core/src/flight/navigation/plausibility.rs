@@ -13,8 +13,8 @@ use libm::{asin, cos, sin, sqrt};
 
 use crate::blocks::wrap_pi;
 use crate::flight::{
-    Attitude, BodyRates, GnssFix, Measurements, PilotControls, Plant, Position, SpecificForce,
-    Surfaces, Velocity,
+    Attitude, Battery, BodyRates, GnssFix, Measurements, PilotControls, Plant, Position,
+    SpecificForce, Surfaces, Velocity,
 };
 use crate::framework::schema::{Schema, in_range};
 use crate::framework::{Flags, Reading};
@@ -288,7 +288,7 @@ pub(crate) fn is_possible_fix(fix: &GnssFix) -> bool {
 
 /// Copies the raw readings: any number, in its range if one is declared, and of a
 /// receiver what is possible. What uses them judges them further.
-fn take_raw(good: &mut Measurements, new: &Measurements) -> [bool; 8] {
+fn take_raw(good: &mut Measurements, new: &Measurements) -> [bool; 11] {
     fn taken<T: Schema>(good: &mut Reading<T>, new: &Reading<T>) -> bool {
         taken_if(good, new, in_range)
     }
@@ -311,6 +311,9 @@ fn take_raw(good: &mut Measurements, new: &Measurements) -> [bool; 8] {
         taken(&mut good.air_temperature_k, &new.air_temperature_k),
         taken_if(&mut good.gnss, &new.gnss, is_possible_fix),
         taken(&mut good.range_m, &new.range_m),
+        taken(&mut good.weight_on_wheels, &new.weight_on_wheels),
+        taken(&mut good.engine_speed_radps, &new.engine_speed_radps),
+        taken_if(&mut good.battery, &new.battery, Battery::is_valid),
     ]
 }
 

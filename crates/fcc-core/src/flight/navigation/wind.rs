@@ -177,6 +177,12 @@ impl Wind {
         Some((mps, sqrt(variance.max(0.0) + squared(read.gusts_mps))))
     }
 
+    /// The wind towards north and east, m/s, and the variation, rad.
+    pub(super) fn found(&self) -> Option<([f64; 2], f64)> {
+        let [north, east, _, turned] = self.x;
+        (self.learned_s >= CORRELATED_S).then_some(([north, east], turned))
+    }
+
     /// The error of the airspeed sensor over its airspeed, and its standard deviation;
     /// none while heading and velocity contradict each other, as with a receiver that is
     /// frozen or whose axes or units are others.

@@ -13,8 +13,7 @@
 //! | [`BankCommand`] | its bank, within limit and rate |
 //! | [`turn`] | ground speed, smallest radius, fly-by and fly-over in wind |
 //!
-//! No mode of [`guidance`](super::guidance) uses them yet: the autopilot does not
-//! fly a plan.
+//! [`route`](super::route) puts them in order.
 //!
 //! Courses are of the ground track, headings of the nose: in wind they differ. Both
 //! are in rad clockwise from true north, and vectors are (north, east).
@@ -26,7 +25,7 @@ mod local_plane;
 mod npfg;
 mod shape;
 #[cfg(test)]
-mod simulation;
+pub(super) mod simulation;
 pub mod turn;
 
 pub use bank::BankCommand;
@@ -78,22 +77,22 @@ impl Motion {
 }
 
 /// The length of a vector, by `libm`, as everything in a tick.
-fn length(v: Vector2<f64>) -> f64 {
+pub(super) fn length(v: Vector2<f64>) -> f64 {
     hypot(v.x, v.y)
 }
 
 /// A vector of length 1, or none of a vector of almost none.
-fn unit(v: Vector2<f64>) -> Option<Vector2<f64>> {
+pub(super) fn unit(v: Vector2<f64>) -> Option<Vector2<f64>> {
     let length = length(v);
     (length > 1e-9 && length.is_finite()).then(|| v / length)
 }
 
 /// The vertical part of a × b: positive if b is to the right of a.
-fn cross(a: Vector2<f64>, b: Vector2<f64>) -> f64 {
+pub(super) fn cross(a: Vector2<f64>, b: Vector2<f64>) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
 /// The vector turned right by 90°.
-fn right_of(v: Vector2<f64>) -> Vector2<f64> {
+pub(super) fn right_of(v: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-v.y, v.x)
 }

@@ -7,24 +7,28 @@ use nalgebra::Vector2;
 
 use super::{BankCommand, L1Config, LateralLaw, Law, Motion, NpfgConfig, Path};
 
-const KT: f64 = 1_852.0 / 3_600.0;
-const DT_S: f64 = 0.01;
+pub(in crate::flight) const KT: f64 = 1_852.0 / 3_600.0;
+pub(in crate::flight) const DT_S: f64 = 0.01;
 const MOST_BANK_DEG: f64 = 30.0;
 const BANK_RATE_DEG: f64 = 15.0;
 
 /// Flies at a constant airspeed: ψ̇ = g·tan φ/V, φ follows its command with a lag.
-pub(super) struct PointMass {
-    pub(super) position_m: Vector2<f64>,
-    heading_rad: f64,
+pub(in crate::flight) struct PointMass {
+    pub(in crate::flight) position_m: Vector2<f64>,
+    pub(in crate::flight) heading_rad: f64,
     bank_rad: f64,
-    airspeed_mps: f64,
+    pub(in crate::flight) airspeed_mps: f64,
     wind_mps: Vector2<f64>,
     roll_tau_s: f64,
     bank: BankCommand,
 }
 
 impl PointMass {
-    pub(super) fn new(airspeed_kt: f64, wind_mps: Vector2<f64>, roll_tau_s: f64) -> Self {
+    pub(in crate::flight) fn new(
+        airspeed_kt: f64,
+        wind_mps: Vector2<f64>,
+        roll_tau_s: f64,
+    ) -> Self {
         let (most, rate) = (MOST_BANK_DEG.to_radians(), BANK_RATE_DEG.to_radians());
         let mut bank = BankCommand::new(most, rate);
         bank.reset(0.0);
@@ -39,7 +43,7 @@ impl PointMass {
         }
     }
 
-    pub(super) fn motion(&self) -> Motion {
+    pub(in crate::flight) fn motion(&self) -> Motion {
         let heading = Vector2::new(self.heading_rad.cos(), self.heading_rad.sin());
         Motion {
             position_m: self.position_m,
@@ -49,7 +53,7 @@ impl PointMass {
     }
 
     /// One tick with an acceleration; returns the commanded bank.
-    pub(super) fn fly(&mut self, acceleration_mps2: f64) -> f64 {
+    pub(in crate::flight) fn fly(&mut self, acceleration_mps2: f64) -> f64 {
         let command = self.bank.step(acceleration_mps2, DT_S);
         self.bank_rad += (command - self.bank_rad) * (1.0 - (-DT_S / self.roll_tau_s).exp());
         self.heading_rad += 9.806_65 * self.bank_rad.tan() / self.airspeed_mps * DT_S;
@@ -79,11 +83,11 @@ fn laws() -> [Law; 2] {
     ]
 }
 
-fn rms(errors: &[f64]) -> f64 {
+pub(in crate::flight) fn rms(errors: &[f64]) -> f64 {
     (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt()
 }
 
-fn wind(from_deg: i32, kt: f64) -> Vector2<f64> {
+pub(in crate::flight) fn wind(from_deg: i32, kt: f64) -> Vector2<f64> {
     let to = f64::from(from_deg + 180).to_radians();
     Vector2::new(to.cos(), to.sin()) * (kt * KT)
 }

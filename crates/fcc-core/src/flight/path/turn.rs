@@ -83,8 +83,9 @@ pub fn smallest_turn_m(
 }
 
 /// The largest turn that is flown before its waypoint, rad; a sharper one would begin
-/// too long before it.
-pub const FLY_BY_RAD: f64 = 0.5 * PI;
+/// too long before it. A right angle of a map counts as one: from the meridians'
+/// convergence and the places' rounding it is off by up to 1°.
+pub const FLY_BY_RAD: f64 = 91.0 / 180.0 * PI;
 
 /// A turn at a waypoint from one leg onto the next, over the ground: one arc before
 /// the waypoint (fly-by), or behind it an arc beyond the next course and one back
@@ -126,12 +127,36 @@ impl Turn {
     /// ```
     pub fn new(through_rad: f64, radius_m: f64) -> Self {
         let angle = through_rad.abs().min(PI);
-        // A right angle that was computed from places is one.
-        if angle <= FLY_BY_RAD + 1e-9 {
+        if angle <= FLY_BY_RAD {
             return Self::FlyBy {
                 lead_m: radius_m * tan(0.5 * angle),
             };
         }
+        Self::over(angle, radius_m)
+    }
+
+    /// The same, but over the waypoint where the arc of a fly-by would pass it at more
+    /// than a distance, m: R(1/cos(Δ/2) - 1).
+    ///
+    /// ```
+    /// use fcc_core::flight::path::turn::Turn;
+    ///
+    /// // 90° with 500 m pass at 207 m.
+    /// let angle = 90.0_f64.to_radians();
+    /// assert!(matches!(Turn::within(angle, 500.0, 208.0), Turn::FlyBy { .. }));
+    /// assert!(matches!(Turn::within(angle, 500.0, 207.0), Turn::FlyOver { .. }));
+    /// ```
+    pub fn within(through_rad: f64, radius_m: f64, within_m: f64) -> Self {
+        let turn = Self::new(through_rad, radius_m);
+        let angle = through_rad.abs().min(PI);
+        let passes_m = radius_m * (1.0 / cos(0.5 * angle) - 1.0);
+        match turn {
+            Self::FlyBy { .. } if passes_m > within_m => Self::over(angle, radius_m),
+            turn => turn,
+        }
+    }
+
+    fn over(angle: f64, radius_m: f64) -> Self {
         let beyond_rad = acos(0.5 * (1.0 + cos(angle)));
         Self::FlyOver {
             beyond_rad,

@@ -2,17 +2,17 @@
 //! and is told what to do next. Nothing is engaged and no actuator is opened.
 
 mod picture;
-mod words;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use fcc_core::flight::calibration::{GuidedCalibration, MountingWay, Next};
+use fcc_core::flight::calibration::{GuidedCalibration, Next};
 use fcc_core::framework::{Tick, Time};
 use fcc_flight::calibrate::{
-    CalibrationKind, CalibrationSession, Entry, LockedCalibrationFile, SessionError, apply,
+    CalibrationKind, CalibrationSession, Entry, Extent, LockedCalibrationFile, SessionError, apply,
+    beforehand, not_calibrated, words,
 };
 use fcc_flight::config::Config;
 use fcc_linux::monotonic;
@@ -33,6 +33,7 @@ pub(super) fn apply_calibration(config: &mut Config) -> Result<(), Failure> {
     let applied = apply(config, unix_s())
         .map_err(|(file, error)| Failure::new(format_args!("{}: {error}", file.display())))?;
     say(&applied.remarks);
+    say(not_calibrated(config).as_slice());
     Ok(())
 }
 
@@ -55,21 +56,11 @@ struct Printed<'a> {
 /// Calibrates a sensor.
 pub(super) fn calibrate(args: &CalibrateArgs) -> Result<Exit, Failure> {
     let (config, _) = Config::load_with_text(&args.config)?;
-    if args.level_only && args.kind != CalibrationKind::Mounting {
-        return Err(Failure::of(
-            Exit::Usage,
-            "--level-only is for the mounting: leave it out",
-        ));
-    }
+    let extent = extent(args)?;
     let path = config.calibration_file();
     let wrong = |error| Failure::new(format_args!("{}: {error}", path.display()));
-    let way = if args.level_only {
-        MountingWay::LevelOnly
-    } else {
-        MountingWay::LevelAndNoseUp
-    };
     let place = args.sensor.clone();
-    let session = CalibrationSession::open(&config, args.kind, way, place, args.fault, unix_s());
+    let session = CalibrationSession::open(&config, args.kind, extent, place, args.fault, unix_s());
     let mut session = session.map_err(failure)?;
     say(session.remarks());
     if args.lockstep && session.length_s().is_none() {
@@ -81,6 +72,7 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<Exit, Failure> {
     // Before the first step: what cannot be stored need not be measured.
     let file = (!args.dry_run).then(|| LockedCalibrationFile::open(path.clone()));
     let file = file.transpose().map_err(wrong)?;
+    output::message(beforehand(args.kind, extent));
     guide(args, &config, &mut session)?;
     let found = session.finish().map_err(|refusal| {
         let kind = args.kind.name();
@@ -100,6 +92,24 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<Exit, Failure> {
         return Ok(output::json(&printed, Exit::Success));
     }
     Ok(output::result(text(&printed), Exit::Success))
+}
+
+/// How much is to be done.
+fn extent(args: &CalibrateArgs) -> Result<Extent, Failure> {
+    for (is_given, name, kind) in [
+        (args.level_only, "--level-only", CalibrationKind::Mounting),
+        (args.bias_only, "--bias-only", CalibrationKind::Gyroscope),
+    ] {
+        if is_given && args.kind != kind {
+            let why = format!("{name} is for the {}: leave it out", kind.name());
+            return Err(Failure::of(Exit::Usage, why));
+        }
+    }
+    Ok(if args.level_only || args.bias_only {
+        Extent::Part
+    } else {
+        Extent::Whole
+    })
 }
 
 fn text(printed: &Printed<'_>) -> String {
@@ -135,7 +145,6 @@ fn guide(
     session: &mut CalibrationSession,
 ) -> Result<(), Failure> {
     let stopped = stopped_by_signals()?;
-    output::message(words::beforehand(args.kind));
     let mut screen = Screen::new();
     let period = Duration::from_secs_f64(1.0 / config.tick.rate_hz);
     // A simulated person does not go on.
@@ -177,7 +186,9 @@ fn guide(
 
 fn failure(error: SessionError) -> Failure {
     let exit = match error {
-        SessionError::Silent(_) | SessionError::File { .. } => Exit::Failure,
+        SessionError::Silent(_) | SessionError::NoAccelerometer | SessionError::File { .. } => {
+            Exit::Failure
+        }
         SessionError::Order { .. } => Exit::CalibrationRefused,
         _ => Exit::Usage,
     };
@@ -222,7 +233,7 @@ impl Screen {
             if self.said != Some(now) {
                 self.said = Some(now);
                 let percent = 100.0 * guided.progress();
-                output::message(format_args!("{percent:3.0} %  {}", words::words(next)));
+                output::message(format_args!("{percent:3.0} %  {}", words(next)));
             }
             return;
         }

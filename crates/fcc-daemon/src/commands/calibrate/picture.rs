@@ -4,9 +4,7 @@ use std::fmt::Write as _;
 
 use fcc_core::flight::Measurements;
 use fcc_core::flight::calibration::{CELLS, CELLS_OF_BANDS, Coverage, GuidedCalibration, Place};
-use fcc_flight::calibrate::CalibrationKind;
-
-use super::words::words;
+use fcc_flight::calibrate::{CalibrationKind, words};
 
 /// Characters of the bar.
 const BAR: usize = 40;
@@ -21,10 +19,10 @@ pub(super) fn picture(
     match guided.coverage() {
         Coverage::Places(held) => places(&mut text, held),
         Coverage::Cells(covered) => cells(&mut text, covered),
+        Coverage::Turns(known) => turns(&mut text, known),
         Coverage::None => {}
     }
-    let done = (guided.progress() * BAR as f64).round() as usize;
-    let bar = "█".repeat(done) + &"·".repeat(BAR - done.min(BAR));
+    let bar = bar(guided.progress(), BAR);
     let percent = 100.0 * guided.progress();
     let rest = if guided.is_at_rest() {
         "at rest"
@@ -35,6 +33,20 @@ pub(super) fn picture(
     let _ = writeln!(text, "  {}", values(kind, measured));
     let _ = write!(text, "  → {}", words(guided.next()));
     text
+}
+
+/// So much of a bar.
+fn bar(share: f64, length: usize) -> String {
+    let done = (share * length as f64).round() as usize;
+    "█".repeat(done) + &"·".repeat(length - done.min(length))
+}
+
+/// How much is known of turns about each axis.
+fn turns(text: &mut String, known: [f64; 3]) {
+    for (share, axis) in known.into_iter().zip(["x", "y", "z"]) {
+        let bar = bar(share, BAR / 2);
+        let _ = writeln!(text, "  turned about {axis}  {bar} {:3.0} %", 100.0 * share);
+    }
 }
 
 /// The faces as an unfolded cube, and the edges of each two axes.

@@ -125,20 +125,20 @@ mod tests {
             resume: Resume {
                 progress: Progress {
                     mode,
+                    item: 3,
                     elapsed_s,
                     captured: Targets {
                         airspeed_mps: 51.4,
                         heading_rad: 6.1,
                         altitude_m: 914.4,
                     },
-                    ..Progress::default()
                 },
                 surfaces: Surfaces {
                     throttle: 0.7,
                     elevator: -0.1,
                     aileron: 0.02,
                     rudder: 0.0,
-                    elevator_trim: None,
+                    ..Surfaces::IDLE
                 },
                 altimeter_setting_pa: Some(102_340.0),
                 altitude_reference: AltitudeReference::SeaLevel,

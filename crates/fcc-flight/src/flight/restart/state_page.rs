@@ -26,6 +26,9 @@ pub(super) struct Page {
     #[serde(rename = "take_ups")]
     recoveries: u32,
     mode: String,
+    /// Of a plan or a pattern; not in the files of earlier versions.
+    #[serde(default)]
+    item: u32,
     elapsed_s: f64,
     airspeed_mps: f64,
     heading_rad: f64,
@@ -73,6 +76,7 @@ impl Page {
             switch_source: saved.switch.source,
             recoveries: saved.recoveries,
             mode: progress.mode.to_string(),
+            item: progress.item,
             elapsed_s: progress.elapsed_s,
             airspeed_mps: targets.airspeed_mps,
             heading_rad: targets.heading_rad,
@@ -113,13 +117,13 @@ impl Page {
             resume: Resume {
                 progress: Progress {
                     mode: mode?,
+                    item: self.item,
                     elapsed_s: self.elapsed_s,
                     captured: Targets {
                         airspeed_mps: self.airspeed_mps,
                         heading_rad: self.heading_rad,
                         altitude_m: self.altitude_m,
                     },
-                    ..Progress::default()
                 },
                 surfaces,
                 altimeter_setting_pa: self.altimeter_setting_pa,
@@ -147,7 +151,7 @@ impl Page {
             aileron: self.aileron,
             rudder: self.rudder,
             // It stays where it is, and is measured.
-            elevator_trim: None,
+            ..Surfaces::IDLE
         }
     }
 

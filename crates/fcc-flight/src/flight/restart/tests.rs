@@ -36,7 +36,7 @@ const FLOWN: Resume = Resume {
         elevator: 0.0,
         aileron: 0.0,
         rudder: 0.0,
-        elevator_trim: None,
+        ..Surfaces::IDLE
     },
     altimeter_setting_pa: Some(102_000.0),
     altitude_reference: AltitudeReference::SeaLevel,

@@ -38,6 +38,15 @@ impl AtRest {
     }
 }
 
+impl AtRest {
+    /// What the accelerometer and the gyroscope gave in the mean, once it is
+    /// complete.
+    pub(super) fn means(&self) -> Option<([f64; 3], [f64; 3])> {
+        let means = (self.force.mean(), self.rates.mean());
+        self.is_complete().then_some(means)
+    }
+}
+
 impl Collect for AtRest {
     fn take(&mut self, arrived: &Arrived, rest: &Rest) {
         if self.is_complete() {
@@ -99,7 +108,7 @@ impl Collect for AtRest {
         // A difference between the halves that noise does not explain.
         let sigma = self.rates.mean_sigma().max(0.5 * self.rates.change());
         Ok(Found {
-            values: Values::Gyroscope { bias_radps: bias },
+            values: Values::GyroscopeBias { bias_radps: bias },
             quality: Quality::within(sigma, LARGEST_SIGMA_RADPS)?,
             sigma,
         })

@@ -8,14 +8,17 @@
 
 mod accelerometer;
 mod airspeed;
+mod found;
 mod gyroscope;
 mod magnetometer;
 mod mounting;
+mod path;
 mod place;
 mod readings;
 mod refusal;
 mod rest;
 mod sphere;
+mod turning;
 
 use core::time::Duration;
 
@@ -23,6 +26,7 @@ use libm::{acos, sqrt};
 
 use accelerometer::Positions;
 use airspeed::Zero;
+pub use found::{Found, Quality, Values};
 use gyroscope::AtRest;
 use magnetometer::Sphere;
 use mounting::Attitudes;
@@ -32,8 +36,9 @@ use readings::{Arrivals, Arrived};
 pub use refusal::Refusal;
 use rest::Rest;
 pub use sphere::{CELLS, CELLS_OF_BANDS};
+use turning::Turning;
 
-use super::{Axes, Mounting, Rotation};
+use super::{Axes, Rotation};
 use crate::flight::Measurements;
 use crate::framework::Time;
 
@@ -49,8 +54,16 @@ pub enum GuidedKind {
     /// The accelerometer, held still in twelve positions: bias, scale and
     /// misalignment.
     Accelerometer,
+    /// The gyroscope, left alone and then turned between positions at rest: bias,
+    /// scale and misalignment.
+    Gyroscope {
+        /// The accelerometer's calibration.
+        accelerometer: Axes,
+        /// From the gyroscope's axes to the body's, as far as it is known.
+        turn: Rotation,
+    },
     /// The gyroscope, left alone: its bias.
-    Gyroscope,
+    GyroscopeBias,
     /// The magnetometer, turned through all directions: hard and soft iron and,
     /// with the calibration of the accelerometer, its mounting.
     Magnetometer {
@@ -96,6 +109,14 @@ pub enum Next {
     /// Turn it slowly until this direction of its axes has pointed along the
     /// field, too.
     Turn(Place),
+    /// Turn it about this one of its axes, 0 for x, which is about horizontal, and
+    /// lay it down.
+    TurnOver {
+        /// x is 0.
+        axis: u8,
+        /// By half a turn; otherwise by a quarter.
+        half: bool,
+    },
     /// Shield the tube from wind, and leave it alone.
     CoverTube,
     /// Put the aircraft level.
@@ -104,76 +125,6 @@ pub enum Next {
     RaiseNose,
     /// Nothing: all is there.
     Done,
-}
-
-/// What was found.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Found {
-    /// The calibration.
-    pub values: Values,
-    /// How good it is.
-    pub quality: Quality,
-    /// The standard deviation of the worst bias, or of the angles, in the unit
-    /// of the sensor or rad.
-    pub sigma: f64,
-}
-
-/// The values of a calibration, in SI units, and µT.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub enum Values {
-    /// Bias, scale and misalignment.
-    Accelerometer(Axes),
-    /// The bias.
-    Gyroscope {
-        /// rad/s.
-        bias_radps: [f64; 3],
-    },
-    /// Hard and soft iron, and how it is turned.
-    Magnetometer {
-        /// Bias, scale and misalignment.
-        axes: Axes,
-        /// The mounting, and the free rotation from there, if the accelerometer
-        /// tells it.
-        mounting: Option<(Mounting, Rotation)>,
-        /// The strength of the field to which it was scaled, µT.
-        strength_ut: f64,
-        /// Whether that is the earth's; otherwise it is as measured.
-        is_of_model: bool,
-    },
-    /// The zero.
-    Airspeed {
-        /// Pa.
-        bias_pa: f64,
-    },
-    /// How the sensors are turned.
-    Mounting {
-        /// The closest of the right-angled ones.
-        mounting: Mounting,
-        /// The free rotation from there.
-        rotation: Rotation,
-    },
-}
-
-/// How good a calibration is: the error that is left, in the unit of the sensor
-/// or rad. That of an accelerometer and a magnetometer is how far the strengths
-/// of the calibrated samples differ from the true one, one standard deviation;
-/// that of the others is how uncertain the value is.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Quality {
-    /// The error that is left.
-    pub error: f64,
-    /// The largest that is accepted.
-    pub limit: f64,
-}
-
-impl Quality {
-    fn within(error: f64, limit: f64) -> Result<Self, Refusal> {
-        if error <= limit {
-            Ok(Self { error, limit })
-        } else {
-            Err(Refusal::Poor { error, limit })
-        }
-    }
 }
 
 /// What there is so far, for a picture.
@@ -185,6 +136,8 @@ pub enum Coverage<'a> {
     /// ([`CELLS_OF_BANDS`]), from +z to -z, and in each around from -x by -y,
     /// +x and +y.
     Cells(&'a [bool; CELLS]),
+    /// How much of what is needed is known of turns about x, y and z, 0..=1.
+    Turns([f64; 3]),
     /// Nothing to draw.
     None,
 }
@@ -203,7 +156,8 @@ trait Collect {
 #[expect(clippy::large_enum_variant, reason = "there is one, and no heap")]
 enum Collector {
     Accelerometer(Positions),
-    Gyroscope(AtRest),
+    Gyroscope(Turning),
+    GyroscopeBias(AtRest),
     Magnetometer(Sphere),
     Airspeed(Zero),
     Mounting(Attitudes),
@@ -214,6 +168,7 @@ impl Collector {
         match self {
             Self::Accelerometer(of) => of,
             Self::Gyroscope(of) => of,
+            Self::GyroscopeBias(of) => of,
             Self::Magnetometer(of) => of,
             Self::Airspeed(of) => of,
             Self::Mounting(of) => of,
@@ -224,6 +179,7 @@ impl Collector {
         match self {
             Self::Accelerometer(of) => of,
             Self::Gyroscope(of) => of,
+            Self::GyroscopeBias(of) => of,
             Self::Magnetometer(of) => of,
             Self::Airspeed(of) => of,
             Self::Mounting(of) => of,
@@ -238,7 +194,7 @@ impl Collector {
 /// use fcc_core::flight::{BodyRates, Measurements};
 /// use fcc_core::framework::{Reading, Time};
 ///
-/// let mut calibration = GuidedCalibration::new(&GuidedKind::Gyroscope);
+/// let mut calibration = GuidedCalibration::new(&GuidedKind::GyroscopeBias);
 /// assert_eq!(calibration.next(), Next::Wait);
 /// for n in 1..=1_100 {
 ///     // It lies still, and shows 0.02 rad/s of pitch.
@@ -250,7 +206,7 @@ impl Collector {
 /// }
 /// assert!(calibration.is_complete());
 /// let found = calibration.finish().unwrap();
-/// let Values::Gyroscope { bias_radps: [_, pitch, _] } = found.values else { panic!() };
+/// let Values::GyroscopeBias { bias_radps: [_, pitch, _] } = found.values else { panic!() };
 /// assert!((pitch - 0.02).abs() < 1e-12);
 /// ```
 #[derive(Clone, Copy, Debug)]
@@ -272,7 +228,11 @@ impl GuidedCalibration {
             rest: Rest::default(),
             collector: match kind {
                 GuidedKind::Accelerometer => Collector::Accelerometer(Positions::new()),
-                GuidedKind::Gyroscope => Collector::Gyroscope(AtRest::new()),
+                GuidedKind::Gyroscope {
+                    accelerometer,
+                    turn,
+                } => Collector::Gyroscope(Turning::new(accelerometer, turn)),
+                GuidedKind::GyroscopeBias => Collector::GyroscopeBias(AtRest::new()),
                 GuidedKind::Magnetometer {
                     earth,
                     accelerometer,
@@ -294,7 +254,7 @@ impl GuidedCalibration {
         self.now = arrived.at;
         let is_heard = match &self.collector {
             Collector::Accelerometer(_) | Collector::Mounting(_) => arrived.force.is_some(),
-            Collector::Gyroscope(_) => arrived.rates.is_some(),
+            Collector::Gyroscope(_) | Collector::GyroscopeBias(_) => arrived.rates.is_some(),
             Collector::Magnetometer(_) => arrived.field.is_some(),
             Collector::Airspeed(_) => arrived.differential_pa.is_some(),
         };
@@ -343,7 +303,8 @@ impl GuidedCalibration {
         match &self.collector {
             Collector::Accelerometer(positions) => Coverage::Places(positions.held()),
             Collector::Magnetometer(sphere) => Coverage::Cells(sphere.covered()),
-            Collector::Gyroscope(_) | Collector::Airspeed(_) | Collector::Mounting(_) => {
+            Collector::Gyroscope(turning) => Coverage::Turns(turning.known()),
+            Collector::GyroscopeBias(_) | Collector::Airspeed(_) | Collector::Mounting(_) => {
                 Coverage::None
             }
         }

@@ -12,6 +12,8 @@ pub(super) struct Arrived {
     pub(super) force: Option<[f64; 3]>,
     /// rad/s.
     pub(super) rates: Option<[f64; 3]>,
+    /// When these were taken.
+    pub(super) rates_at: Time,
     /// µT.
     pub(super) field: Option<[f64; 3]>,
     pub(super) differential_pa: Option<f64>,
@@ -54,6 +56,7 @@ impl Arrivals {
             ),
             temperature_k: new(&mut seen.temperature, newest, &from.air_temperature_k),
             gnss: new(&mut seen.gnss, newest, &from.gnss),
+            rates_at: self.seen.rates,
             at: self.newest,
         }
     }

@@ -10,8 +10,8 @@ use crate::flight::calibration::FitError;
 pub enum Refusal {
     /// The sensor gave nothing.
     Silent,
-    /// It was ended early: so many of the needed positions, or of the cells of
-    /// the sphere, were there.
+    /// It was ended early: so many of the needed positions, of the cells of the
+    /// sphere, or of the axes to turn about, were there.
     TooFew {
         /// How many there were.
         have: usize,
@@ -54,6 +54,13 @@ pub enum Refusal {
         /// In the unit of the sensor.
         expected: f64,
     },
+    /// Readings of the gyroscope were missing while it was turned.
+    Gaps {
+        /// How far apart they may be, s.
+        most_s: f64,
+    },
+    /// No gyroscope of the accelerometer's axes turned so.
+    NotTurned,
     /// Both attitudes of the aircraft are the same, or it is upside down.
     NotRaised,
     /// The samples do not fit together at all.
@@ -131,6 +138,15 @@ impl fmt::Display for Refusal {
                 f,
                 "the strength is {measured:.2}, and {expected:.2} is there: go away from steel and \
                  magnets, or calibrate the accelerometer first"
+            ),
+            Self::Gaps { most_s } => write!(
+                f,
+                "readings of the gyroscope were more than {most_s} s apart in a turn: its rate, or \
+                 that of the loop, is too low, or the machine is busy"
+            ),
+            Self::NotTurned => f.write_str(
+                "what the gyroscope gives in turns contradicts gravity: it is at the end of its \
+                 range (turn it slower), or mounted in another way than the accelerometer",
             ),
             Self::NotRaised => f.write_str(
                 "the attitudes are not those of a level aircraft and one with its nose up",

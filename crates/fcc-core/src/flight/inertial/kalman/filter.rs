@@ -68,6 +68,7 @@ struct Pending {
     velocity: Vector3<f64>,
     attitude_variance: f64,
     velocity_variance: f64,
+    rate_bias_variance: f64,
 }
 
 impl Filter {
@@ -117,6 +118,7 @@ impl Filter {
     }
 
     fn accumulate(&mut self, by: &Increment, raw: &Raw, dt_s: f64) {
+        let is_aided = self.is_aided();
         let pending = &mut self.pending;
         pending.dt_s += dt_s;
         pending.turned_s += self.motion.attitude.to_rotation_matrix().matrix() * dt_s;
@@ -137,6 +139,13 @@ impl Filter {
         };
         pending.attitude_variance += rate_density * dt_s;
         pending.velocity_variance += force_density * dt_s;
+        let by_acceleration = if is_aided {
+            0.0
+        } else {
+            p::RATE_BIAS_WALK_BY_ACCELERATION * by.acceleration.norm()
+        };
+        pending.rate_bias_variance +=
+            (p::RATE_BIAS_WALK * p::RATE_BIAS_WALK + by_acceleration * by_acceleration) * dt_s;
     }
 
     /// Moves the covariance on to the time of the state: F P Fᵀ + Q (Solà 2017,
@@ -170,7 +179,7 @@ impl Filter {
         let walk = |sigma: f64| sigma * sigma * dt_s;
         self.add_variance(ATTITUDE, 3, pending.attitude_variance);
         self.add_variance(VELOCITY, 3, pending.velocity_variance);
-        self.add_variance(RATE_BIAS, 3, walk(p::RATE_BIAS_WALK));
+        self.add_variance(RATE_BIAS, 3, pending.rate_bias_variance);
         self.add_variance(FORCE_BIAS, 3, walk(p::FORCE_BIAS_WALK));
         self.add_variance(BAROMETER_BIAS, 1, walk(p::BAROMETER_WALK));
         self.add_variance(EARTH_FIELD, 3, walk(p::EARTH_FIELD_WALK));

@@ -1,7 +1,7 @@
 //! The samples that the filter has not used yet, in the order in which they were
 //! taken.
 
-use crate::flight::inertial::Observation;
+use crate::flight::inertial::{Observation, ObservationKind};
 use crate::framework::Time;
 
 /// Half a second of an inertial unit at 400 Hz with everything else, or of one
@@ -75,6 +75,18 @@ impl History {
         Some(sample)
     }
 
+    /// Removes the samples of a sensor.
+    pub(super) fn remove(&mut self, kind: ObservationKind) {
+        let before = core::mem::take(&mut self.length);
+        for at in 0..before {
+            let sample = self.samples.get((self.first + at) % CAPACITY).copied();
+            if let Some(sample) = sample.filter(|sample| sample.observation.kind() != kind) {
+                self.set(self.length, sample);
+                self.length += 1;
+            }
+        }
+    }
+
     /// The samples behind the first `skip`, the oldest first.
     pub(super) fn after(&self, skip: usize) -> impl Iterator<Item = &Sample> {
         (skip..self.length).filter_map(|at| self.get(at))
@@ -119,6 +131,22 @@ mod tests {
                 assert!(history.pop(until).is_none());
             }
         }
+    }
+
+    #[test]
+    fn the_samples_of_a_sensor_are_removed() {
+        let mut history = History::new();
+        for taken in 1..=5 {
+            history.insert(sample(taken));
+            history.insert(Sample {
+                observation: Observation::StaticPressure(1e5),
+                ..sample(taken)
+            });
+        }
+        history.pop(Time::from_nanos(1));
+        history.remove(ObservationKind::StaticPressure);
+        let left = history.after(0).map(|sample| sample.taken.as_nanos());
+        assert!(left.eq([2, 3, 4, 5]));
     }
 
     #[test]

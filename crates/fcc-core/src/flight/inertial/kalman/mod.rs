@@ -49,7 +49,7 @@ use rest::Rest;
 pub use innovations::Innovation;
 pub(super) use motion::turn;
 
-use super::{GeodeticPosition, InertialNavigation, Observation, Solution};
+use super::{GeodeticPosition, InertialNavigation, Observation, ObservationKind, Solution};
 use crate::framework::Time;
 
 /// What the filter knows beforehand of the sensors and the place.
@@ -139,14 +139,52 @@ impl KalmanNavigation {
         self.filter.turn_by_field(turns_by_field);
     }
 
-    /// From here on the rates are those of other gyroscopes.
-    pub fn change_gyroscopes(&mut self) {
-        self.filter.change_gyroscopes();
+    /// Begins anew, with what is known beforehand.
+    pub fn restart(&mut self) {
+        *self = Self::new(self.config);
     }
 
-    /// From here on the specific force is that of other accelerometers.
-    pub fn change_accelerometers(&mut self) {
-        self.filter.change_accelerometers();
+    /// From here on the rates are those of other gyroscopes, which differ from those before
+    /// by so much, rad/s.
+    pub fn change_gyroscopes(&mut self, differ: f64) {
+        self.filter.change_gyroscopes(differ);
+    }
+
+    /// From here on the specific force is that of other accelerometers, which differ from
+    /// those before by so much, m/s².
+    pub fn change_accelerometers(&mut self, differ: f64) {
+        self.filter.change_accelerometers(differ);
+    }
+
+    /// From here on the magnetic field is that of another magnetometer.
+    pub fn change_magnetometer(&mut self) {
+        self.filter.change_magnetometer();
+    }
+
+    /// Forgets the samples of a sensor that wait until they are used.
+    pub fn forget(&mut self, kind: ObservationKind) {
+        self.history.remove(kind);
+    }
+
+    /// From here on the static pressure is that of another barometer.
+    pub fn change_barometer(&mut self) {
+        self.filter.change_barometer();
+    }
+
+    /// Uses what has waited for the delay. The estimate of the present is not made.
+    pub(super) fn catch_up(&mut self, now: Time) {
+        self.filter.innovations.clear();
+        let delay = i64::try_from(self.config.delay.as_nanos()).unwrap_or(i64::MAX);
+        let until = Time::from_nanos(now.as_nanos().saturating_sub(delay));
+        while let Some(sample) = self.history.pop(until) {
+            self.process(sample);
+        }
+        self.filter.settle();
+    }
+
+    /// The biases of gyroscopes, rad/s, and accelerometers, m/s².
+    pub(super) fn biases(&self) -> [[f64; 3]; 2] {
+        [self.filter.rate_bias.into(), self.filter.force_bias.into()]
     }
 
     fn process(&mut self, sample: Sample) {
@@ -254,13 +292,7 @@ impl InertialNavigation for KalmanNavigation {
     }
 
     fn step(&mut self, now: Time) -> Solution {
-        self.filter.innovations.clear();
-        let delay = i64::try_from(self.config.delay.as_nanos()).unwrap_or(i64::MAX);
-        let until = Time::from_nanos(now.as_nanos().saturating_sub(delay));
-        while let Some(sample) = self.history.pop(until) {
-            self.process(sample);
-        }
-        self.filter.settle();
+        self.catch_up(now);
         if self.origin.altitude_m.is_nan() && !self.filter.time.is_never() {
             self.origin.altitude_m = self.filter.motion.place.altitude_m;
         }

@@ -39,6 +39,12 @@ pub(super) const UNKNOWN_FORCE_S: f64 = 2.0;
 /// walk, rad/s/√s: some 0.1 °/s in ten minutes of warming up.
 pub(super) const RATE_BIAS: f64 = 0.02;
 pub(super) const RATE_BIAS_WALK: f64 = 5e-5;
+/// What adds to the square of that walk while something accelerates of which nothing else
+/// measures the velocity, rad/s/√s a m/s²: accelerations bias a gyroscope, by 0.1 °/s a g
+/// (linear acceleration sensitivity in the product specification of the MPU-6050, revision
+/// 3.4, section 6.1). That lasts for 20 s: 1.8·10⁻⁴ · √(2 / 20 s). With a receiver or an
+/// airspeed an accelerometer at the end of its range would be taken for such a bias.
+pub(super) const RATE_BIAS_WALK_BY_ACCELERATION: f64 = 5.6e-5;
 /// Bias of accelerometers, m/s² (5 mg, calibrated), and its random walk, m/s²/√s.
 pub(super) const FORCE_BIAS: f64 = 0.05;
 pub(super) const FORCE_BIAS_WALK: f64 = 5e-4;
@@ -107,7 +113,7 @@ pub(super) const TURBULENCE_LENGTH_M: f64 = 533.0;
 /// The velocity of something of which only the inertial sensors are known: a
 /// hand's, m/s; the acceleration with which velocities end, m/s²: a hand turns
 /// back within a second, an aircraft after half a minute.
-pub(super) const HAND_VELOCITY: f64 = 0.5;
+pub(super) const HAND_VELOCITY: f64 = 0.7;
 pub(super) const TYPICAL_ACCELERATION: f64 = 3.0;
 /// The largest that it is believed to be, m/s.
 pub(super) const LARGEST_VELOCITY: f64 = 40.0;

@@ -9,7 +9,8 @@ use super::update::{Corrects, Measurement};
 use crate::flight::inertial::{GeodeticPosition, ObservationKind};
 use crate::framework::Time;
 
-/// A velocity that was refused for seconds may mean a wrong attitude, rad².
+/// A velocity that was refused for seconds may mean a wrong attitude: at most so
+/// wrong, rad².
 const DOUBTED_ATTITUDE: f64 = 0.03;
 
 /// A heading less certain than this is none, rad.
@@ -108,7 +109,12 @@ impl Filter {
             self.motion.velocity += difference;
             self.forget(VELOCITY, &measurement);
             if !is_first {
-                self.add_variance(ATTITUDE, 3, DOUBTED_ATTITUDE);
+                // One that is wrong by so much has turned gravity into this velocity. What
+                // is off downwards, and as much beside it, is no attitude's error: it is of
+                // an accelerometer at the end of its range, in a bank of 45° at most.
+                let sideways = (difference.xy().norm() - difference.z.abs()).max(0.0);
+                let tilt = sideways / (self.motion.gravity().z * p::RECEIVER_REFUSED_S);
+                self.add_variance(ATTITUDE, 3, (tilt * tilt).min(DOUBTED_ATTITUDE));
             }
             self.tracks.velocity.judged(taken, true);
         }

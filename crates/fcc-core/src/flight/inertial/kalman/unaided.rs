@@ -20,8 +20,7 @@ impl Filter {
     /// V over a typical acceleration. What has an airspeed sensor is no hand: it
     /// may take off, and below the sensor's least airspeed it may be that fast.
     pub(super) fn velocity_ends(&mut self, now: Time) {
-        let is_aided = self.has_receiver() || self.flies();
-        if is_aided || self.tracks.unaided.since_tried_s(now) < INTERVAL_S {
+        if self.is_aided() || self.tracks.unaided.since_tried_s(now) < INTERVAL_S {
             return;
         }
         let each_axis = libm::sqrt(0.5 * self.mean_square_velocity);
@@ -82,6 +81,11 @@ impl Filter {
     /// Whether it stands still.
     pub(super) fn stands(&self) -> bool {
         self.tracks.rest.since_used_s(self.time) < 1.0
+    }
+
+    /// Whether a receiver or an airspeed sensor says how fast this is.
+    pub(super) fn is_aided(&self) -> bool {
+        self.has_receiver() || self.flies()
     }
 
     /// Whether there is an airspeed of something that flies.

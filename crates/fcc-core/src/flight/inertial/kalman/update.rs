@@ -19,6 +19,14 @@ pub(super) struct Measurement<const N: usize> {
     pub(super) excess: SVector<f64, N>,
 }
 
+impl<const N: usize> Measurement<N> {
+    fn distance(&self, covariance: &SMatrix<f64, N, N>) -> f64 {
+        covariance.try_inverse().map_or(f64::INFINITY, |inverse| {
+            self.difference.dot(&(inverse * self.difference))
+        })
+    }
+}
+
 /// Which states a measurement corrects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Corrects {
@@ -50,12 +58,7 @@ impl Filter {
     /// of standard deviations, for each of its axes: a consistent one has a mean
     /// of `N`, and is distributed as χ². Infinite if it cannot be said.
     pub(super) fn distance<const N: usize>(&self, measurement: &Measurement<N>) -> f64 {
-        let difference = measurement.difference;
-        self.innovation_covariance(measurement)
-            .try_inverse()
-            .map_or(f64::INFINITY, |inverse| {
-                difference.dot(&(inverse * difference))
-            })
+        measurement.distance(&self.innovation_covariance(measurement))
     }
 
     fn innovation_covariance<const N: usize>(
@@ -63,11 +66,28 @@ impl Filter {
         measurement: &Measurement<N>,
     ) -> SMatrix<f64, N, N> {
         let jacobian = &measurement.jacobian;
-        let mut covariance = jacobian * self.covariance * jacobian.transpose();
+        let mut with_states = SMatrix::<f64, STATES, N>::zeros();
+        for axis in 0..N {
+            let row = jacobian.row(axis).transpose();
+            with_states.set_column(axis, &self.with_states(&row));
+        }
+        let mut covariance = jacobian * with_states;
         for axis in 0..N {
             covariance[(axis, axis)] += measurement.variance[axis];
         }
         covariance
+    }
+
+    /// The covariance of the states and what a row of a Jacobian measures of them: of a
+    /// few, so most parts of the row are zero.
+    fn with_states(&self, row: &StateVector) -> StateVector {
+        let mut with_states = StateVector::zeros();
+        for (at, &part) in row.iter().enumerate() {
+            if part != 0.0 {
+                with_states.axpy(part, &self.covariance.column(at), 1.0);
+            }
+        }
+        with_states
     }
 
     /// Corrects the state, axis after axis.
@@ -80,7 +100,7 @@ impl Filter {
         for axis in 0..N {
             let row = measurement.jacobian.row(axis).transpose();
             let variance = measurement.variance[axis] * measurement.excess[axis];
-            let with_states = self.covariance * row;
+            let with_states = self.with_states(&row);
             let total = row.dot(&with_states) + variance;
             if total <= 0.0 {
                 continue;
@@ -89,10 +109,16 @@ impl Filter {
             corrects.mask(&mut gain);
             let left = measurement.difference[axis] - row.dot(&error);
             error += gain * left;
-            // (I - K H) P (I - K H)ᵀ + K R Kᵀ, for any gain (Joseph's form).
-            self.covariance.ger(-1.0, &gain, &with_states, 1.0);
-            self.covariance.ger(-1.0, &with_states, &gain, 1.0);
-            self.covariance.ger(total, &gain, &gain, 1.0);
+            // (I - K H) P (I - K H)ᵀ + K R Kᵀ, for any gain (Joseph's form), is
+            // P - K Lᵀ - L Kᵀ with L = P Hᵀ - ½ (H P Hᵀ + R) K.
+            let less = with_states - gain * (0.5 * total);
+            let (gain, less) = (gain.as_slice(), less.as_slice());
+            let columns = self.covariance.as_mut_slice().chunks_exact_mut(STATES);
+            for (column, (gain_here, less_here)) in columns.zip(gain.iter().zip(less)) {
+                for (part, (gain, less)) in column.iter_mut().zip(gain.iter().zip(less)) {
+                    *part -= gain * less_here + less * gain_here;
+                }
+            }
         }
         self.inject(&error);
     }
@@ -108,8 +134,9 @@ impl Filter {
         corrects: Corrects,
     ) -> bool {
         self.settle();
-        let accepted = self.distance(measurement) <= gate;
-        self.note(kind, taken, measurement, accepted);
+        let covariance = self.innovation_covariance(measurement);
+        let accepted = measurement.distance(&covariance) <= gate;
+        self.note(kind, taken, measurement, &covariance, accepted);
         self.tracks.of(kind).judged(taken, accepted);
         if accepted {
             self.correct(measurement, corrects);
@@ -122,9 +149,9 @@ impl Filter {
         kind: ObservationKind,
         taken: Time,
         measurement: &Measurement<N>,
+        covariance: &SMatrix<f64, N, N>,
         accepted: bool,
     ) {
-        let covariance = self.innovation_covariance(measurement);
         let (mut difference, mut sigma) = ([0.0; 3], [0.0; 3]);
         for (axis, (difference, sigma)) in difference.iter_mut().zip(&mut sigma).take(N).enumerate()
         {

@@ -1,13 +1,45 @@
 //! Which readings are new, and what a solution says in the place of others.
 
-use crate::flight::inertial::Solution;
+use crate::flight::inertial::{GeodeticPosition, Solution};
 use crate::flight::orientation::euler_from_quaternion;
-use crate::flight::{Attitude, BodyRates, Measurements, PlantState, SpecificForce};
+use crate::flight::{
+    Attitude, BodyRates, GnssFix, MagneticField, Measurements, PlantState, SpecificForce,
+};
 use crate::framework::schema::{Schema, in_range};
 use crate::framework::{Reading, Time};
 
 /// Roll and pitch less certain than this are none, rad.
 const USABLE_TILT: f64 = 0.15;
+
+/// Rates as a vector, rad/s.
+pub(super) const fn rates_in(of: &BodyRates) -> [f64; 3] {
+    [of.roll_radps, of.pitch_radps, of.yaw_radps]
+}
+
+/// Specific force as a vector, m/s².
+pub(super) const fn force_in(of: &SpecificForce) -> [f64; 3] {
+    [of.x_mps2, of.y_mps2, of.z_mps2]
+}
+
+/// A magnetic field as a vector, µT.
+pub(super) const fn field_in(of: &MagneticField) -> [f64; 3] {
+    [of.x_ut, of.y_ut, of.z_ut]
+}
+
+/// The place of a fix.
+pub(super) const fn place_in(of: &GnssFix) -> GeodeticPosition {
+    GeodeticPosition {
+        latitude_rad: of.position.latitude_rad,
+        longitude_rad: of.position.longitude_rad,
+        altitude_m: of.position.altitude_m,
+    }
+}
+
+/// The velocity of a fix: north, east, down, m/s.
+pub(super) const fn velocity_in(of: &GnssFix) -> [f64; 3] {
+    let v = &of.velocity;
+    [v.north_mps, v.east_mps, v.down_mps]
+}
 
 /// What a raw reading says, or the one that is measured if there is none.
 pub(super) fn either<R: Copy, T>(

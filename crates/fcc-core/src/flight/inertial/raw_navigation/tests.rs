@@ -1,7 +1,8 @@
 use libm::hypot;
 
+use super::super::{GeodeticPosition, earth_field_ut};
 use super::*;
-use crate::flight::{BodyRates, MagneticField, PlantState, Position, SpecificForce};
+use crate::flight::{BodyRates, GnssFix, MagneticField, PlantState, Position, SpecificForce};
 
 /// At rest, the nose to magnetic east.
 fn raw(now: Time, [north_ut, down_ut]: [f64; 2]) -> Measurements {

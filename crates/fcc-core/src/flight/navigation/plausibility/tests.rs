@@ -156,11 +156,24 @@ impl Source for Damaged {
     }
 }
 
-/// All numbers; a trim that is missing is 0.
+/// All numbers; what an aircraft need not have, and does not, is 0.
 fn numbers(measurements: &Measurements) -> Vec<f64> {
     let mut measurements = *measurements;
-    let trim = &mut measurements.surfaces.value.elevator_trim;
-    *trim = Some(trim.unwrap_or(0.0));
+    let (surfaces, battery) = (
+        &mut measurements.surfaces.value,
+        &mut measurements.battery.value,
+    );
+    for value in [
+        &mut battery.voltage_v,
+        &mut battery.charge,
+        &mut surfaces.elevator_trim,
+        &mut surfaces.flaps,
+        &mut surfaces.left_brake,
+        &mut surfaces.right_brake,
+        &mut surfaces.nose_wheel,
+    ] {
+        *value = Some(value.unwrap_or(0.0));
+    }
     let mut all = Damaged {
         values: Vec::new(),
         next: 0,
@@ -199,12 +212,29 @@ fn what_is_not_a_number_does_not_pass_in_any_field() {
             tried += 1;
             let mut good = Measurements::default();
             let plausible = plausibility_gate(&mut good, &new, &LIMITS);
-            assert!(numbers(&good).iter().all(|number| number.is_finite()));
+            assert!(
+                numbers(&good).iter().all(|number| number.is_finite()),
+                "value {place} is {by}"
+            );
             assert_ne!(plausible, ALL, "value {place} is {by}");
         }
     }
-    // A trim that is NaN is missing.
-    assert_eq!(tried, 3 * numbers(&whole).len() - 1);
+    // NaN says that an aircraft does not have it: five outputs, two readings of a battery.
+    assert_eq!(tried, 3 * numbers(&whole).len() - 7);
+}
+
+/// X-Plane measures the voltage only.
+#[test]
+fn a_battery_without_a_measured_charge_is_plausible() {
+    let mut new = flying(ms(25));
+    let battery = Battery {
+        voltage_v: Some(12.6),
+        charge: None,
+    };
+    new.battery = Reading::new(battery, ms(25));
+    let mut good = flying(ms(0));
+    plausibility_gate(&mut good, &new, &LIMITS);
+    assert_eq!(good.battery.value.voltage_v, Some(12.6));
 }
 
 /// A loop at 60 °/s: over the top roll and heading change by half a turn from

@@ -13,6 +13,9 @@ object Battery {
     fun isLimited(context: Context) =
         !context.getSystemService(PowerManager::class.java).isIgnoringBatteryOptimizations(context.packageName)
 
+    /** Whether the user, or a battery that is nearly empty, has the phone save power. */
+    fun isSaving(context: Context) = context.getSystemService(PowerManager::class.java).isPowerSaveMode
+
     /** Opens the system's list of apps that are not limited, or this app's page. */
     fun openSettings(context: Context) = open(context, Intent(Settings.ACTION_IGNORE_BATTERY_OPTIMIZATION_SETTINGS))
 

@@ -28,7 +28,7 @@ class Configuration(private val context: Context) {
     fun problems(text: String): String? = try {
         FlightComputer(text, Recordings.folder(context)).close()
         null
-    } catch (error: ConfigException) {
+    } catch (error: FccException) {
         error.message.orEmpty()
     }
 

@@ -1,6 +1,9 @@
 package fcc.android
 
 import java.io.File
+import java.util.concurrent.atomic.AtomicBoolean
+import kotlin.concurrent.thread
+import org.json.JSONObject
 
 /**
  * The flight of this process. It belongs to [FlightService] and outlives every
@@ -18,13 +21,31 @@ object Flight {
     var phase = Phase.IDLE
         internal set
 
+    private val isLeftLookedFor = AtomicBoolean()
+
+    /**
+     * Releases what an earlier process that was killed has left held, once in a process,
+     * until a flight begins, which does it itself; [became] is what the user is told, in
+     * another thread.
+     */
+    fun releaseLeft(recordings: File, became: (String) -> Unit) {
+        if (isLeftLookedFor.getAndSet(true)) return
+        thread(name = "release-left") {
+            try {
+                Native.loaded().releaseLeft(recordings.path).takeIf { it.isNotEmpty() }?.let(became)
+            } catch (_: FccException) {
+                // Whoever starts a flight is told.
+            }
+        }
+    }
+
     /** The state now. Not for the thread that draws. */
     fun state(): FlightState {
         val phase = phase
-        refusal?.let { return FlightState(phase, ending = it) }
+        refusal?.let { return FlightState(phase, JSONObject().put("ending", it)) }
         val computer = computer ?: return FlightState(phase)
         return try {
-            FlightState.of(phase, computer.state())
+            FlightState(phase, JSONObject(computer.state()))
         } catch (_: ClosedException) {
             // Another flight begins.
             FlightState(phase)

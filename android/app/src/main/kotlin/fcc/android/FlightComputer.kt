@@ -19,7 +19,7 @@ class FlightComputer(
     listener: Listener? = null,
     packageName: String = "fcc.android",
 ) : AutoCloseable {
-    private val handle = Native.create(config, recordings.path, packageName, listener)
+    private val handle = Native.loaded().create(config, recordings.path, packageName, listener)
 
     /**
      * Begins a flight; returns when its loop runs.
@@ -102,6 +102,6 @@ class FlightComputer(
          *
          * @throws RecordingException if it is no recording of a flight, or cannot be read.
          */
-        fun report(recording: File): String = Native.report(recording.path)
+        fun report(recording: File): String = Native.loaded().report(recording.path)
     }
 }

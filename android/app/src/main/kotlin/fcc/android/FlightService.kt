@@ -24,7 +24,7 @@ class FlightService : Service() {
     private val worker = Executors.newSingleThreadExecutor { Thread(it, "flight-service") }
     private lateinit var notification: FlightNotification
     private lateinit var keepAwake: KeepAwake
-    private lateinit var poller: StatePoller
+    private lateinit var poller: StatePoller<FlightState>
     private var positions: Positions? = null
     private var lastStartId = 0
 
@@ -35,7 +35,7 @@ class FlightService : Service() {
         super.onCreate()
         notification = FlightNotification(this)
         keepAwake = KeepAwake(this)
-        poller = StatePoller(NOTIFIED_EVERY_MS) { notification.show(it) }
+        poller = StatePoller(NOTIFIED_EVERY_MS, Flight::state) { notification.show(it) }
     }
 
     override fun onStartCommand(intent: Intent?, flags: Int, startId: Int): Int {
@@ -58,6 +58,9 @@ class FlightService : Service() {
         val flight = flights
         Flight.phase = Phase.BEGINNING
         keepAwake.acquire()
+        ReleaseLink.open(applicationContext)
+        // It reads the same sensors.
+        Calibrations.end()
         if (Configuration.usesPhone(config)) positions = Positions(this).also { it.start() }
         poller.start()
         worker.execute {

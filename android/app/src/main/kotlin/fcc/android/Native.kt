@@ -7,9 +7,20 @@ package fcc.android
  * one that is closed throws [ClosedException].
  */
 internal object Native {
-    init {
+    /** Why there are no such methods; null if there are. */
+    private val problem: String? = try {
         System.loadLibrary("fcc_android")
+        null
+    } catch (error: UnsatisfiedLinkError) {
+        error.message.orEmpty()
     }
+
+    /**
+     * This, before the first call.
+     *
+     * @throws LibraryException if the package has no library for this processor.
+     */
+    fun loaded(): Native = problem?.let { throw LibraryException(it) } ?: this
 
     @JvmStatic
     external fun create(config: String, recordings: String, packageName: String, listener: Listener?): Long
@@ -46,6 +57,27 @@ internal object Native {
 
     @JvmStatic
     external fun report(file: String): String
+
+    @JvmStatic
+    external fun calibrations(config: String, recordings: String): String
+
+    @JvmStatic
+    external fun calibrate(config: String, recordings: String, packageName: String, kind: String): Long
+
+    @JvmStatic
+    external fun calibration(handle: Long): String
+
+    @JvmStatic
+    external fun endCalibration(handle: Long)
+
+    @JvmStatic
+    external fun tellHelper(pipe: Int)
+
+    @JvmStatic
+    external fun helpRelease(pipe: Int, recordings: String): String
+
+    @JvmStatic
+    external fun releaseLeft(recordings: String): String
 
     @JvmStatic
     external fun close(handle: Long)

@@ -6,56 +6,37 @@ import org.json.JSONArray
 import org.json.JSONObject
 
 /** A file in the folder of recordings. */
-data class RecordingEntry(
-    val file: File,
+class RecordingEntry(entry: JSONObject) {
+    /** Of which nothing is known but the file. */
+    constructor(file: File) : this(JSONObject().put("path", file.path))
+
+    val file = File(entry.getString("path"))
+
     /** When the flight began, in UTC: `2026-11-20T04:21:33Z`; empty if it cannot be read. */
-    val started: String,
-    val plant: String,
-    val part: Int,
-    val durationS: Double,
-    val ticks: Long,
-    val ending: String,
-    val notRecorded: Long,
+    val started: String = entry.optString("started")
+    val plant: String = entry.optString("plant")
+    val part = entry.optInt("part", 1)
+    val durationS = entry.optDouble("duration_s", 0.0)
+    val ticks = entry.optLong("ticks")
+    val ending: String = entry.optString("ending")
+    val notRecorded = entry.optLong("not_recorded")
+
     /** `whole`, `damaged`, `cut` or `being-written`. */
-    val wholeness: String,
+    val wholeness: String = entry.optString("file")
+
     /** Why it cannot be read. */
-    val error: String?,
-) {
+    val error = entry.text("error")
+
     /** Of the flight that goes on: neither shared nor deleted. */
     val isBeingWritten get() = wholeness == "being-written"
-
-    companion object {
-        fun of(entry: JSONObject) = RecordingEntry(
-            file = File(entry.getString("path")),
-            started = entry.optString("started"),
-            plant = entry.optString("plant"),
-            part = entry.optInt("part", 1),
-            durationS = entry.optDouble("duration_s", 0.0),
-            ticks = entry.optLong("ticks"),
-            ending = entry.optString("ending"),
-            notRecorded = entry.optLong("not_recorded"),
-            wholeness = entry.optString("file"),
-            error = entry.text("error"),
-        )
-
-        /** Of which nothing is known but the file. */
-        fun named(file: File) = of(JSONObject().put("path", file.path))
-    }
 }
 
 /** What a report says on a recording. */
-data class RecordingReport(
-    val findings: List<String>,
-    val timing: Timing?,
-    val events: List<String>,
-) {
-    companion object {
-        fun of(report: JSONObject) = RecordingReport(
-            findings = report.texts("findings"),
-            timing = report.optJSONObject("timing")?.let(Timing::of),
-            events = report.objects("events").map { "%.1f s: %s".format(it.optDouble("time_s"), it.optString("text")) },
-        )
-    }
+class RecordingReport(report: JSONObject) {
+    val findings = report.texts("findings")
+    val timing = report.optJSONObject("timing")?.let(::Timing)
+    val events =
+        report.objects("events").map { "%.1f s: %s".format(it.optDouble("time_s"), it.optString("text")) }
 }
 
 /**
@@ -73,7 +54,7 @@ class Recordings(private val folder: File) {
     fun list(): List<RecordingEntry> =
         FlightComputer(ANY_CONFIGURATION, folder).use { JSONArray(it.recordings()) }
             .objects()
-            .map(RecordingEntry::of)
+            .map(::RecordingEntry)
             .reversed()
 
     /**
@@ -81,7 +62,7 @@ class Recordings(private val folder: File) {
      *
      * @throws RecordingException if it cannot be read.
      */
-    fun report(file: File) = RecordingReport.of(JSONObject(FlightComputer.report(file)))
+    fun report(file: File) = RecordingReport(JSONObject(FlightComputer.report(file)))
 
     /** The recording of this name, there or not. */
     fun fileOf(name: String) = File(folder, name)

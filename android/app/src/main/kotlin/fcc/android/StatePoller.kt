@@ -5,10 +5,10 @@ import android.os.HandlerThread
 import android.os.Looper
 
 /**
- * Reads the flight's state regularly in a thread of its own, and hands it to the
- * thread that draws: never more than one at a time.
+ * Reads a state regularly in a thread of its own, and hands it to the thread that draws:
+ * never more than one at a time.
  */
-class StatePoller(private val everyMs: Long, private val show: (FlightState) -> Unit) {
+class StatePoller<T>(private val everyMs: Long, private val read: () -> T, private val show: (T) -> Unit) {
     private val main = Handler(Looper.getMainLooper())
     private var thread: HandlerThread? = null
 
@@ -28,7 +28,7 @@ class StatePoller(private val everyMs: Long, private val show: (FlightState) -> 
 
     private fun poll(of: HandlerThread, handler: Handler) {
         handler.post {
-            val state = Flight.state()
+            val state = read()
             main.post {
                 if (thread === of) {
                     show(state)

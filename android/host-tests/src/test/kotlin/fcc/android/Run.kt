@@ -1,9 +1,11 @@
 package fcc.android
 
 import java.io.File
+import java.io.RandomAccessFile
 import java.net.DatagramPacket
 import java.net.DatagramSocket
 import java.net.InetAddress
+import java.nio.file.Files
 import kotlin.concurrent.thread
 import kotlin.system.exitProcess
 import org.json.JSONObject
@@ -14,6 +16,11 @@ import org.json.JSONObject
  * by `android/host-tests/fccd`.
  */
 fun main(words: Array<String>) {
+    if (words.firstOrNull() == HELPER) {
+        System.err.println(Native.helpRelease(0, words[1]))
+        return
+    }
+    if (words.firstOrNull() == FLIGHTS) return flights(words[1].toInt())
     val config = words.getOrNull(words.indexOf("--config") + 1)
     if (words.firstOrNull() != "run" || config == null) {
         System.err.println("give: run --config FILE [--recordings DIR] [--json]")
@@ -39,6 +46,12 @@ fun main(words: Array<String>) {
             Runtime.getRuntime().halt(0)
         },
     )
+    if (System.getenv("FCC_RELEASE_HELPER") != null) startHelper(recordings)
+    // What an app does first.
+    if (System.getenv("FCC_RELEASE_LEFT") != null) {
+        println(Native.releaseLeft(recordings.path))
+        Runtime.getRuntime().halt(0)
+    }
     computer.start()
     System.getenv("FCC_POSITIONS_PORT")?.let { handPositionsIn(computer, it.toInt()) }
     // A screen that draws, and a collector of garbage that has work.
@@ -47,6 +60,55 @@ fun main(words: Array<String>) {
         Thread.sleep(33)
     }
 }
+
+private const val FLIGHTS = "flights"
+
+/** Flies this often, recorded, and prints what memory the process has after ten flights and at the end, KiB. */
+private fun flights(count: Int) {
+    val config = "$BUILT_IN[loop]\nrate_hz = 500\n[realtime]\nlock_memory = false\n"
+    val recordings = folder()
+    FlightComputer(config, recordings, Heard()).use { computer ->
+        repeat(count) { flown ->
+            if (flown == 10) println(residentKib())
+            computer.start()
+            computer.state()
+            computer.stop()
+            recordings.listFiles()!!.forEach { it.delete() }
+        }
+        println(residentKib())
+    }
+}
+
+/** VmRSS of proc_pid_status(5). */
+private fun residentKib(): Int {
+    System.gc()
+    val status = File("/proc/self/status").readText()
+    return Regex("VmRSS:\\s+(\\d+) kB").find(status)!!.groupValues[1].toInt()
+}
+
+private const val HELPER = "help-release"
+
+/** A second process, as Android would start it, at the end of a pipe that has a name. */
+private fun startHelper(recordings: File) {
+    val pipe = File(folder(), "pipe")
+    ProcessBuilder("mkfifo", pipe.path).start().waitFor()
+    // For both, or it would wait for the other end.
+    written = RandomAccessFile(pipe, "rw")
+    val java = ProcessHandle.current().info().command().get()
+    val properties = listOf("-Djava.library.path=" + System.getProperty("java.library.path"))
+    val classes = listOf("-cp", System.getProperty("java.class.path"), "fcc.android.RunKt")
+    ProcessBuilder(listOf(java) + properties + classes + listOf(HELPER, recordings.path))
+        .redirectInput(pipe)
+        .redirectError(ProcessBuilder.Redirect.INHERIT)
+        .start()
+    val ours = File("/proc/self/fd").listFiles()!!.single {
+        runCatching { Files.readSymbolicLink(it.toPath()).toString() }.getOrNull() == pipe.path
+    }
+    Native.tellHelper(ours.name.toInt())
+}
+
+/** Never closed. */
+private lateinit var written: RandomAccessFile
 
 /** As the location service would: datagrams with the values of a position, as JSON. */
 private fun handPositionsIn(computer: FlightComputer, port: Int) {

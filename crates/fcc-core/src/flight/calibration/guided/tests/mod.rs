@@ -2,6 +2,7 @@ extern crate std;
 
 mod magnetometer;
 mod mounting;
+mod turning;
 
 use std::string::ToString as _;
 
@@ -26,6 +27,7 @@ struct Hand {
     noise: u64,
     /// What the sensors make of what is true.
     force: fn([f64; 3]) -> [f64; 3],
+    rates: fn([f64; 3]) -> [f64; 3],
     field: fn([f64; 3]) -> [f64; 3],
     bias_radps: [f64; 3],
     /// North, east, down, µT.
@@ -43,6 +45,7 @@ impl Hand {
             now: Time::from_nanos(0),
             noise: 1,
             force: |given| given,
+            rates: |given| given,
             field: |given| given,
             bias_radps: [0.02, -0.01, 0.005],
             earth_ut: [21.0, 0.0, 45.0],
@@ -82,7 +85,9 @@ impl Hand {
         };
         let turns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(turned);
         let rate = |axis: usize| -0.5 * turns.iter().map(|turn| turn[axis]).sum::<f64>() / dt_s;
-        let rates = [0, 1, 2].map(|axis| rate(axis) + self.bias_radps[axis]);
+        let [p, q, r] = (self.rates)([0, 1, 2].map(rate));
+        let [bp, bq, br] = self.bias_radps;
+        let rates = [p + bp, q + bq, r + br];
         self.attitude = attitude;
         let force = (self.force)(earth_to_body(attitude, [0.0, 0.0, -G]));
         let field = (self.field)(earth_to_body(attitude, self.earth_ut));
@@ -239,13 +244,13 @@ fn what_moves_is_no_position() {
 
 #[test]
 fn a_gyroscopes_bias_is_found_at_rest() {
-    let mut hand = Hand::new(&GuidedKind::Gyroscope);
+    let mut hand = Hand::new(&GuidedKind::GyroscopeBias);
     hand.hold(of(0.1, -0.2, 1.0), 5.0);
     assert_eq!(hand.calibration.next(), Next::LeaveAlone);
     hand.tumble(2.0);
     hand.hold(of(0.1, -0.2, 1.0), 11.5);
     let found = hand.finish().unwrap();
-    let Values::Gyroscope { bias_radps } = found.values else {
+    let Values::GyroscopeBias { bias_radps } = found.values else {
         panic!("{found:?}");
     };
     // 400 samples of 0.002 rad/s: 0.0001 rad/s, within 4 standard deviations.
@@ -256,7 +261,7 @@ fn a_gyroscopes_bias_is_found_at_rest() {
 
 #[test]
 fn a_gyroscope_that_is_moved_or_turns_is_refused() {
-    let mut hand = Hand::new(&GuidedKind::Gyroscope);
+    let mut hand = Hand::new(&GuidedKind::GyroscopeBias);
     for _ in 0..3 {
         hand.hold(of(0.0, 0.0, 0.0), 4.0);
         hand.tumble(1.0);
@@ -264,7 +269,7 @@ fn a_gyroscope_that_is_moved_or_turns_is_refused() {
     assert_eq!(hand.finish(), Err(Refusal::Moved { times: 3 }));
     // 0.5°/s: too slow to be seen by its changes.
     for (axis, name) in [(0, "gravity"), (2, "the field")] {
-        let mut hand = Hand::new(&GuidedKind::Gyroscope);
+        let mut hand = Hand::new(&GuidedKind::GyroscopeBias);
         for n in 0..480 {
             let mut angles = [0.0; 3];
             angles[axis] = (0.5 * f64::from(n) / 40.0_f64).to_radians();
@@ -277,7 +282,7 @@ fn a_gyroscope_that_is_moved_or_turns_is_refused() {
         );
     }
     // A turntable, without a compass: 33 1/3 revolutions per minute.
-    let mut hand = Hand::new(&GuidedKind::Gyroscope);
+    let mut hand = Hand::new(&GuidedKind::GyroscopeBias);
     hand.earth_ut = [0.0; 3];
     hand.bias_radps = [0.0, 0.0, 100.0 / 3.0 / 60.0 * 2.0 * PI];
     hand.hold(of(0.0, 0.0, 0.0), 12.0);
@@ -290,7 +295,7 @@ fn a_gyroscope_that_is_moved_or_turns_is_refused() {
 
 #[test]
 fn sensors_that_warm_up_are_refused() {
-    let mut hand = Hand::new(&GuidedKind::Gyroscope);
+    let mut hand = Hand::new(&GuidedKind::GyroscopeBias);
     for n in 0..480 {
         hand.temperature_k = 290.0 + 6.0 * f64::from(n) / 480.0;
         hand.tick(of(0.0, 0.0, 0.0));

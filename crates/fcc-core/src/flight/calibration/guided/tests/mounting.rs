@@ -1,4 +1,5 @@
 use super::*;
+use crate::flight::calibration::Mounting;
 
 /// Every right-angled mounting, with a free rotation of some degrees.
 #[test]
@@ -98,7 +99,7 @@ fn level_alone_keeps_where_the_sensor_points() {
 
 #[test]
 fn a_sensor_that_gives_nothing_is_silent() {
-    let mut calibration = GuidedCalibration::new(&GuidedKind::Gyroscope);
+    let mut calibration = GuidedCalibration::new(&GuidedKind::GyroscopeBias);
     calibration.take(&Measurements::default());
     assert_eq!(calibration.next(), Next::Wait);
     assert_eq!(calibration.finish(), Err(Refusal::Silent));

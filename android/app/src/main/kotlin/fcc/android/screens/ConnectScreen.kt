@@ -31,6 +31,7 @@ internal class ConnectScreen(
     private val permissions = Rows(view.findViewById(R.id.permissions))
     private val battery = Rows(view.findViewById(R.id.battery))
     private val events = Rows(view.findViewById(R.id.events))
+    private val calibrations = CalibrationCard(activity, view)
     private var phase = Phase.IDLE
 
     init {
@@ -46,10 +47,15 @@ internal class ConnectScreen(
     }
 
     override fun enter() {
+        calibrations.enter()
         permissions.show(permissionRows())
         val isLimited = Battery.isLimited(activity)
-        battery.show(listOf(Row(text(if (isLimited) R.string.battery_limited else R.string.battery_unlimited))))
+        val saving = Row(text(R.string.battery_saver), tone = Tone.BAD).takeIf { Battery.isSaving(activity) }
+        val limited = if (isLimited) R.string.battery_limited else R.string.battery_unlimited
+        battery.show(listOfNotNull(saving, Row(text(limited))))
     }
+
+    override fun leave() = calibrations.leave()
 
     override fun show(state: FlightState) {
         phase = state.phase
@@ -57,7 +63,8 @@ internal class ConnectScreen(
         this.state.show(now?.let { words(activity, it) } ?: text(state.phase.words))
         flown.show(flownRows(state))
         readings.show(readingRows(state))
-        sensors.show(state.sensors.flatMap(::sensorRows).ifEmpty { dim(R.string.phone_sensors_none) })
+        val none = if (state.phase == Phase.IDLE) R.string.arrives_idle else R.string.phone_sensors_none
+        sensors.show(state.sensors.flatMap(::sensorRows).ifEmpty { dim(none) })
         remarks.show(state.remarks, text(R.string.no_remarks))
         events.show(state.reports.takeLast(EVENTS).reversed(), text(R.string.no_events))
         startOrEnd.setText(if (state.phase == Phase.IDLE) R.string.start else R.string.end_flight)

@@ -9,17 +9,20 @@ import android.view.View
 import android.view.WindowInsets
 import android.widget.FrameLayout
 import fcc.android.Configuration
+import fcc.android.Flight
 import fcc.android.FlightService
 import fcc.android.FlightState
+import fcc.android.Phase
 import fcc.android.Positions
 import fcc.android.R
+import fcc.android.Recordings
 import fcc.android.StatePoller
 
 /** The app's only activity: four screens, of which one is in front. The flight is not its own. */
 class MainActivity : Activity() {
     private lateinit var screens: List<Screen>
     private lateinit var tabs: List<View>
-    private val poller = StatePoller(DRAWN_EVERY_MS) { show(it) }
+    private val poller = StatePoller(DRAWN_EVERY_MS, Flight::state) { show(it) }
     private var chosen = FLY
     private var isStarted = false
 
@@ -42,6 +45,9 @@ class MainActivity : Activity() {
             screens.forEach { it.restore(state) }
         }
         mark()
+        Flight.releaseLeft(Recordings.folder(this)) { became ->
+            runOnUiThread { if (Flight.phase == Phase.IDLE) Flight.refuse(getString(R.string.left_held, became)) }
+        }
     }
 
     override fun onStart() {

@@ -85,7 +85,7 @@ internal class RecordingsScreen(private val activity: Activity) : Screen {
     override fun restore(state: Bundle) {
         chosenName = state.getString(CHOSEN)
         state.getString(DELETED)?.let { name ->
-            offerUndo(RecordingEntry.named(recordings.fileOf(name)))
+            offerUndo(RecordingEntry(recordings.fileOf(name)))
         }
     }
 

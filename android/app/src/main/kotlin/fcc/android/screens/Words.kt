@@ -26,9 +26,12 @@ internal fun Context.feet(m: Double): String = getString(R.string.feet, (m / Uni
 
 internal fun Context.knots(mps: Double): String = getString(R.string.knots, (mps / Units.KNOT_MPS).roundToInt())
 
-/** A short time in µs or ms. */
-internal fun Context.duration(us: Double): String =
-    if (us < 1_000.0) getString(R.string.microseconds, us.roundToInt()) else getString(R.string.milliseconds, us / 1e3)
+/** A short time in µs or ms, with two digits at least. */
+internal fun Context.duration(us: Double): String = when {
+    us < 10.0 -> getString(R.string.microseconds_tenths, us)
+    us < 1_000.0 -> getString(R.string.microseconds, us.roundToInt())
+    else -> getString(R.string.milliseconds, us / 1e3)
+}
 
 /** A duration in minutes and seconds. */
 internal fun minutes(s: Double): String = s.roundToInt().let { "%d:%02d".format(it / 60, it % 60) }

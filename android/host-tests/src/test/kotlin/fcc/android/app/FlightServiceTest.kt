@@ -1,10 +1,12 @@
 package fcc.android.app
 
 import android.Manifest
+import android.content.ComponentName
 import android.content.pm.ServiceInfo
 import fcc.android.Flight
 import fcc.android.FlightService
 import fcc.android.Phase
+import fcc.android.ReleaseService
 import org.junit.Assert.assertEquals
 import org.junit.Assert.assertFalse
 import org.junit.Assert.assertNotNull
@@ -19,7 +21,7 @@ import org.robolectric.annotation.Config
 import org.robolectric.shadows.ShadowPowerManager
 
 @RunWith(RobolectricTestRunner::class)
-@Config(sdk = [34])
+@Config(sdk = [28, 34, 35])
 class FlightServiceTest {
     @get:Rule
     val phone = Phone()
@@ -46,6 +48,13 @@ class FlightServiceTest {
         assertEquals(recording.ticks, report.timing!!.ticks)
         assertEquals(40.0, report.timing!!.rateHz, 0.0)
         assertTrue(report.events.any { "standby → engaged" in it })
+    }
+
+    @Test
+    fun `with a flight the process begins that releases if this one is killed`() {
+        phone.fly()
+        val release = ComponentName(phone.app, ReleaseService::class.java)
+        assertTrue(phone.started.any { it.component == release })
     }
 
     @Test
@@ -95,6 +104,7 @@ class FlightServiceTest {
         assertNull(Flight.state().ending)
     }
 
+    @Config(sdk = [34, 35])
     @Test
     fun `a location is a type of the service only where it is permitted and used`() {
         fun types(config: String): Int {

@@ -5,6 +5,7 @@ import android.content.pm.PackageManager
 import android.content.pm.ServiceInfo
 import fcc.android.FlightService
 import fcc.android.RecordingProvider
+import fcc.android.ReleaseService
 import fcc.android.screens.MainActivity
 import org.junit.Assert.assertEquals
 import org.junit.Assert.assertFalse
@@ -17,13 +18,14 @@ import org.robolectric.annotation.Config
 
 /** Robolectric does not check what a service in the foreground needs; Android ends the app. */
 @RunWith(RobolectricTestRunner::class)
-@Config(sdk = [34])
+@Config(sdk = [28, 34, 35])
 class ManifestTest {
     private val app = RuntimeEnvironment.getApplication()
     private val permissions =
         app.packageManager.getPackageInfo("fcc.android", PackageManager.GET_PERMISSIONS).requestedPermissions.toSet()
 
     /** Android's "Foreground service types are required": each type, its permission, and what it is for. */
+    @Config(sdk = [34, 35])
     @Test
     fun `the service's types have their permissions`() {
         val service = app.packageManager.getServiceInfo(ComponentName(app, FlightService::class.java), 0)
@@ -45,6 +47,13 @@ class ManifestTest {
             "INTERNET",
         )
         assertEquals(emptyList<String>(), needed.filter { "android.permission.$it" !in permissions })
+    }
+
+    @Test
+    fun `what releases the controls is in a process of its own`() {
+        val service = app.packageManager.getServiceInfo(ComponentName(app, ReleaseService::class.java), 0)
+        assertEquals("fcc.android:release", service.processName)
+        assertFalse(service.exported)
     }
 
     @Test

@@ -4,9 +4,12 @@ import android.app.Activity
 import android.app.Application
 import android.app.Notification
 import android.app.NotificationManager
+import android.content.ComponentName
 import android.content.Intent
 import android.os.Looper
 import android.view.View
+import android.view.ViewGroup
+import android.widget.Button
 import android.widget.TextView
 import fcc.android.Configuration
 import fcc.android.Flight
@@ -14,7 +17,9 @@ import fcc.android.FlightNotification
 import fcc.android.FlightService
 import fcc.android.FlightState
 import fcc.android.Phase
+import fcc.android.R
 import fcc.android.Recordings
+import fcc.android.ReleaseService
 import fcc.android.screens.MainActivity
 import java.time.Duration
 import org.junit.Assert.assertTrue
@@ -37,6 +42,16 @@ mode = "hold"
 lock_memory = false
 """
 
+/** By the phone's sensors, which the fake libandroid plays. */
+const val BY_PHONE = """
+actuator = []
+[navigation]
+method = "kalman"
+[[sensor]]
+kind = "phone"
+position = false
+"""
+
 /**
  * What Android does and Robolectric leaves to the test: it delivers what starts a
  * service, destroys the service that has ended itself, and lets time pass.
@@ -48,7 +63,14 @@ class Phone : ExternalResource() {
         private set
     private var starts = 0
 
-    override fun before() = Configuration(app).save(FLOWN)
+    /** What was started as a service, until now. */
+    val started = mutableListOf<Intent>()
+
+    override fun before() {
+        Configuration(app).save(FLOWN)
+        // There is one process only, and Robolectric's pipes are files.
+        shadowOf(app).declareComponentUnbindable(ComponentName(app, ReleaseService::class.java))
+    }
 
     override fun after() {
         if (Flight.phase != Phase.IDLE) {
@@ -65,7 +87,8 @@ class Phone : ExternalResource() {
         shadowOf(Looper.getMainLooper()).idleFor(Duration.ofMillis(ms))
         while (true) {
             val intent = shadowOf(app).nextStartedService ?: break
-            deliver(intent)
+            started += intent
+            if (intent.component == ComponentName(app, FlightService::class.java)) deliver(intent)
         }
         service?.takeIf { shadowOf(it.get()).isStoppedBySelf }?.let {
             service = null
@@ -100,6 +123,15 @@ class Phone : ExternalResource() {
     fun fly(config: String = FLOWN) {
         FlightService.start(app, config)
         eventually("ready to engage") { tick()?.engageInhibits?.isEmpty() == true }
+    }
+
+    /** Begins a calibration on the screen *connect*, which is in front. */
+    fun beginCalibration(activity: Activity, kind: String) {
+        val offers = activity.findViewById<ViewGroup>(R.id.calibrations)
+        eventually("offered") { "Calibrate: $kind" in offers.allWords() }
+        val buttons = (0 until offers.childCount).map { offers.getChildAt(it) as Button }
+        buttons.single { it.text == "Calibrate: $kind" }.performClick()
+        eventually("it is guided") { activity.findViewById<View>(R.id.calibration_cancel).isShown }
     }
 
     fun tick() = Flight.state().takeIf { it.phase == Phase.FLYING }?.now

@@ -3,10 +3,12 @@ package fcc.android.app
 import android.Manifest
 import android.graphics.Bitmap
 import android.graphics.Canvas
+import android.graphics.Rect
 import android.view.View
 import android.view.ViewGroup
 import android.widget.ListView
 import android.widget.TextView
+import fcc.android.Configuration
 import fcc.android.Flight
 import fcc.android.FlightService
 import fcc.android.Phase
@@ -92,6 +94,14 @@ class PicturesTest {
             activity.touch(R.id.check)
             phone.eventually("checked") { "rate_hz" in activity.words(R.id.message) }
             take("settings")
+            Configuration(phone.app).save(BY_PHONE)
+            activity.open(MainActivity.CONNECT)
+            phone.beginCalibration(activity, "accelerometer")
+            val next = activity.findViewById<TextView>(R.id.calibration_next)
+            phone.eventually("what to do") { "up" in next.text }
+            val card = activity.findViewById<View>(R.id.calibration_guide)
+            card.requestRectangleOnScreen(Rect(0, 0, card.width, card.height), true)
+            take("calibration")
         }
     }
 

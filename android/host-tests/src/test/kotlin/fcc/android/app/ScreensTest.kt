@@ -2,6 +2,7 @@ package fcc.android.app
 
 import android.content.Intent
 import android.net.Uri
+import android.os.PowerManager
 import android.view.View
 import android.widget.Button
 import android.widget.EditText
@@ -27,7 +28,7 @@ import org.robolectric.Shadows.shadowOf
 import org.robolectric.annotation.Config
 
 @RunWith(RobolectricTestRunner::class)
-@Config(sdk = [34])
+@Config(sdk = [28, 34, 35])
 class ScreensTest {
     @get:Rule
     val phone = Phone()
@@ -118,6 +119,77 @@ class ScreensTest {
         val less = activity.findViewById<View>(R.id.airspeed).findViewById<View>(R.id.less)
         repeat(100) { less.performClick() }
         phone.eventually("the reason") { "airspeed" in activity.words(R.id.problem) }
+    }
+
+    @Test
+    fun `of two thousand quick touches nothing is left to be done later`() {
+        phone.fly()
+        Flight.engage()
+        phone.eventually("shown") { activity.words(R.id.state) == "Engaged" }
+        val row = activity.findViewById<View>(R.id.heading)
+        repeat(2_000) { row.findViewById<View>(R.id.more).performClick() }
+        // Of 5 degrees each: 27 times around, and 280 degrees.
+        val asked = row.findViewById<TextView>(R.id.set_point)
+        phone.pass(1_500)
+        val settled = phone.tick()!!.desired!!.headingRad
+        phone.pass(1_000)
+        assertEquals(settled, phone.tick()!!.desired!!.headingRad, 0.0)
+        assertEquals("set %03.0f°".format(Math.toDegrees(settled)), asked.text.toString())
+        phone.pass(600)
+        repeat(2_000) { activity.touch(R.id.engage) }
+        phone.eventually("in standby") { phone.isIn("standby") }
+        switchSays("Engage")
+        activity.touch(R.id.engage)
+        switchSays("Disengage")
+        phone.pass(1_000)
+        assertTrue("it stays engaged", phone.isIn("engaged"))
+    }
+
+    @Test
+    fun `it flies without the permissions that are refused, and says what is missing`() {
+        val shadow = shadowOf(phone.app)
+        shadow.denyPermissions("android.permission.POST_NOTIFICATIONS", "android.permission.ACCESS_FINE_LOCATION")
+        Configuration(phone.app).save(BY_PHONE)
+        val refusing = Robolectric.buildActivity(MainActivity::class.java).setup().get()
+        phone.pass(600)
+        refusing.touch(R.id.engage)
+        val wanted = shadowOf(refusing).lastRequestedPermission.requestedPermissions
+        assertTrue("android.permission.ACCESS_FINE_LOCATION" in wanted)
+        assertEquals(Phase.IDLE, Flight.phase)
+        refusing.onRequestPermissionsResult(
+            shadowOf(refusing).lastRequestedPermission.requestCode, wanted, IntArray(wanted.size) { -1 },
+        )
+        phone.eventually("it flies") { Flight.phase == Phase.FLYING }
+        refusing.open(MainActivity.CONNECT)
+        assertTrue(refusing.findViewById<View>(R.id.permissions).allWords().any { it.startsWith("Location is not permitted") })
+    }
+
+    /** Android 9 has another way to write a file at once. */
+    @Config(sdk = [34, 35])
+    @Test
+    fun `a configuration that is damaged, and no room for another one, are said`() {
+        val file = phone.app.filesDir.resolve("fccd.toml")
+        file.writeBytes(ByteArray(5_000) { it.toByte() })
+        switchSays("Start")
+        activity.touch(R.id.engage)
+        phone.eventually("why") { "configuration:1" in activity.words(R.id.problem) }
+        assertEquals(Phase.IDLE, Flight.phase)
+        activity.open(MainActivity.SETTINGS)
+        // As on a disk that is full.
+        file.delete()
+        phone.app.filesDir.resolve("fccd.toml.new").mkdirs()
+        phone.app.filesDir.resolve("fccd.toml.new/a").mkdirs()
+        activity.touch(R.id.example_built_in)
+        activity.touch(R.id.save)
+        phone.eventually("why") { activity.words(R.id.message).startsWith("Cannot be saved: ") }
+        phone.app.filesDir.resolve("fccd.toml.new").deleteRecursively()
+    }
+
+    @Test
+    fun `the battery saver is mentioned`() {
+        shadowOf(phone.app.getSystemService(PowerManager::class.java)).setIsPowerSaveMode(true)
+        activity.open(MainActivity.CONNECT)
+        assertTrue(activity.findViewById<View>(R.id.battery).allWords().any { it.startsWith("The battery saver is on") })
     }
 
     @Test

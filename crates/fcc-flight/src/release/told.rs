@@ -18,7 +18,8 @@ const OVER: &str = "over";
 
 /// A line, without its end.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Line {
+#[non_exhaustive]
+pub enum Line {
     /// The number of a takeover, and the plant.
     Held(u64, PlantId),
     /// The number of a takeover whose release is confirmed.
@@ -62,7 +63,7 @@ impl Line {
 
 /// What the lines up to now mean.
 #[derive(Default, Debug)]
-pub(super) struct Told {
+pub struct Told {
     held: Option<(u64, PlantId)>,
     answers: Option<(u16, PlantId)>,
     is_over: bool,
@@ -70,7 +71,7 @@ pub(super) struct Told {
 
 impl Told {
     /// Takes the next line; one that is not understood changes nothing.
-    pub(super) fn line(&mut self, line: &str) {
+    pub fn line(&mut self, line: &str) {
         match Line::read(line) {
             Some(Line::Held(number, plant)) => self.held = Some((number, plant)),
             // A release that is told late does not cover the next takeover.
@@ -82,17 +83,17 @@ impl Told {
     }
 
     /// The takeover, by its number, after which the plant is held.
-    pub(super) const fn held(&self) -> Option<(u64, PlantId)> {
+    pub const fn held(&self) -> Option<(u64, PlantId)> {
         self.held
     }
 
     /// Whether the flight is over.
-    pub(super) const fn is_over(&self) -> bool {
+    pub const fn is_over(&self) -> bool {
         self.is_over
     }
 
     /// By what the answers of the plant that is held are known.
-    pub(super) fn answers_from(&self) -> Option<u16> {
+    pub fn answers_from(&self) -> Option<u16> {
         let (_, held) = self.held?;
         let (from, plant) = self.answers?;
         (plant == held).then_some(from)

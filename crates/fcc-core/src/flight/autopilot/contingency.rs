@@ -1,0 +1,274 @@
+//! Contingencies: what the autopilot does by itself when the flight cannot go on as it
+//! was commanded, though it can be controlled.
+//!
+//! | contingency | its trigger | when it ends |
+//! |---|---|---|
+//! | `PositionLost` | dead reckoning for longer than configured | with a position: a plan is continued |
+//! | `CommanderLost` | no command within the time that one has promised | by a command |
+//! | `Fence` | no circle to turn onto stays inside of the fence any more | by a command |
+//!
+//! The later in this table, the worse; the worst one acts. Each has its action in the
+//! configuration; what is not the fence waits for the end of a take-off or landing, and
+//! gives the landing up if there is no position. A command ends it, whatever it is: the pilot decides. Near the fence
+//! the aircraft turns onto the circle that stays inside of it, by present wind, and
+//! returns from there as soon as its course points there; if that brings it to the fence
+//! again, it stays on the circle.
+
+mod fence;
+
+use core::fmt;
+
+use super::Autopilot;
+use crate::flight::guidance::Mode;
+use crate::framework::Notice;
+use crate::schema;
+use fence::KeptCircle;
+
+/// The number of their notices: the amount says which, the item what is done.
+pub(super) const CONTINGENCY: u8 = 31;
+/// The amount of one contingency; none: that there is a position again.
+const PERMILLE: u16 = 1_000;
+
+schema! {
+    /// What the autopilot does by itself, and why; the worse the greater.
+    pub enum Contingency {
+        /// Nothing.
+        None = 0,
+        /// No position was measured for longer than configured.
+        PositionLost = 1,
+        /// A commander has not kept its promise to be heard.
+        CommanderLost = 2,
+        /// The fence is near, or was crossed.
+        Fence = 3,
+    }
+}
+
+/// What is done about a contingency.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum ContingencyAction {
+    /// It is reported, and what is flown is flown on.
+    Continue,
+    /// Circle.
+    Loiter,
+    /// Return, and circle there.
+    Return,
+}
+
+impl ContingencyAction {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Continue => "flying on",
+            Self::Loiter => "circling",
+            Self::Return => "returning",
+        }
+    }
+
+    const ALL: [Self; 3] = [Self::Continue, Self::Loiter, Self::Return];
+}
+
+/// What is done about each contingency.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct ContingencyConfig {
+    /// Near the fence. To continue is to ignore its sides, but not its floor and ceiling.
+    pub fence: ContingencyAction,
+    /// How far inside of the fence the aircraft stays, m.
+    pub fence_margin_m: f64,
+    /// How far above its floor and below its ceiling, m.
+    pub fence_height_margin_m: f64,
+    /// Without a position.
+    pub position: ContingencyAction,
+    /// After this time, s.
+    pub position_after_s: f64,
+    /// When a commander has promised to be heard, and is not.
+    pub commander: ContingencyAction,
+}
+
+impl Default for ContingencyConfig {
+    fn default() -> Self {
+        Self {
+            fence: ContingencyAction::Return,
+            fence_margin_m: 30.0,
+            fence_height_margin_m: 10.0,
+            position: ContingencyAction::Return,
+            position_after_s: 120.0,
+            commander: ContingencyAction::Return,
+        }
+    }
+}
+
+/// How far a contingency is dealt with.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+enum Stage {
+    /// As its action says.
+    #[default]
+    Acting,
+    /// On the circle that stays inside of the fence, until it can return.
+    TurningAway,
+    /// On it for good.
+    Staying,
+}
+
+/// The contingencies of a flight.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Contingencies {
+    active: Contingency,
+    stage: Stage,
+    /// The mode that it has commanded, and the one before.
+    mode: Mode,
+    before: Mode,
+    /// Whether this loss of the position was acted on.
+    is_loss_met: bool,
+    /// Within which time commands are promised, and how much of it is left, s.
+    promised_s: Option<(f64, f64)>,
+    /// The circle at the fence that was turned onto, until it is left behind.
+    kept: Option<KeptCircle>,
+    /// That it has begun or ended.
+    news: Option<Notice>,
+}
+
+impl Contingencies {
+    /// The active one.
+    pub(super) const fn active(&self) -> Contingency {
+        self.active
+    }
+
+    /// What begins or ends in this tick.
+    pub(super) const fn take_news(&mut self) -> Option<Notice> {
+        self.news.take()
+    }
+
+    /// A new engagement begins. What a commander has promised begins anew.
+    pub(super) const fn reset(&mut self) {
+        let promised_s = self.promised_s;
+        *self = Self {
+            active: Contingency::None,
+            stage: Stage::Acting,
+            mode: Mode::None,
+            before: Mode::None,
+            is_loss_met: false,
+            promised_s,
+            kept: None,
+            news: None,
+        };
+        self.renew_promise();
+    }
+
+    /// A commander promises to be heard within this time, s; 0: not any more.
+    pub(super) fn promise(&mut self, within_s: f64) {
+        self.promised_s = (within_s > 0.0).then_some((within_s, within_s));
+    }
+
+    /// A command was received.
+    pub(super) const fn renew_promise(&mut self) {
+        if let Some((within_s, left_s)) = &mut self.promised_s {
+            *left_s = *within_s;
+        }
+    }
+
+    /// The pilot has commanded what is flown now.
+    pub(super) const fn end(&mut self) {
+        self.active = Contingency::None;
+        self.stage = Stage::Acting;
+    }
+
+    fn announce(&mut self, which: Contingency, action: ContingencyAction) {
+        self.news = Some(Notice {
+            kind: CONTINGENCY,
+            amount_permille: which as u16 * PERMILLE,
+            item: action as u16 + 1,
+            ..Notice::default()
+        });
+    }
+}
+
+impl Autopilot {
+    /// Finds contingencies, and acts on the worst.
+    pub(super) fn meet_contingencies(&mut self) {
+        let dt_s = self.clock.passed_s();
+        if dt_s <= 0.0 {
+            return;
+        }
+        self.keep_inside_fence();
+        self.watch_commander(dt_s);
+        self.watch_position();
+    }
+
+    /// Acts on a contingency, unless a worse one is dealt with. A take-off or a landing is
+    /// ended before; whether it is acted on.
+    fn meet(&mut self, contingency: Contingency, action: ContingencyAction) -> bool {
+        if self.runway().is_some() {
+            return false;
+        }
+        if self.contingencies.active as u8 >= contingency as u8 {
+            return true;
+        }
+        self.contingencies.active = contingency;
+        self.contingencies.stage = Stage::Acting;
+        self.contingencies.before = self.guidance.mode();
+        match action {
+            ContingencyAction::Continue => {}
+            ContingencyAction::Loiter => self.pause(),
+            ContingencyAction::Return => self.return_home(),
+        }
+        self.contingencies.mode = self.guidance.mode();
+        self.contingencies.announce(contingency, action);
+        true
+    }
+
+    fn watch_position(&mut self) {
+        let config = self.config.contingency;
+        if self.ground.is_measured() {
+            self.contingencies.is_loss_met = false;
+            if self.contingencies.active == Contingency::PositionLost {
+                let is_left = self.contingencies.before == Mode::Plan
+                    && self.guidance.mode() == self.contingencies.mode
+                    && self.guidance.mode() != Mode::Plan;
+                self.contingencies.end();
+                self.contingencies
+                    .announce(Contingency::None, ContingencyAction::Continue);
+                if is_left {
+                    self.fly_plan(0);
+                }
+            }
+            return;
+        }
+        let is_flown_by = self.guidance.over_ground().is_some();
+        if is_flown_by
+            && self.ground.lost_s() >= config.position_after_s
+            && !self.contingencies.is_loss_met
+        {
+            // Where the runway is, is not known well enough.
+            if config.position != ContingencyAction::Continue {
+                self.guidance.go_around();
+            }
+            self.contingencies.is_loss_met = self.meet(Contingency::PositionLost, config.position);
+        }
+    }
+
+    fn watch_commander(&mut self, dt_s: f64) {
+        let Some((within_s, left_s)) = self.contingencies.promised_s else {
+            return;
+        };
+        let left_s = left_s - dt_s;
+        let action = self.config.contingency.commander;
+        let is_met = left_s <= 0.0 && self.meet(Contingency::CommanderLost, action);
+        self.contingencies.promised_s = (!is_met).then_some((within_s, left_s));
+    }
+}
+
+/// Writes the notice of a contingency.
+pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let which = u8::try_from(notice.amount_permille / PERMILLE).unwrap_or_default();
+    let what = match Contingency::from_number(which).unwrap_or_default() {
+        Contingency::None => "there is a position again",
+        Contingency::PositionLost => "there is no position for too long",
+        Contingency::CommanderLost => "the commander is not heard as promised",
+        Contingency::Fence => "the fence is near: turning away",
+    };
+    let action = usize::from(notice.item).checked_sub(1);
+    let action = action.and_then(|n| ContingencyAction::ALL.get(n));
+    match action {
+        Some(action) => write!(f, "{what}: {}", action.name()),
+        None => f.write_str(what),
+    }
+}

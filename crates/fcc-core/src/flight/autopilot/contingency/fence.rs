@@ -1,0 +1,210 @@
+//! The fence: the aircraft turns onto the last circle that stays inside of it.
+
+use libm::{atan, tan};
+use nalgebra::Vector2;
+
+use super::super::Autopilot;
+use super::{Contingency, ContingencyAction, Stage};
+use crate::flight::fence::{Bank, Escape, Fence};
+use crate::flight::guidance::ModeInput;
+use crate::flight::path::{LocalPlane, Path, length};
+use crate::flight::route::{
+    Destination, OverGround, PLANNED_SHARE, RETURNS_CLOCKWISE, ROLL_LAG_S, course_onto_circle,
+};
+use crate::units::GRAVITY_MPS2;
+
+/// The aircraft is on a circle within this distance, m, and this angle: its cosine, of 20°.
+const ON_CIRCLE_M: f64 = 60.0;
+const ALONG_CIRCLE: f64 = 0.939_7;
+/// It banks as its circle needs, or at most so much less, rad: 7°.
+const BANKED_WITHIN_RAD: f64 = 0.122;
+/// A target that is more than this above the present airspeed is not reached on the
+/// circle, m/s.
+const FASTER_MPS: f64 = 3.0;
+/// How far ahead it is looked at whether the fence is left behind, s.
+const AHEAD_S: f64 = 5.0;
+/// The aircraft returns from the circle when its course leads there within this angle:
+/// its cosine, of 3°, more than it turns in a tick.
+const POINTS_THERE: f64 = 0.998_6;
+
+/// A circle at the fence that the aircraft has turned onto.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct KeptCircle {
+    centre: LocalPlane,
+    radius_m: f64,
+    clockwise: bool,
+}
+
+impl KeptCircle {
+    fn of(escape: &Escape, here: &OverGround) -> Self {
+        Self {
+            centre: here.plane_at(escape.centre_m),
+            radius_m: escape.radius_m,
+            clockwise: escape.clockwise,
+        }
+    }
+
+    /// Whether the aircraft is on it, flies along it, and banks as it needs.
+    fn is_flown(&self, here: &OverGround, bank_rad: f64) -> bool {
+        let motion = here.motion_in(&self.centre);
+        let path = Path::Circle {
+            centre_m: Vector2::zeros(),
+            radius_m: self.radius_m,
+            clockwise: self.clockwise,
+        };
+        let nearest = path.nearest(motion.position_m);
+        let velocity = motion.ground_velocity_mps;
+        let needed_rad = atan(velocity.dot(&velocity) / (self.radius_m * GRAVITY_MPS2));
+        let banked_rad = if self.clockwise { bank_rad } else { -bank_rad };
+        banked_rad > needed_rad - BANKED_WITHIN_RAD
+            && nearest.cross_track_m.abs() < ON_CIRCLE_M
+            && nearest.course.dot(&velocity) >= ALONG_CIRCLE * length(velocity)
+    }
+}
+
+impl Autopilot {
+    /// Turns away from the fence in time.
+    pub(super) fn keep_inside_fence(&mut self) {
+        let action = self.config.contingency.fence;
+        let fence = self.fence();
+        // Take-off and landing lead where a runway is.
+        let is_watched = !fence.zones.is_empty()
+            && action != ContingencyAction::Continue
+            && self.runway().is_none()
+            && !self.is_on_runway();
+        let Some(here) = self.ground.here().copied().filter(|_| is_watched) else {
+            return;
+        };
+        let stage = self.contingencies.stage;
+        let is_met = self.contingencies.active == Contingency::Fence;
+        if is_met && stage == Stage::Staying {
+            return;
+        }
+        let bank = self.fastest_bank();
+        // Compared with one another, circles are those of the same airspeed.
+        let here = self.at_its_speed(&here);
+        let Some(escape) = Escape::best(&fence, &here, &bank) else {
+            return;
+        };
+        if is_met && stage == Stage::TurningAway {
+            let returns = action == ContingencyAction::Return && self.points_home(&here);
+            if returns && self.leads_away(&fence, &here, &escape) {
+                self.contingencies.stage = Stage::Acting;
+                self.return_from_fence(&here);
+            }
+            return;
+        }
+        let margin_m = self.config.contingency.fence_margin_m;
+        if escape.clearance_m > 1.5 * margin_m {
+            self.contingencies.kept = None;
+        }
+        // What leaves the circle begins on it, as near as the margin.
+        let kept = self.contingencies.kept;
+        let needed_m = if kept.is_some() {
+            0.75 * margin_m
+        } else {
+            margin_m
+        };
+        let leads_away = is_met && self.leads_away(&fence, &here, &escape);
+        if escape.clearance_m >= needed_m || leads_away {
+            return;
+        }
+        // A command does not make the circle another one while the aircraft is on it.
+        let circle = kept.filter(|kept| kept.is_flown(&here, bank.now_rad));
+        let zero = Vector2::zeros();
+        let depth_m = fence.clearance_m(here.latitude_rad, here.longitude_rad, zero);
+        if circle.is_none() && depth_m < -escape.radius_m {
+            // It was engaged far outside: nearer, the circle leads back sooner.
+            self.meet(Contingency::Fence, ContingencyAction::Return);
+            return;
+        }
+        let circle = circle.unwrap_or_else(|| KeptCircle::of(&escape, &here));
+        self.contingencies.active = Contingency::Fence;
+        self.contingencies.stage = if is_met || action == ContingencyAction::Loiter {
+            Stage::Staying
+        } else {
+            Stage::TurningAway
+        };
+        self.contingencies.kept = Some(circle);
+        // Faster, it would not hold it.
+        self.targets.airspeed_mps = self
+            .targets
+            .airspeed_mps
+            .min(here.airspeed_mps + FASTER_MPS);
+        self.circle(
+            ModeInput::Pause,
+            Some(circle.centre),
+            circle.radius_m,
+            circle.clockwise,
+        );
+        self.contingencies.announce(Contingency::Fence, action);
+    }
+
+    /// The aircraft with the airspeed that it has or, in a gust, will have again: that of
+    /// its target, but no more than a little above the present one.
+    fn at_its_speed(&self, here: &OverGround) -> OverGround {
+        let true_of_indicated = here.true_airspeed_mps / here.airspeed_mps.max(1.0);
+        let target_mps = self
+            .targets
+            .airspeed_mps
+            .min(here.airspeed_mps + FASTER_MPS);
+        OverGround {
+            true_airspeed_mps: here.true_airspeed_mps.max(target_mps * true_of_indicated),
+            ..*here
+        }
+    }
+
+    /// The fence of the plan.
+    pub(in super::super) fn fence(&self) -> Fence<'static> {
+        self.config.plan.map(|plan| plan.fence).unwrap_or_default()
+    }
+
+    /// How the aircraft banks at once.
+    fn fastest_bank(&self) -> Bank {
+        let (route, envelope) = (&self.config.route, &self.config.envelope);
+        let most_rad = route.bank_rad.min(envelope.max_bank_rad);
+        let estimate = self.navigation.estimate();
+        Bank {
+            // It rolls on for the lag.
+            now_rad: estimate.roll_rad + 2.0 * ROLL_LAG_S * estimate.body_rates.roll_radps,
+            turn_rad: atan(PLANNED_SHARE * tan(most_rad)),
+            rate_radps: route.bank_rate_radps,
+            lag_s: ROLL_LAG_S,
+        }
+    }
+
+    /// Where the aircraft returns to from the fence.
+    fn fence_return(&self, here: &OverGround) -> Option<Destination> {
+        let plan = self.config.plan?;
+        plan.fence_return.or_else(|| plan.nearest_return(here))
+    }
+
+    /// Whether the aircraft, without a turn, will be farther from the fence than now.
+    fn leads_away(&self, fence: &Fence<'_>, here: &OverGround, now: &Escape) -> bool {
+        let bank = Bank {
+            now_rad: 0.0,
+            ..self.fastest_bank()
+        };
+        let later = Escape::best(fence, &here.straight_on(AHEAD_S), &bank);
+        later.is_some_and(|later| later.clearance_m > now.clearance_m)
+    }
+
+    /// Whether the course is the one to the circle on which the aircraft returns.
+    fn points_home(&self, here: &OverGround) -> bool {
+        let radius_m = self.config.route.loiter_radius_m;
+        self.fence_return(here).is_some_and(|home| {
+            let motion = here.motion_in(&home.at);
+            let velocity = motion.ground_velocity_mps;
+            course_onto_circle(motion.position_m, radius_m, RETURNS_CLOCKWISE)
+                .is_none_or(|course| course.dot(&velocity) >= POINTS_THERE * length(velocity))
+        })
+    }
+
+    fn return_from_fence(&mut self, here: &OverGround) {
+        match self.config.plan.and_then(|plan| plan.fence_return) {
+            Some(place) => self.circle_at(ModeInput::Return, &place, here),
+            None => self.return_home(),
+        }
+        self.contingencies.mode = self.guidance.mode();
+    }
+}

@@ -1,0 +1,68 @@
+//! Control in a tick: from the targets to the outputs.
+
+use super::Autopilot;
+use crate::blocks::wrap_two_pi;
+use crate::flight::{Setpoints, Surfaces};
+use crate::framework::{Flags, Time};
+
+impl Autopilot {
+    /// The outputs of a tick.
+    pub(super) fn fly(&mut self, now: Time) -> Surfaces {
+        if self.is_silent(now) {
+            return self.trims();
+        }
+        let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
+        self.follow_outputs(&estimate);
+        let (schedule, envelope) = (self.schedule(), self.envelope());
+        if self.accepted.body_rates.value != self.kept_trims.found_with {
+            self.keep_trims();
+        }
+        let recovering = if self.is_on_runway() {
+            None
+        } else {
+            self.recover_from_upset(now, &estimate)
+        };
+        if let Some(outputs) = recovering.or_else(|| self.fly_to_release(&estimate, dt_s)) {
+            return self.with_trim(now, outputs, Flags::NONE);
+        }
+        if let Some(outputs) = self.control_on_runway(&estimate, dt_s) {
+            return self.with_trim(now, outputs, Flags::NONE);
+        }
+        let to = self.targets;
+        let ordered_mps = self.flyable_airspeed_mps(to.airspeed_mps);
+        self.altitude.order_airspeed(ordered_mps);
+        let lateral = self.step_lateral(&estimate, &envelope, schedule, dt_s);
+        let altitude = &mut self.altitude;
+        let vertical = altitude.step(to.altitude_m, &estimate, &envelope, schedule, dt_s);
+        let demand = self.throttle_demand(vertical.climb_rate_mps);
+        let throttle = self.airspeed.step(&demand, &estimate, dt_s);
+        self.show(
+            lateral.roll_rad,
+            vertical.climb_rate_mps,
+            vertical.pitch_rad,
+        );
+        let outputs = Surfaces {
+            throttle,
+            elevator: self.actuation.elevator(vertical.elevator),
+            aileron: lateral.aileron,
+            rudder: lateral.rudder,
+            ..Surfaces::IDLE
+        };
+        self.with_trim(now, outputs, Flags::NONE)
+    }
+
+    /// The set points of this tick: the targets, and what the loops make of them.
+    pub(super) fn show(&mut self, roll_rad: f64, climb_rate_mps: f64, pitch_rad: f64) {
+        self.setpoints = Setpoints {
+            airspeed_mps: self.targets.airspeed_mps,
+            heading_rad: wrap_two_pi(self.targets.heading_rad),
+            altitude_m: self.targets.altitude_m,
+            altitude_reference: self.reference,
+            altitude_above_reference_m: self.targets.altitude_m - self.datum_m(),
+            roll_rad,
+            climb_rate_mps,
+            pitch_rad,
+            ..self.setpoints
+        };
+    }
+}

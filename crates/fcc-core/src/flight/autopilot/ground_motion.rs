@@ -1,0 +1,231 @@
+//! Where the aircraft is and how it moves over the ground, for the modes that fly
+//! there.
+//!
+//! Navigation by raw readings has a position of its own. Otherwise positions and
+//! velocities are those of a receiver or a simulator, with their age; between two of
+//! them, and when they end, the aircraft is taken on by its velocity, and after a
+//! second without one by airspeed, heading and the last wind (dead reckoning).
+
+use core::time::Duration;
+
+use libm::{atan2, cos, exp, hypot, sin};
+use nalgebra::Vector2;
+
+use super::ground_below::GroundBelow;
+use crate::blocks::{limit, wrap_pi};
+use crate::flight::Measurements;
+use crate::flight::inertial::{Solution, metres_per_radian};
+use crate::flight::navigation::Estimate;
+use crate::flight::route::OverGround;
+use crate::framework::Time;
+
+/// A reading is taken on by its velocity for so long at most.
+const LONGEST_AGE: Duration = Duration::from_secs(1);
+/// A range is used for so long.
+const RANGE_AGE: Duration = Duration::from_millis(250);
+/// Faster than this on its wheels the aircraft moves where it points, m/s.
+const ROLLS_MPS: f64 = 5.0;
+/// Positions have noise: they are followed with this time constant, s, unless they
+/// are farther off than this, m.
+const FOLLOWS_S: f64 = 1.0;
+const FAR_M: f64 = 50.0;
+/// After so long without a position it is one of dead reckoning, s.
+const RECKONED_AFTER_S: f64 = 3.0;
+
+/// The aircraft over the ground.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct GroundMotion {
+    here: OverGround,
+    position_taken: Time,
+    velocity_taken: Time,
+    /// True north minus magnetic north, as the last velocity showed it, rad.
+    variation_rad: f64,
+    /// Since the last position, s.
+    lost_s: f64,
+    ground: GroundBelow,
+    /// What the range finder shows, m, upright.
+    below_m: Option<f64>,
+}
+
+impl GroundMotion {
+    /// Where the aircraft is, if it was ever known.
+    pub(super) fn here(&self) -> Option<&OverGround> {
+        (!self.position_taken.is_never() && self.here.is_finite()).then_some(&self.here)
+    }
+
+    /// The estimate with what is known of the place.
+    pub(super) fn shown_in(&self, estimate: &Estimate) -> Estimate {
+        let Some(here) = self.here() else {
+            return *estimate;
+        };
+        Estimate {
+            latitude_rad: here.latitude_rad,
+            longitude_rad: here.longitude_rad,
+            north_mps: here.ground_velocity_mps.x,
+            east_mps: here.ground_velocity_mps.y,
+            wind_north_mps: here.wind_mps.x,
+            wind_east_mps: here.wind_mps.y,
+            ..*estimate
+        }
+    }
+
+    /// How long ago the last position was, s of the plant's time.
+    pub(super) const fn lost_s(&self) -> f64 {
+        self.lost_s
+    }
+
+    /// Whether the wheels bear weight; none where it is not measured.
+    pub(super) const fn on_wheels(&self) -> Option<bool> {
+        self.here.on_wheels
+    }
+
+    /// Whether they are known to.
+    pub(super) fn stands_on_wheels(&self) -> bool {
+        self.here.on_wheels == Some(true)
+    }
+
+    /// Speed over the ground, m/s.
+    pub(super) fn speed_mps(&self) -> f64 {
+        hypot(
+            self.here.ground_velocity_mps.x,
+            self.here.ground_velocity_mps.y,
+        )
+    }
+
+    /// On the wheels the range finder shows `on_wheels_m`; whether it begins to show
+    /// something else.
+    pub(super) fn check_range(&mut self, on_wheels_m: f64) -> bool {
+        self.stands_on_wheels() && self.ground.stand(self.below_m, on_wheels_m)
+    }
+
+    /// The range finder does not show the ground, though it is near.
+    pub(super) const fn expect_no_range(&mut self) {
+        self.ground.expect_nothing();
+    }
+
+    /// Whether the position is one of dead reckoning.
+    pub(super) fn is_reckoned(&self) -> bool {
+        self.here().is_some() && self.lost_s > RECKONED_AFTER_S
+    }
+
+    /// Whether there is a position that was measured.
+    pub(super) fn is_measured(&self) -> bool {
+        self.here().is_some() && !self.is_reckoned()
+    }
+
+    /// `dt_s` seconds of the plant's time pass. `wind` is navigation's, m/s towards
+    /// north and east, with what true north is off the compass, rad; mean sea level is
+    /// at a pressure altitude, m.
+    pub(super) fn step(
+        &mut self,
+        now: Time,
+        measured: &Measurements,
+        estimate: &Estimate,
+        wind: Option<([f64; 2], f64)>,
+        sea_level_m: f64,
+        dt_s: f64,
+    ) {
+        self.here.true_airspeed_mps = estimate.true_airspeed_mps;
+        self.here.airspeed_mps = estimate.airspeed_mps;
+        self.here.altitude_m = estimate.altitude_m - sea_level_m;
+        self.here.roll_rad = estimate.roll_rad;
+        let below_m = measured
+            .range_m
+            .fresh(now, RANGE_AGE)
+            .map(|range_m| range_m * cos(estimate.roll_rad) * cos(estimate.pitch_rad));
+        self.here.height_m = self.ground.step(estimate.altitude_m, below_m, dt_s);
+        self.here.ranges = self.ground.shows();
+        self.below_m = below_m;
+        self.here.on_wheels = measured
+            .weight_on_wheels
+            .fresh(now, LONGEST_AGE)
+            .map(|weight| weight >= 0.5);
+        if let Some(([north, east], variation_rad)) = wind {
+            self.here.wind_mps = Vector2::new(north, east);
+            if !self.stands_on_wheels() {
+                self.variation_rad = variation_rad;
+            }
+        }
+        self.follow_variation(estimate, dt_s);
+        self.here.heading_rad = estimate.heading_rad + self.variation_rad;
+        let velocity = measured.velocity;
+        if velocity.taken > self.velocity_taken {
+            self.velocity_taken = velocity.taken;
+            let (north, east) = (velocity.value.north_mps, velocity.value.east_mps);
+            self.here.ground_velocity_mps = Vector2::new(north, east);
+        } else if now.since(self.velocity_taken) > LONGEST_AGE {
+            let heading = estimate.heading_rad + self.variation_rad;
+            let air = Vector2::new(cos(heading), sin(heading)) * estimate.true_airspeed_mps;
+            self.here.ground_velocity_mps = air + self.here.wind_mps;
+        }
+        self.move_by(self.here.ground_velocity_mps * dt_s);
+        self.lost_s += dt_s;
+        let position = measured.position;
+        if position.taken > self.position_taken && position.value.is_on_earth() {
+            let is_first = self.position_taken.is_never();
+            let age_s = now.since(position.taken).min(LONGEST_AGE).as_secs_f64();
+            let since_s = self.lost_s;
+            self.position_taken = position.taken;
+            self.lost_s = 0.0;
+            let moved = self.here.ground_velocity_mps * age_s;
+            let off = self.way_to(position.value.latitude_rad, position.value.longitude_rad);
+            let off_m = off + moved;
+            let is_far = is_first || hypot(off_m.x, off_m.y) > FAR_M;
+            let share = if is_far {
+                1.0
+            } else {
+                1.0 - exp(-since_s / FOLLOWS_S)
+            };
+            self.move_by(off_m * share);
+        }
+    }
+
+    /// A rolling aircraft moves where it points.
+    fn follow_variation(&mut self, estimate: &Estimate, dt_s: f64) {
+        let ground = self.here.ground_velocity_mps;
+        if self.stands_on_wheels() && hypot(ground.x, ground.y) > ROLLS_MPS {
+            let track_rad = atan2(ground.y, ground.x);
+            let off_rad = wrap_pi(track_rad - estimate.heading_rad - self.variation_rad);
+            self.variation_rad += off_rad * dt_s.min(1.0);
+        }
+    }
+
+    /// The solution of navigation by raw readings takes the place of all that it has.
+    pub(super) fn take(&mut self, solution: &Solution) {
+        let place = &solution.position;
+        let [north, east, _] = solution.velocity_mps;
+        if place.latitude_rad.is_finite() && place.longitude_rad.is_finite() {
+            self.here.latitude_rad = place.latitude_rad;
+            self.here.longitude_rad = place.longitude_rad;
+        }
+        if north.is_finite() && east.is_finite() {
+            self.here.ground_velocity_mps = Vector2::new(north, east);
+        }
+        let [w, x, y, z] = solution.quaternion;
+        let heading_rad = atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
+        if heading_rad.is_finite() {
+            self.here.heading_rad = heading_rad;
+        }
+        let [north, east] = solution.wind_mps;
+        if north.is_finite() && east.is_finite() {
+            self.here.wind_mps = Vector2::new(north, east);
+        }
+    }
+
+    /// The way from here to a place, m north and east.
+    fn way_to(&self, latitude_rad: f64, longitude_rad: f64) -> Vector2<f64> {
+        let (north, east) = metres_per_radian(self.here.latitude_rad, 0.0);
+        Vector2::new(
+            (latitude_rad - self.here.latitude_rad) * north,
+            wrap_pi(longitude_rad - self.here.longitude_rad) * east,
+        )
+    }
+
+    fn move_by(&mut self, by_m: Vector2<f64>) {
+        let (north, east) = metres_per_radian(self.here.latitude_rad, 0.0);
+        let latitude = self.here.latitude_rad + by_m.x / north;
+        let most = core::f64::consts::FRAC_PI_2;
+        self.here.latitude_rad = limit(latitude, -most, most);
+        self.here.longitude_rad = wrap_pi(self.here.longitude_rad + by_m.y / east);
+    }
+}

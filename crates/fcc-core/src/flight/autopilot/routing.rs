@@ -1,0 +1,300 @@
+//! Guidance in a tick, and the modes that fly over the ground.
+
+use super::{Autopilot, flags};
+use crate::flight::control::{Envelope, Lateral, Schedule};
+use crate::flight::guidance::{ActiveMode, Mode, ModeInput, OverGroundMode};
+use crate::flight::navigation::Estimate;
+use crate::flight::path::LocalPlane;
+use crate::flight::route::{
+    Destination, Follower, OverGround, RETURNS_CLOCKWISE, Route, RunwayReason, Step, Until,
+};
+use crate::flight::{AltitudeReference, Position, Setpoints};
+use crate::framework::{Flags, Notice};
+
+/// The number of the notice that an item of the plan is reached, whose number is its
+/// item; a landing is, when the aircraft stands.
+pub const ITEM_REACHED: u8 = 30;
+
+impl Autopilot {
+    /// Computes the targets.
+    pub(super) fn set_targets(&mut self) {
+        let marked = self.navigation.marked_altitude_m();
+        let shift_m = match (&mut self.capture, marked) {
+            (Some(capture), Some(altitude_m)) => capture.shift_m(altitude_m),
+            _ => 0.0,
+        };
+        self.guidance.shift_altitude(shift_m);
+        if let Some(targets) = self.guidance.targets() {
+            self.targets = targets;
+        }
+        if self.guidance.over_ground().is_some() && self.runway().is_none() {
+            let demanded_mps = self.targets.airspeed_mps;
+            self.targets.airspeed_mps = self.config.envelope.allowed_airspeed(demanded_mps);
+        }
+        self.keep_above_floor();
+        let sea_level_m = self.sea_level_m();
+        self.guidance.advance(
+            self.navigation.estimate(),
+            self.ground.here(),
+            sea_level_m,
+            self.clock.passed_s(),
+        );
+        let reached = self
+            .guidance
+            .over_ground()
+            .and_then(OverGroundMode::reached);
+        let is_plan = self
+            .guidance
+            .over_ground()
+            .is_some_and(OverGroundMode::is_plan);
+        if let Some(item) = reached.filter(|_| is_plan) {
+            self.news = Some(Notice {
+                kind: ITEM_REACHED,
+                item,
+                ..Notice::default()
+            });
+        }
+        let others = [self.contingencies.take_news(), self.on_runway.take_news()];
+        if let Some(news) = others.into_iter().flatten().last() {
+            self.news = Some(news);
+        }
+    }
+
+    /// The pressure altitude of mean sea level, m.
+    pub(super) fn sea_level_m(&self) -> f64 {
+        // At sea level there is always a datum.
+        let datum_m = self.altimeter.datum_m(AltitudeReference::SeaLevel);
+        datum_m.unwrap_or(0.0)
+    }
+
+    /// One step of the heading loop, towards a heading or with a bank.
+    pub(super) fn step_lateral(
+        &mut self,
+        estimate: &Estimate,
+        envelope: &Envelope,
+        schedule: Schedule,
+        dt_s: f64,
+    ) -> Lateral {
+        let heading_rad = self.targets.heading_rad;
+        match self.guidance.over_ground() {
+            None => self
+                .heading
+                .step(heading_rad, estimate, envelope, schedule, dt_s),
+            Some(mode) => {
+                let bank_rad = self.bank.step(mode.acceleration_mps2(), dt_s);
+                self.heading
+                    .bank_to(bank_rad, estimate, envelope, schedule, dt_s)
+            }
+        }
+    }
+
+    /// The set points with how the path is flown.
+    pub(super) fn with_track(&self, setpoints: Setpoints) -> Setpoints {
+        let track = self.guidance.over_ground().map(OverGroundMode::track);
+        let track = track.unwrap_or_default();
+        let plan = self.config.plan.unwrap_or_default();
+        Setpoints {
+            plan_hash: plan.hash,
+            plan_uploaded_unix_s: plan.uploaded_unix_s,
+            contingency: self.contingencies.active(),
+            course_rad: track.course_rad,
+            cross_track_m: track.cross_track_m,
+            to_go_m: track.to_go_m,
+            ..setpoints
+        }
+    }
+
+    /// Follows where the aircraft is.
+    pub(super) fn follow_ground(&mut self, now: crate::framework::Time, dt_s: f64) {
+        let sea_level_m = self.sea_level_m();
+        self.ground.step(
+            now,
+            &self.accepted,
+            self.navigation.estimate(),
+            self.navigation.wind(),
+            sea_level_m,
+            dt_s,
+        );
+        if let Some(raw) = &self.raw {
+            self.ground.take(raw.solution());
+        }
+        let on_wheels_m = self.config.route.runway.height_on_wheels_m;
+        if self.ground.check_range(on_wheels_m) {
+            self.on_runway.announce(RunwayReason::RangeFinder);
+        }
+    }
+
+    /// What an engagement lacks of what its mode needs.
+    pub(super) fn route_inhibits(&self) -> Flags {
+        let needs = self.config.guidance.mode() == Mode::Plan;
+        Flags::NONE
+            .with(flags::POSITION, needs && !self.ground.is_measured())
+            .with(flags::NO_PLAN, needs && self.config.plan.is_none())
+    }
+
+    /// What is reported of the position while it is flown by.
+    pub(super) fn route_conditions(&self) -> Flags {
+        let is_flown = self.guidance.over_ground().is_some();
+        Flags::NONE.with(
+            flags::DEAD_RECKONING,
+            is_flown && !self.ground.is_measured(),
+        )
+    }
+
+    /// Flies the plan from an item on, counted from 1; 0: where it was left, or from
+    /// its begin.
+    pub(super) fn fly_plan(&mut self, item: u16) {
+        let Some(plan) = self.config.plan else {
+            return;
+        };
+        let left = self.left_plan.filter(|_| item == 0);
+        let index = usize::from(item.saturating_sub(1));
+        if plan.step(index).is_none() || self.after(ModeInput::Plan).is_none() {
+            return;
+        }
+        if let Some(left) = left {
+            self.enter(&left.again(self.targets));
+        } else {
+            self.begin_plan(&plan, index);
+        }
+    }
+
+    /// Flies a plan from the step with an index on.
+    pub(super) fn begin_plan(&mut self, plan: &Route<'static>, index: usize) {
+        // One that stands has none to keep.
+        let airspeed_mps = if self.ground.stands_on_wheels() {
+            self.config.reference_airspeed_mps
+        } else {
+            self.targets.airspeed_mps
+        };
+        let follower = Follower::along(*plan, index, self.config.route, airspeed_mps);
+        self.enter(&OverGroundMode::new(Mode::Plan, follower, self.targets));
+    }
+
+    /// Circles beside where the aircraft is.
+    pub(super) fn pause(&mut self) {
+        self.circle(
+            ModeInput::Pause,
+            None,
+            self.config.route.loiter_radius_m,
+            true,
+        );
+    }
+
+    /// Circles around a place, or beside where the aircraft is, at the present altitude.
+    pub(super) fn circle(
+        &mut self,
+        input: ModeInput,
+        at: Option<LocalPlane>,
+        radius_m: f64,
+        clockwise: bool,
+    ) {
+        let altitude_m = self.targets.altitude_m - self.sea_level_m();
+        self.fly_step(input, loiter(at, altitude_m, radius_m, clockwise));
+    }
+
+    /// Flies to a place, at its altitude or the present higher one, and circles there.
+    pub(super) fn circle_at(&mut self, input: ModeInput, place: &Destination, here: &OverGround) {
+        let altitude_m = place.altitude_m.max(here.altitude_m);
+        let radius_m = self.config.route.loiter_radius_m;
+        let step = loiter(Some(place.at), altitude_m, radius_m, RETURNS_CLOCKWISE);
+        self.fly_step(input, step);
+    }
+
+    /// Flies to a place, and circles around it.
+    pub(super) fn go_to(&mut self, place: &Position) {
+        if !(place.is_on_earth() && place.altitude_m.is_finite()) {
+            return;
+        }
+        let at = Some(LocalPlane::at(place.latitude_rad, place.longitude_rad));
+        let radius_m = self.config.route.loiter_radius_m;
+        self.fly_step(
+            ModeInput::GoTo,
+            loiter(at, place.altitude_m, radius_m, true),
+        );
+    }
+
+    /// Returns to the nearest place to return to; without one it circles.
+    pub(super) fn return_home(&mut self) {
+        self.fly_step(ModeInput::Return, Step::Return);
+    }
+
+    fn fly_step(&mut self, input: ModeInput, step: Step) {
+        let Some(mode) = self.after(input) else {
+            return;
+        };
+        if self.ground.here().is_none() {
+            return;
+        }
+        let returns = self.config.plan.map_or(&[][..], |plan| plan.returns);
+        let airspeed_mps = self.targets.airspeed_mps;
+        let follower = Follower::to(step, returns, self.config.route, airspeed_mps);
+        self.enter(&OverGroundMode::new(mode, follower, self.targets));
+    }
+
+    /// Continues a mode over the ground after a restart; whether it is one.
+    pub(super) fn resume_over_ground(&mut self, mode: Mode, item: u32) -> bool {
+        match mode {
+            Mode::Plan | Mode::Takeoff | Mode::Land | Mode::GoAround => {
+                self.fly_plan(u16::try_from(item).unwrap_or(0));
+            }
+            Mode::Loiter | Mode::GoTo => self.pause(),
+            Mode::Return => self.return_home(),
+            Mode::None | Mode::Hold | Mode::TimedPattern => return false,
+        }
+        true
+    }
+
+    /// Gives a landing up.
+    pub(super) fn go_around(&mut self) {
+        if self.after(ModeInput::GoAround).is_some() {
+            self.guidance.go_around();
+        }
+    }
+
+    fn after(&self, input: ModeInput) -> Option<Mode> {
+        let is_rolling = self
+            .runway()
+            .is_some_and(|demand| demand.phase.is_on_wheels());
+        if is_rolling {
+            return None;
+        }
+        let configured = self.config.guidance.mode();
+        self.guidance.mode().after(input, configured)
+    }
+
+    /// Enters a mode over the ground.
+    fn enter(&mut self, mode: &OverGroundMode) {
+        self.leave();
+        if self.guidance.over_ground().is_none() {
+            self.bank.reset(self.setpoints.roll_rad);
+        }
+        self.reference = AltitudeReference::SeaLevel;
+        self.capture = None;
+        self.guidance = ActiveMode::OverGround(*mode);
+    }
+
+    /// Remembers a plan that is left for another mode, and leads from the bank of a
+    /// mode over the ground to that of another.
+    pub(super) fn leave(&mut self) {
+        let Some(mode) = self.guidance.over_ground().copied() else {
+            return;
+        };
+        if mode.is_plan() {
+            self.left_plan = Some(mode);
+        }
+        self.heading.lead_from(self.setpoints.roll_rad);
+    }
+}
+
+/// A circle without an end.
+const fn loiter(at: Option<LocalPlane>, altitude_m: f64, radius_m: f64, clockwise: bool) -> Step {
+    Step::Loiter {
+        at,
+        altitude_m,
+        radius_m,
+        clockwise,
+        until: Until::Never,
+        leave_towards_next: false,
+    }
+}

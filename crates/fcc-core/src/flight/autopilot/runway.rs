@@ -1,0 +1,327 @@
+//! The controls during take-off and landing.
+//!
+//! | phase | lateral | vertical | throttle, brakes |
+//! |---|---|---|---|
+//! | Roll, Rotate | nose wheel and rudder along the centre line, wings level | elevator neutral, then pitch | full |
+//! | Climb, `GoAround` | bank onto the centre line | pitch, less below the climb's airspeed | full |
+//! | Approach | bank onto the centre line | climb rate of the glide path | airspeed |
+//! | Flare | rudder to the runway's heading, bank against the drift | sink rate by height | closing |
+//! | `RollOut`, Stopped | as in the roll | elevator back | idle, brakes |
+
+mod notices;
+mod on_wheels;
+
+use libm::atan;
+
+use super::Autopilot;
+use crate::blocks::{limit, limit_abs, wrap_pi};
+use crate::flight::Surfaces;
+use crate::flight::control::{Envelope, Lateral, ThrottleDemand};
+use crate::flight::guidance::OverGroundMode;
+use crate::flight::navigation::Estimate;
+use crate::flight::route::{RunwayDemand, RunwayPhase, RunwayReason, Step};
+use crate::framework::Notice;
+use crate::units::GRAVITY_MPS2;
+pub(super) use notices::{RUNWAY, write};
+
+/// Rudder per heading error, 1/rad, per its integral, 1/(rad s), and per yaw rate, s, at
+/// the reference airspeed.
+const RUDDER_PER_RAD: f64 = 1.6;
+const RUDDER_PER_RAD_S: f64 = 0.8;
+const RUDDER_PER_RADPS: f64 = 1.2;
+/// Limit of the integral, and its time constant on the wheels, s.
+const MOST_INTEGRAL: f64 = 0.7;
+const FORGETS_S: f64 = 3.0;
+/// Bank of the flare: acceleration per metre off the centre line, 1/s², per drift, 1/s;
+/// at most, rad (6°: a low wing stays off the ground).
+const DRIFT_PER_S2: f64 = 0.16;
+const DRIFT_PER_S: f64 = 0.8;
+const MOST_FLARE_BANK_RAD: f64 = 0.105;
+/// Lower than this the bank of a climb is at most that of the flare, m.
+const LOW_M: f64 = 15.0;
+/// The nose is aligned with the runway below this height, m.
+const ALIGNS_M: f64 = 2.0;
+/// A go-around begins with this pitch, rad (3°), below this share of the approach's
+/// airspeed, and with the throttle opened so fast, 1/s.
+const SLOW_PITCH_RAD: f64 = 0.052;
+const SLOW_SHARE: f64 = 0.8;
+const OPENS_PER_S: f64 = 1.0;
+/// How fast the throttle is closed in the flare, 1/s.
+const CLOSES_PER_S: f64 = 0.35;
+/// The smallest pitch of a flare: the nose wheel does not touch first, rad.
+const LEAST_FLARE_PITCH_RAD: f64 = 0.0;
+/// The elevator is held back below this share of the approach's airspeed.
+const HELD_BACK_BELOW: f64 = 0.7;
+/// An approach speed is so many times the stalling speed.
+const OVER_STALL: f64 = 1.3;
+/// The lowest airspeed of approach and climb, of the commanded one.
+const LOWEST_SHARE: f64 = 0.88;
+
+/// What the controls of a runway remember.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct RunwayControl {
+    phase: Option<RunwayPhase>,
+    /// What is to be told.
+    news: Option<Notice>,
+    /// Integrated rudder.
+    rudder: f64,
+    brake: f64,
+}
+
+impl Autopilot {
+    /// The take-off or landing that is flown.
+    pub(super) fn runway(&self) -> Option<RunwayDemand> {
+        self.guidance.over_ground().and_then(OverGroundMode::runway)
+    }
+
+    /// Whether the wheels carry the aircraft, or it is about to touch down.
+    pub(super) fn is_on_runway(&self) -> bool {
+        self.ground.stands_on_wheels()
+            || self.runway().is_some_and(|demand| {
+                demand.phase.is_on_wheels() || demand.phase == RunwayPhase::Flare
+            })
+    }
+
+    /// Whether it may engage standing on a runway: the plan begins with a take-off.
+    pub(super) fn begins_on_runway(&self) -> bool {
+        let steps = self.config.plan.map_or(&[][..], |plan| plan.steps);
+        let first = steps.iter().find(|step| step.is_flown());
+        let takes_off = matches!(first, Some(Step::Takeoff { .. }));
+        takes_off
+            && self.config.guidance.mode() == crate::flight::guidance::Mode::Plan
+            && self.ground.stands_on_wheels()
+    }
+
+    /// The outputs of a take-off or a landing; none while neither is flown.
+    pub(super) fn control_on_runway(&mut self, estimate: &Estimate, dt_s: f64) -> Option<Surfaces> {
+        let Some(demand) = self.runway() else {
+            if self.on_runway.phase.is_some() {
+                // The throttle was not the airspeed loop's.
+                let last = self.last;
+                self.take_over(&last);
+                self.heading.lead_from(self.setpoints.roll_rad);
+            }
+            let news = self.on_runway.news;
+            self.on_runway = RunwayControl {
+                news,
+                ..RunwayControl::default()
+            };
+            return None;
+        };
+        self.enter_phase(&demand, estimate);
+        let lateral = match demand.phase {
+            phase if phase.is_on_wheels() => self.steer(&demand, estimate, dt_s),
+            RunwayPhase::Flare => self.align(&demand, estimate, dt_s),
+            _ => self.follow_centre_line(&demand, estimate, dt_s),
+        };
+        let (throttle, climb_rate_mps, pitch_rad, elevator) =
+            self.vertical_on_runway(&demand, estimate, dt_s);
+        self.show(lateral.roll_rad, climb_rate_mps, pitch_rad);
+        let outputs = Surfaces {
+            throttle,
+            elevator,
+            aileron: lateral.aileron,
+            rudder: lateral.rudder,
+            ..Surfaces::IDLE
+        };
+        Some(self.with_wheels(&demand, outputs, estimate, dt_s))
+    }
+
+    /// The loops take over at a phase's begin.
+    fn enter_phase(&mut self, demand: &RunwayDemand, estimate: &Estimate) {
+        let before = self.on_runway.phase.replace(demand.phase);
+        if before == Some(demand.phase) {
+            return;
+        }
+        if demand.reason != RunwayReason::None {
+            self.on_runway.announce(demand.reason);
+        }
+        if demand.reason == RunwayReason::LongFlare {
+            self.ground.expect_no_range();
+        }
+        let (last, schedule) = (self.last, self.schedule());
+        match demand.phase {
+            RunwayPhase::Rotate => self.altitude.engage(last.elevator, estimate, schedule),
+            RunwayPhase::Climb | RunwayPhase::Approach
+                if before.is_some_and(RunwayPhase::is_on_wheels) =>
+            {
+                self.heading
+                    .engage(last.aileron, last.rudder, estimate, schedule);
+                self.bank.reset(estimate.roll_rad);
+            }
+            RunwayPhase::Flare => self.on_runway.rudder = last.rudder,
+            RunwayPhase::GoAround if before == Some(RunwayPhase::Flare) => {
+                self.heading
+                    .engage(last.aileron, last.rudder, estimate, schedule);
+                self.bank.reset(estimate.roll_rad);
+            }
+            _ => {}
+        }
+    }
+
+    /// How far the heading is to the left of that of the runway, rad.
+    fn off_heading_rad(&self, demand: &RunwayDemand) -> f64 {
+        let heading_rad = self.ground.here().map_or(0.0, |here| here.heading_rad);
+        wrap_pi(demand.course_rad - heading_rad)
+    }
+
+    /// The rudder that turns the nose by an angle, rad.
+    fn rudder_towards(&mut self, off_rad: f64, estimate: &Estimate, dt_s: f64) -> f64 {
+        let moment = self.schedule().moment;
+        // On the wheels it is forgotten: the nose wheel steers, too.
+        let forgets = if self.ground.stands_on_wheels() {
+            self.on_runway.rudder / FORGETS_S
+        } else {
+            0.0
+        };
+        let integral = &mut self.on_runway.rudder;
+        let rate = moment * RUDDER_PER_RAD_S * off_rad - forgets;
+        *integral = limit_abs(*integral + rate * dt_s, MOST_INTEGRAL);
+        let yaw_radps = estimate.body_rates.yaw_radps;
+        let rudder = moment * (RUDDER_PER_RAD * off_rad - RUDDER_PER_RADPS * yaw_radps);
+        limit_abs(rudder + *integral, 1.0)
+    }
+
+    /// In the flare: the nose along the runway, and a bank against the drift.
+    fn align(&mut self, demand: &RunwayDemand, estimate: &Estimate, dt_s: f64) -> Lateral {
+        let schedule = self.schedule();
+        let wanted_mps2 =
+            -DRIFT_PER_S2 * demand.cross_track_m - DRIFT_PER_S * demand.cross_track_mps;
+        // The side force of the slip accelerates it, too.
+        let by_bank_mps2 = wanted_mps2 - estimate.side_force_mps2;
+        let roll_rad = limit_abs(atan(by_bank_mps2 / GRAVITY_MPS2), MOST_FLARE_BANK_RAD);
+        let roll_rad = self.heading.led(roll_rad, dt_s);
+        let held = self.heading.hold_bank(roll_rad, estimate, schedule, dt_s);
+        if demand.height_m > ALIGNS_M {
+            self.on_runway.rudder = held.rudder;
+            return held;
+        }
+        let off_rad = self.off_heading_rad(demand);
+        Lateral {
+            rudder: self.rudder_towards(off_rad, estimate, dt_s),
+            ..held
+        }
+    }
+
+    /// In the air: onto the centre line by bank.
+    fn follow_centre_line(
+        &mut self,
+        demand: &RunwayDemand,
+        estimate: &Estimate,
+        dt_s: f64,
+    ) -> Lateral {
+        let acceleration = self.guidance.over_ground();
+        let acceleration = acceleration.map_or(0.0, OverGroundMode::acceleration_mps2);
+        let bank_rad = self.bank.step(acceleration, dt_s);
+        let bank_rad = if demand.height_m < LOW_M && demand.phase.is_climb() {
+            limit_abs(bank_rad, MOST_FLARE_BANK_RAD)
+        } else {
+            bank_rad
+        };
+        let (envelope, schedule) = (self.runway_envelope(demand), self.schedule());
+        self.heading
+            .bank_to(bank_rad, estimate, &envelope, schedule, dt_s)
+    }
+
+    /// Throttle, climb rate, pitch and elevator.
+    fn vertical_on_runway(
+        &mut self,
+        demand: &RunwayDemand,
+        estimate: &Estimate,
+        dt_s: f64,
+    ) -> (f64, f64, f64, f64) {
+        let (envelope, schedule) = (self.runway_envelope(demand), self.schedule());
+        let closing = (self.last.throttle - CLOSES_PER_S * dt_s).max(0.0);
+        let opens_per_s = if demand.phase == RunwayPhase::GoAround {
+            OPENS_PER_S
+        } else {
+            CLOSES_PER_S
+        };
+        let opening = (self.last.throttle + opens_per_s * dt_s).min(1.0);
+        match demand.phase {
+            RunwayPhase::Roll => (opening, 0.0, 0.0, 0.0),
+            RunwayPhase::RollOut | RunwayPhase::Stopped => {
+                let fast_mps = HELD_BACK_BELOW * self.config.route.runway.approach_mps;
+                let slow = 1.0 - estimate.airspeed_mps / fast_mps;
+                (closing, 0.0, 0.0, limit(slow, 0.0, 1.0))
+            }
+            RunwayPhase::Approach | RunwayPhase::Flare => {
+                let altitude = &mut self.altitude;
+                let vertical = altitude.hold_climb_rate(
+                    demand.climb_rate_mps,
+                    estimate,
+                    &envelope,
+                    schedule,
+                    dt_s,
+                );
+                let airspeed = ThrottleDemand {
+                    airspeed_mps: envelope.floor_mps(estimate).max(self.targets.airspeed_mps),
+                    climb_rate_mps: vertical.climb_rate_mps,
+                    load_factor: 1.0,
+                    least_throttle: envelope.least_throttle(estimate.airspeed_mps),
+                };
+                let throttle = if demand.phase == RunwayPhase::Flare {
+                    closing
+                } else {
+                    self.airspeed.step(&airspeed, estimate, dt_s)
+                };
+                let elevator = self.actuation.elevator(vertical.elevator);
+                (
+                    throttle,
+                    vertical.climb_rate_mps,
+                    vertical.pitch_rad,
+                    elevator,
+                )
+            }
+            RunwayPhase::Rotate | RunwayPhase::Climb | RunwayPhase::GoAround => {
+                let pitch_rad = self.climb_pitch_rad(demand, estimate);
+                let vertical = self
+                    .altitude
+                    .hold_pitch(pitch_rad, estimate, &envelope, schedule, dt_s);
+                let elevator = self.actuation.elevator(vertical.elevator);
+                (
+                    opening,
+                    vertical.climb_rate_mps,
+                    vertical.pitch_rad,
+                    elevator,
+                )
+            }
+        }
+    }
+
+    /// The pitch of a climb: low and slow, at first little more than level.
+    fn climb_pitch_rad(&self, demand: &RunwayDemand, estimate: &Estimate) -> f64 {
+        if demand.phase != RunwayPhase::GoAround || demand.height_m > LOW_M {
+            return demand.pitch_rad;
+        }
+        let approach_mps = self.config.route.runway.approach_mps;
+        let slow_mps = SLOW_SHARE * approach_mps;
+        let share = (estimate.airspeed_mps - slow_mps) / (approach_mps - slow_mps);
+        let level_rad = SLOW_PITCH_RAD.min(demand.pitch_rad);
+        level_rad + limit(share, 0.0, 1.0) * (demand.pitch_rad - level_rad)
+    }
+
+    /// The limits of a phase: close to the ground nothing lowers the nose for speed.
+    fn runway_envelope(&self, demand: &RunwayDemand) -> Envelope {
+        let config = &self.config.route.runway;
+        let lowest_mps = match demand.phase {
+            RunwayPhase::Approach => LOWEST_SHARE * config.approach_mps,
+            RunwayPhase::GoAround if demand.height_m < LOW_M => 1.0,
+            RunwayPhase::Climb | RunwayPhase::GoAround => LOWEST_SHARE * config.climb_mps,
+            _ => 1.0,
+        };
+        let stall_mps = (config.approach_mps / OVER_STALL).min(lowest_mps);
+        let least_pitch_rad = if demand.phase == RunwayPhase::Flare {
+            LEAST_FLARE_PITCH_RAD
+        } else {
+            self.config.envelope.min_pitch_rad
+        };
+        Envelope {
+            min_airspeed_mps: lowest_mps,
+            stall_airspeed_mps: stall_mps,
+            airspeed_margin_mps: 0.1 * lowest_mps,
+            min_pitch_rad: least_pitch_rad,
+            ..self.config.envelope
+        }
+    }
+}

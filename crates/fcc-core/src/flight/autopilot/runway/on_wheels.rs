@@ -1,0 +1,139 @@
+//! The controls on the wheels.
+
+use super::super::{Autopilot, flags};
+use super::{CLOSES_PER_S, RUDDER_PER_RADPS};
+use crate::blocks::limit_abs;
+use crate::flight::Surfaces;
+use crate::flight::control::Lateral;
+use crate::flight::navigation::Estimate;
+use crate::flight::route::{RunwayConfig, RunwayDemand, RunwayPhase};
+use crate::framework::Flags;
+
+/// Heading towards the centre line per metre off it, rad/m, per m/s, and at most, rad.
+const STEERS_RAD_PER_M: f64 = 0.02;
+const STEERS_RAD_PER_MPS: f64 = 0.03;
+const MOST_STEERED_RAD: f64 = 0.15;
+/// Yaw rate per heading error, 1/s.
+const YAW_GAIN_PER_S: f64 = 1.0;
+/// Slower than this the nose wheel is steered as at it, m/s.
+const LEAST_STEERED_MPS: f64 = 3.0;
+/// Roll rate per bank on the wheels, 1/s.
+const LEVELS_PER_S: f64 = 2.6;
+/// How fast the brakes are set, 1/s.
+const BRAKES_PER_S: f64 = 0.5;
+/// Brakes are used below this share of the approach's airspeed.
+const BRAKES_BELOW: f64 = 0.85;
+
+impl Autopilot {
+    /// In a failsafe on the wheels: to a stop, straight on as far as the yaw rate is known.
+    pub(in super::super) fn stop_on_wheels(&mut self, lost: Flags) -> Option<Surfaces> {
+        let phase = self.runway()?.phase;
+        let rolls = match self.ground.on_wheels() {
+            Some(on_wheels) => on_wheels && phase.is_on_wheels(),
+            None => phase.is_on_wheels() && phase != RunwayPhase::Rotate,
+        };
+        if !rolls {
+            return None;
+        }
+        self.guidance.go_around();
+        let (config, dt_s) = (self.config.route.runway, self.clock.step_s());
+        let yaw_radps = if lost.contains(flags::BODY_RATES) {
+            0.0
+        } else {
+            self.navigation.estimate().body_rates.yaw_radps
+        };
+        let speed_mps = self.ground.speed_mps().max(LEAST_STEERED_MPS);
+        let brake = &mut self.on_runway.brake;
+        *brake += limit_abs(config.brake - *brake, BRAKES_PER_S * dt_s);
+        let (left_brake, right_brake) = (Some(*brake), Some(*brake));
+        Some(Surfaces {
+            throttle: (self.last.throttle - CLOSES_PER_S * dt_s).max(0.0),
+            rudder: limit_abs(-self.schedule().moment * RUDDER_PER_RADPS * yaw_radps, 1.0),
+            nose_wheel: Some(limit_abs(
+                -yaw_radps * config.steering_radius_m / speed_mps,
+                1.0,
+            )),
+            left_brake,
+            right_brake,
+            ..Surfaces::IDLE
+        })
+    }
+
+    /// How far the heading is to the left of that which leads to the centre line, rad.
+    fn steered_rad(&self, demand: &RunwayDemand) -> f64 {
+        let towards_rad = limit_abs(
+            STEERS_RAD_PER_M * demand.cross_track_m + STEERS_RAD_PER_MPS * demand.cross_track_mps,
+            MOST_STEERED_RAD,
+        );
+        self.off_heading_rad(demand) - towards_rad
+    }
+
+    /// On the wheels: along the centre line, wings level.
+    pub(super) fn steer(
+        &mut self,
+        demand: &RunwayDemand,
+        estimate: &Estimate,
+        dt_s: f64,
+    ) -> Lateral {
+        let off_rad = self.steered_rad(demand);
+        let rudder = self.rudder_towards(off_rad, estimate, dt_s);
+        let schedule = self.schedule();
+        let level_radps = -LEVELS_PER_S * estimate.roll_rad;
+        let level = self
+            .heading
+            .surfaces_for(level_radps, 0.0, 0.0, estimate, schedule);
+        Lateral {
+            roll_rad: 0.0,
+            aileron: level.aileron,
+            rudder,
+        }
+    }
+
+    /// The outputs with flaps, brakes and nose wheel.
+    pub(super) fn with_wheels(
+        &mut self,
+        demand: &RunwayDemand,
+        outputs: Surfaces,
+        estimate: &Estimate,
+        dt_s: f64,
+    ) -> Surfaces {
+        let config = self.config.route.runway;
+        let brakes = matches!(demand.phase, RunwayPhase::RollOut | RunwayPhase::Stopped)
+            && estimate.airspeed_mps < BRAKES_BELOW * config.approach_mps;
+        let to = if brakes { config.brake } else { 0.0 };
+        let brake = &mut self.on_runway.brake;
+        *brake += limit_abs(to - *brake, BRAKES_PER_S * dt_s);
+        let flaps = if demand.phase.is_takeoff() || demand.phase == RunwayPhase::GoAround {
+            config.takeoff_flaps
+        } else {
+            config.landing_flaps
+        };
+        let outputs = if demand.phase == RunwayPhase::Stopped {
+            Surfaces::IDLE
+        } else {
+            outputs
+        };
+        Surfaces {
+            flaps: Some(flaps),
+            left_brake: Some(*brake),
+            right_brake: Some(*brake),
+            nose_wheel: match demand.phase {
+                RunwayPhase::Stopped => Some(0.0),
+                phase => phase
+                    .is_on_wheels()
+                    .then(|| self.nose_wheel(demand, &config)),
+            },
+            ..outputs
+        }
+    }
+
+    /// A turn's rate is V/R, and full deflection's R is known.
+    fn nose_wheel(&self, demand: &RunwayDemand, config: &RunwayConfig) -> f64 {
+        let off_rad = self.steered_rad(demand);
+        let speed_mps = demand.ground_speed_mps.max(LEAST_STEERED_MPS);
+        limit_abs(
+            YAW_GAIN_PER_S * off_rad * config.steering_radius_m / speed_mps,
+            1.0,
+        )
+    }
+}

@@ -1,0 +1,194 @@
+//! Landing: the glide path, and when each phase begins.
+
+use libm::{fabs, tan};
+
+use super::{Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase, RunwayReason};
+use crate::flight::path::Motion;
+use crate::flight::route::OverGround;
+
+/// Climb rate per metre below the glide path, 1/s.
+const PATH_GAIN_PER_S: f64 = 0.25;
+/// The most that corrects it, m/s.
+const MOST_CORRECTION_MPS: f64 = 1.5;
+/// Half of the head wind is added to the airspeed, and at most this, m/s (10 kt).
+const WIND_SHARE: f64 = 0.5;
+const MOST_WIND_MPS: f64 = 5.144;
+/// Without weight on wheels, the aircraft is on them below this height, m, and
+/// at this share of its approach speed.
+const TOUCHES_M: f64 = 0.3;
+const TOUCHES_SHARE: f64 = 0.8;
+/// A bounce to this height is flared again, m.
+const BOUNCES_M: f64 = 1.0;
+/// Wheels that bear weight above this height do not, m.
+const WEIGHT_WRONG_M: f64 = 15.0;
+/// Before the runway, less than this share of the glide path's height above the ground is
+/// too near.
+const GROUND_SHARE: f64 = 0.3;
+/// A flare that lasts longer than so many of its time constants, or below this share of
+/// the approach's airspeed, is given up, unless the range finder shows less than this, m.
+const LONGEST_FLARES: f64 = 3.0;
+const SLOWEST_SHARE: f64 = 0.8;
+const FLOATS_M: f64 = 3.0;
+/// The lowest height of a flare's begin, m.
+const LEAST_FLARE_M: f64 = 1.0;
+/// Back above so many times that height, the landing is given up.
+const BALLOONS: f64 = 2.0;
+/// Below this height a landing is not given up any more by its limits, m.
+const COMMITTED_M: f64 = 8.0;
+impl RunwayFlight {
+    /// A landing, from here on a leg that leads along the runway, with the altitude of a
+    /// go-around, m above mean sea level.
+    pub(in crate::flight::route) fn landing(
+        runway: Runway,
+        here: &OverGround,
+        motion: &Motion,
+        config: RunwayConfig,
+        altitude_m: f64,
+    ) -> Self {
+        let flight = Self::new(RunwayPhase::Approach, runway, config, altitude_m);
+        let away_m = flight.left_m(motion).max(1.0);
+        let needed = (here.altitude_m - runway.elevation_m) / away_m;
+        Self {
+            slope: needed.max(tan(config.glide_path_rad)),
+            level_m: here.altitude_m,
+            ..flight
+        }
+    }
+
+    /// The altitude of the glide path, m above mean sea level.
+    pub(in crate::flight::route) fn path_altitude_m(&self, motion: &Motion) -> f64 {
+        let above_m = self.slope * self.left_m(motion);
+        (self.runway.elevation_m + above_m).min(self.level_m)
+    }
+
+    pub(super) fn step_landing(
+        &mut self,
+        here: &OverGround,
+        motion: &Motion,
+        dt_s: f64,
+    ) -> Outcome {
+        let head_mps = -self.runway.course.dot(&motion.wind_mps);
+        self.approach_mps =
+            self.config.approach_mps + (WIND_SHARE * head_mps).clamp(0.0, MOST_WIND_MPS);
+        let on_wheels = self.touches(here);
+        match self.phase {
+            RunwayPhase::Approach if on_wheels => self.phase = RunwayPhase::RollOut,
+            RunwayPhase::Approach => self.approach(here, motion),
+            RunwayPhase::Flare => self.flare(here, on_wheels, dt_s),
+            RunwayPhase::GoAround => {
+                if here.altitude_m > self.altitude_m {
+                    return Outcome::Again;
+                }
+            }
+            _ => {
+                if !on_wheels && self.demand.height_m > BOUNCES_M && !self.demand.takes_off {
+                    self.phase = RunwayPhase::Flare;
+                }
+                return self.step_on_wheels();
+            }
+        }
+        Outcome::Flown
+    }
+
+    /// Whether the wheels are on the ground: by their switch, as far as the height agrees,
+    /// and without one, or with one that has not noticed, by height and airspeed.
+    fn touches(&mut self, here: &OverGround) -> bool {
+        let (height_m, ranged) = (self.demand.height_m, here.height_m.is_some());
+        if here.on_wheels == Some(true) && height_m > WEIGHT_WRONG_M {
+            self.is_weight_wrong = true;
+        }
+        let is_slow = here.airspeed_mps < TOUCHES_SHARE * self.config.approach_mps;
+        match here.on_wheels {
+            Some(true) if !self.is_weight_wrong => !ranged || height_m < BOUNCES_M,
+            Some(false) if !ranged => false,
+            _ => height_m < TOUCHES_M && is_slow,
+        }
+    }
+
+    fn approach(&mut self, here: &OverGround, motion: &Motion) {
+        let path_m = self.path_altitude_m(motion);
+        let off_m = path_m - self.runway.elevation_m - self.demand.height_m;
+        let descends = if path_m < self.level_m {
+            self.sink_mps()
+        } else {
+            0.0
+        };
+        self.demand.climb_rate_mps =
+            -descends + (PATH_GAIN_PER_S * off_m).clamp(-MOST_CORRECTION_MPS, MOST_CORRECTION_MPS);
+        // Elsewhere than at the runway the range finder is not descended by, but warns.
+        let path_above_m = path_m - self.runway.elevation_m;
+        let is_low = here
+            .height_m
+            .is_some_and(|above_m| above_m < GROUND_SHARE * path_above_m);
+        if is_low && !self.is_over_runway(motion) {
+            self.give_up(RunwayPhase::GoAround, RunwayReason::Ground);
+        } else if self.demand.height_m <= self.flares_m() {
+            self.phase = RunwayPhase::Flare;
+            self.flared_s = 0.0;
+        } else if path_m < self.level_m
+            && let Some(reason) = self.must_go_around(here, off_m)
+        {
+            self.give_up(RunwayPhase::GoAround, reason);
+        }
+    }
+
+    fn flare(&mut self, here: &OverGround, on_wheels: bool, dt_s: f64) {
+        let config = self.config;
+        let height_m = self.demand.height_m.max(0.0);
+        let flared_mps = height_m / config.flare_s + config.touchdown_mps;
+        let sink_mps = self.sink_mps().max(config.touchdown_mps);
+        self.demand.climb_rate_mps = -flared_mps.min(sink_mps);
+        self.flared_s += dt_s;
+        // With a range finder that shows nothing, the ground is far.
+        let is_near = here.height_m.is_some() && height_m < FLOATS_M;
+        let is_long = self.flared_s > LONGEST_FLARES * config.flare_s
+            || here.airspeed_mps < SLOWEST_SHARE * config.approach_mps;
+        let balloons = height_m > (BALLOONS * self.flares_m()).max(COMMITTED_M);
+        if on_wheels {
+            self.phase = RunwayPhase::RollOut;
+        } else if balloons || is_long && here.ranges && !is_near {
+            self.give_up(RunwayPhase::GoAround, RunwayReason::LongFlare);
+        }
+    }
+
+    /// The sink rate of the glide path, m/s.
+    fn sink_mps(&self) -> f64 {
+        self.slope * self.demand.ground_speed_mps
+    }
+
+    /// The height of the flare's begin, m.
+    fn flares_m(&self) -> f64 {
+        let slowed_mps = self.sink_mps() - self.config.touchdown_mps;
+        (self.config.flare_s * slowed_mps).max(LEAST_FLARE_M)
+    }
+
+    /// Gives it up: a landing, unless the wheels are on the ground, or a take-off, unless
+    /// they have left it.
+    pub(in crate::flight::route) const fn go_around(&mut self) {
+        match self.phase {
+            RunwayPhase::Approach | RunwayPhase::Flare => {
+                self.give_up(RunwayPhase::GoAround, RunwayReason::Commanded);
+            }
+            RunwayPhase::Roll => self.give_up(RunwayPhase::RollOut, RunwayReason::Failsafe),
+            _ => {}
+        }
+    }
+
+    /// Why a landing is given up on the glide path below the decision height.
+    fn must_go_around(&self, here: &OverGround, off_m: f64) -> Option<RunwayReason> {
+        let (config, height_m) = (&self.config, self.demand.height_m);
+        let airspeed_mps = fabs(here.airspeed_mps - self.approach_mps);
+        let reason = if fabs(self.demand.cross_track_m) > config.most_cross_track_m {
+            RunwayReason::CentreLine
+        } else if fabs(off_m) > config.most_off_path_m {
+            RunwayReason::GlidePath
+        } else if airspeed_mps > config.most_off_airspeed_mps {
+            RunwayReason::Airspeed
+        } else if fabs(here.roll_rad) > config.most_bank_rad {
+            RunwayReason::Bank
+        } else {
+            return None;
+        };
+        (height_m < config.decision_height_m && height_m > COMMITTED_M).then_some(reason)
+    }
+}

@@ -1,0 +1,249 @@
+//! Take-off and landing: the phases of both along a runway's centre line.
+//!
+//! ```text
+//! take-off   Roll ─► Rotate ─► Climb ─► the next step
+//!              └─► RollOut ─► Stopped                 (too far off the centre line)
+//! landing    Approach ─► Flare ─► RollOut ─► Stopped
+//!              └───────────┴─► GoAround ─► the landing sequence again
+//! ```
+//!
+//! What the controls do in each phase is the autopilot's; here is when it begins and
+//! ends, and the path.
+
+mod config;
+mod landing;
+mod reason;
+mod takeoff;
+#[cfg(test)]
+mod tests;
+
+pub use config::RunwayConfig;
+pub use reason::RunwayReason;
+
+use nalgebra::Vector2;
+
+use super::OverGround;
+use crate::flight::path::{LocalPlane, Motion, Path, cross};
+
+/// A runway: a point of its centre line and its direction.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Runway {
+    /// Of a landing, where it is aimed at; of a take-off, where the plan begins.
+    pub at: LocalPlane,
+    /// The way along it in that plane, of length 1.
+    pub course: Vector2<f64>,
+    /// m above mean sea level.
+    pub elevation_m: f64,
+}
+
+/// The phases of a take-off and of a landing.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum RunwayPhase {
+    /// On the wheels, with full throttle.
+    Roll,
+    /// The nose is raised.
+    Rotate,
+    /// Away from the runway, with full throttle and a pitch.
+    Climb,
+    /// On the glide path.
+    Approach,
+    /// The sink rate is reduced, and the nose aligned with the runway.
+    Flare,
+    /// On the wheels, braking.
+    RollOut,
+    /// At rest, the brakes set.
+    Stopped,
+    /// The landing was given up: as in `Climb`.
+    GoAround,
+}
+
+impl RunwayPhase {
+    /// Whether the wheels carry the aircraft.
+    pub const fn is_on_wheels(self) -> bool {
+        matches!(
+            self,
+            Self::Roll | Self::Rotate | Self::RollOut | Self::Stopped
+        )
+    }
+
+    /// Whether it is flown with full throttle and a pitch.
+    pub const fn is_climb(self) -> bool {
+        matches!(self, Self::Rotate | Self::Climb | Self::GoAround)
+    }
+
+    /// Whether it belongs to a take-off.
+    pub const fn is_takeoff(self) -> bool {
+        matches!(self, Self::Roll | Self::Rotate | Self::Climb)
+    }
+}
+
+/// What the controls need to know of a take-off or a landing.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct RunwayDemand {
+    /// The phase.
+    pub phase: RunwayPhase,
+    /// True course of the runway, rad.
+    pub course_rad: f64,
+    /// How far to the right of the centre line the aircraft is, m, and moves, m/s.
+    pub cross_track_m: f64,
+    /// See `cross_track_m`.
+    pub cross_track_mps: f64,
+    /// Of the wheels above the ground, m.
+    pub height_m: f64,
+    /// Speed over the ground along the runway, m/s.
+    pub ground_speed_mps: f64,
+    /// The climb rate that leads along the glide path, m/s, up.
+    pub climb_rate_mps: f64,
+    /// The pitch of the climb, rad.
+    pub pitch_rad: f64,
+    /// Why it was given up.
+    pub reason: RunwayReason,
+    /// Whether it is a take-off, or was one until it was given up.
+    pub takes_off: bool,
+}
+
+/// A take-off or landing that is flown.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct RunwayFlight {
+    pub(super) phase: RunwayPhase,
+    pub(super) runway: Runway,
+    pub(super) config: RunwayConfig,
+    /// Where it is over, m above mean sea level: that of a take-off, or of a go-around.
+    pub(super) altitude_m: f64,
+    pub(super) pitch_rad: f64,
+    /// Of the glide path: its tangent, and the altitude at which it is met, m.
+    slope: f64,
+    level_m: f64,
+    demand: RunwayDemand,
+    /// The last speed of the approach, m/s.
+    approach_mps: f64,
+    /// Where it began, m to the runway's point.
+    began_m: f64,
+    /// For how long it has flared, s.
+    flared_s: f64,
+    /// Whether the wheels bore weight where they cannot.
+    is_weight_wrong: bool,
+}
+
+/// What follows of a tick.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Outcome {
+    /// It goes on.
+    Flown,
+    /// The end is reached.
+    Done,
+    /// The aircraft stands: the end is reached, and nothing follows.
+    Stands,
+    /// A go-around is over.
+    Again,
+}
+
+impl RunwayFlight {
+    fn new(phase: RunwayPhase, runway: Runway, config: RunwayConfig, altitude_m: f64) -> Self {
+        Self {
+            phase,
+            runway,
+            config,
+            altitude_m,
+            pitch_rad: config.climb_pitch_rad,
+            slope: 0.0,
+            level_m: altitude_m,
+            approach_mps: config.approach_mps,
+            began_m: 0.0,
+            flared_s: 0.0,
+            is_weight_wrong: false,
+            demand: RunwayDemand {
+                phase,
+                course_rad: libm::atan2(runway.course.y, runway.course.x),
+                cross_track_m: 0.0,
+                cross_track_mps: 0.0,
+                height_m: 0.0,
+                ground_speed_mps: 0.0,
+                climb_rate_mps: 0.0,
+                pitch_rad: config.climb_pitch_rad,
+                reason: RunwayReason::None,
+                takes_off: phase.is_takeoff(),
+            },
+        }
+    }
+
+    pub(super) const fn demand(&self) -> RunwayDemand {
+        self.demand
+    }
+
+    pub(super) const fn path(&self) -> Path {
+        Path::Line {
+            through_m: Vector2::new(0.0, 0.0),
+            course: self.runway.course,
+        }
+    }
+
+    /// The indicated airspeed to fly, m/s.
+    pub(super) const fn airspeed_mps(&self) -> f64 {
+        match self.phase {
+            RunwayPhase::Approach | RunwayPhase::Flare => self.approach_mps,
+            RunwayPhase::RollOut | RunwayPhase::Stopped => 0.0,
+            _ => self.config.climb_mps,
+        }
+    }
+
+    /// How far it is to the point of the runway, m along it.
+    pub(super) fn left_m(&self, motion: &Motion) -> f64 {
+        -self.runway.course.dot(&motion.position_m)
+    }
+
+    /// Whether the ground below is the runway's, or as high: an embankment, a wood and a
+    /// valley before it are not.
+    fn is_over_runway(&self, motion: &Motion) -> bool {
+        /// So near to the point that is aimed at, m.
+        const NEAR_M: f64 = 400.0;
+        self.phase.is_takeoff() || self.left_m(motion) < NEAR_M
+    }
+
+    /// One tick.
+    pub(super) fn step(&mut self, here: &OverGround, motion: &Motion, dt_s: f64) -> Outcome {
+        let course = self.runway.course;
+        self.demand = RunwayDemand {
+            cross_track_m: cross(course, motion.position_m),
+            cross_track_mps: cross(course, motion.ground_velocity_mps),
+            ground_speed_mps: course.dot(&motion.ground_velocity_mps),
+            height_m: here
+                .height_m
+                .filter(|_| self.is_over_runway(motion))
+                .map_or(here.altitude_m - self.runway.elevation_m, |above_m| {
+                    above_m - self.config.height_on_wheels_m
+                }),
+            pitch_rad: self.pitch_rad,
+            ..self.demand
+        };
+        let outcome = if self.phase.is_takeoff() {
+            self.step_takeoff(here, motion)
+        } else {
+            self.step_landing(here, motion, dt_s)
+        };
+        self.demand.phase = self.phase;
+        outcome
+    }
+
+    /// Gives it up, for a reason.
+    const fn give_up(&mut self, phase: RunwayPhase, reason: RunwayReason) {
+        self.phase = phase;
+        self.demand.phase = phase;
+        self.demand.reason = reason;
+    }
+
+    /// Rolls out, and stands at last.
+    fn step_on_wheels(&mut self) -> Outcome {
+        /// Slower than this it stands, m/s.
+        const STANDS_MPS: f64 = 0.3;
+        if self.phase == RunwayPhase::RollOut && self.demand.ground_speed_mps < STANDS_MPS {
+            self.phase = RunwayPhase::Stopped;
+            return if self.demand.takes_off {
+                Outcome::Flown
+            } else {
+                Outcome::Stands
+            };
+        }
+        Outcome::Flown
+    }
+}

@@ -1,0 +1,70 @@
+//! Why a take-off or a landing is given up.
+
+use core::fmt;
+
+use crate::schema;
+
+schema! {
+    /// Why a take-off or a landing is given up, or a command is not carried out.
+    pub enum RunwayReason {
+        /// It is not given up.
+        None = 0,
+        /// A command.
+        Commanded = 1,
+        /// Too far off the centre line.
+        CentreLine = 2,
+        /// Too far off the glide path.
+        GlidePath = 3,
+        /// The airspeed is not that of the approach.
+        Airspeed = 4,
+        /// Too much bank.
+        Bank = 5,
+        /// The range finder shows ground where the glide path leads.
+        Ground = 6,
+        /// It has flared, and is not down.
+        LongFlare = 7,
+        /// The speed for lift-off is not reached within its way.
+        LongRoll = 8,
+        /// The aircraft does not stand in the direction of the runway.
+        Alignment = 9,
+        /// The altimeter does not show the elevation on which it stands.
+        Altimeter = 10,
+        /// The range finder does not show the height of its wheels.
+        RangeFinder = 11,
+        /// What was commanded needs height above the runway.
+        Low = 12,
+        /// A failsafe, or a loss, on the wheels.
+        Failsafe = 13,
+    }
+}
+
+impl fmt::Display for RunwayReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::None => "",
+            Self::Commanded => "going around: commanded",
+            Self::CentreLine => "given up: too far off the centre line of the runway",
+            Self::GlidePath => "going around: too far off the glide path",
+            Self::Airspeed => "going around: the airspeed is not that of the approach",
+            Self::Bank => "going around: too much bank",
+            Self::Ground => "going around: the range finder shows ground near the glide path",
+            Self::LongFlare => "going around: flared, and not down",
+            Self::LongRoll => {
+                "the take-off is given up: rotate_kt is not reached within longest_roll_m"
+            }
+            Self::Alignment => {
+                "no take-off: the heading is not that of the runway; turn the aircraft, or mend \
+                 the mounting of the sensors or the plan"
+            }
+            Self::Altimeter => {
+                "no take-off: the altimeter does not show the elevation of the plan's home; set \
+                 it, or mend the plan"
+            }
+            Self::RangeFinder => {
+                "the range finder does not show height_on_wheels_m on the wheels: it is not used"
+            }
+            Self::Failsafe => "the take-off is given up",
+            Self::Low => "not carried out: too low over the runway; command it again",
+        })
+    }
+}

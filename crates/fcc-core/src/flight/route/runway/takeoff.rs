@@ -1,0 +1,101 @@
+//! Take-off: when each phase begins.
+
+use libm::{atan2, cos, sin};
+use nalgebra::Vector2;
+
+use super::{Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase, RunwayReason};
+use crate::blocks::wrap_pi;
+use crate::flight::path::{Motion, length};
+use crate::flight::route::OverGround;
+
+/// Off the wheels, and so high, m, it climbs.
+const CLIMBS_M: f64 = 3.0;
+/// Farther off the centre line a take-off is given up, m.
+const MOST_CROSS_TRACK_M: f64 = 12.0;
+/// The nose is so near to the runway's direction as a take-off begins, rad: 20°.
+const ALIGNED_RAD: f64 = 0.349;
+/// The altimeter is so near to the runway's elevation then, m: 2 hPa.
+const ALTIMETER_OFF_M: f64 = 20.0;
+/// A take-off is over so near to its altitude, m.
+const REACHED_M: f64 = 3.0;
+
+impl RunwayFlight {
+    /// A take-off to an altitude, m above mean sea level. Without a runway it goes
+    /// straight ahead from here. One that is begun in the air climbs.
+    pub(in crate::flight::route) fn takeoff(
+        runway: Option<Runway>,
+        here: &OverGround,
+        config: RunwayConfig,
+        altitude_m: f64,
+        pitch_rad: Option<f64>,
+    ) -> Self {
+        let elevation_m = here.altitude_m;
+        let ahead = || {
+            let ground = here.ground_velocity_mps;
+            let course_rad = if length(ground) > config.rotate_mps {
+                atan2(ground.y, ground.x)
+            } else {
+                here.heading_rad
+            };
+            Runway {
+                at: here.plane(),
+                course: Vector2::new(cos(course_rad), sin(course_rad)),
+                elevation_m,
+            }
+        };
+        // The altimeter says where the ground is, if it stands there.
+        let stands = here.on_wheels == Some(true);
+        let planned_m = runway.map(|runway| runway.elevation_m);
+        let runway = runway.map_or_else(ahead, |runway| Runway {
+            elevation_m: if stands {
+                elevation_m
+            } else {
+                runway.elevation_m
+            },
+            ..runway
+        });
+        let phase = if here
+            .on_wheels
+            .unwrap_or(here.airspeed_mps < config.rotate_mps)
+        {
+            RunwayPhase::Roll
+        } else {
+            RunwayPhase::Climb
+        };
+        let pitch_rad = pitch_rad.unwrap_or(config.climb_pitch_rad);
+        let mut flight = Self::new(phase, runway, config, altitude_m);
+        flight.pitch_rad = pitch_rad;
+        flight.began_m = flight.left_m(&here.motion_in(&runway.at));
+        let off_rad = wrap_pi(flight.demand.course_rad - here.heading_rad);
+        if phase == RunwayPhase::Roll {
+            if off_rad.abs() > ALIGNED_RAD {
+                flight.give_up(RunwayPhase::RollOut, RunwayReason::Alignment);
+            } else if planned_m.is_some_and(|m| (m - elevation_m).abs() > ALTIMETER_OFF_M) {
+                flight.give_up(RunwayPhase::RollOut, RunwayReason::Altimeter);
+            }
+        }
+        flight
+    }
+
+    pub(super) fn step_takeoff(&mut self, here: &OverGround, motion: &Motion) -> Outcome {
+        let rolled_m = self.began_m - self.left_m(motion);
+        let lifts_off = here.on_wheels != Some(true) && self.demand.height_m > CLIMBS_M;
+        match self.phase {
+            RunwayPhase::Roll if self.demand.cross_track_m.abs() > MOST_CROSS_TRACK_M => {
+                self.give_up(RunwayPhase::RollOut, RunwayReason::CentreLine);
+            }
+            RunwayPhase::Roll if rolled_m > self.config.longest_roll_m => {
+                self.give_up(RunwayPhase::RollOut, RunwayReason::LongRoll);
+            }
+            RunwayPhase::Roll if here.airspeed_mps >= self.config.rotate_mps => {
+                self.phase = RunwayPhase::Rotate;
+            }
+            RunwayPhase::Rotate if lifts_off => self.phase = RunwayPhase::Climb,
+            RunwayPhase::Climb if here.altitude_m > self.altitude_m - REACHED_M => {
+                return Outcome::Done;
+            }
+            _ => {}
+        }
+        Outcome::Flown
+    }
+}

@@ -1,0 +1,153 @@
+//! A flight of the built-in aircraft by a plan.
+
+use std::fmt::Write as _;
+use std::time::Duration;
+
+use fcc_core::flight::guidance::Mode;
+use fcc_core::flight::inertial::metres_per_radian;
+use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements};
+use fcc_core::framework::{LoopCommand, Sensor};
+use fcc_flight::config::Config;
+use fcc_flight::flight::assemble;
+use fcc_plan::{Home, Item, Place, Plan};
+use fcc_runtime::{Link, Machine, Message, Parts};
+use fcc_sim::TruthHandle;
+use fcc_telemetry::FlightRecord;
+use fcc_timer::ManualTimer;
+use tempfile::TempDir;
+
+pub(crate) const HOME: Place = Place {
+    latitude_deg: 47.0,
+    longitude_deg: 8.0,
+};
+pub(crate) const ALTITUDE_M: f64 = 914.4;
+
+/// A plan from home along courses, with legs of a length, as a `QGC WPL 110`.
+pub(crate) fn legs(courses_deg: &[f64], length_m: f64, radius_m: f64) -> String {
+    let mut text = line(0, 16, [0.0; 4], HOME);
+    let mut at = HOME;
+    for (n, course_deg) in courses_deg.iter().enumerate() {
+        at = at.ahead(*course_deg, length_m);
+        text += &line(n + 1, 16, [0.0, radius_m, 0.0, 0.0], at);
+    }
+    format!("QGC WPL 110\n{text}")
+}
+
+pub(crate) fn line(number: usize, command: u16, parameters: [f64; 4], at: Place) -> String {
+    let [a, b, c, d] = parameters;
+    let (latitude, longitude) = (at.latitude_deg, at.longitude_deg);
+    format!("{number} 0 0 {command} {a} {b} {c} {d} {latitude:.9} {longitude:.9} {ALTITUDE_M} 1\n")
+}
+
+/// A flight of the built-in aircraft.
+pub(crate) struct Flight {
+    pub(crate) machine: Machine<Autopilot>,
+    pub(crate) link: Link<Autopilot>,
+    pub(crate) truth: TruthHandle,
+    pub(crate) plan: Plan,
+    pub(crate) record: FlightRecord,
+    pub(crate) events: Vec<String>,
+    _folder: TempDir,
+}
+
+impl Flight {
+    pub(crate) fn new(plan: &str, keys: &str) -> Self {
+        Self::with(plan, keys, |sensor| sensor)
+    }
+
+    /// With sensors that are put around the aircraft's.
+    pub(crate) fn with(
+        plan: &str,
+        keys: &str,
+        around: impl Fn(Box<dyn Sensor<Measurements>>) -> Box<dyn Sensor<Measurements>>,
+    ) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.waypoints");
+        std::fs::write(&file, plan).unwrap();
+        let mut text = String::from("[guidance]\nmode = \"plan\"\n");
+        write!(text, "[plan]\nfile = {:?}\n{keys}", file.to_str().unwrap()).unwrap();
+        let mut config = Config::parse(&text, "test").unwrap();
+        config.load_plan(1_790_000_000).unwrap();
+        let assembly = assemble(&config).unwrap();
+        let parts = Parts {
+            timer: Box::new(
+                ManualTimer::new(Duration::from_millis(25))
+                    .unwrap()
+                    .with_warm_up(),
+            ),
+            sensors: assembly.sensors.into_iter().map(around).collect(),
+            controller: Autopilot::new(*assembly.autopilot.config()),
+            actuators: assembly.actuators,
+        };
+        let (mut machine, link) = Machine::new(parts, &assembly.loop_config).unwrap();
+        machine.start().unwrap();
+        Self {
+            machine,
+            link,
+            truth: assembly.true_now.unwrap(),
+            plan: config.plan.plan().unwrap().clone(),
+            record: FlightRecord::default(),
+            events: Vec::with_capacity(1_000),
+            _folder: folder,
+        }
+    }
+
+    /// One tick; what happened in it is added to the events.
+    pub(crate) fn tick(&mut self) {
+        let _ = self.machine.step();
+        while let Some(message) = self.link.messages.receive() {
+            match message {
+                Message::Tick(record) => self.record = record,
+                Message::Event(event) => {
+                    let text = event.kind.description::<Autopilot>().to_string();
+                    self.events.push(text);
+                }
+            }
+        }
+    }
+
+    pub(crate) fn fly_until(&mut self, most_s: f64, mut until: impl FnMut(&Self) -> bool) {
+        for _ in 0..(most_s * 40.0) as usize {
+            self.tick();
+            if until(self) {
+                return;
+            }
+        }
+        panic!("after {most_s} s: {:#?}", self.events);
+    }
+
+    pub(crate) fn mode(&self) -> Mode {
+        self.record.setpoints.guidance.mode
+    }
+
+    pub(crate) fn command(&mut self, command: AutopilotCommand) {
+        let command = LoopCommand::Controller(command);
+        self.link.commands.send(command).unwrap();
+    }
+
+    pub(crate) fn happened(&self, text: &str) -> bool {
+        self.events.iter().any(|event| event == text)
+    }
+
+    /// Where the aircraft is: the built-in one flies over a flat earth that touches the
+    /// ellipsoid where it began.
+    pub(crate) fn place(&self) -> Place {
+        let truth = self.truth.get();
+        let (north, east) = metres_per_radian(HOME.latitude_deg.to_radians(), 0.0);
+        Place {
+            latitude_deg: HOME.latitude_deg + (truth.north_m / north).to_degrees(),
+            longitude_deg: HOME.longitude_deg + (truth.east_m / east).to_degrees(),
+        }
+    }
+
+    pub(crate) fn distance_m(&self, to: Place) -> f64 {
+        self.place().to(to).0
+    }
+}
+
+pub(crate) fn place_of(plan: &Plan, number: usize) -> Place {
+    match number {
+        0 => plan.home.map(|home: Home| home.place).unwrap(),
+        number => plan.item(number).and_then(Item::place).unwrap(),
+    }
+}

@@ -1,0 +1,258 @@
+//! A flight plan as a page: its table, its map and its height profile.
+
+use comfy_table::Table;
+use maud::{DOCTYPE, PreEscaped, html};
+
+use crate::page::STYLE;
+use crate::plot::Figure;
+use crate::plot::axis::Axis;
+use crate::plot::panel::{Frame, Panel};
+use crate::plot::sheet::{
+    ACTUAL, Anchor, Dot, FAINT, Font, Height, MARK, OTHER, SMALL_PX, Sheet, WIDTH_PX,
+};
+use crate::table::{markup, table};
+
+const LEFT_PX: f64 = 60.0;
+const TOP_PX: f64 = 12.0;
+const X_LABELS_PX: f64 = 36.0;
+const MAP_HEIGHT_PX: f64 = 460.0;
+const PROFILE_HEIGHT_PX: f64 = 160.0;
+/// What is shown around the places, as a share of their extent, and at least, m.
+const MARGIN: f64 = 0.1;
+const LEAST_MARGIN_M: f64 = 100.0;
+/// Corners of a drawn circle.
+const CORNERS: u32 = 90;
+
+/// A place of a plan, for its picture.
+#[derive(Clone, PartialEq, Debug)]
+pub struct PlanPlace {
+    /// The number of its item; none for home.
+    pub item: Option<usize>,
+    /// North of the first place, m.
+    pub north_m: f64,
+    /// East of it, m.
+    pub east_m: f64,
+    /// Above mean sea level, m.
+    pub altitude_m: f64,
+    /// The length of the legs to here, m.
+    pub along_m: f64,
+    /// Of the circle around it, if there is one, m.
+    pub circle_m: Option<f64>,
+}
+
+/// A row of a plan's table: item, what it is, place, altitude, length and course of the
+/// leg to it.
+pub type PlanRow = [String; 6];
+
+fn table_of(rows: &[PlanRow]) -> Table {
+    let mut table = table(&["Item", "", "Place", "Altitude", "Leg", "Course"]);
+    table.add_rows(rows);
+    table
+}
+
+/// A plan's table as text.
+pub fn plan_table(rows: &[PlanRow]) -> String {
+    table_of(rows).to_string()
+}
+
+/// A line on the ground, (east, north) of the first place, m.
+pub type PlanLine = Vec<(f64, f64)>;
+
+/// A page with a plan's table, map with its fence, and height profile.
+pub fn plan_page(
+    title: &str,
+    rows: &[PlanRow],
+    places: &[PlanPlace],
+    fence: &[PlanLine],
+) -> String {
+    let table = table_of(rows);
+    let figures = figures(places, fence);
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                h1 { (title) }
+                @for figure in &figures {
+                    figure {
+                        figcaption { b { (figure.title) } " " (figure.caption) }
+                        (PreEscaped(&figure.svg))
+                    }
+                }
+                (markup(&table, &[1, 2]))
+            }
+        }
+    };
+    page.into_string()
+}
+
+fn figures(places: &[PlanPlace], fence: &[PlanLine]) -> Vec<Figure> {
+    if places.is_empty() {
+        return Vec::new();
+    }
+    vec![
+        Figure {
+            title: "Map".to_owned(),
+            caption: "North up, from the first place; numbers are those of the items, light lines \
+                      the fence."
+                .to_owned(),
+            svg: map(places, fence),
+        },
+        Figure {
+            title: "Height profile".to_owned(),
+            caption: "Above mean sea level, along the legs without turns and loiters.".to_owned(),
+            svg: profile(places),
+        },
+    ]
+}
+
+/// The lowest and the highest of values, with a margin.
+fn around(values: impl Iterator<Item = f64> + Clone, least_m: f64) -> (f64, f64) {
+    let low = values.clone().fold(f64::INFINITY, f64::min);
+    let high = values.fold(f64::NEG_INFINITY, f64::max);
+    let margin = (MARGIN * (high - low)).max(least_m);
+    (low - margin, high + margin)
+}
+
+fn map(places: &[PlanPlace], fence: &[PlanLine]) -> String {
+    let reach = |place: &PlanPlace| place.circle_m.unwrap_or(0.0);
+    let ends = |of: fn(&PlanPlace) -> f64| {
+        let each = places.iter();
+        each.flat_map(move |place| [of(place) - reach(place), of(place) + reach(place)])
+    };
+    let corners = || fence.iter().flatten();
+    let (east_m, north_m) = (
+        around(
+            ends(|place| place.east_m).chain(corners().map(|at| at.0)),
+            LEAST_MARGIN_M,
+        ),
+        around(
+            ends(|place| place.north_m).chain(corners().map(|at| at.1)),
+            LEAST_MARGIN_M,
+        ),
+    );
+    let span = |(low, high): (f64, f64)| high - low;
+    let width_px = WIDTH_PX - LEFT_PX - 12.0;
+    // The same scale in both directions.
+    let m_per_px = (span(east_m) / width_px).max(span(north_m) / MAP_HEIGHT_PX);
+    let widened = |(low, high): (f64, f64), to_px: f64| {
+        let (middle, half) = (f64::midpoint(low, high), 0.5 * to_px * m_per_px);
+        ((middle - half) / 1e3, (middle + half) / 1e3)
+    };
+    let panel = Panel {
+        frame: frame(width_px, MAP_HEIGHT_PX),
+        x: Axis::exactly(widened(east_m, width_px), 6, "east, km"),
+        y: Axis::exactly(widened(north_m, MAP_HEIGHT_PX), 5, "north, km"),
+    };
+    let mut sheet = Sheet::default();
+    panel.axes(&mut sheet, true, "");
+    let at = |place: &PlanPlace| (place.east_m / 1e3, place.north_m / 1e3);
+    for line in fence {
+        let line: Vec<_> = line.iter().map(|at| (at.0 / 1e3, at.1 / 1e3)).collect();
+        panel.line(&mut sheet, &line, MARK, 1.4);
+    }
+    for place in places {
+        if let Some(radius_m) = place.circle_m {
+            let (east, north) = at(place);
+            let circle: Vec<_> = (0..=CORNERS)
+                .map(|corner| {
+                    let angle = std::f64::consts::TAU * f64::from(corner) / f64::from(CORNERS);
+                    let radius = radius_m / 1e3;
+                    (east + radius * angle.sin(), north + radius * angle.cos())
+                })
+                .collect();
+            panel.line(&mut sheet, &circle, OTHER, 1.0);
+        }
+    }
+    places_and_lines(&panel, &mut sheet, places, at);
+    sheet.finish(TOP_PX + MAP_HEIGHT_PX + X_LABELS_PX, "Map", &[])
+}
+
+fn profile(places: &[PlanPlace]) -> String {
+    let width_px = WIDTH_PX - LEFT_PX - 12.0;
+    let along_km = (
+        0.0,
+        places
+            .last()
+            .map_or(0.0, |place| place.along_m / 1e3)
+            .max(0.1),
+    );
+    let panel = Panel {
+        frame: frame(width_px, PROFILE_HEIGHT_PX),
+        x: Axis::exactly(along_km, 6, "along the plan, km"),
+        y: Axis::exactly(
+            around(places.iter().map(|place| place.altitude_m), 20.0),
+            3,
+            "altitude, m",
+        ),
+    };
+    let mut sheet = Sheet::default();
+    panel.axes(&mut sheet, true, "");
+    places_and_lines(&panel, &mut sheet, places, |place| {
+        (place.along_m / 1e3, place.altitude_m)
+    });
+    sheet.finish(
+        TOP_PX + PROFILE_HEIGHT_PX + X_LABELS_PX,
+        "Height profile",
+        &[],
+    )
+}
+
+fn frame(width_px: f64, height_px: f64) -> Frame {
+    Frame {
+        left: LEFT_PX,
+        top: TOP_PX,
+        right: LEFT_PX + width_px,
+        bottom: TOP_PX + height_px,
+    }
+}
+
+fn places_and_lines(
+    panel: &Panel,
+    sheet: &mut Sheet,
+    places: &[PlanPlace],
+    at: impl Fn(&PlanPlace) -> (f64, f64),
+) {
+    let line: Vec<_> = places.iter().map(&at).collect();
+    panel.line(sheet, &line, ACTUAL, 1.4);
+    let font = Font(SMALL_PX, FAINT, Anchor::Start, Height::Bottom);
+    for place in places {
+        let (dot, name) = match place.item {
+            Some(item) => (Dot::Filled(ACTUAL), item.to_string()),
+            None => (Dot::Open(ACTUAL, 1.2), "home".to_owned()),
+        };
+        panel.dot(sheet, at(place), 3.0, dot);
+        let (x, y) = panel.place(at(place));
+        sheet.text((x + 5.0, y - 4.0), &name, font);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_has_both_pictures_and_every_item() {
+        let place = |item, north_m| PlanPlace {
+            item,
+            north_m,
+            east_m: 0.5 * north_m,
+            altitude_m: 900.0,
+            along_m: north_m,
+            circle_m: item.map(|_| 500.0),
+        };
+        let places = [
+            place(None, 0.0),
+            place(Some(1), 4_000.0),
+            place(Some(2), 9_000.0),
+        ];
+        let page = plan_page("A <plan>", &[], &places, &[]);
+        assert_eq!(page.matches("<svg").count(), 2);
+        assert!(page.contains("A &lt;plan&gt;") && page.contains("home"));
+    }
+}

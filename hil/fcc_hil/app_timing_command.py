@@ -1,0 +1,56 @@
+"""The command `bench-android`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+from . import app_timing, ranges
+from .printable import say
+
+
+def add(commands: Any) -> None:
+    """Add it to a parser's commands."""
+    app = commands.add_parser(
+        "bench-android", help="compare the loop's timing in the Android app with the daemon's"
+    )
+    app.add_argument("--fccd", type=Path, required=True, help="the daemon's program")
+    app.add_argument("--app", type=Path, required=True, help="android/host-tests/timing-flight")
+    app.add_argument("--rounds", type=ranges.count, default=5, help="(default %(default)s)")
+    app.add_argument(
+        "--seconds",
+        type=ranges.number(1.0, 3600.0, "s"),
+        default=60.0,
+        metavar="S",
+        help="of each flight (%(default)s)",
+    )
+    app.add_argument(
+        "--rate",
+        type=ranges.number(1.0, 1_000.0, "Hz"),
+        default=40.0,
+        metavar="HZ",
+        help="of the loop (%(default)s)",
+    )
+    app.add_argument(
+        "--json", type=ranges.file_to_write, metavar="FILE", help="write all figures here"
+    )
+    app.set_defaults(run=_compare)
+
+
+def _compare(options: argparse.Namespace) -> int:
+    comparison = app_timing.Comparison(
+        options.fccd, options.app, options.rounds, options.seconds, options.rate
+    )
+    flights = []
+    for flight in app_timing.run(comparison):
+        flights.append(flight)
+        say(f"  {flight.loop}: late {flight.p99_us:,.0f} us at p99", to=sys.stderr)
+    say(app_timing.table(flights))
+    for fifo, what in ((False, "without SCHED_FIFO"), (True, "with it")):
+        ratio = app_timing.ratio(flights, fifo=fifo)
+        say(f"median p99 of the app over the best daemon's, {what}: {ratio:.2f}")
+    if options.json:
+        options.json.write_text(app_timing.as_json(comparison, flights) + "\n", "utf-8")
+    return 0

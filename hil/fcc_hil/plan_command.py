@@ -1,0 +1,114 @@
+"""The command `plan`: fly a flight plan with JSBSim in lockstep, and score it."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from . import ranges
+from .aircraft import AIRCRAFT
+from .printable import say
+from .rig import FlightError
+
+
+def add(commands: Any) -> None:
+    """Add the command."""
+    plan = commands.add_parser("plan", help="fly a flight plan by raw sensors, in lockstep")
+    plan.add_argument("--plan", type=Path, required=True, metavar="FILE", help="the plan")
+    plan.add_argument("--aircraft", choices=sorted(AIRCRAFT), default="c172p")
+    plan.add_argument("--wind", type=ranges.number(0.0, 100.0), default=0.0, metavar="KT")
+    plan.add_argument(
+        "--wind-from",
+        type=ranges.number(0.0, 360.0),
+        default=0.0,
+        metavar="DEG",
+        help="true (default: 0)",
+    )
+    plan.add_argument(
+        "--turbulence", type=int, choices=range(8), default=0, help="severity (default: 0)"
+    )
+    plan.add_argument(
+        "--seed",
+        type=ranges.whole(0, ranges.LARGEST_SEED),
+        default=1,
+        metavar="N",
+        help="of all errors (default: 1)",
+    )
+    plan.add_argument(
+        "--position",
+        choices=("plain", "precise"),
+        default="plain",
+        help="correlated error of the satellite receiver: 1.5 m, or 0.5 m (default: plain)",
+    )
+    plan.add_argument(
+        "--no-range-finder", action="store_true", help="land by the runway's elevation"
+    )
+    plan.add_argument(
+        "--config", type=Path, metavar="FILE", help="speeds of this aircraft, and other keys"
+    )
+    plan.add_argument("--law", choices=("l1", "npfg"), default="npfg", help="(default: npfg)")
+    plan.add_argument(
+        "--json", type=ranges.file_to_write, metavar="FILE", help="write the figures here"
+    )
+    plan.add_argument(
+        "--plot", type=ranges.file_to_write, metavar="FILE", help="write a picture here, .png"
+    )
+    plan.set_defaults(run=_plan)
+
+
+def _plan(options: argparse.Namespace) -> int:
+    import fcc  # noqa: PLC0415 - other commands do not need the module
+
+    from . import plan_flight, plan_plot  # noqa: PLC0415 - likewise
+    from .plant import Weather  # noqa: PLC0415 - likewise
+
+    try:
+        conditions = plan_flight.PlanConditions(
+            aircraft=options.aircraft,
+            weather=Weather(
+                wind_from_deg=options.wind_from,
+                wind_kt=options.wind,
+                turbulence_severity=options.turbulence,
+            ),
+            seed=options.seed,
+            law=options.law,
+            sensors="board-rtk" if options.position == "precise" else "board",
+            without=frozenset({"range"} if options.no_range_finder else ()),
+            config=options.config.read_text(encoding="utf-8") if options.config else "",
+        )
+        score, flown = plan_flight.fly(options.plan, conditions)
+    except (FlightError, OSError, ValueError, fcc.ConfigError) as error:
+        say(f"{error}", to=sys.stderr)
+        return 1
+    say("item  closest m  altitude ft")
+    for waypoint in score.waypoints:
+        note = "" if waypoint.passed else "  not passed"
+        say(
+            f"{waypoint.item:4} {waypoint.closest_m:10.1f} {waypoint.altitude_error_ft:12.1f}{note}"
+        )
+    say("\nleg to  cross-track RMS m  max m  altitude RMS ft  max ft  airspeed kt")
+    for leg in score.legs:
+        say(
+            f"{leg.item:6} {leg.cross_track_rms_m:18.2f} {leg.cross_track_max_m:6.1f} "
+            f"{leg.altitude_rms_ft:16.1f} {leg.altitude_max_ft:7.1f} {leg.airspeed_error_kt:12.1f}"
+        )
+    for circle in score.circles:
+        say(
+            f"\ncircle {circle.item}: {circle.radius_m:.0f} m, within "
+            f"{circle.radius_error_max_percent:.1f} %, bank to {circle.bank_max_deg:.1f} deg, "
+            f"{circle.seconds:.0f} s"
+        )
+    for name, parts in (("take-off", score.takeoff), ("landing", score.landing)):
+        if parts is not None:
+            figures = (f"{key} {value:.1f}" for key, value in asdict(parts).items())
+            say(f"\n{name}: {', '.join(figures)}")
+    if options.json is not None:
+        document = {"law": options.law, **score.document()}
+        options.json.write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
+    if options.plot is not None:
+        plan_plot.plot(options.plot, options.plan, flown)
+    return 0 if all(waypoint.passed for waypoint in score.waypoints) else 1

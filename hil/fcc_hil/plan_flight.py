@@ -1,0 +1,150 @@
+"""A flight plan with JSBSim in lockstep, by raw sensors with a satellite receiver of 5 Hz.
+
+python -m fcc_hil plan --plan config/plans/twelve-legs.waypoints --wind 20 --wind-from 270
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import fcc
+import numpy as np
+
+from . import plan_file, plan_score
+from .lockstep_rig import Conditions, LockstepRig
+from .plant import Plant, Weather
+from .raw_calibration import calibrate
+from .raw_flight import MEASURED, RAW_STANDBY_S
+from .raw_sensors import FIELD_UT
+from .rig import FlightError
+from .standin import Settings
+from .units import FT_TO_M
+
+SENSORS = "board"
+RUNWAY_STANDBY_S = 30.0
+"""On its wheels; navigation settles."""
+_LOITER_M = 800.0
+_REACHED = re.compile(r"item (\d+) of the plan is reached")
+_LONGEST_S = 3600.0
+_AFTER_S = 5.0
+_CALM = Weather()
+
+
+def configuration(
+    plan: Path, navigation: str, law: str, wind_kt: float, *, mode: str = "plan"
+) -> str:
+    """Return the text of a configuration that flies a plan, or has one and flies otherwise."""
+    north, east, down = FIELD_UT
+    file = str(plan.resolve()).replace("\\", "\\\\").replace('"', '\\"')
+    return (
+        f'[guidance]\nmode = "{mode}"\n'
+        f'[plan]\nfile = "{file}"\nlaw = "{law}"\nwind_kt = {max(wind_kt, 0.0):.1f}\n'
+        f"loiter_radius_m = {_LOITER_M:.1f}\n"
+        f'[navigation]\nmethod = "{navigation}"\nmagnetic_field_ut = [{north}, {east}, {down}]\n'
+    )
+
+
+@dataclass(frozen=True)
+class PlanConditions:
+    """How a plan is flown."""
+
+    aircraft: str = "c172p"
+    weather: Weather = _CALM
+    seed: int = 1
+    law: str = "npfg"
+    sensors: str = SENSORS
+    """Of `fcc.RawSensors`."""
+    without: frozenset[str] = frozenset()
+    """Readings that there are not."""
+    config: str = ""
+    """Added to the configuration."""
+
+
+def fly(
+    plan: Path, conditions: PlanConditions, *, longest_s: float = _LONGEST_S
+) -> tuple[plan_score.PlanScore, plan_score.FlownPlan]:
+    """Fly a plan to its end; return its score and the flight.
+
+    The aircraft begins in level flight over the plan's home, towards its first place, or on its
+    wheels there if the plan begins with a take-off. Raises FlightError, ValueError for a plan that
+    is none, and fcc.ConfigError for one that cannot be flown.
+    """
+    seed, sensors = conditions.seed, conditions.sensors
+    read = plan_file.read(plan)
+    takes_off = read.items[0].command == plan_file.TAKEOFF
+    first = read.items[0] if takes_off else next(item for item in read.items if item.has_place)
+    text = configuration(plan, "kalman", conditions.law, conditions.weather.wind_kt)
+    machine = fcc.Machine(text + conditions.config)
+    plant = Plant(
+        conditions.aircraft,
+        seed=seed,
+        weather=conditions.weather,
+        heading_deg=_bearing_deg(read.home, first),
+        latitude_deg=read.home.latitude_deg,
+        longitude_deg=read.home.longitude_deg,
+        runway_elevation_ft=read.home.altitude_m / FT_TO_M if takes_off else None,
+    )
+    between = Conditions(
+        raw_sensors=sensors,
+        calibration=calibrate(sensors, seed, FIELD_UT),
+        without=MEASURED | conditions.without,
+    )
+    settings = Settings(aircraft=conditions.aircraft, seed=seed)
+    rig = LockstepRig(settings, plant, machine, between)
+    rig.fly_to(rig.time_s + (RUNWAY_STANDBY_S if takes_off else RAW_STANDBY_S))
+    rig.set_switch(on=True)
+    rig.fly_to(rig.time_s + 1.0)
+    if not rig.holds_control:
+        raise FlightError(f"not engaged: {', '.join(machine.engage_inhibits)}")
+    rows: list[tuple[float, ...]] = []
+    reached: dict[int, float] = {}
+    seen = 0
+    last = max(item.number for item in read.items if item.has_place)
+    end_s = math.inf
+    modes = [""]
+
+    def keep() -> bool:
+        nonlocal seen, end_s
+        state, points = plant.state(), machine.setpoints
+        rows.append(
+            (
+                state.time_s,
+                state.latitude_rad,
+                state.longitude_rad,
+                state.elevation_m,
+                state.airspeed_mps,
+                state.roll_rad,
+                points.guidance_item,
+                points.course_rad,
+                points.airspeed_mps,
+                points.altitude_above_reference_m,
+                state.heading_rad,
+                state.down_mps,
+                float(state.on_ground),
+            )
+        )
+        if points.guidance_mode != modes[-1]:
+            modes.append(points.guidance_mode)
+        for event in rig.events[seen:]:
+            if found := _REACHED.search(event.text):
+                reached[int(found[1])] = event.time_s
+        seen = len(rig.events)
+        if last in reached:
+            end_s = min(end_s, reached[last] + _AFTER_S)
+        return state.time_s >= end_s or not rig.holds_control
+
+    rig.fly_to(rig.time_s + longest_s, keep)
+    if not rig.holds_control:
+        raise FlightError("; ".join(event.text for event in rig.events[-3:]))
+    flown = plan_score.FlownPlan(*np.array(rows).T)
+    go_arounds = modes.count("go-around")
+    return plan_score.score(read, flown, reached, _LOITER_M, go_arounds), flown
+
+
+def _bearing_deg(start: plan_file.Item, end: plan_file.Item) -> float:
+    north = end.latitude_deg - start.latitude_deg
+    east = (end.longitude_deg - start.longitude_deg) * math.cos(math.radians(start.latitude_deg))
+    return math.degrees(math.atan2(east, north)) % 360.0
