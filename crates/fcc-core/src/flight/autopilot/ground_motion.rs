@@ -25,6 +25,9 @@ const LONGEST_AGE: Duration = Duration::from_secs(1);
 const RANGE_AGE: Duration = Duration::from_millis(250);
 /// Faster than this on its wheels the aircraft moves where it points, m/s.
 const ROLLS_MPS: f64 = 5.0;
+/// The receiver's altitude has noise: what the altimeter is off it is followed with this
+/// time constant, s.
+const ALTITUDE_FOLLOWS_S: f64 = 5.0;
 /// Positions have noise: they are followed with this time constant, s, unless they
 /// are farther off than this, m.
 const FOLLOWS_S: f64 = 1.0;
@@ -160,11 +163,21 @@ impl GroundMotion {
         }
         self.move_by(self.here.ground_velocity_mps * dt_s);
         self.lost_s += dt_s;
+        if self.lost_s > RECKONED_AFTER_S {
+            self.here.above_receiver_m = None;
+        }
         let position = measured.position;
         if position.taken > self.position_taken && position.value.is_on_earth() {
             let is_first = self.position_taken.is_never();
             let age_s = now.since(position.taken).min(LONGEST_AGE).as_secs_f64();
             let since_s = self.lost_s;
+            let above_m = self.here.altitude_m - position.value.altitude_m;
+            self.here.above_receiver_m = Some(match self.here.above_receiver_m {
+                Some(was_m) if since_s < LONGEST_AGE.as_secs_f64() => {
+                    was_m + (above_m - was_m) * (1.0 - exp(-since_s / ALTITUDE_FOLLOWS_S))
+                }
+                _ => above_m,
+            });
             self.position_taken = position.taken;
             self.lost_s = 0.0;
             let moved = self.here.ground_velocity_mps * age_s;

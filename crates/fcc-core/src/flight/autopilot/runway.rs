@@ -101,6 +101,12 @@ impl Autopilot {
                 self.take_over(&last);
                 self.heading.lead_from(self.setpoints.roll_rad);
             }
+            let mode = self.guidance.over_ground();
+            if self.on_runway.phase == Some(RunwayPhase::GoAround)
+                && mode.is_some_and(OverGroundMode::has_no_more_landings)
+            {
+                self.on_runway.announce(RunwayReason::NoMore);
+            }
             let news = self.on_runway.news;
             self.on_runway = RunwayControl {
                 news,

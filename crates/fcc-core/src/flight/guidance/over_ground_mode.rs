@@ -56,6 +56,11 @@ impl OverGroundMode {
         self.follower.runway()
     }
 
+    /// Whether a landing was given up so often that it is not tried again.
+    pub const fn has_no_more_landings(&self) -> bool {
+        self.follower.has_no_more_landings()
+    }
+
     /// Gives a landing up.
     pub fn go_around(&mut self) {
         self.follower.go_around();

@@ -145,6 +145,14 @@ impl Follower {
         }
     }
 
+    /// Circles over where it leads, at an altitude, m above mean sea level.
+    pub(super) fn circle_over(&mut self, altitude_m: f64) {
+        self.goal.altitude_m = altitude_m;
+        self.goal.kind = GoalKind::Circle(self.usual_circle());
+        self.next = None;
+        self.phase = Phase::Circle(Circling::default());
+    }
+
     fn usual_circle(&self) -> Circle {
         Circle {
             radius_m: self.config.loiter_radius_m,

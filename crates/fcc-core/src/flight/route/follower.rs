@@ -8,7 +8,7 @@ use super::circle::Circling;
 use super::corner::{Conditions, Corner};
 use super::demand::{Profile, Speed};
 use super::leg::Leg;
-use super::runway::{Outcome, RunwayDemand, RunwayFlight};
+use super::runway::{Outcome, RunwayDemand, RunwayFlight, RunwayReason};
 use super::sequence::{Sequence, Steps};
 use super::step::{Destination, Route, Step};
 use super::{OverGround, PLANNED_SHARE, ROLL_LAG_S, RouteConfig};
@@ -62,7 +62,12 @@ pub struct Follower {
     acceleration_mps2: f64,
     pub(super) track: Track,
     reached: Option<u16>,
+    /// Landings that were given up, but for a command.
+    given_up: u8,
 }
+
+/// A landing that was given up so often is not tried again by itself.
+const MOST_LANDINGS: u8 = 3;
 
 /// How the aircraft flies its path, for observers.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
@@ -146,6 +151,7 @@ impl Follower {
             acceleration_mps2: 0.0,
             track: Track::default(),
             reached: None,
+            given_up: 0,
         }
     }
 
@@ -170,6 +176,11 @@ impl Follower {
             Phase::Runway(flight) => Some(flight.demand()),
             _ => None,
         }
+    }
+
+    /// Whether a landing was given up so often that it is not tried again.
+    pub const fn has_no_more_landings(&self) -> bool {
+        self.given_up >= MOST_LANDINGS
     }
 
     /// Gives a landing up.
@@ -321,6 +332,12 @@ impl Follower {
                     }
                     Outcome::Stands => self.reach(),
                     Outcome::Again => {
+                        let commanded = flight.demand().reason == RunwayReason::Commanded;
+                        self.given_up += u8::from(!commanded);
+                        if self.has_no_more_landings() {
+                            self.circle_over(flight.altitude_m);
+                            return true;
+                        }
                         let again = self.sequence.before_landing(self.index);
                         self.begin(again.unwrap_or(self.index), &here.plane(), here);
                         return true;

@@ -24,6 +24,9 @@ pub struct OverGround {
     pub longitude_rad: f64,
     /// Altitude above mean sea level by the altimeter setting, m.
     pub altitude_m: f64,
+    /// How much higher that is than the satellite receiver's altitude, m, over some
+    /// seconds; none where there is no receiver.
+    pub above_receiver_m: Option<f64>,
     /// Velocity over the ground, m/s.
     pub ground_velocity_mps: Vector2<f64>,
     /// Where the air moves to, m/s.

@@ -2,7 +2,7 @@
 
 use libm::{fabs, tan};
 
-use super::{Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase, RunwayReason};
+use super::{ALTIMETER_OFF_M, Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase, RunwayReason};
 use crate::flight::path::Motion;
 use crate::flight::route::OverGround;
 
@@ -24,6 +24,9 @@ const WEIGHT_WRONG_M: f64 = 15.0;
 /// Before the runway, less than this share of the glide path's height above the ground is
 /// too near.
 const GROUND_SHARE: f64 = 0.3;
+/// The altimeter is held against the receiver below so many decision heights: far above
+/// the ground a warm or cold day sets them apart (30 °C off: 12 m at 122 m).
+const COMPARED_BELOW: f64 = 2.0;
 /// A flare that lasts longer than so many of its time constants, or below this share of
 /// the approach's airspeed, is given up, unless the range finder shows less than this, m.
 const LONGEST_FLARES: f64 = 3.0;
@@ -122,6 +125,8 @@ impl RunwayFlight {
             .is_some_and(|above_m| above_m < GROUND_SHARE * path_above_m);
         if is_low && !self.is_over_runway(motion) {
             self.give_up(RunwayPhase::GoAround, RunwayReason::Ground);
+        } else if self.is_altimeter_off(here) {
+            self.give_up(RunwayPhase::GoAround, RunwayReason::Receiver);
         } else if self.demand.height_m <= self.flares_m() {
             self.phase = RunwayPhase::Flare;
             self.flared_s = 0.0;
@@ -130,6 +135,14 @@ impl RunwayFlight {
         {
             self.give_up(RunwayPhase::GoAround, reason);
         }
+    }
+
+    /// Whether the altimeter is off, and no range finder shows where the ground is.
+    fn is_altimeter_off(&self, here: &OverGround) -> bool {
+        let height_m = self.demand.height_m;
+        here.height_m.is_none()
+            && (COMMITTED_M..COMPARED_BELOW * self.config.decision_height_m).contains(&height_m)
+            && here.above_receiver_m.is_some_and(|off_m| fabs(off_m) > ALTIMETER_OFF_M)
     }
 
     fn flare(&mut self, here: &OverGround, on_wheels: bool, dt_s: f64) {

@@ -25,6 +25,9 @@ use nalgebra::Vector2;
 use super::OverGround;
 use crate::flight::path::{LocalPlane, Motion, Path, cross};
 
+/// An altimeter that is farther off is not landed or taken off by, m: 2 hPa.
+const ALTIMETER_OFF_M: f64 = 20.0;
+
 /// A runway: a point of its centre line and its direction.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Runway {

@@ -35,6 +35,10 @@ schema! {
         Low = 12,
         /// A failsafe, or a loss, on the wheels.
         Failsafe = 13,
+        /// Altimeter and satellite receiver do not agree.
+        Receiver = 14,
+        /// It was given up too often.
+        NoMore = 15,
     }
 }
 
@@ -62,6 +66,14 @@ impl fmt::Display for RunwayReason {
             }
             Self::RangeFinder => {
                 "the range finder does not show height_on_wheels_m on the wheels: it is not used"
+            }
+            Self::Receiver => {
+                "going around: the altimeter is more than 20 m off the satellite receiver's \
+                 altitude; set the altimeter"
+            }
+            Self::NoMore => {
+                "the landing was given up three times: circling over the runway; command an \
+                 item of the plan, the landing for three more"
             }
             Self::Failsafe => "the take-off is given up",
             Self::Low => "not carried out: too low over the runway; command it again",

@@ -3,7 +3,7 @@
 use libm::{atan2, cos, sin};
 use nalgebra::Vector2;
 
-use super::{Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase, RunwayReason};
+use super::{ALTIMETER_OFF_M, Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase, RunwayReason};
 use crate::blocks::wrap_pi;
 use crate::flight::path::{Motion, length};
 use crate::flight::route::OverGround;
@@ -14,8 +14,6 @@ const CLIMBS_M: f64 = 3.0;
 const MOST_CROSS_TRACK_M: f64 = 12.0;
 /// The nose is so near to the runway's direction as a take-off begins, rad: 20°.
 const ALIGNED_RAD: f64 = 0.349;
-/// The altimeter is so near to the runway's elevation then, m: 2 hPa.
-const ALTIMETER_OFF_M: f64 = 20.0;
 /// A take-off is over so near to its altitude, m.
 const REACHED_M: f64 = 3.0;
 
