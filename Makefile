@@ -44,7 +44,7 @@ endif
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-fences test-landings test-upsets test-android android-check android-package test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
+.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-fences test-landings test-raw-edges test-upsets test-android android-check android-package test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -107,6 +107,12 @@ UPSETS := hil/tests/test_drawn_upsets.py \
 
 test-upsets: $(STAMPS)/python-module ## Recover from 100 drawn upsets, and fly 60 flights of climbing turns in turbulence (5 minutes)
 	FCCD_UPSETS=100 FCCD_CLIMBING_TURNS=20 $(PYTHON) -m pytest --capture=no $(UPSETS)
+
+EDGES := hil/tests/test_upset.py hil/tests/test_floor.py hil/tests/test_release.py hil/tests/test_envelope_speed.py
+
+test-raw-edges: $(STAMPS)/python-module ## Fly the edges of flight by the raw sensors of a board, and of a phone (4 minutes)
+	FCC_RAW_SENSORS=board $(PYTHON) -m pytest $(EDGES)
+	FCC_RAW_SENSORS=phone $(PYTHON) -m pytest $(EDGES)
 
 test-fences: $(STAMPS)/python-module ## Fly 20 times against a fence with JSBSim, in 20 kt and turbulence (10 minutes)
 	FCC_FENCES=20 $(PYTHON) -m pytest --capture=no hil/tests/test_contingency.py

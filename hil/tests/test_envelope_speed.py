@@ -10,6 +10,7 @@ import os
 from collections.abc import Callable
 from dataclasses import replace
 
+import edge_sensors
 import fcc
 import pytest
 
@@ -21,7 +22,6 @@ from fcc_hil.settings import Settings
 from fcc_hil.units import FT_TO_M, KT_TO_MPS
 
 _HOLD = '[guidance]\nmode = "hold"\n'
-_ENGAGED_S = 3.0
 _STALL_DEG = 16.5
 """Of JSBSim's Cessnas: the lift table's largest value is at 0.28 rad."""
 
@@ -35,13 +35,18 @@ class _Flight:
     def __init__(
         self, aircraft: str | Aircraft, seed: int, turbulence: int = 0, envelope: str = ""
     ) -> None:
-        self.plant = Plant(aircraft, seed=seed, weather=Weather(turbulence_severity=turbulence))
-        machine = fcc.Machine(f"{_HOLD}[autopilot.envelope]\n{envelope}")
+        self.plant = Plant(
+            aircraft,
+            seed=seed,
+            weather=Weather(turbulence_severity=turbulence),
+            latitude_deg=edge_sensors.LATITUDE_DEG,
+        )
+        machine = edge_sensors.machine(f"{_HOLD}[autopilot.envelope]\n{envelope}")
         settings = Settings(aircraft=self.plant.aircraft.name, noise=True, seed=seed)
-        self.rig = LockstepRig(settings, self.plant, machine)
-        self.rig.prepare()
+        self.rig = LockstepRig(settings, self.plant, machine, edge_sensors.conditions(seed))
+        edge_sensors.settle(self.rig)
         self.rig.set_switch(on=True)
-        self.rig.fly_to(_ENGAGED_S)
+        self.rig.fly_to(self.rig.time_s + 1.0)
         assert self.rig.holds_control
         self.least_kt = math.inf
         self.most_kt = 0.0

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import edge_sensors
 import fcc
 import numpy as np
 import pytest
@@ -26,7 +27,6 @@ hold_s = 5.0
 leg_s = 25.0
 climb_ft = -400.0
 """
-ENGAGED_S = 3.0
 FLOOR_FT = 2800.0
 MARGIN_FT = 50.0
 LIMITED = "the target altitude is limited by the floor or the fence"
@@ -36,21 +36,28 @@ def flown(
     config: str, *, floor_ft: float = FLOOR_FT, turbulence: int = 0, seed: int = 7701
 ) -> LockstepRig:
     """Return a Cessna at 3,000 ft that is engaged."""
-    plant = Plant("c172p", seed=seed, weather=Weather(turbulence_severity=turbulence))
-    machine = fcc.Machine(f"{config}[autopilot.envelope]\nfloor_ft = {floor_ft}\n")
+    plant = Plant(
+        "c172p",
+        seed=seed,
+        weather=Weather(turbulence_severity=turbulence),
+        latitude_deg=edge_sensors.LATITUDE_DEG,
+    )
+    machine = edge_sensors.machine(f"{config}[autopilot.envelope]\nfloor_ft = {floor_ft}\n")
     settings = Settings(aircraft="c172p", noise=True, seed=seed)
-    rig = LockstepRig(settings, plant, machine, Conditions(sensor_delay_ticks=1))
-    rig.prepare()
+    between = edge_sensors.conditions(seed, Conditions(sensor_delay_ticks=1))
+    rig = LockstepRig(settings, plant, machine, between)
+    edge_sensors.settle(rig)
     rig.set_switch(on=True)
-    rig.fly_to(ENGAGED_S)
+    rig.fly_to(rig.time_s + 1.0)
     assert rig.holds_control
     return rig
 
 
 def altitudes_ft(rig: LockstepRig, since_s: float = 0.0) -> np.ndarray:
-    """Return the true altitudes."""
+    """Return the true altitudes, all or from so long after an engagement at 2 s on."""
     truth = rig.truth()
-    values: np.ndarray = truth["altitude_ft"][truth["time_s"] >= since_s]
+    from_s = since_s + edge_sensors.LATER_S if since_s else 0.0
+    values: np.ndarray = truth["altitude_ft"][truth["time_s"] >= from_s]
     return values
 
 
@@ -64,7 +71,7 @@ def test_a_descent_at_full_rate_ends_above_the_floor(turbulence: int, seed: int)
     rig = flown(HOLD, turbulence=turbulence, seed=seed)
     # The autopilot limits a pressure altitude: the floor's depends on the altimeter setting.
     rig.machine.command(pressure_altitude_m=2000.0 * FT_TO_M)
-    rig.fly_to(40.0)
+    rig.fly_to(40.0 + edge_sensors.LATER_S)
     altitude_ft = altitudes_ft(rig)
     truth = rig.truth()
     sink_fpm = -60.0 * np.gradient(altitude_ft, truth["time_s"])
@@ -76,21 +83,23 @@ def test_a_descent_at_full_rate_ends_above_the_floor(turbulence: int, seed: int)
 
 def test_the_legs_of_a_pattern_end_above_the_floor() -> None:
     rig = flown(DESCENDING_PATTERN)
-    rig.fly_to(55.0)
+    rig.fly_to(55.0 + edge_sensors.LATER_S)
     assert np.min(altitudes_ft(rig)) > FLOOR_FT
-    assert abs(altitudes_ft(rig, 30.0)[0] - FLOOR_FT - MARGIN_FT) < 3.0
+    off_ft = altitudes_ft(rig, 30.0)[0] - FLOOR_FT - MARGIN_FT
+    assert abs(off_ft) < 3.0 + edge_sensors.ALTIMETER_FT
     # The next leg climbs back.
-    assert abs(altitudes_ft(rig)[-1] - 3000.0) < 5.0
+    assert abs(altitudes_ft(rig)[-1] - 3000.0) < 5.0 + edge_sensors.ALTIMETER_FT
     assert len(began(rig)) == 1
 
 
 def test_engaged_below_the_floor_it_climbs_to_it() -> None:
     rig = flown(HOLD, floor_ft=3100.0)
-    rig.fly_to(35.0)
-    assert abs(altitudes_ft(rig)[-1] - 3150.0) < 3.0
+    rig.fly_to(35.0 + edge_sensors.LATER_S)
+    assert abs(altitudes_ft(rig)[-1] - 3150.0) < 3.0 + edge_sensors.ALTIMETER_FT
     assert len(began(rig)) == 1
 
 
+@edge_sensors.measured
 @pytest.mark.parametrize("lost", ["heading", "specific_force", "airspeed", "attitude"])
 def test_a_failsafe_in_a_descent_stays_above_the_floor(lost: str) -> None:
     """Lost at full rate, 60 ft above the lowest altitude."""
@@ -111,17 +120,17 @@ def test_a_dive_is_pulled_out_above_the_floor() -> None:
     With the load of 2 g that is permitted, and half a second until the path follows, it takes 85
     ft.
     """
-    plant = Plant("c172p", seed=7731)
-    machine = fcc.Machine(f"{HOLD}[autopilot.envelope]\nfloor_ft = 2700.0\n")
+    plant = Plant("c172p", seed=7731, latitude_deg=edge_sensors.LATITUDE_DEG)
+    machine = edge_sensors.machine(f"{HOLD}[autopilot.envelope]\nfloor_ft = 2700.0\n")
     rig = LockstepRig(
         Settings(aircraft="c172p", noise=True, seed=7731),
         plant,
         machine,
-        Conditions(sensor_delay_ticks=1),
+        edge_sensors.conditions(7731, Conditions(sensor_delay_ticks=1)),
     )
-    rig.prepare()
+    edge_sensors.settle(rig)
     plant.trim = replace(plant.trim, elevator=plant.trim.elevator - 0.12)
-    rig.fly_to(30.0, until=lambda: plant.state().altitude_m < 2850.0 * FT_TO_M)
+    rig.fly_to(rig.time_s + 28.0, until=lambda: plant.state().altitude_m < 2850.0 * FT_TO_M)
     sink_fpm = -60.0 * np.gradient(altitudes_ft(rig), rig.truth()["time_s"])
     assert sink_fpm[-1] > 3000.0
     rig.set_switch(on=True)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Literal
 
-import fcc
+import edge_sensors
 import numpy as np
 import pytest
 
@@ -53,12 +53,14 @@ class Flight:
         noise: bool = True,
         plant: type[Plant] = Plant,
     ) -> None:
-        self.plant = plant(replace(by_name(aircraft), airspeed_kt=airspeed_kt), seed=SEED)
+        trimmed = replace(by_name(aircraft), airspeed_kt=airspeed_kt)
+        self.plant = plant(trimmed, seed=SEED, latitude_deg=edge_sensors.LATITUDE_DEG)
         settings = Settings(port=0, aircraft=aircraft, seed=SEED, noise=noise)
         hold = '[guidance]\nmode = "hold"\n'
-        self.machine = fcc.Machine(hold + config)
-        self.rig = LockstepRig(settings, self.plant, self.machine)
-        self.rig.prepare()
+        self.machine = edge_sensors.machine(hold + config)
+        between = edge_sensors.conditions(SEED)
+        self.rig = LockstepRig(settings, self.plant, self.machine, between)
+        edge_sensors.settle(self.rig)
         self.rig.set_switch(on=True)
         self.fly(0.2)
         assert self.machine.state == "engaged"
@@ -165,6 +167,7 @@ def test_without_the_trim_the_elevator_holds() -> None:
     assert flight.plant.controls.elevator > 0.1
 
 
+@edge_sensors.measured
 def test_degraded_flight_ends_with_a_trimmed_aircraft() -> None:
     flight = Flight(100.0, config="[failsafe]\ndegraded_s = 1.0\n")
     flight.machine.command(airspeed_mps=80.0 * KT_TO_MPS)
@@ -215,6 +218,7 @@ def test_a_release_that_cannot_trim_says_so() -> None:
     assert any("the release cannot trim" in event.text for event in flight.rig.events)
 
 
+@edge_sensors.measured
 def test_a_stop_in_failsafe_levels_before_it_releases() -> None:
     flight = Flight(100.0)
     turning(flight)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import edge_sensors
 import fcc
 import pytest
 from upset_flights import (
@@ -91,6 +92,7 @@ def test_other_aircraft_stay_within_the_limit_load(aircraft: str) -> None:
     assert flown.greatest_kt < NEVER_EXCEED_KT
 
 
+@edge_sensors.measured
 @pytest.mark.parametrize("missing", ["heading", "airspeed", "altitude", "attitude", "body_rates"])
 def test_a_failsafe_recovers_as_well(missing: str) -> None:
     """Of attitude and body rates one takes the other's place; before, the wings were levelled."""
@@ -112,14 +114,18 @@ def test_a_spin_is_recovered_from(turns: float, rudder: float) -> None:
     turn and its recovery. The height counts to the end of the flight, when it is back at its
     altitude.
     """
-    aircraft = fcc.BuiltInAircraft("[built-in]\naltitude_ft = 8000.0\nairspeed_kt = 75.0\n")
-    machine = fcc.Machine(HOLD + "[engage]\npermit_upset = true\n")
+    begin = "[built-in]\naltitude_ft = 8000.0\nairspeed_kt = 75.0\n"
+    if edge_sensors.SENSORS:
+        begin += f'raw_sensors = "{edge_sensors.SENSORS}"\n'
+    aircraft = fcc.BuiltInAircraft(begin)
+    machine = edge_sensors.machine(HOLD + "[engage]\npermit_upset = true\n")
+    level_ticks = round((edge_sensors.STANDBY_S + 1.0) / machine.period_s)
     controls, measured = aircraft.controls, aircraft.step(None)
     turned = held_turns = recovered_turns = 0.0
     stalled, low_m, begin_m = False, math.inf, 0.0
     loads: list[float] = []
     heading = aircraft.truth.heading_rad
-    for tick in range(4_000):
+    for tick in range(4_000 + level_ticks):
         truth = aircraft.truth
         turned += math.remainder(truth.heading_rad - heading, math.tau) / math.tau
         heading = truth.heading_rad
@@ -135,9 +141,9 @@ def test_a_spin_is_recovered_from(turns: float, rudder: float) -> None:
             controls = surfaces
         elif stalled:
             controls = fcc.Surfaces(elevator=1.0, rudder=rudder)
-        elif tick > 120:
+        elif tick > level_ticks:
             level = -0.8 * truth.roll_rad - 0.4 * truth.roll_rate_radps
-            up = min(1.0, 0.00175 * (tick - 120))
+            up = min(1.0, 0.00175 * (tick - level_ticks))
             controls = fcc.Surfaces(elevator=up, aileron=max(-1.0, min(1.0, level)))
             stalled = truth.angle_of_attack_rad > math.radians(17.0)
         if held_turns:

@@ -11,18 +11,18 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-import fcc
+import edge_sensors
 
 from fcc_hil.aircraft import Aircraft
 from fcc_hil.lockstep import measurements
 from fcc_hil.noise import SensorNoise
 from fcc_hil.plant import STEP_S, Plant, Weather
+from fcc_hil.raw_sensors import RawSensors
 from fcc_hil.state import Controls, State
 from fcc_hil.units import FT_TO_M, KT_TO_MPS
 
 HOLD = '[guidance]\nmode = "hold"\n'
 _TICK_STEPS = 3
-_SETTLING_S = 2.0
 _GRAVITY_MPS2 = 9.80665
 _SCRIPTS_LOAD_S = 0.3
 """For this long after the controls were given back the load is that which the script left."""
@@ -108,7 +108,7 @@ def fly(script: Script, conditions: Conditions | None = None, seconds: float = 2
     """Fly level for 5 s, then the script, then `seconds` with the controls given back."""
     conditions = conditions or Conditions()
     flight = Flight(conditions)
-    for _ in range(round(_SETTLING_S / flight.machine.period_s)):
+    for _ in range(round(edge_sensors.STANDBY_S / flight.machine.period_s)):
         flight.tick(None)
     flight.switch = True
     for _ in range(2):  # two readings agree
@@ -146,9 +146,20 @@ class Flight:
 
     def __init__(self, conditions: Conditions) -> None:
         self.plant = Plant(
-            conditions.aircraft, seed=conditions.seed, weather=conditions.weather, heading_deg=90.0
+            conditions.aircraft,
+            seed=conditions.seed,
+            weather=conditions.weather,
+            heading_deg=90.0,
+            latitude_deg=edge_sensors.LATITUDE_DEG,
         )
-        self.machine = fcc.Machine(conditions.config)
+        self.machine = edge_sensors.machine(conditions.config)
+        between = edge_sensors.conditions(conditions.seed)
+        self._calibration = between.calibration
+        self._raw = (
+            RawSensors(self.plant, between.raw_sensors, seed=conditions.seed)
+            if between.raw_sensors
+            else None
+        )
         self.wanted = self.flown = self.plant.trim
         self.switch = False
         self.missing: tuple[str, ...] = ()
@@ -163,9 +174,14 @@ class Flight:
         state = plant.state()
         self._waiting.append(self._noise.apply(state) if self._noise else state)
         stand = plant.controls
+        values = measurements(self._waiting[0])
+        ages_s = {} if self._raw is None else self._raw.read(values)
+        if self._calibration is not None:
+            self._calibration.apply(values)
         surfaces = self.machine.step(
-            measurements(self._waiting[0]),
-            missing=self.missing,
+            values,
+            missing=[*self.missing, *edge_sensors.MISSING],
+            ages_s=ages_s,
             readback=(stand.throttle, stand.elevator, stand.aileron, stand.rudder),
             switch=self.switch,
         )
@@ -184,6 +200,8 @@ class Flight:
             self.flown = _between(self.flown, goal, self._share)
             plant.write(self.flown)
             plant.step()
+            if self._raw is not None:
+                self._raw.step()
         self.events += [f"{plant.time_s:.2f} {e.text}" for e in self.machine.events()]
 
 

@@ -4,6 +4,7 @@
 
 mod compared;
 mod consistency;
+mod range_end;
 mod readings;
 mod receiver;
 mod repeats;
@@ -15,6 +16,7 @@ mod trial;
 use core::time::Duration;
 
 use libm::atan2;
+use range_end::RangeEnd;
 use readings::{
     attitude_of, either, field_in, force_in, force_of, is_certain, is_elsewhere, is_new, rates_in,
     rates_of,
@@ -129,6 +131,7 @@ pub struct RawNavigation {
     /// Those that were used last.
     used: Measurements,
     repeats: Repeats,
+    range_end: RangeEnd,
     accelerometers: Units,
     gyroscopes: Units,
     sensors: SensorMonitor,
@@ -177,6 +180,7 @@ impl RawNavigation {
             },
             used: Measurements::default(),
             repeats: Repeats::default(),
+            range_end: RangeEnd::default(),
             accelerometers: Units::default(),
             gyroscopes: Units::default(),
             sensors: SensorMonitor::default(),
@@ -296,6 +300,12 @@ impl RawNavigation {
             .step(raw, [force, rates, field], &self.used.gnss);
         self.follow_units(raw, repeats.force, repeats.rates);
         if !repeats.force && is_new(&mut self.used.raw_specific_force, &f, now) {
+            let down = &mut self.used.raw_specific_force.value.z_mps2;
+            let pitch_radps = rates_of(&r, &self.solution).value.pitch_radps;
+            *down = self
+                .range_end
+                .restored(*down, pitch_radps, &self.solution);
+            let force = force_in(&self.used.raw_specific_force.value);
             self.take(f.taken, Observation::SpecificForce(force));
         }
         if !repeats.rates
