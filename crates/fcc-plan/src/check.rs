@@ -230,6 +230,16 @@ fn legs(plan: &Plan, conditions: &Conditions, problems: &mut Vec<Problem>) -> Ve
     legs
 }
 
+/// The elevation of the plan's runway, m above mean sea level; none without a landing, or
+/// where it is not known.
+pub fn landing_elevation_m(plan: &Plan) -> Option<f64> {
+    let altitude = plan.items.iter().find_map(|item| match item {
+        Item::Land { altitude, .. } => Some(*altitude),
+        _ => None,
+    })?;
+    above_sea_level(altitude, plan).ok()
+}
+
 pub(crate) fn above_sea_level(altitude: Altitude, plan: &Plan) -> Result<f64, &'static str> {
     match (altitude.above, plan.home) {
         (AltitudeDatum::SeaLevel, _) => Ok(altitude.m),

@@ -26,7 +26,7 @@ mod qgc_plan;
 mod route;
 mod wpl;
 
-pub use check::{Conditions, check, longest_s};
+pub use check::{Conditions, check, landing_elevation_m, longest_s};
 pub use file::{FileError, Format, read, read_file, write};
 pub use item::{Altitude, AltitudeDatum, Item, Loiter, LoiterEnd, Place, Speed};
 pub use plan::{

@@ -10,10 +10,13 @@ use fcc_plan::{Conditions, FileError, Format, Identity, Item, Problem, Steps};
 use serde::{Deserialize, Serialize};
 
 use super::autopilot::RunwaySection;
-use super::{AutopilotSection, Config, ConfigError, GuidanceSection};
+use super::{AutopilotSection, BuiltInSection, Config, ConfigError, GuidanceSection};
 
 /// A foot per minute in m/s.
 const FOOT_PER_MINUTE_MPS: f64 = FOOT_M / 60.0;
+
+/// The built-in aircraft begins at least so high over the runway of its plan.
+const LEAST_ABOVE_GROUND_FT: f64 = 1_000.0;
 
 /// `[plan]`.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -282,7 +285,8 @@ impl Config {
     }
 
     /// The built-in aircraft begins at the plan's home, or at its first place; on the
-    /// runway there, if the plan begins with a take-off.
+    /// runway there, if the plan begins with a take-off. Its ground is as high as the
+    /// runway, unless the configuration has another one.
     fn begin_at(&mut self, plan: &fcc_plan::Plan) {
         let first = plan.items.iter().find_map(Item::place);
         let Some(place) = plan.home.map(|home| home.place).or(first) else {
@@ -303,6 +307,12 @@ impl Config {
                     let (_, course_deg, _) = home.place.to(to);
                     built_in.heading_deg = course_deg.rem_euclid(360.0);
                 }
+            } else if let Some(elevation_m) = fcc_plan::landing_elevation_m(plan)
+                && built_in.ground_ft == BuiltInSection::default().ground_ft
+            {
+                built_in.ground_ft = elevation_m / FOOT_M;
+                let least_ft = built_in.ground_ft + LEAST_ABOVE_GROUND_FT;
+                built_in.altitude_ft = built_in.altitude_ft.max(least_ft);
             }
         }
     }

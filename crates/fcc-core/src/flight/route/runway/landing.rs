@@ -2,7 +2,9 @@
 
 use libm::{fabs, tan};
 
-use super::{ALTIMETER_OFF_M, Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase, RunwayReason};
+use super::{
+    ALTIMETER_OFF_M, Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase, RunwayReason,
+};
 use crate::flight::path::Motion;
 use crate::flight::route::OverGround;
 
@@ -142,7 +144,9 @@ impl RunwayFlight {
         let height_m = self.demand.height_m;
         here.height_m.is_none()
             && (COMMITTED_M..COMPARED_BELOW * self.config.decision_height_m).contains(&height_m)
-            && here.above_receiver_m.is_some_and(|off_m| fabs(off_m) > ALTIMETER_OFF_M)
+            && here
+                .above_receiver_m
+                .is_some_and(|off_m| fabs(off_m) > ALTIMETER_OFF_M)
     }
 
     fn flare(&mut self, here: &OverGround, on_wheels: bool, dt_s: f64) {

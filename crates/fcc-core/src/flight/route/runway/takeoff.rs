@@ -3,7 +3,9 @@
 use libm::{atan2, cos, sin};
 use nalgebra::Vector2;
 
-use super::{ALTIMETER_OFF_M, Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase, RunwayReason};
+use super::{
+    ALTIMETER_OFF_M, Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase, RunwayReason,
+};
 use crate::blocks::wrap_pi;
 use crate::flight::path::{Motion, length};
 use crate::flight::route::OverGround;
