@@ -69,6 +69,8 @@ pub struct LiftChannel {
 /// without flaps: those of JSBSim's Cessna 172 (lift table of c172p.xml), close
 /// to the NACA 2412 section (Abbott and von Doenhoff 1959, appendix IV).
 const ZERO_LIFT_RAD: f64 = -0.047;
+/// In less wind than this a vane points anywhere, m/s: the aircraft stands in gusts.
+const VANE_MPS: f64 = 10.0;
 /// See above.
 pub(crate) const STALL_RAD: f64 = 0.28;
 
@@ -142,10 +144,11 @@ impl LiftChannel {
         let by_lift_rad =
             self.angle_of_attack(load_factor, path.orientation, sin_path, airspeed_mps, dt_s);
         let measured = measurements.angle_of_attack_rad;
+        let has_wind = airspeed_mps > VANE_MPS;
         let rates = measurements.body_rates.value;
         let believed = self.monitor.step(
-            is_current(&measured, now).then_some((measured.value, measured.source)),
-            self.impossible,
+            (has_wind && is_current(&measured, now)).then_some((measured.value, measured.source)),
+            self.impossible.filter(|_| has_wind),
             &OtherAngles {
                 by_lift_rad,
                 by_path_rad: path.upward.angle_of_attack_rad(sin_path),
@@ -272,6 +275,29 @@ mod tests {
         for alpha in [-0.05_f64, 0.0, 0.17] {
             let found = acceleration(&force, alpha, &orientation);
             assert!((found - exact).abs() < 0.1, "{found} at {alpha}");
+        }
+    }
+
+    /// A vane of an aircraft that stands points anywhere, backwards too; at 30 m/s such
+    /// an angle is wrong.
+    #[test]
+    fn a_vane_without_wind_is_not_judged() {
+        let orientation = Orientation::default();
+        let path = Path {
+            orientation: &orientation,
+            upward: Upward::LEVEL,
+            vertical: VerticalState::default(),
+            sqrt_density: 1.0,
+        };
+        let level = SpecificForce {
+            z_mps2: -GRAVITY_MPS2,
+            ..SpecificForce::default()
+        };
+        for (airspeed_mps, is_doubted) in [(2.0, false), (30.0, true)] {
+            let mut channel = LiftChannel::new(25.0);
+            channel.impossible_from(Some(1));
+            flown(&mut channel, level, &path, airspeed_mps, 2.0);
+            assert_eq!(channel.doubt().is_some(), is_doubted);
         }
     }
 }
