@@ -172,12 +172,9 @@ impl GroundMotion {
             let age_s = now.since(position.taken).min(LONGEST_AGE).as_secs_f64();
             let since_s = self.lost_s;
             let above_m = self.here.altitude_m - position.value.altitude_m;
-            self.here.above_receiver_m = Some(match self.here.above_receiver_m {
-                Some(was_m) if since_s < LONGEST_AGE.as_secs_f64() => {
-                    was_m + (above_m - was_m) * (1.0 - exp(-since_s / ALTITUDE_FOLLOWS_S))
-                }
-                _ => above_m,
-            });
+            let was_m = self.here.above_receiver_m.unwrap_or(above_m);
+            let followed_m = was_m + (above_m - was_m) * (1.0 - exp(-since_s / ALTITUDE_FOLLOWS_S));
+            self.here.above_receiver_m = Some(followed_m).filter(|off_m| off_m.is_finite());
             self.position_taken = position.taken;
             self.lost_s = 0.0;
             let moved = self.here.ground_velocity_mps * age_s;

@@ -300,10 +300,7 @@ impl RawNavigation {
             .step(raw, [force, rates, field], &self.used.gnss);
         self.follow_units(raw, repeats.force, repeats.rates);
         if !repeats.force && is_new(&mut self.used.raw_specific_force, &f, now) {
-            let down = &mut self.used.raw_specific_force.value.z_mps2;
-            let pitch_radps = rates_of(&r, &self.solution).value.pitch_radps;
-            *down = self.range_end.restored(*down, pitch_radps, &self.solution);
-            let force = force_in(&self.used.raw_specific_force.value);
+            let force = self.restored_force(&r);
             self.take(f.taken, Observation::SpecificForce(force));
         }
         if !repeats.rates

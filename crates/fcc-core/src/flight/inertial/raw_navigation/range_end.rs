@@ -3,7 +3,11 @@
 use libm::fabs;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
+use super::RawNavigation;
+use super::readings::{force_in, known, rates_of};
+use crate::flight::BodyRates;
 use crate::flight::inertial::Solution;
+use crate::framework::Reading;
 use crate::units::GRAVITY_MPS2;
 
 /// A sample is at the end of the range if it is one of so many in a row, ...
@@ -25,7 +29,7 @@ pub(super) struct RangeEnd {
 impl RangeEnd {
     /// The specific force down, m/s²: what is measured, or at the end of the range what
     /// keeps the flight path turning with the body at its pitch rate, rad/s.
-    pub(super) fn restored(&mut self, down_mps2: f64, pitch_radps: f64, known: &Solution) -> f64 {
+    fn restored(&mut self, down_mps2: f64, pitch_radps: f64, solution: &Solution) -> f64 {
         let is_alike = fabs(down_mps2) >= LEAST_MPS2
             && fabs(down_mps2 - self.last_mps2) < ALIKE * fabs(down_mps2);
         self.alike = if is_alike {
@@ -37,7 +41,7 @@ impl RangeEnd {
         if self.alike < IN_A_ROW {
             return down_mps2;
         }
-        let expected = turning_mps2(pitch_radps, known);
+        let expected = turning_mps2(pitch_radps, solution);
         if expected / down_mps2 > MORE {
             expected
         } else {
@@ -46,12 +50,24 @@ impl RangeEnd {
     }
 }
 
+impl RawNavigation {
+    /// The specific force that was just read, restored if it is at the end of its range.
+    pub(super) fn restored_force(&mut self, rates: &Reading<BodyRates>) -> [f64; 3] {
+        let pitch_radps = rates_of(rates, &self.solution).value.pitch_radps;
+        let force = &mut self.used.raw_specific_force.value;
+        force.z_mps2 = self
+            .range_end
+            .restored(force.z_mps2, pitch_radps, &self.solution);
+        force_in(force)
+    }
+}
+
 /// The specific force down of a steady turn of the flight path with the body: u q and
 /// gravity's part (Stevens and Lewis, equations of motion in body axes, w' = 0, p v = 0).
-fn turning_mps2(pitch_radps: f64, known: &Solution) -> f64 {
-    let [w, x, y, z] = known.quaternion;
-    let [wind_north, wind_east] = known.wind_mps.map(super::readings::known);
-    let [north, east, down] = known.velocity_mps;
+fn turning_mps2(pitch_radps: f64, solution: &Solution) -> f64 {
+    let [w, x, y, z] = solution.quaternion;
+    let [wind_north, wind_east] = solution.wind_mps.map(known);
+    let [north, east, down] = solution.velocity_mps;
     let attitude = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
     let air = Vector3::new(north - wind_north, east - wind_east, down);
     let gravity = attitude.inverse_transform_vector(&Vector3::new(0.0, 0.0, GRAVITY_MPS2));
