@@ -110,8 +110,7 @@ fn a_line_that_is_missing_or_gone_is_an_error() {
     let mut line = SerialLine::open(&RcProtocol::Crsf.line(path)).unwrap();
     assert_eq!(line.read(&mut [0; 10]).unwrap(), 0, "silent");
     drop((device, open));
-    assert!(matches!(
-        line.read(&mut [0; 10]),
-        Err(DeviceError::Io { .. })
-    ));
+    // A program that another test is just starting may still hold the other end.
+    let ended = (0..50).map(|_| line.read(&mut [0; 10])).find(Result::is_err);
+    assert!(matches!(ended, Some(Err(DeviceError::Io { .. }))));
 }
