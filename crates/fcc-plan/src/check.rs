@@ -7,7 +7,7 @@
 use fcc_core::flight::path::turn::{Turn, smallest_circle_m};
 use fcc_core::flight::route::PLANNED_SHARE;
 
-use crate::inside::{TurnAway, circles, fence_problem, obstacle_problem};
+use crate::inside::{TurnAway, circles, fence_problem, heights, obstacle_problem};
 use crate::item::{Altitude, AltitudeDatum, Item, Loiter, LoiterEnd, Place, Speed};
 use crate::outline::Outline;
 use crate::plan::{Plan, limits};
@@ -50,7 +50,7 @@ pub(crate) struct Leg {
     pub(crate) course_deg: f64,
     arrival_deg: f64,
     /// The number of the item at its end.
-    item: usize,
+    pub(crate) item: usize,
     /// Whether there is a turn of the path at its end.
     turns: bool,
     /// How near the turn at its end passes the place, m.
@@ -90,7 +90,10 @@ pub fn check(plan: &Plan, conditions: &Conditions) -> Result<(), Vec<Problem>> {
             problems.push(Problem::of_item(leg.item, field, message));
         }
     }
-    outline.with(|fence| circles(plan, fence, conditions, &mut problems));
+    outline.with(|fence| {
+        heights(plan, fence, &legs, &mut problems);
+        circles(plan, fence, conditions, &mut problems);
+    });
     problems.sort_by_key(|problem| problem.item);
     problems.truncate(limits::PROBLEMS);
     if problems.is_empty() {

@@ -5,7 +5,7 @@ use fcc_core::flight::path::turn::smallest_circle_m;
 use fcc_core::flight::route::{OverGround, PLANNED_SHARE, ROLL_LAG_S, RouteConfig};
 use nalgebra::Vector2;
 
-use crate::check::{Conditions, Leg};
+use crate::check::{Conditions, Leg, above_sea_level};
 use crate::item::{Item, Loiter, Place};
 use crate::plan::{Obstacle, Plan};
 use crate::problem::Problem;
@@ -13,6 +13,8 @@ use crate::problem::Problem;
 /// Points of a leg that are tried near the fence, m apart, and how many at most.
 const STEP_M: f64 = 50.0;
 const MOST_POINTS: f64 = 2_000.0;
+/// Between floor and ceiling there is a margin at both, and the air moves, m.
+const LEAST_BAND_M: f64 = 30.0;
 /// Longer than banking takes, s.
 const BANKING_S: f64 = 5.0;
 
@@ -20,17 +22,9 @@ type Found = Option<(&'static str, String)>;
 
 /// What of the fence a leg crosses, or comes too near to turn away from, at points of it.
 pub(crate) fn fence_problem(leg: &Leg, fence: &Fence<'_>, turn: &TurnAway) -> Found {
-    let (low, high) = (leg.from.1.min(leg.to.1), leg.from.1.max(leg.to.1));
+    let (to_m, high_m) = (leg.to.1, leg.from.1.max(leg.to.1));
     // On the ground at home it is below any floor.
-    if let Some(floor) = fence.floor_m.filter(|floor| leg.to.1 < *floor) {
-        let message = format!(
-            "{:.0} m is below its floor, {floor:.0} m",
-            low.min(leg.to.1)
-        );
-        return Some(("fence", message));
-    }
-    if let Some(ceiling) = fence.ceiling_m.filter(|ceiling| high > *ceiling) {
-        let message = format!("{high:.0} m is above its ceiling, {ceiling:.0} m");
+    if let Some(message) = height_problem(to_m, fence).or_else(|| height_problem(high_m, fence)) {
         return Some(("fence", message));
     }
     if fence.zones.is_empty() {
@@ -54,6 +48,43 @@ pub(crate) fn fence_problem(leg: &Leg, fence: &Fence<'_>, turn: &TurnAway) -> Fo
         }
         let least_m = STEP_M.max(leg.length_m / MOST_POINTS);
         at_m = (at_m + (clearance_m - turn.reach_m).max(least_m)).min(leg.length_m);
+    }
+}
+
+/// What is wrong with an altitude, m.
+fn height_problem(altitude_m: f64, fence: &Fence<'_>) -> Option<String> {
+    if let Some(floor) = fence.floor_m.filter(|floor| altitude_m < *floor) {
+        return Some(format!(
+            "{altitude_m:.0} m is below its floor, {floor:.0} m"
+        ));
+    }
+    let ceiling = fence.ceiling_m.filter(|ceiling| altitude_m > *ceiling)?;
+    Some(format!(
+        "{altitude_m:.0} m is above its ceiling, {ceiling:.0} m"
+    ))
+}
+
+/// Heights that the fence does not permit, of items to which no leg leads, and those of
+/// the fence itself.
+pub(crate) fn heights(plan: &Plan, fence: &Fence<'_>, legs: &[Leg], problems: &mut Vec<Problem>) {
+    if let (Some(floor), Some(ceiling)) = (fence.floor_m, fence.ceiling_m)
+        && ceiling - floor < LEAST_BAND_M
+    {
+        let message = format!(
+            "the ceiling, {ceiling:.0} m, is {:.0} m above the floor: give at least \
+             {LEAST_BAND_M} m",
+            ceiling - floor
+        );
+        problems.push(Problem::of("fence", message));
+    }
+    for (n, item) in plan.items.iter().enumerate() {
+        let has_leg = legs.iter().any(|leg| leg.item == n + 1);
+        let is_on_runway = matches!(item, Item::Takeoff { .. } | Item::Land { .. });
+        let altitude = item.altitude().filter(|_| !has_leg && !is_on_runway);
+        let altitude_m = altitude.and_then(|altitude| above_sea_level(altitude, plan).ok());
+        if let Some(message) = altitude_m.and_then(|m| height_problem(m, fence)) {
+            problems.push(Problem::of_item(n + 1, "fence", message));
+        }
     }
 }
 

@@ -111,6 +111,8 @@ fn a_line_that_is_missing_or_gone_is_an_error() {
     assert_eq!(line.read(&mut [0; 10]).unwrap(), 0, "silent");
     drop((device, open));
     // A program that another test is just starting may still hold the other end.
-    let ended = (0..50).map(|_| line.read(&mut [0; 10])).find(Result::is_err);
+    let ended = (0..50)
+        .map(|_| line.read(&mut [0; 10]))
+        .find(Result::is_err);
     assert!(matches!(ended, Some(Err(DeviceError::Io { .. }))));
 }

@@ -163,6 +163,41 @@ fn circles_ceilings_and_obstacles() {
     assert!(said(&mast, 0.0).contains("item 1: obstacle: the leg comes within 56 m"));
 }
 
+/// Where no leg leads, at home and "here", and by a change of altitude.
+#[test]
+fn heights_of_items_without_a_leg_are_those_of_the_fence() {
+    let here = |m: f64| {
+        Item::Loiter(Loiter {
+            place: None,
+            altitude: sea_level(m),
+            radius_m: None,
+            clockwise: true,
+            end: LoiterEnd::Altitude,
+            leave_towards_next: false,
+        })
+    };
+    let change = |m: f64| Item::ChangeAltitude {
+        altitude: sea_level(m),
+    };
+    for (item, is_permitted) in [
+        (here(1_200.0), true),
+        (here(1_400.0), false),
+        (here(800.0), false),
+        (change(1_200.0), true),
+        (change(1_400.0), false),
+    ] {
+        let mut plan = plan(8.0);
+        plan.items.insert(0, item);
+        (plan.fence.floor_m, plan.fence.ceiling_m) = (Some(900.0), Some(1_300.0));
+        let problems = check(&plan, &conditions(0.0)).err().unwrap_or_default();
+        let of_it = problems.iter().any(|problem| problem.item == Some(1));
+        assert_eq!(of_it, !is_permitted, "{item:?} {problems:?}");
+    }
+    let mut narrow = plan(8.0);
+    (narrow.fence.floor_m, narrow.fence.ceiling_m) = (Some(1_000.0), Some(900.0));
+    assert!(said(&narrow, 0.0).contains("the ceiling, 900 m, is -100 m above the floor"));
+}
+
 #[test]
 fn jumps_end_and_altitudes_are_known() {
     let mut plan = plan(8.0);
