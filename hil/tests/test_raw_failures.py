@@ -20,6 +20,7 @@ SEED = 33
 ENGAGED_S = 20.0
 FAILS_S = 60.0
 END_S = 150.0
+EARTH_M = 6_371_009.0
 MEASURED = frozenset(
     {"attitude", "heading", "body_rates", "specific_force", "airspeed", "altitude"}
 )
@@ -32,6 +33,13 @@ def compass_turned(by_deg: float) -> Fault:
         x, y = values.magnetic_field_x_ut, values.magnetic_field_y_ut
         values.magnetic_field_x_ut = cosine * x - sine * y
         values.magnetic_field_y_ut = sine * x + cosine * y
+
+    return fault
+
+
+def place_off(north_m: float) -> Fault:
+    def fault(values: fcc.Measurements) -> None:
+        values.gnss_latitude_rad += north_m / EARTH_M
 
     return fault
 
@@ -124,6 +132,7 @@ def fly(
     [
         (lost("gnss"), 60.0),
         (repeated("gnss"), 60.0),
+        (place_off(600.0), 0.5),
         (lost("magnetic_field"), 90.0),
         (repeated("magnetic_field"), 60.0),
         (frozen_with_noise(magnetic_field=0.3), 90.0),
@@ -131,6 +140,7 @@ def fly(
     ids=[
         "no receiver",
         "receiver repeats",
+        "receiver 600 m off",
         "no compass",
         "compass repeats",
         "compass frozen with noise",

@@ -109,8 +109,10 @@ impl Autopilot {
             self.whereabouts = Whereabouts::default();
         } else if self.clock.state().is_some() {
             let was_long = self.clock.gap().is_some_and(|gap| gap.was_long);
+            let by_receiver = self.raw.is_some() && !measured.gnss.is_never();
+            let passed_s = self.clock.passed_s();
             self.whereabouts
-                .step(measured, self.clock.passed_s(), was_long);
+                .step(measured, passed_s, was_long, by_receiver);
         }
     }
 

@@ -72,12 +72,18 @@ pub(super) struct Whereabouts {
 impl Whereabouts {
     /// Follows the aircraft in a tick in which `passed_s` of the plant's time
     /// passed. After a long gap attitude, heading and altitude are compared,
-    /// too.
-    pub(super) fn step(&mut self, measured: &Measurements, passed_s: f64, after_gap: bool) {
+    /// too. A satellite receiver's position, `by_receiver`, may jump by itself.
+    pub(super) fn step(
+        &mut self,
+        measured: &Measurements,
+        passed_s: f64,
+        after_gap: bool,
+        by_receiver: bool,
+    ) {
         self.was_relocated = after_gap && self.is_another(measured, passed_s);
         self.passed_s += passed_s;
         let new = measured.position;
-        if new.taken <= self.seen || !new.value.is_on_earth() {
+        if by_receiver || new.taken <= self.seen || !new.value.is_on_earth() {
             return;
         }
         self.seen = new.taken;
