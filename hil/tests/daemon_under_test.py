@@ -187,6 +187,16 @@ def wait_until(
         time.sleep(_LOOK_S)
 
 
+def open_files(pid: int) -> set[str]:
+    """Return what a process has open."""
+    files = set()
+    for descriptor in Path(f"/proc/{pid}/fd").iterdir():
+        # It may close it meanwhile.
+        with contextlib.suppress(FileNotFoundError):
+            files.add(str(descriptor.readlink()))
+    return files
+
+
 def write_config(
     scratch: Path,
     port: int,

@@ -25,6 +25,7 @@ from daemon_under_test import (
     assert_released,
     engage,
     flight,
+    open_files,
     start,
     wait_until,
     write_config,
@@ -241,20 +242,29 @@ def test_a_helper_of_an_earlier_daemon_is_ended(fccd: Path, tmp_path: Path) -> N
     environment = {"RUNTIME_DIRECTORY": str(folder)}
     with flight(fccd, tmp_path, environment=environment) as (simulator, daemon):
         address = f"127.0.0.1:{simulator.port}"
-        with subprocess.Popen(
-            [fccd, "release-helper"],
-            stdin=subprocess.PIPE,
-            text=True,
-            env={**os.environ, **environment},
-        ) as helper:
+        with (
+            subprocess.Popen(
+                [fccd, "release-helper"],
+                stdin=subprocess.PIPE,
+                text=True,
+                env={**os.environ, **environment},
+            ) as helper,
+            contextlib.ExitStack() as stack,
+        ):
+            # Stopped, it would be waited for for ever.
+            stack.callback(helper.kill)
             assert helper.stdin is not None
             config = json.dumps(f'[x-plane]\nsimulator = "{address}"\n')
             helper.stdin.write(f"{config}\nheld 1 X-Plane at {address}\n")
             helper.stdin.flush()
-            wait_until(
-                lambda: len(list(Path(f"/proc/{helper.pid}/fd").iterdir())) == 5,
-                "its lock and its socket",
-            )
+
+            def has_lock_and_socket() -> bool:
+                held = open_files(helper.pid)
+                return any(name.endswith(".helper") for name in held) and any(
+                    name.startswith("socket:") for name in held
+                )
+
+            wait_until(has_lock_and_socket, "its lock and its socket")
             helper.send_signal(signal.SIGSTOP)
             engage(simulator, daemon)
             daemon.wait_for("the release helper of the previous daemon was ended")

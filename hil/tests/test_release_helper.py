@@ -21,6 +21,7 @@ from daemon_under_test import (
     engage,
     flight,
     helpers_of,
+    open_files,
     start,
     wait_until,
     write_config,
@@ -177,16 +178,6 @@ def test_a_helper_does_not_wait_for_a_daemon_that_has_given_up(fccd: Path, tmp_p
             simulator.act("run")
             assert_released(simulator)
             assert daemon.is_running
-
-
-def open_files(pid: int) -> set[str]:
-    """Return what a process has open."""
-    files = set()
-    for descriptor in Path(f"/proc/{pid}/fd").iterdir():
-        # It may close it meanwhile.
-        with contextlib.suppress(FileNotFoundError):
-            files.add(str(descriptor.readlink()))
-    return files
 
 
 def test_a_helper_holds_nothing_of_others(fccd: Path, tmp_path: Path) -> None:
