@@ -185,6 +185,7 @@ impl ControlAuthority for XPlaneAuthority {
 
     fn report(&self, report: &mut dyn FnMut(fmt::Arguments<'_>)) {
         if let Some(status) = &self.status {
+            status.link().join_beacon_group();
             self.watch_ports(status);
             // Before it answers, there may be no program.
             if let Some((simulator, _)) = status.simulator().zip(self.answers_from()) {

@@ -59,6 +59,7 @@ mod address;
 mod aircraft_state;
 mod authority;
 mod axial_load;
+mod beacon_group;
 mod config;
 mod confirmation;
 mod consistency;

@@ -13,6 +13,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use fcc_core::framework::TakeoverNotice;
 
+use crate::beacon_group::BeaconGroup;
 use crate::counters::Counters;
 use crate::missing::ValueSet;
 use crate::readbacks::Readbacks;
@@ -53,6 +54,7 @@ pub(crate) struct SharedState {
     /// Nothing comes from a port any more, or none is known.
     is_port_silent: AtomicBool,
     filter: OnceLock<SourceFilter>,
+    beacon_group: OnceLock<BeaconGroup>,
     /// Further connections to read, without a watch of their own; not used in a
     /// tick.
     beside: Mutex<Vec<Arc<Self>>>,
@@ -101,6 +103,7 @@ impl SharedState {
             is_gone_known: AtomicBool::new(false),
             is_port_silent: AtomicBool::new(true),
             filter: OnceLock::new(),
+            beacon_group: OnceLock::new(),
             beside: Mutex::new(Vec::new()),
             state: AtomicU8::new(SimulatorState::Silent as u8),
             control: AtomicU8::new(Control::Free as u8),

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use crate::actuator::XPlaneActuator;
 use crate::address::{HostName, Simulator, USUAL_LOCAL_PORT};
+use crate::beacon_group::BeaconGroup;
 use crate::config::{XPlaneConfig, XPlaneConfigError, check_address};
 use crate::link::SharedState;
 use crate::port::Port;
@@ -87,8 +88,14 @@ impl XPlane {
                 Some(listen.map_err(|source| OpenError::Beacon { group, source })?)
             }
         };
+        let group = beacons
+            .as_ref()
+            .and_then(|port| BeaconGroup::of(port, config.beacon).ok().flatten());
         let (sensor, actuator) = Self::join(config, simulator, port, beacons)?;
         sensor.set_socket(local_port, filter);
+        if let Some(group) = group {
+            sensor.set_beacon_group(group);
+        }
         Ok((sensor, actuator))
     }
 

@@ -11,6 +11,7 @@ use std::sync::Arc;
 use fcc_core::flight::Measurements;
 use fcc_core::framework::{Sensor, SensorFault, Tick, Time};
 
+use crate::beacon_group::BeaconGroup;
 use crate::config::{DataRows, Input, XPlaneConfig};
 use crate::controls::Controls;
 use crate::counters::count;
@@ -135,6 +136,10 @@ impl<P: Port> XPlaneSensor<P> {
 
     pub(crate) fn set_socket(&self, local_port: u16, filter: Option<SourceFilter>) {
         self.link.set_socket(local_port, filter);
+    }
+
+    pub(crate) fn set_beacon_group(&self, group: BeaconGroup) {
+        self.link.set_beacon_group(group);
     }
 
     fn receive(&mut self, now: Time, simulator: Option<SocketAddr>) -> Result<(), SensorFault> {

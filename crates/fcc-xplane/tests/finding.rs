@@ -3,6 +3,7 @@
 mod support;
 
 use std::net::{SocketAddrV4, UdpSocket};
+use std::process::Command;
 use std::time::Duration;
 
 use fcc_core::framework::{Actuator, ActuatorFault, ControlAuthority};
@@ -37,6 +38,60 @@ fn a_port_that_is_taken_is_refused_with_what_to_do() {
     };
     let message = XPlane::open(&config).map(|_| ()).unwrap_err().to_string();
     assert!(message.contains("choose another local_port"), "{message}");
+}
+
+const ALONE: [&str; 3] = ["--user", "--map-root-user", "--net"];
+
+/// A phone's Wi-Fi, or a cable that is plugged in later. Where a user may not have a
+/// network of his own (unshare(1)), this cannot be tested.
+#[test]
+fn a_network_that_comes_after_the_start_carries_beacons() {
+    let unshare = || {
+        let mut command = Command::new("unshare");
+        command.args(ALONE);
+        command
+    };
+    let permitted = unshare().arg("ip").arg("link").output();
+    if !permitted.is_ok_and(|tried| tried.status.success()) {
+        println!("not tested: no network of its own is permitted here, or there is no ip(8)");
+        return;
+    }
+    let test = ["--exact", "in_a_network_of_its_own", "--ignored"];
+    let this = std::env::current_exe().unwrap();
+    let status = unshare().arg(this).args(test).status().unwrap();
+    assert!(status.success());
+}
+
+#[test]
+#[ignore = "changes the network: run by the test above, in one of its own"]
+fn in_a_network_of_its_own() {
+    let ip = |words: &str| {
+        let status = Command::new("ip").args(words.split(' ')).status().unwrap();
+        assert!(status.success(), "{words}");
+    };
+    ip("link set lo up");
+    let mut bench = Bench::with(|config| config.simulator = Simulator::Beacon);
+    let config = XPlaneConfig {
+        simulator: Simulator::Beacon,
+        ..XPlaneConfig::default()
+    };
+    let authority = XPlaneAuthority::of(bench.status.clone(), &config);
+    let _ = bench.sample();
+    ip("link add v0 type veth peer name v1");
+    ip("address add 192.168.7.2/24 dev v0");
+    ip("link set v1 up");
+    ip("link set v0 up");
+    ip("route add 224.0.0.0/4 dev v0");
+    let sender = UdpSocket::bind("192.168.7.2:0").unwrap();
+    let heard = (0..20).any(|_| {
+        authority.report(&mut |_| {});
+        sender
+            .send_to(&beacon(49_000, 1, 1), config.beacon)
+            .unwrap();
+        let _ = bench.sample();
+        bench.status.simulator() == Some("192.168.7.2:49000".parse().unwrap())
+    });
+    assert!(heard);
 }
 
 #[test]

@@ -76,11 +76,13 @@ impl<C: Recorded> Writing<C> {
             }
             Err((path, error)) => {
                 self.about.part -= 1;
-                self.stop(format!(
-                    "{}: cannot be written: {error}. Choose a writable folder: --recordings of \
-                     fccd, or recording.folder",
-                    path.display()
-                ));
+                let advice = if is_full(&error) {
+                    "Make room on its disk"
+                } else {
+                    "Choose a writable folder: --recordings of fccd, or recording.folder"
+                };
+                let path = path.display();
+                self.stop(format!("{path}: cannot be written: {error}. {advice}"));
             }
         }
         self.acted = Instant::now();

@@ -74,6 +74,20 @@ fn a_full_disk_ends_the_recording_and_keeps_what_was_committed() {
 }
 
 #[test]
+fn a_disk_that_is_full_from_the_beginning_asks_for_room_and_not_for_another_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let disk = Small {
+        free: Arc::new(AtomicU64::new(0)),
+        in_the_way: None,
+    };
+    let recorder = Recorder::start_on(Box::new(disk), about(), settings(folder.path())).unwrap();
+    let (status, _) = recorder.finish("stopped by command");
+    let stopped = status.stopped.unwrap();
+    assert!(stopped.contains("Make room on its disk"), "{stopped}");
+    assert!(!stopped.contains("writable folder"), "{stopped}");
+}
+
+#[test]
 fn with_keep_total_mb_a_full_disk_deletes_the_oldest_recording() {
     let folder = tempfile::tempdir().unwrap();
     let old = folder

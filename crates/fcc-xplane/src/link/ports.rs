@@ -3,6 +3,7 @@
 use core::sync::atomic::{AtomicU16, AtomicU64, Ordering};
 
 use super::SharedState;
+use crate::beacon_group::BeaconGroup;
 use crate::source_filter::{Ports, SourceFilter};
 
 impl SharedState {
@@ -23,6 +24,18 @@ impl SharedState {
         self.local_port.store(local_port, Ordering::Relaxed);
         if let Some(filter) = filter {
             let _ = self.filter.set(filter);
+        }
+    }
+
+    /// Where beacons are received; only the first counts.
+    pub(crate) fn set_beacon_group(&self, group: BeaconGroup) {
+        let _ = self.beacon_group.set(group);
+    }
+
+    /// Joins the beacons' group where the network leads now; not in a tick.
+    pub(crate) fn join_beacon_group(&self) {
+        if let Some(group) = self.beacon_group.get() {
+            group.join();
         }
     }
 

@@ -40,12 +40,12 @@ class FlightService : Service() {
 
     override fun onStartCommand(intent: Intent?, flags: Int, startId: Int): Int {
         lastStartId = startId
-        val config = intent?.getStringExtra(CONFIG)
+        val config = if (intent?.action == START) Configuration(this).text() else null
         // Whoever starts a service in the foreground has promised its notification.
         val isForeground = showInForeground(config)
         when {
             intent?.action == STOP -> end()
-            intent?.action == START && config != null && isForeground -> begin(config)
+            config != null && isForeground -> begin(config)
         }
         // Nothing is to be done, or an earlier service still ends its flight.
         if (flights == 0 || Flight.phase == Phase.IDLE) leave()
@@ -179,13 +179,11 @@ class FlightService : Service() {
     companion object {
         private const val START = "fcc.android.START"
         internal const val STOP = "fcc.android.STOP"
-        private const val CONFIG = "config"
         private const val NOTIFIED_EVERY_MS = 1_000L
 
-        /** Begins a flight by this configuration, if nothing flies. From a screen only. */
-        fun start(context: Context, config: String) {
-            val intent = Intent(context, FlightService::class.java).setAction(START).putExtra(CONFIG, config)
-            context.startForegroundService(intent)
+        /** Begins a flight by the saved configuration, if nothing flies. From a screen only. */
+        fun start(context: Context) {
+            context.startForegroundService(Intent(context, FlightService::class.java).setAction(START))
         }
 
         /** Ends the flight. */

@@ -40,12 +40,10 @@ class RecordingReport(report: JSONObject) {
 }
 
 /**
- * The recordings in the app's folder. What is deleted is in a folder of its own until
- * [empty], and can be restored. None of it is for the thread that draws.
+ * The recordings in the app's folder. What is deleted has another name until [empty], and
+ * can be restored. None of it is for the thread that draws.
  */
 class Recordings(private val folder: File) {
-    private val deleted = File(folder, "deleted")
-
     /**
      * All of them, the newest first.
      *
@@ -68,19 +66,22 @@ class Recordings(private val folder: File) {
     fun fileOf(name: String) = File(folder, name)
 
     /** Whether it is deleted, until it is restored. */
-    fun delete(file: File): Boolean = (deleted.isDirectory || deleted.mkdirs()) && file.renameTo(inDeleted(file))
+    fun delete(file: File): Boolean = file.renameTo(asDeleted(file))
 
     /** Whether what was deleted is there again. */
-    fun restore(file: File): Boolean = inDeleted(file).renameTo(file)
+    fun restore(file: File): Boolean = asDeleted(file).renameTo(file)
 
     /** Deletes for good. */
     fun empty() {
-        deleted.listFiles()?.forEach { it.delete() }
+        folder.listFiles()?.filter { it.name.endsWith(DELETED) }?.forEach { it.delete() }
     }
 
-    private fun inDeleted(file: File) = File(deleted, file.name)
+    /** In the same folder: a full disk has no room for another one. */
+    private fun asDeleted(file: File) = File(file.path + DELETED)
 
     companion object {
+        private const val DELETED = ".deleted"
+
         /** To list files needs none of the user's. */
         private const val ANY_CONFIGURATION = "[built-in]\n"
 

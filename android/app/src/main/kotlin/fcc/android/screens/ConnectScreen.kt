@@ -4,6 +4,7 @@ import android.Manifest
 import android.app.Activity
 import android.content.pm.PackageManager
 import android.os.Build
+import android.os.SystemClock
 import android.view.View
 import android.widget.Button
 import android.widget.TextView
@@ -13,6 +14,7 @@ import fcc.android.Phase
 import fcc.android.Positions
 import fcc.android.R
 import fcc.android.SensorHealth
+import fcc.android.Wifi
 import kotlin.math.roundToInt
 
 /** What is connected, and what arrives; what the system permits. */
@@ -33,6 +35,8 @@ internal class ConnectScreen(
     private val events = Rows(view.findViewById(R.id.events))
     private val calibrations = CalibrationCard(activity, view)
     private var phase = Phase.IDLE
+    private var unreachable = emptyList<Row>()
+    private var lookedAtMs = 0L
 
     init {
         startOrEnd.setOnClickListener {
@@ -48,20 +52,29 @@ internal class ConnectScreen(
 
     override fun enter() {
         calibrations.enter()
+        look()
+    }
+
+    /** What the user, or a battery that is nearly empty, may change at any time. */
+    private fun look() {
+        lookedAtMs = SystemClock.uptimeMillis()
         permissions.show(permissionRows())
         val isLimited = Battery.isLimited(activity)
         val saving = Row(text(R.string.battery_saver), tone = Tone.BAD).takeIf { Battery.isSaving(activity) }
         val limited = if (isLimited) R.string.battery_limited else R.string.battery_unlimited
         battery.show(listOfNotNull(saving, Row(text(limited))))
+        val isUnreachable = Wifi.isOffInAirplaneMode(activity)
+        unreachable = if (isUnreachable) listOf(Row(text(R.string.airplane_mode), tone = Tone.BAD)) else emptyList()
     }
 
     override fun leave() = calibrations.leave()
 
     override fun show(state: FlightState) {
+        if (SystemClock.uptimeMillis() - lookedAtMs > LOOKED_EVERY_MS) look()
         phase = state.phase
         val now = state.now.takeIf { state.phase == Phase.FLYING }
         this.state.show(now?.let { words(activity, it) } ?: text(state.phase.words))
-        flown.show(flownRows(state))
+        flown.show(flownRows(state) + unreachable)
         readings.show(readingRows(state))
         val none = if (state.phase == Phase.IDLE) R.string.arrives_idle else R.string.phone_sensors_none
         sensors.show(state.sensors.flatMap(::sensorRows).ifEmpty { dim(none) })
@@ -161,6 +174,9 @@ internal class ConnectScreen(
 
     private companion object {
         const val EVENTS = 12
+
+        /** Seldom: other processes answer. */
+        const val LOOKED_EVERY_MS = 2_000L
 
         /** Older than the loop permits by default, `failsafe.sensor_max_age_ms`. */
         const val OLD_MS = 250.0

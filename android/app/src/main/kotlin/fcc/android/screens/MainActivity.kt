@@ -101,7 +101,7 @@ class MainActivity : Activity() {
             Manifest.permission.ACCESS_FINE_LOCATION.takeIf { Configuration.usesPhone(config) },
         ).filter { checkSelfPermission(it) != PackageManager.PERMISSION_GRANTED }
         if (wanted.isEmpty()) {
-            FlightService.start(this, config)
+            FlightService.start(this)
         } else {
             // Android 12 asks for both kinds of location together.
             val coarse = listOf(Manifest.permission.ACCESS_COARSE_LOCATION)
@@ -113,7 +113,7 @@ class MainActivity : Activity() {
     override fun onRequestPermissionsResult(request: Int, permissions: Array<String>, results: IntArray) {
         // Empty if the question was interrupted, as by turning the phone.
         if (request != PERMISSIONS || permissions.isEmpty()) return
-        FlightService.start(this, Configuration(this).text())
+        FlightService.start(this)
         screens[chosen].enter()
     }
 

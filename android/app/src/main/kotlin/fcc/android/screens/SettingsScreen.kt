@@ -3,6 +3,7 @@ package fcc.android.screens
 import android.app.Activity
 import android.os.Bundle
 import android.text.Editable
+import android.text.InputFilter
 import android.text.TextWatcher
 import android.view.View
 import android.widget.Button
@@ -33,6 +34,7 @@ internal class SettingsScreen(private val activity: Activity) : Screen {
 
             override fun afterTextChanged(text: Editable?) = showWhetherChanged()
         })
+        text.filters = arrayOf(InputFilter(::orTooLong))
         view.findViewById<Button>(R.id.check).setOnClickListener { check(andSave = false) }
         save.setOnClickListener { check(andSave = true) }
         discard.setOnClickListener { text.setText(saved) }
@@ -48,6 +50,22 @@ internal class SettingsScreen(private val activity: Activity) : Screen {
 
     override fun restore(state: Bundle) {
         state.getString(TEXT)?.let(text::setText)
+    }
+
+    /** As [InputFilter.filter]: null to take what is entered, or else what was there. */
+    private fun orTooLong(
+        entered: CharSequence,
+        start: Int,
+        end: Int,
+        text: CharSequence,
+        removedAt: Int,
+        removedTo: Int,
+    ): CharSequence? {
+        val added = (end - start) - (removedTo - removedAt)
+        if (added <= 0 || text.length + added <= MOST_CHARACTERS) return null
+        // After what the text that is as it was says.
+        view.post { say(activity.getString(R.string.configuration_too_long, MOST_CHARACTERS), Tone.BAD) }
+        return text.subSequence(removedAt, removedTo)
     }
 
     private fun showWhetherChanged() {
@@ -111,6 +129,9 @@ internal class SettingsScreen(private val activity: Activity) : Screen {
 
     private companion object {
         const val TEXT = "edited configuration"
+
+        /** Android ends an app whose saved state does not pass through a buffer of 1 MB. */
+        const val MOST_CHARACTERS = 100_000
         val EXAMPLES = listOf(
             R.id.example_built_in to R.raw.example_built_in,
             R.id.example_x_plane to R.raw.example_x_plane,

@@ -61,8 +61,8 @@ class FlightServiceTest {
     fun `a second start changes nothing`() {
         phone.fly()
         val before = phone.tick()!!.tick()
-        FlightService.start(phone.app, FLOWN)
-        FlightService.start(phone.app, "wrong")
+        phone.start(FLOWN)
+        phone.start("wrong")
         phone.eventually("it goes on") { phone.tick()!!.tick() > before + 1.0 }
         assertEquals(1, phone.recordings.list().size)
     }
@@ -97,7 +97,7 @@ class FlightServiceTest {
 
     @Test
     fun `what cannot be flown is said, and the service ends`() {
-        FlightService.start(phone.app, "[built-in]\n[loop]\nrate_hz = -1\n")
+        phone.start("[built-in]\n[loop]\nrate_hz = -1\n")
         phone.eventually("the reason is there") { "loop.rate_hz" in Flight.state().ending.orEmpty() }
         phone.eventually("it has ended") { phone.service == null && Flight.phase == Phase.IDLE }
         phone.fly()
@@ -108,12 +108,11 @@ class FlightServiceTest {
     @Test
     fun `a location is a type of the service only where it is permitted and used`() {
         fun types(config: String): Int {
-            FlightService.start(phone.app, config)
+            phone.start(config)
             phone.pass()
             val types = phone.service!!.get().foregroundServiceType
             phone.eventually("it has begun or not") { Flight.phase != Phase.BEGINNING }
-            FlightService.stop(phone.app)
-            phone.eventually("it has ended") { phone.service == null && Flight.phase == Phase.IDLE }
+            phone.endFlight()
             return types
         }
         val connected = ServiceInfo.FOREGROUND_SERVICE_TYPE_CONNECTED_DEVICE

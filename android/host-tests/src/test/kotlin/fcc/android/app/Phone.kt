@@ -73,10 +73,7 @@ class Phone : ExternalResource() {
     }
 
     override fun after() {
-        if (Flight.phase != Phase.IDLE) {
-            FlightService.stop(app)
-            eventually("the flight has ended") { Flight.phase == Phase.IDLE }
-        }
+        if (Flight.phase != Phase.IDLE) endFlight()
         recordings.list().forEach { it.file.delete() }
         recordings.empty()
     }
@@ -84,12 +81,13 @@ class Phone : ExternalResource() {
     /** Lets a moment pass, for the main thread and for others. */
     fun pass(ms: Long = 20) {
         Thread.sleep(ms)
-        shadowOf(Looper.getMainLooper()).idleFor(Duration.ofMillis(ms))
+        // First: a service does not end with a start that it has not been given.
         while (true) {
             val intent = shadowOf(app).nextStartedService ?: break
             started += intent
             if (intent.component == ComponentName(app, FlightService::class.java)) deliver(intent)
         }
+        shadowOf(Looper.getMainLooper()).idleFor(Duration.ofMillis(ms))
         service?.takeIf { shadowOf(it.get()).isStoppedBySelf }?.let {
             service = null
             it.destroy()
@@ -119,10 +117,22 @@ class Phone : ExternalResource() {
         fail("not within 20 s: $what; ${state.phase} ${state.now?.state} ${state.ending}")
     }
 
+    /** Asks for a flight without a screen. */
+    fun start(config: String) {
+        Configuration(app).save(config)
+        FlightService.start(app)
+    }
+
     /** Begins a flight without a screen, and waits until it can be engaged. */
     fun fly(config: String = FLOWN) {
-        FlightService.start(app, config)
+        start(config)
         eventually("ready to engage") { tick()?.engageInhibits?.isEmpty() == true }
+    }
+
+    /** Ends the flight, and waits for its service to end. */
+    fun endFlight() {
+        FlightService.stop(app)
+        eventually("it has ended") { Flight.phase == Phase.IDLE && service == null }
     }
 
     /** Begins a calibration on the screen *connect*, which is in front. */

@@ -10,8 +10,6 @@ import android.widget.ListView
 import android.widget.TextView
 import fcc.android.Configuration
 import fcc.android.Flight
-import fcc.android.FlightService
-import fcc.android.Phase
 import fcc.android.R
 import fcc.android.screens.MainActivity
 import java.io.File
@@ -29,7 +27,8 @@ import org.robolectric.annotation.GraphicsMode
 
 /**
  * Pictures of each screen, by day and night, small and with large fonts, for a person
- * to look at; and of each, that no text is cut off.
+ * to look at; and of each, that no text is cut off, and each stands out from what is
+ * behind it.
  */
 @RunWith(RobolectricTestRunner::class)
 @Config(sdk = [34])
@@ -64,8 +63,10 @@ class PicturesTest {
             val activity = controller.get()
             fun take(screen: String) {
                 phone.pass(200)
-                save(activity, "$screen-$name")
+                val picture = draw(activity)
+                save(picture, "$screen-$name")
                 assertNoTextIsCutOff(activity.findViewById(R.id.root))
+                assertTextStandsOut(activity.findViewById(R.id.root), picture)
             }
             take("idle")
             phone.fly()
@@ -76,8 +77,7 @@ class PicturesTest {
             take("fly")
             activity.open(MainActivity.CONNECT)
             take("connect")
-            FlightService.stop(phone.app)
-            phone.eventually("it has ended") { Flight.phase == Phase.IDLE && phone.service == null }
+            phone.endFlight()
             activity.open(MainActivity.RECORDINGS)
             val list = activity.findViewById<ListView>(R.id.list)
             phone.eventually("listed") { list.adapter.count > 0 }
@@ -105,13 +105,15 @@ class PicturesTest {
         }
     }
 
-    private fun save(activity: MainActivity, name: String) {
+    private fun draw(activity: MainActivity): Bitmap {
         val root = activity.window.decorView
-        val bitmap = Bitmap.createBitmap(root.width, root.height, Bitmap.Config.ARGB_8888)
-        root.draw(Canvas(bitmap))
+        return Bitmap.createBitmap(root.width, root.height, Bitmap.Config.ARGB_8888).also { root.draw(Canvas(it)) }
+    }
+
+    private fun save(picture: Bitmap, name: String) {
         val file = File(System.getProperty("pictures"), "$name.png")
         file.parentFile!!.mkdirs()
-        file.outputStream().use { assertTrue(bitmap.compress(Bitmap.CompressFormat.PNG, 0, it)) }
+        file.outputStream().use { assertTrue(picture.compress(Bitmap.CompressFormat.PNG, 0, it)) }
     }
 
     /** Text that has less room than it needs, or of which an end is left out. */
@@ -129,5 +131,19 @@ class PicturesTest {
         }
         // Lines that are beyond the last one permitted are in no layout.
         assertEquals("${view.text}", view.text.length, layout.getLineEnd(layout.lineCount - 1))
+    }
+
+    /** Each text, also of a button that is disabled, from the most frequent colour around it. */
+    private fun assertTextStandsOut(view: View, picture: Bitmap) {
+        if (view is ViewGroup) (0 until view.childCount).forEach { assertTextStandsOut(view.getChildAt(it), picture) }
+        val area = Rect()
+        val isDrawn = view is TextView && view.isShown && view.text.isNotEmpty() && view.getGlobalVisibleRect(area)
+        if (!isDrawn) return
+        val pixels = IntArray(area.width() * area.height())
+        picture.getPixels(pixels, 0, area.width(), area.left, area.top, area.width(), area.height())
+        val counts = HashMap<Int, Int>()
+        pixels.forEach { counts.merge(it, 1, Int::plus) }
+        val contrast = contrast((view as TextView).currentTextColor, counts.maxBy { it.value }.key)
+        assertTrue("${view.text}: $contrast", contrast >= LEAST_CONTRAST)
     }
 }

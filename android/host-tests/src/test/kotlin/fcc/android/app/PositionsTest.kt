@@ -3,7 +3,6 @@ package fcc.android.app
 import android.Manifest
 import android.location.Location
 import android.location.LocationManager
-import fcc.android.FlightService
 import fcc.android.Reading
 import org.junit.Assert.assertEquals
 import org.junit.Assert.assertNull
@@ -44,7 +43,7 @@ class PositionsTest {
     private fun fix(): Reading? = phone.tick()?.readings?.find { it.name == "satellite navigation" }
 
     private fun begin() {
-        FlightService.start(phone.app, BY_PHONE)
+        phone.start(BY_PHONE)
         phone.eventually("the sensors are read") { phone.tick()?.rollRad != null }
     }
 

@@ -3,9 +3,6 @@ package fcc.android.app
 import android.Manifest
 import android.graphics.Bitmap
 import android.graphics.Canvas
-import fcc.android.Flight
-import fcc.android.FlightService
-import fcc.android.Phase
 import fcc.android.screens.MainActivity
 import java.io.File
 import java.util.concurrent.atomic.AtomicBoolean
@@ -43,8 +40,7 @@ class TimingFlight {
         Robolectric.buildActivity(MainActivity::class.java).setup().use { controller ->
             phone.fly(config)
             draw(controller.get(), seconds)
-            FlightService.stop(phone.app)
-            phone.eventually("it has ended") { Flight.phase == Phase.IDLE && phone.service == null }
+            phone.endFlight()
         }
         isOver.set(true)
         litter.join()

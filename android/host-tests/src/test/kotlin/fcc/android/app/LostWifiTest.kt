@@ -1,0 +1,127 @@
+package fcc.android.app
+
+import android.widget.Button
+import fcc.android.Flight
+import fcc.android.R
+import fcc.android.XPlanePeer
+import fcc.android.screens.MainActivity
+import org.junit.After
+import org.junit.Assert.assertFalse
+import org.junit.Assert.assertTrue
+import org.junit.Rule
+import org.junit.Test
+import org.junit.runner.RunWith
+import org.robolectric.Robolectric
+import org.robolectric.RobolectricTestRunner
+import org.robolectric.annotation.Config
+
+/** X-Plane over a network that is lost in flight, as in airplane mode, and comes back. */
+@RunWith(RobolectricTestRunner::class)
+@Config(sdk = [28, 34, 35])
+class LostWifiTest {
+    @get:Rule
+    val phone = Phone()
+    private val xPlane = XPlanePeer()
+    private val controller by lazy { Robolectric.buildActivity(MainActivity::class.java).setup() }
+    private val activity get() = controller.get()
+
+    @After
+    fun close() {
+        phone.endFlight()
+        controller.close()
+        xPlane.close()
+    }
+
+    /** Touches the switch while it offers to engage: on a busy machine readings may be old for a moment. */
+    private fun engageOnScreen() {
+        val switch = activity.findViewById<Button>(R.id.engage)
+        phone.eventually("X-Plane's controls are taken") {
+            phone.pass(600)
+            if (switch.text == "Engage" && !xPlane.isOverridden) activity.touch(R.id.engage)
+            xPlane.isOverridden
+        }
+    }
+
+    /** Moves X-Plane's switch off and on, and leaves it on. */
+    private fun engageInXPlane() {
+        phone.eventually("X-Plane's controls are taken") {
+            xPlane.switch(isOn = false)
+            phone.pass(1_000)
+            xPlane.switch(isOn = true)
+            phone.pass(1_000)
+            xPlane.isOverridden
+        }
+    }
+
+    private fun losesItsControls() {
+        phone.eventually("the screen says it") { SILENT in activity.words(R.id.problem) }
+        phone.eventually("failsafe") { phone.isIn("failsafe") }
+        phone.eventually("the notification says it") { phone.notificationWords().startsWith("Failsafe / ") }
+        phone.eventually("given back") { phone.isIn("standby") }
+        assertTrue(SILENT in activity.words(R.id.problem))
+    }
+
+    /** Longer than what a failsafe needs to end by itself, and a release to be confirmed. */
+    private fun assertStaysReleased() {
+        phone.eventually("released") { !xPlane.isOverridden }
+        phone.eventually("it may be engaged") { phone.tick()?.engageInhibits?.isEmpty() == true }
+        phone.pass(6_000)
+        assertTrue(phone.isIn("standby"))
+        assertFalse(xPlane.isOverridden)
+    }
+
+    @Test
+    fun `of a Wi-Fi that comes back nothing is taken before the screen's switch is used`() {
+        phone.start(config(others = "[engage]\ncommand_needs_switch = false\n"))
+        engageOnScreen()
+        xPlane.isSilent = true
+        losesItsControls()
+        assertTrue("it has heard nothing of the release", xPlane.isOverridden)
+        xPlane.isSilent = false
+        assertStaysReleased()
+        engageOnScreen()
+    }
+
+    @Test
+    fun `of a Wi-Fi that comes back nothing is taken before X-Plane's switch is moved`() {
+        phone.start(config())
+        activity
+        engageInXPlane()
+        xPlane.isSilent = true
+        losesItsControls()
+        xPlane.isSilent = false
+        assertStaysReleased()
+        engageInXPlane()
+    }
+
+    @Test
+    fun `an X-Plane that ends is said, and nothing of the next one is taken`() {
+        phone.start(config(others = "[engage]\ncommand_needs_switch = false\n"))
+        engageOnScreen()
+        xPlane.close()
+        phone.eventually("the screen says it") { SILENT in activity.words(R.id.problem) }
+        phone.eventually("given back") { phone.isIn("standby") }
+        phone.eventually("the reason is there") {
+            Flight.state().reports.any { "no program listens on UDP port" in it }
+        }
+        xPlane.restart()
+        assertStaysReleased()
+        engageOnScreen()
+    }
+
+    private fun config(others: String = "") = """
+[x-plane]
+simulator = "${xPlane.address}"
+[failsafe]
+all_silent_s = 2.0
+hold_s = 1.0
+[guidance]
+mode = "hold"
+[realtime]
+lock_memory = false
+$others"""
+
+    private companion object {
+        const val SILENT = "nothing arrives from the simulator"
+    }
+}
