@@ -32,14 +32,13 @@ class LostWifiTest {
         xPlane.close()
     }
 
-    /** Touches the switch while it offers to engage: on a busy machine readings may be old for a moment. */
+    /** Waits for a switch that a finger may touch, and touches it. */
     private fun engageOnScreen() {
         val switch = activity.findViewById<Button>(R.id.engage)
-        phone.eventually("X-Plane's controls are taken") {
-            phone.pass(600)
-            if (switch.text == "Engage" && !xPlane.isOverridden) activity.touch(R.id.engage)
-            xPlane.isOverridden
-        }
+        phone.eventually("it may be engaged") { switch.text == "Engage" && switch.isEnabled }
+        phone.pass(600)
+        activity.touch(R.id.engage)
+        phone.eventually("X-Plane's controls are taken: ${activity.words(R.id.problem)}") { xPlane.isOverridden }
     }
 
     /** Moves X-Plane's switch off and on, and leaves it on. */
