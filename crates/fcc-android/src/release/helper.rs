@@ -14,7 +14,7 @@ use fcc_flight::release::{Told, from_one_line, release};
 
 use super::mark::Mark;
 
-/// The last takeover that this process was told of, by any pipe: it ends a release on
+/// The last takeover that this process has received, by any pipe: it ends a release on
 /// behalf of an earlier one.
 static LAST: AtomicU64 = AtomicU64::new(0);
 

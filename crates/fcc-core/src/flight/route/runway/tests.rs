@@ -40,6 +40,19 @@ fn waypoint(north_m: f64, height_m: f64) -> Step {
     }
 }
 
+/// A take-off to the north, to 150 m.
+fn takeoff() -> Step {
+    Step::Takeoff {
+        runway: Some(Runway {
+            at: place(0.0),
+            course: Vector2::new(1.0, 0.0),
+            elevation_m: ELEVATION_M,
+        }),
+        altitude_m: ELEVATION_M + 150.0,
+        pitch_rad: None,
+    }
+}
+
 fn follower(steps: Vec<Step>, from: usize) -> Follower {
     let route = Route {
         steps: Box::leak(steps.into_boxed_slice()),
@@ -226,16 +239,7 @@ fn a_landing_is_given_up_by_a_command_until_the_wheels_touch() {
 /// Rolls, rotates at 55 kt, climbs, and goes on with the plan at its altitude.
 #[test]
 fn a_take_off_goes_on_with_the_plan() {
-    let takeoff = Step::Takeoff {
-        runway: Some(Runway {
-            at: place(0.0),
-            course: Vector2::new(1.0, 0.0),
-            elevation_m: ELEVATION_M,
-        }),
-        altitude_m: ELEVATION_M + 150.0,
-        pitch_rad: None,
-    };
-    let mut follower = follower(vec![takeoff, waypoint(8_000.0, 250.0)], 0);
+    let mut follower = follower(vec![takeoff(), waypoint(8_000.0, 250.0)], 0);
     let rolls = |knots: f64| OverGround {
         on_wheels: Some(true),
         ..at(100.0, 0.0, knots * NAUTICAL_MILE_M / 3_600.0)
@@ -256,16 +260,7 @@ fn a_take_off_goes_on_with_the_plan() {
 /// One that leaves the centre line by 12 m brakes.
 #[test]
 fn a_take_off_beside_the_centre_line_is_given_up() {
-    let takeoff = Step::Takeoff {
-        runway: Some(Runway {
-            at: place(0.0),
-            course: Vector2::new(1.0, 0.0),
-            elevation_m: ELEVATION_M,
-        }),
-        altitude_m: ELEVATION_M + 150.0,
-        pitch_rad: None,
-    };
-    let mut follower = follower(vec![takeoff], 0);
+    let mut follower = follower(vec![takeoff()], 0);
     let rolls = OverGround {
         on_wheels: Some(true),
         longitude_rad: 0.1 + 13.0 / (NORTH_M * core::f64::consts::FRAC_1_SQRT_2),
@@ -282,15 +277,6 @@ fn reason(follower: &Follower) -> Option<RunwayReason> {
 /// By the phase and its reason; at last it stands, and no item is reached.
 #[test]
 fn a_take_off_needs_the_runways_direction_and_its_elevation() {
-    let takeoff = Step::Takeoff {
-        runway: Some(Runway {
-            at: place(0.0),
-            course: Vector2::new(1.0, 0.0),
-            elevation_m: ELEVATION_M,
-        }),
-        altitude_m: ELEVATION_M + 150.0,
-        pitch_rad: None,
-    };
     // 1 hPa is 27 ft, and a compass errs by some degrees.
     for (heading_deg, height_m, expected) in [
         (15.0_f64, 16.0, RunwayReason::None),
@@ -298,7 +284,7 @@ fn a_take_off_needs_the_runways_direction_and_its_elevation() {
         (180.0, 0.0, RunwayReason::Alignment),
         (0.0, 62.0, RunwayReason::Altimeter),
     ] {
-        let mut follower = follower(vec![takeoff, waypoint(8_000.0, 250.0)], 0);
+        let mut follower = follower(vec![takeoff(), waypoint(8_000.0, 250.0)], 0);
         let stands = OverGround {
             on_wheels: Some(true),
             heading_rad: heading_deg.to_radians(),
