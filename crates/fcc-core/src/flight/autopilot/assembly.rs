@@ -4,7 +4,7 @@ use super::super::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoo
 use super::super::inertial::RawNavigation;
 use super::super::navigation::{FrozenDetector, LearnedAirframe, Navigation, Replacement};
 use super::{
-    ActiveMode, Actuation, AltitudeReference, Autopilot, AutopilotConfig, BankCommand,
+    ActiveMode, Actuation, AltitudeReference, Autopilot, AutopilotConfig, BankCommand, BatteryWatch,
     Contingencies, Degraded, Following, GroundMotion, KeptTrims, Measurements, PilotTakeover,
     PlantClock, ReadingAges, Recovery, RunwayControl, Setpoints, Surfaces, Targets, Time,
     Whereabouts,
@@ -32,6 +32,7 @@ impl Autopilot {
             on_runway: RunwayControl::default(),
             left_plan: None,
             contingencies: Contingencies::default(),
+            battery: BatteryWatch::default(),
             news: None,
             told: None,
             targets: Targets::default(),

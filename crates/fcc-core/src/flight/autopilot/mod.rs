@@ -41,7 +41,7 @@ use actuation::Actuation;
 use capture::Capture;
 pub use command::AutopilotCommand;
 pub use config::AutopilotConfig;
-use contingency::Contingencies;
+use contingency::{BatteryWatch, Contingencies};
 pub use contingency::{Contingency, ContingencyAction, ContingencyConfig};
 use degraded::Degraded;
 use failsafe::KeptTrims;
@@ -123,6 +123,7 @@ pub struct Autopilot {
     /// The plan that was left for another mode.
     left_plan: Option<OverGroundMode>,
     contingencies: Contingencies,
+    battery: BatteryWatch,
     /// What guidance has to tell, and as it is told, a tick later.
     news: Option<Notice>,
     told: Option<Notice>,

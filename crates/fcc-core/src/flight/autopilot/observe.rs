@@ -54,6 +54,7 @@ impl Autopilot {
         self.told = self.news.take();
         self.navigate(now, measured, step_s);
         self.follow_ground(now, step_s);
+        self.follow_battery(now, step_s);
         self.note_doubt(doubted);
         let known = self.navigation.known();
         self.frozen.step(now, &self.accepted, &known, step_s);
