@@ -86,7 +86,9 @@ impl From<&ContingencySection> for ContingencyConfig {
             position_after_s: section.position_lost_after_s,
             commander: section.commander_lost.into(),
             battery: section.battery_low.into(),
-            battery_charge: section.battery_charge_percent.map(|percent| percent / 100.0),
+            battery_charge: section
+                .battery_charge_percent
+                .map(|percent| percent / 100.0),
             battery_voltage_v: section.battery_voltage_v,
             battery_after_s: section.battery_low_after_s,
         }

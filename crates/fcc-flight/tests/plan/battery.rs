@@ -1,5 +1,7 @@
 //! The battery: a low one prevents a take-off, and ends a flight with a landing or at home.
 
+use std::fmt::Write as _;
+
 use fcc_core::flight::guidance::Mode;
 use fcc_core::flight::{AutopilotCommand, Battery, Contingency, Measurements};
 use fcc_core::framework::{Reading, Sensor, SensorFault, State, Tick};
@@ -53,10 +55,12 @@ pub(crate) fn there_and_back() -> String {
         let course_deg = if north_m < 0.0 { 180.0 } else { 0.0 };
         let at = HOME.ahead(course_deg, f64::abs(north_m));
         let number = number + 1;
-        text += &format!(
-            "{number} 0 3 {command} {first} 0 0 0 {:.9} {:.9} {above_m} 1\n",
-            at.latitude_deg, at.longitude_deg
-        );
+        let (latitude, longitude) = (at.latitude_deg, at.longitude_deg);
+        writeln!(
+            text,
+            "{number} 0 3 {command} {first} 0 0 0 {latitude:.9} {longitude:.9} {above_m} 1"
+        )
+        .unwrap();
     }
     text
 }

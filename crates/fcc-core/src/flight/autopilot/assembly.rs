@@ -4,10 +4,10 @@ use super::super::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoo
 use super::super::inertial::RawNavigation;
 use super::super::navigation::{FrozenDetector, LearnedAirframe, Navigation, Replacement};
 use super::{
-    ActiveMode, Actuation, AltitudeReference, Autopilot, AutopilotConfig, BankCommand, BatteryWatch,
-    Contingencies, Degraded, Following, GroundMotion, KeptTrims, Measurements, PilotTakeover,
-    PlantClock, ReadingAges, Recovery, RunwayControl, Setpoints, Surfaces, Targets, Time,
-    Whereabouts,
+    ActiveMode, Actuation, AltitudeReference, Autopilot, AutopilotConfig, BankCommand,
+    BatteryWatch, Contingencies, Degraded, Following, GroundMotion, KeptTrims, Measurements,
+    PilotTakeover, PlantClock, ReadingAges, Recovery, RunwayControl, Setpoints, Surfaces, Targets,
+    Time, Whereabouts,
 };
 use crate::framework::Flags;
 
@@ -35,6 +35,8 @@ impl Autopilot {
             battery: BatteryWatch::default(),
             news: None,
             told: None,
+            plan_answer: None,
+            plan_told: None,
             targets: Targets::default(),
             capture: None,
             altimeter: config.altimeter,

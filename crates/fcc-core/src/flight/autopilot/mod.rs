@@ -24,6 +24,7 @@ mod pilot_takeover;
 mod plant_clock;
 mod reading_age;
 mod release;
+mod replacing;
 mod resume;
 mod routing;
 mod runway;
@@ -53,6 +54,7 @@ pub use pilot_takeover::StickTakeover;
 use plant_clock::PlantClock;
 use reading_age::ReadingAges;
 use release::Release;
+pub use replacing::{PLAN_ANSWER, PlanReplacement, refuses_plan};
 pub use resume::Resume;
 pub use routing::ITEM_REACHED;
 use runway::RunwayControl;
@@ -127,6 +129,9 @@ pub struct Autopilot {
     /// What guidance has to tell, and as it is told, a tick later.
     news: Option<Notice>,
     told: Option<Notice>,
+    /// What became of a plan that was commanded, and as it is told in this tick.
+    plan_answer: Option<Notice>,
+    plan_told: Option<Notice>,
     targets: Targets,
     capture: Option<Capture>,
     altimeter: Altimeter,
@@ -240,8 +245,9 @@ impl Controller for Autopilot {
     }
 
     fn notice(&self) -> Option<Notice> {
-        self.pilot
-            .notice()
+        // The sender of a command waits for it.
+        self.plan_told
+            .or_else(|| self.pilot.notice())
             .or_else(|| self.clock.notice())
             .or_else(|| self.degraded_notice())
             .or_else(|| self.wrong_sensor_notice())
