@@ -77,7 +77,7 @@ def test_the_daemon_flies_another_plan_and_its_recording_has_it(
         now = watcher.latest(15.0)
         assert now is not None
         expected = int(fcc.Plan.read(second).hash[:16], 16)
-        assert int(now["plan_hash"]) == expected != int(before["plan_hash"])
+        assert int(now["desired_plan_hash"]) == expected != int(before["desired_plan_hash"])
         assert commander.replace_plan(first) > done["tick"]
         code, _ = _json(fccd, "command", "stop", "--instance", instance)
         assert code == 0
@@ -85,8 +85,8 @@ def test_the_daemon_flies_another_plan_and_its_recording_has_it(
     (path,) = ending.report["recording"]["files"]
     recorded = fcc.Recording(path).records
     since = recorded["tick"] >= done["tick"]
-    assert int(recorded["plan_hash"][since][0]) == expected
-    assert set(recorded["plan_hash"][~since]) == {before["plan_hash"]}
+    assert int(recorded["desired_plan_hash"][since][0]) == expected
+    assert set(recorded["desired_plan_hash"][~since]) == {before["desired_plan_hash"]}
     code, replayed = _json(fccd, "replay", path)
     assert (code, replayed["identity"]["differing"]) == (0, 0), replayed
     _, report = _json(fccd, "report", path)
@@ -135,7 +135,7 @@ def test_a_plan_is_read_checked_and_written(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("", "give"),
+        ("", "the first line has to be QGC WPL 110"),
         ("QGC WPL 110\n0 0 0 16 0 0 0 0 47 8 0 1\n1 0 0 82 0 0 0 0 47 8 0 1\n", "item 1: line 3"),
     ],
 )
