@@ -77,7 +77,8 @@ pub use phone::PhoneSection;
 pub use plan::{LawChoice, PlanSection};
 pub use recording::RecordingSection;
 pub use replacement::PreparedPlan;
-pub(crate) use replacement::{items_of, refusal};
+#[cfg(feature = "live")]
+pub(crate) use replacement::items_of;
 pub use restart::{RestartMode, RestartSection};
 pub use rights::RightsSection;
 pub use runtime::{

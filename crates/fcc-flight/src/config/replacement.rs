@@ -1,7 +1,6 @@
 //! Plans that replace the one that is flown: read, checked and made into routes beside
 //! the loop.
 
-use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -18,8 +17,6 @@ use super::Config;
 const MOST_PLANS: usize = 1_024;
 /// Items, places and corners of all of them: some 30 MB.
 const MOST_PARTS: usize = 200_000;
-/// The longest list of problems in an answer, in bytes.
-const LONGEST_LIST: usize = 7_000;
 /// The name of a recording's document that is a plan begins so.
 const DOCUMENT: &str = "flight-plan-";
 
@@ -117,6 +114,7 @@ pub(super) const fn prepared_routes() -> RouteSource {
 }
 
 /// How many items a prepared plan has, by its hash.
+#[cfg(feature = "live")]
 pub(crate) fn items_of(hash: u64) -> Option<usize> {
     let found = SHELF.places().find(|place| place.route.hash == hash);
     found.map(|place| place.route.steps.len())
@@ -195,25 +193,6 @@ impl Config {
     }
 }
 
-/// Why a plan is refused, as an answer has room for it.
-pub(crate) fn refusal(error: &FileError) -> String {
-    let FileError::Invalid { file, problems } = error else {
-        return error.to_string();
-    };
-    let mut text = format!("{file}: ");
-    for (n, problem) in problems.iter().enumerate() {
-        let line = problem.to_string();
-        if text.len() + line.len() > LONGEST_LIST {
-            let left = problems.len() - n;
-            let _ = write!(text, "; and {left} more, which fccd plan check lists");
-            break;
-        }
-        text.push_str(if n == 0 { "" } else { "; " });
-        text.push_str(&line);
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -235,43 +214,13 @@ mod tests {
         let hash = first.replacement.plan_hash;
         let prepared = SHELF.places().filter(|place| place.route.hash == hash);
         assert_eq!(prepared.count(), 1);
-        assert_eq!(items_of(hash), Some(1));
-        assert_eq!(items_of(hash ^ 1), None);
+        #[cfg(feature = "live")]
+        assert_eq!((items_of(hash), items_of(hash ^ 1)), (Some(1), None));
         // Another radius of circles is another route.
         let mut other = RouteConfig::default();
         other.loiter_radius_m += 1.0;
         assert!(SHELF.route(hash, &other).is_none());
         let restored = config.prepare_again(&first.content, 1, 5).unwrap();
         assert_eq!(restored, first);
-    }
-
-    #[test]
-    fn a_refusal_names_every_problem_and_the_file() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("bad.waypoints");
-        let text = plan(47.25).replace(" 16 0 0 0 0 47.25", " 82 0 0 0 0 147.25");
-        std::fs::write(&file, text).unwrap();
-        let refused = |item| refusal(&Config::default().prepare_plan(&file, item, 0).unwrap_err());
-        let why = refused(1);
-        assert!(
-            why.contains("bad.waypoints: item 1: line 3: command: 82"),
-            "{why}"
-        );
-        std::fs::write(&file, plan(47.25)).unwrap();
-        let why = refused(2);
-        assert!(
-            why.ends_with("item to begin with: 2: there is no such item: give 1 to 1"),
-            "{why}"
-        );
-        let missing = Config::default().prepare_plan(&folder.path().join("no.plan"), 1, 0);
-        assert!(refusal(&missing.unwrap_err()).contains("no.plan: cannot be read"));
-    }
-
-    #[test]
-    fn a_long_refusal_says_how_many_problems_are_left_out() {
-        let problems = vec![Problem::of_item(7, "command", "x".repeat(90)); 200];
-        let file = "long.plan".to_owned();
-        let why = refusal(&FileError::Invalid { file, problems });
-        assert!(why.len() < 7_100 && why.ends_with(" more, which fccd plan check lists"));
     }
 }

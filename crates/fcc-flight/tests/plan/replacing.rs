@@ -7,9 +7,10 @@ use fcc_core::framework::{EventKind, LoopCommand, Message, State};
 use fcc_flight::config::PreparedPlan;
 use fcc_flight::flight::about;
 use fcc_flight::replay::{recorded_config, replay};
+use fcc_plan::{Item, Place, Plan};
 use fcc_record::{Recorder, RecorderSettings, RecordingPace};
 use fcc_replay::{Chain, Identity};
-use fcc_telemetry::FlightMessage;
+use fcc_telemetry::{FlightMessage, FlightRecord};
 
 use crate::battery::there_and_back;
 use crate::flight::{Flight, HOME, legs, line};
@@ -55,6 +56,49 @@ fn drawn_and_valid(flight: &Flight, draws: &mut Draws, uploaded_s: u64) -> Prepa
             return plan;
         }
     }
+}
+
+/// To a waypoint it is as far as the record says: straight, or along and beside the leg.
+fn leads_to_its_item(plan: &Plan, record: &FlightRecord) {
+    let (setpoints, estimate) = (&record.setpoints, &record.estimate);
+    let item = plan.item(setpoints.guidance.item as usize);
+    if let (Mode::Plan, Some(Item::Waypoint { place, .. })) = (setpoints.guidance.mode, item) {
+        let here = Place {
+            latitude_deg: estimate.latitude_rad.to_degrees(),
+            longitude_deg: estimate.longitude_rad.to_degrees(),
+        };
+        let away_m = here.to(*place).0;
+        let along_leg_m = setpoints.to_go_m.hypot(setpoints.cross_track_m);
+        let off_m = [setpoints.to_go_m, along_leg_m].map(|to_go_m| (to_go_m - away_m).abs());
+        let tick = record.tick.number;
+        assert!(
+            off_m.iter().any(|off_m| *off_m < 5.0 + 0.01 * away_m),
+            "tick {tick}: {away_m}, {off_m:?}"
+        );
+    }
+}
+
+/// Records it, and replays the recording.
+fn is_replayed_in_every_bit(flight: &Flight, plans: &[PreparedPlan], messages: &[FlightMessage]) {
+    let folder = flight.folder.path().join("recorded");
+    let settings = RecorderSettings {
+        pace: RecordingPace::Lockstep,
+        ..RecorderSettings::new(folder)
+    };
+    let mut recorder = Recorder::start(about(&flight.config, None), settings).unwrap();
+    for plan in plans {
+        recorder.document(plan.document());
+    }
+    for message in messages {
+        recorder.take(message);
+    }
+    let (status, _) = recorder.finish("over");
+    let chain = Chain::open::<Autopilot>(&status.files).unwrap();
+    let mut again = replay(&recorded_config(&chain).unwrap()).unwrap();
+    let mut identity = Identity::of::<Autopilot>();
+    let replayed = chain.replay(&mut again, |one, other| identity.take(one, other), |_| {});
+    assert!(replayed.is_complete(), "{}", replayed.missing());
+    assert_eq!(identity.differing, 0, "{}", identity.to_text());
 }
 
 /// Issue: replaced a hundred times at random moments: the commanded bank within its rate
@@ -103,6 +147,7 @@ fn a_plan_is_replaced_a_hundred_times_at_drawn_moments() {
     let own = flight.config.plan.identity().unwrap();
     let (mut hash, mut uploaded_s) = (own.hash.first_64_bits(), own.uploaded_s);
     let mut expected = plans.iter();
+    let mut flown = None;
     let (mut replaced, mut bank_rad, mut worst_rad) = (0, None, 0.0_f64);
     for message in &messages {
         match message {
@@ -115,6 +160,8 @@ fn a_plan_is_replaced_a_hundred_times_at_drawn_moments() {
                 {
                     assert_eq!(Some(with), expected.next().map(|plan| plan.replacement));
                     (hash, uploaded_s) = (with.plan_hash, with.plan_uploaded_unix_s);
+                    let plan = plans.get(replaced).unwrap();
+                    flown = Some(fcc_plan::read(&plan.content).unwrap());
                     replaced += 1;
                 }
             }
@@ -122,6 +169,9 @@ fn a_plan_is_replaced_a_hundred_times_at_drawn_moments() {
                 let setpoints = &record.setpoints;
                 assert_eq!(setpoints.plan_hash, hash, "tick {}", record.tick.number);
                 assert_eq!(setpoints.plan_uploaded_unix_s, uploaded_s);
+                if let Some(plan) = &flown {
+                    leads_to_its_item(plan, record);
+                }
                 if record.state.state() == State::Engaged {
                     let before_rad = bank_rad.replace(setpoints.roll_rad);
                     let by_rad = before_rad.map_or(0.0, |before| setpoints.roll_rad - before);
@@ -144,25 +194,7 @@ fn a_plan_is_replaced_a_hundred_times_at_drawn_moments() {
         "plan.bank_rate_degps is 15: {rate_degps}"
     );
 
-    let folder = flight.folder.path().join("recorded");
-    let settings = RecorderSettings {
-        pace: RecordingPace::Lockstep,
-        ..RecorderSettings::new(folder)
-    };
-    let mut recorder = Recorder::start(about(&flight.config, None), settings).unwrap();
-    for plan in &plans {
-        recorder.document(plan.document());
-    }
-    for message in &messages {
-        recorder.take(message);
-    }
-    let (status, _) = recorder.finish("over");
-    let chain = Chain::open::<Autopilot>(&status.files).unwrap();
-    let mut again = replay(&recorded_config(&chain).unwrap()).unwrap();
-    let mut identity = Identity::of::<Autopilot>();
-    let replayed = chain.replay(&mut again, |one, other| identity.take(one, other), |_| {});
-    assert!(replayed.is_complete(), "{}", replayed.missing());
-    assert_eq!(identity.differing, 0, "{}", identity.to_text());
+    is_replayed_in_every_bit(&flight, &plans, &messages);
 }
 
 /// Where nothing was prepared, as in another program, the recording's document is enough.
