@@ -113,8 +113,8 @@ fn a_plan_is_replaced_a_hundred_times_at_drawn_moments() {
         .map(|n| drawn_and_valid(&flight, &mut draws, 1_790_000_001 + n))
         .collect();
     let moments: Vec<_> = plans.iter().map(|_| draws.between(0.1, 9.0)).collect();
-    // What follows soon after, of a third: a pause, and the plan again.
-    let pauses: Vec<_> = plans.iter().map(|_| draws.next() < 0.3).collect();
+    // What follows soon after: of a third a pause and the plan again, of a third the plan.
+    let after: Vec<_> = plans.iter().map(|_| draws.next()).collect();
 
     let mut messages: Vec<FlightMessage> = Vec::with_capacity(200_000);
     let mut calls = 0;
@@ -130,13 +130,15 @@ fn a_plan_is_replaced_a_hundred_times_at_drawn_moments() {
         }
     };
     fly(&mut flight, 400, &mut messages);
-    for ((plan, moment_s), pauses) in plans.iter().zip(moments).zip(&pauses) {
+    for ((plan, moment_s), after) in plans.iter().zip(moments).zip(&after) {
         fly(&mut flight, (moment_s * 40.0) as u64, &mut messages);
         flight.command(plan.command());
-        if *pauses {
-            fly(&mut flight, 80, &mut messages);
+        fly(&mut flight, 80, &mut messages);
+        if *after < 0.33 {
             flight.command(AutopilotCommand::Pause);
             fly(&mut flight, 80, &mut messages);
+        }
+        if *after < 0.66 {
             flight.command(AutopilotCommand::Plan(0));
             fly(&mut flight, 1, &mut messages);
         }
