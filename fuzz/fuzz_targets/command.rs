@@ -1,7 +1,7 @@
 //! Commands in shared memory: any bytes; what reaches the loop is within its
 //! limits, and each command is answered once. Answers: any bytes.
 //!
-//! The first byte chooses the state of the loop; 328 bytes are a command, the
+//! The first byte chooses the state of the loop; 1352 bytes are a command, the
 //! last of which may be missing.
 #![no_main]
 
@@ -10,7 +10,7 @@ use fcc_core::framework::{Cause, Event, EventKind, LoopCommand, State, Time};
 use fcc_live::{PendingCommand, SentCommands, Verdict, read_answer, read_request};
 use fcc_telemetry::units::AVIATION;
 
-const COMMAND_BYTES: usize = 328;
+const COMMAND_BYTES: usize = 1_352;
 const TICK: u64 = 7;
 
 libfuzzer_sys::fuzz_target!(|input: &[u8]| {
@@ -79,6 +79,12 @@ fn assert_permitted(command: AutopilotCommand) {
         AutopilotCommand::Altitude(value) | AutopilotCommand::PressureAltitude(value) => {
             (value, -500.0, 20_000.0)
         }
+        AutopilotCommand::Heartbeat(value) => (value, 0.0, 3_600.0),
+        AutopilotCommand::Plan(item) => (f64::from(item), 0.0, 1_000.0),
+        AutopilotCommand::Pause
+        | AutopilotCommand::GoTo(_)
+        | AutopilotCommand::ReturnHome
+        | AutopilotCommand::GoAround => return,
         other => panic!("{other:?} has no name"),
     };
     assert!((least - 0.006..=most + 0.006).contains(&value), "{command:?}");

@@ -20,9 +20,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from .faulty_sensors import SensorFault
+from .over_ground import OverGroundRequirements
 from .pattern import SetPoints, TimedPattern
+from .plan_file import PlanFile
 from .quantities import Condition, Quantity, Samples, finite, quantity_of
-from .requirements import Stretch, Verdict, never, overshoots_less_than, settles, stays
+from .quantities import positive as _positive
+from .quantities import seconds as _seconds
+from .requirements import (
+    Stretch,
+    Verdict,
+    never,
+    overshoots_less_than,
+    settles,
+    stays,
+)
 from .rig import ENGAGED, FAILSAFE, RELEASED, Event, FlightError, Rig
 from .sensor_faults import Faults
 from .truth import TRUTH_HZ, Truth
@@ -31,7 +42,6 @@ STATES = ("standby", "engaged", "failsafe", "stopped")
 
 _ROW_S = 1.0 / TRUTH_HZ
 _TOLERANCE_S = 1e-6
-_LONGEST_S = 24 * 3_600.0
 _LAST_HAPPENINGS = 6
 _SET_POINTS = ("heading", "altitude", "airspeed")
 
@@ -52,27 +62,16 @@ class Leg:
     points: SetPoints
 
 
-def _seconds(name: str, value: object, least: float = 0.0) -> float:
-    seconds = finite(name, value)
-    if not least <= seconds <= _LONGEST_S:
-        raise ValueError(f"{name} is {seconds:g} s: give {least:g} to {_LONGEST_S:g}")
-    return seconds
-
-
-def _positive(name: str, value: object) -> float:
-    number = finite(name, value)
-    if number <= 0.0:
-        raise ValueError(f"{name} is {number:g}: give more than 0")
-    return number
-
-
-class Flight:
+class Flight(OverGroundRequirements):
     """One flight of an aircraft by the autopilot."""
 
-    def __init__(self, rig: Rig, pattern: TimedPattern | None, seed: int = 1) -> None:
-        """Fly on a rig; `pattern` is the autopilot's pattern, None to hold."""
+    def __init__(
+        self, rig: Rig, pattern: TimedPattern | None, seed: int = 1, plan: PlanFile | None = None
+    ) -> None:
+        """Fly on a rig; `pattern` is the autopilot's pattern, None to hold or with a plan."""
         self.rig = rig
         self.pattern = pattern
+        self.plan = plan
         self.faults = Faults(lambda: rig.time_s, rig.set_faults, seed)
         self._is_prepared = False
         self._engaged_at_s: float | None = None

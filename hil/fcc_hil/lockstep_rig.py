@@ -51,6 +51,8 @@ class Conditions:
     """Called in each tick with the raw readings, and the time in s, to falsify them."""
     without: frozenset[str] = frozenset()
     """Readings that there are not, by their names."""
+    position: bool = False
+    """Whether position and velocity over the ground are measured, without errors."""
 
 
 class LockstepRig:
@@ -101,6 +103,7 @@ class LockstepRig:
         self._raw_fault = conditions.raw_fault
         self._calibration = conditions.calibration
         self._without = conditions.without
+        self._position = conditions.position
         self.stick: tuple[float, float, float] | None = None
         """Where the pilot holds pitch, roll and yaw, -1 to 1; None if that is not measured."""
         self._switch = False
@@ -167,6 +170,11 @@ class LockstepRig:
                 self._raw_fault(values, plant.time_s)
             if self._calibration is not None:
                 self._calibration.apply(values)
+            if self._position:
+                values.latitude_rad = measured.latitude_rad
+                values.longitude_rad = measured.longitude_rad
+                values.position_altitude_m = measured.elevation_m
+                velocity = (measured.north_mps, measured.east_mps, measured.down_mps)
             if velocity is not None:
                 values.north_mps, values.east_mps, values.down_mps = velocity
             if self.stick is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from .aircraft import by_name
 from .pattern import TimedPattern
@@ -11,7 +12,7 @@ from .plant import Weather
 from .quantities import finite
 from .standin import Settings
 
-MODES = ("timed-pattern", "hold")
+MODES = ("timed-pattern", "hold", "plan")
 
 _STRONGEST_WIND_KT = 100.0
 _MOST_SEVERE = 7
@@ -84,11 +85,16 @@ class AutopilotMark:
     release."""
     config: str
     """More sections of a configuration."""
+    plan: Path | None = None
+    """The flight plan that is flown; None for another mode."""
 
     def toml(self) -> str:
         """Return it as sections of a configuration file."""
         pattern = self.pattern
-        if pattern is None:
+        if self.plan is not None:
+            file = str(self.plan).replace("\\", "\\\\").replace('"', '\\"')
+            flown = f'mode = "plan"\n[plan]\nfile = "{file}"'
+        elif pattern is None:
             flown = 'mode = "hold"'
         else:
             flown = (
@@ -113,16 +119,20 @@ def autopilot_mark(  # noqa: PLR0913 - the settings of a mark
     all_silent_s: float = 30.0,
     degraded_s: float = 0.0,
     config: str = "",
+    plan: str | Path | None = None,
 ) -> AutopilotMark:
     """Return the autopilot of the mark; raise ValueError or TypeError for a wrong argument.
 
     The timed pattern holds for `hold_s`, then turns by `turn_deg` (right if positive) every
     `leg_s`, climbs `climb_ft` on every odd leg and descends on every even one. Without a sensor it
     flies on for at most `degraded_s`; by default a failsafe ends in a release, by which it is seen
-    on another host, too. `config` is the text of more sections: gains, limits, the loop's rate.
+    on another host, too. The mode `plan` flies the plan in the file `plan`, from its home on, or
+    from the runway there. `config` is the text of more sections: gains, limits, the loop's rate.
     """
     if mode not in MODES:
         raise ValueError(f"mode is {mode!r}: choose {' or '.join(MODES)}")
+    if (mode == "plan") != (plan is not None):
+        raise ValueError('mode "plan" and the file of a plan belong together: give both')
     if not isinstance(config, str):
         raise TypeError(f"config is {config!r}: give the text of a configuration's sections")
     pattern = TimedPattern(
@@ -137,4 +147,5 @@ def autopilot_mark(  # noqa: PLR0913 - the settings of a mark
         all_silent_s=_within("all_silent_s", all_silent_s, 0.25, 600.0, "s"),
         degraded_s=_within("degraded_s", degraded_s, 0.0, _LONGEST_S, "s"),
         config=config,
+        plan=None if plan is None else Path(plan).resolve(),
     )

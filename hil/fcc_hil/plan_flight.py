@@ -13,15 +13,14 @@ from pathlib import Path
 import fcc
 import numpy as np
 
-from . import plan_file, plan_score
+from . import plan_file, plan_score, plan_start
 from .lockstep_rig import Conditions, LockstepRig
-from .plant import Plant, Weather
+from .plant import Weather
 from .raw_calibration import calibrate
 from .raw_flight import MEASURED, RAW_STANDBY_S
 from .raw_sensors import FIELD_UT
 from .rig import FlightError
 from .standin import Settings
-from .units import FT_TO_M
 
 SENSORS = "board"
 RUNWAY_STANDBY_S = 30.0
@@ -74,19 +73,10 @@ def fly(
     """
     seed, sensors = conditions.seed, conditions.sensors
     read = plan_file.read(plan)
-    takes_off = read.items[0].command == plan_file.TAKEOFF
-    first = read.items[0] if takes_off else next(item for item in read.items if item.has_place)
+    takes_off = plan_start.takes_off(read)
     text = configuration(plan, "kalman", conditions.law, conditions.weather.wind_kt)
     machine = fcc.Machine(text + conditions.config)
-    plant = Plant(
-        conditions.aircraft,
-        seed=seed,
-        weather=conditions.weather,
-        heading_deg=_bearing_deg(read.home, first),
-        latitude_deg=read.home.latitude_deg,
-        longitude_deg=read.home.longitude_deg,
-        runway_elevation_ft=read.home.altitude_m / FT_TO_M if takes_off else None,
-    )
+    plant = plan_start.plant(read, conditions.aircraft, seed=seed, weather=conditions.weather)
     between = Conditions(
         raw_sensors=sensors,
         calibration=calibrate(sensors, seed, FIELD_UT),
@@ -142,9 +132,3 @@ def fly(
     flown = plan_score.FlownPlan(*np.array(rows).T)
     go_arounds = modes.count("go-around")
     return plan_score.score(read, flown, reached, _LOITER_M, go_arounds), flown
-
-
-def _bearing_deg(start: plan_file.Item, end: plan_file.Item) -> float:
-    north = end.latitude_deg - start.latitude_deg
-    east = (end.longitude_deg - start.longitude_deg) * math.cos(math.radians(start.latitude_deg))
-    return math.degrees(math.atan2(east, north)) % 360.0

@@ -6,6 +6,7 @@ which item it flies, and the course of its path, which says when a turn is over.
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -14,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .plan_file import LAND, LOITERS, TAKEOFF, WAYPOINT, Item, PlanFile
+from .truth import Truth
 from .units import FT_TO_M, KT_TO_MPS
 
 Array = npt.NDArray[np.float64]
@@ -129,6 +131,33 @@ class PlanScore:
         return asdict(self)
 
 
+def of_truth(truth: Truth) -> FlownPlan:
+    """Return what the truth says of a flight: nothing of what the autopilot demanded."""
+    nothing = np.zeros_like(truth["time_s"])
+    return FlownPlan(
+        time_s=truth["time_s"],
+        latitude_rad=np.radians(truth["latitude_deg"]),
+        longitude_rad=np.radians(truth["longitude_deg"]),
+        elevation_m=truth["altitude_ft"] * FT_TO_M,
+        airspeed_mps=truth["airspeed_kt"] * KT_TO_MPS,
+        roll_rad=np.radians(truth["roll_deg"]),
+        item=nothing,
+        course_rad=nothing,
+        airspeed_demand_mps=nothing,
+        altitude_demand_m=nothing,
+        heading_rad=np.radians(truth["heading_deg"]),
+        down_mps=-truth["climb_fpm"] * FT_TO_M / 60.0,
+        on_ground=truth["on_ground"],
+    )
+
+
+def moved_m(flown: FlownPlan, rows: int) -> float:
+    """Return how far the aircraft has moved in the last rows."""
+    last = slice(-rows - 1, None, rows)
+    track = np.degrees(flown.latitude_rad[last]), np.degrees(flown.longitude_rad[last])
+    return float(away_m(float(track[0][-1]), float(track[1][-1]), track)[0])
+
+
 class Plane:
     """Metres north and east of a place on WGS-84: its tangent plane, good to 1 cm in 10 km."""
 
@@ -178,7 +207,7 @@ def score(
     flights = [item for item in plan.items if item.has_place]
     waypoints, legs, circles = [], [], []
     before: Item | None = None
-    takeoff = landing = None
+    takeoff: TakeoffScore | None = None
     for item in plan.items:
         if item.command == TAKEOFF and item.latitude_deg:
             takeoff = _takeoff(plan.home, item, flown)
@@ -189,9 +218,8 @@ def score(
                 legs.append(_leg(before, item, flown))
         elif item.command in LOITERS:
             circles.append(_circle(item, flown, item.radius_m or loiter_m))
-        elif item.command == LAND and before is not None:
-            landing = _landing(before, item, flown, go_arounds)
         before = item
+    landing = score_landing(plan, flown, go_arounds)
     kept = [leg for leg in legs if leg.seconds > 0.0]
     return PlanScore(waypoints, kept, circles, takeoff, landing)
 
@@ -227,6 +255,13 @@ def _takeoff(home: Item, item: Item, flown: FlownPlan) -> TakeoffScore | None:
     )
 
 
+def score_landing(plan: PlanFile, flown: FlownPlan, go_arounds: int) -> LandingScore | None:
+    """Score the plan's last landing; return None without one, or if it does not stand."""
+    flights = [item for item in plan.items if item.has_place]
+    pairs = [ends for ends in itertools.pairwise(flights) if ends[1].command == LAND]
+    return _landing(*pairs[-1], flown, go_arounds) if pairs else None
+
+
 def _landing(start: Item, item: Item, flown: FlownPlan, go_arounds: int) -> LandingScore | None:
     on_ground = flown.on_ground > 0.0
     in_air = np.flatnonzero(~on_ground)
@@ -246,6 +281,12 @@ def _landing(start: Item, item: Item, flown: FlownPlan, go_arounds: int) -> Land
         float(along[-1]),
         go_arounds,
     )
+
+
+def away_m(latitude_deg: float, longitude_deg: float, track: tuple[Array, Array]) -> Array:
+    """Return how far a place is from latitudes and longitudes, in degrees."""
+    plane = Plane(math.radians(latitude_deg), math.radians(longitude_deg))
+    return np.asarray(np.hypot(*plane.of(np.radians(track[0]), np.radians(track[1])).T))
 
 
 def _waypoint(item: Item, flown: FlownPlan, reached: dict[int, float]) -> WaypointScore:

@@ -20,8 +20,10 @@ from typing import TYPE_CHECKING, TypeVar
 
 import pytest
 
+from . import plan_file, plan_start
 from .flight import Flight
 from .marks import AutopilotMark, aircraft_mark, autopilot_mark
+from .plan_file import PlanFile
 from .plant import Plant, TrimError
 from .remote_rig import RemoteRig, address_of, address_towards
 from .rig import FlightError, Rig
@@ -78,7 +80,7 @@ def pytest_configure(config: pytest.Config) -> None:
     """Declare the marks, and check the options before any flight."""
     for line in (
         "aircraft(name, wind=(from_deg, kt), turbulence=0..7, seed, noise, heading): the aircraft",
-        "autopilot(mode, hold_s, leg_s, turn_deg, climb_ft, failsafe_hold_s, all_silent_s, "
+        "autopilot(mode, plan, hold_s, leg_s, turn_deg, climb_ft, failsafe_hold_s, all_silent_s, "
         "degraded_s, config): the autopilot's settings",
         "realtime: always in real time",
     ):
@@ -129,8 +131,12 @@ def pytest_runtest_makereport(
 @pytest.fixture
 def aircraft(request: pytest.FixtureRequest) -> Plant:
     """Return an aircraft of JSBSim in trimmed flight, as configured by the mark `aircraft`."""
-    settings = _settings(request)
+    settings, plan = _settings(request), _plan(request)
     try:
+        if plan is not None:
+            return plan_start.plant(
+                plan, settings.aircraft, seed=settings.seed, weather=settings.weather
+            )
         return Plant(
             settings.aircraft,
             seed=settings.seed,
@@ -187,18 +193,23 @@ def flight(request: pytest.FixtureRequest) -> Iterator[Flight]:
         or request.node.get_closest_marker("realtime") is not None
     )
     rig: Rig
+    if is_real_time and mark.plan is not None:
+        pytest.fail(
+            "plans are flown in lockstep only: the stand-in begins elsewhere", pytrace=False
+        )
     if is_real_time:
         rig = request.getfixturevalue("daemon")
     else:
         machine = request.getfixturevalue("autopilot")
         plant = request.getfixturevalue("aircraft")
-        from .lockstep_rig import LockstepRig  # noqa: PLC0415 - it needs the module fcc
+        from .lockstep_rig import Conditions, LockstepRig  # noqa: PLC0415 - it needs the module fcc
 
+        between = None if mark.plan is None else Conditions(position=True)
         try:
-            rig = LockstepRig(settings, plant, machine)
+            rig = LockstepRig(settings, plant, machine, between)
         except FlightError as error:
             pytest.fail(str(error), pytrace=False)
-    flown = Flight(rig, mark.pattern, settings.seed)
+    flown = Flight(rig, mark.pattern, settings.seed, _plan(request))
     request.node.stash.setdefault(_FLIGHTS, []).append(flown)
     yield flown
     rig.close()
@@ -216,6 +227,14 @@ def _settings(request: pytest.FixtureRequest) -> Settings:
 
 def _autopilot(request: pytest.FixtureRequest) -> AutopilotMark:
     return _marked(request, "autopilot", autopilot_mark)
+
+
+def _plan(request: pytest.FixtureRequest) -> PlanFile | None:
+    path = _autopilot(request).plan
+    try:
+        return None if path is None else plan_file.read(path)
+    except (OSError, ValueError) as error:
+        pytest.fail(f"the mark autopilot: {error}", pytrace=False)
 
 
 def _marked(request: pytest.FixtureRequest, name: str, make: Callable[..., Made]) -> Made:

@@ -180,3 +180,22 @@ def quantity_of(given: Quantity | str) -> Quantity:
     if isinstance(given, str) and given in QUANTITIES:
         return QUANTITIES[given]
     raise ValueError(f"there is no quantity {given!r}; choose one of {', '.join(QUANTITIES)}")
+
+
+_LONGEST_S = 24 * 3_600.0
+
+
+def seconds(name: str, value: object, least: float = 0.0) -> float:
+    """Return a time in s; raise ValueError or TypeError for what is none."""
+    value_s = finite(name, value)
+    if not least <= value_s <= _LONGEST_S:
+        raise ValueError(f"{name} is {value_s:g} s: give {least:g} to {_LONGEST_S:g}")
+    return value_s
+
+
+def positive(name: str, value: object) -> float:
+    """Return a number greater than 0; raise ValueError or TypeError for another one."""
+    number = finite(name, value)
+    if number <= 0.0:
+        raise ValueError(f"{name} is {number:g}: give more than 0")
+    return number

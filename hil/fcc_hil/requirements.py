@@ -6,6 +6,7 @@ engagement.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -89,6 +90,20 @@ def overshoots_less_than(stretch: Stretch, limit: float, change: float) -> Verdi
         return Verdict(is_met=limit > 0.0, flown="it does not overshoot")
     words = f"by {stretch.quantity.words(beyond, 2)}: {stretch.at(worst)}"
     return Verdict(is_met=beyond < limit, flown=words)
+
+
+def passes(time_s: Samples, away_m: Samples, within: float) -> Verdict:
+    """Whether something is so near at any time."""
+    index = int(np.argmin(away_m))
+    words = f"it comes within {away_m[index]:.1f} m of it, at {time_s[index]:.2f} s"
+    return Verdict(is_met=bool(away_m[index] <= within), flown=words)
+
+
+def all_below(values: Sequence[tuple[str, float, float | None, str]]) -> Verdict:
+    """Whether no value is farther from 0 than its limit: names, values, limits and units."""
+    words = ", ".join(f"{name} {value:.1f} {unit}" for name, value, _, unit in values)
+    is_met = all(limit is None or abs(value) <= limit for _, value, limit, _ in values)
+    return Verdict(is_met, words)
 
 
 def never(condition: Condition, time_s: Samples, values: Samples) -> Verdict:

@@ -35,6 +35,9 @@ COLUMNS = (
     "pitch_rate_degps",
     "yaw_rate_degps",
     "angle_of_attack_deg",
+    "latitude_deg",
+    "longitude_deg",
+    "on_ground",
 )
 
 Row = tuple[float, ...]
@@ -60,6 +63,9 @@ def row(state: State, controls: Controls) -> Row:
         math.degrees(state.pitch_rate_radps),
         math.degrees(state.yaw_rate_radps),
         math.degrees(state.angle_of_attack_rad),
+        math.degrees(state.latitude_rad),
+        math.degrees(state.longitude_rad),
+        float(state.on_ground),
     )
 
 

@@ -281,6 +281,7 @@ impl Observer<Autopilot> for LiveObserver {
         match report {
             Report::Remark(words) | Report::Mention(words) => self.keep(words, at),
             Report::Recording(status) => self.live.lock().recording = Some(status.into()),
+            Report::Plan(_) => {}
         }
     }
 

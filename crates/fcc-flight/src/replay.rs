@@ -59,9 +59,12 @@ pub fn navigation_by(config: &Config, method: NavigationMethod) -> Option<RawNav
 /// # Errors
 /// When the period cannot be kept statistics of.
 pub fn replay(config: &Config) -> Result<Replay<Autopilot>, TimerError> {
-    Replay::new(
+    let flown = config.clone();
+    let replay = Replay::new(
         Autopilot::new(config.autopilot_config()),
         config.tick.period(),
         &config.loop_config(),
-    )
+    )?;
+    // Plans that replaced the first one.
+    Ok(replay.with_documents(move |document| flown.prepare_recorded(document)))
 }

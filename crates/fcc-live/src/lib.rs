@@ -25,7 +25,7 @@
 //! | `fcc/INSTANCE/status/v3` | [`Status`]: each second, how the run stands | 1 |
 //!
 //! Commands are sent the other way: a [`Commander`] uses the service
-//! `fcc/INSTANCE/command/v3` and receives the result.
+//! `fcc/INSTANCE/command/v4` and receives the result.
 //!
 //! The layout of `info` never changes, so that a reader of another version can
 //! report what it found. Everything else has a version: [`LAYOUT`].

@@ -93,6 +93,14 @@ pub(crate) static CONFIG: Exception = Exception::new(
     "A configuration that cannot be read or flown: every problem with its line and key.",
 );
 
+/// A flight plan that cannot be read or written.
+pub(crate) static PLAN: Exception = Exception::new(
+    "PlanError",
+    Some(&ERROR),
+    Also::ValueError,
+    "A flight plan that cannot be read, or written in a format: every problem with its item.",
+);
+
 /// Not engaged.
 pub(crate) static ENGAGE: Exception = Exception::new(
     "EngageError",
@@ -147,7 +155,7 @@ pub(crate) static TIMER: Exception = Exception::new(
 /// Those of Python.
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     for exception in [
-        &ERROR, &CONFIG, &ENGAGE, &FLIGHT, &RECORDING, &TELEMETRY, &COMMAND, &TIMER,
+        &ERROR, &CONFIG, &PLAN, &ENGAGE, &FLIGHT, &RECORDING, &TELEMETRY, &COMMAND, &TIMER,
     ] {
         module.add(exception.name, exception.class(module.py())?)?;
     }

@@ -7,7 +7,7 @@
 //! | `machine` | the daemon's loop, one call per tick, for a plant in Python: for the autopilot, and for any controller whose types have a schema |
 //! | `flight`, `callbacks` | a whole flight of the built-in aircraft in one call, with sensors or a controller in Python |
 //! | `aircraft` | the built-in aircraft alone |
-//! | `config` | configurations, by key |
+//! | `config`, `plan` | configurations, by key; flight plans |
 //! | `blocks`, `formulas` | the core's blocks and formulas |
 //! | `calibrate` | the calibration of a sensor of three axes |
 //! | `navigate` | navigation from arrays of raw samples |
@@ -60,6 +60,8 @@ pub mod machine;
 mod calibrate;
 #[cfg(feature = "flight")]
 mod navigate;
+#[cfg(feature = "flight")]
+mod plan;
 #[cfg(feature = "flight")]
 mod raw_sensors;
 pub mod recordings;

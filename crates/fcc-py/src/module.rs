@@ -9,7 +9,7 @@ use pyo3::types::PyTuple;
 use crate::live;
 use crate::{
     aircraft, autopilot, blocks, calibrate, config, errors, events, fleet, flight, formulas,
-    machine, navigate, raw_sensors, recordings, structured, timers, values,
+    machine, navigate, plan, raw_sensors, recordings, structured, timers, values,
 };
 
 /// The flight control computer: its autopilot and aircraft in lockstep, its
@@ -39,6 +39,7 @@ fn fcc(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<raw_sensors::PyRawSensors>()?;
     module.add_class::<events::PyEvent>()?;
     module.add_class::<config::PyConfig>()?;
+    module.add_class::<plan::PyPlan>()?;
     module.add_class::<autopilot::PyAutopilot>()?;
     module.add_class::<fleet::PyFleet>()?;
     module.add_class::<machine::PyMachine>()?;

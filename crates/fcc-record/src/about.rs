@@ -6,6 +6,8 @@ use std::fmt::Write as _;
 use fcc_telemetry::{Denial, Realtime};
 use sha2::{Digest, Sha256};
 
+use super::document::Document;
+
 /// What is known of a flight before it begins. Every file of its recording
 /// starts with it.
 #[derive(Clone, PartialEq, Debug, Default)]
@@ -42,6 +44,8 @@ pub struct About {
     pub config: String,
     /// The same, key by key.
     pub parameters: BTreeMap<String, String>,
+    /// What came during the flight, in its order.
+    pub documents: Vec<Document>,
     /// Which part of the recording this file is, from 1.
     pub part: u32,
 }
@@ -173,9 +177,18 @@ impl About {
         match name {
             CONFIG => self.config = text(),
             CONFIG_AS_GIVEN => self.config_as_given = Some(text()),
-            _ => {}
+            name => self.documents.extend(document(name, data)),
         }
     }
+}
+
+/// The document in an attachment; none if it is what every file begins with.
+pub(super) fn document(name: &str, data: &[u8]) -> Option<Document> {
+    let is_own = [CONFIG, CONFIG_AS_GIVEN, COLUMNS].contains(&name);
+    (!is_own).then(|| Document {
+        name: name.to_owned(),
+        text: String::from_utf8_lossy(data).into_owned(),
+    })
 }
 
 /// A denied request, of which a file holds only the text.

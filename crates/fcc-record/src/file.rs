@@ -12,6 +12,7 @@ use mcap::{Attachment, McapError, WriteOptions};
 
 use super::about::{About, COLUMNS, CONFIG, CONFIG_AS_GIVEN};
 use super::disk::Disk;
+use super::document::{Document, MEDIA_TYPE};
 use super::end::{END, RunStatistics};
 use super::foxglove;
 use super::outlet::Outlet;
@@ -113,14 +114,11 @@ impl<C: Recorded> RecordingFile<C> {
         ];
         for (name, media_type, text) in texts {
             if let Some(text) = text {
-                writer.attach(&Attachment {
-                    log_time: about.started_unix_ns,
-                    create_time: about.started_unix_ns,
-                    name: name.to_owned(),
-                    media_type: media_type.to_owned(),
-                    data: text.as_bytes().into(),
-                })?;
+                attach(&mut writer, name, media_type, text, about.started_unix_ns)?;
             }
+        }
+        for Document { name, text } in &about.documents {
+            attach(&mut writer, name, MEDIA_TYPE, text, about.started_unix_ns)?;
         }
         let mut channels = Vec::new();
         for (name, schema_name, descriptors) in topics::<C>() {
@@ -173,6 +171,13 @@ impl<C: Recorded> RecordingFile<C> {
         let line = foxglove::line(foxglove::REMARK, text, Level::Info, log_ns);
         self.write(Topic::Log as usize, log_ns, &line)
             .map_err(to_io)
+    }
+
+    /// Takes a document, at its place among the messages.
+    pub(super) fn document(&mut self, document: &Document) -> io::Result<()> {
+        let Document { name, text } = document;
+        self.gathered_bytes += text.len() as u64;
+        attach(&mut self.writer, name, MEDIA_TYPE, text, self.last_log_ns).map_err(to_io)
     }
 
     fn write(
@@ -278,6 +283,22 @@ impl<C: Recorded> RecordingFile<C> {
     pub(super) fn ticks(&self) -> u64 {
         self.run_statistics.ticks()
     }
+}
+
+fn attach(
+    writer: &mut mcap::Writer<NoSeek<Outlet>>,
+    name: &str,
+    media_type: &str,
+    text: &str,
+    time_ns: u64,
+) -> Result<(), McapError> {
+    writer.attach(&Attachment {
+        log_time: time_ns,
+        create_time: time_ns,
+        name: name.to_owned(),
+        media_type: media_type.to_owned(),
+        data: text.as_bytes().into(),
+    })
 }
 
 /// The options for every file.

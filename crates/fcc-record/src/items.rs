@@ -7,7 +7,9 @@ use fcc_core::framework::{Message, Record, Tick, Time};
 use mcap::records::{self as mcap_records, MessageHeader};
 use prost::Message as _;
 
+use super::about::document;
 use super::damage::Damage;
+use super::document::Document;
 use super::end::End;
 use super::foxglove::REMARK;
 use super::raw::{DamagedBytes, Next, RawReader};
@@ -69,6 +71,8 @@ pub enum Item<M> {
     Message(M),
     /// Text that is not an event of the loop.
     Remark(Remark),
+    /// A text that came during the flight, or did before the file was begun.
+    Document(Document),
     /// Damage; the items that were here are missing.
     Damage(Damage),
 }
@@ -255,7 +259,7 @@ impl<M: RecordedMessage> Iterator for Messages<M> {
             match item {
                 Item::Message(message) => return Some(message),
                 Item::Damage(damage) => self.damages.push(damage),
-                Item::Remark(_) => {}
+                Item::Remark(_) | Item::Document(_) => {}
             }
         }
         None
@@ -321,6 +325,9 @@ impl Channels {
                 } else {
                     None
                 }
+            }
+            mcap_records::Record::Attachment { header, data, .. } => {
+                document(&header.name, data).map(|found| Ok(Item::Document(found)))
             }
             _ => None,
         }

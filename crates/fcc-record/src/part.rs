@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use fcc_core::framework::MessageOf;
 
+use super::document::Document;
 use super::file::RecordingFile;
 use super::lost::Lost;
 use crate::recorded::Recorded;
@@ -68,6 +69,11 @@ impl<C: Recorded> Part<C> {
     pub(super) fn remark(&mut self, text: String) -> io::Result<()> {
         self.remarks.push(text.clone());
         self.file.remark(text)
+    }
+
+    /// Takes a document.
+    pub(super) fn document(&mut self, document: &Document) -> io::Result<()> {
+        self.file.document(document)
     }
 
     /// Writes the buffered messages and waits until they survive a loss of

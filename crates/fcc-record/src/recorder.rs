@@ -11,6 +11,7 @@ use fcc_telemetry::not_started;
 
 use super::about::About;
 use super::disk::{Disk, FileSystem};
+use super::document::Document;
 use super::lost::Lost;
 use super::settings::{RecorderSettings, RecordingPace};
 use super::status::{Board, Notice, RecorderStatus};
@@ -105,6 +106,12 @@ impl<C: Recorded> RecorderOf<C> {
     pub fn remark(&self, text: String) {
         // Remarks are not part of the flight: if lost, they leave no gap.
         self.send(Feed::Remark(text));
+    }
+
+    /// Records a document, before the messages that are given later.
+    pub fn document(&self, document: Document) {
+        // If there is no room, there is none for those messages either.
+        self.send(Feed::Document(document));
     }
 
     /// The next notice about the recording: its file, what was deleted for it,

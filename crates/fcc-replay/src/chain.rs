@@ -7,7 +7,7 @@ use fcc_core::framework::{Controller, Message, MessageOf, RecordOf};
 use fcc_record::{About, Item, Items, OpenError, Recording};
 use serde::Serialize;
 
-use crate::run::{Replay, Run, run};
+use crate::run::{Documents, Replay, Run, run};
 
 /// The files of one recording, oldest first: several if it is in parts.
 #[derive(Debug)]
@@ -107,6 +107,7 @@ impl Chain {
         progress: impl FnMut(u64),
     ) -> Replayed {
         let mut messages = ChainMessages::<C, _, _> {
+            documents: replay.documents.take(),
             waiting: self.files(),
             present: None,
             bytes_before: 0,
@@ -116,11 +117,9 @@ impl Chain {
             damages: Vec::new(),
         };
         let run = run(replay, &mut messages, compare);
-        Replayed {
-            run,
-            cuts: messages.cuts,
-            damages: messages.damages,
-        }
+        let (cuts, damages) = (messages.cuts, messages.damages);
+        replay.documents = messages.documents;
+        Replayed { run, cuts, damages }
     }
 }
 
@@ -190,6 +189,7 @@ const REPORT_EVERY: u64 = 4_096;
 
 /// All records and events of a recording, file by file.
 struct ChainMessages<'a, C: Controller, W, P> {
+    documents: Documents,
     waiting: W,
     present: Option<(&'a Path, Items<MessageOf<C>>)>,
     bytes_before: u64,
@@ -229,6 +229,11 @@ impl<'a, C: Controller, W: Iterator<Item = &'a Recording>, P: FnMut(u64)> Iterat
                 match item {
                     Item::Message(message) => return Some(message),
                     Item::Remark(_) => {}
+                    Item::Document(document) => {
+                        if let Some(take) = &mut self.documents {
+                            take(&document);
+                        }
+                    }
                     Item::Damage(damage) => {
                         self.damages.push(format!("{}: {damage}", path.display()));
                         // A loss there counts as a loss in the recording.

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use fcc_core::framework::{Controller, Message, MessageOf, RecordOf, State, Tick};
+use fcc_record::Document;
 use fcc_runtime::{Link, LoopConfig, Machine, Parts};
 use fcc_telemetry::expiry_of;
 use fcc_timer::TimerError;
@@ -18,7 +19,11 @@ pub struct Replay<C: Controller> {
     link: Link<C>,
     measured: Producer<C::Measurements>,
     sequence: Sequence<C::Command>,
+    pub(super) documents: Documents,
 }
+
+/// Takes the documents of a recording, each before the messages that refer to it.
+pub(super) type Documents = Option<Box<dyn FnMut(&Document)>>;
 
 impl<C: Controller> Replay<C> {
     /// A loop of this controller, before its first tick.
@@ -40,7 +45,18 @@ impl<C: Controller> Replay<C> {
             link,
             measured,
             sequence: Sequence::default(),
+            documents: None,
         })
+    }
+
+    /// With what takes the documents of a recording, each before the messages that refer
+    /// to it.
+    #[must_use]
+    pub fn with_documents(self, take: impl FnMut(&Document) + 'static) -> Self {
+        Self {
+            documents: Some(Box::new(take)),
+            ..self
+        }
     }
 
     /// The controller, after what was replayed so far.

@@ -103,6 +103,7 @@ impl<C: Reported> Survey<C> {
                     Item::Message(message) => tables.take(message),
                     Item::Remark(remark) => tables.take_remark(remark),
                     Item::Damage(damage) => tables.take_remark(&damage.remark()),
+                    Item::Document(_) => Ok(()),
                 }
                 .map_err(not_written)?;
             }
@@ -188,6 +189,7 @@ impl<C: Reported> Survey<C> {
                 self.events.damage(time_s, tick, &remark.text);
                 self.damages.push(damage.clone());
             }
+            Item::Document(_) => {}
         }
         Ok(())
     }

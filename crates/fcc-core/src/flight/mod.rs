@@ -32,8 +32,8 @@ mod surfaces;
 pub use altimeter::{ALTIMETER_SETTINGS_PA, Altimeter, AltitudeReference};
 pub use autopilot::{
     Autopilot, AutopilotCommand, AutopilotConfig, Contingency, ContingencyAction,
-    ContingencyConfig, FailsafeConfig, FailsafeEnd, ITEM_REACHED, Resume, Scale, StickTakeover,
-    flags,
+    ContingencyConfig, FailsafeConfig, FailsafeEnd, ITEM_REACHED, PLAN_ANSWER, PlanReplacement,
+    Resume, Scale, StickTakeover, flags, refuses_plan,
 };
 pub use measurements::{
     Attitude, BodyRates, Measurements, PilotControls, Position, SpecificForce, Suspect, Velocity,

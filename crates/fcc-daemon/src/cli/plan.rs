@@ -81,6 +81,17 @@ pub enum PlanOrder {
         #[arg(value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1_000))]
         number: u16,
     },
+    /// Fly another plan, from its first item or another one; refused low over a runway and
+    /// in a landing
+    Replace {
+        /// The plan, of QGroundControl or QGC WPL 110; the daemon reads it
+        #[arg(value_name = "FILE")]
+        file: String,
+        /// The item that is flown first
+        #[arg(long, value_name = "N", default_value_t = 1,
+              value_parser = clap::value_parser!(u16).range(1..=1_000))]
+        item: u16,
+    },
     /// Fly to a place, and circle around it
     GoTo {
         /// Latitude, -90 to 90

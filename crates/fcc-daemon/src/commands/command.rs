@@ -27,10 +27,12 @@ struct Sent {
 pub(super) fn command(args: &CommandArgs) -> Result<Exit, Failure> {
     let command = Command::from(&args.what);
     let units = units(&args.what);
-    // By the limits for any aircraft; the daemon knows those of its own.
-    command
-        .for_the_loop::<Autopilot>(&PlantLimits::new())
-        .map_err(|error| Failure::of(Exit::Usage, error.text_in(&units)))?;
+    // By the limits for any aircraft; the daemon knows those of its own, and reads plans.
+    if !matches!(command, Command::ReplacePlan { .. }) {
+        command
+            .for_the_loop::<Autopilot>(&PlantLimits::new())
+            .map_err(|error| Failure::of(Exit::Usage, error.text_in(&units)))?;
+    }
     let (exit, result) = match send(args, &command) {
         Ok(tick) => (Exit::Success, Ok(tick)),
         Err(Refusal::OfAnother(error)) => {
@@ -146,6 +148,12 @@ impl From<&CommandChoice> for Command {
 impl From<&PlanOrder> for Command {
     fn from(what: &PlanOrder) -> Self {
         match *what {
+            PlanOrder::Replace { ref file, item } => Self::ReplacePlan {
+                // The daemon was started elsewhere.
+                file: std::path::absolute(file)
+                    .map_or_else(|_| file.clone(), |path| path.display().to_string()),
+                item,
+            },
             PlanOrder::Pause => Self::set([("pause", 1.0)]),
             PlanOrder::Resume => Self::set([("plan_item", 0.0)]),
             PlanOrder::Item { number } => Self::set([("plan_item", f64::from(number))]),

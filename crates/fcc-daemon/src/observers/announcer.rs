@@ -28,7 +28,7 @@ impl<C: Controller> Observer<C> for Announcer {
             Report::Remark(text) => announce(text, at),
             // It is not of a tick: in lockstep the loop is ahead of it.
             Report::Mention(text) => output::message(format!("{:10}  {text}", "")),
-            Report::Recording(_) => {}
+            Report::Recording(_) | Report::Plan(_) => {}
         }
     }
 }

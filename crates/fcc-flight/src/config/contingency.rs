@@ -4,6 +4,8 @@ use fcc_core::flight::{ContingencyAction, ContingencyConfig};
 use fcc_core::units::FOOT_M;
 use serde::{Deserialize, Serialize};
 
+use super::Config;
+
 /// `[contingency]`.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
@@ -20,6 +22,16 @@ pub struct ContingencySection {
     pub position_lost_after_s: f64,
     /// When a commander has promised to be heard, and is not.
     pub commander_lost: ActionChoice,
+    /// With a low battery, which prevents a take-off, too.
+    pub battery_low: ActionChoice,
+    /// It is low below this share of its charge; none: not watched.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub battery_charge_percent: Option<f64>,
+    /// It is low below this voltage; none: not watched.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub battery_voltage_v: Option<f64>,
+    /// After this time.
+    pub battery_low_after_s: f64,
 }
 
 /// Actions.
@@ -32,6 +44,8 @@ pub enum ActionChoice {
     Loiter,
     /// Return, and circle there.
     Return,
+    /// Fly the nearest landing of the plan; return without one.
+    Land,
 }
 
 impl From<ActionChoice> for ContingencyAction {
@@ -40,6 +54,7 @@ impl From<ActionChoice> for ContingencyAction {
             ActionChoice::Continue => Self::Continue,
             ActionChoice::Loiter => Self::Loiter,
             ActionChoice::Return => Self::Return,
+            ActionChoice::Land => Self::Land,
         }
     }
 }
@@ -53,6 +68,10 @@ impl Default for ContingencySection {
             position_lost: ActionChoice::Return,
             position_lost_after_s: 120.0,
             commander_lost: ActionChoice::Return,
+            battery_low: ActionChoice::Return,
+            battery_charge_percent: None,
+            battery_voltage_v: None,
+            battery_low_after_s: 10.0,
         }
     }
 }
@@ -66,6 +85,12 @@ impl From<&ContingencySection> for ContingencyConfig {
             position: section.position_lost.into(),
             position_after_s: section.position_lost_after_s,
             commander: section.commander_lost.into(),
+            battery: section.battery_low.into(),
+            battery_charge: section
+                .battery_charge_percent
+                .map(|percent| percent / 100.0),
+            battery_voltage_v: section.battery_voltage_v,
+            battery_after_s: section.battery_low_after_s,
         }
     }
 }
@@ -74,5 +99,19 @@ impl ContingencySection {
     /// How far inside of the fence the aircraft turns away from it; none if it does not.
     pub(super) fn watched_margin_m(&self) -> Option<f64> {
         (self.fence != ActionChoice::Continue).then_some(self.fence_margin_m)
+    }
+}
+
+/// A landing needs a position, and one that the fence is in the way of is no way out.
+pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
+    let section = &config.contingency;
+    for (key, action) in [
+        ("contingency.fence", section.fence),
+        ("contingency.position_lost", section.position_lost),
+    ] {
+        if action == ActionChoice::Land {
+            let message = "is \"land\": choose \"continue\", \"loiter\" or \"return\"";
+            report(&[key], message.to_owned());
+        }
     }
 }

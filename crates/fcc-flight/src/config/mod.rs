@@ -33,6 +33,7 @@ mod raw_readings;
 mod read;
 mod recording;
 mod relations;
+mod replacement;
 mod restart;
 mod rights;
 mod runtime;
@@ -75,6 +76,9 @@ pub use navigation::{NavigationMethod, NavigationSection};
 pub use phone::PhoneSection;
 pub use plan::{LawChoice, PlanSection};
 pub use recording::RecordingSection;
+pub use replacement::PreparedPlan;
+#[cfg(feature = "live")]
+pub(crate) use replacement::items_of;
 pub use restart::{RestartMode, RestartSection};
 pub use rights::RightsSection;
 pub use runtime::{
@@ -355,6 +359,7 @@ impl Config {
             failsafe: (&self.failsafe).into(),
             altimeter: (&self.altimeter).into(),
             plan: self.plan.route(),
+            prepared: replacement::prepared_routes(),
             route: self.plan.route_config(&self.autopilot.runway),
             contingency: (&self.contingency).into(),
             raw_navigation: self.navigation.to_core(self.simulated_field_ut()),

@@ -5,7 +5,7 @@ use fcc_core::flight::control::Envelope;
 use super::autopilot::EnvelopeSection;
 use super::{
     ActuatorEntry, AutopilotSection, Config, GuidanceSection, NavigationMethod, SensorEntry, board,
-    lines, navigation, phone, raw_readings, servo_board, servos, shared_devices,
+    contingency, lines, navigation, phone, raw_readings, servo_board, servos, shared_devices,
 };
 
 /// Of `SCHED_FIFO` (sched(7)).
@@ -64,6 +64,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
         );
     }
     plan(config, report);
+    contingency::check(config, report);
     paths(config, report);
     connections(config, report);
     rights(config, report);

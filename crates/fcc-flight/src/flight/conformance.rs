@@ -7,6 +7,7 @@
     reason = "every function here is a test: it panics when the promise is broken"
 )]
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use fcc_core::flight::{Autopilot, AutopilotConfig};
@@ -161,6 +162,7 @@ impl Flight {
             Report::Remark("a remark".to_owned()),
             Report::Mention("a mention".to_owned()),
             Report::Recording(RecorderStatus::default()),
+            Report::Plan(Arc::default()),
         ] {
             self.observer.report(&report, &FlightTime::default());
         }
@@ -191,7 +193,7 @@ impl Flight {
             for report in self.reports.take() {
                 match report {
                     Report::Remark(words) | Report::Mention(words) => said.push(words),
-                    Report::Recording(_) => {}
+                    Report::Recording(_) | Report::Plan(_) => {}
                 }
             }
         }

@@ -3,8 +3,15 @@
 use std::ops::RangeInclusive;
 
 use fcc_core::flight::AutopilotConfig;
+#[cfg(feature = "live")]
+use fcc_core::flight::Setpoints;
+#[cfg(feature = "live")]
+use fcc_live::{Commandable, SentCommands};
 use fcc_telemetry::PlantLimits;
 use fcc_telemetry::units::COMMANDED_ALTITUDE_M;
+
+#[cfg(feature = "live")]
+use crate::config::items_of;
 
 /// What an aircraft permits of the set points that are commanded from outside its
 /// program.
@@ -27,6 +34,28 @@ pub fn setpoint_limits(autopilot: &AutopilotConfig) -> PlantLimits {
                 .ok_or("there is no plan: give plan.file in the configuration"),
         ),
     ]
+}
+
+/// The plan that is flown, by its hash in the record: its items may be commanded.
+#[cfg(feature = "live")]
+#[derive(Debug, Default)]
+pub(super) struct FlownPlan(u64);
+
+#[cfg(feature = "live")]
+impl FlownPlan {
+    /// Follows what is flown: a plan that replaced another one has its own items.
+    pub(super) fn follow<C: Commandable>(
+        &mut self,
+        setpoints: &Setpoints,
+        commands: &mut SentCommands<C>,
+    ) {
+        let hash = setpoints.plan_hash;
+        if std::mem::replace(&mut self.0, hash) != hash
+            && let Some(items) = items_of(hash)
+        {
+            commands.limit("plan_item", 0.0..=items as f64);
+        }
+    }
 }
 
 /// The altitudes above mean sea level that may be commanded, m: none below the

@@ -1,15 +1,21 @@
 //! Live telemetry of a flight.
 
-use fcc_core::framework::{EventOf, RecordOf};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use fcc_core::flight::{AutopilotCommand, Setpoints};
+use fcc_core::framework::{Controller, EventOf, RecordOf};
 use fcc_live::{
-    Commandable, Event, Info, PublisherOf, RecorderState, RecorderStatus, SentCommands,
-    StartPublisher, Text,
+    Command, Commandable, Event, Info, PublisherOf, RecorderState, RecorderStatus, SentCommands,
+    StartPublisher, Text, Verdict,
 };
 use fcc_record as recording;
 use fcc_telemetry::Instance;
 
+use super::limits::FlownPlan;
 use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 use super::outcome::Outcome;
+use super::plan_reader::PlanReader;
 use crate::config::Config;
 
 /// How long the publishing thread may be delayed before records are left out, at
@@ -28,6 +34,8 @@ pub(super) struct Live<C: Commandable> {
     process: Option<StartPublisher>,
     publisher: Option<PublisherOf<C>>,
     commands: SentCommands<C>,
+    plans: PlanReader,
+    flown: FlownPlan,
     /// The newest tick.
     at: FlightTime,
 }
@@ -45,12 +53,17 @@ impl<C: Commandable> Live<C> {
             process,
             publisher: None,
             commands,
+            plans: PlanReader::new(config),
+            flown: FlownPlan::default(),
             at: FlightTime::default(),
         }
     }
 }
 
-impl<C: Commandable> Observer<C> for Live<C> {
+impl<C> Observer<C> for Live<C>
+where
+    C: Commandable + Controller<Command = AutopilotCommand, Setpoints = Setpoints>,
+{
     /// Begins to publish. Without shared memory the flight continues, and this
     /// is reported.
     fn prepare(&mut self, reports: &mut Reports) {
@@ -94,6 +107,7 @@ impl<C: Commandable> Observer<C> for Live<C> {
         self.at = *at;
         if let Some(publisher) = &mut self.publisher {
             publisher.record(record);
+            self.flown.follow(&record.setpoints, &mut self.commands);
             let (tick, state) = (record.tick.number, record.state.state());
             while let Some((id, verdict)) = self.commands.verdict(tick, state) {
                 publisher.answer(id, verdict);
@@ -117,22 +131,41 @@ impl<C: Commandable> Observer<C> for Live<C> {
                 publisher.event(Event::remark(at.tick, at.woke_ns, words));
             }
             Report::Recording(status) => publisher.recorder(recorder(status)),
-            Report::Mention(_) => {}
+            Report::Mention(_) | Report::Plan(_) => {}
         }
     }
 
-    /// Sends other programs' commands to the loop, and publishes what was
-    /// collected.
+    /// Sends other programs' commands to the loop, a plan when it was read, and
+    /// publishes what was collected.
     fn poll(&mut self, access: &mut Access<'_, C::Command>) {
         let Some(publisher) = &mut self.publisher else {
             return;
         };
+        let mut send = |command| {
+            let sent = access.commands.send(command);
+            sent.map_err(|error| error.to_string())
+        };
         while let Some(asked) = publisher.next_command() {
-            let send = |command| {
-                let sent = access.commands.send(command);
-                sent.map_err(|error| error.to_string())
+            let known = if let Command::ReplacePlan { file, item } = &asked.command {
+                let (file, item) = (PathBuf::from(file), *item);
+                self.plans.begin(asked, file, item)
+            } else {
+                self.commands.send(asked, &mut send)
             };
-            if let Some((id, verdict)) = self.commands.send(asked, send) {
+            if let Some((id, verdict)) = known {
+                publisher.answer(id, verdict);
+            }
+        }
+        if let Some((asked, read)) = self.plans.take() {
+            let known = match read {
+                Ok(plan) => {
+                    let command = plan.command();
+                    access.reports.plan(Arc::new(plan));
+                    self.commands.send_prepared(asked, command, &mut send)
+                }
+                Err(why) => Some((asked.id, Verdict::Refused(why))),
+            };
+            if let Some((id, verdict)) = known {
                 publisher.answer(id, verdict);
             }
         }

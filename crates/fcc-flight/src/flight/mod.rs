@@ -33,6 +33,8 @@ mod outcome;
 mod phone;
 mod pilot;
 mod plan;
+#[cfg(feature = "live")]
+mod plan_reader;
 mod recording;
 mod repair;
 mod restart;

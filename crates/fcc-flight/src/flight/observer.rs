@@ -1,5 +1,7 @@
 //! The observers of a flight.
 
+use std::sync::Arc;
+
 use fcc_core::framework::{Controller, EventOf, RecordOf};
 use fcc_record::RecorderStatus;
 use fcc_runtime::CommandSender;
@@ -7,6 +9,7 @@ use fcc_timer::RealtimeGranted;
 
 use super::outcome::Outcome;
 use super::plan::Pace;
+use crate::config::PreparedPlan;
 
 /// Observes a run of a loop with the controller `C`, here a flight: a recorder,
 /// live telemetry, a status line, a score.
@@ -101,6 +104,8 @@ pub enum Report {
     Mention(String),
     /// The status of the recording.
     Recording(RecorderStatus),
+    /// A plan that may replace the one that is flown, before its command.
+    Plan(Arc<PreparedPlan>),
 }
 
 /// Collects the reports of an observer.
@@ -121,6 +126,11 @@ impl Reports {
     /// The status of the recording.
     pub fn recording(&mut self, status: RecorderStatus) {
         self.0.push(Report::Recording(status));
+    }
+
+    /// A plan that may replace the one that is flown, before its command.
+    pub fn plan(&mut self, plan: Arc<PreparedPlan>) {
+        self.0.push(Report::Plan(plan));
     }
 
     /// All that was reported since the last call.

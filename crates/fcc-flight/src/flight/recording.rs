@@ -157,8 +157,10 @@ impl<C: Recorded> Observer<C> for FlightRecorder<C> {
     }
 
     fn report(&mut self, report: &Report, _: &FlightTime) {
-        if let (Some(recorder), Report::Remark(words)) = (&self.recorder, report) {
-            recorder.remark(words.clone());
+        match (&self.recorder, report) {
+            (Some(recorder), Report::Remark(words)) => recorder.remark(words.clone()),
+            (Some(recorder), Report::Plan(plan)) => recorder.document(plan.document()),
+            _ => {}
         }
     }
 

@@ -12,7 +12,7 @@ use fcc_plan::Place;
 use crate::flight::{ALTITUDE_M, Flight, HOME, legs, line};
 
 /// A plan that circles at home, inside of a fence of corners or with a radius in m.
-fn fenced(corners: &[Place], radius_m: f64) -> String {
+pub(crate) fn fenced(corners: &[Place], radius_m: f64) -> String {
     let mut text = format!("QGC WPL 110\n{}", line(0, 16, [0.0; 4], HOME));
     text += &line(1, 17, [0.0, 0.0, 1_000.0, 0.0], HOME);
     for (n, corner) in corners.iter().enumerate() {
@@ -24,7 +24,7 @@ fn fenced(corners: &[Place], radius_m: f64) -> String {
     text
 }
 
-fn go_to(place: Place) -> AutopilotCommand {
+pub(crate) fn go_to(place: Place) -> AutopilotCommand {
     AutopilotCommand::GoTo(Position {
         latitude_rad: place.latitude_deg.to_radians(),
         longitude_rad: place.longitude_deg.to_radians(),

@@ -7,7 +7,7 @@ use fcc_core::flight::guidance::Mode;
 use fcc_core::flight::inertial::metres_per_radian;
 use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements};
 use fcc_core::framework::{LoopCommand, Sensor};
-use fcc_flight::config::Config;
+use fcc_flight::config::{Config, PreparedPlan};
 use fcc_flight::flight::assemble;
 use fcc_plan::{Home, Item, Place, Plan};
 use fcc_runtime::{Link, Machine, Message, Parts};
@@ -45,9 +45,10 @@ pub(crate) struct Flight {
     pub(crate) link: Link<Autopilot>,
     pub(crate) truth: TruthHandle,
     pub(crate) plan: Plan,
+    pub(crate) config: Config,
     pub(crate) record: FlightRecord,
     pub(crate) events: Vec<String>,
-    _folder: TempDir,
+    pub(crate) folder: TempDir,
 }
 
 impl Flight {
@@ -86,9 +87,10 @@ impl Flight {
             link,
             truth: assembly.true_now.unwrap(),
             plan: config.plan.plan().unwrap().clone(),
+            config,
             record: FlightRecord::default(),
             events: Vec::with_capacity(1_000),
-            _folder: folder,
+            folder,
         }
     }
 
@@ -123,6 +125,14 @@ impl Flight {
     pub(crate) fn command(&mut self, command: AutopilotCommand) {
         let command = LoopCommand::Controller(command);
         self.link.commands.send(command).unwrap();
+    }
+
+    /// A plan that is ready to be flown from an item on, uploaded at a time, s; none if it
+    /// cannot be flown.
+    pub(crate) fn prepared(&self, plan: &str, item: u16, uploaded_s: u64) -> Option<PreparedPlan> {
+        let file = self.folder.path().join("next.waypoints");
+        std::fs::write(&file, plan).unwrap();
+        self.config.prepare_plan(&file, item, uploaded_s).ok()
     }
 
     pub(crate) fn happened(&self, text: &str) -> bool {

@@ -2,8 +2,10 @@
 //! geodesics; without a call of the allocator.
 #![cfg(test)]
 
+mod battery;
 mod contingency;
 mod flight;
+mod replacing;
 
 use fcc_conformance::allocator_calls;
 use fcc_core::flight::guidance::Mode;

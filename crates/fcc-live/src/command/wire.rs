@@ -7,8 +7,11 @@ use super::{COMMANDS_VERSION, Command, InvalidCommand, OutsideLimits, Verdict};
 const MOST_SETPOINTS: usize = 8;
 /// The longest name of one, in bytes.
 const NAME_BYTES: usize = 32;
-/// The longest reason, in bytes: all engage inhibits together are shorter.
-const REASON_BYTES: usize = 952;
+/// The longest reason, in bytes: all engage inhibits together are shorter, and of a
+/// plan it has the first problems.
+const REASON_BYTES: usize = 8_120;
+/// The longest name of a file, in bytes.
+const FILE_BYTES: usize = 1_024;
 
 /// A command in shared memory.
 #[derive(Clone, Copy, Debug)]
@@ -16,12 +19,15 @@ const REASON_BYTES: usize = 952;
 pub(crate) struct CommandRequest {
     /// [`COMMANDS_VERSION`].
     pub(crate) version: u32,
-    /// 0 engage, 1 disengage, 2 stop, 3 set.
+    /// 0 engage, 1 disengage, 2 stop, 3 set, 4 another plan.
     pub(crate) code: u32,
     /// The names of set points; empty after the last.
     pub(crate) names: [Text<NAME_BYTES>; MOST_SETPOINTS],
-    /// Their values, in the units at the ends of their names.
+    /// Their values, in the units at the ends of their names; of another plan the first is
+    /// the item that is flown first.
     pub(crate) values: [f64; MOST_SETPOINTS],
+    /// The plan's file, with its whole path.
+    pub(crate) file: Text<FILE_BYTES>,
 }
 
 /// An answer in shared memory.
@@ -50,6 +56,7 @@ const ENGAGE: u32 = 0;
 const DISENGAGE: u32 = 1;
 const STOP: u32 = 2;
 const SET: u32 = 3;
+const REPLACE_PLAN: u32 = 4;
 
 const CARRIED_OUT: u32 = 0;
 const REFUSED: u32 = 1;
@@ -59,12 +66,16 @@ impl TryFrom<&Command> for CommandRequest {
     type Error = InvalidCommand;
 
     fn try_from(command: &Command) -> Result<Self, InvalidCommand> {
-        let (code, set) = match command {
-            Command::Engage => (ENGAGE, &[][..]),
-            Command::Disengage => (DISENGAGE, &[][..]),
-            Command::Stop => (STOP, &[][..]),
-            Command::Set(set) => (SET, &set[..]),
+        let (code, set, file) = match command {
+            Command::Engage => (ENGAGE, &[][..], ""),
+            Command::Disengage => (DISENGAGE, &[][..], ""),
+            Command::Stop => (STOP, &[][..], ""),
+            Command::Set(set) => (SET, &set[..], ""),
+            Command::ReplacePlan { file, .. } => (REPLACE_PLAN, &[][..], file.as_str()),
         };
+        if file.len() > FILE_BYTES {
+            return Err(InvalidCommand::LongFileName(file.len(), FILE_BYTES));
+        }
         if set.len() > MOST_SETPOINTS {
             return Err(InvalidCommand::TooManySetpoints(MOST_SETPOINTS));
         }
@@ -73,7 +84,11 @@ impl TryFrom<&Command> for CommandRequest {
             code,
             names: [Text::default(); MOST_SETPOINTS],
             values: [0.0; MOST_SETPOINTS],
+            file: Text::new(file),
         };
+        if let (Command::ReplacePlan { item, .. }, [first, ..]) = (command, &mut request.values) {
+            *first = f64::from(*item);
+        }
         let places = request.names.iter_mut().zip(&mut request.values);
         for ((name, value), (given, number)) in places.zip(set) {
             (*name, *value) = (Text::new(given), *number);
@@ -96,11 +111,19 @@ impl CommandRequest {
             ));
         }
         let given = self.names.iter().map(Text::as_str).zip(self.values);
+        let [first, ..] = self.values;
         Ok(match self.code {
             ENGAGE => Command::Engage,
             DISENGAGE => Command::Disengage,
             STOP => Command::Stop,
             SET => Command::set(given.take_while(|(name, _)| !name.is_empty())),
+            REPLACE_PLAN if first.fract() == 0.0 && (1.0..=1_000.0).contains(&first) => {
+                Command::ReplacePlan {
+                    file: self.file.as_str().to_owned(),
+                    item: first as u16,
+                }
+            }
+            REPLACE_PLAN => return Err("a plan is flown from an item, 1 to 1000".to_owned()),
             other => return Err(format!("there is no command with the number {other}")),
         })
     }
@@ -170,6 +193,7 @@ pub fn read_request(bytes: &[u8]) -> Result<Command, String> {
         code: u32::from_ne_bytes(next(&mut bytes)),
         names: std::array::from_fn(|_| Text::of_bytes(next(&mut bytes))),
         values: std::array::from_fn(|_| f64::from_ne_bytes(next(&mut bytes))),
+        file: Text::of_bytes(next(&mut bytes)),
     };
     request.command()
 }
@@ -224,10 +248,10 @@ mod tests {
             };
         }
         let request = rows!(CommandRequest;
-            version: "u32" code: "u32" names: "char[32][8]" values: "f64[8]");
+            version: "u32" code: "u32" names: "char[32][8]" values: "f64[8]" file: "char[1024]");
         let answer = rows!(Answer;
             code: "u32" version: "u32" tick: "u64" value: "f64" least: "f64" most: "f64"
-            name: "char[32]" text: "char[952]");
+            name: "char[32]" text: "char[8120]");
         for row in request.iter().chain(&answer) {
             assert!(documented().contains(row), "docs/telemetry.md lacks {row}");
         }
@@ -240,12 +264,20 @@ mod tests {
             Command::Disengage,
             Command::Stop,
             Command::set([("heading_rad", 1.5), ("room_c", 21.0)]),
+            Command::ReplacePlan {
+                file: "/home/me/survey 2.plan".to_owned(),
+                item: 7,
+            },
         ] {
             let request = CommandRequest::try_from(&command).unwrap();
             assert_eq!(request.command(), Ok(command));
         }
         let many = Command::set([("heading_rad", 1.5); 9]);
         assert!(CommandRequest::try_from(&many).is_err());
+        // A shorter name might be that of another file.
+        let file = "é".repeat(513);
+        let long = Command::ReplacePlan { file, item: 1 };
+        assert!(CommandRequest::try_from(&long).is_err());
         for verdict in [
             Verdict::CarriedOut { tick: 9 },
             Verdict::Refused("why".to_owned()),
@@ -266,7 +298,7 @@ mod tests {
         request.version = 1;
         let words = request.command().unwrap_err();
         assert!(
-            words.contains("version 3") && words.contains("version 1"),
+            words.contains("version 4") && words.contains("version 1"),
             "{words}"
         );
     }
@@ -277,7 +309,8 @@ mod tests {
         fn any_bytes_are_a_command_or_refused(version in 0..4_u32, code in 0..6_u32, bits: [u64; 8]) {
             let values = bits.map(f64::from_bits);
             let name = Text::new(&String::from_utf8_lossy(&bits[0].to_le_bytes()));
-            let request = CommandRequest { version, code, names: [name; 8], values };
+            let file = Text::new(&String::from_utf8_lossy(&bits[1].to_le_bytes()));
+            let request = CommandRequest { version, code, names: [name; 8], values, file };
             if let Ok(Command::Set(set)) = request.command() {
                 prop_assert!(set.len() <= 8 && set.iter().all(|(name, _)| !name.is_empty()));
             }

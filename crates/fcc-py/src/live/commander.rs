@@ -1,9 +1,11 @@
 //! Commands to a running loop.
 
+use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use fcc_live::{Command, CommandError, Commander};
 use fcc_telemetry::Instance;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -75,6 +77,23 @@ impl PyCommander {
             given.push((name.extract()?, value.extract()?));
         }
         self.command(py, &Command::Set(given))
+    }
+
+    /// Flies another plan, from an item on (1 to 1,000). The daemon reads the file, checks
+    /// it and replaces the plan in one piece; refused with all problems, and low over a
+    /// runway or in a landing.
+    #[pyo3(signature = (file, item = 1))]
+    fn replace_plan(&self, py: Python<'_>, file: PathBuf, item: u16) -> PyResult<u64> {
+        if !(1..=1_000).contains(&item) {
+            let message = format!("item is {item}: give 1 to 1000");
+            return Err(PyValueError::new_err(message));
+        }
+        let file = std::path::absolute(file)?;
+        let file = file.to_str().ok_or_else(|| {
+            PyValueError::new_err(format!("{}: the name is not UTF-8", file.display()))
+        })?;
+        let file = file.to_owned();
+        self.command(py, &Command::ReplacePlan { file, item })
     }
 
     fn __repr__(&self) -> String {

@@ -1,12 +1,15 @@
 //! The loop of the autopilot.
 
 use std::collections::HashMap;
+use std::path::PathBuf;
 use std::sync::Mutex;
+use std::time::{SystemTime, UNIX_EPOCH};
 
-use fcc_core::flight::{Autopilot, AutopilotConfig, Surfaces};
+use fcc_core::flight::{Autopilot, Surfaces};
 use fcc_core::framework::{LoopCommand, Switch};
-use fcc_flight::config::AirframeSection;
+use fcc_flight::config::{AirframeSection, Config};
 use fcc_flight::flight::about;
+use fcc_plan::FileError;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
@@ -15,6 +18,7 @@ use super::Lockstep;
 use crate::arguments::within;
 use crate::commanded::{Given, commands};
 use crate::config::{configuration, refused};
+use crate::errors;
 use crate::values::{
     PyEstimate, PyMeasurements, PySetpoints, PySurfaces, Values, checked, with_plant,
 };
@@ -30,8 +34,8 @@ machine_class! {
     /// it. Its aircraft is not used: the plant is in Python.
     #[pyclass(name = "Machine", module = "fcc")]
     struct PyMachine(Autopilot) {
-        /// What may be commanded.
-        config: AutopilotConfig,
+        /// What is flown.
+        config: Config,
     }
     setpoints PySetpoints, estimate PyEstimate;
 
@@ -43,7 +47,7 @@ machine_class! {
         let period = parsed.tick.period();
         let about = about(&parsed, Some(as_given(config)?));
         Ok(Self {
-            config: autopilot,
+            config: parsed.clone(),
             lockstep: Mutex::new(Lockstep::new(
                 Autopilot::new(autopilot),
                 period,
@@ -113,6 +117,24 @@ machine_class! {
         ]))
     }
 
+    /// Flies another plan from the next tick on, from an item on (from 1). Raises
+    /// `PlanError` with all problems; refused with the reason, which is an event, if it is
+    /// not engaged, low over a runway or in a landing.
+    #[pyo3(signature = (file, item = 1))]
+    #[expect(clippy::needless_pass_by_value, reason = "pyo3 passes paths by value")]
+    fn replace_plan(&self, file: PathBuf, item: u16) -> PyResult<()> {
+        let now = SystemTime::now().duration_since(UNIX_EPOCH);
+        let uploaded_s = now.map_or(0, |since| since.as_secs());
+        let plan = match self.config.prepare_plan(&file, item, uploaded_s) {
+            Ok(plan) => plan,
+            Err(FileError::Unreadable { source, .. }) => return Err(source.into()),
+            Err(error) => return Err(errors::PLAN.with(error)),
+        };
+        let mut lockstep = self.lockstep();
+        lockstep.keep(plan.document());
+        lockstep.send(LoopCommand::Controller(plan.command()))
+    }
+
     /// Commands another airspeed (m/s), heading (rad) or altitude (m): above sea
     /// level by the altimeter setting, or a pressure altitude, or a height above
     /// the configured field; ends a pattern or a plan. An altimeter setting (Pa) and a
@@ -120,7 +142,8 @@ machine_class! {
     /// `return_home` (1), and the three of `go_to_latitude_rad`.
     #[pyo3(signature = (**setpoints))]
     fn command(&self, setpoints: Option<Given>) -> PyResult<()> {
-        for command in commands(setpoints, &self.config)? {
+        let config = *self.lockstep().controller().config();
+        for command in commands(setpoints, &config)? {
             self.lockstep().send(LoopCommand::Controller(command))?;
         }
         Ok(())

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use fcc_core::framework::{Controller, Flags, LoopCommand, Message, MessageOf, RecordOf, State};
-use fcc_record::{About, Recorded, RecorderOf, RecorderSettings, RecordingPace};
+use fcc_record::{About, Document, Recorded, RecorderOf, RecorderSettings, RecordingPace};
 use fcc_runtime::{Link, LoopConfig, Machine, Parts};
 use fcc_timer::{ManualTimer, TimerError};
 use pyo3::exceptions::PyOSError;
@@ -96,6 +96,13 @@ impl<C: Recorded> Lockstep<C> {
         }
         let record = self.machine.record();
         record.sent.then_some(record.outputs)
+    }
+
+    /// Keeps a document for the recording.
+    pub fn keep(&mut self, document: Document) {
+        if !self.about.documents.contains(&document) {
+            self.about.documents.push(document);
+        }
     }
 
     /// Sends a command, which the next tick executes.

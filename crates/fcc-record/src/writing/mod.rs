@@ -13,6 +13,7 @@ use fcc_core::framework::MessageOf;
 
 use super::about::About;
 use super::disk::Disk;
+use super::document::Document;
 use super::lost::Lost;
 use super::part::Part;
 use super::settings::RecorderSettings;
@@ -33,6 +34,7 @@ pub(super) enum Feed<M> {
     /// Boxed: the channel is allocated as a whole, and seldom holds many.
     Message(Box<M>),
     Remark(String),
+    Document(Document),
     End(String),
 }
 
@@ -93,6 +95,7 @@ impl<C: Recorded> Writing<C> {
             match fed.recv_timeout(patience) {
                 Ok(Feed::Message(message)) => self.take(&message),
                 Ok(Feed::Remark(text)) => self.note(text),
+                Ok(Feed::Document(document)) => self.keep(&document),
                 Ok(Feed::End(ending)) => return self.end(&ending),
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return self.end("the recorder was dropped"),
@@ -127,6 +130,16 @@ impl<C: Recorded> Writing<C> {
         if self.part.as_ref().is_some_and(|part| self.is_full(part)) {
             self.rotate();
         }
+    }
+
+    /// Writes a document, here and at the begin of each further file.
+    fn keep(&mut self, document: &Document) {
+        if self.about.documents.contains(document) {
+            return;
+        }
+        // First, for the file that is begun if this one fails.
+        self.about.documents.push(document.clone());
+        self.attempt(|part| part.document(document));
     }
 
     /// Reports what is lost in the file, if there is one, before the message

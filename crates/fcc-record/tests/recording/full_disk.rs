@@ -222,7 +222,7 @@ fn a_disk_that_has_room_again_is_recorded_to_again() {
         .unwrap()
         .filter_map(|item| match item {
             Item::Remark(remark) => Some(remark.text),
-            Item::Message(_) | Item::Damage(_) => None,
+            Item::Message(_) | Item::Document(_) | Item::Damage(_) => None,
         })
         .collect();
     assert!(remarks[0].starts_with("recording stopped: "), "{remarks:?}");

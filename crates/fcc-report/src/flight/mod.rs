@@ -6,6 +6,7 @@ mod ground_track;
 mod legs;
 mod navigation;
 mod plan_page;
+mod replaced_plans;
 mod track;
 
 use comfy_table::Table;
@@ -26,6 +27,7 @@ pub use altimeter::AltimeterSettings;
 pub use legs::flight_table;
 pub use navigation::{Difference, MethodResult, NavigationReplay, SourceConsistency};
 pub use plan_page::{PlanLine, PlanPlace, PlanRow, plan_page, plan_table};
+pub use replaced_plans::{ReplacedPlan, ReplacedPlans};
 use track::Track;
 pub use track::{GroundLine, PlanLines};
 
@@ -50,6 +52,9 @@ pub struct FlightAddition {
     /// Which flight plan was flown, if there was one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plan: Option<String>,
+    /// The plans that replaced it in flight.
+    #[serde(skip_serializing_if = "ReplacedPlans::is_empty")]
+    pub replaced_plans: ReplacedPlans,
     /// Navigation by other methods, if it was wanted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub navigation: Option<NavigationReplay>,
@@ -114,6 +119,7 @@ impl Addition for FlightAddition {
         self.plan
             .clone()
             .into_iter()
+            .chain(self.replaced_plans.findings())
             .chain(unscored)
             .chain(nowhere)
             .chain(altimeter)
@@ -175,6 +181,10 @@ impl Reported for Autopilot {
         if let Some(navigation) = &mut addition.navigation {
             navigation.take(record, time_s);
         }
+        let tick = record.tick.number;
+        addition
+            .replaced_plans
+            .take(&record.setpoints, tick, time_s);
         let setting_hpa = record.setpoints.altimeter_setting_pa * PA_HPA;
         addition.altimeter_settings_hpa.push(setting_hpa);
         if let Some(scorer) = &mut addition.scorer {

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use crate::Telemetry;
-use fcc_core::framework::LoopCommand;
+use fcc_core::framework::{LoopCommand, Notice};
 
 use super::{Command, InvalidCommand, OutsideLimits};
 
@@ -15,6 +15,12 @@ pub trait Commandable: Telemetry<Command: PartialEq> {
     /// What is commanded by several values at once, which are given together; executed
     /// after the set points. None by default.
     const JOINT: &'static [JointSetpoints<Self::Command>] = &[];
+
+    /// Whether a notice, told in the tick that read a command that was
+    /// [prepared](super::SentCommands::send_prepared), says that it is refused.
+    fn is_refusal(_: &Notice) -> bool {
+        false
+    }
 }
 
 /// Set points that are commanded together.
@@ -52,6 +58,9 @@ pub struct CommandableSetpoint<R> {
     pub alternatives: Option<&'static str>,
 }
 
+/// Why a plan is not replaced where nothing reads plans.
+const NO_PLANS: &str = "a plan is replaced only in flight, by the daemon's own user";
+
 /// What one plant permits, by the names of set points, where that differs from
 /// its controller's own limits: narrower limits, or why it has no such set point.
 pub type PlantLimits = Vec<(&'static str, Result<RangeInclusive<f64>, &'static str>)>;
@@ -71,6 +80,7 @@ impl Command {
             Self::Disengage => return Ok(vec![LoopCommand::Disengage]),
             Self::Stop => return Ok(vec![LoopCommand::Stop]),
             Self::Set(given) => given,
+            Self::ReplacePlan { .. } => return Err(InvalidCommand::NotPermitted(NO_PLANS)),
         };
         let joint = || C::JOINT.iter().flat_map(|joint| joint.parts);
         let known = || {
@@ -130,7 +140,7 @@ impl Command {
     /// Whether it can be carried out only while engaged, or by engaging.
     pub(super) fn needs_control<C: Commandable>(&self) -> bool {
         let mut setpoints = C::SETPOINTS.iter();
-        matches!(self, Self::Engage)
+        matches!(self, Self::Engage | Self::ReplacePlan { .. })
             || setpoints.any(|known| known.needs_control && self.value_of(known.name).is_some())
             || C::JOINT
                 .iter()
@@ -154,7 +164,8 @@ mod flight {
     };
     use core::f64::consts::{FRAC_PI_2, PI};
 
-    use fcc_core::flight::{Autopilot, AutopilotCommand, Position};
+    use fcc_core::flight::{Autopilot, AutopilotCommand, Position, refuses_plan};
+    use fcc_core::framework::Notice;
 
     use super::{Commandable, CommandableSetpoint, JointSetpoints};
 
@@ -258,6 +269,10 @@ mod flight {
             incomplete: "a place needs all of go_to_latitude_rad, go_to_longitude_rad and \
                          go_to_altitude_m",
         }];
+
+        fn is_refusal(notice: &Notice) -> bool {
+            refuses_plan(notice)
+        }
     }
 }
 

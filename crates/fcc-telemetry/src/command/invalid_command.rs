@@ -23,6 +23,9 @@ pub enum InvalidCommand {
     /// It changes more than a command can.
     #[error("more than {0} set points in one command: give several commands")]
     TooManySetpoints(usize),
+    /// The name of its file is too long, in bytes.
+    #[error("the name of the file has {0} bytes: give one of at most {1}, with its path")]
+    LongFileName(usize, usize),
     /// A set point is out of its limits, in the unit at the end of its name.
     #[error(transparent)]
     Outside(#[from] OutsideLimits),

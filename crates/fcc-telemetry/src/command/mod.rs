@@ -26,6 +26,14 @@ pub enum Command {
     /// Change these set points, by the names of [`Commandable::SETPOINTS`]; the
     /// others keep their value. Ends an aircraft's pattern.
     Set(Vec<(String, f64)>),
+    /// Fly another plan. Who flies reads and checks its file, and sends it to the loop
+    /// as [`SentCommands::send_prepared`].
+    ReplacePlan {
+        /// The file, with its whole path.
+        file: String,
+        /// The item that is flown first, from 1.
+        item: u16,
+    },
 }
 
 impl Command {

@@ -2,6 +2,7 @@
 //! of each in the loop's messages.
 
 use std::collections::VecDeque;
+use std::ops::RangeInclusive;
 
 use crate::describe_event;
 use fcc_core::framework::{EventKind, EventOf, LoopCommand, State};
@@ -43,7 +44,7 @@ impl<C: Commandable> SentCommands<C> {
     pub fn send(
         &mut self,
         asked: PendingCommand,
-        mut send: impl FnMut(LoopCommand<C::Command>) -> Result<(), String>,
+        send: impl FnMut(LoopCommand<C::Command>) -> Result<(), String>,
     ) -> Option<(u64, Verdict)> {
         let unread = match asked.command.for_the_loop::<C>(&self.limits) {
             Ok(commands) => VecDeque::from(commands),
@@ -52,12 +53,39 @@ impl<C: Commandable> SentCommands<C> {
             }
             Err(invalid) => return Some((asked.id, Verdict::Refused(invalid.to_string()))),
         };
-        if self.is_stopping() && matches!(asked.command, Command::Engage | Command::Set(_)) {
+        self.dispatch(asked, unread, send)
+    }
+
+    /// As [`send`](Self::send), of a command that was prepared: read and checked.
+    pub fn send_prepared(
+        &mut self,
+        asked: PendingCommand,
+        command: C::Command,
+        send: impl FnMut(LoopCommand<C::Command>) -> Result<(), String>,
+    ) -> Option<(u64, Verdict)> {
+        let unread = VecDeque::from([LoopCommand::Controller(command)]);
+        self.dispatch(asked, unread, send)
+    }
+
+    /// Other limits of a set point from now on.
+    pub fn limit(&mut self, name: &'static str, limits: RangeInclusive<f64>) {
+        self.limits.retain(|(known, _)| *known != name);
+        self.limits.push((name, Ok(limits)));
+    }
+
+    fn dispatch(
+        &mut self,
+        asked: PendingCommand,
+        unread: VecDeque<LoopCommand<C::Command>>,
+        mut send: impl FnMut(LoopCommand<C::Command>) -> Result<(), String>,
+    ) -> Option<(u64, Verdict)> {
+        let ends_flight = matches!(asked.command, Command::Disengage | Command::Stop);
+        if self.is_stopping() && !ends_flight {
             return Some((asked.id, Verdict::Refused("it is stopping".to_owned())));
         }
         // Before any part of it is carried out.
         if let Some(state) = self.state.filter(|state| *state != State::Engaged)
-            && matches!(asked.command, Command::Set(_))
+            && matches!(asked.command, Command::Set(_) | Command::ReplacePlan { .. })
             && asked.command.needs_control::<C>()
             && !self.is_to_be_engaged()
         {
@@ -114,6 +142,15 @@ impl<C: Commandable> SentCommands<C> {
                     waiting.refusal = Some(describe_event::<C>(event, &[], &[]));
                 }
             }
+            EventKind::Noticed(notice) if C::is_refusal(&notice) => {
+                let prepared = self.waiting.iter_mut().find(|waiting| {
+                    waiting.read_in == Some(event.tick)
+                        && matches!(waiting.asked.command, Command::ReplacePlan { .. })
+                });
+                if let Some(waiting) = prepared {
+                    waiting.refusal = Some(describe_event::<C>(event, &[], &[]));
+                }
+            }
             _ => {}
         }
     }
@@ -133,9 +170,13 @@ impl<C: Commandable> SentCommands<C> {
             Command::Stop => now,
             _ => waiting.read_in?,
         };
+        let is_refused = waiting.refusal.is_some();
         let done = match &waiting.asked.command {
+            Command::ReplacePlan { .. } if is_refused => false,
             command if command.needs_control::<C>() => state == State::Engaged,
-            Command::Engage | Command::Set(_) => state != State::Stopped,
+            Command::Engage | Command::Set(_) | Command::ReplacePlan { .. } => {
+                state != State::Stopped
+            }
             Command::Disengage => matches!(state, State::Standby | State::Stopped),
             Command::Stop => true,
         };

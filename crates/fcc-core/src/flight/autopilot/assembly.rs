@@ -5,9 +5,9 @@ use super::super::inertial::RawNavigation;
 use super::super::navigation::{FrozenDetector, LearnedAirframe, Navigation, Replacement};
 use super::{
     ActiveMode, Actuation, AltitudeReference, Autopilot, AutopilotConfig, BankCommand,
-    Contingencies, Degraded, Following, GroundMotion, KeptTrims, Measurements, PilotTakeover,
-    PlantClock, ReadingAges, Recovery, RunwayControl, Setpoints, Surfaces, Targets, Time,
-    Whereabouts,
+    BatteryWatch, Contingencies, Degraded, Following, GroundMotion, KeptTrims, Measurements,
+    PilotTakeover, PlantClock, ReadingAges, Recovery, RunwayControl, Setpoints, Surfaces, Targets,
+    Time, Whereabouts,
 };
 use crate::framework::Flags;
 
@@ -32,8 +32,11 @@ impl Autopilot {
             on_runway: RunwayControl::default(),
             left_plan: None,
             contingencies: Contingencies::default(),
+            battery: BatteryWatch::default(),
             news: None,
             told: None,
+            plan_answer: None,
+            plan_told: None,
             targets: Targets::default(),
             capture: None,
             altimeter: config.altimeter,

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::{Autopilot, Resume};
+use super::{Autopilot, PlanReplacement, Resume};
 use crate::blocks::wrap_pi;
 use crate::flight::guidance::ModeInput;
 use crate::flight::{ALTIMETER_SETTINGS_PA, AltitudeReference, Position};
@@ -79,6 +79,10 @@ schema! {
         /// on the wheels.
         #[field(13)]
         GoAround,
+        /// Fly another plan, which was prepared; answered by a notice. Without being
+        /// engaged, low over a runway and in a landing it is refused.
+        #[field(14)]
+        ReplacePlan(replace_plan: PlanReplacement),
     }
 }
 
@@ -107,6 +111,11 @@ impl fmt::Display for AutopilotCommand {
             Self::ReturnHome => f.write_str("return home"),
             Self::Heartbeat(within_s) => write!(f, "heartbeat: the next within {within_s:.1} s"),
             Self::GoAround => f.write_str("go around"),
+            Self::ReplacePlan(plan) => {
+                // As many digits of the hash as tables have.
+                let digits = plan.plan_hash >> 16;
+                write!(f, "plan {digits:012x}, from item {}", plan.item)
+            }
             Self::Resume(Resume { progress, .. }) => {
                 write!(f, "resume {progress} after {:.1} s", progress.elapsed_s)
             }
@@ -132,6 +141,9 @@ impl Autopilot {
     /// Executes a command; one that is not applicable now is ignored.
     pub(super) fn execute(&mut self, command: &AutopilotCommand) {
         self.contingencies.renew_promise();
+        if let AutopilotCommand::ReplacePlan(replacement) = command {
+            return self.replace_plan(replacement);
+        }
         if command.is_of_mode() {
             if self.is_too_low_for(command) {
                 return;
@@ -161,7 +173,9 @@ impl Autopilot {
             AutopilotCommand::GoTo(ref place) => self.go_to(place),
             AutopilotCommand::ReturnHome => self.return_home(),
             AutopilotCommand::GoAround => self.go_around(),
-            AutopilotCommand::Airspeed(_) | AutopilotCommand::Heading(_) => {}
+            AutopilotCommand::Airspeed(_)
+            | AutopilotCommand::Heading(_)
+            | AutopilotCommand::ReplacePlan(_) => {}
         }
     }
 

@@ -7,7 +7,7 @@ use crate::flight::control::{AirspeedConfig, AltitudeConfig, Envelope, HeadingCo
 use crate::flight::guidance::{GuidanceConfig, TimedPatternConfig};
 use crate::flight::inertial::RawNavigationConfig;
 use crate::flight::navigation::{LearnedAirframe, NavigationConfig};
-use crate::flight::route::{Route, RouteConfig};
+use crate::flight::route::{Route, RouteConfig, RouteSource};
 use crate::framework::Flags;
 
 use super::{ContingencyConfig, FailsafeConfig, StickTakeover};
@@ -74,6 +74,8 @@ pub struct AutopilotConfig {
     pub guidance: GuidanceConfig,
     /// The flight plan, if there is one.
     pub plan: Option<Route<'static>>,
+    /// Where plans are prepared that may replace it.
+    pub prepared: RouteSource,
     /// How routes over the ground are flown.
     pub route: RouteConfig,
     /// What is done when a flight cannot go on as commanded.
@@ -111,6 +113,7 @@ impl Default for AutopilotConfig {
             navigation: NavigationConfig::default(),
             guidance: GuidanceConfig::TimedPattern(TimedPatternConfig::default()),
             plan: None,
+            prepared: RouteSource::default(),
             route: RouteConfig::default(),
             contingency: ContingencyConfig::default(),
             heading: HeadingConfig::default(),

@@ -6,14 +6,17 @@
 //! | `PositionLost` | dead reckoning for longer than configured | with a position: a plan is continued |
 //! | `CommanderLost` | no command within the time that one has promised | by a command |
 //! | `Fence` | no circle to turn onto stays inside of the fence any more | by a command |
+//! | `BatteryLow` | charge or voltage below its limit for longer than configured | by a command |
 //!
 //! The later in this table, the worse; the worst one acts. Each has its action in the
 //! configuration; what is not the fence waits for the end of a take-off or landing, and
-//! gives the landing up if there is no position. A command ends it, whatever it is: the pilot decides. Near the fence
-//! the aircraft turns onto the circle that stays inside of it, by present wind, and
-//! returns from there as soon as its course points there; if that brings it to the fence
-//! again, it stays on the circle.
+//! gives the landing up if there is no position. A command ends it, whatever it is: the
+//! pilot decides. Near the fence the aircraft turns onto the circle that stays inside of
+//! it, by present wind, and returns from there as soon as its course points there; if
+//! that brings it to the fence again, it stays on the circle. It turns away from the fence
+//! whatever else acts; a low battery acts again when the fence is left behind.
 
+mod battery;
 mod fence;
 
 use core::fmt;
@@ -22,6 +25,7 @@ use super::Autopilot;
 use crate::flight::guidance::Mode;
 use crate::framework::Notice;
 use crate::schema;
+pub(super) use battery::BatteryWatch;
 use fence::KeptCircle;
 
 /// The number of their notices: the amount says which, the item what is done.
@@ -40,6 +44,8 @@ schema! {
         CommanderLost = 2,
         /// The fence is near, or was crossed.
         Fence = 3,
+        /// The battery's charge or voltage is below its limit.
+        BatteryLow = 4,
     }
 }
 
@@ -52,6 +58,8 @@ pub enum ContingencyAction {
     Loiter,
     /// Return, and circle there.
     Return,
+    /// Fly the landing sequence of the plan whose landing is nearest; return without one.
+    Land,
 }
 
 impl ContingencyAction {
@@ -60,16 +68,18 @@ impl ContingencyAction {
             Self::Continue => "flying on",
             Self::Loiter => "circling",
             Self::Return => "returning",
+            Self::Land => "landing",
         }
     }
 
-    const ALL: [Self; 3] = [Self::Continue, Self::Loiter, Self::Return];
+    const ALL: [Self; 4] = [Self::Continue, Self::Loiter, Self::Return, Self::Land];
 }
 
 /// What is done about each contingency.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct ContingencyConfig {
-    /// Near the fence. To continue is to ignore its sides, but not its floor and ceiling.
+    /// Near the fence. To continue is to ignore its sides, but not its floor and ceiling;
+    /// to land is to return.
     pub fence: ContingencyAction,
     /// How far inside of the fence the aircraft stays, m.
     pub fence_margin_m: f64,
@@ -81,6 +91,14 @@ pub struct ContingencyConfig {
     pub position_after_s: f64,
     /// When a commander has promised to be heard, and is not.
     pub commander: ContingencyAction,
+    /// With a low battery, which prevents a take-off, too.
+    pub battery: ContingencyAction,
+    /// The battery is low below this share of its charge, 0..=1; none: not watched.
+    pub battery_charge: Option<f64>,
+    /// The battery is low below this voltage, V; none: not watched.
+    pub battery_voltage_v: Option<f64>,
+    /// After this time, s; and after it, it is low no longer.
+    pub battery_after_s: f64,
 }
 
 impl Default for ContingencyConfig {
@@ -92,6 +110,10 @@ impl Default for ContingencyConfig {
             position: ContingencyAction::Return,
             position_after_s: 120.0,
             commander: ContingencyAction::Return,
+            battery: ContingencyAction::Return,
+            battery_charge: None,
+            battery_voltage_v: None,
+            battery_after_s: 10.0,
         }
     }
 }
@@ -118,6 +140,8 @@ pub(super) struct Contingencies {
     before: Mode,
     /// Whether this loss of the position was acted on.
     is_loss_met: bool,
+    /// Whether this low battery was acted on.
+    is_battery_met: bool,
     /// Within which time commands are promised, and how much of it is left, s.
     promised_s: Option<(f64, f64)>,
     /// The circle at the fence that was turned onto, until it is left behind.
@@ -146,6 +170,7 @@ impl Contingencies {
             mode: Mode::None,
             before: Mode::None,
             is_loss_met: false,
+            is_battery_met: false,
             promised_s,
             kept: None,
             news: None,
@@ -189,6 +214,7 @@ impl Autopilot {
             return;
         }
         self.keep_inside_fence();
+        self.meet_low_battery();
         self.watch_commander(dt_s);
         self.watch_position();
     }
@@ -205,14 +231,24 @@ impl Autopilot {
         self.contingencies.active = contingency;
         self.contingencies.stage = Stage::Acting;
         self.contingencies.before = self.guidance.mode();
-        match action {
-            ContingencyAction::Continue => {}
-            ContingencyAction::Loiter => self.pause(),
-            ContingencyAction::Return => self.return_home(),
-        }
+        let action = self.act(action);
         self.contingencies.mode = self.guidance.mode();
         self.contingencies.announce(contingency, action);
         true
+    }
+
+    /// Begins what an action says; what was begun.
+    fn act(&mut self, action: ContingencyAction) -> ContingencyAction {
+        match action {
+            ContingencyAction::Continue => {}
+            ContingencyAction::Loiter => self.pause(),
+            ContingencyAction::Land if self.fly_landing() => {}
+            ContingencyAction::Return | ContingencyAction::Land => {
+                self.return_home();
+                return ContingencyAction::Return;
+            }
+        }
+        action
     }
 
     fn watch_position(&mut self) {
@@ -264,6 +300,7 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
         Contingency::PositionLost => "there is no position for too long",
         Contingency::CommanderLost => "the commander is not heard as promised",
         Contingency::Fence => "the fence is near: turning away",
+        Contingency::BatteryLow => "the battery is low",
     };
     let action = usize::from(notice.item).checked_sub(1);
     let action = action.and_then(|n| ContingencyAction::ALL.get(n));

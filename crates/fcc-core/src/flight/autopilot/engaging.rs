@@ -20,7 +20,8 @@ impl Autopilot {
         let contradictions = self.navigation.contradictions();
         (self.unsafe_with(self.stale(now), now, measurements)
             | self.not_permitted(now, measurements)
-            | self.route_inhibits())
+            | self.route_inhibits()
+            | self.battery_inhibits(now))
         .with(
             flags::ATTITUDE_AGAINST_RATES,
             contradictions.attitude_and_rates,

@@ -132,12 +132,12 @@ pub const UNCHECKED_GYROSCOPE: Flags = Flags::bit(58);
 pub const LEFT_UNIT: Flags = Flags::bit(59);
 /// Of several magnetometers, barometers or receivers one is wrong.
 pub const WRONG_SENSOR: Flags = Flags::bit(60);
-/// The plan needs a position, and none is measured.
+/// The plan needs a position, and none is measured; or there is no plan.
 pub const POSITION: Flags = Flags::bit(61);
 /// The mode over the ground flies by dead reckoning.
 pub const DEAD_RECKONING: Flags = Flags::bit(62);
-/// A plan is to be flown, and there is none.
-pub const NO_PLAN: Flags = Flags::bit(63);
+/// The battery is low, or not measured, and the aircraft stands.
+pub const BATTERY: Flags = Flags::bit(63);
 /// What of attitude and body rates is doubted.
 pub(super) const DOUBTED_MOTION: Flags =
     Flags::from_bits(DOUBTED_ATTITUDE.bits() | DOUBTED_BODY_RATES.bits());
@@ -243,7 +243,7 @@ pub(super) const NAMES: [&str; 64] = [
     "a magnetometer, a barometer or a satellite receiver was wrong and is not used again",
     "position is missing, which the plan needs",
     "position is by dead reckoning: satellite navigation is silent",
-    "there is no plan: give plan.file",
+    "the battery is low, or what limits it in [contingency] is not measured",
 ];
 
 #[cfg(test)]

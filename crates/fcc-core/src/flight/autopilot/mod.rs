@@ -24,6 +24,7 @@ mod pilot_takeover;
 mod plant_clock;
 mod reading_age;
 mod release;
+mod replacing;
 mod resume;
 mod routing;
 mod runway;
@@ -41,7 +42,7 @@ use actuation::Actuation;
 use capture::Capture;
 pub use command::AutopilotCommand;
 pub use config::AutopilotConfig;
-use contingency::Contingencies;
+use contingency::{BatteryWatch, Contingencies};
 pub use contingency::{Contingency, ContingencyAction, ContingencyConfig};
 use degraded::Degraded;
 use failsafe::KeptTrims;
@@ -53,6 +54,7 @@ pub use pilot_takeover::StickTakeover;
 use plant_clock::PlantClock;
 use reading_age::ReadingAges;
 use release::Release;
+pub use replacing::{PLAN_ANSWER, PlanReplacement, refuses_plan};
 pub use resume::Resume;
 pub use routing::ITEM_REACHED;
 use runway::RunwayControl;
@@ -123,9 +125,13 @@ pub struct Autopilot {
     /// The plan that was left for another mode.
     left_plan: Option<OverGroundMode>,
     contingencies: Contingencies,
+    battery: BatteryWatch,
     /// What guidance has to tell, and as it is told, a tick later.
     news: Option<Notice>,
     told: Option<Notice>,
+    /// What became of a plan that was commanded, and as it is told in this tick.
+    plan_answer: Option<Notice>,
+    plan_told: Option<Notice>,
     targets: Targets,
     capture: Option<Capture>,
     altimeter: Altimeter,
@@ -239,8 +245,9 @@ impl Controller for Autopilot {
     }
 
     fn notice(&self) -> Option<Notice> {
-        self.pilot
-            .notice()
+        // The sender of a command waits for it.
+        self.plan_told
+            .or_else(|| self.pilot.notice())
             .or_else(|| self.clock.notice())
             .or_else(|| self.degraded_notice())
             .or_else(|| self.wrong_sensor_notice())

@@ -17,6 +17,7 @@ impl Autopilot {
     /// Processes a tick's measurements.
     pub(super) fn observe(&mut self, tick: &Tick, measured: &Measurements) {
         let now = tick.woke;
+        self.plan_told = self.plan_answer.take();
         if is_from_the_future(measured, now) {
             self.observe_present(tick, &without_future(*measured, now));
         } else {
@@ -54,6 +55,7 @@ impl Autopilot {
         self.told = self.news.take();
         self.navigate(now, measured, step_s);
         self.follow_ground(now, step_s);
+        self.follow_battery(now, step_s);
         self.note_doubt(doubted);
         let known = self.navigation.known();
         self.frozen.step(now, &self.accepted, &known, step_s);

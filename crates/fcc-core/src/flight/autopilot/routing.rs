@@ -127,9 +127,9 @@ impl Autopilot {
     /// What an engagement lacks of what its mode needs.
     pub(super) fn route_inhibits(&self) -> Flags {
         let needs = self.config.guidance.mode() == Mode::Plan;
-        Flags::NONE
-            .with(flags::POSITION, needs && !self.ground.is_measured())
-            .with(flags::NO_PLAN, needs && self.config.plan.is_none())
+        // A configuration that flies a plan has one.
+        let lacks = !self.ground.is_measured() || self.config.plan.is_none();
+        Flags::NONE.with(flags::POSITION, needs && lacks)
     }
 
     /// What is reported of the position while it is flown by.
@@ -157,6 +157,22 @@ impl Autopilot {
         } else {
             self.begin_plan(&plan, index);
         }
+    }
+
+    /// Flies to the plan's landing that is nearest, by its landing sequence; one that is
+    /// flown already goes on. Whether there is one.
+    pub(super) fn fly_landing(&mut self) -> bool {
+        let plan = self.config.plan;
+        let found = plan.zip(self.ground.here());
+        let Some((begin, land)) = found.and_then(|(plan, here)| plan.nearest_landing(here)) else {
+            return false;
+        };
+        let flown = self.guidance.over_ground().filter(|mode| mode.is_plan());
+        if flown.is_some_and(|mode| (begin..=land).contains(&mode.index())) {
+            return true;
+        }
+        self.fly_plan(u16::try_from(begin + 1).unwrap_or(u16::MAX));
+        self.guidance.mode() == Mode::Plan
     }
 
     /// Flies a plan from the step with an index on.

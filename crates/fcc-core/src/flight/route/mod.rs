@@ -5,8 +5,8 @@
 //! Route, Whereabouts ─► Follower ─► lateral acceleration, altitude, airspeed
 //! ```
 //!
-//! A [`Route`] is made before the flight, in memory that outlives the loop, and is not
-//! changed: a tick follows a reference to it. Its steps have the numbers of the plan's
+//! A [`Route`] is made before the flight, or [beside it](PreparedRoutes), in memory that
+//! outlives the loop, and is not changed: a tick follows a reference to it. Its steps have the numbers of the plan's
 //! items, so that what is recorded and told has, too.
 //!
 //! Courses and places refer to true north and WGS-84, altitudes to mean sea level.
@@ -18,6 +18,7 @@ mod demand;
 mod follower;
 mod leg;
 mod over_ground;
+mod prepared;
 mod runway;
 mod sequence;
 #[cfg(test)]
@@ -27,6 +28,7 @@ mod step;
 pub use follower::{Follower, Track};
 pub use leg::course_onto_circle;
 pub use over_ground::OverGround;
+pub use prepared::{PreparedRoutes, RouteSource};
 pub use runway::{Runway, RunwayConfig, RunwayDemand, RunwayPhase, RunwayReason};
 pub use step::{Destination, FOR_EVER, JUMPS, Route, Step, Until};
 

@@ -1,7 +1,8 @@
 //! The order of a route's steps: what is flown next, and what takes effect before.
 
+use super::OverGround;
 use super::step::{FOR_EVER, JUMPS, Route, Step};
-use crate::flight::path::LocalPlane;
+use crate::flight::path::{LocalPlane, length};
 
 /// What is flown.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -194,6 +195,21 @@ impl Sequence {
             // Reached again it is not taken any more, as ArduPilot and PX4 have it.
             Some(_) | None => false,
         }
+    }
+}
+
+impl Route<'static> {
+    /// The landing that is nearest: the index at which its sequence begins, and its own;
+    /// none if there is none.
+    pub fn nearest_landing(&self, here: &OverGround) -> Option<(usize, usize)> {
+        let landings = self.steps.iter().enumerate();
+        let away = landings.filter_map(|(index, step)| match step {
+            Step::Land { at, .. } => Some((index, length(here.motion_in(at).position_m))),
+            _ => None,
+        });
+        let (land, _) = away.min_by(|(_, one_m), (_, other_m)| one_m.total_cmp(other_m))?;
+        let begin = Sequence::new(Steps::Plan(*self)).before_landing(land)?;
+        Some((begin, land))
     }
 }
 

@@ -39,6 +39,12 @@ pub enum OtherUserError {
     /// The program at the socket is not that user's.
     #[error("{0} does not belong to the user of the daemon behind it: not trusted")]
     Foreign(PathBuf),
+    /// It is for the daemon's own user alone.
+    #[error(
+        "a plan is replaced by the daemon's own user alone, since the daemon reads its file: sudo -u \
+         USER fccd command plan replace FILE"
+    )]
+    OwnUserOnly,
     /// The daemon refused it.
     #[error("refused: {0}")]
     Refused(String),
@@ -95,10 +101,11 @@ pub fn command_another_users(
     if !is_of(&folder, peer.uid()) {
         return Err(OtherUserError::Foreign(path));
     }
+    let line = line_of(command).ok_or(OtherUserError::OwnUserOnly)?;
     let until = Instant::now() + PATIENCE;
     stream.set_write_timeout(Some(PATIENCE))?;
     // A refusal may come before the command was read.
-    let sent = stream.write_all((line_of(command) + "\n").as_bytes());
+    let sent = stream.write_all((line + "\n").as_bytes());
     let received = receive_line(&mut stream, until);
     if let Ok(line) = &received
         && let Some(answer) = answer_of(line)

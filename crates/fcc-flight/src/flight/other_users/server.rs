@@ -8,7 +8,8 @@ use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use fcc_core::framework::{EventOf, RecordOf};
+use fcc_core::flight::Setpoints;
+use fcc_core::framework::{Controller, EventOf, RecordOf};
 use fcc_live::{Commandable, PendingCommand, PlantLimits, SentCommands, Verdict};
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::socket::{getsockopt, sockopt::PeerCredentials};
@@ -20,6 +21,7 @@ use super::own_folder;
 use super::panel::Panel;
 use super::wire::{command_of, line_of_answer};
 use crate::config::Config;
+use crate::flight::limits::FlownPlan;
 use crate::flight::observer::{Access, FlightTime, Observer, Reports};
 use crate::flight::outcome::Outcome;
 
@@ -48,6 +50,7 @@ pub(in crate::flight) struct CommandSocket<C: Commandable> {
     peers: Vec<Peer>,
     next_id: u64,
     commands: SentCommands<C>,
+    flown: FlownPlan,
 }
 
 struct Peer {
@@ -70,6 +73,7 @@ impl<C: Commandable> CommandSocket<C> {
             peers: Vec::new(),
             next_id: 0,
             commands: SentCommands::new(limits),
+            flown: FlownPlan::default(),
         }
     }
 
@@ -193,7 +197,7 @@ impl Peer {
     }
 }
 
-impl<C: Commandable> Observer<C> for CommandSocket<C> {
+impl<C: Commandable + Controller<Setpoints = Setpoints>> Observer<C> for CommandSocket<C> {
     /// Without the socket the flight continues, and this is reported.
     fn prepare(&mut self, reports: &mut Reports) {
         self.panel = Panel::of(&self.config.rights, &mut |report| reports.mention(report));
@@ -205,6 +209,7 @@ impl<C: Commandable> Observer<C> for CommandSocket<C> {
     }
 
     fn record(&mut self, record: &RecordOf<C>, _: &FlightTime) {
+        self.flown.follow(&record.setpoints, &mut self.commands);
         let (tick, state) = (record.tick.number, record.state.state());
         while let Some((id, verdict)) = self.commands.verdict(tick, state) {
             self.answer(id, &verdict);

@@ -8,16 +8,18 @@
 use fcc_live::{Command, Verdict};
 use fcc_telemetry::units::AVIATION;
 
-/// A command as a line, without its end.
-pub(super) fn line_of(command: &Command) -> String {
-    match command {
+/// A command as a line, without its end; none of one that is not for other users: a
+/// plan's file would be read with the daemon's rights.
+pub(super) fn line_of(command: &Command) -> Option<String> {
+    Some(match command {
         Command::Engage => "engage".to_owned(),
         Command::Disengage => "disengage".to_owned(),
         Command::Stop => "stop".to_owned(),
         Command::Set(given) => given.iter().fold("set".to_owned(), |line, (name, value)| {
             line + &format!(" {name}={value}")
         }),
-    }
+        Command::ReplacePlan { .. } => return None,
+    })
 }
 
 /// The command of a line.
@@ -89,8 +91,14 @@ mod tests {
     fn what_is_sent_is_received() {
         let set = Command::set([("heading_rad", 0.1 + 0.2), ("altitude_m", -1e300)]);
         for command in [Command::Engage, Command::Disengage, Command::Stop, set] {
-            assert_eq!(command_of(&line_of(&command)), Ok(command));
+            assert_eq!(command_of(&line_of(&command).unwrap()), Ok(command));
         }
+        let replacing = Command::ReplacePlan {
+            file: "/etc/shadow".to_owned(),
+            item: 1,
+        };
+        assert_eq!(line_of(&replacing), None);
+        assert!(command_of("replace-plan /etc/shadow 1").is_err());
         let refused = Verdict::Refused("no\nway".to_owned());
         assert_eq!(
             answer_of(&line_of_answer(&refused)),

@@ -10,7 +10,8 @@ use fcc_timer::not_started;
 
 use super::super::again::StartsLeft;
 use super::saved::Saved;
-use super::state_file;
+use super::{kept_plan, state_file};
+use crate::config::PreparedPlan;
 
 /// How long the end of a flight waits for the disk.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -43,17 +44,29 @@ struct Slot {
 
 #[derive(Clone)]
 enum DiskRequest {
-    Keep(Arc<Saved>),
+    /// A state, and the plan that it needs beside it.
+    Keep(Arc<Saved>, Option<Arc<PreparedPlan>>),
     Clear,
 }
 
 impl DiskRequest {
-    fn execute(&self, path: &Path) -> io::Result<()> {
+    /// `plan` is the hash of the plan that is beside the state.
+    fn execute(&self, path: &Path, plan: &mut Option<u64>) -> io::Result<()> {
         #[cfg(feature = "fault-injection")]
         super::super::injection::fail_state_file();
         match self {
-            Self::Keep(saved) => state_file::write(path, saved),
-            Self::Clear => state_file::remove(path),
+            Self::Keep(saved, kept) => {
+                let hash = kept.as_ref().map(|kept| kept.replacement.plan_hash);
+                if let Some(kept) = kept.as_ref().filter(|_| hash != *plan) {
+                    kept_plan::write(path, &kept.content)?;
+                    *plan = hash;
+                }
+                state_file::write(path, saved)
+            }
+            Self::Clear => {
+                *plan = None;
+                state_file::remove(path).and(kept_plan::remove(path))
+            }
         }
     }
 }
@@ -75,9 +88,10 @@ impl Keeper {
         })
     }
 
-    /// Stores this state, replacing the previous one.
-    pub(super) fn keep(&self, saved: Saved) {
-        self.desk.request(DiskRequest::Keep(Arc::new(saved)));
+    /// Stores this state, replacing the previous one, with the plan that replaced the
+    /// configuration's.
+    pub(super) fn keep(&self, saved: Saved, plan: Option<Arc<PreparedPlan>>) {
+        self.desk.request(DiskRequest::Keep(Arc::new(saved), plan));
     }
 
     /// Removes the stored state.
@@ -141,9 +155,9 @@ fn start_thread(path: PathBuf, desk: Arc<Requests>) -> io::Result<Receiver<Strin
         .name("fcc-state".to_owned())
         .stack_size(STACK_BYTES)
         .spawn(move || {
-            let mut failing = false;
+            let (mut failing, mut plan) = (false, None);
             while let Some(requested) = desk.next() {
-                let done = requested.execute(&path);
+                let done = requested.execute(&path, &mut plan);
                 desk.done();
                 if let Err(error) = &done
                     && !failing

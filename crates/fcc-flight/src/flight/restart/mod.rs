@@ -9,6 +9,7 @@
 
 mod boot_clock;
 mod keeper;
+mod kept_plan;
 mod observer;
 mod place;
 mod recovery;
@@ -18,6 +19,7 @@ mod state_page;
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use fcc_core::flight::guidance::{Progress, Targets};
@@ -29,6 +31,7 @@ use fcc_telemetry::{FlightEvent, FlightMessage};
 use crate::config::{Config, RestartMode};
 use boot_clock::BootInstant;
 use keeper::Keeper;
+use kept_plan::{NotedPlans, SavedPlan};
 pub(super) use observer::RestartKeeper;
 use place::SavedPlace;
 use recovery::{Next, Recovery};
@@ -60,6 +63,7 @@ pub(super) struct RestartRequest {
     path: PathBuf,
     fingerprint: u32,
     release_left_held: bool,
+    config: Config,
 }
 
 impl RestartRequest {
@@ -74,6 +78,7 @@ impl RestartRequest {
             path,
             fingerprint: fingerprint(config),
             release_left_held: section.release_left_held,
+            config: config.clone(),
         }
     }
 }
@@ -101,7 +106,8 @@ pub(super) struct Restart {
     /// Held until the process ends in any way.
     _lock: File,
     keeper: Keeper,
-    kept: Option<(Instant, Progress)>,
+    kept: Option<(Instant, Progress, u64)>,
+    plans: NotedPlans,
     engaged_since: Option<Instant>,
     recoveries: u32,
     switch_owner: SwitchOwner,
@@ -141,6 +147,7 @@ impl Restart {
             _lock: lock,
             keeper,
             kept: None,
+            plans: NotedPlans::of(recovery.as_ref().and_then(Recovery::plan).cloned()),
             engaged_since: None,
             recoveries: 0,
             switch_owner: SwitchOwner::default(),
@@ -182,7 +189,11 @@ impl Restart {
                         altitude_reference: record.setpoints.altitude_reference,
                     };
                     let place = SavedPlace::of(&record.measurements, record.tick.woke);
-                    self.keep(resume, place);
+                    let plan = SavedPlan {
+                        hash: record.setpoints.plan_hash,
+                        uploaded_unix_s: record.setpoints.plan_uploaded_unix_s,
+                    };
+                    self.keep(resume, place, plan);
                 }
             }
         }
@@ -249,32 +260,39 @@ impl Restart {
         self.keeper.end();
     }
 
-    fn keep(&mut self, resume: Resume, place: SavedPlace) {
+    /// The plans that may have replaced the configuration's.
+    const fn plans(&mut self) -> &mut NotedPlans {
+        &mut self.plans
+    }
+
+    fn keep(&mut self, resume: Resume, place: SavedPlace, plan: SavedPlan) {
         let since = *self.engaged_since.get_or_insert_with(Instant::now);
         if self.recoveries > 0 && since.elapsed() >= STABLE_AFTER {
             self.recoveries = 0;
         }
-        let is_due = self.kept.is_none_or(|(at, progress)| {
-            at.elapsed() >= KEEP_EVERY || differ(&progress, &resume.progress)
+        let is_due = self.kept.is_none_or(|(at, progress, hash)| {
+            at.elapsed() >= KEEP_EVERY || hash != plan.hash || differ(&progress, &resume.progress)
         });
         // The state of the flight to recover is kept until the recovery is
         // decided.
         if !is_due || self.recovery.is_some() {
             return;
         }
-        self.kept = Some((Instant::now(), resume.progress));
+        self.kept = Some((Instant::now(), resume.progress, plan.hash));
         // The boot does not change while the process lives.
         let Some(at) = self.boot.as_ref().and_then(BootInstant::again) else {
             return;
         };
-        self.keeper.keep(Saved {
+        let saved = Saved {
             at,
             config: self.request.fingerprint,
             switch: self.switch,
             recoveries: self.recoveries,
             place,
+            plan,
             resume,
-        });
+        };
+        self.keeper.keep(saved, self.plans.flown(plan.hash));
     }
 }
 
@@ -343,8 +361,12 @@ fn evaluate(
             saved.recoveries
         ));
     }
+    let plan = match kept_plan::restore(&request.path, saved.plan, &request.config) {
+        Ok(plan) => plan.map(Arc::new),
+        Err(why) => return stands_by(&format!("{interrupted}, and {why}")),
+    };
     let message = format!("{}: {interrupted}; recovering it", request.path.display());
-    (Some(Recovery::new(saved)), Some(message))
+    (Some(Recovery::new(saved, plan)), Some(message))
 }
 
 /// Whether the mode differs, or its captured values differ by more than a small

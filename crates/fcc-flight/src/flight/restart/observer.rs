@@ -6,7 +6,7 @@ use fcc_core::flight::{Autopilot, AutopilotCommand};
 use fcc_core::framework::{ControlAuthority, Message};
 use fcc_telemetry::{FlightEvent, FlightRecord};
 
-use super::super::observer::{Access, Facts, FlightTime, Observer, Reports};
+use super::super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 use super::super::outcome::Outcome;
 use super::{Restart, RestartRequest};
 
@@ -65,7 +65,20 @@ impl Observer<Autopilot> for RestartKeeper {
         }
     }
 
+    fn report(&mut self, report: &Report, _: &FlightTime) {
+        if let (Some(restart), Report::Plan(plan)) = (&mut self.restart, report) {
+            restart.plans().note(Arc::clone(plan));
+        }
+    }
+
     fn poll(&mut self, access: &mut Access<'_, AutopilotCommand>) {
+        let restored = self
+            .restart
+            .as_mut()
+            .map(|restart| restart.plans().report());
+        if let Some(plan) = restored.flatten() {
+            access.reports.plan(plan);
+        }
         if let Some(restart) = &mut self.restart
             && let Some(words) = restart.poll(access.commands, &mut *access.before_control)
         {

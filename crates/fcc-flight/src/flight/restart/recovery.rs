@@ -7,6 +7,7 @@
 //! flight is not recovered. Only the sensor to which the switch belonged says
 //! so: another's may deliver first after the start.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use fcc_core::flight::guidance::Targets;
@@ -21,12 +22,15 @@ use fcc_telemetry::units::{M_FT, MPS_KT};
 use super::boot_clock::BootInstant;
 use super::place::{Continuity, PresentPlace};
 use super::saved::Saved;
+use crate::config::PreparedPlan;
 use crate::flight::pilot::Pilot;
 
 /// A flight that is to be recovered.
 #[derive(Debug)]
 pub(super) struct Recovery {
     saved: Saved,
+    /// The plan that was flown, if it is not the configuration's.
+    plan: Option<Arc<PreparedPlan>>,
     commanded: Option<Resume>,
     place: PresentPlace,
     /// The status in the latest tick.
@@ -58,9 +62,10 @@ pub(super) enum Next {
 }
 
 impl Recovery {
-    pub(super) fn new(saved: Saved) -> Self {
+    pub(super) fn new(saved: Saved, plan: Option<Arc<PreparedPlan>>) -> Self {
         Self {
             saved,
+            plan,
             place: PresentPlace::default(),
             commanded: None,
             status: None,
@@ -72,6 +77,11 @@ impl Recovery {
     /// The number of consecutive recoveries of the flight before this one.
     pub(super) const fn recoveries(&self) -> u32 {
         self.saved.recoveries
+    }
+
+    /// The plan that was flown, if it is not the configuration's.
+    pub(super) const fn plan(&self) -> Option<&Arc<PreparedPlan>> {
+        self.plan.as_ref()
     }
 
     /// Processes a message of the loop.
@@ -148,19 +158,20 @@ impl Recovery {
     }
 
     /// Sends the commands: engage first, since engaging discards earlier
-    /// commands. Without room for both, neither is sent, since engaging alone
+    /// commands. Without room for all, none is sent, since engaging alone
     /// would fly something else; it is tried again.
     pub(super) fn command(
         &mut self,
         commands: &mut CommandSender<AutopilotCommand>,
         resume: Resume,
     ) {
-        let both = [
-            LoopCommand::Engage,
-            LoopCommand::Controller(AutopilotCommand::Resume(resume)),
-        ];
-        if commands.room() >= both.len() {
-            let sent = both
+        let plan = self.plan.as_ref().map(|plan| plan.command());
+        let resumed = plan.into_iter().chain([AutopilotCommand::Resume(resume)]);
+        let all: Vec<_> = std::iter::once(LoopCommand::Engage)
+            .chain(resumed.map(LoopCommand::Controller))
+            .collect();
+        if commands.room() >= all.len() {
+            let sent = all
                 .into_iter()
                 .all(|command| commands.send(command).is_ok());
             self.commanded = sent.then_some(resume);
@@ -193,6 +204,7 @@ mod tests {
     use fcc_runtime::{LoopConfig, Machine, Parts};
     use fcc_timer::ManualTimer;
 
+    use super::super::kept_plan::SavedPlan;
     use super::super::place::SavedPlace;
     use super::super::saved::SavedSwitch;
     use super::*;
@@ -213,6 +225,7 @@ mod tests {
             switch: SavedSwitch::default(),
             recoveries: 0,
             place: SavedPlace::default(),
+            plan: SavedPlan::default(),
             resume,
         };
         for (room, sent) in [(1, 0), (2, 2), (3, 2)] {
@@ -227,7 +240,7 @@ mod tests {
                 actuators: Vec::new(),
             };
             let (_machine, mut link) = Machine::new(parts, &config).unwrap();
-            let mut taking_up = Recovery::new(saved.clone());
+            let mut taking_up = Recovery::new(saved.clone(), None);
             taking_up.command(&mut link.commands, resume);
             assert_eq!(room - link.commands.room(), sent);
             assert_eq!(taking_up.commanded.is_some(), sent == 2);

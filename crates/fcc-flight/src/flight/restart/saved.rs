@@ -3,6 +3,7 @@
 use fcc_core::flight::Resume;
 
 use super::boot_clock::BootInstant;
+use super::kept_plan::SavedPlan;
 use super::place::SavedPlace;
 
 /// The stored state of a flight.
@@ -18,6 +19,8 @@ pub(super) struct Saved {
     pub(super) recoveries: u32,
     /// Where the aircraft was.
     pub(super) place: SavedPlace,
+    /// The plan that was flown.
+    pub(super) plan: SavedPlan,
     /// What was flown.
     pub(super) resume: Resume,
 }

@@ -92,6 +92,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::super::boot_clock::BootInstant;
+    use super::super::kept_plan::SavedPlan;
     use super::super::place::{SavedPlace, Sourced};
     use super::super::saved::SavedSwitch;
     use super::*;
@@ -121,6 +122,10 @@ mod tests {
                     },
                     source: 2,
                 }),
+            },
+            plan: SavedPlan {
+                hash: u64::MAX - 1,
+                uploaded_unix_s: 1_790_000_000,
             },
             resume: Resume {
                 progress: Progress {

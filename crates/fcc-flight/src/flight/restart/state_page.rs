@@ -9,6 +9,7 @@ use fcc_telemetry::units::{COMMANDED_ALTIMETER_SETTING_PA, COMMANDED_HEADING_RAD
 use serde::{Deserialize, Serialize};
 
 use super::boot_clock::BootInstant;
+use super::kept_plan::SavedPlan;
 use super::place::{SavedPlace, Sourced};
 use super::saved::{Saved, SavedSwitch};
 
@@ -50,6 +51,11 @@ pub(super) struct Page {
     position_rad: Option<[f64; 2]>,
     #[serde(default)]
     position_source: u8,
+    /// Of the flight plan; not in the files of earlier versions.
+    #[serde(default)]
+    plan_hash: u64,
+    #[serde(default)]
+    plan_uploaded_unix_s: u64,
 }
 
 /// The pressure altitudes that a flight can have captured, m: those that can be
@@ -91,6 +97,8 @@ impl Page {
             plant_source: plant.map_or(0, |plant| plant.source),
             position_rad: position.map(|at| [at.value.latitude_rad, at.value.longitude_rad]),
             position_source: position.map_or(0, |at| at.source),
+            plan_hash: saved.plan.hash,
+            plan_uploaded_unix_s: saved.plan.uploaded_unix_s,
         }
     }
 
@@ -114,6 +122,10 @@ impl Page {
                 source: self.switch_source,
             },
             recoveries: self.recoveries,
+            plan: SavedPlan {
+                hash: self.plan_hash,
+                uploaded_unix_s: self.plan_uploaded_unix_s,
+            },
             resume: Resume {
                 progress: Progress {
                     mode: mode?,

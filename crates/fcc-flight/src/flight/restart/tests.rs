@@ -19,6 +19,7 @@ use super::*;
 
 mod elsewhere;
 mod foreign_files;
+mod replaced_plan;
 
 const FLOWN: Resume = Resume {
     progress: Progress {
@@ -57,6 +58,7 @@ impl Folder {
             path: folder.path().join("fccd.flight"),
             fingerprint: 7,
             release_left_held: true,
+            config: Config::default(),
         };
         Self { folder, request }
     }
@@ -74,6 +76,7 @@ impl Folder {
             },
             recoveries: 0,
             place: SavedPlace::default(),
+            plan: SavedPlan::default(),
             resume: FLOWN,
         };
         change(&mut saved);
@@ -378,7 +381,7 @@ fn only_the_owner_of_the_switch_switches_off() {
     assert_eq!((saved.switch, saved.resume), (owners, pattern));
 
     let standby = Message::Tick(Record::new(Tick::default(), State::Standby));
-    let mut recovery = Recovery::new(saved);
+    let mut recovery = Recovery::new(saved, None);
     let mut next = |source, switch| {
         recovery.take(&switched(&standby, source, switch));
         recovery.next(BootInstant::now(), Duration::from_secs(60))

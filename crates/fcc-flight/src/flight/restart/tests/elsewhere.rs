@@ -63,7 +63,7 @@ fn a_flight_is_not_continued_elsewhere() {
         ),
     ];
     for (plant, latitudes, expected) in cases {
-        let mut recovery = Recovery::new(saved.clone());
+        let mut recovery = Recovery::new(saved.clone(), None);
         for (second, latitude) in (1..).zip(latitudes) {
             recovery.take(&at(&standby, second, plant, latitude));
         }
@@ -75,7 +75,7 @@ fn a_flight_is_not_continued_elsewhere() {
         assert!(is.contains(expected), "{is}: {plant:?}, {latitudes:?}");
     }
     // Neither has arrived yet.
-    let mut recovery = Recovery::new(saved);
+    let mut recovery = Recovery::new(saved, None);
     recovery.take(&standby);
     let next = recovery.next(BootInstant::now(), Duration::from_secs(60));
     assert!(matches!(next, Next::Wait));

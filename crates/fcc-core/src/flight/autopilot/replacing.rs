@@ -1,0 +1,149 @@
+//! The plan is replaced in flight: in one piece, by the tick that reads the command.
+//!
+//! A plan that replaces another one was read, checked and put with the
+//! [prepared routes](crate::flight::route::PreparedRoutes) before the command was sent.
+//! From its tick on everything that depends on the plan is the new one's: items, fence,
+//! places to return to, and the hash in the record. What is not replaced stays as it is,
+//! and the answer says why.
+
+use core::fmt;
+
+use super::Autopilot;
+use crate::flight::guidance::Mode;
+use crate::flight::route::{Route, RunwayPhase};
+use crate::framework::Notice;
+use crate::schema;
+
+/// The number of the notice that answers; the amount is the refusal's number, the item
+/// the one that is flown first.
+pub const PLAN_ANSWER: u8 = 32;
+const PERMILLE: u16 = 1_000;
+
+schema! {
+    /// Which plan is to replace the one that is flown.
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub struct PlanReplacement {
+        /// The first 64 bits of the SHA-256 of its content.
+        #[field(1)]
+        pub plan_hash: u64,
+        /// When it was uploaded, s since 1970 (UTC).
+        #[field(2)]
+        pub plan_uploaded_unix_s: u64,
+        /// The item that it is flown from, from 1; 0 after a restart, where
+        /// [`Resume`](super::Resume) follows and says what is flown.
+        #[field(3)]
+        pub item: u16,
+    }
+}
+
+/// Why a plan is not replaced.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Refusal {
+    NotEngaged = 1,
+    NotPrepared,
+    NoSuchItem,
+    NoPosition,
+    TakingOff,
+    Landing,
+}
+
+impl Refusal {
+    const ALL: [Self; 6] = [
+        Self::NotEngaged,
+        Self::NotPrepared,
+        Self::NoSuchItem,
+        Self::NoPosition,
+        Self::TakingOff,
+        Self::Landing,
+    ];
+
+    const fn words(self) -> &'static str {
+        match self {
+            Self::NotEngaged => "it is accepted only while engaged",
+            Self::NotPrepared => "it was not prepared for this flight",
+            Self::NoSuchItem => "it has no such item",
+            Self::NoPosition => "there is no position",
+            Self::TakingOff => {
+                "the aircraft is below autopilot.runway.decision_height_ft over its runway, or on \
+                 it"
+            }
+            Self::Landing => "the aircraft is landing: give the landing up first, or wait",
+        }
+    }
+}
+
+impl Autopilot {
+    /// Replaces the plan, or says why not.
+    pub(super) fn replace_plan(&mut self, replacement: &PlanReplacement) {
+        let answer = match self.replaced_by(replacement) {
+            Ok(route) => {
+                self.contingencies.end();
+                self.config.plan = Some(route);
+                let index = usize::from(replacement.item.saturating_sub(1));
+                self.begin_plan(&route, index);
+                // Nothing leads back to the plan before.
+                self.left_plan = None;
+                0
+            }
+            Err(refusal) => refusal as u16,
+        };
+        self.plan_answer = Some(Notice {
+            kind: PLAN_ANSWER,
+            amount_permille: answer * PERMILLE,
+            item: replacement.item,
+            ..Notice::default()
+        });
+    }
+
+    fn replaced_by(&self, replacement: &PlanReplacement) -> Result<Route<'static>, Refusal> {
+        if self.guidance.mode() == Mode::None {
+            return Err(Refusal::NotEngaged);
+        }
+        let config = &self.config;
+        let route = config.prepared.route(replacement.plan_hash, &config.route);
+        let route = route.ok_or(Refusal::NotPrepared)?;
+        let index = usize::from(replacement.item.saturating_sub(1));
+        route.step(index).ok_or(Refusal::NoSuchItem)?;
+        // After a restart the mode that is resumed says what is flown.
+        if replacement.item > 0 {
+            self.ground.here().ok_or(Refusal::NoPosition)?;
+            self.may_leave_runway()?;
+        }
+        Ok(Route {
+            uploaded_unix_s: replacement.plan_uploaded_unix_s,
+            ..route
+        })
+    }
+
+    /// Whether the plan may change over a runway.
+    fn may_leave_runway(&self) -> Result<(), Refusal> {
+        let Some(demand) = self.runway() else {
+            return Ok(());
+        };
+        let climbs = matches!(demand.phase, RunwayPhase::Climb | RunwayPhase::GoAround);
+        let is_high = demand.height_m >= self.config.route.runway.decision_height_m;
+        match demand.phase {
+            _ if climbs && is_high => Ok(()),
+            phase if phase.is_takeoff() || climbs => Err(Refusal::TakingOff),
+            _ => Err(Refusal::Landing),
+        }
+    }
+}
+
+/// Whether a notice says that the plan is not replaced.
+pub fn refuses_plan(notice: &Notice) -> bool {
+    notice.kind == PLAN_ANSWER && notice.amount_permille > 0
+}
+
+/// Writes the answer.
+pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let number = usize::from(notice.amount_permille / PERMILLE);
+    let refusal = number
+        .checked_sub(1)
+        .and_then(|index| Refusal::ALL.get(index));
+    match (refusal, notice.item) {
+        (Some(refusal), _) => write!(f, "the plan is not replaced: {}", refusal.words()),
+        (None, 0) => f.write_str("the plan is replaced, as before the restart"),
+        (None, item) => write!(f, "the plan is replaced, and flown from item {item}"),
+    }
+}

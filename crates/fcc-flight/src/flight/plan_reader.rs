@@ -1,0 +1,142 @@
+//! Reads and checks plans for commands, in a thread of its own: a disk may hang.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
+use std::thread;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use fcc_live::{PendingCommand, Verdict};
+use fcc_plan::FileError;
+use fcc_timer::not_started;
+
+use crate::config::{Config, PreparedPlan};
+
+/// With locked memory, all of a stack is resident.
+const STACK_BYTES: usize = 512 << 10;
+/// The longest list of problems in an answer, in bytes.
+const LONGEST_LIST: usize = 7_000;
+
+type Read = Result<PreparedPlan, String>;
+
+/// Reads plans, one at a time.
+pub(super) struct PlanReader {
+    config: Arc<Config>,
+    reading: Option<(PendingCommand, Receiver<Read>)>,
+}
+
+impl PlanReader {
+    pub(super) fn new(config: &Config) -> Self {
+        Self {
+            config: Arc::new(config.clone()),
+            reading: None,
+        }
+    }
+
+    /// Begins to read; an answer if that is not possible now.
+    pub(super) fn begin(
+        &mut self,
+        asked: PendingCommand,
+        file: PathBuf,
+        item: u16,
+    ) -> Option<(u64, Verdict)> {
+        let refused = |why: String| Some((asked.id, Verdict::Refused(why)));
+        if self.reading.is_some() {
+            return refused("another plan is being read: send it again".to_owned());
+        }
+        let (done, read) = sync_channel(1);
+        let config = Arc::clone(&self.config);
+        let work = move || {
+            let now = SystemTime::now().duration_since(UNIX_EPOCH);
+            let uploaded_s = now.map_or(0, |since| since.as_secs());
+            let prepared = config.prepare_plan(&file, item, uploaded_s);
+            let _ = done.send(prepared.map_err(|error| refusal(&error)));
+        };
+        let thread = thread::Builder::new()
+            .name("fcc-plan".to_owned())
+            .stack_size(STACK_BYTES)
+            .spawn(work);
+        if let Err(error) = thread {
+            return refused(format!("no thread to read it: {}", not_started(error)));
+        }
+        self.reading = Some((asked, read));
+        None
+    }
+
+    /// The plan that was read, and its command; none while there is none.
+    pub(super) fn take(&mut self) -> Option<(PendingCommand, Read)> {
+        let (asked, read) = self.reading.take()?;
+        match read.try_recv() {
+            Ok(prepared) => Some((asked, prepared)),
+            Err(TryRecvError::Empty) => {
+                self.reading = Some((asked, read));
+                None
+            }
+            Err(TryRecvError::Disconnected) => Some((
+                asked,
+                Err("its reading was interrupted: send it again".to_owned()),
+            )),
+        }
+    }
+}
+
+/// Why a plan is refused, as an answer has room for it.
+fn refusal(error: &FileError) -> String {
+    let FileError::Invalid { file, problems } = error else {
+        return error.to_string();
+    };
+    let mut text = format!("{file}: ");
+    for (n, problem) in problems.iter().enumerate() {
+        let line = problem.to_string();
+        if text.len() + line.len() > LONGEST_LIST {
+            let left = problems.len() - n;
+            let _ = write!(text, "; and {left} more, which fccd plan check lists");
+            break;
+        }
+        text.push_str(if n == 0 { "" } else { "; " });
+        text.push_str(&line);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use fcc_plan::Problem;
+
+    use super::*;
+
+    fn plan(north_deg: f64) -> String {
+        format!("QGC WPL 110\n0 0 0 16 0 0 0 0 47 8 900 1\n1 0 0 16 0 0 0 0 {north_deg} 8 900 1\n")
+    }
+
+    #[test]
+    fn a_refusal_names_every_problem_and_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("bad.waypoints");
+        let text = plan(47.25).replace(" 16 0 0 0 0 47.25", " 82 0 0 0 0 147.25");
+        std::fs::write(&file, text).unwrap();
+        let refused = |item| refusal(&Config::default().prepare_plan(&file, item, 0).unwrap_err());
+        let why = refused(1);
+        assert!(
+            why.contains("bad.waypoints: item 1: line 3: command: 82"),
+            "{why}"
+        );
+        std::fs::write(&file, plan(47.25)).unwrap();
+        let why = refused(2);
+        assert!(
+            why.ends_with("item to begin with: 2: there is no such item: give 1 to 1"),
+            "{why}"
+        );
+        let missing = Config::default().prepare_plan(&folder.path().join("no.plan"), 1, 0);
+        assert!(refusal(&missing.unwrap_err()).contains("no.plan: cannot be read"));
+    }
+
+    #[test]
+    fn a_long_refusal_says_how_many_problems_are_left_out() {
+        let problems = vec![Problem::of_item(7, "command", "x".repeat(90)); 200];
+        let file = "long.plan".to_owned();
+        let why = refusal(&FileError::Invalid { file, problems });
+        assert!(why.len() < 7_100 && why.ends_with(" more, which fccd plan check lists"));
+    }
+}

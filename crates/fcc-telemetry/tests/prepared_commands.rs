@@ -1,0 +1,61 @@
+//! Commands that are prepared before they are sent: another flight plan.
+#![cfg(all(test, feature = "flight"))]
+
+use fcc_core::flight::{Autopilot, AutopilotCommand, PLAN_ANSWER, PlanReplacement};
+use fcc_core::framework::{Event, EventKind, EventOf, LoopCommand, Notice, State, Time};
+use fcc_telemetry::{Command, PendingCommand, SentCommands, Verdict};
+
+fn event(tick: u64, kind: EventKind<AutopilotCommand>) -> EventOf<Autopilot> {
+    Event {
+        tick,
+        time: Time::NEVER,
+        kind,
+    }
+}
+
+/// The loop refuses it by a notice of the tick that read it.
+#[test]
+fn a_prepared_command_is_answered_by_the_notice_of_its_tick() {
+    let command = AutopilotCommand::ReplacePlan(PlanReplacement::default());
+    let replace = || Command::ReplacePlan {
+        file: "/a.plan".to_owned(),
+        item: 1,
+    };
+    let read = EventKind::CommandReceived(LoopCommand::Controller(command));
+    for (amount_permille, is_refused) in [(0, false), (6_000, true)] {
+        let mut commands = SentCommands::<Autopilot>::new(Vec::new());
+        let asked = PendingCommand {
+            id: 1,
+            command: replace(),
+        };
+        assert_eq!(commands.send_prepared(asked, command, |_| Ok(())), None);
+        commands.event(&event(5, read));
+        let notice = Notice {
+            kind: PLAN_ANSWER,
+            amount_permille,
+            item: 1,
+            ..Notice::default()
+        };
+        commands.event(&event(5, EventKind::Noticed(notice)));
+        match commands.verdict(5, State::Engaged) {
+            Some((1, Verdict::CarriedOut { tick: 5 })) => assert!(!is_refused),
+            Some((1, Verdict::Refused(why))) => {
+                assert!(
+                    is_refused && why.contains("the aircraft is landing"),
+                    "{why}"
+                );
+            }
+            other => panic!("{other:?}"),
+        }
+        // Not engaged it is not sent, and never unprepared.
+        assert_eq!(commands.verdict(6, State::Standby), None);
+        let asked = || PendingCommand {
+            id: 2,
+            command: replace(),
+        };
+        let sent = commands.send_prepared(asked(), command, |_| panic!("not to be sent"));
+        assert!(matches!(sent, Some((2, Verdict::Refused(_)))), "{sent:?}");
+        let sent = commands.send(asked(), |_| panic!("not to be sent"));
+        assert!(matches!(sent, Some((2, Verdict::Refused(_)))), "{sent:?}");
+    }
+}
