@@ -31,9 +31,9 @@ mod surfaces;
 
 pub use altimeter::{ALTIMETER_SETTINGS_PA, Altimeter, AltitudeReference};
 pub use autopilot::{
-    Autopilot, AutopilotCommand, AutopilotConfig, Contingency, ContingencyAction,
-    ContingencyConfig, FailsafeConfig, FailsafeEnd, ITEM_REACHED, PLAN_ANSWER, PlanReplacement,
-    Resume, Scale, StickTakeover, flags, refuses_plan,
+    Autopilot, AutopilotCommand, AutopilotConfig, COMMAND_ANSWER, Contingency, ContingencyAction,
+    ContingencyConfig, FailsafeConfig, FailsafeEnd, ITEM_REACHED, PlanReplacement, Resume, Scale,
+    StickTakeover, flags, refuses_command,
 };
 pub use measurements::{
     Attitude, BodyRates, Measurements, PilotControls, Position, SpecificForce, Suspect, Velocity,

@@ -231,3 +231,33 @@ fn without_a_position_it_returns_and_with_one_the_plan_goes_on() {
     });
     println!("at most {worst_m:.0} m off");
 }
+
+/// What is not acted on is told: headings are flown without a position, and a fence is
+/// ignored if that is configured.
+#[test]
+fn what_is_flown_on_is_told_once() {
+    let is_silent = Arc::new(AtomicBool::new(false));
+    let silencer = Arc::clone(&is_silent);
+    let keys = "[contingency]\nposition_lost_after_s = 5\nfence = \"continue\"\n[built-in]\n";
+    let mut flight = Flight::with(&fenced(&[], 3_000.0), keys, |sensor| {
+        Box::new(Silenced(sensor, Arc::clone(&silencer)))
+    });
+    flight.fly_until(60.0, |flight| flight.record.state.state() == State::Engaged);
+    flight.command(AutopilotCommand::Heading(0.0));
+    let crossed = "the fence is crossed: flying on";
+    flight.fly_until(200.0, |flight| flight.happened(crossed));
+    // At 100 kt, 51 m/s, in the second in which it is told.
+    let out_m = flight.distance_m(HOME) - 3_000.0;
+    assert!((0.0..52.0).contains(&out_m), "{out_m}");
+    is_silent.store(true, Ordering::Relaxed);
+    let lost = "there is no position for too long: flying on";
+    flight.fly_until(7.0, |flight| flight.happened(lost));
+    for _ in 0..800 {
+        flight.tick();
+    }
+    assert_eq!(flight.mode(), Mode::Hold);
+    for told in [crossed, lost] {
+        let times = flight.events.iter().filter(|event| *event == told).count();
+        assert_eq!(times, 1, "{told}");
+    }
+}

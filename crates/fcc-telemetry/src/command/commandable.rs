@@ -16,8 +16,7 @@ pub trait Commandable: Telemetry<Command: PartialEq> {
     /// after the set points. None by default.
     const JOINT: &'static [JointSetpoints<Self::Command>] = &[];
 
-    /// Whether a notice, told in the tick that read a command that was
-    /// [prepared](super::SentCommands::send_prepared), says that it is refused.
+    /// Whether a notice says that a command that was read in its tick is refused.
     fn is_refusal(_: &Notice) -> bool {
         false
     }
@@ -164,7 +163,7 @@ mod flight {
     };
     use core::f64::consts::{FRAC_PI_2, PI};
 
-    use fcc_core::flight::{Autopilot, AutopilotCommand, Position, refuses_plan};
+    use fcc_core::flight::{Autopilot, AutopilotCommand, Position, refuses_command};
     use fcc_core::framework::Notice;
 
     use super::{Commandable, CommandableSetpoint, JointSetpoints};
@@ -271,7 +270,7 @@ mod flight {
         }];
 
         fn is_refusal(notice: &Notice) -> bool {
-            refuses_plan(notice)
+            refuses_command(notice)
         }
     }
 }

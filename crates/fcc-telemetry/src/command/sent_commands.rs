@@ -143,11 +143,12 @@ impl<C: Commandable> SentCommands<C> {
                 }
             }
             EventKind::Noticed(notice) if C::is_refusal(&notice) => {
-                let prepared = self.waiting.iter_mut().find(|waiting| {
+                for waiting in self.waiting.iter_mut().filter(|waiting| {
+                    let command = &waiting.asked.command;
                     waiting.read_in == Some(event.tick)
-                        && matches!(waiting.asked.command, Command::ReplacePlan { .. })
-                });
-                if let Some(waiting) = prepared {
+                        && command.needs_control::<C>()
+                        && matches!(command, Command::Set(_) | Command::ReplacePlan { .. })
+                }) {
                     waiting.refusal = Some(describe_event::<C>(event, &[], &[]));
                 }
             }
@@ -172,7 +173,7 @@ impl<C: Commandable> SentCommands<C> {
         };
         let is_refused = waiting.refusal.is_some();
         let done = match &waiting.asked.command {
-            Command::ReplacePlan { .. } if is_refused => false,
+            Command::Set(_) | Command::ReplacePlan { .. } if is_refused => false,
             command if command.needs_control::<C>() => state == State::Engaged,
             Command::Engage | Command::Set(_) | Command::ReplacePlan { .. } => {
                 state != State::Stopped

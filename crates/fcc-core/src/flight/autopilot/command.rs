@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::{Autopilot, PlanReplacement, Resume};
 use crate::blocks::wrap_pi;
-use crate::flight::guidance::ModeInput;
+use crate::flight::guidance::{Mode, ModeInput};
 use crate::flight::{ALTIMETER_SETTINGS_PA, AltitudeReference, Position};
 use crate::schema;
 use crate::units::{FOOT_M, HECTOPASCAL_PA, KNOT_MPS};
@@ -109,6 +109,7 @@ impl fmt::Display for AutopilotCommand {
                 place.altitude_m / FOOT_M
             ),
             Self::ReturnHome => f.write_str("return home"),
+            Self::Heartbeat(0.0) => f.write_str("heartbeat: the promise ends"),
             Self::Heartbeat(within_s) => write!(f, "heartbeat: the next within {within_s:.1} s"),
             Self::GoAround => f.write_str("go around"),
             Self::ReplacePlan(plan) => {
@@ -138,14 +139,16 @@ fn compass_deg(heading_rad: f64) -> f64 {
 }
 
 impl Autopilot {
-    /// Executes a command; one that is not applicable now is ignored.
+    /// Executes a command; one that is not applicable now is refused, or without being
+    /// engaged ignored.
     pub(super) fn execute(&mut self, command: &AutopilotCommand) {
         self.contingencies.renew_promise();
         if let AutopilotCommand::ReplacePlan(replacement) = command {
             return self.replace_plan(replacement);
         }
-        if command.is_of_mode() {
-            if self.is_too_low_for(command) {
+        if command.is_of_mode() && self.guidance.mode() != Mode::None {
+            if let Err(refusal) = self.may_carry_out(command) {
+                self.refuse(refusal);
                 return;
             }
             self.contingencies.end();

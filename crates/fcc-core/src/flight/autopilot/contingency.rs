@@ -142,6 +142,8 @@ pub(super) struct Contingencies {
     is_loss_met: bool,
     /// Whether this low battery was acted on.
     is_battery_met: bool,
+    /// Whether it was told that the fence is crossed, which is not acted on.
+    is_crossing_told: bool,
     /// Within which time commands are promised, and how much of it is left, s.
     promised_s: Option<(f64, f64)>,
     /// The circle at the fence that was turned onto, until it is left behind.
@@ -171,6 +173,7 @@ impl Contingencies {
             before: Mode::None,
             is_loss_met: false,
             is_battery_met: false,
+            is_crossing_told: false,
             promised_s,
             kept: None,
             news: None,
@@ -268,26 +271,37 @@ impl Autopilot {
             }
             return;
         }
-        let is_flown_by = self.guidance.over_ground().is_some();
-        if is_flown_by
-            && self.ground.lost_s() >= config.position_after_s
-            && !self.contingencies.is_loss_met
+        if self.contingencies.is_loss_met
+            || self.ground.here().is_none()
+            || self.ground.lost_s() < config.position_after_s
         {
-            // Where the runway is, is not known well enough.
-            if config.position != ContingencyAction::Continue {
-                self.guidance.go_around();
-            }
-            self.contingencies.is_loss_met = self.meet(Contingency::PositionLost, config.position);
+            return;
         }
+        // Headings and altitudes are flown without one.
+        let action = if self.guidance.over_ground().is_some() {
+            config.position
+        } else {
+            ContingencyAction::Continue
+        };
+        // Where the runway is, is not known well enough.
+        if action != ContingencyAction::Continue {
+            self.guidance.go_around();
+        }
+        self.contingencies.is_loss_met = self.meet(Contingency::PositionLost, action);
     }
 
     fn watch_commander(&mut self, dt_s: f64) {
         let Some((within_s, left_s)) = self.contingencies.promised_s else {
             return;
         };
-        let left_s = left_s - dt_s;
+        let (before_s, left_s) = (left_s, left_s - dt_s);
         let action = self.config.contingency.commander;
         let is_met = left_s <= 0.0 && self.meet(Contingency::CommanderLost, action);
+        if !is_met && left_s <= 0.0 && before_s > 0.0 {
+            // A take-off or a landing is ended before.
+            self.contingencies
+                .announce(Contingency::CommanderLost, ContingencyAction::Continue);
+        }
         self.contingencies.promised_s = (!is_met).then_some((within_s, left_s));
     }
 }
@@ -299,6 +313,9 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
         Contingency::None => "there is a position again",
         Contingency::PositionLost => "there is no position for too long",
         Contingency::CommanderLost => "the commander is not heard as promised",
+        Contingency::Fence if notice.item == ContingencyAction::Continue as u16 + 1 => {
+            "the fence is crossed"
+        }
         Contingency::Fence => "the fence is near: turning away",
         Contingency::BatteryLow => "the battery is low",
     };

@@ -23,6 +23,7 @@ mod other_control;
 mod pilot_takeover;
 mod plant_clock;
 mod reading_age;
+mod refusal;
 mod release;
 mod replacing;
 mod resume;
@@ -53,8 +54,9 @@ use pilot_takeover::PilotTakeover;
 pub use pilot_takeover::StickTakeover;
 use plant_clock::PlantClock;
 use reading_age::ReadingAges;
+pub use refusal::{COMMAND_ANSWER, refuses_command};
 use release::Release;
-pub use replacing::{PLAN_ANSWER, PlanReplacement, refuses_plan};
+pub use replacing::PlanReplacement;
 pub use resume::Resume;
 pub use routing::ITEM_REACHED;
 use runway::RunwayControl;
@@ -130,8 +132,8 @@ pub struct Autopilot {
     news: Option<Notice>,
     told: Option<Notice>,
     /// What became of a plan that was commanded, and as it is told in this tick.
-    plan_answer: Option<Notice>,
-    plan_told: Option<Notice>,
+    answer: Option<Notice>,
+    answered: Option<Notice>,
     targets: Targets,
     capture: Option<Capture>,
     altimeter: Altimeter,
@@ -246,7 +248,7 @@ impl Controller for Autopilot {
 
     fn notice(&self) -> Option<Notice> {
         // The sender of a command waits for it.
-        self.plan_told
+        self.answered
             .or_else(|| self.pilot.notice())
             .or_else(|| self.clock.notice())
             .or_else(|| self.degraded_notice())

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::{
-    airspeed_doubt, contingency, degraded, pilot_takeover, plant_clock, replacing, routing, runway,
+    airspeed_doubt, contingency, degraded, pilot_takeover, plant_clock, refusal, routing, runway,
     wrong_sensors,
 };
 use crate::framework::Notice;
@@ -30,7 +30,7 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
         ),
         routing::ITEM_REACHED => write!(f, "item {} of the plan is reached", notice.item),
         contingency::CONTINGENCY => contingency::write(notice, f),
-        replacing::PLAN_ANSWER => replacing::write(notice, f),
+        refusal::COMMAND_ANSWER => refusal::write(notice, f),
         runway::RUNWAY => runway::write(notice, f),
         kind => match pilot_takeover::axis_of(kind) {
             Some(axis) => {

@@ -17,7 +17,7 @@ impl Autopilot {
     /// Processes a tick's measurements.
     pub(super) fn observe(&mut self, tick: &Tick, measured: &Measurements) {
         let now = tick.woke;
-        self.plan_told = self.plan_answer.take();
+        self.answered = self.answer.take();
         if is_from_the_future(measured, now) {
             self.observe_present(tick, &without_future(*measured, now));
         } else {

@@ -6,18 +6,11 @@
 //! places to return to, and the hash in the record. What is not replaced stays as it is,
 //! and the answer says why.
 
-use core::fmt;
-
 use super::Autopilot;
+use super::refusal::Refusal;
 use crate::flight::guidance::Mode;
 use crate::flight::route::{Route, RunwayPhase};
-use crate::framework::Notice;
 use crate::schema;
-
-/// The number of the notice that answers; the amount is the refusal's number, the item
-/// the one that is flown first.
-pub const PLAN_ANSWER: u8 = 32;
-const PERMILLE: u16 = 1_000;
 
 schema! {
     /// Which plan is to replace the one that is flown.
@@ -36,42 +29,6 @@ schema! {
     }
 }
 
-/// Why a plan is not replaced.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Refusal {
-    NotEngaged = 1,
-    NotPrepared,
-    NoSuchItem,
-    NoPosition,
-    TakingOff,
-    Landing,
-}
-
-impl Refusal {
-    const ALL: [Self; 6] = [
-        Self::NotEngaged,
-        Self::NotPrepared,
-        Self::NoSuchItem,
-        Self::NoPosition,
-        Self::TakingOff,
-        Self::Landing,
-    ];
-
-    const fn words(self) -> &'static str {
-        match self {
-            Self::NotEngaged => "it is accepted only while engaged",
-            Self::NotPrepared => "it was not prepared for this flight",
-            Self::NoSuchItem => "it has no such item",
-            Self::NoPosition => "there is no position",
-            Self::TakingOff => {
-                "the aircraft is below autopilot.runway.decision_height_ft over its runway, or on \
-                 it"
-            }
-            Self::Landing => "the aircraft is landing: give the landing up first, or wait",
-        }
-    }
-}
-
 impl Autopilot {
     /// Replaces the plan, or says why not.
     pub(super) fn replace_plan(&mut self, replacement: &PlanReplacement) {
@@ -87,12 +44,7 @@ impl Autopilot {
             }
             Err(refusal) => refusal as u16,
         };
-        self.plan_answer = Some(Notice {
-            kind: PLAN_ANSWER,
-            amount_permille: answer * PERMILLE,
-            item: replacement.item,
-            ..Notice::default()
-        });
+        self.answer(answer, replacement.item);
     }
 
     fn replaced_by(&self, replacement: &PlanReplacement) -> Result<Route<'static>, Refusal> {
@@ -127,23 +79,5 @@ impl Autopilot {
             phase if phase.is_takeoff() || climbs => Err(Refusal::TakingOff),
             _ => Err(Refusal::Landing),
         }
-    }
-}
-
-/// Whether a notice says that the plan is not replaced.
-pub fn refuses_plan(notice: &Notice) -> bool {
-    notice.kind == PLAN_ANSWER && notice.amount_permille > 0
-}
-
-/// Writes the answer.
-pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-    let number = usize::from(notice.amount_permille / PERMILLE);
-    let refusal = number
-        .checked_sub(1)
-        .and_then(|index| Refusal::ALL.get(index));
-    match (refusal, notice.item) {
-        (Some(refusal), _) => write!(f, "the plan is not replaced: {}", refusal.words()),
-        (None, 0) => f.write_str("the plan is replaced, as before the restart"),
-        (None, item) => write!(f, "the plan is replaced, and flown from item {item}"),
     }
 }

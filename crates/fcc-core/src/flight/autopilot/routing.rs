@@ -268,7 +268,7 @@ impl Autopilot {
         }
     }
 
-    fn after(&self, input: ModeInput) -> Option<Mode> {
+    pub(super) fn after(&self, input: ModeInput) -> Option<Mode> {
         let is_rolling = self
             .runway()
             .is_some_and(|demand| demand.phase.is_on_wheels());

@@ -27,7 +27,7 @@ const STILL_POSITION_M: f64 = 30.0;
 
 impl Position {
     /// Whether it is a position on the Earth; false for NaN.
-    pub(crate) fn is_on_earth(&self) -> bool {
+    pub fn is_on_earth(&self) -> bool {
         self.latitude_rad.abs() <= core::f64::consts::FRAC_PI_2
             && self.longitude_rad.abs() <= core::f64::consts::TAU
     }

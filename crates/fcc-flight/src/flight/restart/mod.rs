@@ -24,7 +24,7 @@ use std::time::{Duration, Instant};
 
 use fcc_core::flight::guidance::{Progress, Targets};
 use fcc_core::flight::{AutopilotCommand, Resume};
-use fcc_core::framework::{EventKind, Message, State, Switch};
+use fcc_core::framework::{EventKind, LoopCommand, Message, State, Switch};
 use fcc_runtime::{CommandSender, SwitchOwner};
 use fcc_telemetry::{FlightEvent, FlightMessage};
 
@@ -35,7 +35,7 @@ use kept_plan::{NotedPlans, SavedPlan};
 pub(super) use observer::RestartKeeper;
 use place::SavedPlace;
 use recovery::{Next, Recovery};
-use saved::{Saved, SavedSwitch};
+use saved::{Saved, SavedCommands, SavedSwitch};
 use state_file::StateFileError;
 #[cfg(fuzzing)]
 pub use state_file::read_state;
@@ -93,6 +93,7 @@ fn fingerprint(config: &Config) -> u32 {
         servo_board: config.servo_board.clone(),
         sensor: config.sensor.clone(),
         actuator: config.actuator.clone(),
+        contingency: config.contingency.clone(),
         ..Config::default()
     };
     // A configuration that was read can be written.
@@ -112,6 +113,7 @@ pub(super) struct Restart {
     recoveries: u32,
     switch_owner: SwitchOwner,
     switch: SavedSwitch,
+    commanded: SavedCommands,
     /// The loop failed: the flight counts as interrupted.
     is_broken: bool,
     recovery: Option<Recovery>,
@@ -152,6 +154,9 @@ impl Restart {
             recoveries: 0,
             switch_owner: SwitchOwner::default(),
             switch: SavedSwitch::default(),
+            commanded: recovery
+                .as_ref()
+                .map_or_else(SavedCommands::default, Recovery::commands),
             is_broken: false,
             left: of_this_plant && recovery.is_none(),
             recovery,
@@ -212,6 +217,12 @@ impl Restart {
                 self.keeper.clear();
             }
             EventKind::Panicked | EventKind::TimerFailed => self.is_broken = true,
+            EventKind::CommandReceived(LoopCommand::Controller(command))
+                if self.commanded.note(&command) =>
+            {
+                // It is stored with the next tick.
+                self.kept = None;
+            }
             _ => {}
         }
     }
@@ -291,6 +302,7 @@ impl Restart {
             place,
             plan,
             resume,
+            commanded: self.commanded,
         };
         self.keeper.keep(saved, self.plans.flown(plan.hash));
     }

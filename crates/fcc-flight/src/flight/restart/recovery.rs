@@ -21,7 +21,7 @@ use fcc_telemetry::units::{M_FT, MPS_KT};
 
 use super::boot_clock::BootInstant;
 use super::place::{Continuity, PresentPlace};
-use super::saved::Saved;
+use super::saved::{Saved, SavedCommands};
 use crate::config::PreparedPlan;
 use crate::flight::pilot::Pilot;
 
@@ -77,6 +77,11 @@ impl Recovery {
     /// The number of consecutive recoveries of the flight before this one.
     pub(super) const fn recoveries(&self) -> u32 {
         self.saved.recoveries
+    }
+
+    /// What was commanded besides.
+    pub(super) const fn commands(&self) -> SavedCommands {
+        self.saved.commanded
     }
 
     /// The plan that was flown, if it is not the configuration's.
@@ -167,8 +172,9 @@ impl Recovery {
     ) {
         let plan = self.plan.as_ref().map(|plan| plan.command());
         let resumed = plan.into_iter().chain([AutopilotCommand::Resume(resume)]);
+        let besides = self.saved.commanded.again(resume.progress.mode);
         let all: Vec<_> = std::iter::once(LoopCommand::Engage)
-            .chain(resumed.map(LoopCommand::Controller))
+            .chain(resumed.chain(besides).map(LoopCommand::Controller))
             .collect();
         if commands.room() >= all.len() {
             let sent = all
@@ -199,8 +205,8 @@ fn recovered(resume: &Resume, age: Duration) -> String {
 
 #[cfg(test)]
 mod tests {
-    use fcc_core::flight::Autopilot;
     use fcc_core::flight::guidance::{Mode, Progress};
+    use fcc_core::flight::{Autopilot, Position};
     use fcc_runtime::{LoopConfig, Machine, Parts};
     use fcc_timer::ManualTimer;
 
@@ -214,7 +220,7 @@ mod tests {
     fn both_commands_are_sent_or_neither() {
         let resume = Resume {
             progress: Progress {
-                mode: Mode::Hold,
+                mode: Mode::GoTo,
                 ..Progress::default()
             },
             ..Resume::default()
@@ -227,8 +233,12 @@ mod tests {
             place: SavedPlace::default(),
             plan: SavedPlan::default(),
             resume,
+            commanded: SavedCommands {
+                go_to: Some(Position::default()),
+                promised_s: Some(5.0),
+            },
         };
-        for (room, sent) in [(1, 0), (2, 2), (3, 2)] {
+        for (room, sent) in [(1, 0), (3, 0), (4, 4), (5, 4)] {
             let config = LoopConfig {
                 commands_capacity: room,
                 ..LoopConfig::default()
@@ -243,7 +253,7 @@ mod tests {
             let mut taking_up = Recovery::new(saved.clone(), None);
             taking_up.command(&mut link.commands, resume);
             assert_eq!(room - link.commands.room(), sent);
-            assert_eq!(taking_up.commanded.is_some(), sent == 2);
+            assert_eq!(taking_up.commanded.is_some(), sent == 4);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The state of a flight that is stored, so that it can be continued.
 
-use fcc_core::flight::Resume;
+use fcc_core::flight::guidance::Mode;
+use fcc_core::flight::{AutopilotCommand, Position, Resume};
 
 use super::boot_clock::BootInstant;
 use super::kept_plan::SavedPlan;
@@ -23,6 +24,38 @@ pub(super) struct Saved {
     pub(super) plan: SavedPlan,
     /// What was flown.
     pub(super) resume: Resume,
+    /// What commands have said besides.
+    pub(super) commanded: SavedCommands,
+}
+
+/// What was commanded and is not in the record.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub(super) struct SavedCommands {
+    /// The last place that was commanded.
+    pub(super) go_to: Option<Position>,
+    /// Within which time a commander has promised to be heard, s.
+    pub(super) promised_s: Option<f64>,
+}
+
+impl SavedCommands {
+    /// Notes a command; whether it is one of them.
+    pub(super) fn note(&mut self, command: &AutopilotCommand) -> bool {
+        match *command {
+            AutopilotCommand::GoTo(place) => self.go_to = Some(place),
+            AutopilotCommand::Heartbeat(within_s) => {
+                self.promised_s = (within_s > 0.0).then_some(within_s);
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    /// The commands that continue a mode.
+    pub(super) fn again(self, mode: Mode) -> impl Iterator<Item = AutopilotCommand> {
+        let go_to = self.go_to.filter(|_| mode == Mode::GoTo);
+        let promise = self.promised_s.map(AutopilotCommand::Heartbeat);
+        go_to.map(AutopilotCommand::GoTo).into_iter().chain(promise)
+    }
 }
 
 /// The engage switch as it was last delivered by its owner.

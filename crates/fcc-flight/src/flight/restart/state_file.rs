@@ -94,7 +94,7 @@ mod tests {
     use super::super::boot_clock::BootInstant;
     use super::super::kept_plan::SavedPlan;
     use super::super::place::{SavedPlace, Sourced};
-    use super::super::saved::SavedSwitch;
+    use super::super::saved::{SavedCommands, SavedSwitch};
     use super::*;
 
     fn saved(mode: Mode, elapsed_s: f64) -> Saved {
@@ -147,6 +147,14 @@ mod tests {
                 },
                 altimeter_setting_pa: Some(102_340.0),
                 altitude_reference: AltitudeReference::SeaLevel,
+            },
+            commanded: SavedCommands {
+                go_to: Some(Position {
+                    latitude_rad: 0.83,
+                    longitude_rad: 0.149,
+                    altitude_m: 1_000.5,
+                }),
+                promised_s: Some(2.5),
             },
         }
     }
@@ -208,7 +216,7 @@ mod tests {
     #[test]
     fn what_no_aircraft_flies_is_damaged() {
         type Change = fn(&mut Saved);
-        let changes: [Change; 11] = [
+        let changes: [Change; 13] = [
             |saved| saved.resume.progress.captured.heading_rad = 1e300,
             |saved| saved.resume.progress.captured.altitude_m = 1e6,
             |saved| saved.resume.progress.captured.altitude_m = 1e308,
@@ -220,6 +228,11 @@ mod tests {
             |saved| saved.resume.progress.captured.airspeed_mps = 1e9,
             |saved| saved.resume.progress.elapsed_s = 1e300,
             |saved| saved.resume.progress.elapsed_s = f64::NAN,
+            |saved| saved.commanded.promised_s = Some(-1.0),
+            |saved| {
+                let place = saved.commanded.go_to.as_mut();
+                place.unwrap().latitude_rad = 2.0;
+            },
         ];
         for (n, change) in changes.into_iter().enumerate() {
             let mut changed = saved(Mode::Hold, 3.5);

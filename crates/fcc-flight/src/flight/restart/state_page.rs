@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::boot_clock::BootInstant;
 use super::kept_plan::SavedPlan;
 use super::place::{SavedPlace, Sourced};
-use super::saved::{Saved, SavedSwitch};
+use super::saved::{Saved, SavedCommands, SavedSwitch};
 
 /// The stored state of a flight as named numbers.
 #[derive(Deserialize, Serialize)]
@@ -56,6 +56,11 @@ pub(super) struct Page {
     plan_hash: u64,
     #[serde(default)]
     plan_uploaded_unix_s: u64,
+    /// Commanded; not in the files of earlier versions.
+    #[serde(default)]
+    go_to: Option<[f64; 3]>,
+    #[serde(default)]
+    promised_s: Option<f64>,
 }
 
 /// The pressure altitudes that a flight can have captured, m: those that can be
@@ -63,6 +68,8 @@ pub(super) struct Page {
 const CAPTURED_ALTITUDE_M: RangeInclusive<f64> = -1_500.0..=21_000.0;
 /// No flight has lasted longer, s: 3 years.
 const LONGEST_S: f64 = 1e8;
+/// What a commander can promise, s.
+const PROMISED_S: RangeInclusive<f64> = 0.0..=3_600.0;
 /// None has been faster, m/s.
 const FASTEST_MPS: f64 = 1_000.0;
 
@@ -99,6 +106,9 @@ impl Page {
             position_source: position.map_or(0, |at| at.source),
             plan_hash: saved.plan.hash,
             plan_uploaded_unix_s: saved.plan.uploaded_unix_s,
+            go_to: (saved.commanded.go_to)
+                .map(|to| [to.latitude_rad, to.longitude_rad, to.altitude_m]),
+            promised_s: saved.commanded.promised_s,
         }
     }
 
@@ -107,6 +117,7 @@ impl Page {
         let reference = AltitudeReference::from_number(self.altitude_reference);
         let surfaces = self.surfaces();
         let mode = Mode::ALL.into_iter().find(|mode| mode.name() == self.mode);
+        let commanded = self.commanded();
         if !self.can_be_flown() {
             return None;
         }
@@ -141,6 +152,7 @@ impl Page {
                 altimeter_setting_pa: self.altimeter_setting_pa,
                 altitude_reference: reference?,
             },
+            commanded,
         })
     }
 
@@ -153,7 +165,24 @@ impl Page {
             && self
                 .altimeter_setting_pa
                 .is_none_or(|pa| COMMANDED_ALTIMETER_SETTING_PA.contains(&pa))
+            && self
+                .promised_s
+                .is_none_or(|within_s| PROMISED_S.contains(&within_s))
+            && (self.commanded().go_to)
+                .is_none_or(|to| to.is_on_earth() && CAPTURED_ALTITUDE_M.contains(&to.altitude_m))
             && self.surfaces().is_valid()
+    }
+
+    fn commanded(&self) -> SavedCommands {
+        let go_to = self.go_to;
+        SavedCommands {
+            go_to: go_to.map(|[latitude_rad, longitude_rad, altitude_m]| Position {
+                latitude_rad,
+                longitude_rad,
+                altitude_m,
+            }),
+            promised_s: self.promised_s,
+        }
     }
 
     const fn surfaces(&self) -> Surfaces {

@@ -78,6 +78,7 @@ impl Folder {
             place: SavedPlace::default(),
             plan: SavedPlan::default(),
             resume: FLOWN,
+            commanded: SavedCommands::default(),
         };
         change(&mut saved);
         state_file::write(&self.request.path, &saved).unwrap();

@@ -67,11 +67,11 @@ impl Autopilot {
     pub(super) fn keep_inside_fence(&mut self) {
         let action = self.config.contingency.fence;
         let fence = self.fence();
+        if action == ContingencyAction::Continue {
+            return self.tell_fence_crossed(&fence);
+        }
         // Take-off and landing lead where a runway is.
-        let is_watched = !fence.zones.is_empty()
-            && action != ContingencyAction::Continue
-            && self.runway().is_none()
-            && !self.is_on_runway();
+        let is_watched = !fence.zones.is_empty() && self.runway().is_none() && !self.is_on_runway();
         let Some(here) = self.ground.here().copied().filter(|_| is_watched) else {
             return;
         };
@@ -138,6 +138,20 @@ impl Autopilot {
             circle.clockwise,
         );
         self.contingencies.announce(Contingency::Fence, action);
+    }
+
+    /// Tells that the fence is crossed, once until the aircraft is inside of it again.
+    fn tell_fence_crossed(&mut self, fence: &Fence<'_>) {
+        let Some(here) = self.ground.here().filter(|_| !fence.zones.is_empty()) else {
+            return;
+        };
+        let zero = Vector2::zeros();
+        let is_out = fence.clearance_m(here.latitude_rad, here.longitude_rad, zero) < 0.0;
+        if is_out && !self.contingencies.is_crossing_told {
+            self.contingencies
+                .announce(Contingency::Fence, ContingencyAction::Continue);
+        }
+        self.contingencies.is_crossing_told = is_out;
     }
 
     /// The aircraft with the airspeed that it has or, in a gust, will have again: that of

@@ -5,7 +5,7 @@ use core::fmt;
 use crate::schema;
 
 schema! {
-    /// Why a take-off or a landing is given up, or a command is not carried out.
+    /// Why a take-off or a landing is given up.
     pub enum RunwayReason {
         /// It is not given up.
         None = 0,
@@ -31,8 +31,6 @@ schema! {
         Altimeter = 10,
         /// The range finder does not show the height of its wheels.
         RangeFinder = 11,
-        /// What was commanded needs height above the runway.
-        Low = 12,
         /// A failsafe, or a loss, on the wheels.
         Failsafe = 13,
         /// Altimeter and satellite receiver do not agree.
@@ -76,7 +74,6 @@ impl fmt::Display for RunwayReason {
                  item of the plan, the landing for three more"
             }
             Self::Failsafe => "the take-off is given up",
-            Self::Low => "not carried out: too low over the runway; command it again",
         })
     }
 }

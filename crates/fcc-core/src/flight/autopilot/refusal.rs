@@ -1,0 +1,148 @@
+//! Why a command is not carried out, and how its sender is told.
+
+use core::fmt;
+
+use super::{Autopilot, AutopilotCommand};
+use crate::flight::guidance::ModeInput;
+use crate::framework::Notice;
+
+/// The number of the notice that answers; the amount is the refusal's number. A plan that
+/// is replaced is always answered, with the item that is flown first.
+pub const COMMAND_ANSWER: u8 = 32;
+const PERMILLE: u16 = 1_000;
+/// Lower than this over a runway nothing else is begun, m.
+const COMMANDED_M: f64 = 30.0;
+
+/// Why a command is not carried out.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Refusal {
+    /// A plan is not replaced.
+    NotEngaged = 1,
+    NotPrepared,
+    NoSuchItem,
+    NoPosition,
+    TakingOff,
+    Landing,
+    /// Another command is not carried out.
+    OnWheels,
+    LowOverRunway,
+    NotLanding,
+    NoPlan,
+    NoItem,
+    NowhereKnown,
+}
+
+impl Refusal {
+    const ALL: [Self; 12] = [
+        Self::NotEngaged,
+        Self::NotPrepared,
+        Self::NoSuchItem,
+        Self::NoPosition,
+        Self::TakingOff,
+        Self::Landing,
+        Self::OnWheels,
+        Self::LowOverRunway,
+        Self::NotLanding,
+        Self::NoPlan,
+        Self::NoItem,
+        Self::NowhereKnown,
+    ];
+
+    const fn words(self) -> &'static str {
+        match self {
+            Self::NotEngaged => "it is accepted only while engaged",
+            Self::NotPrepared => "it was not prepared for this flight",
+            Self::NoSuchItem => "it has no such item",
+            Self::NoPosition | Self::NowhereKnown => "there is no position",
+            Self::TakingOff => {
+                "the aircraft is below autopilot.runway.decision_height_ft over its runway, or on \
+                 it"
+            }
+            Self::Landing => "the aircraft is landing: give the landing up first, or wait",
+            Self::OnWheels => "the aircraft rolls or stands on its runway; disengaging is possible",
+            Self::LowOverRunway => {
+                "the aircraft is too low over the runway: it climbs first, command it again then"
+            }
+            Self::NotLanding => "the aircraft is not landing, or is on its wheels",
+            Self::NoPlan => "there is no plan",
+            Self::NoItem => "the plan has no such item",
+        }
+    }
+
+    /// Whether a plan is not replaced.
+    const fn is_of_plan(self) -> bool {
+        self as u16 <= Self::Landing as u16
+    }
+}
+
+impl Autopilot {
+    /// Tells the sender that its command is not carried out.
+    pub(super) fn refuse(&mut self, refusal: Refusal) {
+        self.answer(refusal as u16, 0);
+    }
+
+    /// Tells the sender what became of its command: a refusal's number, or 0.
+    pub(super) fn answer(&mut self, refusal: u16, item: u16) {
+        self.answer = Some(Notice {
+            kind: COMMAND_ANSWER,
+            amount_permille: refusal * PERMILLE,
+            item,
+            ..Notice::default()
+        });
+    }
+
+    /// Whether a command can be carried out now. Low over a runway it would turn the
+    /// aircraft: a landing is given up for it.
+    pub(super) fn may_carry_out(&mut self, command: &AutopilotCommand) -> Result<(), Refusal> {
+        match command {
+            AutopilotCommand::Resume(_) => return Ok(()),
+            AutopilotCommand::GoAround => {
+                let next = self.after(ModeInput::GoAround);
+                return next.map(drop).ok_or(Refusal::NotLanding);
+            }
+            _ => {}
+        }
+        if let Some(demand) = self.runway() {
+            if demand.phase.is_on_wheels() {
+                return Err(Refusal::OnWheels);
+            }
+            if demand.height_m < COMMANDED_M {
+                self.guidance.go_around();
+                return Err(Refusal::LowOverRunway);
+            }
+        }
+        match *command {
+            AutopilotCommand::Plan(item) => {
+                let plan = self.config.plan.ok_or(Refusal::NoPlan)?;
+                let index = usize::from(item.saturating_sub(1));
+                plan.step(index).map(drop).ok_or(Refusal::NoItem)
+            }
+            AutopilotCommand::Pause | AutopilotCommand::GoTo(_) | AutopilotCommand::ReturnHome => {
+                let here = self.ground.here();
+                here.map(drop).ok_or(Refusal::NowhereKnown)
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Whether a notice says that a command is not carried out.
+pub fn refuses_command(notice: &Notice) -> bool {
+    notice.kind == COMMAND_ANSWER && notice.amount_permille > 0
+}
+
+/// Writes the answer.
+pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let number = usize::from(notice.amount_permille / PERMILLE);
+    let refusal = number
+        .checked_sub(1)
+        .and_then(|index| Refusal::ALL.get(index));
+    match (refusal, notice.item) {
+        (Some(refusal), _) if refusal.is_of_plan() => {
+            write!(f, "the plan is not replaced: {}", refusal.words())
+        }
+        (Some(refusal), _) => write!(f, "not carried out: {}", refusal.words()),
+        (None, 0) => f.write_str("the plan is replaced, as before the restart"),
+        (None, item) => write!(f, "the plan is replaced, and flown from item {item}"),
+    }
+}

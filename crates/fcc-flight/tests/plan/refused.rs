@@ -1,0 +1,61 @@
+//! Commands that are not carried out: their sender is told why.
+
+use fcc_core::flight::AutopilotCommand;
+use fcc_core::flight::guidance::Mode;
+use fcc_core::framework::State;
+
+use crate::flight::{Flight, legs};
+
+/// Engaged on the circuit's runway, or in the air.
+fn engaged(plan: &str, keys: &str) -> Flight {
+    let mut flight = Flight::new(plan, keys);
+    flight.fly_until(60.0, |flight| flight.record.state.state() == State::Engaged);
+    flight
+}
+
+/// Commands it; what is told within a second.
+fn told(flight: &mut Flight, command: AutopilotCommand) -> Vec<String> {
+    let before = flight.events.len();
+    flight.command(command);
+    for _ in 0..40 {
+        flight.tick();
+    }
+    let events = flight.events.iter().skip(before);
+    let refusals = events.filter(|event| event.starts_with("not carried out: "));
+    refusals.cloned().collect()
+}
+
+#[test]
+fn in_the_air_it_is_what_the_plan_and_the_landing_lack() {
+    let mut flight = engaged(&legs(&[0.0, 60.0], 20_000.0, 0.0), "[built-in]\n");
+    let no_item = "not carried out: the plan has no such item";
+    assert_eq!(told(&mut flight, AutopilotCommand::Plan(7)), [no_item]);
+    let not_landing = "not carried out: the aircraft is not landing, or is on its wheels";
+    assert_eq!(told(&mut flight, AutopilotCommand::GoAround), [not_landing]);
+    assert_eq!(flight.mode(), Mode::Plan);
+    assert!(told(&mut flight, AutopilotCommand::Pause).is_empty());
+    assert_eq!(flight.mode(), Mode::Loiter);
+}
+
+/// The plan of `make fly-plan`: its runway's elevation is 120 m.
+#[test]
+fn over_the_runway_it_is_the_height() {
+    let circuit = include_str!("../../../../config/plans/circuit.waypoints");
+    let mut flight = engaged(circuit, "[built-in]\n");
+    let on_wheels =
+        "not carried out: the aircraft rolls or stands on its runway; disengaging is possible";
+    assert_eq!(told(&mut flight, AutopilotCommand::Pause), [on_wheels]);
+    assert_eq!(flight.mode(), Mode::Takeoff);
+    let is_low = |flight: &Flight| {
+        flight.mode() == Mode::Land && flight.truth.get().altitude_m < 120.0 + 25.0
+    };
+    flight.fly_until(900.0, is_low);
+    let low = "not carried out: the aircraft is too low over the runway: it climbs first, command \
+               it again then";
+    let heading = AutopilotCommand::Heading(1.0);
+    assert_eq!(told(&mut flight, heading), [low]);
+    assert_eq!(flight.mode(), Mode::GoAround);
+    flight.fly_until(60.0, |flight| flight.truth.get().altitude_m > 120.0 + 60.0);
+    assert!(told(&mut flight, heading).is_empty());
+    assert_eq!(flight.mode(), Mode::Hold);
+}
