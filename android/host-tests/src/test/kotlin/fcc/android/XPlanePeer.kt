@@ -10,6 +10,8 @@ import java.nio.ByteBuffer
 import java.nio.ByteOrder
 import java.util.concurrent.ConcurrentHashMap
 import kotlin.concurrent.thread
+import kotlin.math.cos
+import kotlin.math.sin
 
 private const val POSITION = "sim/flightmodel/position"
 private const val FLIGHT_TIME = "sim/time/total_flight_time_sec"
@@ -104,7 +106,8 @@ class XPlanePeer : AutoCloseable {
                 while (true) {
                     receive(socket)
                     val to = client.takeIf { !isSilent } ?: continue
-                    socket.send(DatagramPacket(frame(), frame().size, to))
+                    val frame = frame()
+                    socket.send(DatagramPacket(frame, frame.size, to))
                 }
             } catch (_: SocketException) {
                 // It is closed.
@@ -141,7 +144,14 @@ class XPlanePeer : AutoCloseable {
     }
 
     private fun frame(): ByteArray {
-        values[FLIGHT_TIME] = 100f + (System.nanoTime() - beganNs) / 1e9f
+        val timeS = 100f + (System.nanoTime() - beganNs) / 1e9f
+        values[FLIGHT_TIME] = timeS
+        // It moves a little, as in still air: rates that never change are those of a dead sensor.
+        val rate = ROCKS_RADPS * sin(ROCKS_PER_S * timeS)
+        listOf("Prad", "Qrad", "Rrad").forEach { values["$POSITION/$it"] = rate }
+        val angle = Math.toDegrees(-ROCKS_RADPS / ROCKS_PER_S * cos(ROCKS_PER_S * timeS).toDouble()).toFloat()
+        values["$POSITION/phi"] = angle
+        values["$POSITION/theta"] = LEVEL_PITCH_DEG + angle
         val known = requested.mapNotNull { (number, name) -> values[name]?.let { number to it } }
         val frame = ByteBuffer.allocate(KIND_BYTES + known.size * 2 * Int.SIZE_BYTES).order(ByteOrder.LITTLE_ENDIAN)
         frame.put("RREF,".toByteArray())
@@ -151,6 +161,9 @@ class XPlanePeer : AutoCloseable {
 
     private companion object {
         const val FRAME_MS = 20
+        const val ROCKS_RADPS = 0.002f
+        const val ROCKS_PER_S = 3f
+        const val LEVEL_PITCH_DEG = 3f
         const val MOST_BYTES = 2_048
     }
 }

@@ -114,7 +114,11 @@ class Phone : ExternalResource() {
             pass()
         }
         val state = Flight.state()
-        fail("not within 20 s: $what; ${state.phase} ${state.now?.state} ${state.ending}")
+        val now = state.now
+        fail(
+            "not within 20 s: $what; ${state.phase} ${now?.state} ${state.ending}; " +
+                "inhibited by ${now?.engageInhibits}; ${state.reports.takeLast(8)}",
+        )
     }
 
     /** Asks for a flight without a screen. */
