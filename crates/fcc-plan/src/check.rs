@@ -13,6 +13,9 @@ use crate::outline::Outline;
 use crate::plan::{Plan, limits};
 use crate::problem::Problem;
 
+/// What flies above a runway is so high at least, m.
+const LEAST_M: f64 = 30.0;
+
 /// What flies the plan, and in what wind.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Conditions {
@@ -318,9 +321,20 @@ fn last_leg(
     begins_m: f64,
     conditions: &Conditions,
 ) -> Option<(&'static str, String)> {
-    let lands = matches!(plan.item(leg.item), Some(Item::Land { .. }));
+    if !matches!(plan.item(leg.item), Some(Item::Land { .. })) {
+        return None;
+    }
+    let above_m = leg.from.1 - leg.to.1;
+    // A plan that only lands begins where the aircraft is.
+    if above_m != 0.0 && above_m < LEAST_M {
+        let message = format!(
+            "the leg to the landing begins {above_m:.0} m above the runway: begin it at least \
+             {LEAST_M:.0} m above"
+        );
+        return Some(("approach", message));
+    }
     let straight_m = leg.length_m - begins_m;
-    (lands && straight_m < conditions.final_m).then(|| {
+    (straight_m < conditions.final_m).then(|| {
         let message = format!(
             "the leg to the landing is straight for {:.0} m behind its turn, and needs {:.0} m: \
              move the waypoint before it away",
@@ -333,8 +347,6 @@ fn last_leg(
 
 /// What is behind a landing is not flown, and a take-off climbs before it turns.
 fn runway_problem(plan: &Plan, number: usize, item: &Item) -> Option<(&'static str, String)> {
-    /// Above home, m.
-    const LEAST_M: f64 = 30.0;
     match item {
         Item::Takeoff { altitude, .. } => {
             let (home_m, altitude_m) = (plan.home?.altitude_m, above_sea_level(*altitude, plan));

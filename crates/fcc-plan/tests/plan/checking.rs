@@ -257,6 +257,15 @@ fn a_landing_needs_its_last_leg_and_is_the_end() {
     let problems = said(&landing, 0.0);
     let straight = "item 4: approach: the leg to the landing is straight for 928 m";
     assert!(problems.contains(straight), "{problems}");
+    // From 1,000 m down to a runway at 980 m.
+    *landing.items.last_mut().unwrap() = Item::Land {
+        place: place(60.0 - 1.2 / 60.0, 8.2),
+        altitude: sea_level(980.0),
+        abort_altitude_m: None,
+    };
+    let problems = said(&landing, 0.0);
+    let low = "item 4: approach: the leg to the landing begins 20 m above the runway";
+    assert!(problems.contains(low), "{problems}");
     *landing.items.last_mut().unwrap() = land(60.0 - 1.2 / 60.0);
     landing.items.push(waypoint(59.9, 8.2, 1_000.0));
     let problems = said(&landing, 0.0);

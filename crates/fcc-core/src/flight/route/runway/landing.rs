@@ -125,7 +125,9 @@ impl RunwayFlight {
         let is_low = here
             .height_m
             .is_some_and(|above_m| above_m < GROUND_SHARE * path_above_m);
-        if is_low && !self.is_over_runway(motion) {
+        if self.begins_too_low(motion) {
+            self.give_up(RunwayPhase::GoAround, RunwayReason::GlidePath);
+        } else if is_low && !self.is_over_runway(motion) {
             self.give_up(RunwayPhase::GoAround, RunwayReason::Ground);
         } else if self.is_altimeter_off(here) {
             self.give_up(RunwayPhase::GoAround, RunwayReason::Receiver);
@@ -137,6 +139,14 @@ impl RunwayFlight {
         {
             self.give_up(RunwayPhase::GoAround, reason);
         }
+    }
+
+    /// Whether it began below the decision height, where the glide path is above it: a
+    /// landing begins on the path or below it in level flight, not at the ground.
+    fn begins_too_low(&self, motion: &Motion) -> bool {
+        let decision_m = self.config.decision_height_m;
+        let path_above_m = tan(self.config.glide_path_rad) * self.left_m(motion);
+        self.level_m - self.runway.elevation_m < decision_m && path_above_m > decision_m
     }
 
     /// Whether the altimeter is off, and no range finder shows where the ground is.

@@ -8,6 +8,8 @@ use std::boxed::Box;
 use std::vec;
 use std::vec::Vec;
 
+mod limits;
+
 const ELEVATION_M: f64 = 120.0;
 const NAUTICAL_MILE_M: f64 = 1_852.0;
 const FOOT_M: f64 = 0.304_8;
@@ -63,6 +65,10 @@ fn follower(steps: Vec<Step>, from: usize) -> Follower {
 
 /// A landing from 6 km before, at 250 m.
 fn landing() -> Follower {
+    landing_from(250.0)
+}
+
+fn landing_from(height_m: f64) -> Follower {
     let land = Step::Land {
         at: place(0.0),
         elevation_m: ELEVATION_M,
@@ -75,7 +81,7 @@ fn landing() -> Follower {
         waypoint(9_000.0, 250.0),
     ];
     let mut follower = follower(steps, 2);
-    follower.advance(&at(-6_000.0, 250.0, 35.0), 0.025);
+    follower.advance(&at(-6_000.0, height_m, 35.0), 0.025);
     follower
 }
 
@@ -326,69 +332,4 @@ fn a_landing_begins_with_its_approach() {
     };
     assert_eq!(from(across), (None, 0));
     assert_eq!(from(at(50.0, 40.0, 35.0)), (None, 0));
-}
-
-/// What the switch says where it cannot be so is not believed; what it does not say is
-/// seen by the range finder.
-#[test]
-fn wheels_that_bear_weight_in_the_air_do_not() {
-    let near = |range_m: f64, on_wheels: bool, airspeed_mps: f64| OverGround {
-        height_m: Some(range_m),
-        on_wheels: Some(on_wheels),
-        ..at(-19.08 * (range_m - 1.3), range_m - 1.3, airspeed_mps)
-    };
-    let mut stuck = landing();
-    for (range_m, expected) in [
-        (30.0, RunwayPhase::Approach),
-        (5.0, RunwayPhase::Flare),
-        (2.0, RunwayPhase::Flare),
-    ] {
-        stuck.advance(&near(range_m, true, 33.0), 0.025);
-        assert_eq!(phase(&stuck), Some(expected), "{range_m}");
-    }
-    stuck.advance(&near(1.4, true, 27.0), 0.025);
-    assert_eq!(phase(&stuck), Some(RunwayPhase::RollOut));
-    let mut open = landing();
-    open.advance(&near(5.0, false, 33.0), 0.025);
-    open.advance(&near(1.4, false, 27.0), 0.025);
-    assert_eq!(phase(&open), Some(RunwayPhase::RollOut));
-}
-
-/// An altimeter that reads 50 m too low flares at 50 m, where the range finder shows
-/// nothing. Without a range finder nobody knows.
-#[test]
-fn a_flare_that_does_not_come_down_is_given_up() {
-    for (ranges, expected) in [
-        (true, (RunwayPhase::GoAround, RunwayReason::LongFlare)),
-        (false, (RunwayPhase::Flare, RunwayReason::None)),
-    ] {
-        let mut follower = landing();
-        for _ in 0..600 {
-            let here = OverGround {
-                ranges,
-                ..at(-120.0, 3.0, 33.0)
-            };
-            follower.advance(&here, 0.025);
-        }
-        let flown = (phase(&follower).unwrap(), reason(&follower).unwrap());
-        assert_eq!(flown, expected);
-    }
-}
-
-/// 1 km before the aim the path is at 52 m, and the ground 8 m below.
-#[test]
-fn ground_near_the_glide_path_is_gone_around_from() {
-    let mut follower = landing();
-    let here = OverGround {
-        height_m: Some(30.0),
-        ..at(-1_000.0, 52.0, 35.0)
-    };
-    follower.advance(&here, 0.025);
-    assert_eq!(phase(&follower), Some(RunwayPhase::Approach));
-    let here = OverGround {
-        height_m: Some(8.0),
-        ..here
-    };
-    follower.advance(&here, 0.025);
-    assert_eq!(reason(&follower), Some(RunwayReason::Ground));
 }
