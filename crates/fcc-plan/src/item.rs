@@ -1,5 +1,8 @@
 //! The items of a plan.
 
+use core::fmt;
+
+use fcc_core::units::KNOT_MPS;
 use serde::Serialize;
 
 /// A place on the WGS-84 ellipsoid.
@@ -187,5 +190,60 @@ impl Item {
             | Self::ChangeAltitude { altitude } => Some(altitude),
             _ => None,
         }
+    }
+}
+
+/// Its name, and what it says besides place and altitude.
+impl fmt::Display for Item {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = self.name();
+        match *self {
+            Self::ChangeSpeed {
+                speed: Some(Speed::AirspeedMps(mps)),
+                ..
+            } => write!(f, "{name}: {mps:.1} m/s ({:.0} kt)", mps / KNOT_MPS),
+            Self::ChangeSpeed {
+                speed: Some(Speed::GroundSpeedMps(mps)),
+                ..
+            } => write!(f, "{name}: {mps:.1} m/s over the ground"),
+            Self::Loiter(Loiter { radius_m, end, .. }) => {
+                f.write_str(name)?;
+                match end {
+                    LoiterEnd::Never => f.write_str(": without an end")?,
+                    LoiterEnd::Turns(turns) => write!(f, ": turns {turns}")?,
+                    LoiterEnd::Seconds(seconds) => write!(f, ": {seconds:.0} s")?,
+                    LoiterEnd::Altitude => f.write_str(": to its altitude")?,
+                }
+                radius_m.map_or(Ok(()), |radius_m| write!(f, ", radius {radius_m:.0} m"))
+            }
+            Self::Delay { seconds } => write!(f, "{name}: {seconds:.0} s"),
+            Self::UntilDistance { distance_m } => write!(f, "{name}: {distance_m:.0} m"),
+            Self::Jump {
+                to,
+                times: Some(times),
+            } => write!(f, "{name}: to {to}, times {times}"),
+            Self::Jump { to, times: None } => write!(f, "{name}: to {to}"),
+            _ => f.write_str(name),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Item, Speed};
+
+    /// 1 kt is 1,852 m an hour.
+    #[test]
+    fn an_item_says_what_it_has() {
+        let speed = Item::ChangeSpeed {
+            speed: Some(Speed::AirspeedMps(100.0 * 1_852.0 / 3_600.0)),
+            throttle_percent: None,
+        };
+        assert_eq!(speed.to_string(), "change speed: 51.4 m/s (100 kt)");
+        let jump = Item::Jump {
+            to: 2,
+            times: Some(3),
+        };
+        assert_eq!(jump.to_string(), "jump: to 2, times 3");
     }
 }

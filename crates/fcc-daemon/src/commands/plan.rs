@@ -223,7 +223,7 @@ fn rows(plan: &Plan) -> Vec<PlanRow> {
         });
         [
             (n + 1).to_string(),
-            item.name().to_owned(),
+            item.to_string(),
             place.map_or_else(String::new, |place| {
                 format!("{:.6}, {:.6}", place.latitude_deg, place.longitude_deg)
             }),
