@@ -5,6 +5,7 @@ mod altimeter;
 mod ground_track;
 mod legs;
 mod navigation;
+mod plan_items;
 mod plan_page;
 mod replaced_plans;
 mod track;
@@ -26,6 +27,7 @@ use super::terms::Terms;
 pub use altimeter::AltimeterSettings;
 pub use legs::flight_table;
 pub use navigation::{Difference, MethodResult, NavigationReplay, SourceConsistency};
+pub use plan_items::{FlownItem, FlownPlan, TouchDown};
 pub use plan_page::{PlanLine, PlanPlace, PlanRow, plan_page, plan_table};
 pub use replaced_plans::{ReplacedPlan, ReplacedPlans};
 use track::Track;
@@ -55,6 +57,9 @@ pub struct FlightAddition {
     /// The plans that replaced it in flight.
     #[serde(skip_serializing_if = "ReplacedPlans::is_empty")]
     pub replaced_plans: ReplacedPlans,
+    /// The items of the plan as they were flown.
+    #[serde(skip_serializing_if = "FlownPlan::is_empty")]
+    pub flown_plan: FlownPlan,
     /// Navigation by other methods, if it was wanted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub navigation: Option<NavigationReplay>,
@@ -120,6 +125,7 @@ impl Addition for FlightAddition {
             .clone()
             .into_iter()
             .chain(self.replaced_plans.findings())
+            .chain(self.flown_plan.finding())
             .chain(unscored)
             .chain(nowhere)
             .chain(altimeter)
@@ -137,7 +143,7 @@ impl Addition for FlightAddition {
 
     fn text(&self) -> String {
         let Some(flight) = &self.flight else {
-            return String::new();
+            return self.flown_plan.text();
         };
         let count = flight.legs.len();
         if count <= MOST_LEGS {
@@ -156,9 +162,8 @@ impl Addition for FlightAddition {
             the altitude within 10 ft of the set point, how far each goes past it, and the root \
             mean square of what is left; largest errors of a whole leg.";
         let flight = self.flight.iter();
-        flight
-            .map(|flight| ("Legs of the timed pattern", CAPTION, legs::legs(flight)))
-            .collect()
+        let legs = flight.map(|flight| ("Legs of the timed pattern", CAPTION, legs::legs(flight)));
+        legs.chain(self.flown_plan.tables()).collect()
     }
 }
 
@@ -187,6 +192,7 @@ impl Reported for Autopilot {
             .take(&record.setpoints, tick, time_s);
         let setting_hpa = record.setpoints.altimeter_setting_pa * PA_HPA;
         addition.altimeter_settings_hpa.push(setting_hpa);
+        addition.flown_plan.take(record, time_s);
         if let Some(scorer) = &mut addition.scorer {
             let sample = Sample::measured(&record.measurements, time_s);
             // The legs lie around the set points that were captured, not around
