@@ -5,6 +5,7 @@
 mod battery;
 mod contingency;
 mod flight;
+mod glide;
 mod replacing;
 
 use fcc_conformance::allocator_calls;

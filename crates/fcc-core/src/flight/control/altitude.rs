@@ -252,6 +252,20 @@ impl AltitudeLoop {
         )
     }
 
+    /// One step towards an indicated airspeed (m/s) by the pitch alone.
+    pub fn hold_airspeed(
+        &mut self,
+        airspeed_mps: f64,
+        estimate: &Estimate,
+        envelope: &Envelope,
+        schedule: Schedule,
+        dt_s: f64,
+    ) -> PitchCommand {
+        // That of the last tick's energy: it changes slowly.
+        let pitch_rad = self.speed.pitch_for(airspeed_mps, estimate);
+        self.hold_pitch(pitch_rad, estimate, envelope, schedule, dt_s)
+    }
+
     /// One step towards the pitch expected for a flight path (rad, up) at the
     /// airspeed of the schedule `trimmed`, if the climb rate is not known.
     pub fn hold_path_pitch(

@@ -7,6 +7,7 @@ use super::begin::{Goal, GoalKind, Next};
 use super::circle::Circling;
 use super::corner::{Conditions, Corner};
 use super::demand::{Profile, Speed};
+use super::glide::{GlideConfig, GlideFlight};
 use super::leg::Leg;
 use super::runway::{Outcome, RunwayDemand, RunwayFlight, RunwayReason};
 use super::sequence::{Sequence, Steps};
@@ -90,6 +91,7 @@ pub(super) enum Phase {
     Second(Corner),
     Circle(Circling),
     Runway(RunwayFlight),
+    Glide(GlideFlight),
 }
 
 impl Follower {
@@ -119,6 +121,19 @@ impl Follower {
         airspeed_mps: f64,
     ) -> Self {
         Self::new(Steps::One(step), returns, 0, config, airspeed_mps)
+    }
+
+    /// A glide without power to the best place to land at that a route has.
+    pub fn gliding(route: Route<'static>, config: RouteConfig, glide: GlideConfig) -> Self {
+        let mut follower = Self::new(
+            Steps::Plan(route),
+            route.returns,
+            0,
+            config,
+            glide.airspeed_mps,
+        );
+        follower.phase = Phase::Glide(GlideFlight::new(glide));
+        follower
     }
 
     fn new(
@@ -228,6 +243,9 @@ impl Follower {
             self.goal.altitude_m = here.altitude_m;
             self.begin(index, &here.plane(), here);
         }
+        if let Phase::Glide(flight) = self.phase {
+            self.glide_on(flight, here, dt_s);
+        }
         let mut motion = here.motion_in(&self.goal.at);
         if self.goes_on(here, &motion, dt_s) {
             motion = here.motion_in(&self.goal.at);
@@ -247,6 +265,7 @@ impl Follower {
         self.follow_altitude(&motion);
         self.airspeed_mps = match (&self.phase, self.speed) {
             (Phase::Runway(flight), _) => flight.airspeed_mps(),
+            (Phase::Glide(flight), _) => flight.airspeed_mps(),
             (_, Speed::Indicated(mps)) => mps,
             (_, Speed::OverGround(mps)) => {
                 let through = nearest.course * mps - motion.wind_mps;
@@ -261,6 +280,7 @@ impl Follower {
             (Phase::First(_, corner), _) => corner.first().path(),
             (Phase::Second(corner), _) => corner.second().unwrap_or(corner.first()).path(),
             (Phase::Runway(flight), _) => flight.path(),
+            (Phase::Glide(flight), _) => flight.path(),
             (_, GoalKind::Circle(circle)) => circle.path(),
             // Before it has begun.
             (_, GoalKind::Place(_) | GoalKind::Landing(_)) => Path::Line {
@@ -345,9 +365,18 @@ impl Follower {
                     Outcome::Flown => {}
                 }
             }
-            (Phase::Begin(_) | Phase::Leg(_) | Phase::Circle(_), _) => {}
+            (Phase::Begin(_) | Phase::Leg(_) | Phase::Circle(_) | Phase::Glide(_), _) => {}
         }
         false
+    }
+
+    /// One tick of a glide, which ends in a landing.
+    fn glide_on(&mut self, mut flight: GlideFlight, here: &OverGround, dt_s: f64) {
+        let landing = flight.step(self.sequence.route(), &self.config, here, dt_s);
+        self.phase = landing.map_or(Phase::Glide(flight), Phase::Runway);
+        self.goal.at = landing.map_or(flight.at, |landing| landing.runway.at);
+        self.goal.altitude_m =
+            landing.map_or(flight.elevation_m, |landing| landing.runway.elevation_m);
     }
 
     /// The bank that turns are planned with, rad.
