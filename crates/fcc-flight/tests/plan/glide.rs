@@ -5,9 +5,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use fcc_conformance::allocator_calls;
-use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{AutopilotCommand, Contingency, Measurements};
-use fcc_core::framework::{Reading, Sensor, SensorFault, State, Tick};
+use fcc_core::flight::guidance::{Mode, Progress};
+use fcc_core::flight::{AutopilotCommand, Contingency, Measurements, Resume, Surfaces};
+use fcc_core::framework::{Actuator, ActuatorFault, Reading, Sensor, SensorFault, State, Tick};
 use fcc_plan::Place;
 use fcc_runtime::Message;
 
@@ -35,6 +35,32 @@ impl Sensor<Measurements> for Engine {
         let radps = rpm * core::f64::consts::TAU / 60.0;
         measurements.engine_speed_radps = Reading::new(radps, tick.woke);
         Ok(())
+    }
+}
+
+/// Controls whose throttle has no effect when the engine has stopped.
+struct Throttle(Box<dyn Actuator<Surfaces>>, Arc<AtomicBool>);
+
+impl Actuator<Surfaces> for Throttle {
+    fn apply(&mut self, tick: &Tick, outputs: &Surfaces) -> Result<(), ActuatorFault> {
+        let throttle = if self.1.load(Ordering::Relaxed) {
+            0.0
+        } else {
+            outputs.throttle
+        };
+        let outputs = Surfaces {
+            throttle,
+            ..*outputs
+        };
+        self.0.apply(tick, &outputs)
+    }
+
+    fn release(&mut self) -> Result<(), ActuatorFault> {
+        self.0.release()
+    }
+
+    fn name(&self) -> &str {
+        self.0.name()
     }
 }
 
@@ -200,6 +226,58 @@ fn what_is_not_configured_is_not_watched() {
         }
         assert_eq!(flight.mode(), action);
     }
+}
+
+/// Where the engine's speed is not measured: not in gusts, a climb and a descent with power;
+/// without, within the time that the autopilot needs to open the throttle by half, and 4 s.
+#[test]
+fn an_engine_that_is_not_measured_is_missed_by_its_thrust() {
+    let stops = Arc::new(AtomicBool::new(false));
+    let stopped = Arc::clone(&stops);
+    let keys = "[contingency]\nengine_out_by_thrust = true\nengine_out_after_s = 4\n[built-in]\n\
+                gusts = \"moderate\"\n";
+    let mut flight = Flight::between(
+        &away_from_runway(0.0),
+        keys,
+        |sensor| sensor,
+        |actuator| Box::new(Throttle(actuator, Arc::clone(&stopped))),
+    );
+    for (altitude_m, seconds) in [(914.4, 40), (1_100.0, 90), (800.0, 120)] {
+        flight.command(AutopilotCommand::Altitude(altitude_m));
+        for _ in 0..seconds * RATE {
+            flight.tick();
+            assert_ne!(flight.mode(), Mode::Glide);
+        }
+    }
+    flight.command(AutopilotCommand::Plan(0));
+    stops.store(true, Ordering::Relaxed);
+    flight.fly_until(20.0, |flight| flight.happened("the engine is out: gliding"));
+    assert_eq!(flight.mode(), Mode::Glide);
+}
+
+/// Resumed after a restart it glides, and acts on no other engine failure than this.
+#[test]
+fn a_glide_goes_on_after_a_restart() {
+    let (mut flight, stops) = with_engine(&away_from_runway(0.0), "[built-in]\nnoise = false\n");
+    flight.fly_until(60.0, |flight| flight.record.state.state() == State::Engaged);
+    stops.store(true, Ordering::Relaxed);
+    flight.command(AutopilotCommand::Resume(Resume {
+        progress: Progress {
+            mode: Mode::Glide,
+            ..flight.record.setpoints.guidance
+        },
+        ..Resume::default()
+    }));
+    flight.fly_until(0.1, |flight| flight.mode() == Mode::Glide);
+    let contingency = flight.record.setpoints.contingency;
+    assert_eq!(contingency, Contingency::EngineOut);
+    let glides = "the engine is out: gliding";
+    for _ in 0..20 * RATE {
+        flight.tick();
+    }
+    let told = flight.events.iter().filter(|event| *event == glides);
+    assert_eq!(told.count(), 1);
+    assert_eq!(flight.mode(), Mode::Glide);
 }
 
 /// The whole glide, from the choice to the stop.

@@ -348,7 +348,9 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
         Contingency::CommanderLost => "the commander is not heard as promised",
         Contingency::Fence => "the fence is near: turning away",
         Contingency::BatteryLow => "the battery is low",
-        Contingency::EngineOut if notice.amount_permille % PERMILLE == 0 => "the engine is out",
+        Contingency::EngineOut if notice.amount_permille.is_multiple_of(PERMILLE) => {
+            "the engine is out"
+        }
         Contingency::EngineOut => "the engine runs again",
     };
     let action = usize::from(notice.item).checked_sub(1);

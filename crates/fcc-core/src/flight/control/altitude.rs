@@ -108,7 +108,7 @@ pub struct AltitudeLoop {
     climb_rate: RateLimit,
     /// The flight-path angle expected now from the past commands, rad.
     expected_path: LowPass,
-    speed: SpeedLimits,
+    pub(super) speed: SpeedLimits,
     pitch: Pid,
     pitch_rate: Pid,
 }
@@ -250,20 +250,6 @@ impl AltitudeLoop {
             schedule,
             dt_s,
         )
-    }
-
-    /// One step towards an indicated airspeed (m/s) by the pitch alone.
-    pub fn hold_airspeed(
-        &mut self,
-        airspeed_mps: f64,
-        estimate: &Estimate,
-        envelope: &Envelope,
-        schedule: Schedule,
-        dt_s: f64,
-    ) -> PitchCommand {
-        // That of the last tick's energy: it changes slowly.
-        let pitch_rad = self.speed.pitch_for(airspeed_mps, estimate);
-        self.hold_pitch(pitch_rad, estimate, envelope, schedule, dt_s)
     }
 
     /// One step towards the pitch expected for a flight path (rad, up) at the

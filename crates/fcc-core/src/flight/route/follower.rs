@@ -7,7 +7,7 @@ use super::begin::{Goal, GoalKind, Next};
 use super::circle::Circling;
 use super::corner::{Conditions, Corner};
 use super::demand::{Profile, Speed};
-use super::glide::{GlideConfig, GlideFlight};
+use super::glide::GlideFlight;
 use super::leg::Leg;
 use super::runway::{Outcome, RunwayDemand, RunwayFlight, RunwayReason};
 use super::sequence::{Sequence, Steps};
@@ -82,7 +82,6 @@ pub struct Track {
 }
 
 #[derive(Clone, Copy, PartialEq, Debug)]
-#[expect(clippy::large_enum_variant, reason = "there is one, and no heap")]
 pub(super) enum Phase {
     /// To begin with the step of this index.
     Begin(usize),
@@ -123,20 +122,7 @@ impl Follower {
         Self::new(Steps::One(step), returns, 0, config, airspeed_mps)
     }
 
-    /// A glide without power to the best place to land at that a route has.
-    pub fn gliding(route: Route<'static>, config: RouteConfig, glide: GlideConfig) -> Self {
-        let mut follower = Self::new(
-            Steps::Plan(route),
-            route.returns,
-            0,
-            config,
-            glide.airspeed_mps,
-        );
-        follower.phase = Phase::Glide(GlideFlight::new(glide));
-        follower
-    }
-
-    fn new(
+    pub(super) fn new(
         steps: Steps,
         returns: &'static [Destination],
         index: usize,
@@ -368,15 +354,6 @@ impl Follower {
             (Phase::Begin(_) | Phase::Leg(_) | Phase::Circle(_) | Phase::Glide(_), _) => {}
         }
         false
-    }
-
-    /// One tick of a glide, which ends in a landing.
-    fn glide_on(&mut self, mut flight: GlideFlight, here: &OverGround, dt_s: f64) {
-        let landing = flight.step(self.sequence.route(), &self.config, here, dt_s);
-        self.phase = landing.map_or(Phase::Glide(flight), Phase::Runway);
-        self.goal.at = landing.map_or(flight.at, |landing| landing.runway.at);
-        self.goal.altitude_m =
-            landing.map_or(flight.elevation_m, |landing| landing.runway.elevation_m);
     }
 
     /// The bank that turns are planned with, rad.

@@ -2,8 +2,9 @@
 //!
 //! ```text
 //! choose ─┬─► Key ─► Circle ─► Downwind ─┐
-//!         ├─► Direct ◄─► Aside           ├─► Turn ─► final: a landing without power
-//!         │      └───────────────────────┘
+//!         ├─► Direct ◄─► Aside ◄──┐      ├─► Turn ─► Final ─► a landing without power
+//!         │      └────────────────│──────┘            │
+//!         │                       └───────────────────┘
 //!         └─► nothing is reached: into the wind, wings level, and down
 //! ```
 //!
@@ -16,6 +17,8 @@
 //! The glide ratio begins as configured, and is then the one that is flown: what the
 //! propeller, the load and the air make of it.
 
+mod choose;
+mod follow;
 mod pattern;
 mod reach;
 mod site;
@@ -27,13 +30,11 @@ use nalgebra::Vector2;
 
 use super::leg::Leg;
 use super::runway::{Runway, RunwayFlight};
-use super::{OverGround, PLANNED_SHARE, ROLL_LAG_S, Route, RouteConfig};
+use super::{OverGround, ROLL_LAG_S, Route, RouteConfig};
 use crate::blocks::limit;
-use crate::flight::path::turn::smallest_circle_m;
-use crate::flight::path::{LocalPlane, Motion, Path, length};
+use crate::flight::path::{LocalPlane, Motion, Path, length, right_of};
 use crate::units::GRAVITY_MPS2;
-use pattern::{Air, Pattern, blows, course_of};
-use site::{Site, SiteKind};
+use pattern::{Air, Pattern, course_of};
 
 /// How the aircraft glides.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -55,14 +56,16 @@ const ON_SPEED: f64 = 0.1;
 const FACTORS: (f64, f64) = (0.6, 2.0);
 /// No turn over the ground is smaller, m.
 const LEAST_RADIUS_M: f64 = 150.0;
-/// So many sites are compared in a tick; more are not near one another.
-const MOST_SITES: usize = 16;
 /// On the way, another site is chosen if this one is missed by so much height, m.
 const MISSED_M: f64 = 15.0;
 /// Where height is lost aside, the course is so far off, as cosine and sine (60°).
 const ASIDE: (f64, f64) = (0.5, 0.866);
-/// Lower than this it does not turn into the wind, where no site is reached, m.
-const LEAST_TURN_M: f64 = 150.0;
+/// To the pattern's side, unless the other one leads that much less to the aim.
+const SIDE: f64 = 0.2;
+/// Lower than this above the ground it turns no more, m.
+const LEAST_TURNING_M: f64 = 25.0;
+/// On a final that is higher by this it goes aside, m.
+const HIGH_M: f64 = 20.0;
 
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Stage {
@@ -80,6 +83,8 @@ enum Stage {
     Aside(Vector2<f64>, Vector2<f64>),
     /// In the turn onto a final of this length, m.
     Turn(f64),
+    /// On the final, as long as there is room for another way.
+    Final,
 }
 
 /// A glide that is flown.
@@ -100,15 +105,6 @@ pub(super) struct GlideFlight {
     next_s: f64,
 }
 
-/// A site that is reached, and how.
-#[derive(Clone, Copy)]
-struct Choice {
-    rank: (bool, SiteKind, f64),
-    runway: Runway,
-    pattern: Pattern,
-    motion: Motion,
-}
-
 impl GlideFlight {
     pub(super) fn new(config: GlideConfig) -> Self {
         let sine = Glide::with_ratio(1.0, config.ratio).sink_mps;
@@ -125,6 +121,7 @@ impl GlideFlight {
                 course: Vector2::new(1.0, 0.0),
                 radius_m: LEAST_RADIUS_M,
                 is_right: true,
+                float_m: 0.0,
             },
             next_s: 0.0,
         }
@@ -192,91 +189,32 @@ impl GlideFlight {
             self.next_s = EVERY_S;
         }
         let motion = here.motion_in(&self.at);
+        let is_on_way = matches!(
+            self.stage,
+            Stage::Key(_) | Stage::Direct(..) | Stage::Aside(..)
+        );
+        let is_missed = is_due && is_on_way && !self.aim(here, &motion);
         match self.stage {
             Stage::Begin => return self.choose(route, config, here),
-            Stage::Key(_) | Stage::Direct(..) | Stage::Aside(..) if is_due => {
-                if !self.aim(here, &motion) {
-                    return self.choose(route, config, here);
+            _ if is_missed => return self.choose(route, config, here),
+            _ if self.is_low(route, config, here) => {
+                let ground_m = site::ground_m(&route, config.return_height_m);
+                return Some(self.ahead(ground_m, config, here));
+            }
+            Stage::Final if is_due && self.is_high(here, &motion) => {
+                let aside = self.aside(&motion, self.pattern.course);
+                let air = self.air(here, &motion);
+                let shortest_m = self.pattern.shortest_m();
+                let back_m = self
+                    .pattern
+                    .direct_cost_m(motion.position_m, aside, shortest_m, &air);
+                if self.height_m(here, self.elevation_m) > back_m + MISSED_M {
+                    self.stage = Stage::Aside(motion.position_m, aside);
                 }
             }
             _ => {}
         }
         self.go_on(here, &motion, config)
-    }
-
-    /// Chooses a site; without one, the landing ahead.
-    fn choose(
-        &mut self,
-        route: Route<'static>,
-        config: &RouteConfig,
-        here: &OverGround,
-    ) -> Option<RunwayFlight> {
-        let ground_m = site::ground_m(&route, config.return_height_m);
-        let mut best: Option<Choice> = None;
-        let mut compared = 0;
-        for (site, motion) in site::of(route, ground_m, *here) {
-            let air = self.air(here, &motion);
-            let height_m = self.height_m(here, site.elevation_m);
-            // With the wind, without a turn.
-            let fastest_mps = air.glide.true_airspeed_mps + length(air.wind_mps);
-            let range_m = height_m * fastest_mps / air.glide.sink_mps;
-            if length(motion.position_m) > range_m || compared == MOST_SITES {
-                continue;
-            }
-            compared += 1;
-            for is_right in [true, false] {
-                let choice = self.choice(&site, motion, is_right, config, here);
-                if choice.rank.2 > 0.0 && best.is_none_or(|best| choice.rank > best.rank) {
-                    best = Some(choice);
-                }
-            }
-        }
-        let Some(choice) = best else {
-            return Some(self.ahead(ground_m, config, here));
-        };
-        self.at = choice.runway.at;
-        self.elevation_m = choice.runway.elevation_m;
-        self.runway = Some(choice.runway);
-        self.pattern = choice.pattern;
-        if !self.aim(here, &choice.motion) {
-            return Some(self.ahead(ground_m, config, here));
-        }
-        None
-    }
-
-    fn choice(
-        &self,
-        site: &Site,
-        motion: Motion,
-        is_right: bool,
-        config: &RouteConfig,
-        here: &OverGround,
-    ) -> Choice {
-        let air = self.air(here, &motion);
-        let runway = site.runway(&motion);
-        let bank_rad = libm::atan(PLANNED_SHARE * libm::tan(config.bank_rad));
-        let radius_m = smallest_circle_m(
-            air.glide.true_airspeed_mps,
-            length(motion.wind_mps),
-            bank_rad,
-        );
-        let pattern = Pattern {
-            course: runway.course,
-            radius_m: radius_m.unwrap_or(f64::INFINITY).max(LEAST_RADIUS_M),
-            is_right,
-        };
-        let course = course_of(motion.ground_velocity_mps);
-        let shortest_m = pattern.shortest_m();
-        let direct_m = pattern.direct_cost_m(motion.position_m, course, shortest_m, &air);
-        let by_key_m = pattern.key_cost_m(motion.position_m, course, &air);
-        let height_m = self.height_m(here, runway.elevation_m);
-        let left_m = height_m - direct_m.min(by_key_m);
-        Choice {
-            rank: (left_m >= self.config.spare_m, site.kind, left_m),
-            runway,
-            pattern,
-            motion,
-        }
     }
 
     /// Computes the way to the site; whether it is reached.
@@ -300,14 +238,37 @@ impl GlideFlight {
         };
         self.stage = match pattern.final_for_m(height_m, at_m, course, &air) {
             Some(final_m) => Stage::Direct(pattern.leg(at_m, final_m).unwrap_or(leg), final_m),
-            None => {
-                let (along, across) = ASIDE;
-                let right = crate::flight::path::right_of(leg.course);
-                let away = if pattern.is_right { across } else { -across };
-                Stage::Aside(at_m, leg.course * along + right * away)
-            }
+            None => Stage::Aside(at_m, self.aside(motion, leg.course)),
         };
         true
+    }
+
+    /// The course aside of another one.
+    fn aside(&self, motion: &Motion, course: Vector2<f64>) -> Vector2<f64> {
+        let (along, across) = ASIDE;
+        let (ahead, right) = (course * along, right_of(course) * across);
+        let off = self.pattern.aim_from(motion.position_m);
+        let less_right = 2.0 * off.dot(&right);
+        let side = if self.pattern.is_right { SIDE } else { -SIDE };
+        if side > less_right {
+            ahead + right
+        } else {
+            ahead - right
+        }
+    }
+
+    /// Whether it is too low for another turn.
+    fn is_low(&self, route: Route<'static>, config: &RouteConfig, here: &OverGround) -> bool {
+        let ground_m = site::ground_m(&route, config.return_height_m);
+        let height_m = here.height_m.unwrap_or(here.altitude_m - ground_m);
+        self.stage != Stage::Final && height_m < LEAST_TURNING_M
+    }
+
+    /// Whether it would pass the aim, on the final.
+    fn is_high(&self, here: &OverGround, motion: &Motion) -> bool {
+        let final_m = self.pattern.before_m(motion.position_m);
+        let costs_m = self.pattern.final_cost_m(final_m, &self.air(here, motion));
+        self.height_m(here, self.elevation_m) > costs_m + HIGH_M
     }
 
     fn go_on(
@@ -352,35 +313,16 @@ impl GlideFlight {
                 let left_rad = pattern.left_rad(final_m, at_m, pattern.course);
                 let is_over = left_rad <= ahead_m / pattern.radius_m
                     || left_rad > core::f64::consts::TAU - 0.5;
-                if is_over && let Some(runway) = self.runway {
-                    return Some(self.land(runway, here, config));
+                if is_over {
+                    self.stage = Stage::Final;
                 }
+            }
+            Stage::Final if pattern.before_m(at_m) <= pattern.shortest_m() => {
+                return self.runway.map(|runway| self.land(runway, here, config));
             }
             _ => {}
         }
         None
-    }
-
-    fn land(&self, runway: Runway, here: &OverGround, config: &RouteConfig) -> RunwayFlight {
-        let airspeed_mps = self.config.airspeed_mps;
-        RunwayFlight::powerless(runway, here, config.runway, airspeed_mps, self.sine)
-    }
-
-    /// The landing where no site is reached: into the wind, or, low, straight ahead.
-    fn ahead(&self, ground_m: f64, config: &RouteConfig, here: &OverGround) -> RunwayFlight {
-        let is_low = here.altitude_m - ground_m < LEAST_TURN_M
-            || here.height_m.is_some_and(|above_m| above_m < LEAST_TURN_M);
-        let course = if blows(here.wind_mps) && !is_low {
-            -course_of(here.wind_mps)
-        } else {
-            course_of(here.ground_velocity_mps)
-        };
-        let runway = Runway {
-            at: here.plane(),
-            course,
-            elevation_m: ground_m,
-        };
-        self.land(runway, here, config)
     }
 
     /// What is followed.
@@ -391,6 +333,7 @@ impl GlideFlight {
             Stage::Downwind => self.pattern.downwind(),
             Stage::Aside(through_m, course) => Path::Line { through_m, course },
             Stage::Turn(final_m) => self.pattern.circle(final_m),
+            Stage::Final => self.pattern.landing(),
         }
     }
 }

@@ -28,6 +28,8 @@ const LEAST_FINAL_M: f64 = 400.0;
 const MORE_FINAL_M: f64 = 200.0;
 /// An arc that is shorter than this by rounding is none, rad.
 const LEAST_ARC_RAD: f64 = 0.15;
+/// A way that leaves no more height than this fits it, m.
+const MOST_LEFT_M: f64 = 10.0;
 /// The length of the final is found to 1 / 2^n of its range.
 const HALVINGS: u8 = 9;
 
@@ -39,6 +41,9 @@ pub(super) struct Pattern {
     pub(super) radius_m: f64,
     /// To the right of the landing's line, with turns to the right.
     pub(super) is_right: bool,
+    /// How far before the plane's origin the glide leads to the ground, m: the flare carries
+    /// the aircraft on.
+    pub(super) float_m: f64,
 }
 
 /// What a path's height is computed with.
@@ -68,7 +73,8 @@ impl Pattern {
     /// The centre of the turn onto a final of this length, m; of 0, of the circle over the
     /// key.
     pub(super) fn centre_m(&self, final_m: f64) -> Vector2<f64> {
-        right_of(self.course) * (self.sign() * self.radius_m) - self.course * final_m
+        let before_m = final_m + self.float_m;
+        right_of(self.course) * (self.sign() * self.radius_m) - self.course * before_m
     }
 
     pub(super) fn circle(&self, final_m: f64) -> Path {
@@ -82,14 +88,27 @@ impl Pattern {
     /// The line opposite to the landing.
     pub(super) fn downwind(&self) -> Path {
         Path::Line {
-            through_m: self.centre_m(0.0) * 2.0,
+            through_m: right_of(self.course) * (2.0 * self.sign() * self.radius_m),
             course: -self.course,
         }
     }
 
-    /// How far before the aim a place is, m along the line.
+    /// The line of the landing.
+    pub(super) fn landing(&self) -> Path {
+        Path::Line {
+            through_m: Vector2::zeros(),
+            course: self.course,
+        }
+    }
+
+    /// How far before where the glide leads a place is, m along the line.
     pub(super) fn before_m(&self, position_m: Vector2<f64>) -> f64 {
-        -self.course.dot(&position_m)
+        -self.course.dot(&position_m) - self.float_m
+    }
+
+    /// The direction in which the glide leads to the ground, from a place.
+    pub(super) fn aim_from(&self, at_m: Vector2<f64>) -> Vector2<f64> {
+        course_of(-self.course * self.float_m - at_m)
     }
 
     /// How far the circle has to be flown from one course to another, rad.
@@ -133,7 +152,7 @@ impl Pattern {
     }
 
     /// What the final costs, m.
-    fn final_cost_m(&self, final_m: f64, air: &Air) -> f64 {
+    pub(super) fn final_cost_m(&self, final_m: f64, air: &Air) -> f64 {
         air.glide
             .straight_m(course_rad(self.course), final_m, air.wind_mps)
     }
@@ -184,7 +203,7 @@ impl Pattern {
     }
 
     /// The length of the final with which the direct way costs this height, m: the shortest
-    /// one if all cost more; none if all cost less.
+    /// one if all cost more; none if no way costs it.
     pub(super) fn final_for_m(
         &self,
         height_m: f64,
@@ -197,9 +216,6 @@ impl Pattern {
         if costs_m(short) >= height_m {
             return Some(short);
         }
-        if costs_m(long) <= height_m {
-            return None;
-        }
         for _ in 0..HALVINGS {
             let middle = 0.5 * (short + long);
             if costs_m(middle) < height_m {
@@ -208,7 +224,8 @@ impl Pattern {
                 long = middle;
             }
         }
-        Some(short)
+        // Beyond the aircraft the way turns back, and costs far more.
+        (costs_m(short) > height_m - MOST_LEFT_M).then_some(short)
     }
 }
 
@@ -242,6 +259,7 @@ mod tests {
             course: Vector2::new(1.0, 0.0),
             radius_m: 300.0,
             is_right: true,
+            float_m: 0.0,
         }
     }
 
