@@ -44,7 +44,7 @@ endif
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-fences test-landings test-raw-edges test-upsets test-android android-check android-package test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
+.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-fences test-glides test-landings test-raw-edges test-upsets test-android android-check android-package test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -116,6 +116,9 @@ test-raw-edges: $(STAMPS)/python-module ## Fly the edges of flight by the raw se
 
 test-fences: $(STAMPS)/python-module ## Fly 20 times against a fence with JSBSim, in 20 kt and turbulence (10 minutes)
 	FCC_FENCES=20 $(PYTHON) -m pytest --capture=no hil/tests/test_contingency.py
+
+test-glides: $(STAMPS)/python-module ## Stop the engine at 3,000 ft and glide down 20 times with JSBSim (2 minutes)
+	FCC_GLIDES=20 $(PYTHON) -m pytest --capture=no --numprocesses auto hil/tests/test_glide.py
 
 test-landings: $(STAMPS)/python-module ## Take off, fly a circuit and land 100 times with JSBSim, in five winds (25 minutes)
 	FCC_LANDINGS=20 $(PYTHON) -m pytest --capture=no --numprocesses auto hil/tests/test_landing.py

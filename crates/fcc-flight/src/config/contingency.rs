@@ -6,6 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use super::Config;
 
+/// A revolution per minute, rad/s.
+const RPM_RADPS: f64 = core::f64::consts::TAU / 60.0;
+
 /// `[contingency]`.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
@@ -32,6 +35,22 @@ pub struct ContingencySection {
     pub battery_voltage_v: Option<f64>,
     /// After this time.
     pub battery_low_after_s: f64,
+    /// Without the engine.
+    pub engine_out: ActionChoice,
+    /// It is out below this speed; none: not watched.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub engine_out_below_rpm: Option<f64>,
+    /// Where its speed is not measured: whether it is out if the throttle gives no thrust.
+    pub engine_out_by_thrust: bool,
+    /// After this time.
+    pub engine_out_after_s: f64,
+    /// It runs again when it was above that speed for this time.
+    pub engine_back_after_s: f64,
+    /// The way through still air over the height that is lost without power at
+    /// `autopilot.envelope.best_glide_airspeed_kt`.
+    pub glide_ratio: f64,
+    /// Height to spare over a place that is glided to.
+    pub glide_spare_ft: f64,
 }
 
 /// Actions.
@@ -46,6 +65,8 @@ pub enum ActionChoice {
     Return,
     /// Fly the nearest landing of the plan; return without one.
     Land,
+    /// Glide to the best place that is reached, and land there.
+    Glide,
 }
 
 impl From<ActionChoice> for ContingencyAction {
@@ -55,6 +76,7 @@ impl From<ActionChoice> for ContingencyAction {
             ActionChoice::Loiter => Self::Loiter,
             ActionChoice::Return => Self::Return,
             ActionChoice::Land => Self::Land,
+            ActionChoice::Glide => Self::Glide,
         }
     }
 }
@@ -72,6 +94,13 @@ impl Default for ContingencySection {
             battery_charge_percent: None,
             battery_voltage_v: None,
             battery_low_after_s: 10.0,
+            engine_out: ActionChoice::Glide,
+            engine_out_below_rpm: None,
+            engine_out_by_thrust: false,
+            engine_out_after_s: 2.0,
+            engine_back_after_s: 5.0,
+            glide_ratio: 9.0,
+            glide_spare_ft: 200.0,
         }
     }
 }
@@ -91,6 +120,13 @@ impl From<&ContingencySection> for ContingencyConfig {
                 .map(|percent| percent / 100.0),
             battery_voltage_v: section.battery_voltage_v,
             battery_after_s: section.battery_low_after_s,
+            engine: section.engine_out.into(),
+            engine_below_radps: section.engine_out_below_rpm.map(|rpm| rpm * RPM_RADPS),
+            engine_by_thrust: section.engine_out_by_thrust,
+            engine_after_s: section.engine_out_after_s,
+            engine_back_after_s: section.engine_back_after_s,
+            glide_ratio: section.glide_ratio,
+            glide_spare_m: section.glide_spare_ft * FOOT_M,
         }
     }
 }
@@ -102,7 +138,8 @@ impl ContingencySection {
     }
 }
 
-/// A landing needs a position, and one that the fence is in the way of is no way out.
+/// A landing needs a position, and one that the fence is in the way of is no way out; a glide
+/// is flown without an engine, and nothing else is.
 pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     let section = &config.contingency;
     for (key, action) in [
@@ -113,5 +150,21 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
             let message = "is \"land\": choose \"continue\", \"loiter\" or \"return\"";
             report(&[key], message.to_owned());
         }
+    }
+    for (key, action) in [
+        ("contingency.fence", section.fence),
+        ("contingency.position_lost", section.position_lost),
+        ("contingency.commander_lost", section.commander_lost),
+        ("contingency.battery_low", section.battery_low),
+    ] {
+        if action == ActionChoice::Glide {
+            let message = "is \"glide\", which is for engine_out: choose another action";
+            report(&[key], message.to_owned());
+        }
+    }
+    let engine = section.engine_out;
+    if !matches!(engine, ActionChoice::Glide | ActionChoice::Continue) {
+        let message = "needs power: choose \"glide\" or \"continue\"";
+        report(&["contingency.engine_out"], message.to_owned());
     }
 }

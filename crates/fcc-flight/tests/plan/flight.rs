@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use fcc_core::flight::guidance::Mode;
 use fcc_core::flight::inertial::metres_per_radian;
-use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements};
-use fcc_core::framework::{LoopCommand, Sensor};
+use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Surfaces};
+use fcc_core::framework::{Actuator, LoopCommand, Sensor};
 use fcc_flight::config::{Config, PreparedPlan};
 use fcc_flight::flight::assemble;
 use fcc_plan::{Home, Item, Place, Plan};
@@ -62,6 +62,16 @@ impl Flight {
         keys: &str,
         around: impl Fn(Box<dyn Sensor<Measurements>>) -> Box<dyn Sensor<Measurements>>,
     ) -> Self {
+        Self::between(plan, keys, around, |actuator| actuator)
+    }
+
+    /// With sensors and actuators that are put around the aircraft's.
+    pub(crate) fn between(
+        plan: &str,
+        keys: &str,
+        around: impl Fn(Box<dyn Sensor<Measurements>>) -> Box<dyn Sensor<Measurements>>,
+        around_actuator: impl Fn(Box<dyn Actuator<Surfaces>>) -> Box<dyn Actuator<Surfaces>>,
+    ) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a.waypoints");
         std::fs::write(&file, plan).unwrap();
@@ -78,7 +88,11 @@ impl Flight {
             ),
             sensors: assembly.sensors.into_iter().map(around).collect(),
             controller: Autopilot::new(*assembly.autopilot.config()),
-            actuators: assembly.actuators,
+            actuators: assembly
+                .actuators
+                .into_iter()
+                .map(around_actuator)
+                .collect(),
         };
         let (mut machine, link) = Machine::new(parts, &assembly.loop_config).unwrap();
         machine.start().unwrap();

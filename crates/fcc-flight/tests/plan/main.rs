@@ -6,6 +6,7 @@ mod battery;
 mod contingency;
 mod flight;
 mod refused;
+mod glide;
 mod replacing;
 
 use fcc_conformance::allocator_calls;

@@ -5,7 +5,7 @@ use super::super::inertial::RawNavigation;
 use super::super::navigation::{FrozenDetector, LearnedAirframe, Navigation, Replacement};
 use super::{
     ActiveMode, Actuation, AltitudeReference, Autopilot, AutopilotConfig, BankCommand,
-    BatteryWatch, Contingencies, Degraded, Following, GroundMotion, KeptTrims, Measurements,
+    Contingencies, Degraded, Delayed, Following, GroundMotion, KeptTrims, Measurements,
     PilotTakeover, PlantClock, ReadingAges, Recovery, RunwayControl, Setpoints, Surfaces, Targets,
     Time, Whereabouts,
 };
@@ -32,7 +32,9 @@ impl Autopilot {
             on_runway: RunwayControl::default(),
             left_plan: None,
             contingencies: Contingencies::default(),
-            battery: BatteryWatch::default(),
+            battery: Delayed::default(),
+            engine: Delayed::default(),
+            glides: false,
             news: None,
             told: None,
             answer: None,

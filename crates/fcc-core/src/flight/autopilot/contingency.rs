@@ -7,6 +7,7 @@
 //! | `CommanderLost` | no command within the time that one has promised | by a command |
 //! | `Fence` | no circle to turn onto stays inside of the fence any more | by a command |
 //! | `BatteryLow` | charge or voltage below its limit for longer than configured | by a command |
+//! | `EngineOut` | the engine's speed below its limit, or no thrust, for longer than configured | by a command, or with the engine |
 //!
 //! The later in this table, the worse; the worst one acts. Each has its action in the
 //! configuration; what is not the fence waits for the end of a take-off or landing, and
@@ -14,9 +15,12 @@
 //! pilot decides. Near the fence the aircraft turns onto the circle that stays inside of
 //! it, by present wind, and returns from there as soon as its course points there; if
 //! that brings it to the fence again, it stays on the circle. It turns away from the fence
-//! whatever else acts; a low battery acts again when the fence is left behind.
+//! whatever else acts, but a glide; a low battery acts again when the fence is left behind.
+//! Without an engine nothing waits for the end of a take-off or landing in the air.
 
 mod battery;
+mod delayed;
+mod engine_out;
 mod fence;
 
 use core::fmt;
@@ -25,7 +29,7 @@ use super::Autopilot;
 use crate::flight::guidance::Mode;
 use crate::framework::Notice;
 use crate::schema;
-pub(super) use battery::BatteryWatch;
+pub(super) use delayed::Delayed;
 use fence::KeptCircle;
 
 /// The number of their notices: the amount says which, the item what is done.
@@ -46,6 +50,8 @@ schema! {
         Fence = 3,
         /// The battery's charge or voltage is below its limit.
         BatteryLow = 4,
+        /// The engine gives no power.
+        EngineOut = 5,
     }
 }
 
@@ -60,6 +66,8 @@ pub enum ContingencyAction {
     Return,
     /// Fly the landing sequence of the plan whose landing is nearest; return without one.
     Land,
+    /// Glide to the best place that is reached, and land there.
+    Glide,
 }
 
 impl ContingencyAction {
@@ -69,10 +77,17 @@ impl ContingencyAction {
             Self::Loiter => "circling",
             Self::Return => "returning",
             Self::Land => "landing",
+            Self::Glide => "gliding",
         }
     }
 
-    const ALL: [Self; 4] = [Self::Continue, Self::Loiter, Self::Return, Self::Land];
+    const ALL: [Self; 5] = [
+        Self::Continue,
+        Self::Loiter,
+        Self::Return,
+        Self::Land,
+        Self::Glide,
+    ];
 }
 
 /// What is done about each contingency.
@@ -99,6 +114,21 @@ pub struct ContingencyConfig {
     pub battery_voltage_v: Option<f64>,
     /// After this time, s; and after it, it is low no longer.
     pub battery_after_s: f64,
+    /// Without the engine.
+    pub engine: ContingencyAction,
+    /// The engine is out below this speed of its shaft, rad/s; none: not watched.
+    pub engine_below_radps: Option<f64>,
+    /// Whether, where its speed is not measured, it is out if the throttle gives no thrust.
+    pub engine_by_thrust: bool,
+    /// After this time, s.
+    pub engine_after_s: f64,
+    /// It runs again when it was above that speed for this time, s.
+    pub engine_back_after_s: f64,
+    /// The way through still air over the height that is lost without power at the airspeed
+    /// of the best glide.
+    pub glide_ratio: f64,
+    /// Height to spare over a place that is glided to, m.
+    pub glide_spare_m: f64,
 }
 
 impl Default for ContingencyConfig {
@@ -114,6 +144,14 @@ impl Default for ContingencyConfig {
             battery_charge: None,
             battery_voltage_v: None,
             battery_after_s: 10.0,
+            engine: ContingencyAction::Glide,
+            engine_below_radps: None,
+            engine_by_thrust: false,
+            engine_after_s: 2.0,
+            engine_back_after_s: 5.0,
+            // Handbook of the Cessna 172P (1981), figure 3-1.
+            glide_ratio: 9.0,
+            glide_spare_m: 60.96, // 200 ft
         }
     }
 }
@@ -144,6 +182,8 @@ pub(super) struct Contingencies {
     is_battery_met: bool,
     /// Whether it was told that the fence is crossed, which is not acted on.
     is_crossing_told: bool,
+    /// Whether this engine failure was acted on.
+    is_engine_met: bool,
     /// Within which time commands are promised, and how much of it is left, s.
     promised_s: Option<(f64, f64)>,
     /// The circle at the fence that was turned onto, until it is left behind.
@@ -174,6 +214,7 @@ impl Contingencies {
             is_loss_met: false,
             is_battery_met: false,
             is_crossing_told: false,
+            is_engine_met: false,
             promised_s,
             kept: None,
             news: None,
@@ -217,6 +258,7 @@ impl Autopilot {
             return;
         }
         self.keep_inside_fence();
+        self.meet_engine_out();
         self.meet_low_battery();
         self.watch_commander(dt_s);
         self.watch_position();
@@ -231,13 +273,17 @@ impl Autopilot {
         if self.contingencies.active as u8 >= contingency as u8 {
             return true;
         }
+        self.begin_contingency(contingency, action);
+        true
+    }
+
+    fn begin_contingency(&mut self, contingency: Contingency, action: ContingencyAction) {
         self.contingencies.active = contingency;
         self.contingencies.stage = Stage::Acting;
         self.contingencies.before = self.guidance.mode();
         let action = self.act(action);
         self.contingencies.mode = self.guidance.mode();
         self.contingencies.announce(contingency, action);
-        true
     }
 
     /// Begins what an action says; what was begun.
@@ -246,6 +292,7 @@ impl Autopilot {
             ContingencyAction::Continue => {}
             ContingencyAction::Loiter => self.pause(),
             ContingencyAction::Land if self.fly_landing() => {}
+            ContingencyAction::Glide => self.glide(),
             ContingencyAction::Return | ContingencyAction::Land => {
                 self.return_home();
                 return ContingencyAction::Return;
@@ -318,6 +365,10 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
         }
         Contingency::Fence => "the fence is near: turning away",
         Contingency::BatteryLow => "the battery is low",
+        Contingency::EngineOut if notice.amount_permille.is_multiple_of(PERMILLE) => {
+            "the engine is out"
+        }
+        Contingency::EngineOut => "the engine runs again",
     };
     let action = usize::from(notice.item).checked_sub(1);
     let action = action.and_then(|n| ContingencyAction::ALL.get(n));

@@ -25,7 +25,8 @@ impl Autopilot {
         if let Some(outputs) = recovering.or_else(|| self.fly_to_release(&estimate, dt_s)) {
             return self.with_trim(now, outputs, Flags::NONE);
         }
-        if let Some(outputs) = self.control_on_runway(&estimate, dt_s) {
+        let by_phase = self.control_on_runway(&estimate, dt_s);
+        if let Some(outputs) = by_phase.or_else(|| self.control_in_glide(&estimate, dt_s)) {
             return self.with_trim(now, outputs, Flags::NONE);
         }
         let to = self.targets;

@@ -15,6 +15,7 @@ mod floor;
 mod flying;
 mod following;
 mod future;
+mod gliding;
 mod ground_below;
 mod ground_motion;
 mod notices;
@@ -43,7 +44,7 @@ use actuation::Actuation;
 use capture::Capture;
 pub use command::AutopilotCommand;
 pub use config::AutopilotConfig;
-use contingency::{BatteryWatch, Contingencies};
+use contingency::{Contingencies, Delayed};
 pub use contingency::{Contingency, ContingencyAction, ContingencyConfig};
 use degraded::Degraded;
 use failsafe::KeptTrims;
@@ -127,7 +128,11 @@ pub struct Autopilot {
     /// The plan that was left for another mode.
     left_plan: Option<OverGroundMode>,
     contingencies: Contingencies,
-    battery: BatteryWatch,
+    /// Whether the battery is low, and the engine out.
+    battery: Delayed,
+    engine: Delayed,
+    /// Whether the controls are those of a glide.
+    glides: bool,
     /// What guidance has to tell, and as it is told, a tick later.
     news: Option<Notice>,
     told: Option<Notice>,

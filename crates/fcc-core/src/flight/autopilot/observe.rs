@@ -56,6 +56,7 @@ impl Autopilot {
         self.navigate(now, measured, step_s);
         self.follow_ground(now, step_s);
         self.follow_battery(now, step_s);
+        self.follow_engine(now, step_s);
         self.note_doubt(doubted);
         let known = self.navigation.known();
         self.frozen.step(now, &self.accepted, &known, step_s);

@@ -27,7 +27,8 @@ impl Autopilot {
         if let Some(targets) = self.guidance.targets() {
             self.targets = targets;
         }
-        if self.guidance.over_ground().is_some() && self.runway().is_none() {
+        let is_limited = |mode: &OverGroundMode| mode.runway().is_none() && !mode.is_glide();
+        if self.guidance.over_ground().is_some_and(is_limited) {
             let demanded_mps = self.targets.airspeed_mps;
             self.targets.airspeed_mps = self.config.envelope.allowed_airspeed(demanded_mps);
         }
@@ -256,6 +257,7 @@ impl Autopilot {
             }
             Mode::Loiter | Mode::GoTo => self.pause(),
             Mode::Return => self.return_home(),
+            Mode::Glide => self.resume_glide(),
             Mode::None | Mode::Hold | Mode::TimedPattern => return false,
         }
         true
@@ -280,7 +282,7 @@ impl Autopilot {
     }
 
     /// Enters a mode over the ground.
-    fn enter(&mut self, mode: &OverGroundMode) {
+    pub(super) fn enter(&mut self, mode: &OverGroundMode) {
         self.leave();
         if self.guidance.over_ground().is_none() {
             self.bank.reset(self.setpoints.roll_rad);

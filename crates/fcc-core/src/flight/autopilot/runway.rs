@@ -7,6 +7,8 @@
 //! | Approach | bank onto the centre line | climb rate of the glide path | airspeed |
 //! | Flare | rudder to the runway's heading, bank against the drift | sink rate by height | closing |
 //! | `RollOut`, Stopped | as in the roll | elevator back | idle, brakes |
+//!
+//! Without power the approach is that of the [glide](super::gliding).
 
 mod notices;
 mod on_wheels;
@@ -47,15 +49,15 @@ const SLOW_PITCH_RAD: f64 = 0.052;
 const SLOW_SHARE: f64 = 0.8;
 const OPENS_PER_S: f64 = 1.0;
 /// How fast the throttle is closed in the flare, 1/s.
-const CLOSES_PER_S: f64 = 0.35;
+pub(super) const CLOSES_PER_S: f64 = 0.35;
 /// The smallest pitch of a flare: the nose wheel does not touch first, rad.
 const LEAST_FLARE_PITCH_RAD: f64 = 0.0;
 /// The elevator is held back below this share of the approach's airspeed.
 const HELD_BACK_BELOW: f64 = 0.7;
 /// An approach speed is so many times the stalling speed.
-const OVER_STALL: f64 = 1.3;
+pub(super) const OVER_STALL: f64 = 1.3;
 /// The lowest airspeed of approach and climb, of the commanded one.
-const LOWEST_SHARE: f64 = 0.88;
+pub(super) const LOWEST_SHARE: f64 = 0.88;
 
 /// What the controls of a runway remember.
 #[derive(Clone, Copy, Debug, Default)]
@@ -155,7 +157,13 @@ impl Autopilot {
                     .engage(last.aileron, last.rudder, estimate, schedule);
                 self.bank.reset(estimate.roll_rad);
             }
-            RunwayPhase::Flare => self.on_runway.rudder = last.rudder,
+            RunwayPhase::Flare => {
+                self.on_runway.rudder = last.rudder;
+                if demand.is_powerless {
+                    // The pitch was not that of a climb rate.
+                    self.altitude.engage(last.elevator, estimate, schedule);
+                }
+            }
             RunwayPhase::GoAround if before == Some(RunwayPhase::Flare) => {
                 self.heading
                     .engage(last.aileron, last.rudder, estimate, schedule);
@@ -250,6 +258,16 @@ impl Autopilot {
                 let fast_mps = HELD_BACK_BELOW * self.config.route.runway.approach_mps;
                 let slow = 1.0 - estimate.airspeed_mps / fast_mps;
                 (closing, 0.0, 0.0, limit(slow, 0.0, 1.0))
+            }
+            RunwayPhase::Approach if demand.is_powerless => {
+                let vertical = self.hold_glide(&envelope, estimate, dt_s);
+                let elevator = self.actuation.elevator(vertical.elevator);
+                (
+                    closing,
+                    vertical.climb_rate_mps,
+                    vertical.pitch_rad,
+                    elevator,
+                )
             }
             RunwayPhase::Approach | RunwayPhase::Flare => {
                 let altitude = &mut self.altitude;

@@ -108,7 +108,7 @@ pub struct AltitudeLoop {
     climb_rate: RateLimit,
     /// The flight-path angle expected now from the past commands, rad.
     expected_path: LowPass,
-    speed: SpeedLimits,
+    pub(super) speed: SpeedLimits,
     pitch: Pid,
     pitch_rate: Pid,
 }

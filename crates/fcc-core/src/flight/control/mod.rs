@@ -21,6 +21,7 @@ mod altitude;
 mod elevator_response;
 mod elevator_trim;
 mod envelope;
+mod glide;
 mod heading;
 mod load;
 mod oscillation;

@@ -146,14 +146,17 @@ impl SpeedLimits {
             0.0
         };
         let floor_mps = floor_mps + self.raise(floor_mps, envelope, dt_s);
-        let at = |airspeed_mps: f64| {
-            constant + GAIN_PER_S * (estimate.airspeed_mps - airspeed_mps) / GRAVITY_MPS2
-        };
-        self.max_rad = at(floor_mps);
+        self.max_rad = self.pitch_for(floor_mps, estimate);
         PitchLimits {
             max_rad: self.max_rad,
-            min_rad: at(envelope.max_airspeed_mps),
+            min_rad: self.pitch_for(envelope.max_airspeed_mps, estimate),
         }
+    }
+
+    /// The pitch that leads to an airspeed, m/s, by the last [`SpeedLimits::step`], rad.
+    pub fn pitch_for(&self, airspeed_mps: f64, estimate: &Estimate) -> f64 {
+        let off_mps = estimate.airspeed_mps - airspeed_mps;
+        self.constant.output() + GAIN_PER_S * off_mps / GRAVITY_MPS2
     }
 
     /// The airspeed that is ordered, m/s: if height cannot be held at the lowest one,

@@ -143,6 +143,7 @@ fn modes_have_names() {
         "take-off",
         "land",
         "go-around",
+        "glide",
     ];
     assert_eq!(names, expected);
 }

@@ -12,12 +12,12 @@ schema! {
     /// [`GuidanceConfig`](super::GuidanceConfig) names; "any other" is every mode but
     /// None.
     ///
-    /// | | `Engage` | `SetPoint` | `Plan` | `Pause` | `GoTo` | `Return` | `GoAround` | `Resume(mode)` | `Disengage` |
-    /// |---|---|---|---|---|---|---|---|---|---|
-    /// | **None** | the configured mode | · | · | · | · | · | · | · | None |
-    /// | **Takeoff** | the configured mode | Hold | Plan | Loiter | `GoTo` | Return | · | the mode; a pattern if it is configured | None |
-    /// | **Land** | the configured mode | Hold | Plan | Loiter | `GoTo` | Return | `GoAround` | the mode; a pattern if it is configured | None |
-    /// | **any other** | the configured mode | Hold | Plan | Loiter | `GoTo` | Return | · | the mode; a pattern if it is configured | None |
+    /// | | `Engage` | `SetPoint` | `Plan` | `Pause` | `GoTo` | `Return` | `GoAround` | `Glide` | `Resume(mode)` | `Disengage` |
+    /// |---|---|---|---|---|---|---|---|---|---|---|
+    /// | **None** | the configured mode | · | · | · | · | · | · | · | · | None |
+    /// | **Takeoff** | the configured mode | Hold | Plan | Loiter | `GoTo` | Return | · | Glide | the mode; a pattern if it is configured | None |
+    /// | **Land** | the configured mode | Hold | Plan | Loiter | `GoTo` | Return | `GoAround` | Glide | the mode; a pattern if it is configured | None |
+    /// | **any other** | the configured mode | Hold | Plan | Loiter | `GoTo` | Return | · | Glide | the mode; a pattern if it is configured | None |
     ///
     /// A plan changes its mode by itself: from Plan to Takeoff and Land at these items, from
     /// Takeoff to Plan at its altitude, from Land to `GoAround` outside of the limits of a
@@ -28,6 +28,8 @@ schema! {
     /// |---|---|
     /// | Plan, Takeoff, Land, `GoAround` | a plan in the configuration, and a position |
     /// | Loiter, `GoTo`, Return | a position |
+    ///
+    /// A Glide ends on the ground; it is begun without a position, too, with wings level.
     ///
     /// What lacks what it needs changes nothing. A Loiter or `GoTo` that is resumed
     /// circles where the aircraft is: its place is not part of a
@@ -61,6 +63,8 @@ schema! {
         Land = 8,
         /// A landing is given up: away from the runway, and to the landing again.
         GoAround = 9,
+        /// Without power: to a place that is reached, and down.
+        Glide = 10,
     }
 }
 
@@ -89,6 +93,8 @@ pub enum ModeInput {
     Return,
     /// A landing is to be given up.
     GoAround,
+    /// There is no power.
+    Glide,
     /// An interrupted flight is to be continued in this mode.
     Resume(Mode),
     /// The loop disengages.
@@ -97,7 +103,7 @@ pub enum ModeInput {
 
 impl Mode {
     /// Every mode, by its number.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::None,
         Self::Hold,
         Self::TimedPattern,
@@ -108,6 +114,7 @@ impl Mode {
         Self::Takeoff,
         Self::Land,
         Self::GoAround,
+        Self::Glide,
     ];
 
     /// The mode after an input, by the transition table; it is entered again
@@ -125,6 +132,7 @@ impl Mode {
             (_, ModeInput::Return) => Some(Self::Return),
             (Self::Land, ModeInput::GoAround) => Some(Self::GoAround),
             (_, ModeInput::GoAround) => None,
+            (_, ModeInput::Glide) => Some(Self::Glide),
             (_, ModeInput::Resume(mode)) => {
                 let is_pattern = mode == Self::TimedPattern;
                 (!is_pattern || mode == configured).then_some(mode)
@@ -145,6 +153,7 @@ impl Mode {
             Self::Takeoff => "take-off",
             Self::Land => "land",
             Self::GoAround => "go-around",
+            Self::Glide => "glide",
         }
     }
 }
@@ -167,13 +176,14 @@ mod tests {
         assert_eq!(Mode::from_number(2), Some(Mode::TimedPattern));
         assert_eq!(Mode::from_number(6), Some(Mode::Return));
         assert_eq!(Mode::from_number(9), Some(Mode::GoAround));
-        assert_eq!(Mode::from_number(10), None);
+        assert_eq!(Mode::from_number(10), Some(Mode::Glide));
+        assert_eq!(Mode::from_number(11), None);
     }
 
     /// The table of [`Mode`]'s documentation, written out again.
     #[test]
     fn transitions_follow_the_documented_table() {
-        use Mode::{GoAround, GoTo, Hold, Land, Loiter};
+        use Mode::{Glide, GoAround, GoTo, Hold, Land, Loiter};
         use Mode::{None as Nothing, Plan, Return, Takeoff, TimedPattern};
         let inputs = [
             ModeInput::Engage,
@@ -183,6 +193,7 @@ mod tests {
             ModeInput::GoTo,
             ModeInput::Return,
             ModeInput::GoAround,
+            ModeInput::Glide,
             ModeInput::Resume(Nothing),
             ModeInput::Resume(Hold),
             ModeInput::Resume(TimedPattern),
@@ -200,6 +211,7 @@ mod tests {
                 Some(GoTo),
                 Some(Return),
                 None,
+                Some(Glide),
                 None,
                 Some(Hold),
                 (configured == TimedPattern).then_some(TimedPattern),
@@ -210,8 +222,8 @@ mod tests {
             ];
             let mut landing = engaged;
             landing[6] = Some(GoAround);
-            let mut standby = [None; 14];
-            (standby[0], standby[13]) = (Some(configured), Some(Nothing));
+            let mut standby = [None; 15];
+            (standby[0], standby[14]) = (Some(configured), Some(Nothing));
             let rows = Mode::ALL.map(|mode| match mode {
                 Nothing => (mode, standby),
                 Land => (mode, landing),

@@ -38,6 +38,7 @@ impl OverGroundMode {
     pub const fn mode(&self) -> Mode {
         match self.follower.runway() {
             None => self.mode,
+            Some(_) if self.is_glide() => self.mode,
             Some(demand) => match demand.phase {
                 RunwayPhase::GoAround => Mode::GoAround,
                 _ if demand.takes_off => Mode::Takeoff,
@@ -49,6 +50,11 @@ impl OverGroundMode {
     /// Whether it flies the plan.
     pub const fn is_plan(&self) -> bool {
         matches!(self.mode, Mode::Plan)
+    }
+
+    /// Whether it glides without power.
+    pub const fn is_glide(&self) -> bool {
+        matches!(self.mode, Mode::Glide)
     }
 
     /// The take-off or landing that is flown.

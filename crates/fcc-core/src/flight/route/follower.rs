@@ -7,6 +7,7 @@ use super::begin::{Goal, GoalKind, Next};
 use super::circle::Circling;
 use super::corner::{Conditions, Corner};
 use super::demand::{Profile, Speed};
+use super::glide::GlideFlight;
 use super::leg::Leg;
 use super::runway::{Outcome, RunwayDemand, RunwayFlight, RunwayReason};
 use super::sequence::{Sequence, Steps};
@@ -81,7 +82,6 @@ pub struct Track {
 }
 
 #[derive(Clone, Copy, PartialEq, Debug)]
-#[expect(clippy::large_enum_variant, reason = "there is one, and no heap")]
 pub(super) enum Phase {
     /// To begin with the step of this index.
     Begin(usize),
@@ -90,6 +90,7 @@ pub(super) enum Phase {
     Second(Corner),
     Circle(Circling),
     Runway(RunwayFlight),
+    Glide(GlideFlight),
 }
 
 impl Follower {
@@ -121,7 +122,7 @@ impl Follower {
         Self::new(Steps::One(step), returns, 0, config, airspeed_mps)
     }
 
-    fn new(
+    pub(super) fn new(
         steps: Steps,
         returns: &'static [Destination],
         index: usize,
@@ -228,6 +229,9 @@ impl Follower {
             self.goal.altitude_m = here.altitude_m;
             self.begin(index, &here.plane(), here);
         }
+        if let Phase::Glide(flight) = self.phase {
+            self.glide_on(flight, here, dt_s);
+        }
         let mut motion = here.motion_in(&self.goal.at);
         if self.goes_on(here, &motion, dt_s) {
             motion = here.motion_in(&self.goal.at);
@@ -247,6 +251,7 @@ impl Follower {
         self.follow_altitude(&motion);
         self.airspeed_mps = match (&self.phase, self.speed) {
             (Phase::Runway(flight), _) => flight.airspeed_mps(),
+            (Phase::Glide(flight), _) => flight.airspeed_mps(),
             (_, Speed::Indicated(mps)) => mps,
             (_, Speed::OverGround(mps)) => {
                 let through = nearest.course * mps - motion.wind_mps;
@@ -261,6 +266,7 @@ impl Follower {
             (Phase::First(_, corner), _) => corner.first().path(),
             (Phase::Second(corner), _) => corner.second().unwrap_or(corner.first()).path(),
             (Phase::Runway(flight), _) => flight.path(),
+            (Phase::Glide(flight), _) => flight.path(),
             (_, GoalKind::Circle(circle)) => circle.path(),
             // Before it has begun.
             (_, GoalKind::Place(_) | GoalKind::Landing(_)) => Path::Line {
@@ -345,7 +351,7 @@ impl Follower {
                     Outcome::Flown => {}
                 }
             }
-            (Phase::Begin(_) | Phase::Leg(_) | Phase::Circle(_), _) => {}
+            (Phase::Begin(_) | Phase::Leg(_) | Phase::Circle(_) | Phase::Glide(_), _) => {}
         }
         false
     }

@@ -16,6 +16,7 @@ mod circle;
 mod corner;
 mod demand;
 mod follower;
+mod glide;
 mod leg;
 mod over_ground;
 mod prepared;
@@ -26,6 +27,7 @@ mod simulation;
 mod step;
 
 pub use follower::{Follower, Track};
+pub use glide::{Glide, GlideConfig};
 pub use leg::course_onto_circle;
 pub use over_ground::OverGround;
 pub use prepared::{PreparedRoutes, RouteSource};

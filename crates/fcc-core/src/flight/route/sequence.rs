@@ -40,6 +40,14 @@ impl Sequence {
         }
     }
 
+    /// The route; of one step that was commanded, an empty one.
+    pub(super) fn route(&self) -> Route<'static> {
+        match self.steps {
+            Steps::Plan(route) => route,
+            Steps::One(_) => Route::default(),
+        }
+    }
+
     fn step(&self, index: usize) -> Option<&Step> {
         match &self.steps {
             Steps::Plan(route) => route.step(index),

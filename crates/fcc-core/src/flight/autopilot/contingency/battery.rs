@@ -10,29 +10,6 @@ use crate::framework::{Flags, Time};
 /// A reading is used for so long: batteries change slowly, and some report seldom.
 const READING_AGE: Duration = Duration::from_secs(10);
 
-/// Whether the battery is low.
-#[derive(Clone, Copy, Debug, Default)]
-pub(in super::super) struct BatteryWatch {
-    is_low: bool,
-    /// For how long its readings have said otherwise, s.
-    otherwise_s: f64,
-}
-
-impl BatteryWatch {
-    /// `dt_s` seconds pass with a reading.
-    fn step(&mut self, is_below: bool, after_s: f64, dt_s: f64) {
-        if is_below == self.is_low {
-            self.otherwise_s = 0.0;
-            return;
-        }
-        self.otherwise_s += dt_s;
-        if self.otherwise_s >= after_s {
-            self.is_low = is_below;
-            self.otherwise_s = 0.0;
-        }
-    }
-}
-
 /// Whether a battery is below one of its limits, where it has some; none if that is not
 /// known, because what is limited is not measured.
 fn is_below(battery: Battery, charge: Option<f64>, voltage_v: Option<f64>) -> Option<bool> {
@@ -71,7 +48,7 @@ impl Autopilot {
 
     /// With a low battery, or one that is limited and not measured, nothing takes off.
     pub(in super::super) fn battery_inhibits(&self, now: Time) -> Flags {
-        let is_good = self.battery_is_below(now) == Some(false) && !self.battery.is_low;
+        let is_good = self.battery_is_below(now) == Some(false) && !self.battery.is_on;
         Flags::NONE.with(flags::BATTERY, self.ground.stands_on_wheels() && !is_good)
     }
 
@@ -79,12 +56,12 @@ impl Autopilot {
     pub(super) fn meet_low_battery(&mut self) {
         let contingencies = &mut self.contingencies;
         let is_at_fence = contingencies.active == Contingency::Fence;
-        if !self.battery.is_low || is_at_fence {
+        if !self.battery.is_on || is_at_fence {
             contingencies.is_battery_met = false;
         }
         let turns_away =
             is_at_fence && (contingencies.stage != Stage::Acting || contingencies.kept.is_some());
-        if self.battery.is_low && !contingencies.is_battery_met && !turns_away {
+        if self.battery.is_on && !contingencies.is_battery_met && !turns_away {
             let action = self.config.contingency.battery;
             self.contingencies.is_battery_met = self.meet(Contingency::BatteryLow, action);
         }
@@ -113,21 +90,5 @@ mod tests {
         );
         assert_eq!(is_below(battery(Some(12.6), None), Some(0.25), None), None);
         assert_eq!(is_below(battery(None, None), None, None), Some(false));
-    }
-
-    /// A voltage that sags for 2 s under a climb is not low after 3 s; then it is, and no
-    /// longer 3 s after it is good again.
-    #[test]
-    fn it_is_low_after_its_time() {
-        let mut watch = BatteryWatch::default();
-        let mut lows = std::vec::Vec::new();
-        for second in 0..20 {
-            let is_below = (2..4).contains(&second) || (6..12).contains(&second);
-            watch.step(is_below, 3.0, 1.0);
-            if watch.is_low {
-                lows.push(second);
-            }
-        }
-        assert_eq!(lows, (8..14).collect::<std::vec::Vec<_>>());
     }
 }

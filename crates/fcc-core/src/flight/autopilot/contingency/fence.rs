@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 use super::super::Autopilot;
 use super::{Contingency, ContingencyAction, Stage};
 use crate::flight::fence::{Bank, Escape, Fence};
-use crate::flight::guidance::ModeInput;
+use crate::flight::guidance::{Mode, ModeInput};
 use crate::flight::path::{LocalPlane, Path, length};
 use crate::flight::route::{
     Destination, OverGround, PLANNED_SHARE, RETURNS_CLOCKWISE, ROLL_LAG_S, course_onto_circle,
@@ -71,7 +71,10 @@ impl Autopilot {
             return self.tell_fence_crossed(&fence);
         }
         // Take-off and landing lead where a runway is.
-        let is_watched = !fence.zones.is_empty() && self.runway().is_none() && !self.is_on_runway();
+        let is_watched = !fence.zones.is_empty()
+            && self.runway().is_none()
+            && !self.is_on_runway()
+            && self.guidance.mode() != Mode::Glide;
         let Some(here) = self.ground.here().copied().filter(|_| is_watched) else {
             return;
         };

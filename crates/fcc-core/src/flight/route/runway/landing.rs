@@ -85,19 +85,22 @@ impl RunwayFlight {
                     return Outcome::Again;
                 }
             }
-            _ => {
-                if !on_wheels && self.demand.height_m > BOUNCES_M && !self.demand.takes_off {
-                    self.phase = RunwayPhase::Flare;
-                }
-                return self.step_on_wheels();
-            }
+            _ => return self.roll_out(on_wheels),
         }
         Outcome::Flown
     }
 
+    /// On the wheels; a bounce is flared again.
+    pub(super) fn roll_out(&mut self, on_wheels: bool) -> Outcome {
+        if !on_wheels && self.demand.height_m > BOUNCES_M && !self.demand.takes_off {
+            self.phase = RunwayPhase::Flare;
+        }
+        self.step_on_wheels()
+    }
+
     /// Whether the wheels are on the ground: by their switch, as far as the height agrees,
     /// and without one, or with one that has not noticed, by height and airspeed.
-    fn touches(&mut self, here: &OverGround) -> bool {
+    pub(super) fn touches(&mut self, here: &OverGround) -> bool {
         let (height_m, ranged) = (self.demand.height_m, here.height_m.is_some());
         if here.on_wheels == Some(true) && height_m > WEIGHT_WRONG_M {
             self.is_weight_wrong = true;
@@ -159,7 +162,7 @@ impl RunwayFlight {
                 .is_some_and(|off_m| fabs(off_m) > ALTIMETER_OFF_M)
     }
 
-    fn flare(&mut self, here: &OverGround, on_wheels: bool, dt_s: f64) {
+    pub(super) fn flare(&mut self, here: &OverGround, on_wheels: bool, dt_s: f64) {
         let config = self.config;
         let height_m = self.demand.height_m.max(0.0);
         let flared_mps = height_m / config.flare_s + config.touchdown_mps;
@@ -173,7 +176,7 @@ impl RunwayFlight {
         let balloons = height_m > (BALLOONS * self.flares_m()).max(COMMITTED_M);
         if on_wheels {
             self.phase = RunwayPhase::RollOut;
-        } else if balloons || is_long && here.ranges && !is_near {
+        } else if self.glide_sine.is_none() && (balloons || is_long && here.ranges && !is_near) {
             self.give_up(RunwayPhase::GoAround, RunwayReason::LongFlare);
         }
     }
@@ -184,7 +187,7 @@ impl RunwayFlight {
     }
 
     /// The height of the flare's begin, m.
-    fn flares_m(&self) -> f64 {
+    pub(super) fn flares_m(&self) -> f64 {
         let slowed_mps = self.sink_mps() - self.config.touchdown_mps;
         (self.config.flare_s * slowed_mps).max(LEAST_FLARE_M)
     }
@@ -193,7 +196,7 @@ impl RunwayFlight {
     /// they have left it.
     pub(in crate::flight::route) const fn go_around(&mut self) {
         match self.phase {
-            RunwayPhase::Approach | RunwayPhase::Flare => {
+            RunwayPhase::Approach | RunwayPhase::Flare if self.glide_sine.is_none() => {
                 self.give_up(RunwayPhase::GoAround, RunwayReason::Commanded);
             }
             RunwayPhase::Roll => self.give_up(RunwayPhase::RollOut, RunwayReason::Failsafe),

@@ -12,6 +12,7 @@
 
 mod config;
 mod landing;
+mod powerless;
 mod reason;
 mod takeoff;
 #[cfg(test)]
@@ -103,6 +104,8 @@ pub struct RunwayDemand {
     pub reason: RunwayReason,
     /// Whether it is a take-off, or was one until it was given up.
     pub takes_off: bool,
+    /// Whether there is no power: the pitch holds the airspeed, and nothing gives it up.
+    pub is_powerless: bool,
 }
 
 /// A take-off or landing that is flown.
@@ -126,6 +129,8 @@ pub(super) struct RunwayFlight {
     flared_s: f64,
     /// Whether the wheels bore weight where they cannot.
     is_weight_wrong: bool,
+    /// The sine of the glide's angle; none with power.
+    glide_sine: Option<f64>,
 }
 
 /// What follows of a tick.
@@ -155,6 +160,7 @@ impl RunwayFlight {
             began_m: 0.0,
             flared_s: 0.0,
             is_weight_wrong: false,
+            glide_sine: None,
             demand: RunwayDemand {
                 phase,
                 course_rad: libm::atan2(runway.course.y, runway.course.x),
@@ -166,6 +172,7 @@ impl RunwayFlight {
                 pitch_rad: config.climb_pitch_rad,
                 reason: RunwayReason::None,
                 takes_off: phase.is_takeoff(),
+                is_powerless: false,
             },
         }
     }
@@ -221,6 +228,8 @@ impl RunwayFlight {
         };
         let outcome = if self.phase.is_takeoff() {
             self.step_takeoff(here, motion)
+        } else if let Some(sine) = self.glide_sine {
+            self.step_powerless(here, sine, dt_s)
         } else {
             self.step_landing(here, motion, dt_s)
         };
