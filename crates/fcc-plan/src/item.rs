@@ -188,4 +188,15 @@ impl Item {
             _ => None,
         }
     }
+
+    pub(crate) const fn altitude_mut(&mut self) -> Option<&mut Altitude> {
+        match self {
+            Self::Waypoint { altitude, .. }
+            | Self::Loiter(Loiter { altitude, .. })
+            | Self::Land { altitude, .. }
+            | Self::Takeoff { altitude, .. }
+            | Self::ChangeAltitude { altitude } => Some(altitude),
+            _ => None,
+        }
+    }
 }

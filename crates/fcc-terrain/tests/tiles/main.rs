@@ -1,0 +1,6 @@
+//! Tiles as they are documented, made here, and what is refused.
+
+mod geotiff;
+mod hgt;
+mod made;
+mod refusals;
