@@ -39,18 +39,15 @@ pub fn resolve(plan: &Plan, terrain: &Terrain<'_>) -> Result<Plan, Vec<Problem>>
             continue;
         };
         let (latitude, longitude) = place.radians();
-        match terrain.elevation_m(latitude, longitude) {
-            Some(elevation_m) => {
-                *altitude = Altitude {
-                    m: elevation_m + altitude.m,
-                    above: AltitudeDatum::SeaLevel,
-                };
-            }
-            None => {
-                let message = format!("is above terrain, and {}", unknown(place));
-                problems.push(Problem::of_item(n + 1, "altitude", message));
-            }
-        }
+        let Some(elevation_m) = terrain.elevation_m(latitude, longitude) else {
+            let message = format!("is above terrain, and {}", unknown(place));
+            problems.push(Problem::of_item(n + 1, "altitude", message));
+            continue;
+        };
+        *altitude = Altitude {
+            m: elevation_m + altitude.m,
+            above: AltitudeDatum::SeaLevel,
+        };
     }
     problems.truncate(limits::PROBLEMS);
     if problems.is_empty() {

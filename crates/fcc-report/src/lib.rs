@@ -47,8 +47,8 @@ pub use events::EventLine;
 #[cfg(feature = "flight")]
 pub use flight::{
     AltimeterSettings, Difference, FlightAddition, FlightReport, FlightSurvey, GroundLine,
-    MethodResult, NavigationReplay, PlanLine, PlanLines, PlanPlace, PlanRow, ReplacedPlan,
-    ReplacedPlans, SourceConsistency, flight_table, plan_page, plan_table,
+    GroundPoint, MethodResult, NavigationReplay, PlanLine, PlanLines, PlanPlace, PlanRow,
+    ReplacedPlan, ReplacedPlans, SourceConsistency, flight_table, plan_page, plan_table,
 };
 pub use log_histogram::LogBin;
 pub use origin::{FileEnd, Origin};

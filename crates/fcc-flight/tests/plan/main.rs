@@ -6,6 +6,7 @@ mod battery;
 mod contingency;
 mod flight;
 mod replacing;
+mod terrain;
 
 use fcc_conformance::allocator_calls;
 use fcc_core::flight::guidance::Mode;

@@ -23,7 +23,7 @@ pub(crate) fn hgt(height_m: impl Fn(usize, usize) -> i16) -> Vec<u8> {
 }
 
 /// A GeoTIFF of 20 by 10 posts, 0.01° apart, whose first is at 47° north and 8° east, as
-/// its GeoKeys say; a post is 10 times its row and its column.
+/// its keys say; a post is 10 times its row and its column.
 #[derive(Clone)]
 pub(crate) struct Made {
     pub(crate) keys: Vec<[u16; 4]>,

@@ -1,4 +1,5 @@
 //! Tiles as they are documented, made here, and what is refused.
+#![cfg(test)]
 
 mod geotiff;
 mod hgt;
