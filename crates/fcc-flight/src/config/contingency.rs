@@ -32,6 +32,12 @@ pub struct ContingencySection {
     pub battery_voltage_v: Option<f64>,
     /// After this time.
     pub battery_low_after_s: f64,
+    /// Where the ground ahead cannot be climbed over; needs `terrain.folder`.
+    pub terrain: ActionChoice,
+    /// How far above the ground the aircraft stays.
+    pub terrain_margin_m: f64,
+    /// How far ahead it is looked for.
+    pub terrain_ahead_s: f64,
 }
 
 /// Actions.
@@ -72,6 +78,9 @@ impl Default for ContingencySection {
             battery_charge_percent: None,
             battery_voltage_v: None,
             battery_low_after_s: 10.0,
+            terrain: ActionChoice::Return,
+            terrain_margin_m: 30.0,
+            terrain_ahead_s: 60.0,
         }
     }
 }
@@ -91,6 +100,9 @@ impl From<&ContingencySection> for ContingencyConfig {
                 .map(|percent| percent / 100.0),
             battery_voltage_v: section.battery_voltage_v,
             battery_after_s: section.battery_low_after_s,
+            terrain: section.terrain.into(),
+            terrain_margin_m: section.terrain_margin_m,
+            terrain_ahead_s: section.terrain_ahead_s,
         }
     }
 }
@@ -102,12 +114,14 @@ impl ContingencySection {
     }
 }
 
-/// A landing needs a position, and one that the fence is in the way of is no way out.
+/// A landing needs a position, and one that the fence or terrain is in the way of is no way
+/// out.
 pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     let section = &config.contingency;
     for (key, action) in [
         ("contingency.fence", section.fence),
         ("contingency.position_lost", section.position_lost),
+        ("contingency.terrain", section.terrain),
     ] {
         if action == ActionChoice::Land {
             let message = "is \"land\": choose \"continue\", \"loiter\" or \"return\"";

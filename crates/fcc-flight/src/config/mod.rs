@@ -366,6 +366,7 @@ impl Config {
             prepared: replacement::prepared_routes(),
             route: self.plan.route_config(&self.autopilot.runway),
             contingency: (&self.contingency).into(),
+            terrain: self.terrain.loaded.unwrap_or_default(),
             raw_navigation: self.navigation.to_core(self.simulated_field_ut()),
             ..self.autopilot.to_core(
                 &self.guidance,

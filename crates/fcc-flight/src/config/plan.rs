@@ -229,6 +229,8 @@ impl Config {
             file: file.display().to_string(),
             problems,
         };
+        self.load_terrain(plan)
+            .map_err(|problem| invalid(vec![problem]))?;
         let plan = self.checked_plan(plan).map_err(invalid)?;
         let content = fcc_plan::write(&plan, Format::QgcPlan).map_err(invalid)?;
         self.begin_at(&plan);

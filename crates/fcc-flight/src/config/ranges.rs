@@ -66,6 +66,8 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("contingency.battery_charge_percent", 0.0, 100.0),
     ("contingency.battery_voltage_v", 0.0, 1_000.0),
     ("contingency.battery_low_after_s", 0.0, 3_600.0),
+    ("contingency.terrain_margin_m", 10.0, 3_000.0),
+    ("contingency.terrain_ahead_s", 10.0, 300.0),
     ("terrain.margin_m", 0.0, 3_000.0),
     ("terrain.around_km", 1.0, 500.0),
     ("terrain.memory_mb", 1.0, 16_000.0),

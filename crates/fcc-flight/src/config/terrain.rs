@@ -1,13 +1,14 @@
 //! `[terrain]`: the elevations that plans are checked against.
 
 use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
 
 use fcc_core::flight::terrain::Terrain;
 use fcc_plan::{Item, Plan, Problem, Steps};
 use fcc_terrain::{Area, Elevations};
 use serde::{Deserialize, Serialize};
 
-use super::Config;
+use super::{Config, ConfigError};
 
 /// `[terrain]`.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -22,6 +23,12 @@ pub struct TerrainSection {
     pub around_km: f64,
     /// The most memory that elevations take.
     pub memory_mb: f64,
+    /// The SHA-256 of the elevations that a flight has: fccd writes it into a recording.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sha256: Option<String>,
+    /// The elevations that a flight has.
+    #[serde(skip)]
+    pub(crate) loaded: Option<Terrain<'static>>,
 }
 
 impl Default for TerrainSection {
@@ -31,8 +38,25 @@ impl Default for TerrainSection {
             margin_m: 60.0,
             around_km: 20.0,
             memory_mb: 256.0,
+            sha256: None,
+            loaded: None,
         }
     }
+}
+
+/// Elevations that flights of this program have: they are never given back, since a tick
+/// may look into them.
+static LOADED: Mutex<Vec<(String, Terrain<'static>)>> = Mutex::new(Vec::new());
+
+/// The elevations with a hash, once for all flights.
+fn kept(hash: &str, elevations: Elevations) -> Terrain<'static> {
+    let mut loaded = LOADED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, terrain)) = loaded.iter().find(|(kept, _)| kept == hash) {
+        return *terrain;
+    }
+    let terrain = elevations.leak();
+    loaded.push((hash.to_owned(), terrain));
+    terrain
 }
 
 /// Home, items and rally points.
@@ -54,15 +78,73 @@ impl Config {
         plan: &Plan,
         of: impl FnOnce(Option<&Terrain<'_>>) -> T,
     ) -> Result<T, Problem> {
+        if let Some(terrain) = &self.terrain.loaded {
+            return Ok(of(Some(terrain)));
+        }
+        match self.elevations(plan)? {
+            Some(elevations) => Ok(elevations.with(|terrain| of(Some(terrain)))),
+            None => Ok(of(None)),
+        }
+    }
+
+    fn elevations(&self, plan: &Plan) -> Result<Option<Elevations>, Problem> {
         let section = &self.terrain;
         let area = Area::around(places(plan), section.around_km * 1e3);
         let Some((folder, area)) = section.folder.as_ref().zip(area) else {
-            return Ok(of(None));
+            return Ok(None);
         };
         let most_bytes = (section.memory_mb * 1e6) as u64;
-        let elevations = Elevations::read(folder, &area, most_bytes)
-            .map_err(|error| Problem::of("terrain.folder", error.to_string()))?;
-        Ok(elevations.with(|terrain| of(Some(terrain))))
+        let read = Elevations::read(folder, &area, most_bytes);
+        let read = read.map_err(|error| Problem::of("terrain.folder", error.to_string()))?;
+        Ok(Some(read))
+    }
+
+    /// Reads the elevations around a plan for a flight, or for its replay, which needs the
+    /// same ones.
+    ///
+    /// # Errors
+    /// The problem, if they cannot be read, or are others than those that were recorded.
+    pub(crate) fn load_terrain(&mut self, plan: &Plan) -> Result<(), Problem> {
+        let Some(elevations) = self.elevations(plan)? else {
+            return Ok(());
+        };
+        let hash = elevations.hash();
+        if self
+            .terrain
+            .sha256
+            .as_ref()
+            .is_some_and(|sha256| *sha256 != hash)
+        {
+            let message = "the elevations are others than those of terrain.sha256: give the \
+                           tiles of that flight, or take the key out";
+            return Err(Problem::of("terrain.folder", message));
+        }
+        self.terrain.loaded = Some(kept(&hash, elevations));
+        self.terrain.sha256 = Some(hash);
+        Ok(())
+    }
+
+    /// A recorded configuration with the elevations of its flight, if it had some; `name`
+    /// is its own in messages.
+    ///
+    /// # Errors
+    /// As [`load_terrain`](Self::load_terrain).
+    pub(crate) fn with_recorded_terrain(mut self, name: &str) -> Result<Self, ConfigError> {
+        let plan = self.plan.plan().cloned();
+        let Some(plan) = plan.filter(|_| self.terrain.sha256.is_some()) else {
+            return Ok(self);
+        };
+        match self.load_terrain(&plan) {
+            Ok(()) => Ok(self),
+            Err(problem) => Err(ConfigError::Invalid {
+                file: name.to_owned(),
+                problems: vec![super::Problem {
+                    line: None,
+                    key: Some(problem.field),
+                    message: problem.message,
+                }],
+            }),
+        }
     }
 
     /// A plan as it is flown with this configuration: with altitudes above terrain as

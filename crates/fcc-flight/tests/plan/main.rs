@@ -7,6 +7,7 @@ mod contingency;
 mod flight;
 mod replacing;
 mod terrain;
+mod terrain_ahead;
 
 use fcc_conformance::allocator_calls;
 use fcc_core::flight::guidance::Mode;

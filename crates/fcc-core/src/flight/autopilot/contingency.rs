@@ -7,6 +7,7 @@
 //! | `CommanderLost` | no command within the time that one has promised | by a command |
 //! | `Fence` | no circle to turn onto stays inside of the fence any more | by a command |
 //! | `BatteryLow` | charge or voltage below its limit for longer than configured | by a command |
+//! | `Terrain` | the ground ahead | a climb when it is passed, a turn by a command |
 //!
 //! The later in this table, the worse; the worst one acts. Each has its action in the
 //! configuration; what is not the fence waits for the end of a take-off or landing, and
@@ -18,6 +19,7 @@
 
 mod battery;
 mod fence;
+mod terrain;
 
 use core::fmt;
 
@@ -27,6 +29,7 @@ use crate::framework::Notice;
 use crate::schema;
 pub(super) use battery::BatteryWatch;
 use fence::KeptCircle;
+use terrain::TerrainWatch;
 
 /// The number of their notices: the amount says which, the item what is done.
 pub(super) const CONTINGENCY: u8 = 31;
@@ -46,6 +49,8 @@ schema! {
         Fence = 3,
         /// The battery's charge or voltage is below its limit.
         BatteryLow = 4,
+        /// The ground is ahead.
+        Terrain = 6,
     }
 }
 
@@ -99,6 +104,13 @@ pub struct ContingencyConfig {
     pub battery_voltage_v: Option<f64>,
     /// After this time, s; and after it, it is low no longer.
     pub battery_after_s: f64,
+    /// Where the ground ahead cannot be climbed over. To continue is not to watch it; to
+    /// land is to return.
+    pub terrain: ContingencyAction,
+    /// How far above the ground the aircraft stays, m.
+    pub terrain_margin_m: f64,
+    /// How far ahead it is looked for, s.
+    pub terrain_ahead_s: f64,
 }
 
 impl Default for ContingencyConfig {
@@ -114,6 +126,9 @@ impl Default for ContingencyConfig {
             battery_charge: None,
             battery_voltage_v: None,
             battery_after_s: 10.0,
+            terrain: ContingencyAction::Return,
+            terrain_margin_m: 30.0,
+            terrain_ahead_s: 60.0,
         }
     }
 }
@@ -148,12 +163,22 @@ pub(super) struct Contingencies {
     kept: Option<KeptCircle>,
     /// That it has begun or ended.
     news: Option<Notice>,
+    /// The ground ahead.
+    terrain: TerrainWatch,
 }
 
 impl Contingencies {
-    /// The active one.
+    /// The active one, or that the ground ahead is climbed over.
     pub(super) const fn active(&self) -> Contingency {
+        if self.terrain.climbs() {
+            return Contingency::Terrain;
+        }
         self.active
+    }
+
+    /// The lowest altitude above mean sea level that the ground ahead permits, m.
+    pub(super) const fn lowest_over_terrain_m(&self) -> Option<f64> {
+        self.terrain.lowest_m()
     }
 
     /// What begins or ends in this tick.
@@ -174,6 +199,7 @@ impl Contingencies {
             promised_s,
             kept: None,
             news: None,
+            terrain: TerrainWatch::NONE,
         };
         self.renew_promise();
     }
@@ -217,6 +243,7 @@ impl Autopilot {
         self.meet_low_battery();
         self.watch_commander(dt_s);
         self.watch_position();
+        self.keep_clear_of_terrain(dt_s);
     }
 
     /// Acts on a contingency, unless a worse one is dealt with. A take-off or a landing is
@@ -301,6 +328,13 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
         Contingency::CommanderLost => "the commander is not heard as promised",
         Contingency::Fence => "the fence is near: turning away",
         Contingency::BatteryLow => "the battery is low",
+        Contingency::Terrain if notice.item == terrain::CLIMBS => {
+            return f.write_str("terrain is ahead: climbing");
+        }
+        Contingency::Terrain if notice.item == terrain::PASSED => {
+            return f.write_str("the terrain that was ahead is passed");
+        }
+        Contingency::Terrain => "terrain is ahead: turning away",
     };
     let action = usize::from(notice.item).checked_sub(1);
     let action = action.and_then(|n| ContingencyAction::ALL.get(n));
