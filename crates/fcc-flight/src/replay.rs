@@ -18,9 +18,11 @@ pub struct RecordedConfigError(#[from] ConfigError);
 /// The configuration that was flown, defaults and command line included.
 ///
 /// # Errors
-/// When this version cannot read it.
+/// When this version cannot read it, or the elevations that it was flown over are gone.
 pub fn recorded_config(chain: &Chain) -> Result<Config, RecordedConfigError> {
-    Ok(Config::parse(&chain.about().config, &chain.config_name())?)
+    let name = chain.config_name();
+    let config = Config::parse(&chain.about().config, &name)?;
+    Ok(config.with_recorded_terrain(&name)?)
 }
 
 /// The pattern in a recorded configuration; one of another version may be

@@ -51,19 +51,19 @@ pub(crate) struct Leg {
     pub(crate) to: (Place, f64),
     pub(crate) length_m: f64,
     pub(crate) course_deg: f64,
-    arrival_deg: f64,
+    pub(crate) arrival_deg: f64,
     /// The number of the item at its end.
     pub(crate) item: usize,
     /// Whether there is a turn of the path at its end.
-    turns: bool,
+    pub(crate) turns: bool,
     /// How near the turn at its end passes the place, m.
-    within_m: f64,
+    pub(crate) within_m: f64,
     pub(crate) airspeed_mps: f64,
 }
 
 /// Checks a plan as a whole.
 ///
-/// Altitudes above terrain are a problem: there are no elevations yet.
+/// Altitudes above terrain are a problem: [`resolve`](crate::resolve) them before.
 ///
 /// # Errors
 /// All problems with item and reason, at most [`limits::PROBLEMS`].
@@ -142,7 +142,7 @@ pub fn longest_s(plan: &Plan, conditions: &Conditions) -> f64 {
 }
 
 /// The legs of a plan; what is wrong with single items is noted.
-fn legs(plan: &Plan, conditions: &Conditions, problems: &mut Vec<Problem>) -> Vec<Leg> {
+pub(crate) fn legs(plan: &Plan, conditions: &Conditions, problems: &mut Vec<Problem>) -> Vec<Leg> {
     let mut legs: Vec<Leg> = Vec::new();
     let home = plan.home;
     let takes_off = plan
@@ -254,7 +254,8 @@ pub(crate) fn above_sea_level(altitude: Altitude, plan: &Plan) -> Result<f64, &'
             Err("is above home, and the plan has no home: set it, or give it above sea level")
         }
         (AltitudeDatum::Terrain, _) => Err(
-            "is above terrain, and elevations are not read yet: give it above home or sea level",
+            "is above terrain, and there are no elevations: set terrain.folder in the \
+             configuration, or give it above home or sea level",
         ),
     }
 }

@@ -191,6 +191,17 @@ impl Item {
             _ => None,
         }
     }
+
+    pub(crate) const fn altitude_mut(&mut self) -> Option<&mut Altitude> {
+        match self {
+            Self::Waypoint { altitude, .. }
+            | Self::Loiter(Loiter { altitude, .. })
+            | Self::Land { altitude, .. }
+            | Self::Takeoff { altitude, .. }
+            | Self::ChangeAltitude { altitude } => Some(altitude),
+            _ => None,
+        }
+    }
 }
 
 /// Its name, and what it says besides place and altitude.

@@ -2,7 +2,7 @@
 //! aircraft can fly them.
 //!
 //! ```text
-//! .plan, QGC WPL 110 ─► Plan ─► check ─► problems
+//! .plan, QGC WPL 110 ─► Plan ─► resolve ─► check, terrain_problems ─► problems
 //!                         └───► Steps ─► Route, which a tick flies
 //! ```
 //!
@@ -17,9 +17,11 @@ mod check;
 mod command;
 mod file;
 mod geodesic;
+mod ground;
 mod inside;
 mod item;
 mod outline;
+mod path;
 mod plan;
 mod problem;
 mod qgc_plan;
@@ -28,6 +30,7 @@ mod wpl;
 
 pub use check::{Conditions, check, landing_elevation_m, longest_s};
 pub use file::{FileError, Format, read, read_file, write};
+pub use ground::{resolve, terrain_problems};
 pub use item::{Altitude, AltitudeDatum, Item, Loiter, LoiterEnd, Place, Speed};
 pub use plan::{
     Circle, Fence, Home, Identity, Obstacle, Plan, PlanHash, Polygon, RallyPoint, limits,

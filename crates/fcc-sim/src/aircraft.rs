@@ -8,6 +8,7 @@ use crate::airframe::Airframe;
 use crate::atmosphere::Air;
 use crate::config::{SimConfig, SimError};
 use crate::gear::{Ground, MOST_SINK_MPS};
+use crate::ground::GroundBelow;
 use crate::motion::{self, AirMotion, State};
 use crate::servos::{Servos, deflections};
 use crate::trim::{Trim, trim};
@@ -37,7 +38,7 @@ pub struct Aircraft {
     substep_s: f64,
     time_s: f64,
     diverged: bool,
-    ground_m: f64,
+    below: GroundBelow,
     /// It touched the ground faster than its gear withstands.
     crashes: bool,
     impact_s: Option<f64>,
@@ -61,6 +62,7 @@ impl Aircraft {
         let wind_mps = Vector3::new(-cos_wind, -sin_wind, 0.0) * config.wind.speed_mps;
         let (sin_heading, cos_heading) = libm::sincos(config.heading_rad);
         let through_air = Vector3::new(cos_heading, sin_heading, 0.0) * trim.true_airspeed_mps;
+        let below = GroundBelow::new(config);
         let (velocity_mps, altitude_m, pitch_rad, hands_off) = if config.on_runway {
             let height_m = config.airframe.gear.main.at_m.z;
             let parked = Surfaces {
@@ -69,7 +71,12 @@ impl Aircraft {
                 elevator_trim: Some(0.0),
                 ..Surfaces::IDLE
             };
-            (Vector3::zeros(), config.ground_m + height_m, 0.0, parked)
+            (
+                Vector3::zeros(),
+                below.elevation_m(0.0, 0.0) + height_m,
+                0.0,
+                parked,
+            )
         } else {
             let flying = through_air + wind_mps;
             (flying, config.altitude_m, trim.alpha_rad, hands_off(&trim))
@@ -96,7 +103,7 @@ impl Aircraft {
             substep_s: config.substep_s,
             time_s: 0.0,
             diverged: false,
-            ground_m: config.ground_m,
+            below,
             crashes: false,
             impact_s: None,
             hands_off,
@@ -144,14 +151,10 @@ impl Aircraft {
         }
         let air = Air::at(self.state.altitude_m());
         self.positions = self.servos.follow(&self.positions, &self.commands, dt_s);
+        let height_m = self.height_m();
         if let Some(gusts) = &mut self.gusts {
             let flow = Flow::of(&self.state.air_velocity_mps(&self.motion));
-            let gust = gusts.step(
-                dt_s,
-                flow.airspeed_mps,
-                self.state.altitude_m() - self.ground_m,
-                self.airframe.wing_span_m,
-            );
+            let gust = gusts.step(dt_s, flow.airspeed_mps, height_m, self.airframe.wing_span_m);
             self.motion.gust_mps = gust.velocity_mps;
             self.motion.gust_rates_radps = gust.rates_radps;
         }
@@ -162,26 +165,29 @@ impl Aircraft {
             &self.deflections(),
             &self.motion,
             &air,
-            self.ground().as_ref(),
+            self.ground(&self.state).as_ref(),
         );
+        // The ground may rise towards it.
+        let rises_mps = (self.ground_m(&next) - self.ground_m(&self.state)) / dt_s;
         if next.is_finite() {
-            self.crashes |= next.velocity_mps.z > MOST_SINK_MPS && self.on_wheels_in(&next);
+            let closes_mps = next.velocity_mps.z + rises_mps;
+            self.crashes |= closes_mps > MOST_SINK_MPS && self.on_wheels_in(&next);
             self.state = next;
         } else {
             self.diverged = true;
         }
         self.time_s += dt_s;
-        if self.state.altitude_m() <= self.ground_m && self.state.velocity_mps.z > 0.0 {
+        if self.height_m() <= 0.0 && self.state.velocity_mps.z + rises_mps > 0.0 {
             self.impact_s = Some(self.time_s);
         }
     }
 
     /// The ground, as far as the gear withstands it.
-    fn ground(&self) -> Option<Ground> {
+    fn ground(&self, state: &State) -> Option<Ground> {
         let brake = |brake: Option<f64>| brake.unwrap_or(0.0);
         let positions = &self.positions;
         (!self.crashes).then(|| Ground {
-            altitude_m: self.ground_m,
+            altitude_m: self.ground_m(state),
             brakes: [brake(positions.left_brake), brake(positions.right_brake)],
             steering: positions.nose_wheel.unwrap_or(positions.rudder),
         })
@@ -189,7 +195,7 @@ impl Aircraft {
 
     fn on_wheels_in(&self, state: &State) -> bool {
         let gear = &self.airframe.gear;
-        self.ground()
+        self.ground(state)
             .is_some_and(|ground| gear.touches(state, &ground))
     }
 
@@ -200,7 +206,13 @@ impl Aircraft {
 
     /// Height of the centre of gravity above the ground, m.
     pub fn height_m(&self) -> f64 {
-        self.state.altitude_m() - self.ground_m
+        self.state.altitude_m() - self.ground_m(&self.state)
+    }
+
+    /// The elevation of the ground below, m above mean sea level.
+    fn ground_m(&self, state: &State) -> f64 {
+        let position_m = state.position_m;
+        self.below.elevation_m(position_m.x, position_m.y)
     }
 
     /// When it hit the ground, s of simulated time; its state is then held as it
@@ -263,7 +275,7 @@ impl Aircraft {
         let deflections = self.deflections();
         let air = Air::at(state.altitude_m());
         let flow = Flow::of(&state.air_velocity_mps(&self.motion));
-        let ground = self.ground();
+        let ground = self.ground(state);
         let slope = motion::derivative(
             &self.airframe,
             state,

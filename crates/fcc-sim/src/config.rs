@@ -1,5 +1,6 @@
 //! The configuration of a simulation.
 
+use fcc_core::flight::terrain::Terrain;
 use thiserror::Error;
 
 use crate::airframe::Airframe;
@@ -24,6 +25,8 @@ pub struct SimConfig {
     pub altitude_m: f64,
     /// The level ground, m above mean sea level, -500..=9000.
     pub ground_m: f64,
+    /// The ground where it is known; the level ground is elsewhere.
+    pub terrain: Terrain<'static>,
     /// Whether it stands on the ground at the start, with idle throttle and its brakes
     /// set, instead of flying.
     pub on_runway: bool,
@@ -155,6 +158,7 @@ impl Default for SimConfig {
             servos: Servos::default(),
             altitude_m: 3000.0 * FOOT_M,
             ground_m: 0.0,
+            terrain: Terrain::default(),
             on_runway: false,
             indicated_airspeed_mps: 100.0 * KNOT_MPS,
             heading_rad: 0.0,

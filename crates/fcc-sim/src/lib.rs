@@ -49,6 +49,7 @@ pub mod atmosphere;
 mod config;
 pub mod gauss;
 pub mod gear;
+mod ground;
 mod handling;
 mod link;
 pub mod motion;

@@ -12,6 +12,7 @@ use libm::{cos, round, sin, sqrt};
 use crate::atmosphere::Air;
 use crate::config::{Channels, SensorConfig, SimConfig};
 use crate::gauss::{Gauss, Stream};
+use crate::ground::GroundBelow;
 use crate::raw::{RawSensors, RawTruth};
 use crate::truth::{Truth, half_turn, turn};
 
@@ -107,7 +108,7 @@ impl Sensors {
 pub(crate) struct BuiltInRaw {
     sensors: RawSensors,
     earth: LocalEarth,
-    ground_m: f64,
+    ground: GroundBelow,
 }
 
 impl BuiltInRaw {
@@ -115,17 +116,18 @@ impl BuiltInRaw {
     pub(crate) fn new(config: &SimConfig, start: &Truth) -> Option<Self> {
         let set = config.raw_sensors.as_ref()?;
         let earth = LocalEarth::new(config.latitude_rad, config.longitude_rad);
-        let start = raw_truth(start, &earth, config.ground_m);
+        let ground = GroundBelow::new(config);
+        let start = raw_truth(start, &earth, &ground);
         Some(Self {
             sensors: RawSensors::new(set, config.seed, &start, config.magnetic_field_ut()),
             earth,
-            ground_m: config.ground_m,
+            ground,
         })
     }
 
     pub(crate) fn step(&mut self, truth: &Truth) {
         self.sensors
-            .step(&raw_truth(truth, &self.earth, self.ground_m));
+            .step(&raw_truth(truth, &self.earth, &self.ground));
     }
 
     pub(crate) fn read(&mut self, now: Time, into: &mut Measurements) {
@@ -133,7 +135,7 @@ impl BuiltInRaw {
     }
 }
 
-fn raw_truth(truth: &Truth, earth: &LocalEarth, ground_m: f64) -> RawTruth {
+fn raw_truth(truth: &Truth, earth: &LocalEarth, ground: &GroundBelow) -> RawTruth {
     let air = Air::at(truth.altitude_m);
     RawTruth {
         time_s: truth.time_s,
@@ -149,7 +151,7 @@ fn raw_truth(truth: &Truth, earth: &LocalEarth, ground_m: f64) -> RawTruth {
         air_temperature_k: air.temperature_k,
         position: earth.position(truth.north_m, truth.east_m, truth.altitude_m),
         velocity: truth.velocity,
-        height_m: truth.altitude_m - ground_m,
+        height_m: truth.altitude_m - ground.elevation_m(truth.north_m, truth.east_m),
         throttle: truth.throttle,
     }
 }

@@ -9,6 +9,7 @@
 //! | [`guidance`] | set points |
 //! | [`path`] | the bank that follows lines, arcs and circles over the ground |
 //! | [`route`] | the order of legs, turns and circles of a flight plan |
+//! | [`terrain`] | the height of the ground |
 //! | [`control`] | surfaces and throttle |
 
 mod altimeter;
@@ -28,6 +29,7 @@ mod raw_readings;
 pub mod route;
 mod setpoints;
 mod surfaces;
+pub mod terrain;
 
 pub use altimeter::{ALTIMETER_SETTINGS_PA, Altimeter, AltitudeReference};
 pub use autopilot::{

@@ -46,6 +46,9 @@ pub struct PlanShowArgs {
     /// The plan, of QGroundControl or QGC WPL 110
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
+    /// Configuration whose [terrain] has the ground of the height profile
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
     /// Write a page with map and height profile
     #[arg(long, value_name = "OUT.html", value_parser = output())]
     pub html: Option<PathBuf>,

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use fcc_core::flight::terrain::Terrain;
 use fcc_flight::config::{BuiltInSection, Config};
 use fcc_plan::{AltitudeDatum, FileError, Format, Item, Place, Plan, Problem};
 use fcc_report::{GroundLine, PlanLine, PlanLines, PlanPlace, PlanRow, plan_page, plan_table};
@@ -22,6 +23,17 @@ pub(super) fn plan(args: &PlanArgs) -> Result<Exit, Failure> {
     }
 }
 
+/// That of a file, or the Cessna's.
+fn configuration(file: Option<&Path>) -> Result<Config, Failure> {
+    Ok(match file {
+        Some(path) => Config::load(path)?,
+        None => Config {
+            built_in: Some(BuiltInSection::default()),
+            ..Config::default()
+        },
+    })
+}
+
 #[derive(Serialize)]
 struct Checked {
     file: String,
@@ -34,13 +46,7 @@ struct Checked {
 
 /// Checks plans: the exit code is that of the worst.
 fn check(args: &PlanCheckArgs) -> Result<Exit, Failure> {
-    let config = match &args.config {
-        Some(path) => Config::load(path)?,
-        None => Config {
-            built_in: Some(BuiltInSection::default()),
-            ..Config::default()
-        },
-    };
+    let config = configuration(args.config.as_deref())?;
     let mut exit = Exit::Success;
     let mut all = Vec::new();
     for path in &args.files {
@@ -92,11 +98,9 @@ fn check_file(path: &Path, config: &Config) -> (Checked, Exit) {
             return (unread(vec![problem]), Exit::Failure);
         }
     };
-    let problems = config.plan_problems(&plan);
-    let exit = if problems.is_empty() {
-        Exit::Success
-    } else {
-        Exit::Usage
+    let (plan, problems, exit) = match config.checked_plan(&plan) {
+        Ok(flown) => (flown, Vec::new(), Exit::Success),
+        Err(problems) => (plan, problems, Exit::Usage),
     };
     let checked = Checked {
         file,
@@ -125,7 +129,13 @@ fn show(args: &PlanShowArgs) -> Result<Exit, Failure> {
     let mut written = String::new();
     if let Some(out) = &args.html {
         let title = format!("{name}, {hash:.12}");
-        let page = plan_page(&title, &rows, &places(&plan), &fence(&plan));
+        let config = configuration(args.config.as_deref())?;
+        let invalid =
+            |problem: Problem| Failure::of(Exit::Usage, format_args!("{name}: {problem}"));
+        let (flown, ground) = config
+            .with_ground(&plan, |terrain| over_ground(&plan, terrain))
+            .map_err(invalid)?;
+        let page = plan_page(&title, &rows, &places(&flown), &fence(&plan), &ground);
         write(out, &args.file, &page)?;
         let _ = write!(written, "\nwritten: {}", out.display());
     }
@@ -281,6 +291,40 @@ fn places(plan: &Plan) -> Vec<PlanPlace> {
         }
     };
     all.into_iter().map(place).collect()
+}
+
+/// The plan with its altitudes above mean sea level as far as they are known, and the
+/// ground below its legs: the way to here and the elevation, m, and nothing where that is
+/// not known.
+fn over_ground(plan: &Plan, terrain: Option<&Terrain<'_>>) -> (Plan, Vec<(f64, Option<f64>)>) {
+    /// Between points of the profile, m, and how many of a leg at most.
+    const STEP_M: f64 = 50.0;
+    const MOST_POINTS: f64 = 2_000.0;
+    let Some(terrain) = terrain else {
+        return (plan.clone(), Vec::new());
+    };
+    let flown = fcc_plan::resolve(plan, terrain).unwrap_or_else(|_| plan.clone());
+    let home = plan.home.map(|home| home.place);
+    let all = home
+        .into_iter()
+        .chain(plan.items.iter().filter_map(Item::place));
+    let all: Vec<_> = all.collect();
+    let (mut ground, mut along_m) = (Vec::new(), 0.0);
+    for (from, to) in all.iter().zip(all.iter().skip(1)) {
+        let (length_m, course_deg, _) = from.to(*to);
+        let steps = (length_m / STEP_M).ceil().clamp(1.0, MOST_POINTS) as u32;
+        for step in 0..=steps {
+            let at_m = length_m * f64::from(step) / f64::from(steps);
+            let place = from.ahead(course_deg, at_m);
+            let elevation_m = terrain.elevation_m(
+                place.latitude_deg.to_radians(),
+                place.longitude_deg.to_radians(),
+            );
+            ground.push((along_m + at_m, elevation_m));
+        }
+        along_m += length_m;
+    }
+    (flown, ground)
 }
 
 /// A place, m east and north of another one.

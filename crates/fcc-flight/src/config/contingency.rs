@@ -51,6 +51,12 @@ pub struct ContingencySection {
     pub glide_ratio: f64,
     /// Height to spare over a place that is glided to.
     pub glide_spare_ft: f64,
+    /// Where the ground ahead cannot be climbed over; needs `terrain.folder`.
+    pub terrain: ActionChoice,
+    /// How far above the ground the aircraft stays.
+    pub terrain_margin_m: f64,
+    /// How far ahead it is looked for.
+    pub terrain_ahead_s: f64,
 }
 
 /// Actions.
@@ -101,6 +107,9 @@ impl Default for ContingencySection {
             engine_back_after_s: 5.0,
             glide_ratio: 9.0,
             glide_spare_ft: 200.0,
+            terrain: ActionChoice::Return,
+            terrain_margin_m: 30.0,
+            terrain_ahead_s: 60.0,
         }
     }
 }
@@ -127,6 +136,9 @@ impl From<&ContingencySection> for ContingencyConfig {
             engine_back_after_s: section.engine_back_after_s,
             glide_ratio: section.glide_ratio,
             glide_spare_m: section.glide_spare_ft * FOOT_M,
+            terrain: section.terrain.into(),
+            terrain_margin_m: section.terrain_margin_m,
+            terrain_ahead_s: section.terrain_ahead_s,
         }
     }
 }
@@ -138,13 +150,14 @@ impl ContingencySection {
     }
 }
 
-/// A landing needs a position, and one that the fence is in the way of is no way out; a glide
-/// is flown without an engine, and nothing else is.
+/// A landing needs a position, and one that the fence or terrain is in the way of is no way
+/// out; a glide is flown without an engine, and nothing else is.
 pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     let section = &config.contingency;
     for (key, action) in [
         ("contingency.fence", section.fence),
         ("contingency.position_lost", section.position_lost),
+        ("contingency.terrain", section.terrain),
     ] {
         if action == ActionChoice::Land {
             let message = "is \"land\": choose \"continue\", \"loiter\" or \"return\"";

@@ -42,6 +42,7 @@ mod servos;
 mod shared_devices;
 mod similar;
 mod telemetry;
+mod terrain;
 mod values;
 mod wording;
 mod x_plane;
@@ -88,6 +89,7 @@ pub use runtime::{
 pub use servo_board::ServoBoardSection;
 pub use servos::{DrivesChoice, ReleasedChoice, ServoSection, ServosSection};
 pub use telemetry::TelemetrySection;
+pub use terrain::TerrainSection;
 pub use values::keyed;
 pub use x_plane::XPlaneSection;
 
@@ -128,6 +130,8 @@ pub struct Config {
     pub guidance: GuidanceSection,
     /// The flight plan.
     pub plan: PlanSection,
+    /// The ground.
+    pub terrain: TerrainSection,
     /// What the autopilot does by itself when a flight cannot go on as commanded.
     pub contingency: ContingencySection,
     /// The altimeter setting.
@@ -362,6 +366,7 @@ impl Config {
             prepared: replacement::prepared_routes(),
             route: self.plan.route_config(&self.autopilot.runway),
             contingency: (&self.contingency).into(),
+            terrain: self.terrain.loaded.unwrap_or_default(),
             raw_navigation: self.navigation.to_core(self.simulated_field_ut()),
             ..self.autopilot.to_core(
                 &self.guidance,

@@ -190,7 +190,7 @@ impl Config {
             return Ok(());
         };
         let plan = fcc_plan::read_file(&file)?;
-        self.use_plan(plan, &file, uploaded_s)
+        self.use_plan(&plan, &file, uploaded_s)
     }
 
     /// The configuration with its plan, if it has one; `name` is its own in messages.
@@ -221,7 +221,7 @@ impl Config {
 
     fn use_plan(
         &mut self,
-        plan: fcc_plan::Plan,
+        plan: &fcc_plan::Plan,
         file: &Path,
         uploaded_s: u64,
     ) -> Result<(), FileError> {
@@ -229,10 +229,9 @@ impl Config {
             file: file.display().to_string(),
             problems,
         };
-        let problems = self.plan_problems(&plan);
-        if !problems.is_empty() {
-            return Err(invalid(problems));
-        }
+        self.load_terrain(plan)
+            .map_err(|problem| invalid(vec![problem]))?;
+        let plan = self.checked_plan(plan).map_err(invalid)?;
         let content = fcc_plan::write(&plan, Format::QgcPlan).map_err(invalid)?;
         self.begin_at(&plan);
         self.plan.take(plan, uploaded_s).map_err(invalid)?;
@@ -241,23 +240,8 @@ impl Config {
         Ok(())
     }
 
-    /// All problems of a plan that is flown with this configuration.
-    pub fn plan_problems(&self, plan: &fcc_plan::Plan) -> Vec<Problem> {
-        let mut problems = fcc_plan::check(plan, &self.plan_conditions())
-            .err()
-            .unwrap_or_default();
-        let flown = Steps::of(plan, &self.autopilot_config().route).err();
-        for problem in flown.unwrap_or_default() {
-            if !problems.contains(&problem) {
-                problems.push(problem);
-            }
-        }
-        problems.extend(self.runway_problems(plan));
-        problems
-    }
-
     /// Speeds of `[autopilot.runway]` with which it does not take off or land.
-    fn runway_problems(&self, plan: &fcc_plan::Plan) -> Option<Problem> {
+    pub(super) fn runway_problems(&self, plan: &fcc_plan::Plan) -> Option<Problem> {
         /// An approach at 1.3 times the stalling speed is usual (14 CFR 23.73 until 2017).
         const LEAST_OVER_STALL: f64 = 1.2;
         let (runway, envelope) = (&self.autopilot.runway, &self.autopilot.envelope);

@@ -97,6 +97,7 @@ fn paths(config: &Config, report: &mut impl FnMut(&[&str], String)) {
         ("plan.file", config.plan.file.as_deref()),
         ("recording.folder", Some(config.recording.folder.as_path())),
         ("restart.state_file", state_file),
+        ("terrain.folder", config.terrain.folder.as_deref()),
     ];
     for (key, path) in paths {
         if path.is_some_and(|path| path.as_os_str().as_encoded_bytes().contains(&0)) {

@@ -137,7 +137,10 @@ impl Config {
             problems,
         };
         let plan = fcc_plan::read_file(file)?;
-        let mut problems = self.plan_problems(&plan);
+        let (plan, mut problems) = match self.checked_plan(&plan) {
+            Ok(checked) => (checked, Vec::new()),
+            Err(problems) => (plan, problems),
+        };
         if plan.item(usize::from(item)).is_none() {
             let message = format!(
                 "{item}: there is no such item: give 1 to {}",

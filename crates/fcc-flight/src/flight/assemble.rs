@@ -145,7 +145,10 @@ fn assemble_with(
     let loop_config = config.loop_config();
     let mut plant = match config.aircraft() {
         Some(Aircraft::BuiltIn(section)) => {
-            let simulated = section.simulation(config.navigation.method);
+            let simulated = SimConfig {
+                terrain: config.terrain.loaded.unwrap_or_default(),
+                ..section.simulation(config.navigation.method)
+            };
             built_in(section, &simulated, loop_config.messages_capacity)?
         }
         Some(Aircraft::XPlane(section)) => x_plane(section, config)?,

@@ -111,6 +111,11 @@ impl Flight {
     /// One tick; what happened in it is added to the events.
     pub(crate) fn tick(&mut self) {
         let _ = self.machine.step();
+        self.receive();
+    }
+
+    /// What happened in the ticks since the last time is added to the events.
+    pub(crate) fn receive(&mut self) {
         while let Some(message) = self.link.messages.receive() {
             match message {
                 Message::Tick(record) => self.record = record,

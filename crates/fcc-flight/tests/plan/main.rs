@@ -5,9 +5,11 @@
 mod battery;
 mod contingency;
 mod flight;
-mod refused;
 mod glide;
+mod refused;
 mod replacing;
+mod terrain;
+mod terrain_ahead;
 
 use fcc_conformance::allocator_calls;
 use fcc_core::flight::guidance::Mode;

@@ -8,6 +8,7 @@ mod geometry;
 mod reading;
 mod refusals;
 mod round_trip;
+mod terrain;
 
 use fcc_plan::Place;
 

@@ -58,15 +58,20 @@ pub fn plan_table(rows: &[PlanRow]) -> String {
 /// A line on the ground, (east, north) of the first place, m.
 pub type PlanLine = Vec<(f64, f64)>;
 
-/// A page with a plan's table, map with its fence, and height profile.
+/// A point of the ground below a plan: the length of the legs to there, and its elevation
+/// above mean sea level, if that is known, m.
+pub type GroundPoint = (f64, Option<f64>);
+
+/// A page with a plan's table, map with its fence, and height profile over the ground.
 pub fn plan_page(
     title: &str,
     rows: &[PlanRow],
     places: &[PlanPlace],
     fence: &[PlanLine],
+    ground: &[GroundPoint],
 ) -> String {
     let table = table_of(rows);
-    let figures = figures(places, fence);
+    let figures = figures(places, fence, ground);
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -91,7 +96,7 @@ pub fn plan_page(
     page.into_string()
 }
 
-fn figures(places: &[PlanPlace], fence: &[PlanLine]) -> Vec<Figure> {
+fn figures(places: &[PlanPlace], fence: &[PlanLine], ground: &[GroundPoint]) -> Vec<Figure> {
     if places.is_empty() {
         return Vec::new();
     }
@@ -105,8 +110,14 @@ fn figures(places: &[PlanPlace], fence: &[PlanLine]) -> Vec<Figure> {
         },
         Figure {
             title: "Height profile".to_owned(),
-            caption: "Above mean sea level, along the legs without turns and loiters.".to_owned(),
-            svg: profile(places),
+            caption: if ground.is_empty() {
+                "Above mean sea level, along the legs without turns and loiters.".to_owned()
+            } else {
+                "Above mean sea level, along the legs without turns and loiters. The light line is \
+                 the ground; where it is missing, its elevation is not known."
+                    .to_owned()
+            },
+            svg: profile(places, ground),
         },
     ]
 }
@@ -173,7 +184,8 @@ fn map(places: &[PlanPlace], fence: &[PlanLine]) -> String {
     sheet.finish(TOP_PX + MAP_HEIGHT_PX + X_LABELS_PX, "Map", &[])
 }
 
-fn profile(places: &[PlanPlace]) -> String {
+fn profile(places: &[PlanPlace], ground: &[GroundPoint]) -> String {
+    let elevations = ground.iter().filter_map(|(_, elevation_m)| *elevation_m);
     let width_px = WIDTH_PX - LEFT_PX - 12.0;
     let along_km = (
         0.0,
@@ -186,13 +198,28 @@ fn profile(places: &[PlanPlace]) -> String {
         frame: frame(width_px, PROFILE_HEIGHT_PX),
         x: Axis::exactly(along_km, 6, "along the plan, km"),
         y: Axis::exactly(
-            around(places.iter().map(|place| place.altitude_m), 20.0),
+            around(
+                places
+                    .iter()
+                    .map(|place| place.altitude_m)
+                    .chain(elevations),
+                20.0,
+            ),
             3,
             "altitude, m",
         ),
     };
     let mut sheet = Sheet::default();
     panel.axes(&mut sheet, true, "");
+    for known in ground.split(|(_, elevation_m)| elevation_m.is_none()) {
+        let line: Vec<_> = known
+            .iter()
+            .filter_map(|(along_m, elevation_m)| Some((along_m / 1e3, (*elevation_m)?)))
+            .collect();
+        if !line.is_empty() {
+            panel.line(&mut sheet, &line, OTHER, 1.4);
+        }
+    }
     places_and_lines(&panel, &mut sheet, places, |place| {
         (place.along_m / 1e3, place.altitude_m)
     });
@@ -251,8 +278,11 @@ mod tests {
             place(Some(1), 4_000.0),
             place(Some(2), 9_000.0),
         ];
-        let page = plan_page("A <plan>", &[], &places, &[]);
+        let page = plan_page("A <plan>", &[], &places, &[], &[]);
         assert_eq!(page.matches("<svg").count(), 2);
+        let ground = [(0.0, Some(500.0)), (500.0, None), (900.0, Some(700.0))];
+        let over_ground = plan_page("A plan", &[], &places, &[], &ground);
+        assert!(over_ground.contains("The light line is the ground"));
         assert!(page.contains("A &lt;plan&gt;") && page.contains("home"));
     }
 }

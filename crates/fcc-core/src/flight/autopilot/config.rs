@@ -8,6 +8,7 @@ use crate::flight::guidance::{GuidanceConfig, TimedPatternConfig};
 use crate::flight::inertial::RawNavigationConfig;
 use crate::flight::navigation::{LearnedAirframe, NavigationConfig};
 use crate::flight::route::{Route, RouteConfig, RouteSource};
+use crate::flight::terrain::Terrain;
 use crate::framework::Flags;
 
 use super::{ContingencyConfig, FailsafeConfig, StickTakeover};
@@ -90,6 +91,8 @@ pub struct AutopilotConfig {
     pub envelope: Envelope,
     /// The altimeter; a command changes its setting.
     pub altimeter: Altimeter,
+    /// The ground that is watched.
+    pub terrain: Terrain<'static>,
 }
 
 impl Default for AutopilotConfig {
@@ -121,6 +124,7 @@ impl Default for AutopilotConfig {
             airspeed: AirspeedConfig::default(),
             envelope: Envelope::default(),
             altimeter: Altimeter::default(),
+            terrain: Terrain::default(),
         }
     }
 }

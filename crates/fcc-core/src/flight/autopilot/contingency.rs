@@ -8,6 +8,7 @@
 //! | `Fence` | no circle to turn onto stays inside of the fence any more | by a command |
 //! | `BatteryLow` | charge or voltage below its limit for longer than configured | by a command |
 //! | `EngineOut` | the engine's speed below its limit, or no thrust, for longer than configured | by a command, or with the engine |
+//! | `Terrain` | the ground ahead | a climb when it is passed, a turn by a command |
 //!
 //! The later in this table, the worse; the worst one acts. Each has its action in the
 //! configuration; what is not the fence waits for the end of a take-off or landing, and
@@ -22,6 +23,7 @@ mod battery;
 mod delayed;
 mod engine_out;
 mod fence;
+mod terrain;
 
 use core::fmt;
 
@@ -31,6 +33,7 @@ use crate::framework::Notice;
 use crate::schema;
 pub(super) use delayed::Delayed;
 use fence::KeptCircle;
+use terrain::TerrainWatch;
 
 /// The number of their notices: the amount says which, the item what is done.
 pub(super) const CONTINGENCY: u8 = 31;
@@ -52,6 +55,8 @@ schema! {
         BatteryLow = 4,
         /// The engine gives no power.
         EngineOut = 5,
+        /// The ground is ahead.
+        Terrain = 6,
     }
 }
 
@@ -129,6 +134,13 @@ pub struct ContingencyConfig {
     pub glide_ratio: f64,
     /// Height to spare over a place that is glided to, m.
     pub glide_spare_m: f64,
+    /// Where the ground ahead cannot be climbed over. To continue is not to watch it; to
+    /// land is to return.
+    pub terrain: ContingencyAction,
+    /// How far above the ground the aircraft stays, m.
+    pub terrain_margin_m: f64,
+    /// How far ahead it is looked for, s.
+    pub terrain_ahead_s: f64,
 }
 
 impl Default for ContingencyConfig {
@@ -152,6 +164,9 @@ impl Default for ContingencyConfig {
             // Handbook of the Cessna 172P (1981), figure 3-1.
             glide_ratio: 9.0,
             glide_spare_m: 60.96, // 200 ft
+            terrain: ContingencyAction::Return,
+            terrain_margin_m: 30.0,
+            terrain_ahead_s: 60.0,
         }
     }
 }
@@ -190,12 +205,22 @@ pub(super) struct Contingencies {
     kept: Option<KeptCircle>,
     /// That it has begun or ended.
     news: Option<Notice>,
+    /// The ground ahead.
+    terrain: TerrainWatch,
 }
 
 impl Contingencies {
-    /// The active one.
+    /// The active one, or that the ground ahead is climbed over.
     pub(super) const fn active(&self) -> Contingency {
+        if self.terrain.climbs() {
+            return Contingency::Terrain;
+        }
         self.active
+    }
+
+    /// The lowest altitude above mean sea level that the ground ahead permits, m.
+    pub(super) const fn lowest_over_terrain_m(&self) -> Option<f64> {
+        self.terrain.lowest_m()
     }
 
     /// What begins or ends in this tick.
@@ -218,6 +243,7 @@ impl Contingencies {
             promised_s,
             kept: None,
             news: None,
+            terrain: TerrainWatch::NONE,
         };
         self.renew_promise();
     }
@@ -262,6 +288,7 @@ impl Autopilot {
         self.meet_low_battery();
         self.watch_commander(dt_s);
         self.watch_position();
+        self.keep_clear_of_terrain(dt_s);
     }
 
     /// Acts on a contingency, unless a worse one is dealt with. A take-off or a landing is
@@ -369,6 +396,13 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
             "the engine is out"
         }
         Contingency::EngineOut => "the engine runs again",
+        Contingency::Terrain if notice.item == terrain::CLIMBS => {
+            return f.write_str("terrain is ahead: climbing");
+        }
+        Contingency::Terrain if notice.item == terrain::PASSED => {
+            return f.write_str("the terrain that was ahead is passed");
+        }
+        Contingency::Terrain => "terrain is ahead: turning away",
     };
     let action = usize::from(notice.item).checked_sub(1);
     let action = action.and_then(|n| ContingencyAction::ALL.get(n));

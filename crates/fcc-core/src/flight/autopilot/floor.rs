@@ -1,5 +1,5 @@
 //! The floor: an altitude below which nothing that is flown leads; and the floor and
-//! ceiling of a plan's fence.
+//! ceiling of a plan's fence, and the ground ahead.
 //!
 //! A take-off or a landing leads below them. It limits the target altitude, whether that was captured, commanded, restored
 //! or is part of a pattern: a descent is captured a margin above the floor, and
@@ -30,7 +30,9 @@ impl Autopilot {
     fn lowest_m(&self) -> f64 {
         let margin_m = self.config.contingency.fence_height_margin_m;
         let fence_m = self.fence().floor_m.map(|floor_m| floor_m + margin_m);
-        let lowest_m = [self.config.envelope.lowest_altitude_m(), fence_m]
+        let terrain_m = self.contingencies.lowest_over_terrain_m();
+        let envelope_m = self.config.envelope.lowest_altitude_m();
+        let lowest_m = [envelope_m, fence_m, terrain_m]
             .into_iter()
             .flatten()
             .fold(f64::NEG_INFINITY, f64::max);

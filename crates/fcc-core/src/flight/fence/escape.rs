@@ -42,15 +42,19 @@ impl Escape {
     /// The better one of the two circles, to the left and to the right; none if the wind
     /// is not weaker than the airspeed.
     pub fn best(fence: &Fence<'_>, here: &OverGround, bank: &Bank) -> Option<Self> {
-        let wind = hypot(here.wind_mps.x, here.wind_mps.y);
-        let radius_m = smallest_circle_m(here.true_airspeed_mps, wind, bank.turn_rad)?;
-        let [left, right] =
-            [false, true].map(|clockwise| Self::to(fence, here, bank, radius_m, clockwise));
+        let [left, right] = Self::both(fence, here, bank)?;
         Some(if right.clearance_m >= left.clearance_m {
             right
         } else {
             left
         })
+    }
+
+    /// Both circles, to the left and to the right; none as in [`best`](Self::best).
+    pub fn both(fence: &Fence<'_>, here: &OverGround, bank: &Bank) -> Option<[Self; 2]> {
+        let wind = hypot(here.wind_mps.x, here.wind_mps.y);
+        let radius_m = smallest_circle_m(here.true_airspeed_mps, wind, bank.turn_rad)?;
+        Some([false, true].map(|clockwise| Self::to(fence, here, bank, radius_m, clockwise)))
     }
 
     /// To one side: the bank is changed first, from the present one, and the circle

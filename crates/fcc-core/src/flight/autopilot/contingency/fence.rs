@@ -159,7 +159,7 @@ impl Autopilot {
 
     /// The aircraft with the airspeed that it has or, in a gust, will have again: that of
     /// its target, but no more than a little above the present one.
-    fn at_its_speed(&self, here: &OverGround) -> OverGround {
+    pub(super) fn at_its_speed(&self, here: &OverGround) -> OverGround {
         let true_of_indicated = here.true_airspeed_mps / here.airspeed_mps.max(1.0);
         let target_mps = self
             .targets
@@ -177,7 +177,7 @@ impl Autopilot {
     }
 
     /// How the aircraft banks at once.
-    fn fastest_bank(&self) -> Bank {
+    pub(super) fn fastest_bank(&self) -> Bank {
         let (route, envelope) = (&self.config.route, &self.config.envelope);
         let most_rad = route.bank_rad.min(envelope.max_bank_rad);
         let estimate = self.navigation.estimate();
@@ -207,7 +207,7 @@ impl Autopilot {
     }
 
     /// Whether the course is the one to the circle on which the aircraft returns.
-    fn points_home(&self, here: &OverGround) -> bool {
+    pub(super) fn points_home(&self, here: &OverGround) -> bool {
         let radius_m = self.config.route.loiter_radius_m;
         self.fence_return(here).is_some_and(|home| {
             let motion = here.motion_in(&home.at);

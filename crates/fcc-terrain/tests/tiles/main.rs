@@ -1,0 +1,7 @@
+//! Tiles as they are documented, made here, and what is refused.
+#![cfg(test)]
+
+mod geotiff;
+mod hgt;
+mod made;
+mod refusals;

@@ -1,0 +1,97 @@
+//! What is refused, and with what words.
+
+use crate::made::{Made, heights, hgt, read};
+
+fn refused(name: &str, bytes: &[u8]) -> String {
+    read(name, bytes).unwrap_err().to_string()
+}
+
+fn geotiff(change: impl FnOnce(&mut Made)) -> String {
+    let mut made = Made::default();
+    change(&mut made);
+    refused("a.tif", &made.i16(&heights(|_, _| 100)))
+}
+
+#[test]
+fn hgt_of_another_size_name_or_byte_order() {
+    let tile = hgt(|_, _| 300);
+    let short = refused("N46E008.hgt", &tile[..tile.len() - 2]);
+    assert_eq!(
+        short,
+        "N46E008.hgt: has 2884800 bytes, and a tile of 1 or 3 seconds of arc has 25934402 or \
+         2884802: fetch it again"
+    );
+    let named = refused("alps.hgt", &tile);
+    assert_eq!(
+        named,
+        "alps.hgt: is not named by its place: name it as N47E008.hgt"
+    );
+    assert_eq!(
+        refused("N46E008.hgt.zip", &tile),
+        "N46E008.hgt.zip: is packed: unpack it"
+    );
+    // 300 m, the lower byte first: 11,265 m.
+    let swapped = hgt(|_, _| 300_i16.swap_bytes());
+    let text = refused("N46E008.hgt", &swapped);
+    assert!(
+        text.contains("row 0, column 0: 11265 is no height in m"),
+        "{text}"
+    );
+}
+
+#[test]
+fn geotiff_that_is_not_of_wgs_84_in_degrees_above_mean_sea_level() {
+    let key = |n: usize, value: u16| move |made: &mut Made| made.keys[n][3] = value;
+    let added = |key: u16, value: u16| move |made: &mut Made| made.keys.push([key, 0, 1, value]);
+    for (text, expected) in [
+        (
+            geotiff(key(0, 1)),
+            "is in metres of a map's projection: convert it by gdalwarp",
+        ),
+        (geotiff(key(0, 3)), "does not say that it is in degrees"),
+        (geotiff(key(2, 4_269)), "its datum is EPSG 4269, not WGS-84"),
+        (
+            geotiff(key(2, 4_979)),
+            "its heights are above the ellipsoid",
+        ),
+        (geotiff(key(1, 7)), "its raster type is 7"),
+        (geotiff(added(2_054, 9_101)), "its angles are in unit 9101"),
+        (
+            geotiff(added(4_096, 5_703)),
+            "its heights are above EPSG 5703",
+        ),
+        (geotiff(added(4_099, 9_002)), "its heights are in unit 9002"),
+        (
+            geotiff(|made| made.has_keys = false),
+            "it is a TIFF, and no GeoTIFF",
+        ),
+        (
+            geotiff(|made| made.tie.clear()),
+            "does not say where it is by one tie point",
+        ),
+        (
+            geotiff(|made| made.tie[4] = 5_000_000.0),
+            "its corners are not on the earth",
+        ),
+        (
+            geotiff(|made| made.scale[0] = 30.0),
+            "its posts are 30° and 0.01° apart",
+        ),
+        (
+            geotiff(|made| made.scale[1] = f64::NAN),
+            "its posts are 0.01° and NaN° apart",
+        ),
+        (
+            geotiff(|made| made.nodata = Some("none")),
+            "its GDAL_NODATA is no number: none",
+        ),
+    ] {
+        assert!(text.contains(expected), "{expected}: {text}");
+    }
+    let void = refused("a.tif", &Made::default().i16(&heights(|_, _| -9_999)));
+    assert!(void.contains("-9999 is no height in m"), "{void}");
+    let cut = Made::default().i16(&heights(|_, _| 100));
+    let text = refused("a.tif", &cut[..cut.len() / 2]);
+    assert!(text.contains("can be read: failed"), "{text}");
+    assert!(refused("a.tif", b"II*\0").contains("is no TIFF that can be read"));
+}
