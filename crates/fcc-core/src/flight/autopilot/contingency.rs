@@ -32,7 +32,7 @@ use crate::flight::guidance::Mode;
 use crate::framework::Notice;
 use crate::schema;
 pub(super) use delayed::Delayed;
-use fence::KeptCircle;
+use fence::{KeptCircle, Side};
 use terrain::TerrainWatch;
 
 /// The number of their notices: the amount says which, the item what is done.
@@ -195,8 +195,8 @@ pub(super) struct Contingencies {
     is_loss_met: bool,
     /// Whether this low battery was acted on.
     is_battery_met: bool,
-    /// Whether it was told that the fence is crossed, which is not acted on.
-    is_crossing_told: bool,
+    /// Of a fence that is not acted on.
+    side: Side,
     /// Whether this engine failure was acted on.
     is_engine_met: bool,
     /// Within which time commands are promised, and how much of it is left, s.
@@ -238,7 +238,7 @@ impl Contingencies {
             before: Mode::None,
             is_loss_met: false,
             is_battery_met: false,
-            is_crossing_told: false,
+            side: Side::Inside,
             is_engine_met: false,
             promised_s,
             kept: None,

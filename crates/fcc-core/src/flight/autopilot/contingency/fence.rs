@@ -27,6 +27,14 @@ const AHEAD_S: f64 = 5.0;
 /// its cosine, of 3°, more than it turns in a tick.
 const POINTS_THERE: f64 = 0.998_6;
 
+/// On which side of the fence the aircraft is known to be.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(super) enum Side {
+    #[default]
+    Inside,
+    Outside,
+}
+
 /// A circle at the fence that the aircraft has turned onto.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct KeptCircle {
@@ -150,11 +158,12 @@ impl Autopilot {
         };
         let zero = Vector2::zeros();
         let is_out = fence.clearance_m(here.latitude_rad, here.longitude_rad, zero) < 0.0;
-        if is_out && !self.contingencies.is_crossing_told {
+        let side = if is_out { Side::Outside } else { Side::Inside };
+        if (self.contingencies.side, side) == (Side::Inside, Side::Outside) {
             self.contingencies
                 .announce(Contingency::Fence, ContingencyAction::Continue);
         }
-        self.contingencies.is_crossing_told = is_out;
+        self.contingencies.side = side;
     }
 
     /// The aircraft with the airspeed that it has or, in a gust, will have again: that of

@@ -172,6 +172,7 @@ impl Autopilot {
         let config = self.config.contingency;
         let terrain = self.config.terrain;
         let is_watched = !terrain.is_empty()
+            && self.guidance.mode() != Mode::Glide
             && config.terrain != ContingencyAction::Continue
             && self.runway().is_none()
             && !self.is_on_runway();
