@@ -19,6 +19,7 @@
 
 mod battery;
 mod fence;
+mod surface;
 mod terrain;
 
 use core::fmt;
