@@ -56,8 +56,9 @@ pub(in super::super) struct TerrainWatch {
     lowest_m: Option<f64>,
     /// For how long it has been climbed over that, or not, s; none while it is not told.
     climbs_s: Option<f64>,
-    /// Whether a circle was clear of the ground since it is ahead.
-    had_circle: bool,
+    /// The last circle that was clear of the ground since it is ahead: whether it is flown
+    /// clockwise.
+    had_circle: Option<bool>,
 }
 
 /// The way ahead, with the present bank, or without one.
@@ -132,7 +133,7 @@ impl TerrainWatch {
     pub(super) const NONE: Self = Self {
         lowest_m: None,
         climbs_s: None,
-        had_circle: false,
+        had_circle: None,
     };
 
     /// Whether a climb over the ground ahead is told.
@@ -191,7 +192,7 @@ impl Autopilot {
         let is_met = self.contingencies.active == Contingency::Terrain;
         let stage = self.contingencies.stage;
         if is_climbable && straight.now_m <= here.altitude_m {
-            self.contingencies.terrain.had_circle = false;
+            self.contingencies.terrain.had_circle = None;
             let returns = config.terrain == ContingencyAction::Return && self.points_home(&here);
             if is_met && stage == Stage::TurningAway && returns {
                 self.contingencies.stage = Stage::Acting;
@@ -236,12 +237,18 @@ impl Autopilot {
         let (circle, clear_m) = if right.1 >= left.1 { right } else { left };
         let watch = &mut self.contingencies.terrain;
         if clear_m >= 0.0 {
-            watch.had_circle = true;
+            watch.had_circle = Some(circle.clockwise);
             return;
         }
-        if !watch.had_circle && first_s > LAST_S {
+        if watch.had_circle.is_none() && first_s > LAST_S {
             return;
         }
+        // Neither is clear any more: of the last one the least is in the way.
+        let circle = match watch.had_circle {
+            Some(true) => right.0,
+            Some(false) => left.0,
+            None => circle,
+        };
         let was_met = self.contingencies.active == Contingency::Terrain;
         self.contingencies.active = Contingency::Terrain;
         self.contingencies.stage = if was_met || config.terrain == ContingencyAction::Loiter {
