@@ -7,6 +7,7 @@
 use fcc_core::flight::path::turn::{Turn, smallest_circle_m};
 use fcc_core::flight::route::PLANNED_SHARE;
 
+use crate::ground::obstacle_problems;
 use crate::inside::{TurnAway, circles, fence_problem, heights, obstacle_problem};
 use crate::item::{Altitude, AltitudeDatum, Item, Loiter, LoiterEnd, Place, Speed};
 use crate::outline::Outline;
@@ -92,6 +93,9 @@ pub fn check(plan: &Plan, conditions: &Conditions) -> Result<(), Vec<Problem>> {
         for (field, message) in found.into_iter().flatten() {
             problems.push(Problem::of_item(leg.item, field, message));
         }
+    }
+    if !plan.obstacles.is_empty() {
+        problems.extend(obstacle_problems(plan, conditions));
     }
     outline.with(|fence| {
         heights(plan, fence, &legs, &mut problems);

@@ -7,7 +7,7 @@ use fcc_core::flight::terrain::Terrain;
 use crate::check::Conditions;
 use crate::item::{Altitude, AltitudeDatum, Place};
 use crate::path::{Part, Piece, walk};
-use crate::plan::{Plan, limits};
+use crate::plan::{Obstacle, Plan, limits};
 use crate::problem::Problem;
 
 /// Of the height over the runway, what the path has to be above the ground on the legs
@@ -123,6 +123,49 @@ pub fn terrain_problems(
         }
     }
     problems.truncate(limits::PROBLEMS);
+    problems
+}
+
+/// Half of a piece of the path, and what latitudes are apart at least, m for a degree.
+const HALF_PIECE_M: f64 = 30.0;
+const LATITUDE_DEGREE_M: f64 = 110_574.0;
+
+/// Obstacles that turns, circles and the ways of jumps meet: the first of each item.
+pub(crate) fn obstacle_problems(plan: &Plan, conditions: &Conditions) -> Vec<Problem> {
+    let mut obstacles: Vec<_> = plan.obstacles.iter().enumerate().collect();
+    let south_deg = |(_, obstacle): &(usize, &Obstacle)| obstacle.centre.latitude_deg;
+    obstacles.sort_by(|a, b| south_deg(a).total_cmp(&south_deg(b)));
+    let radii = obstacles.iter().map(|(_, obstacle)| obstacle.radius_m);
+    let reach_m = radii.fold(0.0, f64::max) + HALF_PIECE_M;
+    let mut problems: Vec<Problem> = Vec::new();
+    walk(plan, conditions, &mut |piece| {
+        let is_told = problems
+            .last()
+            .is_some_and(|last| last.item == Some(piece.item));
+        if piece.part == Part::Leg || is_told || obstacles.is_empty() {
+            return;
+        }
+        let aside_deg = reach_m / LATITUDE_DEGREE_M;
+        let latitude_deg = piece.place.latitude_deg;
+        let first = obstacles.partition_point(|at| south_deg(at) < latitude_deg - aside_deg);
+        let near = obstacles.get(first..).unwrap_or_default().iter();
+        let near = near.take_while(|at| south_deg(at) <= latitude_deg + aside_deg);
+        let met = near.into_iter().find(|(_, obstacle)| {
+            piece.low_m < obstacle.top_m
+                && piece.place.to(obstacle.centre).0 < obstacle.radius_m + HALF_PIECE_M
+        });
+        if let Some((n, obstacle)) = met {
+            let message = format!(
+                "{} it comes to number {}, which has a radius of {:.0} m and is {:.0} m high: fly \
+                 around or over it",
+                part(piece),
+                n + 1,
+                obstacle.radius_m,
+                obstacle.top_m
+            );
+            problems.push(Problem::of_item(piece.item, "obstacle", message));
+        }
+    });
     problems
 }
 

@@ -3,11 +3,12 @@
 use fcc_core::flight::route::{
     Destination, FOR_EVER, JUMPS, Route, RouteConfig, Runway, Step, Until,
 };
+use fcc_core::flight::terrain::Obstacle;
 
 use crate::check::above_sea_level;
 use crate::item::{Altitude, Item, Loiter, LoiterEnd, Place, Speed};
 use crate::outline::Outline;
-use crate::plan::{Plan, limits};
+use crate::plan::{self, Plan, limits};
 use crate::problem::Problem;
 
 /// The steps of a plan, to be kept for as long as they are flown.
@@ -16,6 +17,7 @@ pub struct Steps {
     steps: Vec<Step>,
     returns: Vec<Destination>,
     fence: Outline,
+    obstacles: Vec<Obstacle>,
     airspeed_mps: Option<f64>,
     hash: u64,
 }
@@ -59,6 +61,7 @@ impl Steps {
             steps,
             returns: returns(plan, config),
             fence: Outline::of(plan),
+            obstacles: plan.obstacles.iter().map(obstacle).collect(),
             airspeed_mps: plan.cruise_mps,
             hash: plan.hash().first_64_bits(),
         })
@@ -73,6 +76,7 @@ impl Steps {
             returns: self.returns.leak(),
             fence,
             fence_return,
+            obstacles: self.obstacles.leak(),
             airspeed_mps: self.airspeed_mps,
             hash: self.hash,
             uploaded_unix_s,
@@ -206,6 +210,16 @@ fn jump(to: usize, times: Option<u32>, jumps: &mut u8) -> Result<Step, Refused> 
         *jumps += 1;
     }
     Ok(Step::Jump { to, times, counter })
+}
+
+fn obstacle(obstacle: &plan::Obstacle) -> Obstacle {
+    let (latitude_rad, longitude_rad) = obstacle.centre.radians();
+    Obstacle {
+        latitude_rad,
+        longitude_rad,
+        radius_m: obstacle.radius_m,
+        top_m: obstacle.top_m,
+    }
 }
 
 /// Home and the rally points, with the altitudes of a return above mean sea level.

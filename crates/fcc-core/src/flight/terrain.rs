@@ -104,6 +104,19 @@ impl Grid<'_> {
     }
 }
 
+/// A mast or a building: a cylinder from the ground on.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Obstacle {
+    /// Of its centre, rad.
+    pub latitude_rad: f64,
+    /// Of its centre, rad.
+    pub longitude_rad: f64,
+    /// m, positive.
+    pub radius_m: f64,
+    /// Of its top above mean sea level, m.
+    pub top_m: f64,
+}
+
 /// The ground that is known: one grid, or several, the most preferred first.
 ///
 /// ```

@@ -46,7 +46,7 @@ pub struct PlanShowArgs {
     /// The plan, of QGroundControl or QGC WPL 110
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
-    /// Configuration whose [terrain] has the ground of the height profile
+    /// Configuration, by whose tiles the height profile shows the ground
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
     /// Write a page with map and height profile

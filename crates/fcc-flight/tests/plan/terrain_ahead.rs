@@ -108,6 +108,46 @@ fn a_wall_is_turned_away_from() {
     assert!(!into.arrives && !into.flight.happened(TURNS));
 }
 
+/// A plan that circles at home, and an obstacle of 600 m around a place 6 km north of it.
+fn with_mast(top_m: f64) -> String {
+    let at = HOME.ahead(0.0, 6_000.0);
+    format!(
+        r#"{{"fileType": "Plan", "version": 1, "groundStation": "test",
+        "mission": {{"version": 2, "plannedHomePosition": [47.0, 8.0, 400], "items": [
+            {{"type": "SimpleItem", "command": 17, "frame": 0, "autoContinue": true,
+              "params": [0, 0, 1000, 0, 47.0, 8.0, 914.4]}}]}},
+        "geoFence": {{"version": 2, "polygons": [], "circles": []}},
+        "rallyPoints": {{"version": 2, "points": []}},
+        "fccd": {{"version": 1, "obstacles": [
+            {{"center": [{}, {}], "radius": 600, "top": {top_m}}}]}}}}"#,
+        at.latitude_deg, at.longitude_deg
+    )
+}
+
+/// The obstacles of a plan are watched without tiles, too.
+#[test]
+fn obstacles_are_climbed_over_or_turned_away_from() {
+    let mast = HOME.ahead(0.0, 6_000.0);
+    for (top_m, expected) in [(950.0, CLIMBS), (2_500.0, TURNS)] {
+        let mut flight = Flight::new(&with_mast(top_m), "[built-in]\n");
+        flight.fly_until(60.0, |flight| flight.record.state.state() == State::Engaged);
+        flight.command(go_to(HOME.ahead(0.0, FAR_M)));
+        let (mut nearest_m, mut lowest_m) = (f64::INFINITY, f64::INFINITY);
+        for _ in 0..200 * 40 {
+            flight.tick();
+            let away_m = flight.distance_m(mast);
+            nearest_m = nearest_m.min(away_m);
+            if away_m < 600.0 {
+                lowest_m = lowest_m.min(flight.truth.get().altitude_m);
+            }
+        }
+        println!("top {top_m} m: {nearest_m:.0} m, {lowest_m:.0} m high");
+        assert!(flight.happened(expected), "{:#?}", flight.events);
+        assert!(lowest_m > top_m, "{lowest_m}");
+        assert_eq!(nearest_m < 600.0, expected == CLIMBS, "{nearest_m}");
+    }
+}
+
 /// Ridges of any height in moderate gusts and 20 kt from anywhere: of the table in the
 /// documentation.
 #[test]

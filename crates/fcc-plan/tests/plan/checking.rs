@@ -161,6 +161,27 @@ fn circles_ceilings_and_obstacles() {
         top_m: 1_010.0,
     });
     assert!(said(&mast, 0.0).contains("item 1: obstacle: the leg comes within 56 m"));
+    // In 20 kt the arc of 841 m passes the corner 348 m to the south-east; and the circle
+    // after the last item is 1,000 m wide.
+    for (at, expected) in [
+        (
+            place(60.1, 8.0).ahead(135.0, 348.0),
+            "item 1: obstacle: in the turn",
+        ),
+        (
+            place(60.0, 8.2).ahead(70.0, 1_000.0),
+            "item 3: obstacle: on the circle",
+        ),
+    ] {
+        let mut mast = plan(8.0);
+        mast.obstacles.push(Obstacle {
+            centre: at,
+            radius_m: 20.0,
+            top_m: 1_200.0,
+        });
+        let said = said(&mast, 20.0);
+        assert!(said.contains(expected), "{said}");
+    }
 }
 
 /// Where no leg leads, at home and "here", and by a change of altitude.

@@ -134,7 +134,7 @@ mod tests {
     use super::*;
 
     /// docs/telemetry.md: 0 none, 1 hold, 2 timed pattern, 3 plan, 4 loiter, 5 go-to,
-    /// 6 return.
+    /// 6 return, 7 take-off, 8 land, 9 go-around, 10 glide.
     #[test]
     fn a_mode_is_plotted_by_its_names() {
         let plots = declared::<Autopilot>(&Quantities::of::<RecordOf<Autopilot>>());
@@ -151,6 +151,7 @@ mod tests {
             "takeoff",
             "land",
             "go around",
+            "glide",
         ];
         assert_eq!(mode.labels(), names);
     }

@@ -23,6 +23,7 @@ mod battery;
 mod delayed;
 mod engine_out;
 mod fence;
+mod surface;
 mod terrain;
 
 use core::fmt;

@@ -2,6 +2,7 @@
 
 use crate::flight::fence::Fence;
 use crate::flight::path::{LocalPlane, length};
+use crate::flight::terrain::Obstacle;
 
 use super::{OverGround, Runway};
 
@@ -144,6 +145,8 @@ pub struct Route<'a> {
     pub fence: Fence<'a>,
     /// Where it returns to from the fence; none: as from elsewhere.
     pub fence_return: Option<Destination>,
+    /// What it must not fly into.
+    pub obstacles: &'a [Obstacle],
     /// Indicated airspeed of its first leg, m/s; none: that at its begin.
     pub airspeed_mps: Option<f64>,
     /// The first 64 bits of the SHA-256 of the plan's content.

@@ -9,13 +9,12 @@ use libm::{cos, sin, tan};
 use nalgebra::Vector2;
 
 use super::super::Autopilot;
+use super::surface::Surface;
 use super::{CONTINGENCY, Contingency, ContingencyAction, PERMILLE, Stage};
 use crate::flight::fence::{Escape, Fence};
 use crate::flight::guidance::{Mode, ModeInput};
-use crate::flight::inertial::metres_per_radian;
 use crate::flight::path::length;
 use crate::flight::route::OverGround;
-use crate::flight::terrain::Terrain;
 use crate::framework::Notice;
 use crate::units::GRAVITY_MPS2;
 
@@ -25,6 +24,8 @@ const REACH_M: f64 = 60.0;
 /// The same of a circle, which moves with the aircraft until it is turned onto.
 const CIRCLE_STEP_M: f64 = 200.0;
 const CIRCLE_REACH_M: f64 = 150.0;
+/// How far circles may be away, m, for obstacles.
+const CIRCLES_M: f64 = 3_000.0;
 /// Of the largest climb, with what is reckoned, and what there is at most; and how long
 /// it takes to begin, s.
 const CLIMB_SHARE: f64 = 0.6;
@@ -55,13 +56,14 @@ pub(in super::super) struct TerrainWatch {
     lowest_m: Option<f64>,
     /// For how long it has been climbed over that, or not, s; none while it is not told.
     climbs_s: Option<f64>,
-    /// Whether a circle was clear of the ground since it is ahead.
-    had_circle: bool,
+    /// The last circle that was clear of the ground since it is ahead: whether it is flown
+    /// clockwise.
+    had_circle: Option<bool>,
 }
 
 /// The way ahead, with the present bank, or without one.
 struct Ahead<'a> {
-    terrain: &'a Terrain<'a>,
+    surface: &'a Surface<'a>,
     here: &'a OverGround,
     course_rate_radps: f64,
     ahead_s: f64,
@@ -76,21 +78,6 @@ struct Needed {
     /// The highest that is needed, m, and when the aircraft is there first, s.
     highest_m: f64,
     first_s: f64,
-}
-
-/// The highest ground around a place at an offset from the aircraft, m north and east.
-fn highest_m(
-    terrain: &Terrain<'_>,
-    here: &OverGround,
-    offset_m: Vector2<f64>,
-    reach_m: f64,
-) -> Option<f64> {
-    let (per_latitude, per_longitude) = metres_per_radian(here.latitude_rad, 0.0);
-    terrain.highest_m(
-        here.latitude_rad + offset_m.x / per_latitude,
-        here.longitude_rad + offset_m.y / per_longitude.max(1.0),
-        reach_m,
-    )
 }
 
 impl Ahead<'_> {
@@ -109,7 +96,7 @@ impl Ahead<'_> {
         };
         let (mut at_m, mut way, mut t_s) = (Vector2::zeros(), velocity, 0.0);
         while t_s <= self.ahead_s {
-            if let Some(ground_m) = highest_m(self.terrain, self.here, at_m, REACH_M) {
+            if let Some(ground_m) = self.surface.highest_m(at_m, REACH_M) {
                 let over_m = ground_m + self.margin_m;
                 let now_m = over_m - climb_mps * (t_s - BEGINS_S).max(0.0);
                 needed.now_m = needed.now_m.max(now_m);
@@ -127,20 +114,14 @@ impl Ahead<'_> {
 }
 
 /// How far the lowest point of a circle is above the ground, less the margin, m.
-fn clearance_m(
-    terrain: &Terrain<'_>,
-    here: &OverGround,
-    circle: &Escape,
-    altitude_m: f64,
-    margin_m: f64,
-) -> f64 {
+fn clearance_m(surface: &Surface<'_>, circle: &Escape, altitude_m: f64, margin_m: f64) -> f64 {
     let round_m = core::f64::consts::TAU * circle.radius_m;
     let steps = (round_m / CIRCLE_STEP_M).clamp(8.0, 200.0) as u32;
     let mut least_m = f64::INFINITY;
     for step in 0..steps {
         let angle = core::f64::consts::TAU * f64::from(step) / f64::from(steps);
         let at_m = circle.centre_m + Vector2::new(cos(angle), sin(angle)) * circle.radius_m;
-        if let Some(ground_m) = highest_m(terrain, here, at_m, CIRCLE_REACH_M) {
+        if let Some(ground_m) = surface.highest_m(at_m, CIRCLE_REACH_M) {
             least_m = least_m.min(altitude_m - ground_m - margin_m);
         }
     }
@@ -152,7 +133,7 @@ impl TerrainWatch {
     pub(super) const NONE: Self = Self {
         lowest_m: None,
         climbs_s: None,
-        had_circle: false,
+        had_circle: None,
     };
 
     /// Whether a climb over the ground ahead is told.
@@ -171,7 +152,8 @@ impl Autopilot {
     pub(super) fn keep_clear_of_terrain(&mut self, dt_s: f64) {
         let config = self.config.contingency;
         let terrain = self.config.terrain;
-        let is_watched = !terrain.is_empty()
+        let obstacles = self.config.plan.map_or(&[][..], |plan| plan.obstacles);
+        let is_watched = !(terrain.is_empty() && obstacles.is_empty())
             && self.guidance.mode() != Mode::Glide
             && config.terrain != ContingencyAction::Continue
             && self.runway().is_none()
@@ -183,15 +165,18 @@ impl Autopilot {
         let speed_mps = length(here.ground_velocity_mps).max(1.0);
         let bank_rad = self.navigation.estimate().roll_rad;
         let is_level = bank_rad.abs() < LEVEL_RAD;
+        let ahead_s = self.terrain_ahead_s(speed_mps);
+        let within_m = speed_mps * ahead_s + CIRCLES_M;
+        let surface = Surface::around(&here, &terrain, obstacles, within_m);
         let mut ahead = Ahead {
-            terrain: &terrain,
+            surface: &surface,
             here: &here,
             course_rate_radps: if is_level {
                 0.0
             } else {
                 GRAVITY_MPS2 * tan(bank_rad) / speed_mps
             },
-            ahead_s: self.terrain_ahead_s(speed_mps),
+            ahead_s,
             margin_m: config.terrain_margin_m,
         };
         let climb_mps = self.config.envelope.max_climb_mps;
@@ -208,7 +193,7 @@ impl Autopilot {
         let is_met = self.contingencies.active == Contingency::Terrain;
         let stage = self.contingencies.stage;
         if is_climbable && straight.now_m <= here.altitude_m {
-            self.contingencies.terrain.had_circle = false;
+            self.contingencies.terrain.had_circle = None;
             let returns = config.terrain == ContingencyAction::Return && self.points_home(&here);
             if is_met && stage == Stage::TurningAway && returns {
                 self.contingencies.stage = Stage::Acting;
@@ -221,7 +206,7 @@ impl Autopilot {
         }
         let first_s = with_bank.first_s.min(straight.first_s);
         let highest_m = with_bank.highest_m.max(straight.highest_m);
-        self.turn_from_terrain(&here, first_s, highest_m);
+        self.turn_from_terrain(&surface, first_s, highest_m);
     }
 
     /// For how long the way ahead is looked at, s: on the leg of a plan, which was checked,
@@ -238,28 +223,33 @@ impl Autopilot {
     }
 
     /// Turns onto the better circle, when no other one is left or the ground is near.
-    fn turn_from_terrain(&mut self, here: &OverGround, first_s: f64, highest_m: f64) {
+    fn turn_from_terrain(&mut self, surface: &Surface<'_>, first_s: f64, highest_m: f64) {
         let config = self.config.contingency;
-        let terrain = self.config.terrain;
-        let here = self.at_its_speed(here);
+        let here = self.at_its_speed(surface.here());
         let circles = Escape::both(&Fence::default(), &here, &self.fastest_bank());
         let Some(circles) = circles else {
             return;
         };
         let [left, right] = circles.map(|circle| {
             let margin_m = config.terrain_margin_m;
-            let clear_m = clearance_m(&terrain, &here, &circle, here.altitude_m, margin_m);
+            let clear_m = clearance_m(surface, &circle, here.altitude_m, margin_m);
             (circle, clear_m)
         });
         let (circle, clear_m) = if right.1 >= left.1 { right } else { left };
         let watch = &mut self.contingencies.terrain;
         if clear_m >= 0.0 {
-            watch.had_circle = true;
+            watch.had_circle = Some(circle.clockwise);
             return;
         }
-        if !watch.had_circle && first_s > LAST_S {
+        if watch.had_circle.is_none() && first_s > LAST_S {
             return;
         }
+        // Neither is clear any more: of the last one the least is in the way.
+        let circle = match watch.had_circle {
+            Some(true) => right.0,
+            Some(false) => left.0,
+            None => circle,
+        };
         let was_met = self.contingencies.active == Contingency::Terrain;
         self.contingencies.active = Contingency::Terrain;
         self.contingencies.stage = if was_met || config.terrain == ContingencyAction::Loiter {
