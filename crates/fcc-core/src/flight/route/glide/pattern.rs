@@ -14,7 +14,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use libm::atan2;
+use libm::{atan2, sin};
 use nalgebra::Vector2;
 
 use super::Glide;
@@ -29,7 +29,7 @@ const MORE_FINAL_M: f64 = 200.0;
 /// An arc that is shorter than this by rounding is none, rad.
 const LEAST_ARC_RAD: f64 = 0.15;
 /// A way that leaves no more height than this fits it, m.
-const MOST_LEFT_M: f64 = 10.0;
+const MOST_LEFT_M: f64 = 15.0;
 /// The length of the final is found to 1 / 2^n of its range.
 const HALVINGS: u8 = 9;
 
@@ -139,16 +139,17 @@ impl Pattern {
         Leg::to_circle(from_m, self.centre_m(final_m), self.radius_m, self.is_right)
     }
 
-    /// What turning from a course onto a leg, and the leg, cost, m.
+    /// What turning from a course onto a leg, and the leg, cost, m: a turn through Δ leads
+    /// R sin Δ along the leg already.
     fn leg_cost_m(&self, from: Vector2<f64>, leg: &Leg, air: &Air) -> f64 {
         let (from_rad, to_rad) = (course_rad(from), course_rad(leg.course));
-        let turned = air.glide.arc_m(
-            from_rad,
-            wrap_pi(to_rad - from_rad),
-            self.radius_m,
-            air.wind_mps,
-        );
-        turned + air.glide.straight_m(to_rad, leg.length_m, air.wind_mps)
+        let through_rad = wrap_pi(to_rad - from_rad);
+        let turned_m = air
+            .glide
+            .arc_m(from_rad, through_rad, self.radius_m, air.wind_mps);
+        let ahead_m = self.radius_m * sin(through_rad.abs());
+        let way_m = (leg.length_m - ahead_m).max(0.0);
+        turned_m + air.glide.straight_m(to_rad, way_m, air.wind_mps)
     }
 
     /// What the final costs, m.
