@@ -961,7 +961,7 @@ class Plan:
     @staticmethod
     def read(path: _Path) -> Plan: ...
     def check(self, config: Config | str | None = None) -> list[dict[str, Any]]:
-        """What keeps the aircraft from flying it: `item` (from 1), `field` and `message`.
+        """List what keeps the aircraft from flying it: `item` (from 1), `field` and `message`.
 
         Empty if nothing does. The aircraft, and the wind that is checked for, are those of the
         configuration; without one a Cessna 172's, in 20 kt.
@@ -971,7 +971,7 @@ class Plan:
     def items(self) -> list[dict[str, Any]]: ...
     @property
     def hash(self) -> str: ...
-    def to_text(self, format: str) -> str:
+    def to_text(self, kind: str) -> str:
         """Its text: "plan" is QGroundControl's JSON, "wpl" QGC WPL 110."""
 
     def write(self, path: _Path) -> None:

@@ -79,10 +79,10 @@ impl PyPlan {
         self.plan.hash().to_string()
     }
 
-    /// Its text in a format: "plan", QGroundControl's JSON, or "wpl". Raises `PlanError`
+    /// Its text of a kind: "plan", QGroundControl's JSON, or "wpl". Raises `PlanError`
     /// for what the format has no place for.
-    fn to_text(&self, format: &str) -> PyResult<String> {
-        fcc_plan::write(&self.plan, format_of(format)?).map_err(|problems| invalid(&problems))
+    fn to_text(&self, kind: &str) -> PyResult<String> {
+        fcc_plan::write(&self.plan, format_of(kind)?).map_err(|problems| invalid(&problems))
     }
 
     /// Writes it, in the format of the file's name: `.plan`, or `.waypoints`, `.wpl` or
