@@ -47,3 +47,46 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
         },
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::string::ToString;
+
+    use super::*;
+    use crate::flight::Autopilot;
+    use crate::framework::EventKind;
+
+    fn text(kind: u8) -> std::string::String {
+        let notice = Notice {
+            kind,
+            ..Notice::default()
+        };
+        EventKind::Noticed(notice)
+            .description::<Autopilot>()
+            .to_string()
+    }
+
+    /// Each number is that of one notice: sensors that are doubted begin at 32.
+    #[test]
+    fn each_number_is_one_notice() {
+        let single = [
+            refusal::COMMAND_ANSWER,
+            plant_clock::STOOD_STILL,
+            plant_clock::LINK_LOST,
+            degraded::GOOD_AGAIN,
+            degraded::GLIDES,
+            plant_clock::CLOCK_MISSING,
+            runway::RUNWAY,
+            routing::ITEM_REACHED,
+            contingency::CONTINGENCY,
+        ];
+        assert!(single.is_sorted_by(|a, b| a < b), "{single:?}");
+        for kind in single {
+            assert_eq!(pilot_takeover::axis_of(kind), None, "{kind}");
+            assert!(!text(kind).contains("is not used again"), "{kind}");
+        }
+        for kind in 32..=255 {
+            assert!(text(kind).contains("is doubted"), "{kind}: {}", text(kind));
+        }
+    }
+}

@@ -6,9 +6,10 @@ use super::{Autopilot, AutopilotCommand};
 use crate::flight::guidance::ModeInput;
 use crate::framework::Notice;
 
-/// The number of the notice that answers; the amount is the refusal's number. A plan that
+/// The number of the notice that answers, below those of doubted sensors; the amount is the
+/// refusal's number. A plan that
 /// is replaced is always answered, with the item that is flown first.
-pub const COMMAND_ANSWER: u8 = 32;
+pub const COMMAND_ANSWER: u8 = 0;
 const PERMILLE: u16 = 1_000;
 /// Lower than this over a runway nothing else is begun, m.
 const COMMANDED_M: f64 = 30.0;
