@@ -28,6 +28,7 @@ from .daemon import Daemon, command
 from .fly import ENGAGE_SWITCH, FlightError
 from .process import StandInProcess
 from .standin import Settings
+from .udp import free_port
 
 FOREIGN = "127.0.0.2"
 _UDP_SEGMENT = 103
@@ -155,14 +156,6 @@ class Result:
             found.append(f"the daemon ended with {self.exit_code}")
         found += self.disturbed
         return found
-
-
-def free_port() -> int:
-    """Return a UDP port that is free now."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-    return port
 
 
 def fly(plan: Plan) -> Result:

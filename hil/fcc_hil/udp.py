@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
+import random
 import socket
 from typing import Literal
 
@@ -11,6 +13,8 @@ from .faults import Address
 ReplyPort = int | Literal["same", "next"]
 """The port to send from: a number, 0 for any free one; "same" as the one that listens; "next" for
 the one after it, or any free one."""
+
+_NEXT = itertools.count(random.SystemRandom().randrange(12_000))
 
 
 def open_ports(host: str, port: int, reply_port: ReplyPort) -> tuple[socket.socket, socket.socket]:
@@ -32,6 +36,24 @@ def send_beacons_from(opened: socket.socket, host: str) -> None:
     if host != "0.0.0.0":
         interface = socket.inet_aton(socket.gethostbyname(host))
         opened.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, interface)
+
+
+def free_port(count: int = 1) -> int:
+    """Return the first of that many free ports in a row.
+
+    They stay free: below the range from which the kernel gives ports to others
+    (`ip_local_port_range` in ip(7): 32768 and above), and given once by this process.
+    """
+    while True:
+        first = 20_000 + next(_NEXT) * count % 12_000
+        with contextlib.ExitStack() as opened:
+            try:
+                for port in range(first, first + count):
+                    probe = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+                    opened.enter_context(probe).bind(("0.0.0.0", port))
+            except OSError:
+                continue
+            return first
 
 
 def port_of(opened: socket.socket) -> int:

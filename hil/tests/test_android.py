@@ -16,7 +16,6 @@ from typing import Any
 
 import pytest
 from daemon_under_test import wait_until, write_config
-from test_daemon_flights import free_port
 
 from fcc_hil.cockpit import ENGAGE_SWITCH
 from fcc_hil.daemon import Daemon, command
@@ -26,6 +25,7 @@ from fcc_hil.process import StandInProcess
 from fcc_hil.servo_board import FAILSAFE_AFTER_S, Control
 from fcc_hil.settings import Settings
 from fcc_hil.state import Controls
+from fcc_hil.udp import free_port
 
 PROGRAM = os.environ.get("FCC_ANDROID")
 CUT_OFF = 8

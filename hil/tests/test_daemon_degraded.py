@@ -29,6 +29,7 @@ from fcc_hil.process import StandInProcess
 from fcc_hil.quantities import SENSORS
 from fcc_hil.standin import Settings
 from fcc_hil.truth import Truth
+from fcc_hil.udp import free_port
 
 AIRCRAFT = "c172p"
 SEED = 11
@@ -158,9 +159,7 @@ def fly(fccd: Path, scratch: Path, name: str) -> Degraded:
     settings = Settings(port=0, aircraft=AIRCRAFT, seed=SEED, noise=True)
     x_plane = ""
     if name == BY_ROWS:
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-            probe.bind(("127.0.0.1", 0))
-            target: tuple[str, int] = probe.getsockname()
+        target = ("127.0.0.1", free_port())
         settings = replace(settings, data_target=target, data_rows=DATA_ROWS)
         x_plane = f'input = "data"\nlocal_port = {target[1]}\ndata_version = 11\n'
     others = TO_GLIDE if name == GLIDES else ""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import signal
-import socket
 from pathlib import Path
 
 from daemon_under_test import assert_released, engage, flight, write_config
@@ -13,6 +12,7 @@ from fcc_hil.faults import Faults
 from fcc_hil.fly import Plan, fly
 from fcc_hil.pattern import TimedPattern
 from fcc_hil.standin import Settings
+from fcc_hil.udp import free_port
 
 HARSH = Faults(loss=0.02, duplicate=0.01, reorder=0.01)
 # Twice the limits for a good network; a leg has at most 20 s to settle.
@@ -23,13 +23,6 @@ WORST_AIRSPEED_ERROR_KT = 2 * 5.0
 
 ROWS = (1, 3, 4, 16, 17, 18, 20, 21)
 HOLD_S = 10.0
-
-
-def free_port() -> int:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
 
 
 def test_a_harsh_network_and_noisy_sensors(fccd: Path, tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ import fcc_hil.artifacts
 import fcc_hil.daemon_rig
 import fcc_hil.lockstep_rig  # noqa: F401
 from fcc_hil import remote_rig
+from fcc_hil.udp import free_port
 
 FLIES = """
 import pytest
@@ -36,13 +37,6 @@ def _run(pytester: pytest.Pytester, text: str, *options: str) -> pytest.RunResul
     return pytester.runpytest_inprocess("-p", "no:cacheprovider", *options)
 
 
-def _free_port() -> int:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
-
-
 def test_the_same_test_in_lockstep_and_in_real_time(pytester: pytest.Pytester, fccd: Path) -> None:
     _run(pytester, FLIES).assert_outcomes(passed=1)
     _run(pytester, FLIES, "--realtime", "--fccd-program", str(fccd)).assert_outcomes(passed=1)
@@ -52,7 +46,7 @@ def test_the_same_test_with_a_daemon_started_separately(
     pytester: pytest.Pytester, fccd: Path, tmp_path: Path
 ) -> None:
     """It was started by somebody else, and is only known by what it does."""
-    port = _free_port()
+    port = free_port()
     config = write_config(tmp_path, port, others="[failsafe]\nhold_s = 1.0\nall_silent_s = 0.5\n")
     with start(fccd, tmp_path, config) as there:
         options = ("--fccd", "127.0.0.1", "--fccd-listen", f"127.0.0.1:{port}")
@@ -92,7 +86,7 @@ def test_a_host_without_a_daemon_is_reported(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(remote_rig, "_SUBSCRIBE_S", 0.5)
-    at = f"127.0.0.1:{_free_port()}"
+    at = f"127.0.0.1:{free_port()}"
     result = _run(pytester, FLIES, "--fccd", "127.0.0.1", "--fccd-listen", at)
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(
@@ -103,7 +97,7 @@ def test_a_host_without_a_daemon_is_reported(
 def test_a_daemon_of_a_third_host_is_refused(
     pytester: pytest.Pytester, fccd: Path, tmp_path: Path
 ) -> None:
-    port = _free_port()
+    port = free_port()
     with start(fccd, tmp_path, write_config(tmp_path, port)):
         result = _run(pytester, FLIES, "--fccd", "127.0.0.2", "--fccd-listen", f"127.0.0.1:{port}")
     result.assert_outcomes(failed=1)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import random
 import signal
-import socket
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +12,7 @@ from daemon_under_test import DaemonUnderTest, engage, flight, wait_until
 
 from fcc_hil.process import StandInProcess
 from fcc_hil.standin import Settings
+from fcc_hil.udp import free_port
 
 X_PLANE_11, X_PLANE_12 = 115_501, 121_000
 """The first has no pressure altitude: it comes from the pilot's altimeter and its setting."""
@@ -68,9 +68,7 @@ def test_a_knob_turned_at_any_moment_moves_nothing(
 
 def test_a_knob_turned_with_rows_as_input_moves_nothing(fccd: Path, tmp_path: Path) -> None:
     """The indicated altitude comes in row 20, the setting as a dataref in other datagrams."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
+    port = free_port()
     settings = Settings(port=0, data_target=("127.0.0.1", port), data_rows=ROWS)
     rows = f'input = "data"\nlocal_port = {port}\ndata_version = 11\n'
     with flight(fccd, tmp_path, settings, x_plane=rows) as (simulator, daemon):

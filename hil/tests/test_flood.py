@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 from daemon_under_test import assert_released, engage, flight
 
-from fcc_hil.flood import disturbed, flood, free_port
+from fcc_hil.flood import disturbed, flood
+from fcc_hil.udp import free_port
 
 SUCCESS = 0
 SECONDS = 3.0

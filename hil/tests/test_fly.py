@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import shlex
-import socket
 import sys
 import time
 from dataclasses import replace
@@ -20,16 +19,10 @@ from fcc_hil.pattern import TimedPattern
 from fcc_hil.plot import plot_flight
 from fcc_hil.process import StandInError, StandInProcess
 from fcc_hil.standin import Mode, Settings
+from fcc_hil.udp import free_port
 
 FAKE = Path(__file__).parent / "fake_daemon.py"
 SHORT = TimedPattern(hold_s=1.0, leg_s=3.0, turn_deg=0.0, climb_ft=0.0)
-
-
-def free_port() -> int:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
 
 
 def plan(*options: str, pattern: TimedPattern = SHORT) -> Plan:

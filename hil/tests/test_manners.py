@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import random
 import socket
 import struct
 from typing import Any
@@ -30,31 +29,14 @@ from fcc_hil.rows import row_values
 from fcc_hil.sensor_faults import Faults
 from fcc_hil.standin import Settings, StandIn
 from fcc_hil.state import Controls
+from fcc_hil.udp import free_port
 
 P = "sim/flightmodel/position/"
 TIME = "sim/time/total_flight_time_sec"
 
 
-def pair_of_free_ports() -> int:
-    """Return a free port after which the next one is free, too."""
-    for _ in range(100):
-        # At random: tests run in several processes.
-        port = random.SystemRandom().randrange(20_000, 32_000)
-        with (
-            socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as first,
-            socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as second,
-        ):
-            try:
-                first.bind(("127.0.0.1", port))
-                second.bind(("127.0.0.1", port + 1))
-            except OSError:
-                continue
-            return port
-    raise AssertionError("no two free ports")
-
-
 def test_replies_come_from_the_next_port() -> None:
-    port = pair_of_free_ports()
+    port = free_port(2)
     bench = Bench(port=port, reply_port="next")
     bench.client.subscribe(1, TIME)
     bench.client.send(b"RPOS\x0060\0")
@@ -78,7 +60,7 @@ def test_the_beacon_names_the_port_that_listens_and_comes_from_the_other() -> No
 
 
 def test_a_taken_next_port_is_replaced_and_a_taken_given_one_is_refused() -> None:
-    port = pair_of_free_ports()
+    port = free_port(2)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
         taken.bind(("127.0.0.1", port + 1))
         simulator = StandIn(Settings.plain(port=port, reply_port="next"))

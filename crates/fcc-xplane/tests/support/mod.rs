@@ -19,7 +19,10 @@ pub mod bench;
 mod fake_x_plane;
 mod networks;
 
+use std::hash::{BuildHasher, RandomState};
 use std::net::UdpSocket;
+use std::sync::LazyLock;
+use std::sync::atomic::{AtomicU16, Ordering};
 use std::time::Duration;
 
 pub use fake_x_plane::FakeXPlane;
@@ -37,10 +40,18 @@ pub const THROTTLE: &str = "sim/flightmodel/engine/ENGN_thro_use[0]";
 pub const FLIGHT_TIME: &str = "sim/time/total_flight_time_sec";
 pub const PAUSED: &str = "sim/time/paused";
 
-/// A port of this machine that is free now.
+/// A port of this machine that is free, and stays so: below the range from which the
+/// kernel gives ports to the sockets of tests that run beside this one
+/// (`ip_local_port_range` in ip(7): 32768 and above), and given once by this process.
 pub fn free_port() -> u16 {
-    let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
-    socket.local_addr().unwrap().port()
+    static NEXT: LazyLock<AtomicU16> =
+        LazyLock::new(|| AtomicU16::new((RandomState::new().hash_one(0) % 12_000) as u16));
+    loop {
+        let port = 20_000 + NEXT.fetch_add(1, Ordering::Relaxed) % 12_000;
+        if UdpSocket::bind(("0.0.0.0", port)).is_ok() {
+            return port;
+        }
+    }
 }
 
 /// A reply to RPOS, written out from the layout.
