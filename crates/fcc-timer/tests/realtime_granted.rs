@@ -126,6 +126,28 @@ fn cpus_stay_awake_until_the_grants_are_dropped() {
     assert!(held_us <= 12, "{held_us}");
 }
 
+/// The kernel's smallest is 0.1 ms, and its default 0.7 ms and more (`sched_setattr(2)`,
+/// Linux 6.12).
+#[test]
+fn without_fifo_the_slice_is_the_shortest_and_the_threads_own() {
+    let Some(usual_ns) = present().slice_ns else {
+        println!("not tested: this kernel does not say what a thread's slice is");
+        return;
+    };
+    thread::spawn(|| {
+        let request = RealtimeRequest {
+            nice: Some(3),
+            ..RealtimeRequest::default()
+        };
+        let granted = request.apply().unwrap();
+        assert_eq!((granted.slice_ns, granted.nice), (Some(100_000), 3));
+    })
+    .join()
+    .unwrap();
+    assert!(usual_ns > 100_000);
+    assert_eq!(present().slice_ns, Some(usual_ns));
+}
+
 #[test]
 fn the_timer_slack_is_the_threads_own() {
     // The kernel's default, prctl(2).

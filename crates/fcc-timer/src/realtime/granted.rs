@@ -14,6 +14,9 @@ pub struct RealtimeGranted {
     pub priority: i32,
     /// Nice value, -20..=19; without effect under `SCHED_FIFO`.
     pub nice: i8,
+    /// For how long the thread runs at a time beside others under `SCHED_OTHER`, ns,
+    /// where the kernel says it (Linux 6.12).
+    pub slice_ns: Option<u64>,
     /// The CPU, if the thread may run on one only.
     pub cpu: Option<usize>,
     /// Why this CPU, or why none; empty if none was requested.

@@ -17,6 +17,7 @@ mod memory;
 mod nice;
 mod scheduling;
 mod slack;
+mod slice;
 mod stack;
 
 use std::path::Path;
@@ -46,7 +47,9 @@ pub use scheduling::{take_priority_from, this_thread};
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct RealtimeRequest {
     /// `SCHED_FIFO` with this priority, 1..=99. The kernel's own interrupt
-    /// threads are at 50.
+    /// threads are at 50. Where it is refused, the ordinary scheduler is asked for its
+    /// shortest slice, as with `nice`, so that the thread waits for others no longer
+    /// than it must; Linux before 6.12 ignores that.
     pub priority: Option<u8>,
     /// The nice value if the thread does not get `SCHED_FIFO`, -20..=19; where
     /// the kernel refuses it, the nearest that it permits.
@@ -155,11 +158,16 @@ impl RealtimeRequest {
         {
             denied.extend(nice::set_nearest(nice).err());
         }
+        if (self.priority.is_some() || self.nice.is_some()) && scheduling::policy() == "SCHED_OTHER"
+        {
+            slice::shorten();
+        }
 
         let granted = RealtimeGranted {
             policy: scheduling::policy(),
             priority: scheduling::static_priority(),
             nice: nice::get(),
+            slice_ns: slice::get(),
             cpu: scheduling::only_cpu(),
             cpu_reason,
             cpu_latency,
