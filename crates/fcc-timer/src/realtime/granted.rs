@@ -71,7 +71,7 @@ impl fmt::Display for DeniedRequest {
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct RealtimeDenied {
     /// The thread's settings now; at least one request was denied.
-    pub granted: RealtimeGranted,
+    pub granted: Box<RealtimeGranted>,
 }
 
 impl fmt::Display for RealtimeDenied {

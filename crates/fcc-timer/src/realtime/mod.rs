@@ -177,7 +177,9 @@ impl RealtimeRequest {
             denied,
         };
         if self.strictness == Strictness::Strict && !granted.denied.is_empty() {
-            return Err(RealtimeDenied { granted });
+            return Err(RealtimeDenied {
+                granted: Box::new(granted),
+            });
         }
         Ok(granted)
     }
