@@ -96,6 +96,14 @@ def _plan(options: argparse.Namespace) -> int:
             f"{leg.item:6} {leg.cross_track_rms_m:18.2f} {leg.cross_track_max_m:6.1f} "
             f"{leg.altitude_rms_ft:16.1f} {leg.altitude_max_ft:7.1f} {leg.airspeed_error_kt:12.1f}"
         )
+    if score.turns:
+        say("\nturn at  degrees  radius m  from its arc RMS m  max m  bank to deg")
+    for turn in score.turns:
+        say(
+            f"{turn.item:7} {turn.degrees:8.1f} {turn.radius_m:9.0f} "
+            f"{turn.cross_track_rms_m:18.1f} {turn.cross_track_max_m:6.1f} "
+            f"{turn.bank_max_deg:12.1f}"
+        )
     for circle in score.circles:
         say(
             f"\ncircle {circle.item}: {circle.radius_m:.0f} m, within "

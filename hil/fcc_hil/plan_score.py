@@ -26,6 +26,10 @@ _ON_COURSE_RAD = math.radians(1.0)
 """The path has the course of the leg within this: the rest is a turn."""
 _BOUNCES = 800
 """Touches within so many rows, 20 s, of one another are one landing."""
+_MOST_FLY_BY_RAD = math.radians(91.0)
+"""A turn that is flown before its waypoint: right angles on a map are a little more than 90°."""
+_OVERSHOOT_RAD = math.radians(3.0)
+"""The path's course goes farther than this beyond that of the next leg: it is flown over."""
 _ON_CIRCLE = 0.2
 """A circle is flown from where the aircraft is within this share of its radius."""
 
@@ -77,6 +81,19 @@ class LegScore:
 
 
 @dataclass(frozen=True)
+class TurnScore:
+    """How the arc before a waypoint was flown, which touches both legs."""
+
+    item: int
+    degrees: float
+    radius_m: float
+    """That by which the path's course changes along the way."""
+    cross_track_rms_m: float
+    cross_track_max_m: float
+    bank_max_deg: float
+
+
+@dataclass(frozen=True)
 class CircleScore:
     """How a circle was flown."""
 
@@ -122,6 +139,7 @@ class PlanScore:
 
     waypoints: list[WaypointScore]
     legs: list[LegScore]
+    turns: list[TurnScore]
     circles: list[CircleScore]
     takeoff: TakeoffScore | None = None
     landing: LandingScore | None = None
@@ -206,6 +224,7 @@ def score(
     """
     flights = [item for item in plan.items if item.has_place]
     waypoints, legs, circles = [], [], []
+    turns = [_turn(*places, flown) for places in zip(flights, flights[1:], flights[2:])]
     before: Item | None = None
     takeoff: TakeoffScore | None = None
     for item in plan.items:
@@ -221,7 +240,7 @@ def score(
         before = item
     landing = score_landing(plan, flown, go_arounds)
     kept = [leg for leg in legs if leg.seconds > 0.0]
-    return PlanScore(waypoints, kept, circles, takeoff, landing)
+    return PlanScore(waypoints, kept, [turn for turn in turns if turn], circles, takeoff, landing)
 
 
 def _along(start: Item, end: Item, at: Item, flown: FlownPlan) -> tuple[float, Array, Array]:
@@ -313,7 +332,7 @@ def _leg(start: Item, end: Item, flown: FlownPlan) -> LegScore:
     course = -begin / np.hypot(*begin)
     course_rad = math.atan2(course[1], course[0])
     at = plane.of(flown.latitude_rad, flown.longitude_rad)
-    off = np.angle(np.exp(1j * (flown.course_rad - course_rad)))
+    off = _within_pi(flown.course_rad - course_rad)
     on = (flown.item == end.number) & (np.abs(off) < _ON_COURSE_RAD)
     cross = (course[0] * at[:, 1] - course[1] * at[:, 0])[on]
     if not len(cross):
@@ -332,6 +351,47 @@ def _leg(start: Item, end: Item, flown: FlownPlan) -> LegScore:
         float(np.max(np.abs(altitude))),
         float(np.max(np.abs(whole.mean(axis=1)))) if len(whole) else math.nan,
     )
+
+
+def _turn(start: Item, item: Item, end: Item, flown: FlownPlan) -> TurnScore | None:
+    """Score the turn at an item, if it is one between legs that is flown before its waypoint."""
+    if {start.command, item.command, end.command} != {WAYPOINT}:
+        return None
+    plane = _plane(item)
+    ends = plane.of(
+        np.radians([start.latitude_deg, end.latitude_deg]),
+        np.radians([start.longitude_deg, end.longitude_deg]),
+    )
+    courses = np.arctan2(*(ends * [[-1.0], [1.0]]).T[::-1])
+    turn = _within_pi(courses[1] - courses[0])
+    turned = _within_pi(flown.course_rad - courses[0]) * math.copysign(1.0, turn)
+    straight = _ON_COURSE_RAD
+    before = np.flatnonzero((flown.item == item.number) & (np.abs(turned) < straight))
+    after = np.flatnonzero((flown.item == end.number) & (np.abs(turned - abs(turn)) < straight))
+    if not (straight < abs(turn) <= _MOST_FLY_BY_RAD and len(before) and len(after)):
+        return None
+    rows = np.arange(before[-1] + 1, after[0])
+    if len(rows) < 2 or np.max(turned[rows]) > abs(turn) + _OVERSHOOT_RAD:
+        return None
+    at = plane.of(flown.latitude_rad, flown.longitude_rad)[rows]
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(at, axis=0).T))])
+    radius = 1.0 / float(np.polyfit(way, turned[rows], 1)[0])
+    inwards = np.array([np.cos(courses), np.sin(courses)]) @ [-1.0, 1.0]
+    centre = inwards / np.hypot(*inwards) * radius / math.cos(turn / 2.0)
+    error = np.hypot(*(at - centre).T) - radius
+    return TurnScore(
+        item.number,
+        math.degrees(turn),
+        radius,
+        float(np.sqrt(np.mean(error**2))),
+        float(np.max(np.abs(error))),
+        float(np.degrees(np.max(np.abs(flown.roll_rad[rows])))),
+    )
+
+
+def _within_pi(angle: Array) -> Array:
+    """Return angles, in rad, from -π to π."""
+    return np.asarray(np.angle(np.exp(1j * angle)))
 
 
 def _circle(item: Item, flown: FlownPlan, radius_m: float) -> CircleScore:

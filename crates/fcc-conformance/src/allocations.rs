@@ -54,7 +54,12 @@ unsafe impl GlobalAlloc for Counting {
 /// assert_eq!(calls, 2);
 /// ```
 pub fn allocator_calls<T>(work: impl FnOnce() -> T) -> (T, u64) {
-    let before = CALLS.get();
+    let before = allocator_calls_so_far();
     let result = work();
-    (result, CALLS.get() - before)
+    (result, allocator_calls_so_far() - before)
+}
+
+/// How often the calling thread has allocated, reallocated or freed since it began.
+pub fn allocator_calls_so_far() -> u64 {
+    CALLS.get()
 }

@@ -76,7 +76,7 @@ mod ticks;
 mod waiting;
 
 pub use actuator::{ActuatorBench, VanishingPlant};
-pub use allocations::allocator_calls;
+pub use allocations::{allocator_calls, allocator_calls_so_far};
 pub use authority::AuthorityBench;
 #[cfg(feature = "flight")]
 pub use flight::flight_times;

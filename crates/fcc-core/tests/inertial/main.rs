@@ -5,6 +5,7 @@
     reason = "axes of vectors of three, in what only tests use"
 )]
 
+mod chosen;
 mod consistency;
 mod flight;
 mod flights;

@@ -9,8 +9,9 @@ use fcc_core::flight::inertial::{
     MagneticNorth, RawNavigation, RawNavigationConfig, RawNavigationMethod, SensorKind,
 };
 use fcc_core::flight::orientation::{earth_to_body, euler_from_quaternion};
-use fcc_core::framework::{Flags, Preference, Preferred, Readings, Time};
+use fcc_core::framework::Time;
 
+use super::chosen::chosen;
 use super::flight::{Flight, Truth};
 use super::gyroscope::readings;
 use super::noise::Random;
@@ -18,6 +19,7 @@ use super::sensors::{FIELD_UT, time};
 
 const TICK_S: f64 = 0.025;
 const FAILS_S: f64 = 30.0;
+const FRESH_FOR: Duration = Duration::from_millis(1_200);
 /// So long after a fault errors are looked at.
 const SETTLED_S: f64 = 15.0;
 /// Ticks between two fixes: at 5 Hz.
@@ -149,7 +151,7 @@ fn fly(seed: u64, sets: u8, until_s: f64, fix_ticks: u32, fails: Option<(u8, Fau
             *given = now;
         }
         let now = time(truth.time_s);
-        let measured = chosen(now, &given, &mut navigation);
+        let measured = chosen(now, &given, FRESH_FOR, &mut navigation);
         flown.found.push(*navigation.step(now, &measured));
         flown.used.push((now, measured));
         if let Some(wrong) = navigation.wrong_sensor() {
@@ -179,30 +181,6 @@ fn navigation() -> RawNavigation {
         delay: Duration::from_millis(200),
         north: MagneticNorth::Field(FIELD_UT),
     })
-}
-
-/// The readings of the sets as the loop chooses of them.
-fn chosen(now: Time, given: &[Measurements], navigation: &mut RawNavigation) -> Measurements {
-    let preferred: Vec<Preferred> = (0_u8..)
-        .zip(given)
-        .map(|(set, measured)| {
-            navigation.observe_sensor(set, measured);
-            Preferred {
-                fresh_for: Duration::from_millis(1_200),
-                plausible: navigation.permitted(set, Flags::ALL),
-            }
-        })
-        .collect();
-    let by = Preference {
-        now,
-        sensors: &preferred,
-        reading: 0,
-    };
-    let mut measured = given[0];
-    for (set, own) in (1_u8..).zip(&given[1..]) {
-        measured.choose(own, set, &by);
-    }
-    measured
 }
 
 /// A fault, of what it is, and how long it takes at most, s, until it is found with two sets

@@ -7,8 +7,9 @@ use fcc_core::flight::inertial::{
 };
 use fcc_core::flight::orientation::{earth_to_body, euler_from_quaternion};
 use fcc_core::flight::{BodyRates, Measurements};
-use fcc_core::framework::{Flags, Preference, Preferred, Reading, Readings, Time};
+use fcc_core::framework::{Reading, Time};
 
+use super::chosen::chosen;
 use super::flight::Flight;
 use super::gyroscope::readings;
 use super::noise::Random;
@@ -16,6 +17,7 @@ use super::sensors::{FIELD_UT, time};
 
 const TICK_S: f64 = 0.025;
 const FAILS_S: f64 = 30.0;
+const FRESH_FOR: Duration = Duration::from_millis(100);
 
 /// What unit fails in, from 30 s on: its readings, its number, and its rates at the
 /// failure.
@@ -75,7 +77,7 @@ fn fly(units: usize, fault: Fault) -> Flown {
                 measured
             })
             .collect();
-        let measured = chosen(now, &given, &mut navigation);
+        let measured = chosen(now, &given, FRESH_FOR, &mut navigation);
         navigation.step(now, &measured);
         let since_s = truth.time_s - FAILS_S;
         if measured.raw_body_rates.source != used {
@@ -90,30 +92,6 @@ fn fly(units: usize, fault: Fault) -> Flown {
         }
     }
     flown
-}
-
-/// The readings of the units as the loop chooses of them.
-fn chosen(now: Time, given: &[Measurements], navigation: &mut RawNavigation) -> Measurements {
-    let preferred: Vec<Preferred> = (0_u8..)
-        .zip(given)
-        .map(|(unit, measured)| {
-            navigation.observe_sensor(unit, measured);
-            Preferred {
-                fresh_for: Duration::from_millis(100),
-                plausible: navigation.permitted(unit, Flags::ALL),
-            }
-        })
-        .collect();
-    let by = Preference {
-        now,
-        sensors: &preferred,
-        reading: 0,
-    };
-    let mut measured = given[0];
-    for (unit, own) in (1_u8..).zip(&given[1..]) {
-        measured.choose(own, unit, &by);
-    }
-    measured
 }
 
 /// Of these units roll is inverted.

@@ -17,11 +17,14 @@
 //!   first request;
 //! - `FCCD_PAUSE_AT_S`: this many seconds after the loop's start, its messages
 //!   are not read, for `FCCD_PAUSE_S` (for ever, if not given).
+//!
+//! Such a program counts the calls of its allocator, too: [`loop_allocator_calls`].
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use fcc_conformance::allocator_calls_so_far;
 use fcc_core::flight::{Autopilot, Measurements, Surfaces};
 use fcc_core::framework::{Sensor, SensorFault, Tick, Time};
 
@@ -68,6 +71,14 @@ impl Slow {
     }
 }
 
+static LOOP_ALLOCATOR_CALLS: AtomicU64 = AtomicU64::new(0);
+
+/// How often the thread of the newest flight's loop had called the allocator when its
+/// newest tick read the sensors.
+pub fn loop_allocator_calls() -> u64 {
+    LOOP_ALLOCATOR_CALLS.load(Ordering::Relaxed)
+}
+
 /// A sensor without readings that blocks at a given time.
 #[derive(Debug)]
 pub(super) struct Blocking {
@@ -87,6 +98,7 @@ impl Default for Blocking {
 
 impl Sensor<Measurements> for Blocking {
     fn sample(&mut self, tick: &Tick, _: &mut Measurements) -> Result<(), SensorFault> {
+        LOOP_ALLOCATOR_CALLS.store(allocator_calls_so_far(), Ordering::Relaxed);
         if self.began.is_never() {
             self.began = tick.woke;
         }

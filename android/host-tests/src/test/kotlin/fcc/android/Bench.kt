@@ -28,13 +28,13 @@ fun FlightComputer.json() = JSONObject(state())
 /** The newest tick; null before the first. */
 fun FlightComputer.now(): JSONObject? = json().optJSONObject("now")
 
-/** Waits until something holds, for ten seconds. */
-fun eventually(what: String, holds: () -> Boolean) {
-    repeat(1_000) {
+/** Waits until something holds, for ten seconds unless told. */
+fun eventually(what: String, seconds: Int = 10, holds: () -> Boolean) {
+    repeat(100 * seconds) {
         if (holds()) return
         Thread.sleep(10)
     }
-    fail("not within 10 s: $what")
+    fail("not within $seconds s: $what")
 }
 
 /** Keeps what it is told. */
@@ -80,3 +80,10 @@ fun threads(): List<String> =
 
 /** Those of the library. */
 fun ownThreads(): List<String> = threads().filter { it.startsWith("fcc-") }
+
+/** What only the library with faults on request understands. */
+fun FlightComputer.request(what: String): Long {
+    val handle = FlightComputer::class.java.getDeclaredField("handle")
+    handle.isAccessible = true
+    return Native.command(handle.getLong(this), what)
+}

@@ -13,9 +13,7 @@ class InjectedPanicTest {
         FlightComputer(BUILT_IN, folder()).use { computer ->
             computer.start()
             val thrown = assertThrows(InternalException::class.java) {
-                val handle = FlightComputer::class.java.getDeclaredField("handle")
-                handle.isAccessible = true
-                Native.command(handle.getLong(computer), "panic")
+                computer.request("panic")
             }
             assertTrue(thrown.message, thrown.message!!.endsWith("injected panic"))
             assertTrue(computer.json().getBoolean("flying"))
