@@ -72,7 +72,7 @@ pub fn watch(
         .stack_size(STACK_BYTES)
         .spawn(move || {
             // Nothing is strict here, so this is never an error.
-            let granted = request.apply().unwrap_or_else(|refused| refused.granted);
+            let granted = request.apply().unwrap_or_else(|refused| *refused.granted);
             // The receiver waits below.
             let _ = sender.send(granted);
             if let Some(hang) = wait_for_hang(&heartbeat, hang_after) {

@@ -7,7 +7,7 @@ use fcc_core::flight::inertial::{
 };
 use fcc_core::flight::orientation::{earth_to_body, euler_from_quaternion};
 use fcc_core::flight::{BodyRates, Measurements};
-use fcc_core::framework::{Reading, Time};
+use fcc_core::framework::Reading;
 
 use super::chosen::chosen;
 use super::flight::Flight;

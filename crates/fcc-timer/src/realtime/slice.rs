@@ -4,10 +4,15 @@
 //! `sched_runtime` (`sched_setattr(2)`; Documentation/scheduler/sched-eevdf.rst). A
 //! shorter one brings the thread's deadline nearer, and with it its turn when it wakes
 //! beside threads that compute: without it, it waits for the end of theirs, some 3 ms.
-//! Older kernels ignore the request.
+//! Older kernels ignore the request, so they are not asked: Androids of their time may end
+//! a program for a system call that is not on their list.
 #![allow(unsafe_code)]
 
 use nix::errno::Errno;
+use nix::sys::utsname::uname;
+
+/// The first kernel, major and minor, that knows a thread's own slice.
+const SINCE: (u32, u32) = (6, 12);
 
 /// The kernel's smallest slice, ns.
 const SHORTEST_NS: u64 = 100_000;
@@ -57,7 +62,18 @@ pub(super) fn get() -> Option<u64> {
         .filter(|slice_ns| *slice_ns > 0)
 }
 
+/// Whether a kernel of this release knows slices: `6.12.1-android16-5`.
+fn is_known_to(release: &str) -> bool {
+    let mut numbers = release.split(|character: char| !character.is_ascii_digit());
+    let mut next = || numbers.next()?.parse().ok();
+    matches!((next(), next()), (Some(major), Some(minor)) if (major, minor) >= SINCE)
+}
+
 fn read() -> Result<Attributes, Errno> {
+    let release = uname()?;
+    if !release.release().to_str().is_some_and(is_known_to) {
+        return Err(Errno::ENOSYS);
+    }
     let mut present = Attributes::default();
     // SAFETY: the kernel writes at most the stated size through the pointer, during the
     // call, and every pattern of bits is a value of these fields.
@@ -71,4 +87,26 @@ fn read() -> Result<Attributes, Errno> {
         )
     };
     Errno::result(answer).map(|_| present)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_known_to;
+
+    /// Releases as phones, Debian and a Pi print them.
+    #[test]
+    fn kernels_before_6_12_are_not_asked() {
+        for known in ["6.12.23-android16-5", "6.12.0", "6.18.44-fc", "7.0-rc1"] {
+            assert!(is_known_to(known), "{known}");
+        }
+        for unknown in [
+            "4.14.190-perf",
+            "5.10.43-android12-9",
+            "6.6.30+rpt-rpi-v8",
+            "6",
+            "",
+        ] {
+            assert!(!is_known_to(unknown), "{unknown}");
+        }
+    }
 }
