@@ -224,7 +224,9 @@ def score(
     """
     flights = [item for item in plan.items if item.has_place]
     waypoints, legs, circles = [], [], []
-    turns = [_turn(*places, flown) for places in zip(flights, flights[1:], flights[2:])]
+    turns = [
+        _turn(*places, flown) for places in zip(flights, flights[1:], flights[2:], strict=False)
+    ]
     before: Item | None = None
     takeoff: TakeoffScore | None = None
     for item in plan.items:
