@@ -73,9 +73,9 @@ fly-plan: build ## Fly a plan with the built-in aircraft, as fast as it computes
 	$(FCCD) report --html target/fly-plan.html $$(ls -t target/fly-plan/*.mcap | head -1) > /dev/null
 	@echo "the ground track is in target/fly-plan.html"
 
-fly-plan-jsbsim: $(STAMPS)/python-module ## Fly a plan with JSBSim by raw sensors, in lockstep, scored from its truth (PLAN= WIND= WIND_FROM= SEED= JSON=)
+fly-plan-jsbsim: build $(STAMPS)/python-module ## Fly a plan with JSBSim over X-Plane's protocol, in real time, scored from its truth (PLAN= WIND= WIND_FROM= SEED= JSON=)
 	@mkdir -p target
-	$(PYTHON) -m fcc_hil plan --plan $(PLAN) --wind $(WIND) --wind-from $(WIND_FROM) --seed $(SEED) \
+	$(PYTHON) -m fcc_hil plan --realtime --fccd $(FCCD) --plan $(PLAN) --wind $(WIND) --wind-from $(WIND_FROM) --seed $(SEED) \
 	    --json $(if $(filter-out file,$(origin JSON)),$(JSON),target/fly-plan-jsbsim.json) --plot target/fly-plan-jsbsim.png
 
 test: lint test-rust check-cross test-python ## Run every check and every test

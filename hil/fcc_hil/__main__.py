@@ -32,7 +32,7 @@ from .peer import fly_peer
 from .plant import TrimError
 from .plot import plot_flight
 from .printable import say
-from .process import StandInError, StandInProcess
+from .process import StandInError, StandInProcess, interrupt
 from .soak import SoakError
 from .standin import BEACON_GROUP
 from .table import table
@@ -46,13 +46,9 @@ _PIPE_CLOSED = 141
 _KILL = actions.Action("end at once, as a crash does", lambda _, __: None)
 
 
-def _interrupt(*_: object) -> None:
-    raise KeyboardInterrupt
-
-
 def _fly(options: argparse.Namespace) -> int:
     # A signal ends the daemon and the stand-in, too.
-    signal.signal(signal.SIGTERM, _interrupt)
+    signal.signal(signal.SIGTERM, interrupt)
     plan = Plan(
         command(options.fccd, options.config),
         simulator_options.settings(options),

@@ -13,7 +13,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from .daemon import Daemon, DaemonError
-from .marks import AutopilotMark
 from .process import StandInError, StandInProcess
 from .rig import Event, FlightError
 from .standin import Progress, Settings
@@ -30,10 +29,11 @@ _NOT_READY = "not ready"
 class DaemonRig(StandInRig):
     """A daemon and its stand-in."""
 
-    def __init__(
-        self, fccd: Path, settings: Settings, autopilot: AutopilotMark, scratch: Path
-    ) -> None:
-        """Start both. Raise FlightError if one cannot be started."""
+    def __init__(self, fccd: Path, settings: Settings, configuration: str, scratch: Path) -> None:
+        """Start both, the daemon with these sections of a configuration.
+
+        Raise FlightError if one cannot be started.
+        """
         try:
             simulator = StandInProcess(replace(settings, port=0))
         except StandInError as error:
@@ -48,7 +48,7 @@ class DaemonRig(StandInRig):
                 f"engines = {simulator.status()['engines']}\n"
                 f'[recording]\nfolder = "{self._recordings}"\n'
                 f'[telemetry]\ninstance = "fccd-test-{os.getpid()}-{simulator.port}"\n'
-                f"{autopilot.toml()}"
+                f"{configuration}"
             )
             words = [str(fccd), "run", "--config", str(config), "--json"]
             try:

@@ -1,23 +1,31 @@
-"""The command `plan`: fly a flight plan with JSBSim in lockstep, and score it."""
+"""The command `plan`: fly a flight plan with JSBSim, and score it."""
 
 from __future__ import annotations
 
 import argparse
 import json
+import signal
 import sys
+import tempfile
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import ranges
 from .aircraft import AIRCRAFT
+from .fly import print_progress
 from .printable import say
+from .process import interrupt
 from .rig import FlightError
+
+if TYPE_CHECKING:
+    from .plan_flight import PlanConditions
+    from .plan_score import FlownPlan, PlanScore
 
 
 def add(commands: Any) -> None:
     """Add the command."""
-    plan = commands.add_parser("plan", help="fly a flight plan by raw sensors, in lockstep")
+    plan = commands.add_parser("plan", help="fly a flight plan, and score it from the truth")
     plan.add_argument("--plan", type=Path, required=True, metavar="FILE", help="the plan")
     plan.add_argument("--aircraft", choices=sorted(AIRCRAFT), default="c172p")
     plan.add_argument("--wind", type=ranges.number(0.0, 100.0), default=0.0, metavar="KT")
@@ -57,7 +65,45 @@ def add(commands: Any) -> None:
     plan.add_argument(
         "--plot", type=ranges.file_to_write, metavar="FILE", help="write a picture here, .png"
     )
+    plan.add_argument(
+        "--realtime",
+        action="store_true",
+        help="by fccd, over X-Plane's protocol (default: by raw sensors, in lockstep)",
+    )
+    plan.add_argument(
+        "--fccd",
+        type=Path,
+        default=Path("target/release/fccd"),
+        metavar="FILE",
+        help="with --realtime (default: target/release/fccd)",
+    )
     plan.set_defaults(run=_plan)
+
+
+def _in_real_time(
+    options: argparse.Namespace, conditions: PlanConditions
+) -> tuple[PlanScore, FlownPlan]:
+    from . import plan_real_time  # noqa: PLC0415 - it needs the module fcc
+
+    given = [
+        option
+        for option, is_given in (
+            ("--position precise", options.position == "precise"),
+            ("--no-range-finder", options.no_range_finder),
+        )
+        if is_given
+    ]
+    if given:
+        raise ValueError(
+            f"{' and '.join(given)} with --realtime: X-Plane's protocol has its own position and "
+            "height above the ground; leave it out"
+        )
+    # A signal ends the daemon and the stand-in, too.
+    signal.signal(signal.SIGTERM, interrupt)
+    with tempfile.TemporaryDirectory(prefix="fcc-plan-") as scratch:
+        return plan_real_time.fly(
+            options.plan, conditions, options.fccd, Path(scratch), print_progress
+        )
 
 
 def _plan(options: argparse.Namespace) -> int:
@@ -80,7 +126,10 @@ def _plan(options: argparse.Namespace) -> int:
             without=frozenset({"range"} if options.no_range_finder else ()),
             config=options.config.read_text(encoding="utf-8") if options.config else "",
         )
-        score, flown = plan_flight.fly(options.plan, conditions)
+        if options.realtime:
+            score, flown = _in_real_time(options, conditions)
+        else:
+            score, flown = plan_flight.fly(options.plan, conditions)
     except (FlightError, OSError, ValueError, fcc.ConfigError) as error:
         say(f"{error}", to=sys.stderr)
         return 1

@@ -25,10 +25,10 @@ from .standin import Settings
 SENSORS = "board"
 RUNWAY_STANDBY_S = 30.0
 """On its wheels; navigation settles."""
-_LOITER_M = 800.0
-_REACHED = re.compile(r"item (\d+) of the plan is reached")
-_LONGEST_S = 3600.0
-_AFTER_S = 5.0
+LOITER_M = 800.0
+REACHED = re.compile(r"item (\d+) of the plan is reached")
+LONGEST_S = 3600.0
+AFTER_S = 5.0
 _CALM = Weather()
 
 
@@ -41,7 +41,7 @@ def configuration(
     return (
         f'[guidance]\nmode = "{mode}"\n'
         f'[plan]\nfile = "{file}"\nlaw = "{law}"\nwind_kt = {max(wind_kt, 0.0):.1f}\n'
-        f"loiter_radius_m = {_LOITER_M:.1f}\n"
+        f"loiter_radius_m = {LOITER_M:.1f}\n"
         f'[navigation]\nmethod = "{navigation}"\nmagnetic_field_ut = [{north}, {east}, {down}]\n'
     )
 
@@ -63,7 +63,7 @@ class PlanConditions:
 
 
 def fly(
-    plan: Path, conditions: PlanConditions, *, longest_s: float = _LONGEST_S
+    plan: Path, conditions: PlanConditions, *, longest_s: float = LONGEST_S
 ) -> tuple[plan_score.PlanScore, plan_score.FlownPlan]:
     """Fly a plan to its end; return its score and the flight.
 
@@ -119,11 +119,11 @@ def fly(
         if points.guidance_mode != modes[-1]:
             modes.append(points.guidance_mode)
         for event in rig.events[seen:]:
-            if found := _REACHED.search(event.text):
+            if found := REACHED.search(event.text):
                 reached[int(found[1])] = event.time_s
         seen = len(rig.events)
         if last in reached:
-            end_s = min(end_s, reached[last] + _AFTER_S)
+            end_s = min(end_s, reached[last] + AFTER_S)
         return state.time_s >= end_s or not rig.holds_control
 
     rig.fly_to(rig.time_s + longest_s, keep)
@@ -131,4 +131,4 @@ def fly(
         raise FlightError("; ".join(event.text for event in rig.events[-3:]))
     flown = plan_score.FlownPlan(*np.array(rows).T)
     go_arounds = modes.count("go-around")
-    return plan_score.score(read, flown, reached, _LOITER_M, go_arounds), flown
+    return plan_score.score(read, flown, reached, LOITER_M, go_arounds), flown

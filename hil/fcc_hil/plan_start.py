@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from .plan_file import TAKEOFF, Item, PlanFile
 from .plant import Plant, Weather
+from .settings import Settings, Start
 from .units import FT_TO_M
 
 
@@ -14,20 +16,32 @@ def takes_off(plan: PlanFile) -> bool:
     return plan.items[0].command == TAKEOFF
 
 
-def plant(plan: PlanFile, aircraft: str, *, seed: int, weather: Weather) -> Plant:
-    """Return an aircraft in level flight over the plan's home, towards its first place.
+def settings(plan: PlanFile, simulator: Settings) -> Settings:
+    """Return a simulator whose aircraft begins there, towards the plan's first place.
 
-    On its wheels there if the plan begins with a take-off.
+    In flight over the plan's home, or on its wheels if the plan begins with a take-off.
     """
-    first = plan.items[0] if takes_off(plan) else next(i for i in plan.items if i.has_place)
+    home, off = plan.home, takes_off(plan)
+    first = plan.items[0] if off else next(i for i in plan.items if i.has_place)
+    elevation_ft = home.altitude_m / FT_TO_M if off else None
+    return replace(
+        simulator,
+        start=Start(home.latitude_deg, home.longitude_deg, elevation_ft),
+        heading_deg=_bearing_deg(home, first),
+    )
+
+
+def plant(plan: PlanFile, aircraft: str, *, seed: int, weather: Weather) -> Plant:
+    """Return an aircraft that begins there."""
+    begins = settings(plan, Settings())
     return Plant(
         aircraft,
         seed=seed,
         weather=weather,
-        heading_deg=_bearing_deg(plan.home, first),
-        latitude_deg=plan.home.latitude_deg,
-        longitude_deg=plan.home.longitude_deg,
-        runway_elevation_ft=plan.home.altitude_m / FT_TO_M if takes_off(plan) else None,
+        heading_deg=begins.heading_deg,
+        latitude_deg=begins.start.latitude_deg,
+        longitude_deg=begins.start.longitude_deg,
+        runway_elevation_ft=begins.start.runway_elevation_ft,
     )
 
 

@@ -105,6 +105,11 @@ class _Commands:
         self.running = False
 
 
+def interrupt(*_: object) -> None:
+    """End as with Ctrl-C: the handler of a signal that ends what this process has started, too."""
+    raise KeyboardInterrupt
+
+
 def request_real_time() -> str:
     """Request a real-time priority; return what was granted."""
     try:

@@ -15,6 +15,7 @@ from __future__ import annotations
 import os
 import shutil
 from collections.abc import Callable, Generator, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -29,6 +30,7 @@ from .remote_rig import RemoteRig, address_of, address_towards
 from .rig import FlightError, Rig
 from .sensor_faults import Faults
 from .standin import Settings
+from .units import STANDARD_INHG
 
 if TYPE_CHECKING:
     import fcc
@@ -174,7 +176,9 @@ def daemon(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[DaemonRig
     rig: DaemonRig | RemoteRig
     try:
         if host is None:
-            rig = DaemonRig(_program(config), settings, mark, tmp_path)
+            if (plan := _plan(request)) is not None:
+                settings = plan_start.settings(plan, replace(settings, qnh_inhg=STANDARD_INHG))
+            rig = DaemonRig(_program(config), settings, mark.toml(), tmp_path)
         else:
             rig = RemoteRig(host, config.stash[_LISTEN], settings, mark)
     except FlightError as error:
@@ -193,10 +197,8 @@ def flight(request: pytest.FixtureRequest) -> Iterator[Flight]:
         or request.node.get_closest_marker("realtime") is not None
     )
     rig: Rig
-    if is_real_time and mark.plan is not None:
-        pytest.fail(
-            "plans are flown in lockstep only: the stand-in begins elsewhere", pytrace=False
-        )
+    if config.getoption("--fccd") is not None and mark.plan is not None:
+        pytest.fail("a daemon on another host has its own plan: leave --fccd out", pytrace=False)
     if is_real_time:
         rig = request.getfixturevalue("daemon")
     else:

@@ -39,6 +39,16 @@ class Mode(Enum):
 
 
 @dataclass(frozen=True)
+class Start:
+    """Where the aircraft begins: in flight, or on the wheels."""
+
+    latitude_deg: float = 0.0
+    longitude_deg: float = 0.0
+    runway_elevation_ft: float | None = None
+    """Of the runway on which it stands; None in flight."""
+
+
+@dataclass(frozen=True)
 class Settings:
     """The settings of the stand-in."""
 
@@ -56,6 +66,7 @@ class Settings:
     constant ones."""
     version: int = 115_501
     """The version of X-Plane."""
+    start: Start = Start()
     heading_deg: float = 0.0
     magnetic_variation_deg: float = 0.0
     """Positive where magnetic north lies east of true."""

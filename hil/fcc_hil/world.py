@@ -139,14 +139,17 @@ class World:
 
     def restart_flight(self) -> None:
         """Put the aircraft back to its start: the clock jumps back, everything is off."""
-        settings = self.settings
+        settings, start = self.settings, self.settings.start
         self._set_up(
             Plant(
                 settings.aircraft,
                 seed=settings.seed,
                 heading_deg=settings.heading_deg,
                 weather=settings.weather,
+                latitude_deg=start.latitude_deg,
+                longitude_deg=start.longitude_deg,
                 qnh_pa=self._qnh_inhg * INHG_TO_PA,
+                runway_elevation_ft=start.runway_elevation_ft,
             )
         )
         self.cockpit = Cockpit(

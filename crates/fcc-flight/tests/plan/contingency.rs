@@ -101,6 +101,46 @@ fn a_corner_of_a_fence_is_not_flown_into() {
     }
 }
 
+/// A program that commands the same heading again and again, each of which ended the turn
+/// away: the fence was crossed by 11 to 181 m in 18 of 19 flights like these.
+#[test]
+fn a_commander_that_insists_does_not_cross_the_fence() {
+    let plan = fenced(&[], 4_000.0);
+    let heading = |course_deg: f64| AutopilotCommand::Heading(course_deg.to_radians());
+    for (course_deg, wind_from_deg, every_ticks) in [
+        (0.0, 180.0, 8),
+        (90.0, 0.0, 40),
+        (200.0, 20.0, 72),
+        (310.0, 40.0, 200),
+    ] {
+        let keys = format!("[built-in]\nwind_from_deg = {wind_from_deg}\nwind_kt = 20\n");
+        let mut flight = Flight::new(&plan, &keys);
+        flight.fly_until(60.0, |flight| flight.record.state.state() == State::Engaged);
+        let (mut nearest_m, mut carried_out) = (f64::INFINITY, 0);
+        for tick in 0..24_000 {
+            if tick % every_ticks == 0 {
+                flight.command(heading(course_deg));
+            }
+            flight.tick();
+            nearest_m = nearest_m.min(4_000.0 - flight.distance_m(HOME));
+            carried_out += u32::from(flight.mode() == Mode::Hold);
+        }
+        let refused = flight
+            .events
+            .iter()
+            .filter(|event| event.contains("turns away from the fence"))
+            .count();
+        println!(
+            "{course_deg}° each {every_ticks} ticks: {nearest_m:.1} m inside, {refused} refused"
+        );
+        assert!(nearest_m > 0.0, "{course_deg}: {nearest_m}");
+        assert!(
+            refused > 10 && carried_out > 2_000,
+            "{refused}, {carried_out}"
+        );
+    }
+}
+
 /// A commanded altitude is flown to the fence's ceiling less its margin at most.
 #[test]
 fn the_ceiling_limits_the_altitude() {

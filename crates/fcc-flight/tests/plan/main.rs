@@ -4,6 +4,7 @@
 
 mod battery;
 mod contingency;
+mod drawn_fences;
 mod flight;
 mod glide;
 mod refused;

@@ -12,8 +12,8 @@
 //!
 //! The later in this table, the worse; the worst one acts. Each has its action in the
 //! configuration; what is not the fence waits for the end of a take-off or landing, and
-//! gives the landing up if there is no position. A command ends it, whatever it is: the
-//! pilot decides. Near the fence the aircraft turns onto the circle that stays inside of
+//! gives the landing up if there is no position. A command ends it: the pilot decides; but
+//! while the aircraft turns away from the fence or the ground, it is refused. Near the fence the aircraft turns onto the circle that stays inside of
 //! it, by present wind, and returns from there as soon as its course points there; if
 //! that brings it to the fence again, it stays on the circle. It turns away from the fence
 //! whatever else acts, but a glide; a low battery acts again when the fence is left behind.
@@ -169,6 +169,12 @@ impl Contingencies {
 }
 
 impl Autopilot {
+    /// Whether a command may end what is done: a turn away from the fence or the ground
+    /// comes first, until it has led away.
+    pub(super) fn may_end_contingency(&self) -> bool {
+        self.may_leave_fence() && self.may_leave_terrain()
+    }
+
     /// Finds contingencies, and acts on the worst.
     pub(super) fn meet_contingencies(&mut self) {
         let dt_s = self.clock.passed_s();

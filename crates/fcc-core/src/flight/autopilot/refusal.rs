@@ -31,10 +31,11 @@ pub(super) enum Refusal {
     NoPlan,
     NoItem,
     NowhereKnown,
+    TurningAway,
 }
 
 impl Refusal {
-    const ALL: [Self; 12] = [
+    const ALL: [Self; 13] = [
         Self::NotEngaged,
         Self::NotPrepared,
         Self::NoSuchItem,
@@ -47,6 +48,7 @@ impl Refusal {
         Self::NoPlan,
         Self::NoItem,
         Self::NowhereKnown,
+        Self::TurningAway,
     ];
 
     const fn words(self) -> &'static str {
@@ -67,6 +69,10 @@ impl Refusal {
             Self::NotLanding => "the aircraft is not landing, or is on its wheels",
             Self::NoPlan => "there is no plan",
             Self::NoItem => "the plan has no such item",
+            Self::TurningAway => {
+                "the aircraft turns away from the fence or the ground: command it again when it \
+                 flies away from there; disengaging is possible"
+            }
         }
     }
 
@@ -111,6 +117,9 @@ impl Autopilot {
                 self.guidance.go_around();
                 return Err(Refusal::LowOverRunway);
             }
+        }
+        if !self.may_end_contingency() {
+            return Err(Refusal::TurningAway);
         }
         match *command {
             AutopilotCommand::Plan(item) => {

@@ -151,6 +151,28 @@ impl Autopilot {
         self.contingencies.announce(Contingency::Fence, action);
     }
 
+    /// Whether a command may end the turn away from the fence. Before the aircraft is on its
+    /// circle and its course leads away, each command that it turns for would take some of
+    /// the room that is left.
+    pub(super) fn may_leave_fence(&self) -> bool {
+        let contingencies = &self.contingencies;
+        let turns =
+            contingencies.active == Contingency::Fence && contingencies.stage != Stage::Acting;
+        let Some(here) = self.ground.here().filter(|_| turns) else {
+            return true;
+        };
+        let (fence, bank) = (self.fence(), self.fastest_bank());
+        let here = self.at_its_speed(here);
+        let Some(escape) = Escape::best(&fence, &here, &bank) else {
+            return true;
+        };
+        let is_on_circle = contingencies
+            .kept
+            .is_some_and(|kept| kept.is_flown(&here, bank.now_rad));
+        escape.clearance_m >= self.config.contingency.fence_margin_m
+            || is_on_circle && self.leads_away(&fence, &here, &escape)
+    }
+
     /// Tells that the fence is crossed, once until the aircraft is inside of it again.
     fn tell_fence_crossed(&mut self, fence: &Fence<'_>) {
         let Some(here) = self.ground.here().filter(|_| !fence.zones.is_empty()) else {

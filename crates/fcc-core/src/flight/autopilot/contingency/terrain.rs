@@ -59,6 +59,8 @@ pub(in super::super) struct TerrainWatch {
     /// The last circle that was clear of the ground since it is ahead: whether it is flown
     /// clockwise.
     had_circle: Option<bool>,
+    /// Whether what is ahead, with the present bank or without one, cannot be climbed over.
+    is_in_the_way: bool,
 }
 
 /// The way ahead, with the present bank, or without one.
@@ -134,6 +136,7 @@ impl TerrainWatch {
         lowest_m: None,
         climbs_s: None,
         had_circle: None,
+        is_in_the_way: false,
     };
 
     /// Whether a climb over the ground ahead is told.
@@ -192,7 +195,9 @@ impl Autopilot {
         let straight = ahead.needs(most_mps);
         let is_met = self.contingencies.active == Contingency::Terrain;
         let stage = self.contingencies.stage;
-        if is_climbable && straight.now_m <= here.altitude_m {
+        let is_in_the_way = !is_climbable || straight.now_m > here.altitude_m;
+        self.contingencies.terrain.is_in_the_way = is_in_the_way;
+        if !is_in_the_way {
             self.contingencies.terrain.had_circle = None;
             let returns = config.terrain == ContingencyAction::Return && self.points_home(&here);
             if is_met && stage == Stage::TurningAway && returns {
@@ -207,6 +212,14 @@ impl Autopilot {
         let first_s = with_bank.first_s.min(straight.first_s);
         let highest_m = with_bank.highest_m.max(straight.highest_m);
         self.turn_from_terrain(&surface, first_s, highest_m);
+    }
+
+    /// Whether a command may end the turn away from the ground: when it is not ahead any more.
+    pub(super) fn may_leave_terrain(&self) -> bool {
+        let contingencies = &self.contingencies;
+        contingencies.active != Contingency::Terrain
+            || contingencies.stage == Stage::Acting
+            || !contingencies.terrain.is_in_the_way
     }
 
     /// For how long the way ahead is looked at, s: on the leg of a plan, which was checked,
