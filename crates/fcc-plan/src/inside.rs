@@ -196,6 +196,7 @@ impl TurnAway {
         };
         let bank = Bank {
             now_rad: 0.0,
+            commanded_rad: 0.0,
             turn_rad: self.bank_rad,
             rate_radps: RouteConfig::default().bank_rate_radps,
             lag_s: ROLL_LAG_S,

@@ -14,6 +14,8 @@ use crate::units::GRAVITY_MPS2;
 pub struct Bank {
     /// The present bank, rad, positive to the right.
     pub now_rad: f64,
+    /// The bank that was commanded last, rad: from there the command changes.
+    pub commanded_rad: f64,
     /// That of the turn, rad, positive, below π/2.
     pub turn_rad: f64,
     /// How fast it changes, rad/s, positive.
@@ -76,7 +78,9 @@ impl Escape {
         let along_mps = (air.dot(&ground) / length(ground).max(1.0)).max(1.0);
         let acceleration_mps2 = ground.dot(&ground) * airspeed_mps / (along_mps * radius_m);
         let turn_rad = atan(acceleration_mps2 / GRAVITY_MPS2).min(bank.turn_rad);
-        let change_rad = side * turn_rad - bank.now_rad;
+        // The later of the two: the aircraft rolls towards what was commanded first.
+        let now_rad = side * (side * bank.now_rad).min(side * bank.commanded_rad);
+        let change_rad = side * turn_rad - now_rad;
         let (mut heading_rad, mut at_m) = (atan2(air.y, air.x), Vector2::zeros());
         let mut fly = |bank_rad: f64, dt_s: f64| {
             heading_rad += GRAVITY_MPS2 * tan(bank_rad) / airspeed_mps * dt_s;
@@ -84,11 +88,11 @@ impl Escape {
             at_m += (through + here.wind_mps) * dt_s;
             through + here.wind_mps
         };
-        let mut velocity = fly(bank.now_rad, bank.lag_s);
+        let mut velocity = fly(now_rad, bank.lag_s);
         let step_s = change_rad.abs() / bank.rate_radps / f64::from(STEPS);
         for n in 0..STEPS {
             let share = (f64::from(n) + 0.5) / f64::from(STEPS);
-            velocity = fly(bank.now_rad + share * change_rad, step_s);
+            velocity = fly(now_rad + share * change_rad, step_s);
         }
         let course = unit(velocity).unwrap_or(Vector2::new(1.0, 0.0));
         let centre_m = at_m + right_of(course) * (side * radius_m);
@@ -110,6 +114,7 @@ mod tests {
 
     const BANK: Bank = Bank {
         now_rad: 0.0,
+        commanded_rad: 0.0,
         turn_rad: 0.432_7,  // atan(0.8 tan 30°)
         rate_radps: 0.2618, // 15 °/s
         lag_s: 0.4,

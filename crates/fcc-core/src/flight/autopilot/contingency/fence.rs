@@ -27,6 +27,14 @@ const AHEAD_S: f64 = 5.0;
 /// its cosine, of 3°, more than it turns in a tick.
 const POINTS_THERE: f64 = 0.998_6;
 
+/// Of the margin: with a circle so far inside the fence is left behind; what one needs that
+/// begins on the circle that was turned onto; what there is when that is left for home, and
+/// at least on the way there.
+const BEHIND_SHARE: f64 = 1.5;
+const KEPT_SHARE: f64 = 0.75;
+const LEFT_SHARE: f64 = 0.5;
+const LEAST_SHARE: f64 = 0.25;
+
 /// On which side of the fence the aircraft is known to be.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(super) enum Side {
@@ -97,26 +105,30 @@ impl Autopilot {
         let Some(escape) = Escape::best(&fence, &here, &bank) else {
             return;
         };
+        let margin_m = self.config.contingency.fence_margin_m;
         if is_met && stage == Stage::TurningAway {
-            let returns = action == ContingencyAction::Return && self.points_home(&here);
+            let returns = action == ContingencyAction::Return
+                && escape.clearance_m >= LEFT_SHARE * margin_m
+                && self.points_home(&here);
             if returns && self.leads_away(&fence, &here, &escape) {
                 self.contingencies.stage = Stage::Acting;
                 self.return_from_fence(&here);
             }
             return;
         }
-        let margin_m = self.config.contingency.fence_margin_m;
-        if escape.clearance_m > 1.5 * margin_m {
+        if escape.clearance_m > self.fence_left_m() {
             self.contingencies.kept = None;
         }
         // What leaves the circle begins on it, as near as the margin.
         let kept = self.contingencies.kept;
         let needed_m = if kept.is_some() {
-            0.75 * margin_m
+            KEPT_SHARE * margin_m
         } else {
             margin_m
         };
-        let leads_away = is_met && self.leads_away(&fence, &here, &escape);
+        let leads_away = is_met
+            && escape.clearance_m >= LEAST_SHARE * margin_m
+            && self.leads_away(&fence, &here, &escape);
         if escape.clearance_m >= needed_m || leads_away {
             return;
         }
@@ -151,26 +163,25 @@ impl Autopilot {
         self.contingencies.announce(Contingency::Fence, action);
     }
 
-    /// Whether a command may end the turn away from the fence. Before the aircraft is on its
-    /// circle and its course leads away, each command that it turns for would take some of
-    /// the room that is left.
+    /// Whether a command may end the turn away from the fence. Each one that the aircraft
+    /// turns for before there is room for another turn would take some of what is left.
     pub(super) fn may_leave_fence(&self) -> bool {
-        let contingencies = &self.contingencies;
-        let turns =
-            contingencies.active == Contingency::Fence && contingencies.stage != Stage::Acting;
+        let turns = self.contingencies.active == Contingency::Fence
+            && self.contingencies.stage != Stage::Acting;
         let Some(here) = self.ground.here().filter(|_| turns) else {
             return true;
         };
-        let (fence, bank) = (self.fence(), self.fastest_bank());
-        let here = self.at_its_speed(here);
-        let Some(escape) = Escape::best(&fence, &here, &bank) else {
-            return true;
-        };
-        let is_on_circle = contingencies
-            .kept
-            .is_some_and(|kept| kept.is_flown(&here, bank.now_rad));
-        escape.clearance_m >= self.config.contingency.fence_margin_m
-            || is_on_circle && self.leads_away(&fence, &here, &escape)
+        let escape = Escape::best(
+            &self.fence(),
+            &self.at_its_speed(here),
+            &self.fastest_bank(),
+        );
+        escape.is_none_or(|escape| escape.clearance_m >= self.fence_left_m())
+    }
+
+    /// With a circle that is so far inside, the fence is left behind, m.
+    fn fence_left_m(&self) -> f64 {
+        BEHIND_SHARE * self.config.contingency.fence_margin_m
     }
 
     /// Tells that the fence is crossed, once until the aircraft is inside of it again.
@@ -215,6 +226,7 @@ impl Autopilot {
         Bank {
             // It rolls on for the lag.
             now_rad: estimate.roll_rad + 2.0 * ROLL_LAG_S * estimate.body_rates.roll_radps,
+            commanded_rad: self.setpoints.roll_rad,
             turn_rad: atan(PLANNED_SHARE * tan(most_rad)),
             rate_radps: route.bank_rate_radps,
             lag_s: ROLL_LAG_S,
@@ -231,6 +243,7 @@ impl Autopilot {
     fn leads_away(&self, fence: &Fence<'_>, here: &OverGround, now: &Escape) -> bool {
         let bank = Bank {
             now_rad: 0.0,
+            commanded_rad: 0.0,
             ..self.fastest_bank()
         };
         let later = Escape::best(fence, &here.straight_on(AHEAD_S), &bank);
