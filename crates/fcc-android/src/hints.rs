@@ -145,7 +145,7 @@ mod tests {
         panic!("not within 20 s: {what}");
     }
 
-    /// The loop's thread, by its name: proc_pid_task(5).
+    /// The loop's thread, by its name: `proc_pid_task(5)`.
     fn loop_thread() -> Option<i32> {
         let tasks = fs::read_dir("/proc/self/task").unwrap();
         tasks.filter_map(Result::ok).find_map(|task| {
