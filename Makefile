@@ -44,7 +44,7 @@ endif
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-fences test-glides test-landings test-raw-edges test-upsets test-android android-check android-package test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
+.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-fences test-glides test-landings test-raw-edges test-upsets test-android android android-check android-package test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -150,6 +150,9 @@ bench-android: build $(STAMPS)/python $(STAMPS)/java $(STAMPS)/aapt ## Compare t
 	cd android/host-tests && mvn --quiet --batch-mode test-compile
 	FCC_ANDROID_LIBRARY=$(abspath $(TARGET))/release $(PYTHON) -m fcc_hil bench-android --fccd $(FCCD) \
 	    --app android/host-tests/timing-flight --json target/bench-android.json $(ANDROID_TIMING)
+
+android: $(STAMPS)/rust ## Build the app for phones: needs Android's SDK and NDK, cargo-ndk and Gradle (docs/android.md)
+	./scripts/android-build
 
 android-check: $(STAMPS)/rust $(STAMPS)/android ## Check and link the app's native library for phones, without an NDK (10 minutes)
 	./scripts/android-check $(TARGET)

@@ -8,6 +8,7 @@ use std::thread;
 
 use serde::Deserialize;
 
+use crate::performance_hints::{self, PlayedHints};
 use crate::played::{Fed, PLAYED, Played};
 
 /// Where datagrams are listened for, on this machine alone.
@@ -19,8 +20,22 @@ const LONGEST: usize = 65_536;
 
 /// One line.
 #[derive(Deserialize)]
+#[serde(untagged)]
+enum Line {
+    Sensor(SensorLine),
+    PerformanceHints(HintsLine),
+}
+
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Line {
+struct HintsLine {
+    /// How they are played from now on.
+    performance_hints: PlayedHints,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SensorLine {
     package: String,
     #[serde(rename = "type")]
     of_type: i32,
@@ -35,7 +50,13 @@ struct Line {
 /// Does what lines say, up to the first that is none.
 fn obey(lines: &str) -> Result<(), serde_json::Error> {
     for line in lines.lines().filter(|line| !line.trim().is_empty()) {
-        let line: Line = serde_json::from_str(line)?;
+        let line = match serde_json::from_str(line)? {
+            Line::Sensor(line) => line,
+            Line::PerformanceHints(line) => {
+                performance_hints::play(line.performance_hints);
+                continue;
+            }
+        };
         if let Some(sensor) = line.sensor {
             PLAYED.set(&line.package, line.of_type, sensor);
         }

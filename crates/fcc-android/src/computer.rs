@@ -108,7 +108,10 @@ impl Computer {
         #[cfg(feature = "fault-injection")]
         {
             assert!(json != "panic", "injected panic");
-            if json == "allocator calls" {
+            if json == "allocate in the loop" {
+                fcc_flight::flight::allocate_in_loop();
+            }
+            if json == "allocate in the loop" || json == "allocator calls" {
                 return Ok(fcc_flight::flight::loop_allocator_calls());
             }
         }

@@ -17,6 +17,7 @@ use fcc_runtime::StopHandle;
 
 use crate::commands::{Commander, Commands};
 use crate::failure::{Failure, panic_message};
+use crate::hints::HintingObserver;
 use crate::listener::{Notice, Notifier};
 use crate::live::{Live, LiveObserver};
 use crate::phone::AppPhone;
@@ -183,6 +184,8 @@ impl Conduct {
         let mut observers = assembly.observers(config, plan.pace, recording);
         observers.push(Box::new(commands));
         observers.push(Box::new(observer));
+        // After the one whose beginning is that of the state.
+        observers.push(Box::new(HintingObserver::new(&self.live)));
         let mut host = App {
             stop: self.stop,
             begun: self.begun,

@@ -19,6 +19,7 @@
 //! | `calibration` | a guided calibration in a thread of its own |
 //! | `phone` | the phone's sensors in a flight |
 //! | `live` | the state for the screens |
+//! | `hints` | performance hints for the loop's thread |
 //! | `commands` | commands of the app, and what became of them |
 //! | `report` | a report on a recording |
 //! | `release` | releases the controls if the app is killed |
@@ -33,6 +34,7 @@ mod computer;
 mod failure;
 mod flight;
 mod handles;
+mod hints;
 mod listener;
 mod live;
 pub mod native;

@@ -16,6 +16,7 @@ use fcc_telemetry::{FlightEvent, FlightRecord, Realtime, ShownAltitude, TimingRe
 use fcc_timer::{TimerError, TimingStats};
 use serde::Serialize;
 
+use crate::hints::ShownHints;
 use crate::listener::{Notice, Notifier};
 
 /// The newest reports that are kept: a screen of them.
@@ -42,6 +43,8 @@ struct Shown {
     now: Option<Now>,
     /// What the kernel granted the loop's thread; none before a flight.
     granted: Option<Granted>,
+    /// Performance hints for the loop's thread; none before a flight.
+    performance_hints: Option<ShownHints>,
     /// Of the flight so far; none before its first second is over.
     timing: Option<TimingReport>,
     recording: Option<Recording>,
@@ -159,6 +162,10 @@ impl Live {
     /// Whether a loop of this process hangs.
     pub(crate) fn is_hung(&self) -> bool {
         self.lock().hung
+    }
+
+    pub(crate) fn show_hints(&self, hints: &ShownHints) {
+        self.lock().performance_hints = Some(hints.clone());
     }
 
     /// The flight is over, or did not begin.

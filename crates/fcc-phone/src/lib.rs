@@ -1,5 +1,6 @@
 //! A phone's sensors as a sensor of a flight: accelerometer, gyroscope, magnetometer
-//! and barometer by Android's native interface, positions by the app.
+//! and barometer by Android's native interface, positions by the app. And performance
+//! hints, by which a phone learns how fast the loop has to be.
 //!
 //! ```text
 //! accelerometer's thread ─┐
@@ -24,12 +25,14 @@
 //! | `position` | positions that the app hands in, as a source |
 //! | `health` | what the screens show of a sensor |
 //! | `phone` | all of them as one sensor |
+//! | `performance_hints` | a session of performance hints for a thread; `unsafe`, too |
 //!
 //! Off Android `libandroid.so` is looked for when a sensor is opened: tests play one.
 
 mod health;
 mod kind;
 mod library;
+mod performance_hints;
 mod phone;
 mod position;
 mod source;
@@ -37,6 +40,7 @@ mod stamps;
 
 pub use health::{Accuracy, SensorHealth};
 pub use kind::Kind;
+pub use performance_hints::{HintSession, NoHintSession};
 pub use phone::{Phone, PhoneHandle, PhoneSensor, PhoneSettings};
 pub use position::{PositionReport, PositionSender};
 pub use stamps::{Clocks, StampClock};

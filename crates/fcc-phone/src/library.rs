@@ -94,8 +94,8 @@ macro_rules! functions {
     };
 }
 
-#[cfg(not(target_os = "android"))]
-const LIBRARY: &str = "libandroid.so";
+/// The name of Android's library for native apps.
+pub(crate) const LIBRARY: &str = "libandroid.so";
 
 functions! {
     fn ALooper_prepare(options: c_int) -> *mut c_void;

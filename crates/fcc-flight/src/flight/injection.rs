@@ -18,7 +18,8 @@
 //! - `FCCD_PAUSE_AT_S`: this many seconds after the loop's start, its messages
 //!   are not read, for `FCCD_PAUSE_S` (for ever, if not given).
 //!
-//! Such a program counts the calls of its allocator, too: [`loop_allocator_calls`].
+//! Such a program counts the calls of its allocator, too: [`loop_allocator_calls`]. So
+//! that a test can show that they would be seen, [`allocate_in_loop`] makes some.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
@@ -79,6 +80,13 @@ pub fn loop_allocator_calls() -> u64 {
     LOOP_ALLOCATOR_CALLS.load(Ordering::Relaxed)
 }
 
+static ALLOCATES: AtomicBool = AtomicBool::new(false);
+
+/// Lets the next tick of a loop allocate and free.
+pub fn allocate_in_loop() {
+    ALLOCATES.store(true, Ordering::Relaxed);
+}
+
 /// A sensor without readings that blocks at a given time.
 #[derive(Debug)]
 pub(super) struct Blocking {
@@ -98,6 +106,9 @@ impl Default for Blocking {
 
 impl Sensor<Measurements> for Blocking {
     fn sample(&mut self, tick: &Tick, _: &mut Measurements) -> Result<(), SensorFault> {
+        if ALLOCATES.swap(false, Ordering::Relaxed) {
+            drop(std::hint::black_box(Box::new(0_u8)));
+        }
         LOOP_ALLOCATOR_CALLS.store(allocator_calls_so_far(), Ordering::Relaxed);
         if self.began.is_never() {
             self.began = tick.woke;

@@ -53,7 +53,7 @@ pub use fly::{FlyError, fly};
 pub use ground::Impact;
 pub use host::Host;
 #[cfg(feature = "fault-injection")]
-pub use injection::loop_allocator_calls;
+pub use injection::{allocate_in_loop, loop_allocator_calls};
 pub use limits::setpoint_limits;
 pub(crate) use lines::line_sensor;
 pub use observer::{Access, Facts, FlightTime, Observer, Report, Reports};

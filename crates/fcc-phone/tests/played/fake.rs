@@ -1,7 +1,5 @@
 //! The library that plays, and a phone with it.
 
-use std::ffi::{CString, c_char, c_int};
-use std::sync::OnceLock;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -20,21 +18,8 @@ pub(crate) const CALIBRATED_MAGNETOMETER: i32 = 2;
 pub(crate) const BAROMETER: i32 = 6;
 
 /// Tells the library something about a package's sensor.
-#[allow(unsafe_code, reason = "the interface of the library that plays is C's")]
 pub(crate) fn tell(package: &str, of_type: i32, what: &str, value: &Value) {
-    static LIBRARY: OnceLock<libloading::Library> = OnceLock::new();
-    // SAFETY: it is this project's, and not unloaded.
-    let library =
-        LIBRARY.get_or_init(|| unsafe { libloading::Library::new("libandroid.so") }.unwrap());
-    let line = json!({"package": package, "type": of_type, what: value}).to_string();
-    let line = CString::new(line).unwrap();
-    // SAFETY: declared as in the library.
-    let obeyed = unsafe {
-        let control: libloading::Symbol<'_, unsafe extern "C" fn(*const c_char) -> c_int> =
-            library.get(b"fake_libandroid_control").unwrap();
-        control(line.as_ptr())
-    };
-    assert_eq!(obeyed, 0, "{line:?}");
+    android::loaded::tell(&json!({"package": package, "type": of_type, what: value}));
 }
 
 /// A phone that is sampled every 25 ms, as by a loop.

@@ -1,7 +1,9 @@
-//! The phone's sensors with a `libandroid.so` that plays what phones do.
+//! The phone's sensors and performance hints, with a `libandroid.so` that plays what
+//! phones do.
 #![cfg(test)]
 #![allow(clippy::indexing_slicing, reason = "helper functions of tests")]
 
 mod conformance;
 mod fake;
+mod performance_hints;
 mod phones;

@@ -8,6 +8,8 @@ use super::LatencyLimit;
 /// What a thread has, as read back from the kernel.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct RealtimeGranted {
+    /// The thread, as the kernel numbers it; 0 if it is not known.
+    pub thread: i32,
     /// `SCHED_FIFO`, `SCHED_OTHER` or another of the kernel's policies.
     pub policy: &'static str,
     /// Priority under `SCHED_FIFO`, 1..=99; 0 under `SCHED_OTHER`.

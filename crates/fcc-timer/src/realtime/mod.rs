@@ -164,6 +164,7 @@ impl RealtimeRequest {
         }
 
         let granted = RealtimeGranted {
+            thread: this_thread(),
             policy: scheduling::policy(),
             priority: scheduling::static_priority(),
             nice: nice::get(),

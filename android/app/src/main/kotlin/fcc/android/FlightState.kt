@@ -27,6 +27,7 @@ class FlightState(val phase: Phase, state: JSONObject = JSONObject()) {
     val remarks = state.texts("remarks")
     val now = state.optJSONObject("now")?.let(::Tick)
     val granted = state.optJSONObject("granted")?.let(::Granted)
+    val performanceHints = state.optJSONObject("performance_hints")?.let(::PerformanceHints)
     val timing = state.optJSONObject("timing")?.let(::Timing)
     val recording = state.optJSONObject("recording")?.let(::RecordingProgress)
     val sensors = state.objects("sensors").map(::SensorHealth)
@@ -78,6 +79,18 @@ class Reading(reading: JSONObject) {
 class Granted(granted: JSONObject) {
     val policy: String = granted.optString("policy")
     val nice = granted.optInt("nice")
+}
+
+/** Performance hints for the loop's thread. */
+class PerformanceHints(hints: JSONObject) {
+    /** Whether there is a session. */
+    val session = hints.getBoolean("session")
+
+    /** Why there is none. */
+    val why = hints.text("why")
+
+    /** How long the system was told that a tick may take. */
+    val targetUs = hints.getDouble("target_us")
 }
 
 /** The statistics of the loop's timing, of a flight or a recording. */

@@ -28,6 +28,9 @@ fun FlightComputer.json() = JSONObject(state())
 /** The newest tick; null before the first. */
 fun FlightComputer.now(): JSONObject? = json().optJSONObject("now")
 
+/** The performance hints of the loop's thread; null before a flight. */
+fun FlightComputer.hints(): JSONObject? = json().optJSONObject("performance_hints")
+
 /** Waits until something holds, for ten seconds unless told. */
 fun eventually(what: String, seconds: Int = 10, holds: () -> Boolean) {
     repeat(100 * seconds) {

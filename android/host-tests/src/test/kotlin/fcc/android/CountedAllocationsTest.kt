@@ -27,6 +27,9 @@ class CountedAllocationsTest {
                 }
                 assertEquals("engaged", computer.now()!!.getString("state"))
                 assertEquals(calls, computer.request("allocator calls"))
+                // One that does would be seen.
+                computer.request("allocate in the loop")
+                eventually("it is counted") { computer.request("allocator calls") > calls }
             }
         }
     }

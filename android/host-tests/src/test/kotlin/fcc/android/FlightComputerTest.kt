@@ -79,6 +79,21 @@ class FlightComputerTest {
         }
     }
 
+    /** A twentieth of the period, 25 ms. The fake libandroid plays Android 13 or newer. */
+    @Test
+    fun `the system is told how long a tick may take and took`() {
+        FlightComputer(BUILT_IN, folder()).use { computer ->
+            assertNull(computer.hints())
+            computer.start()
+            eventually("reports") { computer.hints()!!.getLong("reports") >= 3 }
+            assertTrue(computer.hints()!!.getBoolean("session"))
+            assertTrue(computer.hints()!!.isNull("why"))
+            assertEquals(1_250.0, computer.hints()!!.getDouble("target_us"), 0.0)
+            computer.stop()
+            assertFalse(computer.hints()!!.getBoolean("session"))
+        }
+    }
+
     @Test
     fun `a bad configuration is refused with the line and the key`() {
         val wrong = assertThrows(ConfigException::class.java) {

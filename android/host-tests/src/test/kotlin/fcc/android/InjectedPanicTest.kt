@@ -32,6 +32,7 @@ class InjectedPanicTest {
             assertTrue(ending, "injected panic" in ending)
             val end = computer.json()
             assertFalse(end.getBoolean("flying"))
+            assertFalse(end.getJSONObject("performance_hints").getBoolean("session"))
             val outcome = end.getJSONObject("outcome")
             assertTrue(outcome.getBoolean("released"))
             assertEquals(0, outcome.getJSONObject("recording").getLong("not_recorded"))

@@ -108,6 +108,12 @@ internal class ConnectScreen(
             } else {
                 null
             },
+            state.performanceHints?.let { hints ->
+                Row(
+                    hints.why?.let { activity.getString(R.string.hints_none, it) }
+                        ?: activity.getString(R.string.hints_given, activity.duration(hints.targetUs)),
+                )
+            },
             when {
                 recording == null -> null
                 recording.stopped != null ->

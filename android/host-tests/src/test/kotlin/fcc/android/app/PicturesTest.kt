@@ -28,7 +28,7 @@ import org.robolectric.annotation.GraphicsMode
 /**
  * Pictures of each screen, by day and night, small and with large fonts, for a person
  * to look at; and of each, that no text is cut off, and each stands out from what is
- * behind it.
+ * behind it, and that what can be touched has a name and is large enough.
  */
 @RunWith(RobolectricTestRunner::class)
 @Config(sdk = [34])
@@ -67,6 +67,7 @@ class PicturesTest {
                 save(picture, "$screen-$name")
                 assertNoTextIsCutOff(activity.findViewById(R.id.root))
                 assertTextStandsOut(activity.findViewById(R.id.root), picture)
+                assertCanBeTouched(activity.findViewById(R.id.root))
             }
             take("idle")
             phone.fly()
@@ -133,6 +134,18 @@ class PicturesTest {
         assertEquals("${view.text}", view.text.length, layout.getLineEnd(layout.lineCount - 1))
     }
 
+    /** What a finger may touch has a name for screen readers, and the size of a finger's tip. */
+    private fun assertCanBeTouched(view: View) {
+        if (view is ViewGroup) (0 until view.childCount).forEach { assertCanBeTouched(view.getChildAt(it)) }
+        if (!view.isShown || !view.isClickable) return
+        val name = view.contentDescription?.toString() ?: view.allWords().joinToString(" ")
+        assertTrue("no name: $view", name.isNotBlank())
+        // Signs are read as words, or not at all.
+        assertTrue("no word: $name", name.any { it.isLetter() })
+        val least = FINGER_DP * view.resources.displayMetrics.density
+        assertTrue("$name: ${view.width} x ${view.height} of $least", minOf(view.width, view.height) >= least)
+    }
+
     /** Each text, also of a button that is disabled, from the most frequent colour around it. */
     private fun assertTextStandsOut(view: View, picture: Bitmap) {
         if (view is ViewGroup) (0 until view.childCount).forEach { assertTextStandsOut(view.getChildAt(it), picture) }
@@ -145,5 +158,10 @@ class PicturesTest {
         pixels.forEach { counts.merge(it, 1, Int::plus) }
         val contrast = contrast((view as TextView).currentTextColor, counts.maxBy { it.value }.key)
         assertTrue("${view.text}: $contrast", contrast >= LEAST_CONTRAST)
+    }
+
+    private companion object {
+        /** Android's *Accessibility*: touch targets. */
+        const val FINGER_DP = 48
     }
 }
