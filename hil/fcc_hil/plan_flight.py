@@ -14,6 +14,7 @@ import fcc
 import numpy as np
 
 from . import plan_file, plan_score, plan_start
+from .flown_plan import FlownPlan
 from .lockstep_rig import Conditions, LockstepRig
 from .plant import Weather
 from .raw_calibration import calibrate
@@ -64,7 +65,7 @@ class PlanConditions:
 
 def fly(
     plan: Path, conditions: PlanConditions, *, longest_s: float = _LONGEST_S
-) -> tuple[plan_score.PlanScore, plan_score.FlownPlan]:
+) -> tuple[plan_score.PlanScore, FlownPlan]:
     """Fly a plan to its end; return its score and the flight.
 
     The aircraft begins in level flight over the plan's home, towards its first place, or on its
@@ -129,6 +130,6 @@ def fly(
     rig.fly_to(rig.time_s + longest_s, keep)
     if not rig.holds_control:
         raise FlightError("; ".join(event.text for event in rig.events[-3:]))
-    flown = plan_score.FlownPlan(*np.array(rows).T)
+    flown = FlownPlan(*np.array(rows).T)
     go_arounds = modes.count("go-around")
     return plan_score.score(read, flown, reached, _LOITER_M, go_arounds), flown
