@@ -37,6 +37,9 @@ _LONGEST_S = 1_500.0
 _FULL, _USED_PER_S = 0.5, 0.002
 """The battery's charge, and how much of it is used in a second."""
 _APPROACH_M, _APPROACH_HEIGHT_M = 6_000.0, 250.0
+_LOW_M, _FAR = 450.0, (-31_000.0, 0.0)
+"""The altitude from which it lands, and a place that it does not come to."""
+_DESCENDS_S = 60.0
 _HOME = Plane(math.radians(LATITUDE_DEG), math.radians(LONGITUDE_DEG))
 
 
@@ -219,7 +222,7 @@ def lose_commander(seed: int, *, wind_kt: float, promised_s: float) -> tuple[Rec
 def use_battery(seed: int, *, wind_kt: float) -> tuple[LandingScore | None, Watch]:
     """Use the battery up on the way out; it lands by the plan's landing."""
     drawn = draw(seed, wind_kt)
-    watch = Watch(drawn.after_s)
+    watch = Watch(_DESCENDS_S + drawn.after_s)
 
     def charge(values: fcc.Measurements, time_s: float) -> None:
         values.battery_charge = max(0.0, _FULL - _USED_PER_S * max(0.0, time_s - watch.lost_s))
@@ -228,7 +231,12 @@ def use_battery(seed: int, *, wind_kt: float) -> tuple[LandingScore | None, Watc
     conditions = PlanConditions(
         weather=drawn.weather, seed=seed, sensors="board-rtk", config=keys, raw_fault=charge
     )
-    landing = drawn_plan.landing(_APPROACH_M, _APPROACH_HEIGHT_M)
-    home = replace(drawn.legs[0], altitude_m=0.0)
-    score = _fly([home, *drawn.legs[1:], *landing], conditions, watch)
+    home, first = drawn.legs[0], drawn.legs[1]
+    legs = [
+        replace(home, altitude_m=0.0),
+        replace(first, altitude_m=_LOW_M),
+        replace(first, at_m=_FAR, altitude_m=_LOW_M),
+        *drawn_plan.landing(_APPROACH_M, _APPROACH_HEIGHT_M),
+    ]
+    score = _fly(legs, conditions, watch)
     return score.landing, watch

@@ -34,6 +34,9 @@ const FOLLOWS_S: f64 = 1.0;
 const FAR_M: f64 = 50.0;
 /// After so long without a position it is one of dead reckoning, s.
 const RECKONED_AFTER_S: f64 = 3.0;
+/// For so long without a receiver the velocity of navigation by raw readings is better
+/// than that by airspeed and the last wind, s: gyroscopes and accelerometers know it.
+const INERTIAL_FOR_S: f64 = 30.0;
 /// Standard deviations: of a satellite receiver's horizontal position, m; of a velocity by
 /// dead reckoning the part of the airspeed (a compass that is 2° off, an airspeed that is
 /// 2 % off), and that of a wind that is another one than the last, m/s.
@@ -214,8 +217,12 @@ impl GroundMotion {
         }
     }
 
-    /// The solution of navigation by raw readings takes the place of all that it has.
+    /// The solution of navigation by raw readings takes the place of all that it has, as
+    /// long as a receiver, or a short time without one, has made its velocity.
     pub(super) fn take(&mut self, solution: &Solution) {
+        if self.here().is_some() && self.lost_s > INERTIAL_FOR_S {
+            return;
+        }
         let place = &solution.position;
         let [north, east, _] = solution.velocity_mps;
         if place.latitude_rad.is_finite() && place.longitude_rad.is_finite() {
