@@ -44,7 +44,7 @@ endif
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-fences test-glides test-landings test-raw-edges test-upsets test-android android android-check android-package test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
+.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-contingencies test-fences test-glides test-guidance test-landings test-landings-beside test-raw-edges test-upsets test-android android android-check android-package test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -114,14 +114,26 @@ test-raw-edges: $(STAMPS)/python-module ## Fly the edges of flight by the raw se
 	FCC_RAW_SENSORS=board $(PYTHON) -m pytest $(EDGES)
 	FCC_RAW_SENSORS=phone $(PYTHON) -m pytest $(EDGES)
 
-test-fences: $(STAMPS)/python-module ## Fly 20 times against a fence with JSBSim, in 20 kt and turbulence (10 minutes)
-	FCC_FENCES=20 $(PYTHON) -m pytest --capture=no hil/tests/test_contingency.py
+# As many at a time as there are processors, and all of what they print.
+SEVERAL := -m pytest --numprocesses auto -rA --show-capture=stdout
 
-test-glides: $(STAMPS)/python-module ## Stop the engine at 3,000 ft and glide down 20 times with JSBSim (2 minutes)
-	FCC_GLIDES=20 $(PYTHON) -m pytest --capture=no --numprocesses auto hil/tests/test_glide.py
+test-fences: $(STAMPS)/python-module ## Fly 20 times against a fence with JSBSim, in 20 kt and turbulence (10 minutes)
+	FCC_FENCES=20 $(PYTHON) $(SEVERAL) hil/tests/test_contingency.py
+
+test-contingencies: $(STAMPS)/python-module ## Lose position, commander and battery, and meet ridges, each 20 times with JSBSim (40 minutes)
+	FCC_CONTINGENCIES=20 $(PYTHON) $(SEVERAL) hil/tests/test_contingency.py
+
+test-glides: $(STAMPS)/python-module ## Stop the engine at 3,000 ft and glide down 20 times with JSBSim (10 minutes)
+	FCC_GLIDES=20 $(PYTHON) -m pytest --capture=no hil/tests/test_glide.py
+
+test-guidance: $(STAMPS)/python-module ## Fly 12 legs in five winds and circles with JSBSim, by both laws (15 minutes)
+	FCC_GUIDANCE=1 $(PYTHON) $(SEVERAL) hil/tests/test_guidance.py
 
 test-landings: $(STAMPS)/python-module ## Take off, fly a circuit and land 100 times with JSBSim, in five winds (25 minutes)
-	FCC_LANDINGS=20 $(PYTHON) -m pytest --capture=no --numprocesses auto hil/tests/test_landing.py
+	FCC_LANDINGS=20 $(PYTHON) $(SEVERAL) hil/tests/test_landing.py
+
+test-landings-beside: $(STAMPS)/python-module ## The same 60 times: other aircraft, a plain receiver without a range finder (20 minutes)
+	FCC_LANDINGS_BESIDE=4 $(PYTHON) $(SEVERAL) hil/tests/test_landing.py
 
 # The app's classes and its native library, on this machine's Java. Its own report of
 # what native code does wrong (-Xcheck:jni) is in the output and no failure by itself.

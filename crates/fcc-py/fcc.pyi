@@ -662,6 +662,11 @@ class Estimate:
         """Towards east, m/s."""
 
     @property
+    def position_uncertainty_m(self) -> float:
+        """Standard deviation of the horizontal position, m; it grows while the position is
+        one of dead reckoning."""
+
+    @property
     def reading_age_s(self) -> float:
         """How old the newest reading was when it arrived."""
 

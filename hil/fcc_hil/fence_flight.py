@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
-import tempfile
 from dataclasses import dataclass
-from pathlib import Path
 
-import fcc
 import numpy as np
 
-from .lockstep_rig import Conditions, LockstepRig
-from .plan_flight import SENSORS, configuration
-from .plan_score import Plane
+from . import engaged
 from .plant import Plant, Weather
-from .raw_calibration import calibrate
-from .raw_flight import MEASURED, RAW_STANDBY_S
-from .raw_sensors import FIELD_UT
 from .rig import FlightError
-from .standin import Settings
+from .tangent_plane import Plane
 
 RADIUS_M = 4_000.0
 LATITUDE_DEG, LONGITUDE_DEG = 47.0, 8.0
@@ -48,18 +40,10 @@ def fly(
     seed: int, *, course_deg: float, wind_from_deg: float, wind_kt: float, turbulence: int
 ) -> FenceScore:
     """Fly from the centre against the fence; raises FlightError if it does not turn away."""
-    with tempfile.TemporaryDirectory() as folder:
-        plan = Path(folder, "fenced.waypoints")
-        plan.write_text(
-            _FENCED.format(
-                latitude=LATITUDE_DEG,
-                longitude=LONGITUDE_DEG,
-                altitude=_ALTITUDE_M,
-                radius=RADIUS_M,
-            ),
-            encoding="utf-8",
-        )
-        machine = fcc.Machine(configuration(plan, "kalman", "npfg", wind_kt, mode="hold"))
+    plan = _FENCED.format(
+        latitude=LATITUDE_DEG, longitude=LONGITUDE_DEG, altitude=_ALTITUDE_M, radius=RADIUS_M
+    )
+    machine = engaged.machine(plan, wind_kt, mode="hold")
     plant = Plant(
         "c172p",
         seed=seed,
@@ -70,15 +54,7 @@ def fly(
         latitude_deg=LATITUDE_DEG,
         longitude_deg=LONGITUDE_DEG,
     )
-    conditions = Conditions(
-        raw_sensors=SENSORS, calibration=calibrate(SENSORS, seed, FIELD_UT), without=MEASURED
-    )
-    rig = LockstepRig(Settings(seed=seed), plant, machine, conditions)
-    rig.fly_to(rig.time_s + RAW_STANDBY_S)
-    rig.set_switch(on=True)
-    rig.fly_to(rig.time_s + 1.0)
-    if not rig.holds_control:
-        raise FlightError(f"not engaged: {', '.join(machine.engage_inhibits)}")
+    rig = engaged.engage(plant, machine, seed)
     rows: list[tuple[float, float, float]] = []
     begun_s = rig.time_s
     turned_s: float | None = None
@@ -95,7 +71,7 @@ def fly(
 
     rig.fly_to(rig.time_s + _LONGEST_S + _AFTER_S, keep)
     if turned_s is None or not rig.holds_control:
-        raise FlightError("; ".join(event.text for event in rig.events[-3:]))
+        raise FlightError(engaged.last_events(rig))
     latitude, longitude, roll = np.array(rows).T
     north_east = Plane(np.radians(LATITUDE_DEG), np.radians(LONGITUDE_DEG)).of(latitude, longitude)
     away_m = np.hypot(*north_east.T)

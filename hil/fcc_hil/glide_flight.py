@@ -3,36 +3,26 @@
 from __future__ import annotations
 
 import math
-import tempfile
 from dataclasses import dataclass
-from pathlib import Path
 
-import fcc
 import numpy as np
 
-from .lockstep_rig import Conditions, LockstepRig
-from .plan_flight import SENSORS, configuration
-from .plan_score import Plane
+from . import drawn_plan, engaged
+from .drawn_plan import LATITUDE_DEG, LONGITUDE_DEG, Metres
+from .plan_file import LAND, WAYPOINT
 from .plant import Plant, Weather
-from .raw_calibration import calibrate
-from .raw_flight import MEASURED, RAW_STANDBY_S
-from .raw_sensors import FIELD_UT
 from .rig import FlightError
-from .standin import Settings
+from .tangent_plane import Plane
 from .units import FT_TO_M, KT_TO_MPS
 
-LATITUDE_DEG, LONGITUDE_DEG = 47.0, 8.0
-"""Of the point that is aimed at, on a runway to the north at sea level."""
 BEFORE_AIM_M, BEHIND_AIM_M, HALF_WIDTH_M = 300.0, 500.0, 15.0
-"""The runway."""
+"""The runway, to the north at sea level, from the point that is aimed at: the plan's origin."""
 _APPROACH_M = 6_000.0
 _FLIES_S = 10.0
 """Engaged, until the engine stops."""
 _LONGEST_S = 900.0
 _SPEED_MPS = 100.0 * KT_TO_MPS
 _GLIDES = "[contingency]\nengine_out_below_rpm = 300\n"
-_METRES_PER_DEGREE = 111_170.0
-"""Of latitude at 47 degrees."""
 
 
 @dataclass(frozen=True)
@@ -85,50 +75,32 @@ class GlideScore:
         )
 
 
-def _place(north_m: float, east_m: float) -> tuple[float, float]:
-    across = _METRES_PER_DEGREE * math.cos(math.radians(LATITUDE_DEG))
-    return LATITUDE_DEG + north_m / _METRES_PER_DEGREE, LONGITUDE_DEG + east_m / across
-
-
-def _ahead(from_m: tuple[float, float], bearing_deg: float, way_m: float) -> tuple[float, float]:
-    bearing = math.radians(bearing_deg)
-    return from_m[0] + way_m * math.cos(bearing), from_m[1] + way_m * math.sin(bearing)
-
-
-def _plan(begins_m: tuple[float, float], heading_deg: float) -> str:
-    far_m = _ahead(begins_m, heading_deg, 20_000.0)
-    items = [
-        (0, 16, begins_m, 0.0),
-        (1, 16, far_m, 3_000.0 * FT_TO_M),
-        (2, 16, (-_APPROACH_M, 0.0), 300.0),
-        (3, 21, (0.0, 0.0), 0.0),
-    ]
-    lines = ["QGC WPL 110"]
-    for number, command, (north_m, east_m), altitude_m in items:
-        latitude, longitude = _place(north_m, east_m)
-        lines.append(
-            f"{number} 0 0 {command} 0 0 0 0 {latitude:.9f} {longitude:.9f} {altitude_m:.3f} 1"
-        )
-    return "\n".join(lines) + "\n"
+def _plan(begins_m: Metres, heading_deg: float) -> str:
+    far_m = drawn_plan.ahead(begins_m, heading_deg, 20_000.0)
+    return drawn_plan.text(
+        [
+            drawn_plan.Drawn(WAYPOINT, begins_m, 0.0),
+            drawn_plan.Drawn(WAYPOINT, far_m, 3_000.0 * FT_TO_M),
+            drawn_plan.Drawn(WAYPOINT, (-_APPROACH_M, 0.0), 300.0),
+            drawn_plan.Drawn(LAND, (0.0, 0.0), 0.0),
+        ]
+    )
 
 
 def fly(seed: int, drawn: Drawn, *, config: str = "") -> GlideScore:
     """Fly until it stands; raises FlightError if it does not glide or come down."""
     heading = math.radians(drawn.heading_deg)
     to = math.radians(drawn.wind_from_deg) + math.pi
-    seconds = RAW_STANDBY_S + 1.0 + _FLIES_S
-    stops_m = _ahead((0.0, 0.0), drawn.bearing_deg, drawn.distance_m)
+    seconds = engaged.ENGAGED_AFTER_S + _FLIES_S
+    stops_m = drawn_plan.ahead((0.0, 0.0), drawn.bearing_deg, drawn.distance_m)
     wind_mps = drawn.wind_kt * KT_TO_MPS
     begins_m = (
         stops_m[0] - seconds * (_SPEED_MPS * math.cos(heading) + wind_mps * math.cos(to)),
         stops_m[1] - seconds * (_SPEED_MPS * math.sin(heading) + wind_mps * math.sin(to)),
     )
-    latitude_deg, longitude_deg = _place(*begins_m)
-    with tempfile.TemporaryDirectory() as folder:
-        plan = Path(folder, "glide.waypoints")
-        plan.write_text(_plan(begins_m, drawn.heading_deg), encoding="utf-8")
-        text = configuration(plan, "kalman", "npfg", drawn.wind_kt)
-        machine = fcc.Machine(text + (config or _GLIDES))
+    latitude_deg, longitude_deg = drawn_plan.place(begins_m)
+    plan = _plan(begins_m, drawn.heading_deg)
+    machine = engaged.machine(plan, drawn.wind_kt, config=config or _GLIDES)
     plant = Plant(
         "c172p",
         seed=seed,
@@ -141,15 +113,7 @@ def fly(seed: int, drawn: Drawn, *, config: str = "") -> GlideScore:
         latitude_deg=latitude_deg,
         longitude_deg=longitude_deg,
     )
-    conditions = Conditions(
-        raw_sensors=SENSORS, calibration=calibrate(SENSORS, seed, FIELD_UT), without=MEASURED
-    )
-    rig = LockstepRig(Settings(seed=seed), plant, machine, conditions)
-    rig.fly_to(rig.time_s + RAW_STANDBY_S)
-    rig.set_switch(on=True)
-    rig.fly_to(rig.time_s + 1.0)
-    if not rig.holds_control:
-        raise FlightError(f"not engaged: {', '.join(machine.engage_inhibits)}")
+    rig = engaged.engage(plant, machine, seed)
     rig.fly_to(rig.time_s + _FLIES_S)
     plant.fail_engines()
     rows: list[tuple[float, ...]] = []
@@ -173,8 +137,13 @@ def fly(seed: int, drawn: Drawn, *, config: str = "") -> GlideScore:
 
     rig.fly_to(rig.time_s + _LONGEST_S, keep)
     if not rig.holds_control or not plant.state().on_ground:
-        raise FlightError("; ".join(event.text for event in rig.events[-3:]))
+        raise FlightError(engaged.last_events(rig))
     return _score(np.array(rows))
+
+
+def fly_drawn(seed: int) -> GlideScore:
+    """Fly what a seed draws."""
+    return fly(seed, draw(seed))
 
 
 def _score(rows: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> GlideScore:

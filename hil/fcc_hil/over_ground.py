@@ -5,13 +5,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 
-from . import plan_score
+from . import flown_plan, plan_score
 from .plan_file import PlanFile
 from .quantities import finite
 from .quantities import positive as _positive
 from .quantities import seconds as _seconds
 from .requirements import Verdict, all_below, passes
 from .rig import FlightError, Rig
+from .tangent_plane import away_m
 from .truth import TRUTH_HZ, Truth
 
 _STEP_S = 5.0
@@ -100,7 +101,7 @@ class OverGroundRequirements(ABC):
     def _passes(self, truth: Truth, place: tuple[float, float], within: float) -> Verdict:
         time_s = truth["time_s"] - self.engaged_at_s
         track = (truth["latitude_deg"], truth["longitude_deg"])
-        return passes(time_s, plan_score.away_m(*place, track), within)
+        return passes(time_s, away_m(*place, track), within)
 
     def _fly_until(self, by: float, judge: Callable[[Truth], Verdict]) -> Verdict:
         """Fly on until a verdict on what was flown since engagement is met, or it is too late."""
@@ -112,10 +113,10 @@ class OverGroundRequirements(ABC):
 
 
 def _lands(truth: Truth, plan: PlanFile, limits: dict[str, float | None]) -> Verdict:
-    flown = plan_score.of_truth(truth)
+    flown = flown_plan.of_truth(truth)
     score = plan_score.score_landing(plan, flown, 0)
     # Half a second of its way.
-    moves = plan_score.moved_m(flown, rows=TRUTH_HZ // 2) > _STANDS_MPS / 2.0
+    moves = flown_plan.moved_m(flown, rows=TRUTH_HZ // 2) > _STANDS_MPS / 2.0
     if score is None or moves:
         place = "on the ground, and moves" if score is not None else "not on the plan's runway"
         return Verdict(is_met=False, flown=f"it is {place} at the end")

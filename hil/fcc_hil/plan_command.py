@@ -19,8 +19,9 @@ from .process import interrupt
 from .rig import FlightError
 
 if TYPE_CHECKING:
+    from .flown_plan import FlownPlan
     from .plan_flight import PlanConditions
-    from .plan_score import FlownPlan, PlanScore
+    from .plan_score import PlanScore
 
 
 def add(commands: Any) -> None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +15,7 @@ import fcc
 import numpy as np
 
 from . import plan_file, plan_score, plan_start
+from .flown_plan import FlownPlan
 from .lockstep_rig import Conditions, LockstepRig
 from .plant import Weather
 from .raw_calibration import calibrate
@@ -60,16 +62,23 @@ class PlanConditions:
     """Readings that there are not."""
     config: str = ""
     """Added to the configuration."""
+    raw_fault: Callable[[fcc.Measurements, float], None] | None = None
+    """Called in each tick with the raw readings, and the time in s, to falsify them."""
 
 
 def fly(
-    plan: Path, conditions: PlanConditions, *, longest_s: float = LONGEST_S
-) -> tuple[plan_score.PlanScore, plan_score.FlownPlan]:
+    plan: Path,
+    conditions: PlanConditions,
+    *,
+    longest_s: float = LONGEST_S,
+    watch: Callable[[LockstepRig], bool] | None = None,
+) -> tuple[plan_score.PlanScore, FlownPlan]:
     """Fly a plan to its end; return its score and the flight.
 
     The aircraft begins in level flight over the plan's home, towards its first place, or on its
-    wheels there if the plan begins with a take-off. Raises FlightError, ValueError for a plan that
-    is none, and fcc.ConfigError for one that cannot be flown.
+    wheels there if the plan begins with a take-off. `watch` is called in each tick once it is
+    engaged, and ends the flight. Raises FlightError, ValueError for a plan that is none, and
+    fcc.ConfigError for one that cannot be flown.
     """
     seed, sensors = conditions.seed, conditions.sensors
     read = plan_file.read(plan)
@@ -81,6 +90,7 @@ def fly(
         raw_sensors=sensors,
         calibration=calibrate(sensors, seed, FIELD_UT),
         without=MEASURED | conditions.without,
+        raw_fault=conditions.raw_fault,
     )
     settings = Settings(aircraft=conditions.aircraft, seed=seed)
     rig = LockstepRig(settings, plant, machine, between)
@@ -124,11 +134,12 @@ def fly(
         seen = len(rig.events)
         if last in reached:
             end_s = min(end_s, reached[last] + AFTER_S)
-        return state.time_s >= end_s or not rig.holds_control
+        is_over = watch is not None and watch(rig)
+        return is_over or state.time_s >= end_s or not rig.holds_control
 
     rig.fly_to(rig.time_s + longest_s, keep)
     if not rig.holds_control:
         raise FlightError("; ".join(event.text for event in rig.events[-3:]))
-    flown = plan_score.FlownPlan(*np.array(rows).T)
+    flown = FlownPlan(*np.array(rows).T)
     go_arounds = modes.count("go-around")
     return plan_score.score(read, flown, reached, LOITER_M, go_arounds), flown

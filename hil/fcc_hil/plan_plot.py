@@ -7,14 +7,15 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 
-from . import plan_file, plan_score
+from . import plan_file
+from .flown_plan import FlownPlan
 from .units import FT_TO_M
 
 mpl.use("Agg")
 import matplotlib.pyplot as plt
 
 
-def plot(path: Path, plan: Path, flown: plan_score.FlownPlan) -> None:
+def plot(path: Path, plan: Path, flown: FlownPlan) -> None:
     """Draw the flight over its plan."""
     read = plan_file.read(plan)
     places = [item for item in read.items if item.has_place]

@@ -17,6 +17,7 @@ import numpy as np
 
 from . import plan_file, plan_flight, plan_score, plan_start
 from .daemon_rig import DaemonRig
+from .flown_plan import FlownPlan, of_truth
 from .plan_flight import PlanConditions
 from .rig import FlightError
 from .settings import Settings
@@ -36,7 +37,7 @@ def fly(
     fccd: Path,
     scratch: Path,
     notify: Callable[[str], None],
-) -> tuple[plan_score.PlanScore, plan_score.FlownPlan]:
+) -> tuple[plan_score.PlanScore, FlownPlan]:
     """Fly a plan to its end; return its score and the flight.
 
     It begins as in lockstep (`plan_flight.fly`). The recording stays in the folder `scratch`.
@@ -65,7 +66,7 @@ def fly(
         recordings = rig.save_recording(scratch / "flight.mcap")
     finally:
         rig.close()
-    flown, go_arounds = _with_demands(plan_score.of_truth(truth), recordings)
+    flown, go_arounds = _with_demands(of_truth(truth), recordings)
     loiter_m = plan_flight.LOITER_M
     return plan_score.score(read, flown, reached, loiter_m, go_arounds), flown
 
@@ -104,9 +105,7 @@ def _line(progress: Progress, engaged_at_s: float, reached: dict[int, float]) ->
     )
 
 
-def _with_demands(
-    flown: plan_score.FlownPlan, recordings: list[Path]
-) -> tuple[plan_score.FlownPlan, int]:
+def _with_demands(flown: FlownPlan, recordings: list[Path]) -> tuple[FlownPlan, int]:
     """Add what the daemon recorded of its demands, by the simulator's clock; count go-arounds."""
     opened = [fcc.Recording(path) for path in recordings]
     records = np.concatenate([np.asarray(recording.records) for recording in opened])

@@ -12,47 +12,15 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from .flown_plan import FlownPlan
+from .plan_arcs import ON_COURSE_RAD, CircleScore, TurnScore, score_circle, score_turn, within_pi
 from .plan_file import LAND, LOITERS, TAKEOFF, WAYPOINT, Item, PlanFile
-from .truth import Truth
+from .tangent_plane import Array, Plane
 from .units import FT_TO_M, KT_TO_MPS
 
-Array = npt.NDArray[np.float64]
-
-_SEMI_MAJOR_M = 6_378_137.0
-_ECCENTRICITY_2 = 6.694_379_990_14e-3
-_ON_COURSE_RAD = math.radians(1.0)
-"""The path has the course of the leg within this: the rest is a turn."""
 _BOUNCES = 800
 """Touches within so many rows, 20 s, of one another are one landing."""
-_MOST_FLY_BY_RAD = math.radians(91.0)
-"""A turn that is flown before its waypoint: right angles on a map are a little more than 90°."""
-_OVERSHOOT_RAD = math.radians(3.0)
-"""The path's course goes farther than this beyond that of the next leg: it is flown over."""
-_ON_CIRCLE = 0.2
-"""A circle is flown from where the aircraft is within this share of its radius."""
-
-
-@dataclass(frozen=True)
-class FlownPlan:
-    """A flight, a row for each tick."""
-
-    time_s: Array
-    latitude_rad: Array
-    longitude_rad: Array
-    elevation_m: Array
-    airspeed_mps: Array
-    roll_rad: Array
-    item: Array
-    """The item that the autopilot flies."""
-    course_rad: Array
-    """The course of its path."""
-    airspeed_demand_mps: Array
-    altitude_demand_m: Array
-    heading_rad: Array
-    down_mps: Array
-    on_ground: Array
 
 
 @dataclass(frozen=True)
@@ -78,30 +46,6 @@ class LegScore:
     altitude_max_ft: float
     airspeed_error_kt: float
     """The largest of a second's mean."""
-
-
-@dataclass(frozen=True)
-class TurnScore:
-    """How the arc before a waypoint was flown, which touches both legs."""
-
-    item: int
-    degrees: float
-    radius_m: float
-    """That by which the path's course changes along the way."""
-    cross_track_rms_m: float
-    cross_track_max_m: float
-    bank_max_deg: float
-
-
-@dataclass(frozen=True)
-class CircleScore:
-    """How a circle was flown."""
-
-    item: int
-    seconds: float
-    radius_m: float
-    radius_error_max_percent: float
-    bank_max_deg: float
 
 
 @dataclass(frozen=True)
@@ -149,63 +93,6 @@ class PlanScore:
         return asdict(self)
 
 
-def of_truth(truth: Truth) -> FlownPlan:
-    """Return what the truth says of a flight: nothing of what the autopilot demanded."""
-    nothing = np.zeros_like(truth["time_s"])
-    return FlownPlan(
-        time_s=truth["time_s"],
-        latitude_rad=np.radians(truth["latitude_deg"]),
-        longitude_rad=np.radians(truth["longitude_deg"]),
-        elevation_m=truth["altitude_ft"] * FT_TO_M,
-        airspeed_mps=truth["airspeed_kt"] * KT_TO_MPS,
-        roll_rad=np.radians(truth["roll_deg"]),
-        item=nothing,
-        course_rad=nothing,
-        airspeed_demand_mps=nothing,
-        altitude_demand_m=nothing,
-        heading_rad=np.radians(truth["heading_deg"]),
-        down_mps=-truth["climb_fpm"] * FT_TO_M / 60.0,
-        on_ground=truth["on_ground"],
-    )
-
-
-def moved_m(flown: FlownPlan, rows: int) -> float:
-    """Return how far the aircraft has moved in the last rows."""
-    last = slice(-rows - 1, None, rows)
-    track = np.degrees(flown.latitude_rad[last]), np.degrees(flown.longitude_rad[last])
-    return float(away_m(float(track[0][-1]), float(track[1][-1]), track)[0])
-
-
-class Plane:
-    """Metres north and east of a place on WGS-84: its tangent plane, good to 1 cm in 10 km."""
-
-    def __init__(self, latitude_rad: float, longitude_rad: float) -> None:
-        """At a place."""
-        sine, cosine = math.sin(latitude_rad), math.cos(latitude_rad)
-        east_sine, east_cosine = math.sin(longitude_rad), math.cos(longitude_rad)
-        self._origin = _cartesian(np.array(latitude_rad), np.array(longitude_rad))
-        self._north = np.array([-sine * east_cosine, -sine * east_sine, cosine])
-        self._east = np.array([-east_sine, east_cosine, 0.0])
-
-    def of(self, latitude_rad: Array, longitude_rad: Array) -> Array:
-        """Return (n, 2), north and east."""
-        way = _cartesian(latitude_rad, longitude_rad) - self._origin
-        return np.stack([way @ self._north, way @ self._east], axis=-1)
-
-
-def _cartesian(latitude_rad: Array, longitude_rad: Array) -> Array:
-    sine, cosine = np.sin(latitude_rad), np.cos(latitude_rad)
-    radius = _SEMI_MAJOR_M / np.sqrt(1.0 - _ECCENTRICITY_2 * sine**2)
-    return np.stack(
-        [
-            radius * cosine * np.cos(longitude_rad),
-            radius * cosine * np.sin(longitude_rad),
-            radius * (1.0 - _ECCENTRICITY_2) * sine,
-        ],
-        axis=-1,
-    )
-
-
 def _plane(item: Item) -> Plane:
     return Plane(math.radians(item.latitude_deg), math.radians(item.longitude_deg))
 
@@ -224,9 +111,8 @@ def score(
     """
     flights = [item for item in plan.items if item.has_place]
     waypoints, legs, circles = [], [], []
-    turns = [
-        _turn(*places, flown) for places in zip(flights, flights[1:], flights[2:], strict=False)
-    ]
+    corners = zip(flights, flights[1:], flights[2:], strict=False)
+    turns = [score_turn(*places, flown) for places in corners]
     before: Item | None = None
     takeoff: TakeoffScore | None = None
     for item in plan.items:
@@ -238,7 +124,7 @@ def score(
             if before is not None and before.command == WAYPOINT:
                 legs.append(_leg(before, item, flown))
         elif item.command in LOITERS:
-            circles.append(_circle(item, flown, item.radius_m or loiter_m))
+            circles.append(score_circle(item, flown, item.radius_m or loiter_m))
         before = item
     landing = score_landing(plan, flown, go_arounds)
     kept = [leg for leg in legs if leg.seconds > 0.0]
@@ -304,12 +190,6 @@ def _landing(start: Item, item: Item, flown: FlownPlan, go_arounds: int) -> Land
     )
 
 
-def away_m(latitude_deg: float, longitude_deg: float, track: tuple[Array, Array]) -> Array:
-    """Return how far a place is from latitudes and longitudes, in degrees."""
-    plane = Plane(math.radians(latitude_deg), math.radians(longitude_deg))
-    return np.asarray(np.hypot(*plane.of(np.radians(track[0]), np.radians(track[1])).T))
-
-
 def _waypoint(item: Item, flown: FlownPlan, reached: dict[int, float]) -> WaypointScore:
     away = np.hypot(*_plane(item).of(flown.latitude_rad, flown.longitude_rad).T)
     when = reached.get(item.number)
@@ -334,8 +214,8 @@ def _leg(start: Item, end: Item, flown: FlownPlan) -> LegScore:
     course = -begin / np.hypot(*begin)
     course_rad = math.atan2(course[1], course[0])
     at = plane.of(flown.latitude_rad, flown.longitude_rad)
-    off = _within_pi(flown.course_rad - course_rad)
-    on = (flown.item == end.number) & (np.abs(off) < _ON_COURSE_RAD)
+    off = within_pi(flown.course_rad - course_rad)
+    on = (flown.item == end.number) & (np.abs(off) < ON_COURSE_RAD)
     cross = (course[0] * at[:, 1] - course[1] * at[:, 0])[on]
     if not len(cross):
         return LegScore(end.number, 0.0, *[math.nan] * 5)
@@ -352,65 +232,4 @@ def _leg(start: Item, end: Item, flown: FlownPlan) -> LegScore:
         float(np.sqrt(np.mean(altitude**2))),
         float(np.max(np.abs(altitude))),
         float(np.max(np.abs(whole.mean(axis=1)))) if len(whole) else math.nan,
-    )
-
-
-def _turn(start: Item, item: Item, end: Item, flown: FlownPlan) -> TurnScore | None:
-    """Score the turn at an item, if it is one between legs that is flown before its waypoint."""
-    if {start.command, item.command, end.command} != {WAYPOINT}:
-        return None
-    plane = _plane(item)
-    ends = plane.of(
-        np.radians([start.latitude_deg, end.latitude_deg]),
-        np.radians([start.longitude_deg, end.longitude_deg]),
-    )
-    courses = np.arctan2(*(ends * [[-1.0], [1.0]]).T[::-1])
-    turn = _within_pi(courses[1] - courses[0])
-    turned = _within_pi(flown.course_rad - courses[0]) * math.copysign(1.0, turn)
-    straight = _ON_COURSE_RAD
-    before = np.flatnonzero((flown.item == item.number) & (np.abs(turned) < straight))
-    after = np.flatnonzero((flown.item == end.number) & (np.abs(turned - abs(turn)) < straight))
-    if not (straight < abs(turn) <= _MOST_FLY_BY_RAD and len(before) and len(after)):
-        return None
-    rows = np.arange(before[-1] + 1, after[0])
-    if len(rows) < 2 or np.max(turned[rows]) > abs(turn) + _OVERSHOOT_RAD:
-        return None
-    at = plane.of(flown.latitude_rad, flown.longitude_rad)[rows]
-    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(at, axis=0).T))])
-    radius = 1.0 / float(np.polyfit(way, turned[rows], 1)[0])
-    inwards = np.array([np.cos(courses), np.sin(courses)]) @ [-1.0, 1.0]
-    centre = inwards / np.hypot(*inwards) * radius / math.cos(turn / 2.0)
-    error = np.hypot(*(at - centre).T) - radius
-    return TurnScore(
-        item.number,
-        math.degrees(turn),
-        radius,
-        float(np.sqrt(np.mean(error**2))),
-        float(np.max(np.abs(error))),
-        float(np.degrees(np.max(np.abs(flown.roll_rad[rows])))),
-    )
-
-
-def _within_pi(angle: Array) -> Array:
-    """Return angles, in rad, from -π to π."""
-    return np.asarray(np.angle(np.exp(1j * angle)))
-
-
-def _circle(item: Item, flown: FlownPlan, radius_m: float) -> CircleScore:
-    at = _plane(item).of(flown.latitude_rad, flown.longitude_rad)
-    away = np.hypot(*at.T)
-    on = (flown.item == item.number) & (np.abs(away - radius_m) < _ON_CIRCLE * radius_m)
-    # The leg onto the circle touches it, too: from a tenth of a turn on.
-    around = np.unwrap(np.arctan2(at[:, 1], at[:, 0])[on])
-    on_circle = np.flatnonzero(on)[np.abs(around - around[0]) > math.tau / 10.0] if on.any() else []
-    if not len(on_circle):
-        return CircleScore(item.number, 0.0, radius_m, math.nan, math.nan)
-    tick_s = float(np.median(np.diff(flown.time_s)))
-    error = np.abs(away[on_circle] - radius_m) / radius_m
-    return CircleScore(
-        item.number,
-        len(on_circle) * tick_s,
-        radius_m,
-        float(100.0 * np.max(error)),
-        float(np.degrees(np.max(np.abs(flown.roll_rad[on_circle])))),
     )

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fcc_hil import plan_score
 from fcc_hil.flight import Flight, RequirementError
 from fcc_hil.marks import autopilot_mark
 from fcc_hil.requirements import all_below, passes
+from fcc_hil.tangent_plane import away_m
 
 PLANS = Path(__file__).parents[2] / "config/plans"
 CIRCUIT = PLANS / "circuit.waypoints"
@@ -71,7 +71,7 @@ def test_a_plan_and_its_mode_belong_together() -> None:
 def test_how_far_a_place_is_from_a_track() -> None:
     """A minute of latitude is a sea mile: on WGS-84 at 45°, 1,852.2 m (NIMA TR8350.2, 3.4)."""
     track = (np.array([45.0, 45.0 + 1.0 / 60.0]), np.array([8.0, 8.0]))
-    away = plan_score.away_m(45.0, 8.0, track)
+    away = away_m(45.0, 8.0, track)
     assert away[0] == pytest.approx(0.0, abs=1e-6)
     assert away[1] == pytest.approx(1_852.2, abs=0.3)
     met = passes(np.array([1.0, 2.0]), away, 10.0)

@@ -34,6 +34,15 @@ const FOLLOWS_S: f64 = 1.0;
 const FAR_M: f64 = 50.0;
 /// After so long without a position it is one of dead reckoning, s.
 const RECKONED_AFTER_S: f64 = 3.0;
+/// For so long without a receiver the velocity of navigation by raw readings is better
+/// than that by airspeed and the last wind, s: gyroscopes and accelerometers know it.
+const INERTIAL_FOR_S: f64 = 30.0;
+/// Standard deviations: of a satellite receiver's horizontal position, m; of a velocity by
+/// dead reckoning the part of the airspeed (a compass that is 2° off, an airspeed that is
+/// 2 % off), and that of a wind that is another one than the last, m/s.
+const RECEIVER_M: f64 = 3.0;
+const AIR_SHARE: f64 = 0.04;
+const WIND_MPS: f64 = 1.5;
 
 /// The aircraft over the ground.
 #[derive(Clone, Copy, Debug, Default)]
@@ -68,8 +77,16 @@ impl GroundMotion {
             east_mps: here.ground_velocity_mps.y,
             wind_north_mps: here.wind_mps.x,
             wind_east_mps: here.wind_mps.y,
+            position_uncertainty_m: self.uncertainty_m(),
             ..*estimate
         }
+    }
+
+    /// Standard deviation of the horizontal position, m: errors of dead reckoning last, so
+    /// that it grows in proportion to the time since the last position.
+    fn uncertainty_m(&self) -> f64 {
+        let velocity_mps = hypot(AIR_SHARE * self.here.true_airspeed_mps, WIND_MPS);
+        hypot(RECEIVER_M, velocity_mps * self.lost_s)
     }
 
     /// How long ago the last position was, s of the plant's time.
@@ -200,8 +217,12 @@ impl GroundMotion {
         }
     }
 
-    /// The solution of navigation by raw readings takes the place of all that it has.
+    /// The solution of navigation by raw readings takes the place of all that it has, as
+    /// long as a receiver, or a short time without one, has made its velocity.
     pub(super) fn take(&mut self, solution: &Solution) {
+        if self.here().is_some() && self.lost_s > INERTIAL_FOR_S {
+            return;
+        }
         let place = &solution.position;
         let [north, east, _] = solution.velocity_mps;
         if place.latitude_rad.is_finite() && place.longitude_rad.is_finite() {

@@ -107,6 +107,10 @@ schema! {
         /// Towards east, m/s.
         #[field(23)]
         pub wind_east_mps: f64,
+        /// Standard deviation of the horizontal position, m; it grows while the position is
+        /// one of dead reckoning. 0 before a position is known.
+        #[field(24)]
+        pub position_uncertainty_m: f64,
         /// How old the newest reading was when it arrived, s, by its source's own
         /// clock and relative to the fastest one; 0 if it has none.
         #[field(410)]
@@ -147,6 +151,7 @@ impl Estimate {
         east_mps: 0.0,
         wind_north_mps: 0.0,
         wind_east_mps: 0.0,
+        position_uncertainty_m: 0.0,
         reading_age_s: 0.0,
         reading_jitter_s: 0.0,
     };

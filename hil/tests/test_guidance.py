@@ -1,0 +1,108 @@
+"""Legs and circles with JSBSim's c172p by raw sensors, by both laws, from its truth."""
+
+from __future__ import annotations
+
+import math
+import os
+from pathlib import Path
+
+import fcc
+import pytest
+
+from fcc_hil import drawn_plan, plan_flight
+from fcc_hil.drawn_plan import Drawn
+from fcc_hil.plan_flight import PlanConditions
+from fcc_hil.plan_score import PlanScore
+from fcc_hil.plant import Weather
+from fcc_hil.units import FT_TO_M
+
+TWELVE_LEGS = Path(__file__).parents[2] / "config/plans/twelve-legs.waypoints"
+SEEDS = int(os.environ.get("FCC_GUIDANCE", "0"))
+"""Of each: they are slow. Some legs are flown in each run (test_plan)."""
+FIRST = 401
+each_seed = pytest.mark.parametrize("seed", range(FIRST, FIRST + SEEDS))
+each_law = pytest.mark.parametrize("law", ["npfg", "l1"])
+FLY_OVERS = (5, 8, 11)
+WITHIN_M = 60.0
+CLIMBS = (5, 9)
+"""Legs to another altitude."""
+ALTITUDE_M = 3_000.0 * FT_TO_M
+_LOITER_TURNS = 18
+
+
+@each_seed
+@pytest.mark.parametrize(
+    "wind", [(0.0, 0.0), *((20.0, from_deg) for from_deg in (0, 90, 180, 270))]
+)
+@each_law
+def test_twelve_legs(law: str, wind: tuple[float, float], seed: int) -> None:
+    """Issue: 5 m calm, 10 m in 20 kt; 15 ft on level legs, 2 kt, fly-overs within 60 m."""
+    wind_kt, from_deg = wind
+    weather = Weather(wind_kt=wind_kt, wind_from_deg=from_deg)
+    score, _ = plan_flight.fly(TWELVE_LEGS, PlanConditions(weather=weather, seed=seed, law=law))
+    print(f"\n{law} | {wind_kt:.0f} kt from {from_deg:.0f} | {seed} | {_cells(score)}")
+    assert all(waypoint.passed for waypoint in score.waypoints)
+    assert [leg.item for leg in score.legs] == list(range(2, 13))
+    for leg in score.legs:
+        assert leg.cross_track_rms_m <= (10.0 if wind_kt else 5.0), leg
+        assert leg.airspeed_error_kt <= 2.0, leg
+        if leg.item not in CLIMBS:
+            assert leg.altitude_max_ft <= 15.0, leg
+    for waypoint in score.waypoints:
+        if waypoint.item in FLY_OVERS:
+            assert waypoint.closest_m <= WITHIN_M, waypoint
+
+
+def _cells(score: PlanScore) -> str:
+    """Return a row of the table in docs/plan.md."""
+    level = [leg for leg in score.legs if leg.item not in CLIMBS]
+    over = [waypoint for waypoint in score.waypoints if waypoint.item in FLY_OVERS]
+    turns = score.turns
+    return " | ".join(
+        [
+            f"{max(leg.cross_track_rms_m for leg in score.legs):.1f} m",
+            f"{max(leg.cross_track_max_m for leg in score.legs):.1f} m",
+            f"{max(leg.altitude_max_ft for leg in level):.1f} ft",
+            f"{max(leg.airspeed_error_kt for leg in score.legs):.1f} kt",
+            f"{max(waypoint.closest_m for waypoint in over):.1f} m",
+            f"{max(turn.cross_track_rms_m for turn in turns):.1f} m",
+            f"{max(turn.cross_track_max_m for turn in turns):.1f} m",
+            f"{max(turn.bank_max_deg for turn in turns):.1f} deg",
+        ]
+    )
+
+
+def _circles(*radii_m: float) -> str:
+    """Around places 4 km apart, 1.5 times each, to the north."""
+    items = drawn_plan.waypoints((0.0, 0.0), ALTITUDE_M)
+    for number, radius_m in enumerate(radii_m, 1):
+        at_m = (4_000.0 * number, 0.0)
+        items.append(Drawn(_LOITER_TURNS, at_m, ALTITUDE_M, (1.5, 0.0, radius_m, 0.0)))
+    return drawn_plan.text(items)
+
+
+@each_seed
+@pytest.mark.parametrize("from_deg", [0.0, 90.0])
+@each_law
+def test_circles_in_15_kt(law: str, from_deg: float, seed: int, tmp_path: Path) -> None:
+    """Issue: 750 m and 1,000 m at 100 kt, within 5 % of the radius, at most 30 degrees of bank."""
+    plan = tmp_path / "circles.waypoints"
+    plan.write_text(_circles(750.0, 1_000.0, -750.0))
+    weather = Weather(wind_kt=15.0, wind_from_deg=from_deg)
+    score, _ = plan_flight.fly(plan, PlanConditions(weather=weather, seed=seed, law=law))
+    assert [circle.radius_m for circle in score.circles] == [750.0, 1_000.0, 750.0]
+    for circle in score.circles:
+        print(f"\n{law}, 15 kt from {from_deg:.0f}, seed {seed}: {circle}")
+        assert circle.seconds > math.tau * circle.radius_m / 60.0
+        assert circle.radius_error_max_percent <= 5.0
+        assert circle.bank_max_deg <= 30.0
+
+
+def test_a_smaller_circle_is_refused_with_the_smallest_radius(tmp_path: Path) -> None:
+    """(V + W)^2/(g tan 30 deg), 100 kt and 15 kt: 618.2 m, so 619 m are given and flown."""
+    plan = tmp_path / "circles.waypoints"
+    plan.write_text(_circles(618.0))
+    with pytest.raises(fcc.ConfigError, match=r"618 m is too small .* give at least 619 m"):
+        fcc.Machine(plan_flight.configuration(plan, "kalman", "npfg", 15.0))
+    plan.write_text(_circles(619.0))
+    fcc.Machine(plan_flight.configuration(plan, "kalman", "npfg", 15.0))
