@@ -151,7 +151,14 @@ fn step_of(
             pitch_rad: pitch_deg.filter(|deg| *deg > 0.0).map(f64::to_radians),
         },
         Item::Land {
-            place,
+            place: None,
+            abort_altitude_m,
+            ..
+        } => Step::LandBack {
+            height_m: abort_height_m(abort_altitude_m, config),
+        },
+        Item::Land {
+            place: Some(place),
             altitude,
             abort_altitude_m,
         } => {
@@ -161,8 +168,7 @@ fn step_of(
                 return Err(("command", needs.to_owned()));
             }
             let elevation_m = level(altitude)?;
-            let abort_m = abort_altitude_m.filter(|above_m| *above_m > 0.0);
-            let abort_m = abort_m.unwrap_or(config.return_height_m);
+            let abort_m = abort_height_m(abort_altitude_m, config);
             let home_m = plan.home.map_or(elevation_m, |home| home.altitude_m);
             Step::Land {
                 at: place.plane(),
@@ -171,6 +177,12 @@ fn step_of(
             }
         }
     })
+}
+
+/// Above home or the runway, to which it climbs when a landing is given up, m.
+fn abort_height_m(given_m: Option<f64>, config: &RouteConfig) -> f64 {
+    let given_m = given_m.filter(|above_m| *above_m > 0.0);
+    given_m.unwrap_or(config.return_height_m)
 }
 
 fn refused(what: &str, instead: &str) -> Refused {

@@ -31,10 +31,11 @@ pub(super) enum Refusal {
     NoPlan,
     NoItem,
     NowhereKnown,
+    NoLanding,
 }
 
 impl Refusal {
-    const ALL: [Self; 12] = [
+    const ALL: [Self; 13] = [
         Self::NotEngaged,
         Self::NotPrepared,
         Self::NoSuchItem,
@@ -47,6 +48,7 @@ impl Refusal {
         Self::NoPlan,
         Self::NoItem,
         Self::NowhereKnown,
+        Self::NoLanding,
     ];
 
     const fn words(self) -> &'static str {
@@ -67,6 +69,7 @@ impl Refusal {
             Self::NotLanding => "the aircraft is not landing, or is on its wheels",
             Self::NoPlan => "there is no plan",
             Self::NoItem => "the plan has no such item",
+            Self::NoLanding => "the plan has no landing, and the aircraft was not seen to take off",
         }
     }
 
@@ -101,6 +104,7 @@ impl Autopilot {
                 let next = self.after(ModeInput::GoAround);
                 return next.map(drop).ok_or(Refusal::NotLanding);
             }
+            AutopilotCommand::Land if self.is_landing() => return Ok(()),
             _ => {}
         }
         if let Some(demand) = self.runway() {
@@ -121,6 +125,10 @@ impl Autopilot {
             AutopilotCommand::Pause | AutopilotCommand::GoTo(_) | AutopilotCommand::ReturnHome => {
                 let here = self.ground.here();
                 here.map(drop).ok_or(Refusal::NowhereKnown)
+            }
+            AutopilotCommand::Land => {
+                self.ground.here().ok_or(Refusal::NowhereKnown)?;
+                self.has_landing().then_some(()).ok_or(Refusal::NoLanding)
             }
             _ => Ok(()),
         }

@@ -76,6 +76,12 @@ impl Autopilot {
         self.guidance.over_ground().and_then(OverGroundMode::runway)
     }
 
+    /// Whether it is on the glide path of a landing, or beyond.
+    pub(super) fn is_landing(&self) -> bool {
+        self.runway()
+            .is_some_and(|demand| !demand.takes_off && demand.phase != RunwayPhase::GoAround)
+    }
+
     /// Whether the wheels carry the aircraft, or it is about to touch down.
     pub(super) fn is_on_runway(&self) -> bool {
         self.ground.stands_on_wheels()

@@ -2,11 +2,12 @@
 
 use nalgebra::Vector2;
 
+use super::back::TookOff;
 use super::circle::{Circle, Circling};
 use super::demand::Profile;
 use super::follower::{Follower, Phase};
 use super::leg::Leg;
-use super::runway::{Runway, RunwayFlight};
+use super::runway::{Runway, RunwayFlight, RunwayPhase};
 use super::step::{Step, Until, nearest_of};
 use super::{OverGround, RETURNS_CLOCKWISE};
 use crate::flight::path::{LocalPlane, Motion, cross, length};
@@ -60,7 +61,13 @@ impl Follower {
     /// Begins the first step that is flown from an index on, with a leg from a place.
     pub(super) fn begin(&mut self, index: usize, from: &LocalPlane, here: &OverGround) {
         let mut sequence = self.sequence;
-        let found = sequence.next(index, &mut |step| self.take(step));
+        let mut found = sequence.next(index, &mut |step| self.take(step));
+        if let Some((index, Step::LandBack { height_m })) = found
+            && let Some(took_off) = self.took_off
+        {
+            let steps = took_off.landing(height_m, &self.config);
+            found = Some((index, sequence.land_back(index, steps)));
+        }
         self.sequence = sequence;
         self.next = None;
         if let Some((index, step)) = found {
@@ -73,6 +80,14 @@ impl Follower {
             {
                 let config = self.config.runway;
                 let flight = RunwayFlight::takeoff(runway, here, config, altitude_m, pitch_rad);
+                if flight.phase == RunwayPhase::Roll {
+                    self.took_off = Some(TookOff {
+                        latitude_rad: here.latitude_rad,
+                        longitude_rad: here.longitude_rad,
+                        course: flight.runway.course,
+                        elevation_m: here.altitude_m,
+                    });
+                }
                 self.goal.at = flight.runway.at;
                 self.goal.altitude_m = altitude_m;
                 self.phase = Phase::Runway(flight);

@@ -3,6 +3,7 @@
 use libm::{atan, atan2, tan};
 use nalgebra::Vector2;
 
+use super::back::TookOff;
 use super::begin::{Goal, GoalKind, Next};
 use super::circle::Circling;
 use super::corner::{Conditions, Corner};
@@ -65,6 +66,8 @@ pub struct Follower {
     reached: Option<u16>,
     /// Landings that were given up, but for a command.
     given_up: u8,
+    /// Where the last take-off began.
+    pub(super) took_off: Option<TookOff>,
 }
 
 /// A landing that was given up so often is not tried again by itself.
@@ -153,12 +156,29 @@ impl Follower {
             track: Track::default(),
             reached: None,
             given_up: 0,
+            took_off: None,
         }
     }
 
+    /// With the runway of a take-off before, to land on.
+    #[must_use]
+    pub const fn after(self, took_off: Option<TookOff>) -> Self {
+        Self { took_off, ..self }
+    }
+
+    /// Where the last take-off began.
+    pub const fn took_off(&self) -> Option<TookOff> {
+        self.took_off
+    }
+
+    /// Whether it lands where it took off.
+    pub const fn lands_back(&self) -> bool {
+        self.sequence.lands_back()
+    }
+
     /// The index of the step that is flown.
-    pub const fn index(&self) -> usize {
-        self.index
+    pub fn index(&self) -> usize {
+        self.sequence.planned(self.index).0
     }
 
     /// Whether it has begun: altitude and acceleration mean something.
@@ -384,6 +404,7 @@ impl Follower {
     }
 
     fn reach(&mut self) {
-        self.reached = u16::try_from(self.index).ok();
+        let (index, is_end) = self.sequence.planned(self.index);
+        self.reached = u16::try_from(index).ok().filter(|_| is_end);
     }
 }

@@ -11,6 +11,7 @@
 //!
 //! Courses and places refer to true north and WGS-84, altitudes to mean sea level.
 
+mod back;
 mod begin;
 mod circle;
 mod corner;
@@ -26,6 +27,7 @@ mod sequence;
 mod simulation;
 mod step;
 
+pub use back::TookOff;
 pub use follower::{Follower, Track};
 pub use glide::{Glide, GlideConfig};
 pub use leg::course_onto_circle;
