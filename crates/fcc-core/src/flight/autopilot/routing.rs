@@ -199,7 +199,7 @@ impl Autopilot {
     /// Flies a plan from the step with an index on.
     pub(super) fn begin_plan(&mut self, plan: &Route<'static>, index: usize) {
         // One that stands has none to keep.
-        let airspeed_mps = if self.ground.stands_on_wheels() {
+        let airspeed_mps = if self.waits_for_takeoff() {
             self.config.reference_airspeed_mps
         } else {
             self.targets.airspeed_mps

@@ -2,12 +2,11 @@
 
 use nalgebra::Vector2;
 
-use super::back::TookOff;
 use super::circle::{Circle, Circling};
 use super::demand::Profile;
 use super::follower::{Follower, Phase};
 use super::leg::Leg;
-use super::runway::{Runway, RunwayFlight, RunwayPhase};
+use super::runway::{Runway, RunwayFlight};
 use super::step::{Step, Until, nearest_of};
 use super::{OverGround, RETURNS_CLOCKWISE};
 use crate::flight::path::{LocalPlane, Motion, cross, length};
@@ -66,7 +65,7 @@ impl Follower {
             && let Some(took_off) = self.took_off
         {
             let steps = took_off.landing(height_m, &self.config);
-            found = Some((index, sequence.land_back(index, steps)));
+            found = Some((index, sequence.land_back(index, &steps)));
         }
         self.sequence = sequence;
         self.next = None;
@@ -80,14 +79,7 @@ impl Follower {
             {
                 let config = self.config.runway;
                 let flight = RunwayFlight::takeoff(runway, here, config, altitude_m, pitch_rad);
-                if flight.phase == RunwayPhase::Roll {
-                    self.took_off = Some(TookOff {
-                        latitude_rad: here.latitude_rad,
-                        longitude_rad: here.longitude_rad,
-                        course: flight.runway.course,
-                        elevation_m: here.altitude_m,
-                    });
-                }
+                self.took_off = flight.took_off().or(self.took_off);
                 self.goal.at = flight.runway.at;
                 self.goal.altitude_m = altitude_m;
                 self.phase = Phase::Runway(flight);

@@ -20,6 +20,7 @@ mod follower;
 mod glide;
 mod leg;
 mod over_ground;
+mod over_runway;
 mod prepared;
 mod runway;
 mod sequence;
@@ -33,6 +34,7 @@ pub use glide::{Glide, GlideConfig};
 pub use leg::course_onto_circle;
 pub use over_ground::OverGround;
 pub use prepared::{PreparedRoutes, RouteSource};
+pub(in crate::flight) use runway::HELD_MPS;
 pub use runway::{Runway, RunwayConfig, RunwayDemand, RunwayPhase, RunwayReason};
 pub use step::{Destination, FOR_EVER, JUMPS, Route, Step, Until};
 

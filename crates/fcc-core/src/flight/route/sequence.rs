@@ -46,9 +46,9 @@ impl Sequence {
     }
 
     /// Flies these steps in place of the last one; returns the first of them.
-    pub(super) const fn land_back(&mut self, index: usize, steps: [Step; BACK]) -> Step {
-        let [first, ..] = steps;
-        self.back = Some((index, steps));
+    pub(super) const fn land_back(&mut self, index: usize, steps: &[Step; BACK]) -> Step {
+        self.back = Some((index, *steps));
+        let [first, ..] = *steps;
         first
     }
 
