@@ -50,6 +50,12 @@ def add(commands: Any) -> None:
     plan.add_argument(
         "--config", type=Path, metavar="FILE", help="speeds of this aircraft, and other keys"
     )
+    plan.add_argument(
+        "--terrain",
+        type=Path,
+        metavar="FOLDER",
+        help="elevation tiles (.hgt): the ground that is flown over, and known to the autopilot",
+    )
     plan.add_argument("--law", choices=("l1", "npfg"), default="npfg", help="(default: npfg)")
     plan.add_argument(
         "--json", type=ranges.file_to_write, metavar="FILE", help="write the figures here"
@@ -78,6 +84,7 @@ def _plan(options: argparse.Namespace) -> int:
             law=options.law,
             sensors="board-rtk" if options.position == "precise" else "board",
             without=frozenset({"range"} if options.no_range_finder else ()),
+            terrain=options.terrain,
             config=options.config.read_text(encoding="utf-8") if options.config else "",
         )
         score, flown = plan_flight.fly(options.plan, conditions)
@@ -114,9 +121,18 @@ def _plan(options: argparse.Namespace) -> int:
         if parts is not None:
             figures = (f"{key} {value:.1f}" for key, value in asdict(parts).items())
             say(f"\n{name}: {', '.join(figures)}")
+    collides = False
+    if score.terrain is not None:
+        ground = score.terrain
+        collides = ground.collides
+        what = f"{ground.lowest_m:.1f} m over the ground"
+        if collides:
+            what = "the ground is flown into"
+        say(f"\n{what} at {ground.latitude_deg:.5f}, {ground.longitude_deg:.5f}")
     if options.json is not None:
         document = {"law": options.law, **score.document()}
         options.json.write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
     if options.plot is not None:
         plan_plot.plot(options.plot, options.plan, flown)
-    return 0 if all(waypoint.passed for waypoint in score.waypoints) else 1
+    passed = all(waypoint.passed for waypoint in score.waypoints)
+    return 0 if passed and not collides else 1

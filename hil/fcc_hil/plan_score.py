@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .clearance import TerrainScore
 from .plan_file import LAND, LOITERS, TAKEOFF, WAYPOINT, Item, PlanFile
 from .truth import Truth
 from .units import FT_TO_M, KT_TO_MPS
@@ -143,6 +144,8 @@ class PlanScore:
     circles: list[CircleScore]
     takeoff: TakeoffScore | None = None
     landing: LandingScore | None = None
+    terrain: TerrainScore | None = None
+    """Where the ground is that of tiles."""
 
     def document(self) -> dict[str, Any]:
         """Return it for JSON."""

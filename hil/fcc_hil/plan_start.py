@@ -6,6 +6,7 @@ import math
 
 from .plan_file import TAKEOFF, Item, PlanFile
 from .plant import Plant, Weather
+from .terrain_tiles import Tiles
 from .units import FT_TO_M
 
 
@@ -14,21 +15,29 @@ def takes_off(plan: PlanFile) -> bool:
     return plan.items[0].command == TAKEOFF
 
 
-def plant(plan: PlanFile, aircraft: str, *, seed: int, weather: Weather) -> Plant:
+def plant(
+    plan: PlanFile, aircraft: str, *, seed: int, weather: Weather, terrain: Tiles | None = None
+) -> Plant:
     """Return an aircraft in level flight over the plan's home, towards its first place.
 
-    On its wheels there if the plan begins with a take-off.
+    On its wheels there if the plan begins with a take-off, on the ground of `terrain`.
     """
+    home = plan.home
+    known_m = terrain and terrain.elevation_m(home.latitude_deg, home.longitude_deg)
+    elevation_m = home.altitude_m if known_m is None else known_m
     first = plan.items[0] if takes_off(plan) else next(i for i in plan.items if i.has_place)
-    return Plant(
+    begun = Plant(
         aircraft,
         seed=seed,
         weather=weather,
         heading_deg=_bearing_deg(plan.home, first),
         latitude_deg=plan.home.latitude_deg,
         longitude_deg=plan.home.longitude_deg,
-        runway_elevation_ft=plan.home.altitude_m / FT_TO_M if takes_off(plan) else None,
+        runway_elevation_ft=elevation_m / FT_TO_M if takes_off(plan) else None,
     )
+    if terrain is not None:
+        begun.fly_over(terrain)
+    return begun
 
 
 def _bearing_deg(start: Item, end: Item) -> float:
