@@ -26,7 +26,7 @@ impl Steps {
     /// Of a plan: step n is item n + 1.
     ///
     /// # Errors
-    /// Every item that is not flown yet, with what to do.
+    /// Every item that is not flown, with what to do.
     ///
     /// ```
     /// use fcc_core::flight::route::RouteConfig;
@@ -133,7 +133,11 @@ fn step_of(
         Item::ChangeSpeed {
             throttle_percent: Some(_),
             ..
-        } => return Err(refused("a throttle", "give a speed alone, and -1 for it")),
+        } => {
+            let why = "a throttle is not flown, because the throttle holds the airspeed: give a \
+                       speed alone, and -1 for it";
+            return Err(("command", why.to_owned()));
+        }
         Item::ChangeSpeed { speed, .. } => match speed {
             None => Step::Mark,
             Some(Speed::AirspeedMps(mps)) => Step::Airspeed(mps),
@@ -183,10 +187,6 @@ fn step_of(
 fn abort_height_m(given_m: Option<f64>, config: &RouteConfig) -> f64 {
     let given_m = given_m.filter(|above_m| *above_m > 0.0);
     given_m.unwrap_or(config.return_height_m)
-}
-
-fn refused(what: &str, instead: &str) -> Refused {
-    ("command", format!("{what} is not flown yet: {instead}"))
 }
 
 /// The centre line from home to the place of a take-off.
