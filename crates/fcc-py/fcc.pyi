@@ -33,6 +33,7 @@ class _Commanded(TypedDict, total=False):
     plan_item: float | None
     pause: float | None
     return_home: float | None
+    land: float | None
     go_to_latitude_rad: float | None
     go_to_longitude_rad: float | None
     go_to_altitude_m: float | None

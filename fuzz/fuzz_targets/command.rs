@@ -84,7 +84,8 @@ fn assert_permitted(command: AutopilotCommand) {
         AutopilotCommand::Pause
         | AutopilotCommand::GoTo(_)
         | AutopilotCommand::ReturnHome
-        | AutopilotCommand::GoAround => return,
+        | AutopilotCommand::GoAround
+        | AutopilotCommand::Land => return,
         other => panic!("{other:?} has no name"),
     };
     assert!((least - 0.006..=most + 0.006).contains(&value), "{command:?}");

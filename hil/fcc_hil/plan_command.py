@@ -59,6 +59,12 @@ def add(commands: Any) -> None:
     plan.add_argument(
         "--config", type=Path, metavar="FILE", help="speeds of this aircraft, and other keys"
     )
+    plan.add_argument(
+        "--terrain",
+        type=Path,
+        metavar="FOLDER",
+        help="elevation tiles (.hgt): the ground that is flown over, and known to the autopilot",
+    )
     plan.add_argument("--law", choices=("l1", "npfg"), default="npfg", help="(default: npfg)")
     plan.add_argument(
         "--json", type=ranges.file_to_write, metavar="FILE", help="write the figures here"
@@ -91,13 +97,14 @@ def _in_real_time(
         for option, is_given in (
             ("--position precise", options.position == "precise"),
             ("--no-range-finder", options.no_range_finder),
+            ("--terrain", options.terrain is not None),
         )
         if is_given
     ]
     if given:
         raise ValueError(
             f"{' and '.join(given)} with --realtime: X-Plane's protocol has its own position and "
-            "height above the ground; leave it out"
+            "height above the ground, which is level; leave it out"
         )
     # A signal ends the daemon and the stand-in, too.
     signal.signal(signal.SIGTERM, interrupt)
@@ -125,6 +132,7 @@ def _plan(options: argparse.Namespace) -> int:
             law=options.law,
             sensors="board-rtk" if options.position == "precise" else "board",
             without=frozenset({"range"} if options.no_range_finder else ()),
+            terrain=options.terrain,
             config=options.config.read_text(encoding="utf-8") if options.config else "",
         )
         if options.realtime:
@@ -134,6 +142,18 @@ def _plan(options: argparse.Namespace) -> int:
     except (FlightError, OSError, ValueError, fcc.ConfigError) as error:
         say(f"{error}", to=sys.stderr)
         return 1
+    _show(score)
+    if options.json is not None:
+        document = {"law": options.law, **score.document()}
+        options.json.write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
+    if options.plot is not None:
+        plan_plot.plot(options.plot, options.plan, flown)
+    passed = all(waypoint.passed for waypoint in score.waypoints)
+    collides = score.terrain is not None and score.terrain.collides
+    return 0 if passed and not collides else 1
+
+
+def _show(score: PlanScore) -> None:
     say("item  closest m  altitude ft")
     for waypoint in score.waypoints:
         note = "" if waypoint.passed else "  not passed"
@@ -164,9 +184,8 @@ def _plan(options: argparse.Namespace) -> int:
         if parts is not None:
             figures = (f"{key} {value:.1f}" for key, value in asdict(parts).items())
             say(f"\n{name}: {', '.join(figures)}")
-    if options.json is not None:
-        document = {"law": options.law, **score.document()}
-        options.json.write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
-    if options.plot is not None:
-        plan_plot.plot(options.plot, options.plan, flown)
-    return 0 if all(waypoint.passed for waypoint in score.waypoints) else 1
+    if (ground := score.terrain) is not None:
+        what = f"{ground.lowest_m:.1f} m over the ground"
+        if ground.collides:
+            what = "the ground is flown into"
+        say(f"\n{what} at {ground.latitude_deg:.5f}, {ground.longitude_deg:.5f}")

@@ -5,16 +5,18 @@ python -m fcc_hil plan --plan config/plans/twelve-legs.waypoints --wind 20 --win
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import fcc
 import numpy as np
 
 from . import plan_file, plan_score, plan_start
+from .clearance import Clearance
 from .flown_plan import FlownPlan
 from .lockstep_rig import Conditions, LockstepRig
 from .plant import Weather
@@ -23,6 +25,7 @@ from .raw_flight import MEASURED, RAW_STANDBY_S
 from .raw_sensors import FIELD_UT
 from .rig import FlightError
 from .standin import Settings
+from .terrain_tiles import Tiles
 
 SENSORS = "board"
 RUNWAY_STANDBY_S = 30.0
@@ -64,6 +67,8 @@ class PlanConditions:
     """Added to the configuration."""
     raw_fault: Callable[[fcc.Measurements, float], None] | None = None
     """Called in each tick with the raw readings, and the time in s, to falsify them."""
+    terrain: Path | None = None
+    """The folder of elevation tiles that are the ground, and that the autopilot has, too."""
 
 
 def fly(
@@ -84,8 +89,15 @@ def fly(
     read = plan_file.read(plan)
     takes_off = plan_start.takes_off(read)
     text = configuration(plan, "kalman", conditions.law, conditions.weather.wind_kt)
+    tiles = None
+    if conditions.terrain is not None:
+        tiles = Tiles(conditions.terrain)
+        text += f"[terrain]\nfolder = {json.dumps(str(conditions.terrain.resolve()))}\n"
     machine = fcc.Machine(text + conditions.config)
-    plant = plan_start.plant(read, conditions.aircraft, seed=seed, weather=conditions.weather)
+    plant = plan_start.plant(
+        read, conditions.aircraft, seed=seed, weather=conditions.weather, terrain=tiles
+    )
+    clearance = Clearance()
     between = Conditions(
         raw_sensors=sensors,
         calibration=calibrate(sensors, seed, FIELD_UT),
@@ -126,6 +138,7 @@ def fly(
                 float(state.on_ground),
             )
         )
+        clearance.note(state, points.guidance_mode)
         if points.guidance_mode != modes[-1]:
             modes.append(points.guidance_mode)
         for event in rig.events[seen:]:
@@ -142,4 +155,5 @@ def fly(
         raise FlightError("; ".join(event.text for event in rig.events[-3:]))
     flown = FlownPlan(*np.array(rows).T)
     go_arounds = modes.count("go-around")
-    return plan_score.score(read, flown, reached, LOITER_M, go_arounds), flown
+    score = plan_score.score(read, flown, reached, LOITER_M, go_arounds)
+    return (replace(score, terrain=clearance.score()) if tiles else score), flown

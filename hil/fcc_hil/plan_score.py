@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from .clearance import TerrainScore
 from .flown_plan import FlownPlan
 from .plan_arcs import ON_COURSE_RAD, CircleScore, TurnScore, score_circle, score_turn, within_pi
 from .plan_file import LAND, LOITERS, TAKEOFF, WAYPOINT, Item, PlanFile
@@ -87,6 +88,8 @@ class PlanScore:
     circles: list[CircleScore]
     takeoff: TakeoffScore | None = None
     landing: LandingScore | None = None
+    terrain: TerrainScore | None = None
+    """Where the ground is that of tiles."""
 
     def document(self) -> dict[str, Any]:
         """Return it for JSON."""

@@ -8,6 +8,7 @@ from dataclasses import replace
 from .plan_file import TAKEOFF, Item, PlanFile
 from .plant import Plant, Weather
 from .settings import Settings, Start
+from .terrain_tiles import Tiles
 from .units import FT_TO_M
 
 
@@ -31,18 +32,28 @@ def settings(plan: PlanFile, simulator: Settings) -> Settings:
     )
 
 
-def plant(plan: PlanFile, aircraft: str, *, seed: int, weather: Weather) -> Plant:
-    """Return an aircraft that begins there."""
+def plant(
+    plan: PlanFile, aircraft: str, *, seed: int, weather: Weather, terrain: Tiles | None = None
+) -> Plant:
+    """Return an aircraft that begins there, on the ground of `terrain`."""
     begins = settings(plan, Settings())
-    return Plant(
+    start = begins.start
+    elevation_ft = start.runway_elevation_ft
+    if terrain is not None and elevation_ft is not None:
+        known_m = terrain.elevation_m(start.latitude_deg, start.longitude_deg)
+        elevation_ft = elevation_ft if known_m is None else known_m / FT_TO_M
+    begun = Plant(
         aircraft,
         seed=seed,
         weather=weather,
         heading_deg=begins.heading_deg,
-        latitude_deg=begins.start.latitude_deg,
-        longitude_deg=begins.start.longitude_deg,
-        runway_elevation_ft=begins.start.runway_elevation_ft,
+        latitude_deg=start.latitude_deg,
+        longitude_deg=start.longitude_deg,
+        runway_elevation_ft=elevation_ft,
     )
+    if terrain is not None:
+        begun.fly_over(terrain)
+    return begun
 
 
 def _bearing_deg(start: Item, end: Item) -> float:

@@ -21,6 +21,7 @@ import jsbsim
 from .aircraft import Aircraft, by_name
 from .settle import SettlingPilot
 from .state import Controls, State
+from .terrain_tiles import Tiles
 from .units import (
     FT_TO_M,
     KT_TO_MPS,
@@ -92,6 +93,7 @@ class Plant:
         """
         self.aircraft = by_name(aircraft) if isinstance(aircraft, str) else aircraft
         self.seed = seed
+        self._terrain: Tiles | None = None
         weather = weather or Weather()
         self.fdm = fdm = jsbsim.FGFDMExec(None)
         fdm.set_debug_level(0)
@@ -162,6 +164,10 @@ class Plant:
         self.fdm["atmosphere/gust-east-fps"] = east_mps / FT_TO_M
         self.fdm["atmosphere/gust-down-fps"] = down_mps / FT_TO_M
 
+    def fly_over(self, terrain: Tiles) -> None:
+        """Let the ground be that of tiles from now on; as it was where they do not know it."""
+        self._terrain = terrain
+
     def fail_engines(self) -> None:
         """Switch the ignition off: a windmilling propeller, no power."""
         self.fdm["propulsion/magneto_cmd"] = 0
@@ -210,6 +216,8 @@ class Plant:
         """Advance by `steps` of 1/120 s with the present controls."""
         run = self.fdm.run
         for _ in range(steps):
+            if self._terrain is not None:
+                self._follow_ground(self._terrain)
             run()
         self.steps += steps
 
@@ -248,6 +256,14 @@ class Plant:
             on_ground=f["gear/wow"] != 0.0,
             engine_speed_radps=self._engine_rpm() * math.tau / 60.0,
         )
+
+    def _follow_ground(self, terrain: Tiles) -> None:
+        """Set the elevation of the ground below."""
+        fdm = self.fdm
+        place = fdm["position/lat-geod-deg"], fdm["position/long-gc-deg"]
+        elevation_m = terrain.elevation_m(*place)
+        if elevation_m is not None:
+            fdm["position/terrain-elevation-asl-ft"] = elevation_m / FT_TO_M
 
     def _engine_rpm(self) -> float:
         """Return the speed of a piston engine; 0 of another."""

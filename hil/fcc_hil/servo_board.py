@@ -16,8 +16,11 @@ from enum import Enum
 
 from .cockpit import (
     ENGAGE_SWITCH,
+    FLAPS,
+    LEFT_BRAKE,
     OVERRIDE_JOYSTICK,
     OVERRIDE_THROTTLES,
+    RIGHT_BRAKE,
     THROTTLE_USE,
     YOKE,
 )
@@ -37,11 +40,14 @@ from .units import KT_TO_MPS
 AIRSPEED = "sim/flightmodel/position/indicated_airspeed"
 DIFFERENTIAL_PRESSURE = "fccd/servo_board/differential_pressure_pa"
 _THROTTLE = f"{THROTTLE_USE}[0]"
+_WHEELS = (FLAPS, LEFT_BRAKE, RIGHT_BRAKE)
+"""0..1, with the joystick's override; they stay as they are in the failsafe."""
 
 _PERIOD_S = 0.02
 """Between two replies."""
 FAILSAFE_AFTER_S = 0.2
-_ROW_JOYSTICK, _ROW_THROTTLES = 8, 25
+_ROWS = {8: (0, YOKE), 25: (0, (_THROTTLE,)), 13: (3, (FLAPS,)), 14: (2, _WHEELS[1:])}
+"""Of DATA: the first column, and what is set."""
 _CRC = struct.Struct("<I")
 _LONGEST_RUN = 254
 _LONGEST_FRAME = 246
@@ -225,11 +231,14 @@ class ServoBoard:
             aileron=aileron,
             rudder=rudder,
             throttle=throttle if has_throttle else otherwise.throttle,
+            flaps=self._written.get(FLAPS, otherwise.flaps),
+            left_brake=self._written.get(LEFT_BRAKE, otherwise.left_brake),
+            right_brake=self._written.get(RIGHT_BRAKE, otherwise.right_brake),
         )
 
     def _names(self) -> set[str]:
         names = {AIRSPEED, DIFFERENTIAL_PRESSURE, self._switch, _THROTTLE}
-        return names | set(YOKE) | set(self._overrides)
+        return names | set(YOKE) | set(_WHEELS) | set(self._overrides)
 
     def _value(self, path: str, readings: Readings) -> float | None:
         if path in self._overrides:
@@ -241,6 +250,8 @@ class ServoBoard:
             return readings.differential_pressure_pa
         if path == self._switch:
             return None if readings.engage_switch is None else float(readings.engage_switch)
+        if path in _WHEELS:
+            return self._written.get(path)
         is_free = self.control is Control.FREE
         if readings.pilot is None and (is_free or path not in self._written):
             return None
@@ -249,10 +260,10 @@ class ServoBoard:
         return dict(zip((*YOKE, _THROTTLE), values, strict=True))[path]
 
     def _write_row(self, now_s: float, row: int, values: tuple[float, ...]) -> bool:
-        targets = {_ROW_JOYSTICK: YOKE, _ROW_THROTTLES: (_THROTTLE,)}.get(row, ())
+        first, targets = _ROWS.get(row, (0, ()))
         each = [
             self._write(now_s, path, value)
-            for path, value in zip(targets, values, strict=False)
+            for path, value in zip(targets, values[first:], strict=False)
             if value != UNUSED
         ]
         return bool(targets) and all(each)
@@ -264,13 +275,13 @@ class ServoBoard:
                 self._written_s, self._is_lost = now_s, False
             if self._overrides[path] != is_set:
                 self._overrides[path] = is_set
-                for gone in YOKE if path == OVERRIDE_JOYSTICK else (_THROTTLE,):
+                for gone in (*YOKE, *_WHEELS) if path == OVERRIDE_JOYSTICK else (_THROTTLE,):
                     self._written.pop(gone, None)
             return True
-        override = OVERRIDE_JOYSTICK if path in YOKE else OVERRIDE_THROTTLES
-        if path not in (*YOKE, _THROTTLE) or not self._overrides[override]:
+        override = OVERRIDE_THROTTLES if path == _THROTTLE else OVERRIDE_JOYSTICK
+        if path not in (*YOKE, *_WHEELS, _THROTTLE) or not self._overrides[override]:
             return False
-        least = 0.0 if path == _THROTTLE else -1.0
+        least = -1.0 if path in YOKE else 0.0
         self._written[path] = min(1.0, max(least, value))
         self._written_s, self._is_lost = now_s, False
         return True

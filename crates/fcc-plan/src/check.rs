@@ -13,9 +13,7 @@ use crate::item::{Altitude, AltitudeDatum, Item, Loiter, LoiterEnd, Place, Speed
 use crate::outline::Outline;
 use crate::plan::{Plan, limits};
 use crate::problem::Problem;
-
-/// What flies above a runway is so high at least, m.
-const LEAST_M: f64 = 30.0;
+use crate::runway::{last_leg, runway_problem};
 
 /// What flies the plan, and in what wind.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -44,6 +42,8 @@ pub struct Conditions {
 const TURNS: f64 = 1.1;
 const SLOWEST_SHARE: f64 = 0.3;
 const LEAST_S: f64 = 30.0;
+/// A landing where it took off, from over the runway, m.
+const PATTERN_M: f64 = 20_000.0;
 
 /// A leg between two places, with its altitudes above sea level, m.
 #[derive(Clone, Copy, Debug)]
@@ -134,6 +134,10 @@ pub fn longest_s(plan: &Plan, conditions: &Conditions) -> f64 {
                     LoiterEnd::Seconds(seconds) => seconds + turn_s,
                     LoiterEnd::Altitude | LoiterEnd::Never => 2.0 * turn_s,
                 }
+            }
+            Item::Land { place: None, .. } => {
+                let back_m = legs.iter().map(|leg| leg.length_m).sum::<f64>() + PATTERN_M;
+                back_m / slowest(conditions.airspeed_mps)
             }
             Item::Jump { to, times } => {
                 let again: f64 = of_item.get(to..=n).unwrap_or_default().iter().sum();
@@ -244,7 +248,11 @@ pub(crate) fn legs(plan: &Plan, conditions: &Conditions, problems: &mut Vec<Prob
 /// where it is not known.
 pub fn landing_elevation_m(plan: &Plan) -> Option<f64> {
     let altitude = plan.items.iter().find_map(|item| match item {
-        Item::Land { altitude, .. } => Some(*altitude),
+        Item::Land {
+            place: Some(_),
+            altitude,
+            ..
+        } => Some(*altitude),
         _ => None,
     })?;
     above_sea_level(altitude, plan).ok()
@@ -317,60 +325,6 @@ fn climb(leg: &Leg, conditions: &Conditions) -> Option<(&'static str, String)> {
         );
         ("altitude", message)
     })
-}
-
-/// Whether a landing's leg leaves time for the glide path after the turn onto it.
-fn last_leg(
-    plan: &Plan,
-    leg: &Leg,
-    begins_m: f64,
-    conditions: &Conditions,
-) -> Option<(&'static str, String)> {
-    if !matches!(plan.item(leg.item), Some(Item::Land { .. })) {
-        return None;
-    }
-    let above_m = leg.from.1 - leg.to.1;
-    // A plan that only lands begins where the aircraft is.
-    if above_m != 0.0 && above_m < LEAST_M {
-        let message = format!(
-            "the leg to the landing begins {above_m:.0} m above the runway: begin it at least \
-             {LEAST_M:.0} m above"
-        );
-        return Some(("approach", message));
-    }
-    let straight_m = leg.length_m - begins_m;
-    (straight_m < conditions.final_m).then(|| {
-        let message = format!(
-            "the leg to the landing is straight for {:.0} m behind its turn, and needs {:.0} m: \
-             move the waypoint before it away",
-            straight_m.max(0.0),
-            conditions.final_m
-        );
-        ("approach", message)
-    })
-}
-
-/// What is behind a landing is not flown, and a take-off climbs before it turns.
-fn runway_problem(plan: &Plan, number: usize, item: &Item) -> Option<(&'static str, String)> {
-    match item {
-        Item::Takeoff { altitude, .. } => {
-            let (home_m, altitude_m) = (plan.home?.altitude_m, above_sea_level(*altitude, plan));
-            (altitude_m.ok()? < home_m + LEAST_M).then(|| {
-                let message = format!("give at least {LEAST_M:.0} m above home: it turns there");
-                ("altitude", message)
-            })
-        }
-        Item::Land { .. } => {
-            let behind = plan.items.get(number..)?;
-            let flown = behind.iter().position(|item| item.place().is_some())?;
-            let message = format!(
-                "item {} is behind a landing, where the flight ends: remove it",
-                number + 1 + flown
-            );
-            Some(("command", message))
-        }
-        _ => None,
-    }
 }
 
 /// Whether the turn at the end of a leg has room on it, beside that at its begin, and

@@ -95,11 +95,11 @@ pub enum Item {
     Loiter(Loiter),
     /// Fly home, or to a nearer rally point (20). Ends the plan.
     Return,
-    /// Land at a place (21).
+    /// Land (21).
     Land {
-        /// Where to touch down.
-        place: Place,
-        /// Of the ground there.
+        /// Where to touch down; none: where the aircraft took off, in that direction.
+        place: Option<Place>,
+        /// Of the ground at the place.
         altitude: Altitude,
         /// Climb to this altitude in m above home when the landing is given up;
         /// none: the aircraft's usual one.
@@ -172,8 +172,9 @@ impl Item {
     /// Its place, if it has one.
     pub const fn place(&self) -> Option<Place> {
         match *self {
-            Self::Waypoint { place, .. } | Self::Land { place, .. } => Some(place),
+            Self::Waypoint { place, .. } => Some(place),
             Self::Loiter(Loiter { place, .. })
+            | Self::Land { place, .. }
             | Self::Takeoff { place, .. }
             | Self::LandStart { place } => place,
             _ => None,

@@ -26,6 +26,7 @@ mod plan;
 mod problem;
 mod qgc_plan;
 mod route;
+mod runway;
 mod wpl;
 
 pub use check::{Conditions, check, landing_elevation_m, longest_s};

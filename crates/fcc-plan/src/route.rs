@@ -26,7 +26,7 @@ impl Steps {
     /// Of a plan: step n is item n + 1.
     ///
     /// # Errors
-    /// Every item that is not flown yet, with what to do.
+    /// Every item that is not flown, with what to do.
     ///
     /// ```
     /// use fcc_core::flight::route::RouteConfig;
@@ -133,7 +133,11 @@ fn step_of(
         Item::ChangeSpeed {
             throttle_percent: Some(_),
             ..
-        } => return Err(refused("a throttle", "give a speed alone, and -1 for it")),
+        } => {
+            let why = "a throttle is not flown, because the throttle holds the airspeed: give a \
+                       speed alone, and -1 for it";
+            return Err(("command", why.to_owned()));
+        }
         Item::ChangeSpeed { speed, .. } => match speed {
             None => Step::Mark,
             Some(Speed::AirspeedMps(mps)) => Step::Airspeed(mps),
@@ -151,7 +155,14 @@ fn step_of(
             pitch_rad: pitch_deg.filter(|deg| *deg > 0.0).map(f64::to_radians),
         },
         Item::Land {
-            place,
+            place: None,
+            abort_altitude_m,
+            ..
+        } => Step::LandBack {
+            height_m: abort_height_m(abort_altitude_m, config),
+        },
+        Item::Land {
+            place: Some(place),
             altitude,
             abort_altitude_m,
         } => {
@@ -161,8 +172,7 @@ fn step_of(
                 return Err(("command", needs.to_owned()));
             }
             let elevation_m = level(altitude)?;
-            let abort_m = abort_altitude_m.filter(|above_m| *above_m > 0.0);
-            let abort_m = abort_m.unwrap_or(config.return_height_m);
+            let abort_m = abort_height_m(abort_altitude_m, config);
             let home_m = plan.home.map_or(elevation_m, |home| home.altitude_m);
             Step::Land {
                 at: place.plane(),
@@ -173,8 +183,10 @@ fn step_of(
     })
 }
 
-fn refused(what: &str, instead: &str) -> Refused {
-    ("command", format!("{what} is not flown yet: {instead}"))
+/// Above home or the runway, to which it climbs when a landing is given up, m.
+fn abort_height_m(given_m: Option<f64>, config: &RouteConfig) -> f64 {
+    let given_m = given_m.filter(|above_m| *above_m > 0.0);
+    given_m.unwrap_or(config.return_height_m)
 }
 
 /// The centre line from home to the place of a take-off.

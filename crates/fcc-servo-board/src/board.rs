@@ -8,6 +8,9 @@ use crate::value::{Readings, Value};
 /// Rows of DATA that are written.
 const ROW_JOYSTICK: i32 = 8;
 const ROW_THROTTLES: i32 = 25;
+/// Their columns 3, and 2 and 3.
+const ROW_FLAPS: i32 = 13;
+const ROW_BRAKES: i32 = 14;
 
 /// Where servos go.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
@@ -43,6 +46,11 @@ pub struct Drive {
     pub surfaces: Option<[f32; 3]>,
     /// 0 to 1.
     pub throttle: Option<f32>,
+    /// 0 up to 1 fully extended, once they were written. In a failsafe they stay.
+    pub flaps: Option<f32>,
+    /// Of the left and the right wheel, 0 released to 1 full, as the flaps: in the air
+    /// they are released.
+    pub brakes: Option<[f32; 2]>,
 }
 
 /// A servo board. `P` tells computers apart: the address and port over UDP, `()`
@@ -61,6 +69,8 @@ pub struct Board<P = ()> {
     /// What was written since the override was set.
     yoke: [Option<f32>; 3],
     throttle: Option<f32>,
+    /// Flaps, left and right brake: with the joystick's override.
+    wheels: [Option<f32>; 3],
     /// When surfaces or throttle were last written while control was held, or it
     /// was taken.
     written_ms: u32,
@@ -78,6 +88,7 @@ impl<P: Copy + PartialEq> Board<P> {
             overrides: [false; 2],
             yoke: [None; 3],
             throttle: None,
+            wheels: [None; 3],
             written_ms: 0,
             is_lost: false,
             replied_ms: None,
@@ -164,6 +175,7 @@ impl<P: Copy + PartialEq> Board<P> {
     pub fn drive(&self) -> Drive {
         let control = self.control();
         let [joystick, throttles] = self.overrides;
+        let [flaps, left, right] = self.wheels;
         let safe = self.config.failsafe;
         let (surfaces, throttle) = if control == Control::Failsafe {
             let surfaces = [safe.elevator, safe.aileron, safe.rudder];
@@ -180,6 +192,8 @@ impl<P: Copy + PartialEq> Board<P> {
             control,
             surfaces: surfaces.filter(|_| joystick),
             throttle: throttle.filter(|_| throttles),
+            flaps,
+            brakes: left.zip(right).map(|(left, right)| [left, right]),
         }
     }
 
@@ -200,13 +214,15 @@ impl<P: Copy + PartialEq> Board<P> {
         index: i32,
         columns: [Option<f32>; 8],
     ) -> Result<(), NotForBoard> {
-        let targets: &[Value] = match index {
-            ROW_JOYSTICK => &[Value::Elevator, Value::Aileron, Value::Rudder],
-            ROW_THROTTLES => &[Value::Throttle],
+        let (first, targets): (usize, &[Value]) = match index {
+            ROW_JOYSTICK => (0, &[Value::Elevator, Value::Aileron, Value::Rudder]),
+            ROW_THROTTLES => (0, &[Value::Throttle]),
+            ROW_FLAPS => (3, &[Value::Flaps]),
+            ROW_BRAKES => (2, &[Value::LeftBrake, Value::RightBrake]),
             _ => return Err(NotForBoard::NoSuchValue),
         };
         let mut outcome = Ok(());
-        for (target, column) in targets.iter().zip(columns) {
+        for (target, column) in targets.iter().zip(columns.into_iter().skip(first)) {
             if let Some(value) = column {
                 outcome = outcome.and(self.write(now_ms, *target, value));
             }
@@ -224,7 +240,12 @@ impl<P: Copy + PartialEq> Board<P> {
                 self.set_override(now_ms, target, value >= 0.5);
                 return Ok(());
             }
-            Value::Elevator | Value::Aileron | Value::Rudder => joystick,
+            Value::Elevator
+            | Value::Aileron
+            | Value::Rudder
+            | Value::Flaps
+            | Value::LeftBrake
+            | Value::RightBrake => joystick,
             Value::Throttle => throttles,
             Value::Airspeed | Value::DifferentialPressure | Value::EngageSwitch => {
                 return Err(NotForBoard::NoSuchValue);
@@ -234,10 +255,14 @@ impl<P: Copy + PartialEq> Board<P> {
             return Err(NotForBoard::NotHeld);
         }
         let [elevator, aileron, rudder] = &mut self.yoke;
+        let [flaps, left, right] = &mut self.wheels;
         let (place, least) = match target {
             Value::Elevator => (elevator, -1.0),
             Value::Aileron => (aileron, -1.0),
             Value::Rudder => (rudder, -1.0),
+            Value::Flaps => (flaps, 0.0),
+            Value::LeftBrake => (left, 0.0),
+            Value::RightBrake => (right, 0.0),
             _ => (&mut self.throttle, 0.0),
         };
         *place = Some(value.clamp(least, 1.0));
@@ -260,7 +285,7 @@ impl<P: Copy + PartialEq> Board<P> {
         }
         *place = is_set;
         if of_joystick {
-            self.yoke = [None; 3];
+            (self.yoke, self.wheels) = ([None; 3], [None; 3]);
         } else {
             self.throttle = None;
         }
@@ -285,6 +310,9 @@ fn shown(
         Value::Aileron => surface(1),
         Value::Rudder => surface(2),
         Value::Throttle => drive.throttle.or(pilot.map(|pilot| pilot.throttle)),
+        Value::Flaps => drive.flaps,
+        Value::LeftBrake => drive.brakes.map(|[left, _]| left),
+        Value::RightBrake => drive.brakes.map(|[_, right]| right),
         Value::Airspeed | Value::DifferentialPressure | Value::EngageSwitch => readings.get(value),
     }
 }

@@ -39,10 +39,13 @@ pub(crate) enum Value {
     Aileron,
     Rudder,
     Throttle,
+    Flaps,
+    LeftBrake,
+    RightBrake,
 }
 
 impl Value {
-    pub(crate) const COUNT: usize = 9;
+    pub(crate) const COUNT: usize = 12;
 
     /// By its dataref; none if the board does not have it.
     pub(crate) fn of(path: &[u8], engage_switch: &str) -> Option<Self> {
@@ -57,6 +60,9 @@ impl Value {
             b"sim/joystick/yoke_roll_ratio" => Some(Self::Aileron),
             b"sim/joystick/yoke_heading_ratio" => Some(Self::Rudder),
             b"sim/flightmodel/engine/ENGN_thro_use[0]" => Some(Self::Throttle),
+            b"sim/cockpit2/controls/flap_ratio" => Some(Self::Flaps),
+            b"sim/cockpit2/controls/left_brake_ratio" => Some(Self::LeftBrake),
+            b"sim/cockpit2/controls/right_brake_ratio" => Some(Self::RightBrake),
             path if path == DIFFERENTIAL_PRESSURE.as_bytes() => Some(Self::DifferentialPressure),
             _ => None,
         }

@@ -119,6 +119,8 @@ fn drive(control: Control, surfaces: Option<[f32; 3]>, throttle: Option<f32>) ->
         control,
         surfaces,
         throttle,
+        flaps: None,
+        brakes: None,
     }
 }
 
@@ -149,6 +151,41 @@ fn surfaces_are_followed_once_control_is_taken() {
     bench.give(&left).unwrap();
     let held = drive(Control::Held, Some([-0.5, 1.0, 0.3]), Some(1.0));
     assert_eq!(bench.board.drive(), held);
+}
+
+#[test]
+fn flaps_and_brakes_stay_as_written_until_the_release() {
+    let [flaps, brakes] = [
+        "sim/cockpit2/controls/flap_ratio",
+        "sim/cockpit2/controls/left_brake_ratio",
+    ];
+    let mut bench = Bench::new();
+    assert_eq!(bench.give(&dref(flaps, 0.5)), Err(NotForBoard::NotHeld));
+    bench.take();
+    bench.give(&surfaces(0.1, -0.2, 0.3, 0.4)).unwrap();
+    assert_eq!(
+        (bench.board.drive().flaps, bench.board.drive().brakes),
+        (None, None)
+    );
+    // Column 3 of row 13, columns 2 and 3 of row 14.
+    let rows = [
+        row(13, &[AS_IT_IS, AS_IT_IS, AS_IT_IS, 0.5]),
+        row(14, &[1.0, 1.0, 0.25, 0.75]),
+    ];
+    bench
+        .give(&[b"DATA\0", &rows.concat()[..]].concat())
+        .unwrap();
+    let driven = |bench: &Bench| (bench.board.drive().flaps, bench.board.drive().brakes);
+    assert_eq!(driven(&bench), (Some(0.5), Some([0.25, 0.75])));
+    bench.give(&dref(brakes, 3.0)).unwrap();
+    bench.give(&dref(flaps, -1.0)).unwrap();
+    bench.subscribe(&[flaps, brakes]);
+    assert_eq!(bench.wait(20), [[(100, 0.0), (101, 1.0)]]);
+    bench.wait(200);
+    assert_eq!(bench.board.control(), Control::Failsafe);
+    assert_eq!(driven(&bench), (Some(0.0), Some([1.0, 0.75])));
+    bench.give(&dref(JOYSTICK, 0.0)).unwrap();
+    assert_eq!(driven(&bench), (None, None));
 }
 
 #[test]

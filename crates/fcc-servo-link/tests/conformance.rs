@@ -72,6 +72,9 @@ impl<W: Way> ActuatorBench for Bench<W> {
             elevator: share,
             aileron: -share,
             rudder: 0.5 * share,
+            flaps: Some(0.5),
+            left_brake: Some(0.25),
+            right_brake: Some(0.125),
             ..Surfaces::IDLE
         }
     }

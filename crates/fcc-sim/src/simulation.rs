@@ -85,6 +85,11 @@ impl SimSensor {
         &self.aircraft
     }
 
+    /// The same, to be moved in an experiment.
+    pub fn aircraft_mut(&mut self) -> &mut Aircraft {
+        &mut self.aircraft
+    }
+
     fn switch(&self) -> Switch {
         if let Some(switch) = self.link.switch() {
             return switch;

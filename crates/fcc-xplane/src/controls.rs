@@ -9,7 +9,7 @@
 
 use fcc_core::flight::Surfaces;
 
-use crate::config::{Output, XPlaneConfig};
+use crate::config::{Output, PlantKind, XPlaneConfig};
 use crate::deflections::Deflections;
 use crate::port::Errno;
 use crate::protocol::{PathError, data, dref};
@@ -26,9 +26,9 @@ pub(crate) const OCCASIONAL: [&str; 5] = [
     "sim/cockpit2/controls/left_brake_ratio",
     "sim/cockpit2/controls/right_brake_ratio",
 ];
-/// Rows of Data Output.
-const ROW_JOYSTICK: i32 = 8;
-const ROW_THROTTLES: i32 = 25;
+/// A servo board gets flaps and brakes in one of so many datagrams: a slow serial line
+/// has no room for them in each.
+const WHEELS_EVERY: u8 = 8;
 
 /// How often the release is sent in a row: datagrams get lost, and afterwards
 /// there may be no program left to repeat it.
@@ -61,8 +61,23 @@ enum Encoding {
     },
     Data {
         engines: usize,
-        datagram: [u8; data::size(2)],
+        datagram: [u8; data::size(4)],
+        /// Of a servo board, where flaps and brakes are rows, too: datagrams since
+        /// they were in one, up to [`WHEELS_EVERY`].
+        wheels: Option<u8>,
     },
+}
+
+impl Encoding {
+    const fn is_of_board(&self) -> bool {
+        matches!(
+            self,
+            Self::Data {
+                wheels: Some(_),
+                ..
+            }
+        )
+    }
 }
 
 impl Controls {
@@ -82,7 +97,8 @@ impl Controls {
             }
             Output::Data => Encoding::Data {
                 engines,
-                datagram: [0; data::size(2)],
+                datagram: [0; data::size(4)],
+                wheels: (config.plant == PlantKind::ServoBoard).then_some(0),
             },
         };
         Ok(Self {
@@ -112,7 +128,9 @@ impl Controls {
         surfaces: &Surfaces,
         mut send: impl FnMut(&[u8]) -> Result<(), Errno>,
     ) -> Result<(), Errno> {
-        self.has_brakes |= surfaces.left_brake.or(surfaces.right_brake).is_some();
+        // A board has no override of its own for them.
+        let is_simulator = !self.encoding.is_of_board();
+        self.has_brakes |= is_simulator && surfaces.left_brake.or(surfaces.right_brake).is_some();
         self.deflect(Deflections::of(surfaces), &mut send)
     }
 
@@ -122,6 +140,7 @@ impl Controls {
         let occasional = given.iter().flatten().count();
         match &self.encoding {
             Encoding::Dref { writes } => writes.len() - OCCASIONAL.len() + occasional,
+            Encoding::Data { .. } if self.encoding.is_of_board() => 1,
             Encoding::Data { .. } => 1 + occasional,
         }
     }
@@ -196,15 +215,29 @@ impl Controls {
                     }
                 }
             }
-            Encoding::Data { engines, datagram } => {
-                let [elevator, aileron, rudder] = to.yoke;
-                let joystick = [elevator, aileron, rudder, None, None, None, None, None];
-                let throttles =
-                    core::array::from_fn(|engine| to.throttle.filter(|_| engine < *engines));
-                let rows = [(ROW_JOYSTICK, joystick), (ROW_THROTTLES, throttles)]
-                    .map(|(index, columns)| data::Row { index, columns });
-                if let Some(datagram) = data::write(datagram, &rows) {
+            Encoding::Data {
+                engines,
+                datagram,
+                wheels,
+            } => {
+                let all = to.rows(*engines);
+                let mut rows = all.get(..2);
+                if let Some(since) = wheels {
+                    let moves = to.moves_wheels();
+                    if moves && *since == 0 {
+                        rows = Some(&all);
+                    }
+                    *since = if moves {
+                        (*since + 1) % WHEELS_EVERY
+                    } else {
+                        0
+                    };
+                }
+                if let Some(datagram) = rows.and_then(|rows| data::write(datagram, rows)) {
                     outcome = send(datagram);
+                }
+                if wheels.is_some() {
+                    return outcome;
                 }
                 for (write, value) in self.occasional.iter_mut().zip(to.occasional) {
                     if let Some(value) = value {
@@ -236,150 +269,4 @@ fn write_to(path: &str) -> Result<Write, PathError> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The datagrams that were sent.
-    fn sent(act: impl FnOnce(&mut dyn FnMut(&[u8]) -> Result<(), Errno>)) -> Vec<Vec<u8>> {
-        let mut datagrams = Vec::new();
-        act(&mut |datagram| {
-            let each = datagram.chunks(dref::WRITE_BYTES);
-            datagrams.extend(each.map(<[u8]>::to_vec));
-            Ok(())
-        });
-        datagrams
-    }
-
-    fn named(datagrams: &[Vec<u8>]) -> Vec<(String, f32)> {
-        datagrams
-            .iter()
-            .map(|datagram| {
-                assert_eq!(datagram.len(), 509);
-                assert_eq!(&datagram[..5], b"DREF\0");
-                let value = f32::from_le_bytes(datagram[5..9].try_into().unwrap());
-                let path = datagram[9..].split(|byte| *byte == 0).next().unwrap();
-                (String::from_utf8(path.to_vec()).unwrap(), value)
-            })
-            .collect()
-    }
-
-    const SURFACES: Surfaces = Surfaces {
-        throttle: 0.75,
-        elevator: 0.5,
-        aileron: -0.25,
-        rudder: 0.125,
-        ..Surfaces::IDLE
-    };
-
-    #[test]
-    fn each_surface_and_engine_is_written_separately() {
-        let config = XPlaneConfig {
-            engines: 2,
-            ..XPlaneConfig::default()
-        };
-        let mut controls = Controls::new(&config).unwrap();
-        let writes = named(&sent(|send| controls.set(&SURFACES, send).unwrap()));
-        let expected = [
-            ("sim/joystick/yoke_pitch_ratio", 0.5),
-            ("sim/joystick/yoke_roll_ratio", -0.25),
-            ("sim/joystick/yoke_heading_ratio", 0.125),
-            ("sim/flightmodel/engine/ENGN_thro_use[0]", 0.75),
-            ("sim/flightmodel/engine/ENGN_thro_use[1]", 0.75),
-        ];
-        assert_eq!(writes, expected.map(|(path, v)| (path.to_owned(), v)));
-    }
-
-    #[test]
-    fn a_release_centres_first_and_clears_the_overrides_last() {
-        let mut controls = Controls::new(&XPlaneConfig::default()).unwrap();
-        sent(|send| controls.set(&SURFACES, send).unwrap());
-        let writes = named(&sent(|send| controls.release(send).unwrap()));
-        let expected = [
-            "sim/joystick/yoke_pitch_ratio",
-            "sim/joystick/yoke_roll_ratio",
-            "sim/joystick/yoke_heading_ratio",
-            "sim/operation/override/override_joystick",
-            "sim/operation/override/override_throttles",
-        ];
-        assert_eq!(writes, expected.map(|path| (path.to_owned(), 0.0)));
-    }
-
-    #[test]
-    fn the_trim_is_written_last_and_stays_at_a_release() {
-        for output in [Output::Dref, Output::Data] {
-            let config = XPlaneConfig {
-                output,
-                ..XPlaneConfig::default()
-            };
-            let mut controls = Controls::new(&config).unwrap();
-            let trimmed = Surfaces {
-                elevator_trim: Some(-0.375),
-                ..SURFACES
-            };
-            let mut datagrams = sent(|send| controls.set(&trimmed, send).unwrap());
-            let last = named(&[datagrams.pop().unwrap()]);
-            let expected = ("sim/flightmodel/controls/elv_trim".to_owned(), -0.375);
-            assert_eq!(last, [expected]);
-            let without = sent(|send| controls.set(&SURFACES, send).unwrap());
-            assert_eq!(without, datagrams);
-            let released = sent(|send| controls.release(send).unwrap());
-            assert!(!released.concat().windows(8).any(|path| path == b"elv_trim"));
-        }
-    }
-
-    #[test]
-    fn by_rows_it_is_one_datagram_with_joystick_and_throttles() {
-        let config = XPlaneConfig {
-            output: Output::Data,
-            engines: 2,
-            ..XPlaneConfig::default()
-        };
-        let mut controls = Controls::new(&config).unwrap();
-        let datagrams = sent(|send| controls.set(&SURFACES, send).unwrap());
-        let mut expected = b"DATA\0\x08\0\0\0".to_vec();
-        for column in [
-            0.5_f32, -0.25, 0.125, -999.0, -999.0, -999.0, -999.0, -999.0,
-        ] {
-            expected.extend(column.to_le_bytes());
-        }
-        expected.extend([25, 0, 0, 0]);
-        for column in [
-            0.75_f32, 0.75, -999.0, -999.0, -999.0, -999.0, -999.0, -999.0,
-        ] {
-            expected.extend(column.to_le_bytes());
-        }
-        assert_eq!(datagrams, [expected]);
-    }
-
-    #[test]
-    fn values_out_of_range_are_limited_or_not_sent() {
-        let mut controls = Controls::new(&XPlaneConfig::default()).unwrap();
-        let surfaces = Surfaces {
-            throttle: -3.0,
-            elevator: f64::NAN,
-            aileron: f64::INFINITY,
-            rudder: -7.0,
-            elevator_trim: Some(1.5),
-            ..Surfaces::IDLE
-        };
-        let writes = named(&sent(|send| controls.set(&surfaces, send).unwrap()));
-        let expected = [
-            ("sim/joystick/yoke_roll_ratio", 1.0),
-            ("sim/joystick/yoke_heading_ratio", -1.0),
-            ("sim/flightmodel/engine/ENGN_thro_use[0]", 0.0),
-            ("sim/flightmodel/controls/elv_trim", 1.0),
-        ];
-        assert_eq!(writes, expected.map(|(path, v)| (path.to_owned(), v)));
-    }
-
-    #[test]
-    fn one_refused_datagram_does_not_prevent_the_others() {
-        let mut controls = Controls::new(&XPlaneConfig::default()).unwrap();
-        let mut tried = 0;
-        let outcome = controls.release(|_| {
-            tried += 1;
-            if tried == 1 { Err(11) } else { Ok(()) }
-        });
-        assert_eq!((outcome, tried), (Err(11), 5));
-    }
-}
+mod tests;

@@ -9,6 +9,15 @@ use core::iter;
 
 use fcc_core::flight::Surfaces;
 
+use crate::protocol::data::Row;
+
+/// Rows of Data Output.
+const ROW_JOYSTICK: i32 = 8;
+const ROW_THROTTLES: i32 = 25;
+/// Those of flaps and brakes: flaps are column 3, brakes 2 and 3.
+const ROW_FLAPS: i32 = 13;
+const ROW_BRAKES: i32 = 14;
+
 /// The values to write; `None` leaves a control unchanged.
 #[derive(Clone, Copy)]
 pub(crate) struct Deflections {
@@ -46,6 +55,36 @@ impl Deflections {
             throttle: ratio(surfaces.throttle, 0.0),
             occasional: [trim, flaps, overrides, left, right],
         }
+    }
+
+    /// As rows: joystick and throttles, then those of flaps and brakes, which a servo
+    /// board has.
+    pub(crate) fn rows(&self, engines: usize) -> [Row; 4] {
+        let [elevator, aileron, rudder] = self.yoke;
+        let [_, flaps, _, left, right] = self.occasional;
+        let none = None;
+        [
+            (
+                ROW_JOYSTICK,
+                [elevator, aileron, rudder, none, none, none, none, none],
+            ),
+            (
+                ROW_THROTTLES,
+                core::array::from_fn(|engine| self.throttle.filter(|_| engine < engines)),
+            ),
+            (ROW_FLAPS, [none, none, none, flaps, none, none, none, none]),
+            (
+                ROW_BRAKES,
+                [none, none, left, right, none, none, none, none],
+            ),
+        ]
+        .map(|(index, columns)| Row { index, columns })
+    }
+
+    /// Whether there are flaps or brakes.
+    pub(crate) fn moves_wheels(&self) -> bool {
+        let [_, flaps, _, left, right] = self.occasional;
+        flaps.or(left).or(right).is_some()
     }
 
     /// Elevator, aileron, rudder, the throttle of every engine, then what is

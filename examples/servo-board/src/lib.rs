@@ -1,5 +1,5 @@
-//! The loop of a servo board's firmware: a UART, a pitot tube, a switch and four
-//! servos. `no_std`; what it takes for a certain microcontroller is a
+//! The loop of a servo board's firmware: a UART, a pitot tube, a switch, the
+//! servos of the surfaces, of flaps and of brakes. `no_std`; what it takes for a certain microcontroller is a
 //! [`Hardware`] of it.
 //!
 //! ```sh
@@ -24,14 +24,15 @@ pub trait Hardware {
     fn differential_pressure_pa(&mut self) -> Option<f32>;
     /// The engage switch, debounced.
     fn is_switched_on(&mut self) -> bool;
-    /// Sets the pulses of elevator, aileron, rudder and throttle, µs.
-    fn set_pulses_us(&mut self, pulses: [f32; 4]);
+    /// Sets the pulses of elevator, aileron, rudder, throttle, flaps, left and right
+    /// brake, µs. A nose wheel is connected to the rudder.
+    fn set_pulses_us(&mut self, pulses: [f32; 7]);
     /// Restarts the watchdog timer.
     fn feed_watchdog(&mut self);
 }
 
-/// A servo's middle position and its travel to either side, and the throttle's
-/// idle position and its travel, µs.
+/// A servo's middle position and its travel to either side, and the position of an
+/// idle throttle, flaps that are up and a brake that is released, and their travel, µs.
 const MIDDLE_US: f32 = 1_500.0;
 const TRAVEL_US: f32 = 500.0;
 const IDLE_US: f32 = 1_000.0;
@@ -87,11 +88,16 @@ impl Firmware {
                 .surfaces
                 .unwrap_or([safe.elevator, safe.aileron, safe.rudder]);
         let throttle = drive.throttle.unwrap_or(safe.throttle);
+        let flaps = drive.flaps.unwrap_or(0.0);
+        let [left, right] = drive.brakes.unwrap_or_default();
         hardware.set_pulses_us([
             MIDDLE_US + TRAVEL_US * elevator,
             MIDDLE_US + TRAVEL_US * aileron,
             MIDDLE_US + TRAVEL_US * rudder,
             IDLE_US + FULL_US * throttle,
+            IDLE_US + FULL_US * flaps,
+            IDLE_US + FULL_US * left,
+            IDLE_US + FULL_US * right,
         ]);
         hardware.feed_watchdog();
         drive.control
@@ -109,7 +115,7 @@ mod tests {
         now_ms: u32,
         line: VecDeque<u8>,
         sent: Vec<u8>,
-        pulses: [f32; 4],
+        pulses: [f32; 7],
         fed: u32,
     }
 
@@ -134,7 +140,7 @@ mod tests {
             true
         }
 
-        fn set_pulses_us(&mut self, pulses: [f32; 4]) {
+        fn set_pulses_us(&mut self, pulses: [f32; 7]) {
             self.pulses = pulses;
         }
 
@@ -152,7 +158,9 @@ mod tests {
         let (mut firmware, mut bench) = (Firmware::default(), Bench::default());
         let mut line = Encoder::new();
         assert_eq!(firmware.step(&mut bench), Control::Free);
-        let idle = [1_500.0, 1_500.0, 1_500.0, 1_000.0];
+        let idle = [
+            1_500.0, 1_500.0, 1_500.0, 1_000.0, 1_000.0, 1_000.0, 1_000.0,
+        ];
         assert_eq!(bench.pulses, idle);
         for message in [
             b"RREF\0\x32\0\0\0\x01\0\0\0fccd/servo_board/differential_pressure_pa".to_vec(),
@@ -162,13 +170,18 @@ mod tests {
             dref("sim/joystick/yoke_roll_ratio", -1.0),
             dref("sim/joystick/yoke_heading_ratio", 0.5),
             dref("sim/flightmodel/engine/ENGN_thro_use[0]", 0.25),
+            dref("sim/cockpit2/controls/flap_ratio", 0.5),
+            dref("sim/cockpit2/controls/left_brake_ratio", 0.0),
+            dref("sim/cockpit2/controls/right_brake_ratio", 0.75),
         ] {
             let mut frame = [0; MAX_FRAME];
             bench.line.extend(line.frame(&message, &mut frame).unwrap());
         }
         bench.now_ms = 20;
         assert_eq!(firmware.step(&mut bench), Control::Held);
-        assert_eq!(bench.pulses, [2_000.0, 1_000.0, 1_750.0, 1_250.0]);
+        let surfaces = [2_000.0, 1_000.0, 1_750.0, 1_250.0];
+        assert_eq!(bench.pulses[..4], surfaces);
+        assert_eq!(bench.pulses[4..], [1_500.0, 1_000.0, 1_750.0]);
         let mut computer = Decoder::new();
         let mut replies = Vec::new();
         for byte in &bench.sent {
@@ -180,7 +193,9 @@ mod tests {
         assert_eq!(firmware.step(&mut bench), Control::Held);
         bench.now_ms = 220;
         assert_eq!(firmware.step(&mut bench), Control::Failsafe);
-        assert_eq!(bench.pulses, idle);
+        assert_eq!(bench.pulses[..4], idle[..4]);
+        // Flaps and brakes stay.
+        assert_eq!(bench.pulses[4..], [1_500.0, 1_000.0, 1_750.0]);
         assert_eq!(bench.fed, 4);
     }
 }

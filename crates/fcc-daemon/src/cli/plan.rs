@@ -109,6 +109,8 @@ pub enum PlanOrder {
     },
     /// Fly to the nearest of home and the rally points, and circle there
     Return,
+    /// Land: at the nearest landing of the plan, or without one where the aircraft took off
+    Land,
     /// Give the landing up: climb, and land again
     GoAround,
 }

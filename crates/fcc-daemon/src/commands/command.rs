@@ -167,6 +167,7 @@ impl From<&PlanOrder> for Command {
                 ("go_to_altitude_m", altitude_ft * FOOT_M),
             ]),
             PlanOrder::Return => Self::set([("return_home", 1.0)]),
+            PlanOrder::Land => Self::set([("land", 1.0)]),
             PlanOrder::GoAround => Self::set([("go_around", 1.0)]),
         }
     }

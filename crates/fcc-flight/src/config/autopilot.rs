@@ -293,6 +293,9 @@ section! {
     RunwaySection for RunwayConfig {
         /// Indicated airspeed at which the nose is raised.
         rotate_kt => rotate_mps * KNOT_MPS,
+        /// A take-off from the hand begins with this acceleration along the aircraft; 0: it
+        /// takes off on its wheels.
+        launch_g => launch_mps2 * GRAVITY_MPS2,
         /// A take-off that has not reached it within this way brakes.
         longest_roll_m => longest_roll_m * SI,
         /// Indicated airspeed of the climb: below it, its pitch is reduced.
@@ -347,5 +350,20 @@ section! {
         max_throttle_rate_per_s => max_throttle_rate_per_s * SI,
         /// Throttle for level flight at the reference airspeed.
         trim_throttle => trim_throttle * SI,
+    }
+}
+
+/// A nose that is held up shows up to 1 g along the aircraft: 0.7 g at 45°.
+const LEAST_LAUNCH_G: f64 = 0.8;
+
+/// Of `[autopilot.runway]`: a throw is more than what a hand does otherwise.
+pub(super) fn launch(runway: &RunwaySection, report: &mut impl FnMut(&[&str], String)) {
+    let launch_g = runway.launch_g;
+    if launch_g > 0.0 && launch_g < LEAST_LAUNCH_G {
+        let message = format!(
+            "is {launch_g}: choose at least {LEAST_LAUNCH_G}, or 0 for a take-off on wheels; \
+             holding the nose up shows 0.7"
+        );
+        report(&["autopilot.runway.launch_g"], message);
     }
 }

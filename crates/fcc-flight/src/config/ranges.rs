@@ -161,6 +161,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("autopilot.airspeed.max_throttle_rate_per_s", 0.01, 100.0),
     ("autopilot.airspeed.trim_throttle", 0.0, 1.0),
     ("autopilot.runway.rotate_kt", 5.0, 150.0),
+    ("autopilot.runway.launch_g", 0.0, 10.0),
     ("autopilot.runway.longest_roll_m", 1.0, 5000.0),
     ("autopilot.runway.climb_kt", 5.0, 200.0),
     ("autopilot.runway.climb_pitch_deg", 1.0, 30.0),

@@ -2,7 +2,7 @@
 
 use fcc_core::flight::control::Envelope;
 
-use super::autopilot::EnvelopeSection;
+use super::autopilot::{self, EnvelopeSection};
 use super::{
     ActuatorEntry, AutopilotSection, Config, GuidanceSection, NavigationMethod, SensorEntry, board,
     contingency, lines, navigation, phone, raw_readings, servo_board, servos, shared_devices,
@@ -64,6 +64,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
         );
     }
     plan(config, report);
+    autopilot::launch(&config.autopilot.runway, report);
     contingency::check(config, report);
     paths(config, report);
     connections(config, report);

@@ -49,7 +49,7 @@ pub struct ServoSection {
     /// Another chip than that of all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pwm: Option<PathBuf>,
-    /// The pulse at -1, of a throttle at 0.
+    /// The pulse at -1, of what is 0 to 1 at 0.
     #[serde(default = "min_us")]
     pub min_us: f64,
     /// The pulse at 0.
@@ -98,6 +98,14 @@ pub enum DrivesChoice {
     Rudder,
     /// The throttle.
     Throttle,
+    /// The flaps.
+    Flaps,
+    /// The left wheel's brake.
+    LeftBrake,
+    /// The right wheel's brake.
+    RightBrake,
+    /// The nose wheel.
+    NoseWheel,
 }
 
 /// What servos do while nobody has control.
@@ -135,6 +143,10 @@ impl ServoSection {
                 DrivesChoice::Aileron => Drives::Aileron,
                 DrivesChoice::Rudder => Drives::Rudder,
                 DrivesChoice::Throttle => Drives::Throttle,
+                DrivesChoice::Flaps => Drives::Flaps,
+                DrivesChoice::LeftBrake => Drives::LeftBrake,
+                DrivesChoice::RightBrake => Drives::RightBrake,
+                DrivesChoice::NoseWheel => Drives::NoseWheel,
             },
             min_us: self.min_us,
             centre_us: self.centre_us,
@@ -252,7 +264,7 @@ impl ServosSection {
             if !is_out && let Err(error) = channel.to_linux().validate() {
                 let key = match error {
                     ServoError::Failsafe { .. } => "failsafe",
-                    ServoError::ThrottleTrim => "trim",
+                    ServoError::Trim => "trim",
                     _ => "min_us",
                 };
                 wrong(key, error.to_string());

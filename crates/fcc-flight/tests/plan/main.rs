@@ -2,6 +2,7 @@
 //! geodesics; without a call of the allocator.
 #![cfg(test)]
 
+mod back;
 mod battery;
 mod contingency;
 mod drawn_fences;

@@ -13,23 +13,47 @@ pub enum Drives {
     Rudder,
     /// 0 to 1, of a servo or of a motor's controller.
     Throttle,
+    /// 0 up to 1 fully extended.
+    Flaps,
+    /// 0 released to 1 full.
+    LeftBrake,
+    /// 0 released to 1 full.
+    RightBrake,
+    /// -1 to 1, positive to the right.
+    NoseWheel,
 }
 
 impl Drives {
     /// The least and the most of this output.
     pub const fn range(self) -> (f64, f64) {
-        match self {
-            Self::Throttle => (0.0, 1.0),
-            Self::Elevator | Self::Aileron | Self::Rudder => (-1.0, 1.0),
+        if self.has_centre() {
+            (-1.0, 1.0)
+        } else {
+            (0.0, 1.0)
         }
     }
 
-    const fn of(self, surfaces: &Surfaces) -> f64 {
+    /// Whether it goes to both sides of a middle.
+    const fn has_centre(self) -> bool {
         match self {
-            Self::Elevator => surfaces.elevator,
-            Self::Aileron => surfaces.aileron,
-            Self::Rudder => surfaces.rudder,
-            Self::Throttle => surfaces.throttle,
+            Self::Elevator | Self::Aileron | Self::Rudder | Self::NoseWheel => true,
+            Self::Throttle | Self::Flaps | Self::LeftBrake | Self::RightBrake => false,
+        }
+    }
+
+    /// None leaves it as it is.
+    fn of(self, surfaces: &Surfaces) -> Option<f64> {
+        match self {
+            Self::Elevator => Some(surfaces.elevator),
+            Self::Aileron => Some(surfaces.aileron),
+            Self::Rudder => Some(surfaces.rudder),
+            Self::Throttle => Some(surfaces.throttle),
+            Self::Flaps => surfaces.flaps,
+            Self::LeftBrake => surfaces.left_brake,
+            Self::RightBrake => surfaces.right_brake,
+            // Straight off the ground, and so at the touch-down: at the lift-off it
+            // may have been deflected.
+            Self::NoseWheel => Some(surfaces.nose_wheel.unwrap_or(0.0)),
         }
     }
 }
@@ -47,15 +71,15 @@ impl Drives {
 pub struct ServoChannel {
     /// What it follows.
     pub drives: Drives,
-    /// The pulse at -1, of a throttle at 0; µs.
+    /// The pulse at -1, of what is 0 to 1 at 0; µs.
     pub min_us: f64,
-    /// The pulse at 0; a throttle has none.
+    /// The pulse at 0; what is 0 to 1 has none.
     pub centre_us: f64,
     /// The pulse at 1.
     pub max_us: f64,
     /// Whether a positive deflection is a shorter pulse.
     pub is_reversed: bool,
-    /// What is added to a surface's deflection; a throttle has none.
+    /// What is added to a deflection to either side; what is 0 to 1 has none.
     pub trim: f64,
     /// The fastest change in flight, of full deflection in a second.
     pub slew_per_s: Option<f64>,
@@ -87,14 +111,14 @@ pub enum ServoError {
         /// The most.
         most: f64,
     },
-    /// A throttle has no trim.
-    #[error("a throttle has no trim: set min_us and max_us")]
-    ThrottleTrim,
+    /// What has no middle has no trim.
+    #[error("what is 0 to 1, as a throttle, has no trim: set min_us and max_us")]
+    Trim,
 }
 
 impl ServoChannel {
     /// Most servos': 1,000 to 2,000 µs, 1,500 in the middle. Failsafe is centred,
-    /// a throttle idle.
+    /// a throttle idle, flaps up and brakes released.
     pub const fn new(drives: Drives) -> Self {
         Self {
             drives,
@@ -114,9 +138,10 @@ impl ServoChannel {
     /// When it is not.
     pub fn validate(&self) -> Result<(), ServoError> {
         let (least, most) = self.drives.range();
-        let centre_us = match self.drives {
-            Drives::Throttle => 0.5 * (self.min_us + self.max_us),
-            _ => self.centre_us,
+        let centre_us = if self.drives.has_centre() {
+            self.centre_us
+        } else {
+            0.5 * (self.min_us + self.max_us)
         };
         // False for NaN.
         if !(self.min_us < centre_us && centre_us < self.max_us) {
@@ -133,8 +158,8 @@ impl ServoChannel {
                 most,
             });
         }
-        if self.drives == Drives::Throttle && self.trim != 0.0 {
-            return Err(ServoError::ThrottleTrim);
+        if !self.drives.has_centre() && self.trim != 0.0 {
+            return Err(ServoError::Trim);
         }
         Ok(())
     }
@@ -149,11 +174,11 @@ impl ServoChannel {
             position
         };
         let position = (position + self.trim).clamp(least, most);
-        match (self.drives, self.is_reversed) {
-            (Drives::Throttle, false) => between(self.min_us, self.max_us, position),
-            (Drives::Throttle, true) => between(self.max_us, self.min_us, position),
-            (_, false) => self.deflected(position),
-            (_, true) => self.deflected(-position),
+        match (self.drives.has_centre(), self.is_reversed) {
+            (false, false) => between(self.min_us, self.max_us, position),
+            (false, true) => between(self.max_us, self.min_us, position),
+            (true, false) => self.deflected(position),
+            (true, true) => self.deflected(-position),
         }
     }
 
@@ -168,7 +193,9 @@ impl ServoChannel {
 
     /// The position after `passed_s`, on its way from one to what the surfaces are.
     pub(super) fn towards(&self, from: f64, surfaces: &Surfaces, passed_s: f64) -> f64 {
-        let target = self.drives.of(surfaces);
+        let Some(target) = self.drives.of(surfaces) else {
+            return from;
+        };
         self.slew_per_s.map_or(target, |slew| {
             let most = slew * passed_s;
             target.clamp(from - most, from + most)

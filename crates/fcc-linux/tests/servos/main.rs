@@ -335,6 +335,44 @@ fn a_slew_limit_makes_small_steps() {
     assert!(largest <= 100.0 + 1e-9, "{largest}");
 }
 
+/// Flaps and brakes stay where they were last written, at first at failsafe; the
+/// nose wheel is straight in the air.
+#[test]
+fn what_a_runway_needs_is_left_as_it_is_in_the_air() {
+    let drives = [
+        Drives::Flaps,
+        Drives::LeftBrake,
+        Drives::RightBrake,
+        Drives::NoseWheel,
+    ];
+    let mut channels = drives.map(ServoChannel::new);
+    channels[0].failsafe = 0.1;
+    let mut settings = ServoSettings::new(channels.to_vec());
+    settings.silent_after = Duration::from_secs(600);
+    let (mut actuator, written, _) = one(settings);
+    let in_the_air = Surfaces::default();
+    let rolls_out = Surfaces {
+        flaps: Some(0.5),
+        left_brake: Some(0.25),
+        right_brake: Some(0.75),
+        nose_wheel: Some(-1.0),
+        ..in_the_air
+    };
+    for (surfaces, us) in [
+        (in_the_air, [1_100.0, 1_000.0, 1_000.0, 1_500.0]),
+        (rolls_out, [1_500.0, 1_250.0, 1_750.0, 1_000.0]),
+        (in_the_air, [1_500.0, 1_250.0, 1_750.0, 1_500.0]),
+    ] {
+        assert_eq!(actuator.apply(&Tick::default(), &surfaces), Ok(()));
+        assert!(eventually(|| actuator.is_settled()));
+        assert!(written.0.lock().unwrap().ends_with(&us), "{us:?}");
+    }
+    actuator.release().unwrap();
+    assert!(eventually(|| actuator.is_settled()));
+    let released = [1_100.0, 1_000.0, 1_000.0, 1_500.0];
+    assert!(written.0.lock().unwrap().ends_with(&released));
+}
+
 /// The loop does not engage with servos that cannot be opened.
 #[test]
 fn servos_are_ready_once_they_are_open() {

@@ -71,11 +71,23 @@ fn an_impossible_channel_is_refused() {
         failsafe.validate().unwrap_err().to_string(),
         "a failsafe position of -0.1 is out of range: choose 0 to 1"
     );
-    let trim = ServoChannel {
+    for drives in [
+        Drives::Throttle,
+        Drives::Flaps,
+        Drives::LeftBrake,
+        Drives::RightBrake,
+    ] {
+        let trim = ServoChannel {
+            trim: 0.1,
+            ..ServoChannel::new(drives)
+        };
+        assert_eq!(trim.validate(), Err(ServoError::Trim));
+    }
+    let nose_wheel = ServoChannel {
         trim: 0.1,
-        ..ServoChannel::new(Drives::Throttle)
+        ..ServoChannel::new(Drives::NoseWheel)
     };
-    assert_eq!(trim.validate(), Err(ServoError::ThrottleTrim));
+    assert_eq!(nose_wheel.validate(), Ok(()));
     assert_eq!(channel.validate(), Ok(()));
 }
 

@@ -156,7 +156,7 @@ fn item(command: &Command) -> Result<Item, Refusal> {
         id::LOITER_TO_ALTITUDE => loiter(command, LoiterEnd::Altitude)?,
         id::RETURN => Item::Return,
         id::LAND => Item::Land {
-            place: command.place()?,
+            place: command.place_or_here()?,
             altitude: command.altitude()?,
             abort_altitude_m: command.unless_default(1, "abort altitude", &(0.0..=20_000.0))?,
         },

@@ -25,7 +25,7 @@ pub(crate) fn encode(item: &Item) -> Command {
             abort_altitude_m,
         } => {
             let abort = abort_altitude_m.unwrap_or(0.0);
-            at(id::LAND, [abort, 0.0, 0.0, 0.0], Some(place), altitude)
+            at(id::LAND, [abort, 0.0, 0.0, 0.0], place, altitude)
         }
         Item::Takeoff {
             place,

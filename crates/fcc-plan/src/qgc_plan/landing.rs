@@ -39,7 +39,7 @@ pub(super) fn landing_pattern(node: &Node<'_>) -> Result<[Item; 3], Refusal> {
         }
     };
     let land = Item::Land {
-        place,
+        place: Some(place),
         altitude,
         abort_altitude_m: None,
     };

@@ -77,7 +77,7 @@ pub(crate) fn any_item(items: usize) -> impl Strategy<Value = Item> {
         ),
         2 => any_loiter().prop_map(Item::Loiter),
         1 => Just(Item::Return),
-        1 => (any_place(), any_altitude(), option::of(1e-3..=20_000.0)).prop_map(
+        1 => (option::of(any_place()), any_altitude(), option::of(1e-3..=20_000.0)).prop_map(
             |(place, altitude, abort_altitude_m)| Item::Land { place, altitude, abort_altitude_m }
         ),
         1 => (option::of(any_place()), any_altitude(), option::of(1e-3..=45.0)).prop_map(

@@ -266,7 +266,7 @@ proptest! {
 #[test]
 fn a_landing_needs_its_last_leg_and_is_the_end() {
     let land = |latitude_deg: f64| Item::Land {
-        place: place(latitude_deg, 8.2),
+        place: Some(place(latitude_deg, 8.2)),
         altitude: sea_level(950.0),
         abort_altitude_m: None,
     };
@@ -280,7 +280,7 @@ fn a_landing_needs_its_last_leg_and_is_the_end() {
     assert!(problems.contains(straight), "{problems}");
     // From 1,000 m down to a runway at 980 m.
     *landing.items.last_mut().unwrap() = Item::Land {
-        place: place(60.0 - 1.2 / 60.0, 8.2),
+        place: Some(place(60.0 - 1.2 / 60.0, 8.2)),
         altitude: sea_level(980.0),
         abort_altitude_m: None,
     };
@@ -294,6 +294,26 @@ fn a_landing_needs_its_last_leg_and_is_the_end() {
         problems.contains("item 5 is behind a landing"),
         "{problems}"
     );
+}
+
+#[test]
+fn a_landing_without_a_place_needs_a_take_off() {
+    let mut back = plan(8.0);
+    back.items.push(Item::Land {
+        place: None,
+        altitude: sea_level(0.0),
+        abort_altitude_m: None,
+    });
+    let problems = said(&back, 0.0);
+    let lacks = "item 4: place: without a place it lands where it took off, and no take-off is";
+    assert!(problems.contains(lacks), "{problems}");
+    let takeoff = Item::Takeoff {
+        place: None,
+        altitude: sea_level(1_100.0),
+        pitch_deg: None,
+    };
+    back.items.insert(0, takeoff);
+    assert_eq!(check(&back, &conditions(0.0)), Ok(()));
 }
 
 /// 30 m above home are needed.

@@ -50,7 +50,7 @@ fn a_plan_of_qgroundcontrol_with_comments_and_a_landing_pattern() {
             leave_towards_next: true,
         }),
         Item::Land {
-            place: place(47.398_5, 8.545),
+            place: Some(place(47.398_5, 8.545)),
             altitude: above_home(0.0),
             abort_altitude_m: None,
         },

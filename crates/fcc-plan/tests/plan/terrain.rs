@@ -197,7 +197,7 @@ fn near_the_runway_the_margin_grows_with_the_height_over_it() {
         waypoint(60.1, 8.2, level),
         waypoint(60.05, 8.2, level),
         Item::Land {
-            place: place(60.0, 8.2),
+            place: Some(place(60.0, 8.2)),
             altitude: above(1_000.0, AltitudeDatum::SeaLevel),
             abort_altitude_m: None,
         },

@@ -97,6 +97,7 @@ fn commands() -> impl Iterator<Item = LoopCommand<AutopilotCommand>> {
         })),
         LoopCommand::Controller(AutopilotCommand::ReturnHome),
         LoopCommand::Controller(AutopilotCommand::GoAround),
+        LoopCommand::Controller(AutopilotCommand::Land),
         LoopCommand::Controller(AutopilotCommand::Resume(RESUME)),
         LoopCommand::Controller(AutopilotCommand::Resume(Resume {
             altimeter_setting_pa: None,

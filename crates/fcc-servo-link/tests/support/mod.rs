@@ -293,6 +293,14 @@ impl<W: Way> Bench<W> {
             outputs.throttle,
         ]
         .map(|value| value as f32);
-        drive.surfaces == Some([elevator, aileron, rudder]) && drive.throttle == Some(throttle)
+        let same = |driven: Option<f32>, given: Option<f64>| {
+            given.is_none_or(|given| driven == Some(given as f32))
+        };
+        let [left, right] = [0, 1].map(|wheel| drive.brakes.map(|brakes| brakes[wheel]));
+        drive.surfaces == Some([elevator, aileron, rudder])
+            && drive.throttle == Some(throttle)
+            && same(drive.flaps, outputs.flaps)
+            && same(left, outputs.left_brake)
+            && same(right, outputs.right_brake)
     }
 }

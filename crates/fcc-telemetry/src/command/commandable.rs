@@ -239,6 +239,7 @@ mod flight {
             order("pause", |_| AutopilotCommand::Pause),
             order("return_home", |_| AutopilotCommand::ReturnHome),
             order("go_around", |_| AutopilotCommand::GoAround),
+            order("land", |_| AutopilotCommand::Land),
             // 0 ends the promise.
             CommandableSetpoint {
                 name: "heartbeat_s",

@@ -31,6 +31,7 @@ impl Autopilot {
             bank: BankCommand::new(config.route.bank_rad, config.route.bank_rate_radps),
             on_runway: RunwayControl::default(),
             left_plan: None,
+            took_off: None,
             contingencies: Contingencies::default(),
             battery: Delayed::default(),
             engine: Delayed::default(),

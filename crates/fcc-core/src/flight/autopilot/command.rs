@@ -83,6 +83,10 @@ schema! {
         /// engaged, low over a runway and in a landing it is refused.
         #[field(14)]
         ReplacePlan(replace_plan: PlanReplacement),
+        /// Land: at the nearest landing of the plan, or without one where the aircraft
+        /// took off, in the same direction.
+        #[field(15)]
+        Land,
     }
 }
 
@@ -112,6 +116,7 @@ impl fmt::Display for AutopilotCommand {
             Self::Heartbeat(0.0) => f.write_str("heartbeat: the promise ends"),
             Self::Heartbeat(within_s) => write!(f, "heartbeat: the next within {within_s:.1} s"),
             Self::GoAround => f.write_str("go around"),
+            Self::Land => f.write_str("land"),
             Self::ReplacePlan(plan) => {
                 // As many digits of the hash as tables have.
                 let digits = plan.plan_hash >> 16;
@@ -176,6 +181,11 @@ impl Autopilot {
             AutopilotCommand::GoTo(ref place) => self.go_to(place),
             AutopilotCommand::ReturnHome => self.return_home(),
             AutopilotCommand::GoAround => self.go_around(),
+            AutopilotCommand::Land => {
+                if !self.is_landing() {
+                    self.fly_landing();
+                }
+            }
             AutopilotCommand::Airspeed(_)
             | AutopilotCommand::Heading(_)
             | AutopilotCommand::ReplacePlan(_) => {}

@@ -149,6 +149,8 @@ impl GroundMotion {
         self.here.airspeed_mps = estimate.airspeed_mps;
         self.here.altitude_m = estimate.altitude_m - sea_level_m;
         self.here.roll_rad = estimate.roll_rad;
+        let force = measured.specific_force.fresh(now, RANGE_AGE);
+        self.here.forward_mps2 = force.map_or(0.0, |force| force.x_mps2);
         let below_m = measured
             .range_m
             .fresh(now, RANGE_AGE)

@@ -69,6 +69,7 @@ use super::guidance::{ActiveMode, Mode, ModeInput, OverGroundMode, Targets};
 use super::inertial::RawNavigation;
 use super::navigation::{Estimate, FrozenDetector, Navigation, Replacement, plausibility_gate};
 use super::path::BankCommand;
+use super::route::TookOff;
 use super::{Altimeter, AltitudeReference, Measurements, Setpoints, Surfaces};
 use crate::blocks::wrap_two_pi;
 use crate::framework::{Controller, Flags, Notice, Reading, Switch, Tick, Time};
@@ -127,6 +128,7 @@ pub struct Autopilot {
     on_runway: RunwayControl,
     /// The plan that was left for another mode.
     left_plan: Option<OverGroundMode>,
+    took_off: Option<TookOff>,
     contingencies: Contingencies,
     /// Whether the battery is low, and the engine out.
     battery: Delayed,

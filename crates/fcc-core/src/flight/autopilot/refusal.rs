@@ -32,10 +32,11 @@ pub(super) enum Refusal {
     NoItem,
     NowhereKnown,
     TurningAway,
+    NoLanding,
 }
 
 impl Refusal {
-    const ALL: [Self; 13] = [
+    const ALL: [Self; 14] = [
         Self::NotEngaged,
         Self::NotPrepared,
         Self::NoSuchItem,
@@ -49,6 +50,7 @@ impl Refusal {
         Self::NoItem,
         Self::NowhereKnown,
         Self::TurningAway,
+        Self::NoLanding,
     ];
 
     const fn words(self) -> &'static str {
@@ -73,6 +75,7 @@ impl Refusal {
                 "the aircraft turns away from the fence or the ground: command it again when it \
                  flies away from there; disengaging is possible"
             }
+            Self::NoLanding => "the plan has no landing, and the aircraft was not seen to take off",
         }
     }
 
@@ -107,6 +110,7 @@ impl Autopilot {
                 let next = self.after(ModeInput::GoAround);
                 return next.map(drop).ok_or(Refusal::NotLanding);
             }
+            AutopilotCommand::Land if self.is_landing() => return Ok(()),
             _ => {}
         }
         if let Some(demand) = self.runway() {
@@ -130,6 +134,10 @@ impl Autopilot {
             AutopilotCommand::Pause | AutopilotCommand::GoTo(_) | AutopilotCommand::ReturnHome => {
                 let here = self.ground.here();
                 here.map(drop).ok_or(Refusal::NowhereKnown)
+            }
+            AutopilotCommand::Land => {
+                self.ground.here().ok_or(Refusal::NowhereKnown)?;
+                self.has_landing().then_some(()).ok_or(Refusal::NoLanding)
             }
             _ => Ok(()),
         }

@@ -40,6 +40,9 @@ impl Autopilot {
             sea_level_m,
             self.clock.passed_s(),
         );
+        let took_off = self.guidance.over_ground();
+        let took_off = took_off.and_then(OverGroundMode::took_off);
+        self.took_off = took_off.or(self.took_off);
         let reached = self
             .guidance
             .over_ground()
@@ -160,13 +163,13 @@ impl Autopilot {
         }
     }
 
-    /// Flies to the plan's landing that is nearest, by its landing sequence; one that is
-    /// flown already goes on. Whether there is one.
+    /// Flies to the plan's landing that is nearest, by its landing sequence, or without one
+    /// to where it took off; one that is flown already goes on. Whether there is one.
     pub(super) fn fly_landing(&mut self) -> bool {
         let plan = self.config.plan;
         let found = plan.zip(self.ground.here());
         let Some((begin, land)) = found.and_then(|(plan, here)| plan.nearest_landing(here)) else {
-            return false;
+            return self.land_back();
         };
         let flown = self.guidance.over_ground().filter(|mode| mode.is_plan());
         if flown.is_some_and(|mode| (begin..=land).contains(&mode.index())) {
@@ -176,15 +179,33 @@ impl Autopilot {
         self.guidance.mode() == Mode::Plan
     }
 
+    /// Whether there is somewhere to land.
+    pub(super) fn has_landing(&self) -> bool {
+        let found = self.config.plan.zip(self.ground.here());
+        let planned = found.and_then(|(plan, here)| plan.nearest_landing(here));
+        planned.is_some() || self.took_off.is_some()
+    }
+
+    /// Lands where it took off, if that is known; whether it does.
+    fn land_back(&mut self) -> bool {
+        let lands = self.guidance.over_ground();
+        if lands.is_some_and(OverGroundMode::lands_back) {
+            return true;
+        }
+        let height_m = self.config.route.return_height_m;
+        self.took_off.is_some() && self.fly_step(ModeInput::Return, Step::LandBack { height_m })
+    }
+
     /// Flies a plan from the step with an index on.
     pub(super) fn begin_plan(&mut self, plan: &Route<'static>, index: usize) {
         // One that stands has none to keep.
-        let airspeed_mps = if self.ground.stands_on_wheels() {
+        let airspeed_mps = if self.waits_for_takeoff() {
             self.config.reference_airspeed_mps
         } else {
             self.targets.airspeed_mps
         };
         let follower = Follower::along(*plan, index, self.config.route, airspeed_mps);
+        let follower = follower.after(self.took_off);
         self.enter(&OverGroundMode::new(Mode::Plan, follower, self.targets));
     }
 
@@ -236,22 +257,27 @@ impl Autopilot {
         self.fly_step(ModeInput::Return, Step::Return);
     }
 
-    fn fly_step(&mut self, input: ModeInput, step: Step) {
+    /// Flies one step; whether it can be flown now.
+    fn fly_step(&mut self, input: ModeInput, step: Step) -> bool {
         let Some(mode) = self.after(input) else {
-            return;
+            return false;
         };
         if self.ground.here().is_none() {
-            return;
+            return false;
         }
         let returns = self.config.plan.map_or(&[][..], |plan| plan.returns);
         let airspeed_mps = self.targets.airspeed_mps;
         let follower = Follower::to(step, returns, self.config.route, airspeed_mps);
+        let follower = follower.after(self.took_off);
         self.enter(&OverGroundMode::new(mode, follower, self.targets));
+        true
     }
 
     /// Continues a mode over the ground after a restart; whether it is one.
     pub(super) fn resume_over_ground(&mut self, mode: Mode, item: u32) -> bool {
         match mode {
+            // Where it took off is not known any more.
+            Mode::Land | Mode::GoAround if item == 0 => self.return_home(),
             Mode::Plan | Mode::Takeoff | Mode::Land | Mode::GoAround => {
                 self.fly_plan(u16::try_from(item).unwrap_or(0));
             }

@@ -2,6 +2,7 @@
 //!
 //! | phase | lateral | vertical | throttle, brakes |
 //! |---|---|---|---|
+//! | Hand | neutral | neutral | idle |
 //! | Roll, Rotate | nose wheel and rudder along the centre line, wings level | elevator neutral, then pitch | full |
 //! | Climb, `GoAround` | bank onto the centre line | pitch, less below the climb's airspeed | full |
 //! | Approach | bank onto the centre line | climb rate of the glide path | airspeed |
@@ -21,7 +22,7 @@ use crate::flight::Surfaces;
 use crate::flight::control::{Envelope, Lateral, ThrottleDemand};
 use crate::flight::guidance::OverGroundMode;
 use crate::flight::navigation::Estimate;
-use crate::flight::route::{RunwayDemand, RunwayPhase, RunwayReason, Step};
+use crate::flight::route::{HELD_MPS, RunwayDemand, RunwayPhase, RunwayReason, Step};
 use crate::framework::Notice;
 use crate::units::GRAVITY_MPS2;
 pub(super) use notices::{RUNWAY, write};
@@ -48,6 +49,8 @@ const ALIGNS_M: f64 = 2.0;
 const SLOW_PITCH_RAD: f64 = 0.052;
 const SLOW_SHARE: f64 = 0.8;
 const OPENS_PER_S: f64 = 1.0;
+/// And after a throw: it has to fly before it is down.
+const THROWN_OPENS_PER_S: f64 = 2.0;
 /// How fast the throttle is closed in the flare, 1/s.
 pub(super) const CLOSES_PER_S: f64 = 0.35;
 /// The smallest pitch of a flare: the nose wheel does not touch first, rad.
@@ -76,6 +79,12 @@ impl Autopilot {
         self.guidance.over_ground().and_then(OverGroundMode::runway)
     }
 
+    /// Whether it is on the glide path of a landing, or beyond.
+    pub(super) fn is_landing(&self) -> bool {
+        self.runway()
+            .is_some_and(|demand| !demand.takes_off && demand.phase != RunwayPhase::GoAround)
+    }
+
     /// Whether the wheels carry the aircraft, or it is about to touch down.
     pub(super) fn is_on_runway(&self) -> bool {
         self.ground.stands_on_wheels()
@@ -91,7 +100,13 @@ impl Autopilot {
         let takes_off = matches!(first, Some(Step::Takeoff { .. }));
         takes_off
             && self.config.guidance.mode() == crate::flight::guidance::Mode::Plan
-            && self.ground.stands_on_wheels()
+            && self.waits_for_takeoff()
+    }
+
+    /// Whether it stands on its wheels, or is held in a hand that throws it.
+    pub(super) fn waits_for_takeoff(&self) -> bool {
+        let is_held = self.config.route.runway.is_thrown() && self.ground.speed_mps() < HELD_MPS;
+        self.ground.stands_on_wheels() || is_held
     }
 
     /// The outputs of a take-off or a landing; none while neither is flown.
@@ -118,6 +133,7 @@ impl Autopilot {
         };
         self.enter_phase(&demand, estimate);
         let lateral = match demand.phase {
+            RunwayPhase::Hand => Lateral::default(),
             phase if phase.is_on_wheels() => self.steer(&demand, estimate, dt_s),
             RunwayPhase::Flare => self.align(&demand, estimate, dt_s),
             _ => self.follow_centre_line(&demand, estimate, dt_s),
@@ -246,13 +262,16 @@ impl Autopilot {
     ) -> (f64, f64, f64, f64) {
         let (envelope, schedule) = (self.runway_envelope(demand), self.schedule());
         let closing = (self.last.throttle - CLOSES_PER_S * dt_s).max(0.0);
-        let opens_per_s = if demand.phase == RunwayPhase::GoAround {
+        let opens_per_s = if self.is_thrown(demand) {
+            THROWN_OPENS_PER_S
+        } else if demand.phase == RunwayPhase::GoAround {
             OPENS_PER_S
         } else {
             CLOSES_PER_S
         };
         let opening = (self.last.throttle + opens_per_s * dt_s).min(1.0);
         match demand.phase {
+            RunwayPhase::Hand => (0.0, 0.0, 0.0, 0.0),
             RunwayPhase::Roll => (opening, 0.0, 0.0, 0.0),
             RunwayPhase::RollOut | RunwayPhase::Stopped => {
                 let fast_mps = HELD_BACK_BELOW * self.config.route.runway.approach_mps;
@@ -313,9 +332,20 @@ impl Autopilot {
         }
     }
 
+    /// Whether it was thrown, and climbs.
+    fn is_thrown(&self, demand: &RunwayDemand) -> bool {
+        self.config.route.runway.is_thrown() && demand.phase.is_takeoff()
+    }
+
+    /// Whether it is low, and its climb begins with little speed.
+    fn begins_slow(&self, demand: &RunwayDemand) -> bool {
+        let slow = demand.phase == RunwayPhase::GoAround || self.is_thrown(demand);
+        slow && demand.height_m <= LOW_M
+    }
+
     /// The pitch of a climb: low and slow, at first little more than level.
     fn climb_pitch_rad(&self, demand: &RunwayDemand, estimate: &Estimate) -> f64 {
-        if demand.phase != RunwayPhase::GoAround || demand.height_m > LOW_M {
+        if !self.begins_slow(demand) {
             return demand.pitch_rad;
         }
         let approach_mps = self.config.route.runway.approach_mps;
@@ -330,7 +360,7 @@ impl Autopilot {
         let config = &self.config.route.runway;
         let lowest_mps = match demand.phase {
             RunwayPhase::Approach => LOWEST_SHARE * config.approach_mps,
-            RunwayPhase::GoAround if demand.height_m < LOW_M => 1.0,
+            _ if self.begins_slow(demand) => 1.0,
             RunwayPhase::Climb | RunwayPhase::GoAround => LOWEST_SHARE * config.climb_mps,
             _ => 1.0,
         };

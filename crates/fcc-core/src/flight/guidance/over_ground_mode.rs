@@ -2,7 +2,7 @@
 
 use super::{Mode, Progress, Targets};
 use crate::flight::navigation::Estimate;
-use crate::flight::route::{Follower, OverGround, RunwayDemand, RunwayPhase, Track};
+use crate::flight::route::{Follower, OverGround, RunwayDemand, RunwayPhase, TookOff, Track};
 
 /// A mode that follows a route over the ground. It commands a bank, and no heading.
 ///
@@ -67,6 +67,16 @@ impl OverGroundMode {
         self.follower.has_no_more_landings()
     }
 
+    /// Where the last take-off began.
+    pub const fn took_off(&self) -> Option<TookOff> {
+        self.follower.took_off()
+    }
+
+    /// Whether it lands where it took off.
+    pub const fn lands_back(&self) -> bool {
+        self.follower.lands_back()
+    }
+
     /// Gives a landing up.
     pub fn go_around(&mut self) {
         self.follower.go_around();
@@ -100,7 +110,7 @@ impl OverGroundMode {
     }
 
     /// The index of the step that is flown, from 0.
-    pub const fn index(&self) -> usize {
+    pub fn index(&self) -> usize {
         self.follower.index()
     }
 

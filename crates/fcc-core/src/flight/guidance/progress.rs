@@ -47,7 +47,8 @@ impl fmt::Display for Progress {
     /// The mode and its present part: `timed-pattern leg 3`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.mode {
-            Mode::Plan | Mode::Takeoff | Mode::Land | Mode::GoAround => {
+            // A landing that was commanded where it took off has none.
+            Mode::Plan | Mode::Takeoff | Mode::Land | Mode::GoAround if self.item > 0 => {
                 write!(f, "{} item {}", self.mode, self.item)
             }
             Mode::TimedPattern => write!(f, "{} leg {}", self.mode, self.item),

@@ -60,7 +60,13 @@ impl Follower {
     /// Begins the first step that is flown from an index on, with a leg from a place.
     pub(super) fn begin(&mut self, index: usize, from: &LocalPlane, here: &OverGround) {
         let mut sequence = self.sequence;
-        let found = sequence.next(index, &mut |step| self.take(step));
+        let mut found = sequence.next(index, &mut |step| self.take(step));
+        if let Some((index, Step::LandBack { height_m })) = found
+            && let Some(took_off) = self.took_off
+        {
+            let steps = took_off.landing(height_m, &self.config);
+            found = Some((index, sequence.land_back(index, &steps)));
+        }
         self.sequence = sequence;
         self.next = None;
         if let Some((index, step)) = found {
@@ -73,6 +79,7 @@ impl Follower {
             {
                 let config = self.config.runway;
                 let flight = RunwayFlight::takeoff(runway, here, config, altitude_m, pitch_rad);
+                self.took_off = flight.took_off().or(self.took_off);
                 self.goal.at = flight.runway.at;
                 self.goal.altitude_m = altitude_m;
                 self.phase = Phase::Runway(flight);

@@ -3,13 +3,14 @@
 use libm::{atan, atan2, tan};
 use nalgebra::Vector2;
 
+use super::back::TookOff;
 use super::begin::{Goal, GoalKind, Next};
 use super::circle::Circling;
 use super::corner::{Conditions, Corner};
 use super::demand::{Profile, Speed};
 use super::glide::GlideFlight;
 use super::leg::Leg;
-use super::runway::{Outcome, RunwayDemand, RunwayFlight, RunwayReason};
+use super::runway::RunwayFlight;
 use super::sequence::{Sequence, Steps};
 use super::step::{Destination, Route, Step};
 use super::{OverGround, PLANNED_SHARE, ROLL_LAG_S, RouteConfig};
@@ -64,11 +65,10 @@ pub struct Follower {
     pub(super) track: Track,
     reached: Option<u16>,
     /// Landings that were given up, but for a command.
-    given_up: u8,
+    pub(super) given_up: u8,
+    /// Where the last take-off began.
+    pub(super) took_off: Option<TookOff>,
 }
-
-/// A landing that was given up so often is not tried again by itself.
-const MOST_LANDINGS: u8 = 3;
 
 /// How the aircraft flies its path, for observers.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
@@ -153,12 +153,13 @@ impl Follower {
             track: Track::default(),
             reached: None,
             given_up: 0,
+            took_off: None,
         }
     }
 
     /// The index of the step that is flown.
-    pub const fn index(&self) -> usize {
-        self.index
+    pub fn index(&self) -> usize {
+        self.sequence.planned(self.index).0
     }
 
     /// Whether it has begun: altitude and acceleration mean something.
@@ -169,26 +170,6 @@ impl Follower {
     /// Whether a straight leg is flown, and no turn or circle.
     pub const fn is_on_leg(&self) -> bool {
         matches!(self.phase, Phase::Leg(_))
-    }
-
-    /// The take-off or landing that is flown.
-    pub const fn runway(&self) -> Option<RunwayDemand> {
-        match &self.phase {
-            Phase::Runway(flight) => Some(flight.demand()),
-            _ => None,
-        }
-    }
-
-    /// Whether a landing was given up so often that it is not tried again.
-    pub const fn has_no_more_landings(&self) -> bool {
-        self.given_up >= MOST_LANDINGS
-    }
-
-    /// Gives a landing up.
-    pub fn go_around(&mut self) {
-        if let Phase::Runway(flight) = &mut self.phase {
-            flight.go_around();
-        }
     }
 
     /// The acceleration to the right of the air velocity that is demanded, m/s².
@@ -328,29 +309,7 @@ impl Follower {
                     return self.go_on(&here.plane(), here);
                 }
             }
-            (Phase::Runway(mut flight), _) => {
-                let outcome = flight.step(here, motion, dt_s);
-                self.phase = Phase::Runway(flight);
-                match outcome {
-                    Outcome::Done => {
-                        self.reach();
-                        return self.go_on(&here.plane(), here);
-                    }
-                    Outcome::Stands => self.reach(),
-                    Outcome::Again => {
-                        let commanded = flight.demand().reason == RunwayReason::Commanded;
-                        self.given_up += u8::from(!commanded);
-                        if self.has_no_more_landings() {
-                            self.circle_over(flight.altitude_m);
-                            return true;
-                        }
-                        let again = self.sequence.before_landing(self.index);
-                        self.begin(again.unwrap_or(self.index), &here.plane(), here);
-                        return true;
-                    }
-                    Outcome::Flown => {}
-                }
-            }
+            (Phase::Runway(flight), _) => return self.step_runway(flight, here, motion, dt_s),
             (Phase::Begin(_) | Phase::Leg(_) | Phase::Circle(_) | Phase::Glide(_), _) => {}
         }
         false
@@ -383,7 +342,8 @@ impl Follower {
         )
     }
 
-    fn reach(&mut self) {
-        self.reached = u16::try_from(self.index).ok();
+    pub(super) fn reach(&mut self) {
+        let (index, is_end) = self.sequence.planned(self.index);
+        self.reached = u16::try_from(index).ok().filter(|_| is_end);
     }
 }

@@ -11,6 +11,7 @@
 //!
 //! Courses and places refer to true north and WGS-84, altitudes to mean sea level.
 
+mod back;
 mod begin;
 mod circle;
 mod corner;
@@ -19,6 +20,7 @@ mod follower;
 mod glide;
 mod leg;
 mod over_ground;
+mod over_runway;
 mod prepared;
 mod runway;
 mod sequence;
@@ -26,11 +28,13 @@ mod sequence;
 mod simulation;
 mod step;
 
+pub use back::TookOff;
 pub use follower::{Follower, Track};
 pub use glide::{Glide, GlideConfig};
 pub use leg::course_onto_circle;
 pub use over_ground::OverGround;
 pub use prepared::{PreparedRoutes, RouteSource};
+pub(in crate::flight) use runway::HELD_MPS;
 pub use runway::{Runway, RunwayConfig, RunwayDemand, RunwayPhase, RunwayReason};
 pub use step::{Destination, FOR_EVER, JUMPS, Route, Step, Until};
 

@@ -39,6 +39,8 @@ pub struct OverGround {
     pub heading_rad: f64,
     /// Right wing down, rad.
     pub roll_rad: f64,
+    /// What an accelerometer shows along the aircraft, m/s², forwards.
+    pub forward_mps2: f64,
     /// The range finder's height above the ground, m; none where it gives none.
     pub height_m: Option<f64>,
     /// Whether a range finder has shown the ground, so that without one it is far.

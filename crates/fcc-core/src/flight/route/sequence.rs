@@ -1,6 +1,7 @@
 //! The order of a route's steps: what is flown next, and what takes effect before.
 
 use super::OverGround;
+use super::back::BACK;
 use super::step::{FOR_EVER, JUMPS, Route, Step};
 use crate::flight::path::{LocalPlane, length};
 
@@ -19,6 +20,9 @@ pub(super) struct Sequence {
     steps: Steps,
     jumped: [u16; JUMPS],
     waiting: Option<Waiting>,
+    /// What is flown in place of a [`Step::LandBack`], which is the last one, and its
+    /// index.
+    back: Option<(usize, [Step; BACK])>,
 }
 
 /// Steps that take effect later.
@@ -37,6 +41,27 @@ impl Sequence {
             steps,
             jumped: [0; JUMPS],
             waiting: None,
+            back: None,
+        }
+    }
+
+    /// Flies these steps in place of the last one; returns the first of them.
+    pub(super) const fn land_back(&mut self, index: usize, steps: &[Step; BACK]) -> Step {
+        self.back = Some((index, *steps));
+        let [first, ..] = *steps;
+        first
+    }
+
+    pub(super) const fn lands_back(&self) -> bool {
+        self.back.is_some()
+    }
+
+    /// The step of the route that the one with an index belongs to, and whether it is the
+    /// end of that.
+    pub(super) fn planned(&self, index: usize) -> (usize, bool) {
+        match self.back {
+            Some((first, _)) if index >= first => (first, index + 1 == first + BACK),
+            _ => (index, true),
         }
     }
 
@@ -49,6 +74,11 @@ impl Sequence {
     }
 
     fn step(&self, index: usize) -> Option<&Step> {
+        if let Some((first, steps)) = &self.back
+            && let Some(number) = index.checked_sub(*first)
+        {
+            return steps.get(number);
+        }
         match &self.steps {
             Steps::Plan(route) => route.step(index),
             Steps::One(step) => (index == 0).then_some(step),
@@ -110,6 +140,9 @@ impl Sequence {
     /// Where a landing is begun, or begun again: its sequence's begin, or the place before
     /// it; none if there is no place.
     pub(super) fn before_landing(&self, land: usize) -> Option<usize> {
+        if let Some((first, _)) = self.back {
+            return Some(first);
+        }
         let (place, _) = self.place_before(land)?;
         let is_start = |index: &usize| matches!(self.step(*index), Some(Step::LandStart));
         Some((0..place).rev().find(is_start).unwrap_or(place))

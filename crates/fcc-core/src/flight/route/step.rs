@@ -91,6 +91,13 @@ pub enum Step {
         /// To climb to when it is given up, m above mean sea level.
         abort_altitude_m: f64,
     },
+    /// Land where the last take-off began, in its direction; where that is not known,
+    /// return.
+    LandBack {
+        /// Above where it stood: of the circle from which the landing begins, and of a
+        /// go-around, m.
+        height_m: f64,
+    },
     /// The landing sequence begins here: it is flown again after a go-around.
     LandStart,
     /// Nothing is done: a mark.
@@ -107,6 +114,7 @@ impl Step {
                 | Self::Return
                 | Self::Takeoff { .. }
                 | Self::Land { .. }
+                | Self::LandBack { .. }
         )
     }
 }

@@ -27,6 +27,14 @@ fn an_error_of_servos_is_reported_with_its_line_and_what_to_do() {
              choose -1 to 1",
         ),
         (
+            format!(
+                "pwm = \"/p\"\n{}trim = 0.1\n",
+                servo.replace("rudder", "left-brake")
+            ),
+            "test:8: actuator[0].channel[0].trim: what is 0 to 1, as a throttle, has no trim: set \
+             min_us and max_us",
+        ),
+        (
             format!("pwm = \"/p\"\n{servo}{servo}"),
             "test:10: actuator[0].channel[1].output: is 1, as that of another channel: give each \
              its own",
@@ -175,7 +183,10 @@ fn servos_and_lines_are_restored_unchanged() {
                 [[actuator]]\nkind = \"servos\"\npca9685 = \"/dev/i2c-1\"\n\
                 [actuator.heartbeat]\nline = 22\n\
                 [[actuator.channel]]\ndrives = \"aileron\"\noutput = 3\nslew_per_s = 2.5\n\
-                [[actuator.channel]]\ndrives = \"elevator\"\noutput = 4\n";
+                [[actuator.channel]]\ndrives = \"elevator\"\noutput = 4\n\
+                [[actuator.channel]]\ndrives = \"flaps\"\noutput = 5\nfailsafe = 0.3\n\
+                [[actuator.channel]]\ndrives = \"right-brake\"\noutput = 6\n\
+                [[actuator.channel]]\ndrives = \"nose-wheel\"\noutput = 7\ntrim = 0.05\n";
     let written = Config::parse(text, "test").unwrap().to_toml().unwrap();
     let again = Config::parse(&written, "again").unwrap();
     assert_eq!(again.to_toml().unwrap(), written);

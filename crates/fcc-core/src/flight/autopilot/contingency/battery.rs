@@ -49,7 +49,7 @@ impl Autopilot {
     /// With a low battery, or one that is limited and not measured, nothing takes off.
     pub(in super::super) fn battery_inhibits(&self, now: Time) -> Flags {
         let is_good = self.battery_is_below(now) == Some(false) && !self.battery.is_on;
-        Flags::NONE.with(flags::BATTERY, self.ground.stands_on_wheels() && !is_good)
+        Flags::NONE.with(flags::BATTERY, self.waits_for_takeoff() && !is_good)
     }
 
     /// Acts on a low battery, once; again after the fence was turned away from.

@@ -29,6 +29,7 @@ impl Autopilot {
     pub(in super::super) fn stop_on_wheels(&mut self, lost: Flags) -> Option<Surfaces> {
         let phase = self.runway()?.phase;
         let rolls = match self.ground.on_wheels() {
+            _ if phase == RunwayPhase::Hand => true,
             Some(on_wheels) => on_wheels && phase.is_on_wheels(),
             None => phase.is_on_wheels() && phase != RunwayPhase::Rotate,
         };

@@ -5,6 +5,9 @@
 pub struct RunwayConfig {
     /// Indicated airspeed at which the nose is raised, m/s.
     pub rotate_mps: f64,
+    /// A take-off from the hand begins with this acceleration, m/s², along the aircraft;
+    /// 0: it takes off on its wheels.
+    pub launch_mps2: f64,
     /// A take-off that has not reached it within this way is given up, m.
     pub longest_roll_m: f64,
     /// Indicated airspeed of the climb, below which its pitch is reduced, m/s.
@@ -43,6 +46,13 @@ pub struct RunwayConfig {
     pub most_bank_rad: f64,
 }
 
+impl RunwayConfig {
+    /// Whether it is thrown.
+    pub fn is_thrown(&self) -> bool {
+        self.launch_mps2 > 0.0
+    }
+}
+
 impl Default for RunwayConfig {
     /// A Cessna 172: handbook of the 172P (1981), section 4: 55 KIAS at the lift of the
     /// nose wheel, 70 to 80 KIAS in the climb, 65 to 75 KIAS in an approach without
@@ -51,6 +61,7 @@ impl Default for RunwayConfig {
     fn default() -> Self {
         Self {
             rotate_mps: 28.294_444, // 55 kt
+            launch_mps2: 0.0,
             longest_roll_m: 600.0,
             climb_mps: 38.583_333,      // 75 kt
             climb_pitch_rad: 0.139_626, // 8°

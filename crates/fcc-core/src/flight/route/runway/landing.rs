@@ -19,6 +19,10 @@ const MOST_WIND_MPS: f64 = 5.144;
 /// at this share of its approach speed.
 const TOUCHES_M: f64 = 0.3;
 const TOUCHES_SHARE: f64 = 0.8;
+/// Without weight on wheels it lies on the ground when it is slower than this over it,
+/// m/s, and than this share of its approach speed in the air.
+const LIES_MPS: f64 = 1.0;
+const LIES_SHARE: f64 = 0.5;
 /// A bounce to this height is flared again, m.
 const BOUNCES_M: f64 = 1.0;
 /// Wheels that bear weight above this height do not, m.
@@ -109,8 +113,15 @@ impl RunwayFlight {
         match here.on_wheels {
             Some(true) if !self.is_weight_wrong => !ranged || height_m < BOUNCES_M,
             Some(false) if !ranged => false,
-            _ => height_m < TOUCHES_M && is_slow,
+            Some(_) => height_m < TOUCHES_M && is_slow,
+            // One without wheels may lie where its altimeter shows more.
+            None => height_m < TOUCHES_M && is_slow || self.lies(here),
         }
+    }
+
+    fn lies(&self, here: &OverGround) -> bool {
+        self.demand.ground_speed_mps.abs() < LIES_MPS
+            && here.airspeed_mps < LIES_SHARE * self.config.approach_mps
     }
 
     fn approach(&mut self, here: &OverGround, motion: &Motion) {
@@ -199,7 +210,9 @@ impl RunwayFlight {
             RunwayPhase::Approach | RunwayPhase::Flare if self.glide_sine.is_none() => {
                 self.give_up(RunwayPhase::GoAround, RunwayReason::Commanded);
             }
-            RunwayPhase::Roll => self.give_up(RunwayPhase::RollOut, RunwayReason::Failsafe),
+            RunwayPhase::Hand | RunwayPhase::Roll => {
+                self.give_up(RunwayPhase::RollOut, RunwayReason::Failsafe);
+            }
             _ => {}
         }
     }

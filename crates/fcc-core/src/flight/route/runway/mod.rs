@@ -3,6 +3,7 @@
 //! ```text
 //! take-off   Roll ─► Rotate ─► Climb ─► the next step
 //!              └─► RollOut ─► Stopped                 (too far off the centre line)
+//!            Hand ─► Rotate ─► Climb                  (thrown)
 //! landing    Approach ─► Flare ─► RollOut ─► Stopped
 //!              └───────────┴─► GoAround ─► the landing sequence again
 //! ```
@@ -20,10 +21,11 @@ mod tests;
 
 pub use config::RunwayConfig;
 pub use reason::RunwayReason;
+pub(in crate::flight) use takeoff::HELD_MPS;
 
 use nalgebra::Vector2;
 
-use super::OverGround;
+use super::{OverGround, TookOff};
 use crate::flight::path::{LocalPlane, Motion, Path, cross};
 
 /// An altimeter that is farther off is not landed or taken off by, m: 2 hPa.
@@ -43,9 +45,11 @@ pub struct Runway {
 /// The phases of a take-off and of a landing.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum RunwayPhase {
+    /// In the hand, without throttle, until it is thrown.
+    Hand,
     /// On the wheels, with full throttle.
     Roll,
-    /// The nose is raised.
+    /// The nose is raised; or it was thrown, and gains speed.
     Rotate,
     /// Away from the runway, with full throttle and a pitch.
     Climb,
@@ -62,11 +66,11 @@ pub enum RunwayPhase {
 }
 
 impl RunwayPhase {
-    /// Whether the wheels carry the aircraft.
+    /// Whether the wheels carry the aircraft, or a hand, or did so just before.
     pub const fn is_on_wheels(self) -> bool {
         matches!(
             self,
-            Self::Roll | Self::Rotate | Self::RollOut | Self::Stopped
+            Self::Hand | Self::Roll | Self::Rotate | Self::RollOut | Self::Stopped
         )
     }
 
@@ -77,7 +81,7 @@ impl RunwayPhase {
 
     /// Whether it belongs to a take-off.
     pub const fn is_takeoff(self) -> bool {
-        matches!(self, Self::Roll | Self::Rotate | Self::Climb)
+        matches!(self, Self::Hand | Self::Roll | Self::Rotate | Self::Climb)
     }
 }
 
@@ -131,6 +135,10 @@ pub(super) struct RunwayFlight {
     is_weight_wrong: bool,
     /// The sine of the glide's angle; none with power.
     glide_sine: Option<f64>,
+    /// For how long it has been accelerated in the hand, s.
+    thrown_s: f64,
+    /// Where a take-off has begun.
+    took_off: Option<TookOff>,
 }
 
 /// What follows of a tick.
@@ -161,6 +169,8 @@ impl RunwayFlight {
             flared_s: 0.0,
             is_weight_wrong: false,
             glide_sine: None,
+            thrown_s: 0.0,
+            took_off: None,
             demand: RunwayDemand {
                 phase,
                 course_rad: libm::atan2(runway.course.y, runway.course.x),
@@ -179,6 +189,10 @@ impl RunwayFlight {
 
     pub(super) const fn demand(&self) -> RunwayDemand {
         self.demand
+    }
+
+    pub(super) const fn took_off(&self) -> Option<TookOff> {
+        self.took_off
     }
 
     pub(super) const fn path(&self) -> Path {
@@ -227,7 +241,7 @@ impl RunwayFlight {
             ..self.demand
         };
         let outcome = if self.phase.is_takeoff() {
-            self.step_takeoff(here, motion)
+            self.step_takeoff(here, motion, dt_s)
         } else if let Some(sine) = self.glide_sine {
             self.step_powerless(here, sine, dt_s)
         } else {

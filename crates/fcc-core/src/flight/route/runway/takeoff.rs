@@ -8,7 +8,7 @@ use super::{
 };
 use crate::blocks::wrap_pi;
 use crate::flight::path::{Motion, length};
-use crate::flight::route::OverGround;
+use crate::flight::route::{OverGround, TookOff};
 
 /// Off the wheels, and so high, m, it climbs.
 const CLIMBS_M: f64 = 3.0;
@@ -16,12 +16,20 @@ const CLIMBS_M: f64 = 3.0;
 const MOST_CROSS_TRACK_M: f64 = 12.0;
 /// The nose is so near to the runway's direction as a take-off begins, rad: 20°.
 const ALIGNED_RAD: f64 = 0.349;
+/// A hand moves at most so fast over the ground, m/s, and is so high above it, m.
+pub(in crate::flight) const HELD_MPS: f64 = 5.0;
+const HELD_M: f64 = 1.5;
+/// Accelerated for so long, within so much of bank, it is thrown, s, rad (45°): a knock is
+/// shorter.
+const THROWN_S: f64 = 0.1;
+const THROWN_BANK_RAD: f64 = 0.785;
 /// A take-off is over so near to its altitude, m.
 const REACHED_M: f64 = 3.0;
 
 impl RunwayFlight {
     /// A take-off to an altitude, m above mean sea level. Without a runway it goes
-    /// straight ahead from here. One that is begun in the air climbs.
+    /// straight ahead from here, and so it does from a hand. One that is begun in the air
+    /// climbs.
     pub(in crate::flight::route) fn takeoff(
         runway: Option<Runway>,
         here: &OverGround,
@@ -30,6 +38,7 @@ impl RunwayFlight {
         pitch_rad: Option<f64>,
     ) -> Self {
         let elevation_m = here.altitude_m;
+        let runway = runway.filter(|_| !config.is_thrown());
         let ahead = || {
             let ground = here.ground_velocity_mps;
             let course_rad = if length(ground) > config.rotate_mps {
@@ -37,11 +46,7 @@ impl RunwayFlight {
             } else {
                 here.heading_rad
             };
-            Runway {
-                at: here.plane(),
-                course: Vector2::new(cos(course_rad), sin(course_rad)),
-                elevation_m,
-            }
+            straight_ahead(here, course_rad, elevation_m)
         };
         // The altimeter says where the ground is, if it stands there.
         let stands = here.on_wheels == Some(true);
@@ -54,9 +59,12 @@ impl RunwayFlight {
             },
             ..runway
         });
-        let phase = if here
-            .on_wheels
-            .unwrap_or(here.airspeed_mps < config.rotate_mps)
+        let phase = if config.is_thrown() && length(here.ground_velocity_mps) < HELD_MPS {
+            RunwayPhase::Hand
+        } else if !config.is_thrown()
+            && here
+                .on_wheels
+                .unwrap_or(here.airspeed_mps < config.rotate_mps)
         {
             RunwayPhase::Roll
         } else {
@@ -68,6 +76,7 @@ impl RunwayFlight {
         flight.began_m = flight.left_m(&here.motion_in(&runway.at));
         let off_rad = wrap_pi(flight.demand.course_rad - here.heading_rad);
         if phase == RunwayPhase::Roll {
+            flight.begin_at(here);
             if off_rad.abs() > ALIGNED_RAD {
                 flight.give_up(RunwayPhase::RollOut, RunwayReason::Alignment);
             } else if planned_m.is_some_and(|m| (m - elevation_m).abs() > ALTIMETER_OFF_M) {
@@ -77,10 +86,42 @@ impl RunwayFlight {
         flight
     }
 
-    pub(super) fn step_takeoff(&mut self, here: &OverGround, motion: &Motion) -> Outcome {
+    /// Records where it takes off.
+    fn begin_at(&mut self, here: &OverGround) {
+        self.took_off = Some(TookOff {
+            latitude_rad: here.latitude_rad,
+            longitude_rad: here.longitude_rad,
+            course: self.runway.course,
+            elevation_m: self.runway.elevation_m,
+        });
+    }
+
+    /// Waits in the hand. It is thrown straight ahead: who throws it says whereto.
+    fn wait_for_throw(&mut self, here: &OverGround, dt_s: f64) {
+        let pushed =
+            here.forward_mps2 > self.config.launch_mps2 && here.roll_rad.abs() < THROWN_BANK_RAD;
+        self.thrown_s = if pushed { self.thrown_s + dt_s } else { 0.0 };
+        if self.thrown_s < THROWN_S {
+            return;
+        }
+        self.runway = straight_ahead(here, here.heading_rad, here.altitude_m - HELD_M);
+        self.demand.course_rad = here.heading_rad;
+        self.begin_at(here);
+        self.phase = RunwayPhase::Rotate;
+    }
+
+    pub(super) fn step_takeoff(
+        &mut self,
+        here: &OverGround,
+        motion: &Motion,
+        dt_s: f64,
+    ) -> Outcome {
         let rolled_m = self.began_m - self.left_m(motion);
-        let lifts_off = here.on_wheels != Some(true) && self.demand.height_m > CLIMBS_M;
+        // A throw may be slower than what flies.
+        let flies = !self.config.is_thrown() || here.airspeed_mps >= self.config.rotate_mps;
+        let lifts_off = flies && here.on_wheels != Some(true) && self.demand.height_m > CLIMBS_M;
         match self.phase {
+            RunwayPhase::Hand => self.wait_for_throw(here, dt_s),
             RunwayPhase::Roll if self.demand.cross_track_m.abs() > MOST_CROSS_TRACK_M => {
                 self.give_up(RunwayPhase::RollOut, RunwayReason::CentreLine);
             }
@@ -97,5 +138,14 @@ impl RunwayFlight {
             _ => {}
         }
         Outcome::Flown
+    }
+}
+
+/// From here on, on a course, rad.
+fn straight_ahead(here: &OverGround, course_rad: f64, elevation_m: f64) -> Runway {
+    Runway {
+        at: here.plane(),
+        course: Vector2::new(cos(course_rad), sin(course_rad)),
+        elevation_m,
     }
 }

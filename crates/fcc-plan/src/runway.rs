@@ -1,0 +1,73 @@
+//! What a take-off and a landing need.
+
+use crate::check::{Conditions, Leg, above_sea_level};
+use crate::item::Item;
+use crate::plan::Plan;
+
+/// What flies above a runway is so high at least, m.
+const LEAST_M: f64 = 30.0;
+
+/// Whether a landing's leg leaves time for the glide path after the turn onto it.
+pub(crate) fn last_leg(
+    plan: &Plan,
+    leg: &Leg,
+    begins_m: f64,
+    conditions: &Conditions,
+) -> Option<(&'static str, String)> {
+    if !matches!(plan.item(leg.item), Some(Item::Land { .. })) {
+        return None;
+    }
+    let above_m = leg.from.1 - leg.to.1;
+    // A plan that only lands begins where the aircraft is.
+    if above_m != 0.0 && above_m < LEAST_M {
+        let message = format!(
+            "the leg to the landing begins {above_m:.0} m above the runway: begin it at least \
+             {LEAST_M:.0} m above"
+        );
+        return Some(("approach", message));
+    }
+    let straight_m = leg.length_m - begins_m;
+    (straight_m < conditions.final_m).then(|| {
+        let message = format!(
+            "the leg to the landing is straight for {:.0} m behind its turn, and needs {:.0} m: \
+             move the waypoint before it away",
+            straight_m.max(0.0),
+            conditions.final_m
+        );
+        ("approach", message)
+    })
+}
+
+/// What is behind a landing is not flown, and a take-off climbs before it turns.
+pub(crate) fn runway_problem(
+    plan: &Plan,
+    number: usize,
+    item: &Item,
+) -> Option<(&'static str, String)> {
+    match item {
+        Item::Takeoff { altitude, .. } => {
+            let (home_m, altitude_m) = (plan.home?.altitude_m, above_sea_level(*altitude, plan));
+            (altitude_m.ok()? < home_m + LEAST_M).then(|| {
+                let message = format!("give at least {LEAST_M:.0} m above home: it turns there");
+                ("altitude", message)
+            })
+        }
+        Item::Land { .. } => {
+            let before = plan.items.get(..number).unwrap_or_default();
+            let is_takeoff = |item: &Item| matches!(item, Item::Takeoff { .. });
+            if item.place().is_none() && !before.iter().any(is_takeoff) {
+                let message = "without a place it lands where it took off, and no take-off is \
+                               before it: give a place";
+                return Some(("place", message.to_owned()));
+            }
+            let behind = plan.items.get(number..)?;
+            let flown = behind.iter().position(|item| item.place().is_some())?;
+            let message = format!(
+                "item {} is behind a landing, where the flight ends: remove it",
+                number + 1 + flown
+            );
+            Some(("command", message))
+        }
+        _ => None,
+    }
+}

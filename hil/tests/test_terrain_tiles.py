@@ -1,0 +1,88 @@
+"""The ground of elevation tiles: read, flown over, and scored."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fcc_hil import plan_flight
+from fcc_hil.clearance import Clearance
+from fcc_hil.plant import Plant
+from fcc_hil.terrain_tiles import Tiles
+
+SIDE = 1_201
+RIDGE_M = 700.0
+
+
+def _write(folder: Path, name: str, rows_m: np.ndarray[tuple[int], np.dtype[np.float64]]) -> Path:
+    """Write a tile whose rows, from the north, are level."""
+    posts = np.repeat(np.round(rows_m)[:, None], SIDE, axis=1)
+    (folder / name).write_bytes(posts.astype(">i2").tobytes())
+    return folder
+
+
+def _ridge(folder: Path) -> Path:
+    """Write a ridge of 700 m from west to east at 47.03 degrees, 1 km wide, and 100 m around it."""
+    latitude = 48.0 - np.arange(SIDE) / (SIDE - 1.0)
+    ridge = 100.0 + 600.0 * np.exp(-(((latitude - 47.03) / 0.005) ** 2))
+    south = _write(folder, "N46E008.hgt", np.full(SIDE, 100.0))
+    return _write(south, "N47E008.hgt", ridge)
+
+
+def test_heights_are_those_between_the_posts(tmp_path: Path) -> None:
+    """A row of posts is 1/1,200 of a degree; row 600 is the latitude 47.5."""
+    rows = np.arange(SIDE, dtype=float)
+    rows[900] = -32_768
+    tiles = Tiles(_write(tmp_path, "N47W008.hgt", rows))
+    assert tiles.elevation_m(47.5, -7.5) == pytest.approx(600.0)
+    assert tiles.elevation_m(47.5 + 0.25 / 1_200.0, -7.123) == pytest.approx(599.75)
+    assert tiles.elevation_m(47.0, -7.5) == pytest.approx(1_200.0)
+    assert tiles.elevation_m(48.0 - 899.5 / 1_200.0, -7.5) is None, "a void"
+    assert tiles.elevation_m(46.9, -7.5) is None, "no tile"
+
+
+def test_what_is_no_tile_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="there are no tiles"):
+        Tiles(tmp_path)
+    (tmp_path / "N47E008.hgt").write_bytes(b"12")
+    tiles = Tiles(tmp_path)
+    with pytest.raises(ValueError, match=r"N47E008\.hgt: is no tile of 1 or 3 seconds of arc"):
+        tiles.elevation_m(47.5, 8.5)
+
+
+def test_the_plant_flies_over_the_tiles_and_touches_them(tmp_path: Path) -> None:
+    """At 3,000 ft, 914.4 m; a ridge that is raised to 930 m is flown into."""
+    plant = Plant("c172p", latitude_deg=47.03, longitude_deg=8.5, heading_deg=90.0)
+    plant.fly_over(Tiles(_ridge(tmp_path)))
+    plant.step()
+    state = plant.state()
+    assert state.height_m == pytest.approx(state.elevation_m - RIDGE_M, abs=1.0)
+    clearance = Clearance()
+    clearance.note(state, "plan")
+    assert not clearance.score().collides
+    assert clearance.score().lowest_m == pytest.approx(214.0, abs=10.0)
+    _write(tmp_path, "N47E008.hgt", np.full(SIDE, 930.0))
+    plant.fly_over(Tiles(tmp_path))
+    plant.step()
+    clearance.note(plant.state(), "land")
+    assert not clearance.score().collides, "a landing is meant"
+    clearance.note(plant.state(), "plan")
+    assert clearance.score().collides
+
+
+def test_a_plan_is_flown_over_the_tiles_and_scored(tmp_path: Path) -> None:
+    """Home is 3.3 km south of the ridge, the leg at 900 m: 200 m over it."""
+    plan = tmp_path / "over.waypoints"
+    plan.write_text(
+        "QGC WPL 110\n0 0 0 16 0 0 0 0 47.0 8.5 900 1\n1 0 0 16 0 0 0 0 47.06 8.5 900 1\n"
+    )
+    conditions = plan_flight.PlanConditions(terrain=_ridge(tmp_path), seed=2)
+    score, _ = plan_flight.fly(plan, conditions)
+    assert score.terrain is not None
+    assert not score.terrain.collides
+    assert score.terrain.lowest_m == pytest.approx(200.0, abs=10.0)
+    assert score.terrain.latitude_deg == pytest.approx(47.03, abs=0.001)
+    assert math.isclose(score.waypoints[0].altitude_error_ft, 0.0, abs_tol=30.0)
