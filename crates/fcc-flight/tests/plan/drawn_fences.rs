@@ -100,11 +100,11 @@ fn fly(seed: u64, wind_kt: f64, insists: bool) -> f64 {
     } else {
         go_to(HOME.ahead(course_deg, 20_000.0))
     };
-    flight.command(command.clone());
+    flight.command(command);
     let mut nearest_m = f64::INFINITY;
     for tick in 1..24_000 {
         if insists && tick % every_ticks == 0 {
-            flight.command(command.clone());
+            flight.command(command);
         }
         flight.tick();
         nearest_m = nearest_m.min(drawing.inside_m(flight.place()));
