@@ -115,7 +115,7 @@ def _with_demands(flown: FlownPlan, recordings: list[Path]) -> tuple[FlownPlan, 
     at = np.searchsorted(records["plant_time_s"], flown.time_s, side="right") - 1
     then = records[np.maximum(at, 0)]
     modes = records["desired_guidance_mode"]
-    is_go_around = modes == _code(opened[0], "desired_guidance_mode", "go-around")
+    is_go_around = modes == _code(opened[0], "desired_guidance_mode", "go around")
     demanded = replace(
         flown,
         item=then["desired_guidance_item"].astype(np.float64),
