@@ -4,10 +4,9 @@ import java.io.File
 import java.net.DatagramSocket
 import java.net.InetAddress
 import java.util.concurrent.Executors
-import java.util.concurrent.TimeUnit
-import org.json.JSONArray
 import java.util.concurrent.LinkedBlockingQueue
 import java.util.concurrent.TimeUnit
+import org.json.JSONArray
 import org.junit.Assert.assertEquals
 import org.junit.Assert.assertFalse
 import org.junit.Assert.assertNotNull
