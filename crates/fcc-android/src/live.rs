@@ -194,6 +194,8 @@ pub(crate) struct LiveObserver {
     newest: Option<(FlightRecord, FlightTime)>,
     missed: u64,
     state: Option<State>,
+    /// Changes of state that the app is told when its screens can read them.
+    changed: Vec<State>,
     flapping: Flapping,
     phone: PhoneHandle,
     sensors_seen: Instant,
@@ -220,6 +222,7 @@ impl LiveObserver {
             newest: None,
             missed: 0,
             state: None,
+            changed: Vec::new(),
             flapping: Flapping::default(),
             phone,
             sensors_seen: Instant::now(),
@@ -273,7 +276,7 @@ impl Observer<Autopilot> for LiveObserver {
         }
         let state = record.state.state();
         if self.state.replace(state) != Some(state) {
-            self.notifier.tell(Notice::State(state.to_string()));
+            self.changed.push(state);
         }
     }
 
@@ -310,6 +313,10 @@ impl Observer<Autopilot> for LiveObserver {
         shown.now = Some(now);
         if timing.is_some() {
             shown.timing = timing;
+        }
+        drop(shown);
+        for state in self.changed.drain(..) {
+            self.notifier.tell(Notice::State(state.to_string()));
         }
     }
 }

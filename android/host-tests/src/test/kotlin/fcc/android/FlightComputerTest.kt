@@ -4,6 +4,7 @@ import java.io.File
 import java.net.DatagramSocket
 import java.net.InetAddress
 import java.util.concurrent.Executors
+import java.util.concurrent.LinkedBlockingQueue
 import java.util.concurrent.TimeUnit
 import org.json.JSONArray
 import org.junit.Assert.assertEquals
@@ -60,6 +61,28 @@ class FlightComputerTest {
         assertEquals(listOf("standby", "engaged", "standby", "stopped"), heard.states.toList())
         assertFalse(heard.threads.any { it.contains("loop") })
         assertTrue(heard.reports.any { "engaged" in it })
+    }
+
+    @Test
+    fun `the listener is told a state when it can be read`() {
+        val told = LinkedBlockingQueue<Pair<String, String?>>()
+        lateinit var computer: FlightComputer
+        val listener = object : Listener by Heard() {
+            override fun stateChanged(state: String) {
+                told.add(state to computer.now()?.getString("state"))
+            }
+        }
+        fun isTold(state: String) = assertEquals(state to state, told.poll(20, TimeUnit.SECONDS))
+        computer = FlightComputer(BUILT_IN, folder(), listener)
+        computer.use {
+            computer.start()
+            isTold("standby")
+            eventually("ready") { computer.now()?.getJSONArray("engage_inhibits")?.length() == 0 }
+            computer.engage()
+            isTold("engaged")
+            computer.disengage()
+            isTold("standby")
+        }
     }
 
     /** SCHED_FIFO or the lowest nice value that is granted, as the kernel says it. */

@@ -45,7 +45,7 @@ class ConnectScreenTest {
             words(R.id.flown).any { it.startsWith("Recording: ") }
         }
         assertTrue("Reads built-in aircraft. Controls built-in aircraft." in words(R.id.flown))
-        assertTrue("Performance hints: a tick should take at most 1.3 ms." in words(R.id.flown))
+        assertTrue("Performance hints: ticks of at most 1.3 ms." in words(R.id.flown))
     }
 
     private fun says(id: Int, start: String) = words(id).any { it.startsWith(start) }
