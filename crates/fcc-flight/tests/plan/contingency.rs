@@ -263,12 +263,19 @@ fn without_a_position_it_returns_and_with_one_the_plan_goes_on() {
     for _ in 0..1_200 {
         flight.tick();
     }
+    let known_m = flight.record.estimate.position_uncertainty_m;
+    assert!((2.0..5.0).contains(&known_m), "a receiver's: {known_m}");
     is_silent.store(true, Ordering::Relaxed);
     flight.fly_until(62.0, |flight| flight.mode() == Mode::Return);
     flight.fly_until(600.0, |flight| {
         worst_m = worst_m.max(off_m(flight));
+        let stated_m = 2.0 * flight.record.estimate.position_uncertainty_m;
+        assert!(off_m(flight) <= stated_m, "{stated_m}");
         flight.distance_m(HOME) < 1_000.0
     });
+    let stated_m = flight.record.estimate.position_uncertainty_m;
+    // 4 % of 100 kt and 1.5 m/s are 2.5 m/s; it is lost for longer than a minute.
+    assert!((150.0..1_500.0).contains(&stated_m), "it grows: {stated_m}");
     println!("at most {worst_m:.0} m off");
 }
 

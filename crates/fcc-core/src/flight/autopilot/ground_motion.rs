@@ -37,6 +37,8 @@ const RECKONED_AFTER_S: f64 = 3.0;
 /// For so long without a receiver the velocity of navigation by raw readings is better
 /// than that by airspeed and the last wind, s: gyroscopes and accelerometers know it.
 const INERTIAL_FOR_S: f64 = 30.0;
+/// Its wind has the gusts in it: the last wind is followed with this time constant, s.
+const WIND_FOLLOWS_S: f64 = 30.0;
 /// Standard deviations: of a satellite receiver's horizontal position, m; of a velocity by
 /// dead reckoning the part of the airspeed (a compass that is 2° off, an airspeed that is
 /// 2 % off), and that of a wind that is another one than the last, m/s.
@@ -54,6 +56,8 @@ pub(super) struct GroundMotion {
     variation_rad: f64,
     /// Since the last position, s.
     lost_s: f64,
+    /// The wind of navigation by raw readings, without gusts, as it was with a receiver.
+    last_wind_mps: Option<Vector2<f64>>,
     ground: GroundBelow,
     /// What the range finder shows, m, upright.
     below_m: Option<f64>,
@@ -145,6 +149,7 @@ impl GroundMotion {
         sea_level_m: f64,
         dt_s: f64,
     ) {
+        let taken_heading_rad = self.here.heading_rad;
         self.here.true_airspeed_mps = estimate.true_airspeed_mps;
         self.here.airspeed_mps = estimate.airspeed_mps;
         self.here.altitude_m = estimate.altitude_m - sea_level_m;
@@ -176,7 +181,14 @@ impl GroundMotion {
             let (north, east) = (velocity.value.north_mps, velocity.value.east_mps);
             self.here.ground_velocity_mps = Vector2::new(north, east);
         } else if now.since(self.velocity_taken) > LONGEST_AGE {
-            let heading = estimate.heading_rad + self.variation_rad;
+            // Navigation by raw readings knows true north, and the wind without a turn.
+            let heading = match self.last_wind_mps {
+                Some(wind_mps) => {
+                    self.here.wind_mps = wind_mps;
+                    taken_heading_rad
+                }
+                None => estimate.heading_rad + self.variation_rad,
+            };
             let air = Vector2::new(cos(heading), sin(heading)) * estimate.true_airspeed_mps;
             self.here.ground_velocity_mps = air + self.here.wind_mps;
         }
@@ -219,9 +231,15 @@ impl GroundMotion {
         }
     }
 
-    /// The solution of navigation by raw readings takes the place of all that it has, as
-    /// long as a receiver, or a short time without one, has made its velocity.
-    pub(super) fn take(&mut self, solution: &Solution) {
+    /// The solution of navigation by raw readings, `dt_s` after the last one, takes the
+    /// place of all that it has, as long as a receiver, or a short time without one, has
+    /// made its velocity.
+    pub(super) fn take(&mut self, solution: &Solution, dt_s: f64) {
+        let [w, x, y, z] = solution.quaternion;
+        let heading_rad = atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
+        if heading_rad.is_finite() {
+            self.here.heading_rad = heading_rad;
+        }
         if self.here().is_some() && self.lost_s > INERTIAL_FOR_S {
             return;
         }
@@ -234,14 +252,14 @@ impl GroundMotion {
         if north.is_finite() && east.is_finite() {
             self.here.ground_velocity_mps = Vector2::new(north, east);
         }
-        let [w, x, y, z] = solution.quaternion;
-        let heading_rad = atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
-        if heading_rad.is_finite() {
-            self.here.heading_rad = heading_rad;
-        }
         let [north, east] = solution.wind_mps;
         if north.is_finite() && east.is_finite() {
-            self.here.wind_mps = Vector2::new(north, east);
+            let wind_mps = Vector2::new(north, east);
+            self.here.wind_mps = wind_mps;
+            if self.is_measured() {
+                let last = self.last_wind_mps.get_or_insert(wind_mps);
+                *last += (wind_mps - *last) * (1.0 - exp(-dt_s / WIND_FOLLOWS_S));
+            }
         }
     }
 

@@ -120,7 +120,7 @@ impl Autopilot {
             dt_s,
         );
         if let Some(raw) = &self.raw {
-            self.ground.take(raw.solution());
+            self.ground.take(raw.solution(), dt_s);
         }
         let on_wheels_m = self.config.route.runway.height_on_wheels_m;
         if self.ground.check_range(on_wheels_m) {
