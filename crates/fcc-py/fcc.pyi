@@ -664,8 +664,7 @@ class Estimate:
 
     @property
     def position_uncertainty_m(self) -> float:
-        """Standard deviation of the horizontal position, m; it grows while the position is
-        one of dead reckoning."""
+        """Standard deviation of the horizontal position, m."""
 
     @property
     def reading_age_s(self) -> float:

@@ -26,6 +26,8 @@ class Aircraft:
     trims: bool = True
     """Whether JSBSim's trim finds a steady state. If not, the aircraft is flown to it in closed
     loop (see `settle`)."""
+    drop_ft: float = 8.0
+    """The height from which it is put on its wheels: above its gear, but a light one tips over."""
     loading: Loading | None = None
     """None for that of its file."""
 
@@ -34,7 +36,7 @@ _TABLE = (
     Aircraft("c172p", 100, 3_000),
     Aircraft("c172x", 100, 3_000),
     Aircraft("c172r", 100, 3_000),
-    Aircraft("J3Cub", 65, 3_000),
+    Aircraft("J3Cub", 65, 3_000, drop_ft=4.0),
     Aircraft("OV10", 160, 5_000, retractable_gear=True),
     Aircraft("t6texan2", 200, 8_000, retractable_gear=True),
     Aircraft("T37", 220, 10_000, retractable_gear=True),

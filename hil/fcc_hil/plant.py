@@ -44,8 +44,6 @@ _ENGINE_RPM = "propulsion/engine/engine-rpm"
 _SETTLING_S = 60.0
 _SETTLING_MEAN_S = 5.0
 _STANDING_S = 5.0
-_DROP_FT = 8.0
-"""The height from which an aircraft is put on its wheels: above the tallest gear here."""
 _MILSPEC_TURBULENCE = 3.0
 _TURBULENCE_WIND_FPS = {1: 15.0, 2: 20.0, 3: 25.0, 4: 50.0, 5: 75.0, 6: 90.0, 7: 100.0}
 
@@ -114,7 +112,7 @@ class Plant:
         if flies:
             fdm["ic/h-sl-ft"] = self.aircraft.altitude_ft
         else:
-            fdm["ic/h-agl-ft"] = _DROP_FT
+            fdm["ic/h-agl-ft"] = self.aircraft.drop_ft
         fdm["ic/vc-kts"] = self.aircraft.airspeed_kt if flies else 0.0
         fdm["ic/gamma-deg"] = 0.0
         fdm["ic/psi-true-deg"] = heading_deg
