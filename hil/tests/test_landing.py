@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import subprocess
 from dataclasses import replace
 from pathlib import Path
 
+import fcc
 import pytest
 
 from fcc_hil import plan_flight
@@ -138,3 +140,23 @@ def test_a_flight_ends_when_its_plan_has_landed(fccd: Path, tmp_path: Path) -> N
         )
         endings.append(json.loads(done.stdout)["ending"])
     assert endings == ["the plan has landed", "the time to fly is over"]
+
+
+def test_the_waypoint_before_a_straight_approach_is_no_landing(fccd: Path, tmp_path: Path) -> None:
+    """In line with the runway it was reached as the landing began, and ended the flight there."""
+    plan = tmp_path / "straight.waypoints"
+    plan.write_text(
+        "QGC WPL 110\n"
+        "0 1 0 16 0 0 0 0 45.0 8.0 0 1\n"
+        "1 0 3 16 0 0 0 0 44.92 8.0 250 1\n"
+        "2 0 3 16 0 0 0 0 44.946 8.0 250 1\n"
+        "3 0 3 21 200 0 0 0 45.0 8.0 0 1\n"
+    )
+    words: list[str | Path] = [fccd, "fly", "--lockstep", "--json", "--quiet", "--plan", plan]
+    words += ["--recordings", tmp_path]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert json.loads(done.stdout)["ending"] == "the plan has landed"
+    (recording,) = tmp_path.glob("*.mcap")
+    last = fcc.Recording(recording).records[-1]
+    assert last["weight_on_wheels"] == 1.0
+    assert math.hypot(last["north_mps"], last["east_mps"]) < 1.0

@@ -1,6 +1,6 @@
 //! All observers of a flight.
 
-use fcc_core::flight::guidance::Mode;
+use fcc_core::flight::guidance::{Mode, Progress};
 use fcc_core::flight::{Autopilot, AutopilotCommand, ITEM_REACHED};
 use fcc_core::framework::{EventKind, Message};
 use fcc_runtime::CommandSender;
@@ -19,7 +19,7 @@ pub(super) struct Observers {
     names: Names,
     pub(super) monitor: Monitor,
     /// Of the last record.
-    mode: Mode,
+    flown: Progress,
     /// Why engaging was refused last.
     pub(super) refusal: Option<String>,
     reports: Reports,
@@ -31,7 +31,7 @@ impl Observers {
             all,
             names,
             monitor: Monitor::default(),
-            mode: Mode::None,
+            flown: Progress::default(),
             refusal: None,
             reports: Reports::default(),
         }
@@ -53,15 +53,21 @@ impl Observers {
         let at = self.monitor.take(message);
         match message {
             Message::Tick(record) => {
-                self.mode = record.setpoints.guidance.mode;
+                self.flown = record.setpoints.guidance;
                 for observer in &mut self.all {
                     observer.record(record, &at);
                 }
             }
             Message::Event(event) => {
-                // A landing's end is reached when the aircraft stands.
-                self.monitor.landed |= self.mode == Mode::Land
-                    && matches!(event.kind, EventKind::Noticed(notice) if notice.kind == ITEM_REACHED);
+                // A landing's end is reached when the aircraft stands. The waypoint before it
+                // may be reached in the tick in which the landing begins.
+                let (mode, item) = (self.flown.mode, self.flown.item);
+                self.monitor.landed |= mode == Mode::Land
+                    && matches!(
+                        event.kind,
+                        EventKind::Noticed(notice)
+                            if notice.kind == ITEM_REACHED && u32::from(notice.item) == item
+                    );
                 let words =
                     describe_event::<Autopilot>(event, &self.names.sensors, &self.names.actuators);
                 for observer in &mut self.all {

@@ -59,3 +59,21 @@ fn over_the_runway_it_is_the_height() {
     assert!(told(&mut flight, heading).is_empty());
     assert_eq!(flight.mode(), Mode::Hold);
 }
+
+/// Set to 1040 hPa in the roll, the aircraft had the take-off's altitude at once, and flew
+/// into the ground at 989 ft/min.
+#[test]
+fn the_altimeter_is_not_set_in_the_roll() {
+    let circuit = include_str!("../../../../config/plans/circuit.waypoints");
+    let mut flight = engaged(circuit, "[built-in]\n");
+    let rolls = |flight: &Flight| flight.record.measurements.airspeed_mps.value > 20.0;
+    flight.fly_until(30.0, rolls);
+    let setting = AutopilotCommand::AltimeterSetting(104_000.0);
+    let low = "not carried out: the height over the runway is measured by the altimeter: set it \
+               while the aircraft stands, or 30 m over the runway and higher";
+    assert_eq!(told(&mut flight, setting), [low]);
+    assert_eq!(flight.mode(), Mode::Takeoff);
+    flight.fly_until(60.0, |flight| flight.truth.get().altitude_m > 120.0 + 60.0);
+    assert!(flight.truth.impact().is_none());
+    assert!(told(&mut flight, setting).is_empty());
+}

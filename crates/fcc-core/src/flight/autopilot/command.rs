@@ -151,12 +151,14 @@ impl Autopilot {
         if let AutopilotCommand::ReplacePlan(replacement) = command {
             return self.replace_plan(replacement);
         }
-        if command.is_of_mode() && self.guidance.mode() != Mode::None {
+        if self.guidance.mode() != Mode::None {
             if let Err(refusal) = self.may_carry_out(command) {
                 self.refuse(refusal);
                 return;
             }
-            self.contingencies.end();
+            if command.is_of_mode() {
+                self.contingencies.end();
+            }
         }
         match *command {
             AutopilotCommand::Heartbeat(within_s) => self.contingencies.promise(within_s),

@@ -4,6 +4,7 @@ use core::fmt;
 
 use super::{Autopilot, AutopilotCommand};
 use crate::flight::guidance::ModeInput;
+use crate::flight::route::RunwayDemand;
 use crate::framework::Notice;
 
 /// The number of the notice that answers, below those of doubted sensors; the amount is the
@@ -13,6 +14,8 @@ pub const COMMAND_ANSWER: u8 = 0;
 const PERMILLE: u16 = 1_000;
 /// Lower than this over a runway nothing else is begun, m.
 const COMMANDED_M: f64 = 30.0;
+/// Slower than this over the ground it stands, m/s.
+const STANDS_MPS: f64 = 2.0;
 
 /// Why a command is not carried out.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -33,10 +36,11 @@ pub(super) enum Refusal {
     NowhereKnown,
     TurningAway,
     NoLanding,
+    NotBeforeItIsHigher,
 }
 
 impl Refusal {
-    const ALL: [Self; 14] = [
+    const ALL: [Self; 15] = [
         Self::NotEngaged,
         Self::NotPrepared,
         Self::NoSuchItem,
@@ -51,6 +55,7 @@ impl Refusal {
         Self::NowhereKnown,
         Self::TurningAway,
         Self::NoLanding,
+        Self::NotBeforeItIsHigher,
     ];
 
     const fn words(self) -> &'static str {
@@ -74,6 +79,10 @@ impl Refusal {
             Self::TurningAway => {
                 "the aircraft turns away from the fence or the ground: command it again when it \
                  flies away from there; disengaging is possible"
+            }
+            Self::NotBeforeItIsHigher => {
+                "the height over the runway is measured by the altimeter: set it while the aircraft \
+                 stands, or 30 m over the runway and higher"
             }
             Self::NoLanding => "the plan has no landing, and the aircraft was not seen to take off",
         }
@@ -106,6 +115,8 @@ impl Autopilot {
     pub(super) fn may_carry_out(&mut self, command: &AutopilotCommand) -> Result<(), Refusal> {
         match command {
             AutopilotCommand::Resume(_) => return Ok(()),
+            AutopilotCommand::AltimeterSetting(_) => return self.may_set_altimeter(),
+            AutopilotCommand::Heartbeat(_) => return Ok(()),
             AutopilotCommand::GoAround => {
                 let next = self.after(ModeInput::GoAround);
                 return next.map(drop).ok_or(Refusal::NotLanding);
@@ -140,6 +151,20 @@ impl Autopilot {
                 self.has_landing().then_some(()).ok_or(Refusal::NoLanding)
             }
             _ => Ok(()),
+        }
+    }
+}
+
+impl Autopilot {
+    /// Whether the altimeter may be set: in a take-off's roll and low over a runway the
+    /// height that is flown by would jump.
+    fn may_set_altimeter(&self) -> Result<(), Refusal> {
+        let moves = |demand: &RunwayDemand| {
+            demand.height_m < COMMANDED_M && demand.ground_speed_mps > STANDS_MPS
+        };
+        match self.runway().filter(moves) {
+            Some(_) => Err(Refusal::NotBeforeItIsHigher),
+            None => Ok(()),
         }
     }
 }
