@@ -14,7 +14,7 @@ ReplyPort = int | Literal["same", "next"]
 """The port to send from: a number, 0 for any free one; "same" as the one that listens; "next" for
 the one after it, or any free one."""
 
-_NEXT = itertools.count(random.SystemRandom().randrange(12_000))
+_NEXT = itertools.count(random.SystemRandom().randrange(6_000))
 
 
 def open_ports(host: str, port: int, reply_port: ReplyPort) -> tuple[socket.socket, socket.socket]:
@@ -38,17 +38,17 @@ def send_beacons_from(opened: socket.socket, host: str) -> None:
         opened.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, interface)
 
 
-def free_port(count: int = 1) -> int:
-    """Return the first of that many free ports in a row.
+def free_port() -> int:
+    """Return a free port; the next one is free, too: a stand-in sends from it.
 
-    They stay free: below the range from which the kernel gives ports to others
+    Both stay free: below the range from which the kernel gives ports to others
     (`ip_local_port_range` in ip(7): 32768 and above), and given once by this process.
     """
     while True:
-        first = 20_000 + next(_NEXT) * count % 12_000
+        first = 20_000 + next(_NEXT) * 2 % 12_000
         with contextlib.ExitStack() as opened:
             try:
-                for port in range(first, first + count):
+                for port in (first, first + 1):
                     probe = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
                     opened.enter_context(probe).bind(("0.0.0.0", port))
             except OSError:

@@ -36,7 +36,7 @@ TIME = "sim/time/total_flight_time_sec"
 
 
 def test_replies_come_from_the_next_port() -> None:
-    port = free_port(2)
+    port = free_port()
     bench = Bench(port=port, reply_port="next")
     bench.client.subscribe(1, TIME)
     bench.client.send(b"RPOS\x0060\0")
@@ -60,7 +60,7 @@ def test_the_beacon_names_the_port_that_listens_and_comes_from_the_other() -> No
 
 
 def test_a_taken_next_port_is_replaced_and_a_taken_given_one_is_refused() -> None:
-    port = free_port(2)
+    port = free_port()
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
         taken.bind(("127.0.0.1", port + 1))
         simulator = StandIn(Settings.plain(port=port, reply_port="next"))
