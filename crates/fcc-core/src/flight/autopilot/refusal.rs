@@ -114,9 +114,8 @@ impl Autopilot {
     /// aircraft: a landing is given up for it.
     pub(super) fn may_carry_out(&mut self, command: &AutopilotCommand) -> Result<(), Refusal> {
         match command {
-            AutopilotCommand::Resume(_) => return Ok(()),
+            AutopilotCommand::Resume(_) | AutopilotCommand::Heartbeat(_) => return Ok(()),
             AutopilotCommand::AltimeterSetting(_) => return self.may_set_altimeter(),
-            AutopilotCommand::Heartbeat(_) => return Ok(()),
             AutopilotCommand::GoAround => {
                 let next = self.after(ModeInput::GoAround);
                 return next.map(drop).ok_or(Refusal::NotLanding);
