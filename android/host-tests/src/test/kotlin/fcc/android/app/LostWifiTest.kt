@@ -55,7 +55,8 @@ class LostWifiTest {
         phone.eventually("failsafe") { phone.isIn("failsafe") }
         phone.eventually("the notification says it") { phone.notificationWords().startsWith("Failsafe / ") }
         phone.eventually("given back") { phone.isIn("standby") }
-        assertTrue(SILENT in activity.words(R.id.problem))
+        // Of the failsafe that is over the screen may still show its reason.
+        phone.eventually("what is missing is said") { MISSING in activity.words(R.id.problem) }
     }
 
     /** Longer than what a failsafe needs to end by itself, and a release to be confirmed. */
@@ -120,5 +121,8 @@ $others"""
 
     private companion object {
         const val SILENT = "nothing arrives from the simulator"
+
+        /** In standby, of each reading that is needed. */
+        const val MISSING = "is missing or too old"
     }
 }
