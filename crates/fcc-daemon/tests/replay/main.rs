@@ -20,7 +20,7 @@ use flights::{again, records};
 /// The outputs of a tick: 5 surfaces, 27 set points with guidance's progress, the
 /// estimate, the step's length, state, engage inhibits, faults, and whether they
 /// were sent.
-const OUTPUTS: u65 = 64;
+const OUTPUTS: u64 = 65;
 
 /// Asserts that a replay is the same in every bit, and returns the states of
 /// the flight.
