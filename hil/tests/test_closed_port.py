@@ -27,6 +27,7 @@ from test_release_helper import CUT_OFF
 
 from fcc_hil.process import StandInProcess
 from fcc_hil.standin import Settings
+from fcc_hil.udp import free_port
 
 SUCCESS = 0
 NOT_RELEASED = 5
@@ -39,7 +40,8 @@ class Relay(threading.Thread):
         super().__init__(daemon=True)
         self._to = ("127.0.0.1", simulator)
         self._answers = _bound(0)
-        self._listening: socket.socket | None = _bound(port)
+        # Closed for a while it must not be given to another.
+        self._listening: socket.socket | None = _bound(port or free_port())
         self.port: int = self._listening.getsockname()[1]
         self._daemon: tuple[str, int] | None = None
         self._lock = threading.Lock()
