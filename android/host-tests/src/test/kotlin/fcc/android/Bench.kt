@@ -3,6 +3,7 @@ package fcc.android
 import java.io.File
 import java.lang.management.ManagementFactory
 import java.nio.file.Files
+import java.util.concurrent.ConcurrentLinkedQueue
 import java.util.concurrent.LinkedBlockingQueue
 import java.util.concurrent.TimeUnit
 import javax.management.ObjectName
@@ -20,7 +21,11 @@ mode = "hold"
 """
 
 /** A folder for recordings that is removed with the process. */
-fun folder(): File = Files.createTempDirectory("fcc-android").toFile()
+fun folder(): File = Files.createTempDirectory("fcc-android").toFile().also { made.add(it) }
+
+private val made = ConcurrentLinkedQueue<File>().also { folders ->
+    Runtime.getRuntime().addShutdownHook(Thread { folders.forEach { it.deleteRecursively() } })
+}
 
 /** The state as JSON. */
 fun FlightComputer.json() = JSONObject(state())
