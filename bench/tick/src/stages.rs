@@ -19,9 +19,9 @@ use crate::{Flight, PERIOD};
 /// Half a minute of flight: sensors and actuator have settled, and what the
 /// autopilot learns of the aircraft is known.
 const WARM_UP_TICKS: u32 = 1_200;
-/// The autopilot engages when navigation has settled for a second, which from raw
-/// sensors begins after one.
-const ENGAGED_AT_TICK: u32 = 160;
+/// The autopilot engages once the gyroscopes can be held against the magnetic field,
+/// which takes 20 s at most.
+const ENGAGED_AT_TICK: u32 = 800;
 
 /// The satellite receiver's is 120 ms.
 const LONGEST_DELAY: Duration = Duration::from_millis(200);
@@ -139,7 +139,7 @@ impl Stages {
         let inhibits = stages
             .autopilot
             .engage_inhibits(&stages.tick, &stages.measurements);
-        assert!(inhibits.is_empty(), "does not engage");
+        assert!(inhibits.is_empty(), "does not engage: {inhibits:?}");
         stages.autopilot.engage(&stages.tick, &stages.measurements);
         for _ in 0..WARM_UP_TICKS {
             stages.next();
