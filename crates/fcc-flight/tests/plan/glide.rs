@@ -157,6 +157,24 @@ fn without_the_engine_it_lands_on_the_runway() {
     }
 }
 
+/// In 12 kt from behind it lands on the same runway the other way, 800 m of which begin 300 m
+/// before the aim.
+#[test]
+fn in_a_tail_wind_it_lands_against_the_runway_s_direction() {
+    let keys = "[built-in]\nnoise = false\nwind_from_deg = 180\nwind_kt = 12\n";
+    let (mut flight, stops) = with_engine(&away_from_runway(60.0), keys);
+    let sink_fpm = glide_down(&mut flight, &stops, 40);
+    let truth = flight.truth.get();
+    println!(
+        "stands {:.0} m north, {:.1} m east, sink {sink_fpm:.0} ft/min",
+        truth.north_m, truth.east_m
+    );
+    assert!(truth.heading_rad.cos() < -0.99, "{truth:?}");
+    assert!(sink_fpm < 500.0, "{sink_fpm}");
+    assert!(truth.east_m.abs() < 15.0, "{truth:?}");
+    assert!((0.0..800.0).contains(&truth.north_m), "{truth:?}");
+}
+
 /// 20 km from everything: into the wind, and down.
 #[test]
 fn where_nothing_is_reached_it_lands_into_the_wind() {

@@ -294,7 +294,11 @@ impl Autopilot {
                     demand.climb_rate_mps,
                     estimate,
                     &envelope,
-                    schedule,
+                    if demand.phase == RunwayPhase::Flare {
+                        schedule.brisk()
+                    } else {
+                        schedule
+                    },
                     dt_s,
                 );
                 let airspeed = ThrottleDemand {

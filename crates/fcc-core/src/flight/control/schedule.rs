@@ -66,6 +66,24 @@ impl Schedule {
         }
     }
 
+    /// The same with the pitch loops as fast as at the reference airspeed: a surface that is
+    /// moved (V₀/V)² as far turns the aircraft as fast, and where a gust is to be met at once
+    /// the slower short period is not waited for.
+    ///
+    /// ```
+    /// use fcc_core::flight::control::Schedule;
+    ///
+    /// assert_eq!(Schedule::at(30.0, 50.0).brisk().pitch_pace, 1.0);
+    /// assert_eq!(Schedule::at(30.0, 50.0).slowed(0.5, 1.0).brisk().pitch_pace, 0.5);
+    /// ```
+    #[must_use]
+    pub fn brisk(self) -> Self {
+        Self {
+            pitch_pace: self.pitch_pace.max(self.pace),
+            ..self
+        }
+    }
+
     /// The same with the bandwidth of altitude and pitch multiplied by `pace`,
     /// that of heading, roll and yaw by `lateral`: a loop's phase margin is
     /// kept at more latency if its crossover frequency is proportional to

@@ -15,7 +15,7 @@ const LEAST_TURN_M: f64 = 150.0;
 /// The flare lasts 4.9 s longer than the glide from its height would: from 8.8 m with 3.7 m/s
 /// and a time constant of 2.5 s, 2.5 ln(8.8/0.5 + 1) - 8.8/3.7. Two thirds of it are counted
 /// on, s: long is better than short.
-const FLOATS_S: f64 = 3.3;
+const FLOATS_S: f64 = 4.9;
 
 /// A site that is reached, and how.
 #[derive(Clone, Copy)]
@@ -58,7 +58,7 @@ impl GlideFlight {
             // The one that it has flown to is the nearest there is.
             return match self.runway {
                 Some(_) => {
-                    self.fly_to_shortest(here);
+                    self.fly_to_final(here, self.pattern.shortest_m());
                     None
                 }
                 None => Some(self.ahead(ground_m, config, here)),
@@ -69,15 +69,14 @@ impl GlideFlight {
         self.runway = Some(choice.runway);
         self.pattern = choice.pattern;
         if !self.aim(here, &choice.motion) {
-            self.fly_to_shortest(here);
+            self.fly_to_final(here, self.pattern.shortest_m());
         }
         None
     }
 
-    /// Onto the shortest final, with too little height.
-    fn fly_to_shortest(&mut self, here: &OverGround) {
+    /// Onto the turn to a final of this length, m.
+    pub(super) fn fly_to_final(&mut self, here: &OverGround, final_m: f64) {
         let at_m = here.motion_in(&self.at).position_m;
-        let final_m = self.pattern.shortest_m();
         self.stage = match self.pattern.leg(at_m, final_m) {
             Some(leg) => Stage::Direct(leg, final_m),
             None => Stage::Turn(final_m),
@@ -105,7 +104,7 @@ impl GlideFlight {
             course: runway.course,
             radius_m: radius_m.unwrap_or(f64::INFINITY).max(LEAST_RADIUS_M),
             is_right,
-            float_m: FLOATS_S * along_mps.max(0.0),
+            float_m: FLOATS_S * along_mps.max(0.0) + site.short_m,
         };
         let course = course_of(motion.ground_velocity_mps);
         let shortest_m = pattern.shortest_m();
@@ -113,8 +112,14 @@ impl GlideFlight {
         let by_key_m = pattern.key_cost_m(motion.position_m, course, &air);
         let height_m = self.height_m(here, runway.elevation_m);
         let left_m = height_m - direct_m.min(by_key_m);
+        // On the way there what was to spare is used up.
+        let spare_m = if self.runway.is_some_and(|chosen| chosen.at == runway.at) {
+            0.0
+        } else {
+            self.config.spare_m
+        };
         Choice {
-            rank: (left_m >= self.config.spare_m, site.kind, left_m),
+            rank: (left_m >= spare_m, site.kind, left_m),
             runway,
             pattern,
             motion,

@@ -1,39 +1,46 @@
 //! A glide without power to a landing place, and the way to its final.
 //!
 //! ```text
-//! choose ─┬─► Key ─► Circle ─► Downwind ─┐
-//!         ├─► Direct ◄─► Aside ◄──┐      ├─► Turn ─► Final ─► a landing without power
-//!         │      └────────────────│──────┘            │
-//!         │                       └───────────────────┘
+//! choose ─┬─► Key ─► Circle ─► Downwind
+//!         │                       ▼
+//!         ├───────────────────► Direct ─► Turn ─► Final ─► a landing without power
+//!         │                       ▲                 │
+//!         ├─────────► Round ──► Aside ◄─────────────┘
 //!         └─► nothing is reached: into the wind, wings level, and down
 //! ```
 //!
 //! Of the [sites](site) that are reached with height to spare the best is flown to, and
 //! without height to spare the one with the most height left. High enough, the aircraft
 //! circles over the [pattern](pattern)'s key; with less it flies onto the turn to the
-//! final, whose length is chosen by the height, or aside until it fits. Heights are those
-//! of energy: airspeed above that of the glide is height, too.
+//! final, whose length is chosen by the height. Between what the longest such way costs and
+//! the key there is a gap as large as a circle costs: with so much height it flies away from
+//! the landing's line until the way back costs what is left, and, where even more is left,
+//! a circle before. Heights are those of energy: airspeed above that of the glide is height,
+//! too.
 //!
-//! The glide ratio begins as configured, and is then the one that is flown: what the
-//! propeller, the load and the air make of it.
+//! The glide ratio begins as configured, and is then the mean of the one that is flown: what
+//! the propeller, the load and the air make of it.
 
 mod choose;
+mod fly;
 mod follow;
 mod pattern;
 mod reach;
+#[cfg(test)]
+mod simulation;
 mod site;
 
 pub use reach::Glide;
 
-use libm::exp;
 use nalgebra::Vector2;
 
 use super::leg::Leg;
 use super::runway::{Runway, RunwayFlight};
-use super::{OverGround, ROLL_LAG_S, Route, RouteConfig};
+use super::{OverGround, Route, RouteConfig};
 use crate::blocks::limit;
-use crate::flight::path::{LocalPlane, Motion, Path, length, right_of};
+use crate::flight::path::{LocalPlane, Motion};
 use crate::units::GRAVITY_MPS2;
+use fly::CIRCLE_SPARE;
 use pattern::{Air, Pattern, course_of};
 
 /// How the aircraft glides.
@@ -49,21 +56,24 @@ pub struct GlideConfig {
 
 /// How often the way is computed anew, s.
 const EVERY_S: f64 = 0.5;
-/// The flown glide is followed with this time constant, s, while the airspeed is within
-/// this share of that of the glide, and no farther than by these factors.
-const FOLLOWS_S: f64 = 40.0;
+/// The configured glide counts as much as this time of a flown one, s, of which the last
+/// minutes count, s: gusts rise and sink for ten seconds and more, and what is left of
+/// them is the smaller the longer the mean is. It is flown while the airspeed is within
+/// this share of that of the glide, and counts no farther off than by these factors.
+const CONFIGURED_S: f64 = 60.0;
+const LAST_S: f64 = 240.0;
 const ON_SPEED: f64 = 0.1;
 const FACTORS: (f64, f64) = (0.6, 2.0);
 /// No turn over the ground is smaller, m.
 const LEAST_RADIUS_M: f64 = 150.0;
 /// On the way, another site is chosen if this one is missed by so much height, m.
 const MISSED_M: f64 = 15.0;
-/// Where height is lost aside, the course is so far off, as cosine and sine (60°).
-const ASIDE: (f64, f64) = (0.5, 0.866);
-/// To the pattern's side, unless the other one leads that much less to the aim.
-const SIDE: f64 = 0.2;
 /// Lower than this above the ground it turns no more, m.
 const LEAST_TURNING_M: f64 = 25.0;
+/// On the way so much of the height above that of the last turn, m, is kept: the air on the
+/// way is not known.
+const KEPT: f64 = 0.06;
+const LAST_TURN_M: f64 = 150.0;
 /// On a final that is higher by this it goes aside, m.
 const HIGH_M: f64 = 20.0;
 
@@ -81,6 +91,9 @@ enum Stage {
     Direct(Leg, f64),
     /// Aside, to lose height, from a place on a course.
     Aside(Vector2<f64>, Vector2<f64>),
+    /// A full circle, to lose more: where and on what course it began, and whether half of
+    /// it is flown.
+    Round(Vector2<f64>, Vector2<f64>, bool),
     /// In the turn onto a final of this length, m.
     Turn(f64),
     /// On the final, as long as there is room for another way.
@@ -94,6 +107,8 @@ pub(super) struct GlideFlight {
     /// The sine of the glide's angle, as configured and as flown.
     planned_sine: f64,
     sine: f64,
+    /// For how long it was flown, s.
+    flown_s: f64,
     /// Height of energy in the last tick, m.
     energy_m: Option<f64>,
     stage: Stage,
@@ -112,6 +127,7 @@ impl GlideFlight {
             config,
             planned_sine: sine,
             sine,
+            flown_s: 0.0,
             energy_m: None,
             stage: Stage::Begin,
             at: LocalPlane::at(0.0, 0.0),
@@ -165,7 +181,8 @@ impl GlideFlight {
         };
         let load = 1.0 / libm::cos(limit(here.roll_rad, -1.0, 1.0));
         let level = (before_m - energy_m) / (dt_s * speed_mps * 0.5 * (1.0 + load * load));
-        let followed = self.sine + (level - self.sine) * (1.0 - exp(-dt_s / FOLLOWS_S));
+        self.flown_s = (self.flown_s + dt_s).min(LAST_S);
+        let followed = self.sine + (level - self.sine) * dt_s / (CONFIGURED_S + self.flown_s);
         let (least, most) = FACTORS;
         self.sine = limit(
             followed,
@@ -202,14 +219,9 @@ impl GlideFlight {
                 return Some(self.ahead(ground_m, config, here));
             }
             Stage::Final if is_due && self.is_high(here, &motion) => {
-                let aside = self.aside(&motion, self.pattern.course);
-                let air = self.air(here, &motion);
-                let shortest_m = self.pattern.shortest_m();
-                let back_m = self
-                    .pattern
-                    .direct_cost_m(motion.position_m, aside, shortest_m, &air);
-                if self.height_m(here, self.elevation_m) > back_m + MISSED_M {
-                    self.stage = Stage::Aside(motion.position_m, aside);
+                let (at_m, pattern) = (motion.position_m, self.pattern);
+                if pattern.before_m(at_m) > pattern.shortest_m() + 2.0 * pattern.radius_m {
+                    self.stage = Stage::Aside(at_m, pattern.aside());
                 }
             }
             _ => {}
@@ -223,38 +235,36 @@ impl GlideFlight {
         let air = self.air(here, motion);
         let height_m = self.height_m(here, self.elevation_m);
         let pattern = self.pattern;
-        if pattern.key_cost_m(at_m, course, &air) <= height_m {
+        let circle_m = pattern.circle_cost_m(&air);
+        let spare_m = match self.stage {
+            Stage::Key(_) => 0.0,
+            _ => CIRCLE_SPARE * circle_m,
+        };
+        if pattern.key_cost_m(at_m, course, &air) + spare_m <= height_m {
             self.stage = pattern
-                .leg(at_m, 0.0)
+                .key_leg(at_m)
                 .map_or(Stage::Circle(false), Stage::Key);
             return true;
         }
         let shortest_m = pattern.shortest_m();
-        if pattern.direct_cost_m(at_m, course, shortest_m, &air) > height_m + MISSED_M {
+        let left_m = height_m - pattern.direct_cost_m(at_m, course, shortest_m, &air);
+        if left_m < -MISSED_M {
             return false;
         }
         let Some(leg) = pattern.leg(at_m, shortest_m) else {
             return false;
         };
-        self.stage = match pattern.final_for_m(height_m, at_m, course, &air) {
+        let kept_m = KEPT * (height_m - LAST_TURN_M).max(0.0);
+        let round_m = (1.0 + CIRCLE_SPARE) * circle_m + self.config.spare_m;
+        self.stage = match pattern.final_for_m(height_m - kept_m, at_m, course, &air) {
             Some(final_m) => Stage::Direct(pattern.leg(at_m, final_m).unwrap_or(leg), final_m),
-            None => Stage::Aside(at_m, self.aside(motion, leg.course)),
+            None if left_m > round_m => Stage::Round(at_m, course, false),
+            None => match self.stage {
+                Stage::Aside(..) => self.stage,
+                _ => Stage::Aside(at_m, pattern.aside()),
+            },
         };
         true
-    }
-
-    /// The course aside of another one.
-    fn aside(&self, motion: &Motion, course: Vector2<f64>) -> Vector2<f64> {
-        let (along, across) = ASIDE;
-        let (ahead, right) = (course * along, right_of(course) * across);
-        let off = self.pattern.aim_from(motion.position_m);
-        let less_right = 2.0 * off.dot(&right);
-        let side = if self.pattern.is_right { SIDE } else { -SIDE };
-        if side > less_right {
-            ahead + right
-        } else {
-            ahead - right
-        }
     }
 
     /// Whether it is too low for another turn.
@@ -270,76 +280,4 @@ impl GlideFlight {
         let costs_m = self.pattern.final_cost_m(final_m, &self.air(here, motion));
         self.height_m(here, self.elevation_m) > costs_m + HIGH_M
     }
-
-    fn go_on(
-        &mut self,
-        here: &OverGround,
-        motion: &Motion,
-        config: &RouteConfig,
-    ) -> Option<RunwayFlight> {
-        let (at_m, pattern) = (motion.position_m, self.pattern);
-        let ahead_m = ahead_m(motion, config);
-        match self.stage {
-            Stage::Key(leg) if leg.left_m(at_m) <= ahead_m => self.stage = Stage::Circle(false),
-            Stage::Circle(was_outward) => {
-                let left_rad = pattern.left_rad(0.0, at_m, -pattern.course);
-                let is_outward =
-                    left_rad > ahead_m / pattern.radius_m && left_rad < core::f64::consts::PI;
-                self.stage = Stage::Circle(is_outward);
-                if was_outward && !is_outward {
-                    let air = self.air(here, motion);
-                    let height_m = self.height_m(here, self.elevation_m);
-                    let needs_m = pattern.circle_cost_m(&air) + pattern.low_key_cost_m(0.0, &air);
-                    if height_m < needs_m {
-                        self.stage = Stage::Downwind;
-                    }
-                }
-            }
-            Stage::Downwind => {
-                let before_m = pattern.before_m(at_m) + ahead_m;
-                let air = self.air(here, motion);
-                let height_m = self.height_m(here, self.elevation_m);
-                let is_far = before_m >= pattern.shortest_m();
-                if is_far && pattern.low_key_cost_m(before_m, &air) >= height_m
-                    || before_m >= pattern.longest_m()
-                {
-                    self.stage = Stage::Turn(before_m);
-                }
-            }
-            Stage::Direct(leg, final_m) if leg.left_m(at_m) <= ahead_m => {
-                self.stage = Stage::Turn(final_m);
-            }
-            Stage::Turn(final_m) => {
-                let left_rad = pattern.left_rad(final_m, at_m, pattern.course);
-                let is_over = left_rad <= ahead_m / pattern.radius_m
-                    || left_rad > core::f64::consts::TAU - 0.5;
-                if is_over {
-                    self.stage = Stage::Final;
-                }
-            }
-            Stage::Final if pattern.before_m(at_m) <= pattern.shortest_m() => {
-                return self.runway.map(|runway| self.land(runway, here, config));
-            }
-            _ => {}
-        }
-        None
-    }
-
-    /// What is followed.
-    pub(super) fn path(&self) -> Path {
-        match self.stage {
-            Stage::Key(leg) | Stage::Direct(leg, _) => leg.path(),
-            Stage::Begin | Stage::Circle(_) => self.pattern.circle(0.0),
-            Stage::Downwind => self.pattern.downwind(),
-            Stage::Aside(through_m, course) => Path::Line { through_m, course },
-            Stage::Turn(final_m) => self.pattern.circle(final_m),
-            Stage::Final => self.pattern.landing(),
-        }
-    }
-}
-
-/// How far before an arc its bank is commanded, m.
-fn ahead_m(motion: &Motion, config: &RouteConfig) -> f64 {
-    let ramp_s = config.bank_rad / config.bank_rate_radps;
-    length(motion.ground_velocity_mps) * (0.5 * ramp_s + ROLL_LAG_S)
 }

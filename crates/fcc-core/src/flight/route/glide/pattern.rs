@@ -2,19 +2,22 @@
 //! final, and the final.
 //!
 //! ```text
-//!              2R ───────────── low key ◄──┐    downwind, opposite to the landing
-//!   turn (  )   R               (  circle  )    over the key
-//!  final ────────────► aim ───────────────      the landing's line, to the aim
-//!          -x                  0
+//!      ╭──────────────────── low key ◄──┐     2R + B, downwind, opposite to the landing
+//!      │                     (  circle  )     over the key
+//!      │ base                                 B long
+//!      ╰── final ───────────► aim             the landing's line, to the aim
+//!               -x             0
 //! ```
 //!
-//! All turns are to the same side, with the same radius R. The circle touches the line
-//! over the aim, and is left at the low key. From there the way is as long as the height
-//! wants it: the turn to the final begins where the rest of the way costs what is left.
+//! All turns are to the same side, with the same radius R. The circle is left at the low
+//! key, abeam the aim. From there the way is as long as the height wants it: the turn to
+//! the base begins where the rest of the way costs what is left, and the base leads to a
+//! final that is shorter or longer by what the air has made of it since. What is lost or
+//! gained then, in the last quarter of a circle and on the final, is not made up for.
 
-use core::f64::consts::{PI, TAU};
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use libm::{atan2, sin};
+use libm::atan2;
 use nalgebra::Vector2;
 
 use super::Glide;
@@ -24,6 +27,10 @@ use crate::flight::route::leg::Leg;
 
 /// The shortest final, m.
 const LEAST_FINAL_M: f64 = 400.0;
+/// The shortest one of the pattern leaves so much of it for a shorter way, m.
+const SPARE_FINAL_M: f64 = 200.0;
+/// The straight part of the base, m.
+const BASE_M: f64 = 400.0;
 /// The longest final takes up a full circle of height, and so much more, m.
 const MORE_FINAL_M: f64 = 200.0;
 /// An arc that is shorter than this by rounding is none, rad.
@@ -66,29 +73,53 @@ impl Pattern {
         LEAST_FINAL_M.max(self.radius_m)
     }
 
+    /// The shortest final of the way by the key, m.
+    const fn planned_m(&self) -> f64 {
+        self.shortest_m() + SPARE_FINAL_M
+    }
+
     pub(super) fn longest_m(&self) -> f64 {
-        self.shortest_m() + PI * self.radius_m + MORE_FINAL_M
+        self.planned_m() + PI * self.radius_m + MORE_FINAL_M
     }
 
-    /// The centre of the turn onto a final of this length, m; of 0, of the circle over the
-    /// key.
-    pub(super) fn centre_m(&self, final_m: f64) -> Vector2<f64> {
-        let before_m = final_m + self.float_m;
-        right_of(self.course) * (self.sign() * self.radius_m) - self.course * before_m
+    /// So far before the aim, m, and to the pattern's side.
+    fn place_m(&self, before_m: f64, aside_m: f64) -> Vector2<f64> {
+        let before_m = before_m + self.float_m;
+        right_of(self.course) * (self.sign() * aside_m) - self.course * before_m
     }
 
-    pub(super) fn circle(&self, final_m: f64) -> Path {
+    /// The centre of the turn onto a final of this length, m.
+    fn turn_centre_m(&self, final_m: f64) -> Vector2<f64> {
+        self.place_m(final_m, self.radius_m)
+    }
+
+    /// The centre of the circle over the key.
+    fn key_centre_m(&self) -> Vector2<f64> {
+        self.place_m(0.0, self.radius_m + BASE_M)
+    }
+
+    const fn circle(&self, centre_m: Vector2<f64>) -> Path {
         Path::Circle {
-            centre_m: self.centre_m(final_m),
+            centre_m,
             radius_m: self.radius_m,
             clockwise: self.is_right,
         }
     }
 
+    /// The turn onto a final of this length, m.
+    pub(super) fn turn(&self, final_m: f64) -> Path {
+        self.circle(self.turn_centre_m(final_m))
+    }
+
+    /// The circle over the key.
+    pub(super) fn key(&self) -> Path {
+        self.circle(self.key_centre_m())
+    }
+
     /// The line opposite to the landing.
     pub(super) fn downwind(&self) -> Path {
         Path::Line {
-            through_m: right_of(self.course) * (2.0 * self.sign() * self.radius_m),
+            through_m: self.place_m(0.0, 2.0 * self.radius_m + BASE_M),
             course: -self.course,
         }
     }
@@ -106,13 +137,18 @@ impl Pattern {
         -self.course.dot(&position_m) - self.float_m
     }
 
-    /// The direction in which the glide leads to the ground, from a place.
-    pub(super) fn aim_from(&self, at_m: Vector2<f64>) -> Vector2<f64> {
-        course_of(-self.course * self.float_m - at_m)
+    /// Away from the landing's line, to the pattern's side.
+    pub(super) fn aside(&self) -> Vector2<f64> {
+        right_of(self.course) * self.sign()
+    }
+
+    /// The circle of a turn that begins here.
+    pub(super) fn circle_from(&self, at_m: Vector2<f64>, course: Vector2<f64>) -> Path {
+        self.circle(at_m + right_of(course) * (self.sign() * self.radius_m))
     }
 
     /// How far the circle has to be flown from one course to another, rad.
-    fn around_rad(&self, from: Vector2<f64>, to: Vector2<f64>) -> f64 {
+    pub(super) fn around_rad(&self, from: Vector2<f64>, to: Vector2<f64>) -> f64 {
         let left = self.sign() * (course_rad(to) - course_rad(from));
         let left = left - TAU * libm::floor(left / TAU);
         if left > TAU - LEAST_ARC_RAD {
@@ -122,10 +158,15 @@ impl Pattern {
         }
     }
 
-    /// How far it is on a circle to a course, rad.
-    pub(super) fn left_rad(&self, final_m: f64, position_m: Vector2<f64>, to: Vector2<f64>) -> f64 {
-        let course = self.circle(final_m).nearest(position_m).course;
-        self.around_rad(course, to)
+    /// How far it is from a place to the end of the turn onto a final of this length, rad.
+    pub(super) fn turn_left_rad(&self, final_m: f64, position_m: Vector2<f64>) -> f64 {
+        let course = self.turn(final_m).nearest(position_m).course;
+        self.around_rad(course, self.course)
+    }
+
+    /// How far it is from a place on the circle to the low key, rad.
+    pub(super) fn key_left_rad(&self, position_m: Vector2<f64>) -> f64 {
+        self.around_rad(self.key().nearest(position_m).course, -self.course)
     }
 
     fn arc_m(&self, from: Vector2<f64>, angle_rad: f64, air: &Air) -> f64 {
@@ -134,22 +175,39 @@ impl Pattern {
             .arc_m(course_rad(from), through, self.radius_m, air.wind_mps)
     }
 
-    /// The leg onto the turn to a final of this length; onto the circle over the key with 0.
+    /// The leg onto the turn to a final of this length.
     pub(super) fn leg(&self, from_m: Vector2<f64>, final_m: f64) -> Option<Leg> {
-        Leg::to_circle(from_m, self.centre_m(final_m), self.radius_m, self.is_right)
+        let centre_m = self.turn_centre_m(final_m);
+        Leg::to_circle(from_m, centre_m, self.radius_m, self.is_right)
     }
 
-    /// What turning from a course onto a leg, and the leg, cost, m: a turn through Δ leads
-    /// R sin Δ along the leg already.
-    fn leg_cost_m(&self, from: Vector2<f64>, leg: &Leg, air: &Air) -> f64 {
-        let (from_rad, to_rad) = (course_rad(from), course_rad(leg.course));
-        let through_rad = wrap_pi(to_rad - from_rad);
-        let turned_m = air
-            .glide
-            .arc_m(from_rad, through_rad, self.radius_m, air.wind_mps);
-        let ahead_m = self.radius_m * sin(through_rad.abs());
-        let way_m = (leg.length_m - ahead_m).max(0.0);
-        turned_m + air.glide.straight_m(to_rad, way_m, air.wind_mps)
+    /// The leg onto the circle over the key.
+    pub(super) fn key_leg(&self, from_m: Vector2<f64>) -> Option<Leg> {
+        Leg::to_circle(from_m, self.key_centre_m(), self.radius_m, self.is_right)
+    }
+
+    /// What turning from a place and a course onto the leg to a circle, and the leg, cost, m,
+    /// and that leg's course. None where it begins inside of the circle.
+    fn onto_m(
+        &self,
+        at_m: Vector2<f64>,
+        course: Vector2<f64>,
+        centre_m: Vector2<f64>,
+        air: &Air,
+    ) -> Option<(f64, Vector2<f64>)> {
+        let radius_m = self.radius_m;
+        let onto = |from_m| Leg::to_circle(from_m, centre_m, radius_m, self.is_right);
+        let from_rad = course_rad(course);
+        let through_rad = |leg: &Leg| wrap_pi(course_rad(leg.course) - from_rad);
+        // The turn's end is not on the leg that begins where the turn does: on one beside it.
+        let first = onto(at_m)?;
+        let outwards = right_of(course) - right_of(first.course);
+        let side = if through_rad(&first) < 0.0 { -1.0 } else { 1.0 };
+        let leg = onto(at_m + outwards * (side * radius_m)).unwrap_or(first);
+        let glide = &air.glide;
+        let turned_m = glide.arc_m(from_rad, through_rad(&leg), radius_m, air.wind_mps);
+        let way_m = glide.straight_m(course_rad(leg.course), leg.length_m, air.wind_mps);
+        Some((turned_m + way_m, leg.course))
     }
 
     /// What the final costs, m.
@@ -167,34 +225,37 @@ impl Pattern {
         final_m: f64,
         air: &Air,
     ) -> f64 {
-        let Some(leg) = self.leg(at_m, final_m) else {
+        let centre_m = self.turn_centre_m(final_m);
+        let Some((onto_m, reached)) = self.onto_m(at_m, course, centre_m, air) else {
             return f64::INFINITY;
         };
-        let around_rad = self.around_rad(leg.course, self.course);
-        self.leg_cost_m(course, &leg, air)
-            + self.arc_m(leg.course, around_rad, air)
-            + self.final_cost_m(final_m, air)
+        let around_rad = self.around_rad(reached, self.course);
+        onto_m + self.arc_m(reached, around_rad, air) + self.final_cost_m(final_m, air)
     }
 
     /// What the way by the circle over the key costs at least, m: to the low key, and with
     /// the shortest final.
     pub(super) fn key_cost_m(&self, at_m: Vector2<f64>, course: Vector2<f64>, air: &Air) -> f64 {
-        let (onto, reached) = match self.leg(at_m, 0.0) {
-            Some(leg) => (self.leg_cost_m(course, &leg, air), leg.course),
-            None => (0.0, self.circle(0.0).nearest(at_m).course),
-        };
+        let (onto_m, reached) = self
+            .onto_m(at_m, course, self.key_centre_m(), air)
+            .unwrap_or_else(|| (0.0, self.key().nearest(at_m).course));
         let around_rad = self.around_rad(reached, -self.course);
-        onto + self.arc_m(reached, around_rad, air) + self.low_key_cost_m(0.0, air)
+        onto_m + self.arc_m(reached, around_rad, air) + self.low_key_cost_m(0.0, air)
     }
 
     /// What the way costs from the downwind line, so far before the aim, m, with the final
     /// that begins there or, nearer, with the shortest one.
     pub(super) fn low_key_cost_m(&self, before_m: f64, air: &Air) -> f64 {
-        let final_m = before_m.max(self.shortest_m());
-        let back_rad = course_rad(-self.course);
-        air.glide
-            .straight_m(back_rad, final_m - before_m, air.wind_mps)
-            + self.arc_m(-self.course, PI, air)
+        let final_m = before_m.max(self.planned_m());
+        let (back, base) = (-self.course, right_of(self.course) * -self.sign());
+        let straight_m = |course, way_m| {
+            air.glide
+                .straight_m(course_rad(course), way_m, air.wind_mps)
+        };
+        straight_m(back, final_m - before_m)
+            + self.arc_m(back, FRAC_PI_2, air)
+            + straight_m(base, BASE_M)
+            + self.arc_m(base, FRAC_PI_2, air)
             + self.final_cost_m(final_m, air)
     }
 
@@ -268,14 +329,14 @@ mod tests {
     /// times the sink.
     const TURNING: f64 = 1.046_8;
 
-    /// From the low key 600 m east of the aim: 400 m south, half a circle of 942.5 m, 400 m
-    /// north.
+    /// From the low key 1,000 m east of the aim: 600 m south, two quarters of a circle of
+    /// 942.5 m, between them 400 m west, 600 m north.
     #[test]
     fn the_way_from_the_low_key_costs_its_length() {
-        let expected_m = (800.0 + TURNING * 942.48) / 10.0;
+        let expected_m = (1_600.0 + TURNING * 942.48) / 10.0;
         let cost_m = north().low_key_cost_m(0.0, &STILL);
         assert!((cost_m - expected_m).abs() < 0.1, "{cost_m} {expected_m}");
-        let by_key_m = north().key_cost_m(Vector2::new(0.0, 600.0), -north().course, &STILL);
+        let by_key_m = north().key_cost_m(Vector2::new(0.0, 1_000.0), -north().course, &STILL);
         assert!((by_key_m - expected_m).abs() < 0.5, "{by_key_m}");
         let circle_m = north().circle_cost_m(&STILL);
         assert!((circle_m - TURNING * 188.5).abs() < 0.1, "{circle_m}");
@@ -319,8 +380,8 @@ mod tests {
             wind_mps: Vector2::new(-8.0, 0.0),
             ..STILL
         };
-        // 400 m with 38 m/s, and back with 22 m/s.
-        let straight_m = 3.0 * (400.0 / 38.0 + 400.0 / 22.0);
+        // 600 m with 38 m/s, and back with 22 m/s; 400 m across with √(30² - 8²).
+        let straight_m = 3.0 * (600.0 / 38.0 + 600.0 / 22.0 + 400.0 / 28.914);
         let cost_m = north().low_key_cost_m(0.0, &air);
         let calm_m = north().low_key_cost_m(0.0, &STILL);
         assert!(cost_m > straight_m + 0.1 * 942.48 && cost_m > calm_m);

@@ -15,6 +15,8 @@ pub(super) enum SiteKind {
     Field,
     /// A runway of the plan, with more tail wind than it should have.
     Downwind,
+    /// A runway of the plan, against the direction in which the plan lands.
+    Reversed,
     /// A runway of the plan.
     Runway,
 }
@@ -27,10 +29,18 @@ pub(super) struct Site {
     /// The direction of a runway; a field is landed on into the wind.
     course: Option<Vector2<f64>>,
     pub(super) elevation_m: f64,
+    /// How far before the place it is aimed, m.
+    pub(super) short_m: f64,
 }
 
-/// More tail wind is worse than a field, m/s (10 kt).
-const MOST_TAIL_MPS: f64 = 5.144;
+/// With more tail wind a runway is rather landed on against its direction, m/s (5 kt): the
+/// handbook of the Cessna 172P (1981) adds a tenth to the landing's way for each 2 kt.
+const MOST_TAIL_MPS: f64 = 2.572;
+/// Against its direction the end of a runway is the beginning, and the place that is aimed
+/// at is nearer to it than the length of a landing: it is aimed at so far before it, m. In
+/// the plan's direction the ground roll alone needs this much behind the place (540 ft by
+/// the handbook, and a quarter for 5 kt of tail wind).
+const REVERSED_M: f64 = 200.0;
 
 impl Site {
     /// The runway to land on, from where the aircraft is in its plane.
@@ -57,7 +67,7 @@ pub(super) fn of(
     here: OverGround,
 ) -> impl Iterator<Item = (Site, Motion)> {
     let runways = route.steps.iter().enumerate();
-    let runways = runways.filter_map(move |(index, step)| match step {
+    let runways = runways.flat_map(move |(index, step)| match step {
         Step::Land {
             at, elevation_m, ..
         } => {
@@ -70,23 +80,32 @@ pub(super) fn of(
                 Some(_) if tail_mps > MOST_TAIL_MPS => SiteKind::Downwind,
                 Some(_) => SiteKind::Runway,
             };
-            let (at, elevation_m) = (*at, *elevation_m);
             let site = Site {
                 kind,
-                at,
+                at: *at,
                 course,
-                elevation_m,
+                elevation_m: *elevation_m,
+                short_m: 0.0,
             };
-            Some((site, motion))
+            let reversed = Site {
+                kind: SiteKind::Reversed,
+                course: course.map(|course| -course),
+                short_m: REVERSED_M,
+                ..site
+            };
+            let is_open = course.is_some() && -tail_mps <= MOST_TAIL_MPS;
+            [Some((site, motion)), is_open.then_some((reversed, motion))]
         }
-        _ => None,
+        _ => [None, None],
     });
+    let runways = runways.flatten();
     let fields = route.returns.iter().map(move |place| {
         let site = Site {
             kind: SiteKind::Field,
             at: place.at,
             course: None,
             elevation_m: ground_m,
+            short_m: 0.0,
         };
         (site, here.motion_in(&place.at))
     });

@@ -217,11 +217,11 @@ impl RunwayFlight {
     }
 
     /// Whether the ground below is the runway's, or as high: an embankment, a wood and a
-    /// valley before it are not.
+    /// valley before it are not. Without power it lands on whatever is below.
     fn is_over_runway(&self, motion: &Motion) -> bool {
         /// So near to the point that is aimed at, m.
         const NEAR_M: f64 = 400.0;
-        self.phase.is_takeoff() || self.left_m(motion) < NEAR_M
+        self.phase.is_takeoff() || self.glide_sine.is_some() || self.left_m(motion) < NEAR_M
     }
 
     /// One tick.
