@@ -25,7 +25,7 @@ macro_rules! exits {
 exits! {
     Success = 0, "success";
     Failure = 1, "the operating system, the network or a part of the program failed";
-    Usage = 2, "the command line or the configuration is wrong, or a recording is of another plant";
+    Usage = 2, "the command line or the configuration is wrong, or a file is no recording, or one of another plant";
     Failsafe = 3, "the flight entered failsafe";
     RealtimeDenied = 4, "a real-time request was denied and realtime.strict is set";
     NotReleased = 5, "the controls may not have been released";
@@ -42,6 +42,7 @@ exits! {
     HitGround = 16, "the built-in aircraft hit the ground";
     Overloaded = 17, "for too long the loop's ticks left no time to sleep; it released the controls and stopped";
     CalibrationRefused = 18, "a calibration would be poor, and was refused (calibrate)";
+    NotFlown = 19, "the plan was not flown to its end in the time that there was";
 }
 
 impl From<Exit> for ExitCode {
@@ -56,6 +57,7 @@ impl From<Conclusion> for Exit {
             Conclusion::Completed => Self::Success,
             Conclusion::NotRecorded => Self::NotRecorded,
             Conclusion::Failed => Self::Failure,
+            Conclusion::NotFlown => Self::NotFlown,
             Conclusion::Failsafe => Self::Failsafe,
             Conclusion::HitGround => Self::HitGround,
             Conclusion::Panicked => Self::Panicked,

@@ -20,6 +20,7 @@ use nix::errno::Errno;
 use serde::Serialize;
 
 use crate::exit::Exit;
+use crate::process::standard_output;
 
 /// Prints a result. Returns `exit`, or a failure if that was a success and the
 /// result could not be printed. A reader that has left (`| head -1`, or a closed
@@ -57,7 +58,8 @@ impl Write for StandardOutput {
 
 /// The exit code after printing a result.
 pub(crate) fn printed(printing: io::Result<()>, exit: Exit) -> Exit {
-    match printing {
+    let closed = standard_output::was_closed().then(|| io::Error::from(Errno::EBADF));
+    match closed.map_or(printing, Err) {
         Err(error) if !has_left(&error) => not_printed(&error, exit),
         _ => exit,
     }

@@ -7,9 +7,10 @@
 use fcc_core::flight::path::turn::{Turn, smallest_circle_m};
 use fcc_core::flight::route::PLANNED_SHARE;
 
+use crate::flyable::{airspeed_problem, polar_problem, polar_problems, speed_problem};
 use crate::ground::obstacle_problems;
 use crate::inside::{TurnAway, circles, fence_problem, heights, obstacle_problem};
-use crate::item::{Altitude, AltitudeDatum, Item, Loiter, LoiterEnd, Place, Speed};
+use crate::item::{Altitude, AltitudeDatum, Item, Loiter, Place, Speed};
 use crate::outline::Outline;
 use crate::plan::{Plan, limits};
 use crate::problem::Problem;
@@ -20,6 +21,10 @@ use crate::runway::{last_leg, runway_problem};
 pub struct Conditions {
     /// True airspeed where the plan gives none, m/s.
     pub airspeed_mps: f64,
+    /// The lowest and the highest indicated airspeed that is flown, m/s.
+    pub slowest_mps: f64,
+    /// See `slowest_mps`.
+    pub fastest_mps: f64,
     /// The strongest wind, from any direction, m/s.
     pub wind_mps: f64,
     /// The largest bank of a turn, rad, below π/2.
@@ -37,14 +42,6 @@ pub struct Conditions {
     pub fence_margin_m: Option<f64>,
 }
 
-/// What turns add to legs, as a factor; the least speed over the ground, of the
-/// airspeed; and the time for getting onto a leg, s.
-const TURNS: f64 = 1.1;
-const SLOWEST_SHARE: f64 = 0.3;
-const LEAST_S: f64 = 30.0;
-/// A landing where it took off, from over the runway, m.
-const PATTERN_M: f64 = 20_000.0;
-
 /// A leg between two places, with its altitudes above sea level, m.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Leg {
@@ -60,6 +57,8 @@ pub(crate) struct Leg {
     /// How near the turn at its end passes the place, m.
     pub(crate) within_m: f64,
     pub(crate) airspeed_mps: f64,
+    /// The speed over the ground that is demanded; none: what the airspeed gives.
+    pub(crate) ground_mps: Option<f64>,
 }
 
 /// Checks a plan as a whole.
@@ -73,6 +72,12 @@ pub fn check(plan: &Plan, conditions: &Conditions) -> Result<(), Vec<Problem>> {
     if plan.items.is_empty() {
         problems.push(Problem::of("items", "there are none: give at least one"));
     }
+    if let Some(mps) = plan.cruise_mps
+        && let Some(message) = airspeed_problem(mps, conditions)
+    {
+        problems.push(Problem::of("cruiseSpeed", message));
+    }
+    problems.extend(polar_problems(plan));
     let legs = legs(plan, conditions, &mut problems);
     let outline = Outline::of(plan);
     for (n, leg) in legs.iter().enumerate() {
@@ -89,6 +94,7 @@ pub fn check(plan: &Plan, conditions: &Conditions) -> Result<(), Vec<Problem>> {
             last_leg(plan, leg, begins_m, conditions),
             outline.with(|fence| fence_problem(leg, fence, &turn_away)),
             obstacle_problem(leg, &plan.obstacles),
+            polar_problem(leg),
         ];
         for (field, message) in found.into_iter().flatten() {
             problems.push(Problem::of_item(leg.item, field, message));
@@ -110,45 +116,6 @@ pub fn check(plan: &Plan, conditions: &Conditions) -> Result<(), Vec<Problem>> {
     }
 }
 
-/// How long a plan takes at most, s: each leg against the strongest wind, with turns and
-/// loiters; at least a minute.
-pub fn longest_s(plan: &Plan, conditions: &Conditions) -> f64 {
-    let slowest =
-        |airspeed_mps: f64| (airspeed_mps - conditions.wind_mps).max(SLOWEST_SHARE * airspeed_mps);
-    let legs = legs(plan, conditions, &mut Vec::new());
-    let mut of_item = vec![0.0; plan.items.len() + 1];
-    for leg in &legs {
-        if let Some(seconds) = of_item.get_mut(leg.item) {
-            *seconds = TURNS * leg.length_m / slowest(leg.airspeed_mps) + LEAST_S;
-        }
-    }
-    let mut total_s = LEAST_S;
-    for (n, item) in plan.items.iter().enumerate() {
-        total_s += of_item.get(n + 1).copied().unwrap_or(0.0);
-        total_s += match *item {
-            Item::Loiter(loiter) => {
-                let radius_m = loiter.radius_m.unwrap_or(conditions.loiter_radius_m);
-                let turn_s = core::f64::consts::TAU * radius_m / slowest(conditions.airspeed_mps);
-                match loiter.end {
-                    LoiterEnd::Turns(turns) => (turns + 1.0) * turn_s,
-                    LoiterEnd::Seconds(seconds) => seconds + turn_s,
-                    LoiterEnd::Altitude | LoiterEnd::Never => 2.0 * turn_s,
-                }
-            }
-            Item::Land { place: None, .. } => {
-                let back_m = legs.iter().map(|leg| leg.length_m).sum::<f64>() + PATTERN_M;
-                back_m / slowest(conditions.airspeed_mps)
-            }
-            Item::Jump { to, times } => {
-                let again: f64 = of_item.get(to..=n).unwrap_or_default().iter().sum();
-                again * f64::from(times.unwrap_or(0))
-            }
-            _ => 0.0,
-        };
-    }
-    total_s
-}
-
 /// The legs of a plan; what is wrong with single items is noted.
 pub(crate) fn legs(plan: &Plan, conditions: &Conditions, problems: &mut Vec<Problem>) -> Vec<Leg> {
     let mut legs: Vec<Leg> = Vec::new();
@@ -165,6 +132,7 @@ pub(crate) fn legs(plan: &Plan, conditions: &Conditions, problems: &mut Vec<Prob
         (home.place, begins_m)
     });
     let mut airspeed_mps = plan.cruise_mps.unwrap_or(conditions.airspeed_mps);
+    let mut ground_mps = None;
     for (n, item) in plan.items.iter().enumerate() {
         let number = n + 1;
         let mut note = |field: &str, message: String| {
@@ -172,9 +140,16 @@ pub(crate) fn legs(plan: &Plan, conditions: &Conditions, problems: &mut Vec<Prob
         };
         match *item {
             Item::ChangeSpeed {
-                speed: Some(Speed::AirspeedMps(mps)),
-                ..
-            } => airspeed_mps = mps,
+                speed: Some(speed), ..
+            } => {
+                if let Some(message) = speed_problem(speed, conditions) {
+                    note("speed", message);
+                }
+                match speed {
+                    Speed::AirspeedMps(mps) => (airspeed_mps, ground_mps) = (mps, None),
+                    Speed::GroundSpeedMps(mps) => ground_mps = Some(mps),
+                }
+            }
             Item::Jump { to, times } => {
                 if let Some(message) = jump_problem(plan, number, to, times) {
                     note("jump", message);
@@ -236,6 +211,7 @@ pub(crate) fn legs(plan: &Plan, conditions: &Conditions, problems: &mut Vec<Prob
                     turns,
                     within_m,
                     airspeed_mps,
+                    ground_mps,
                 });
             }
         }

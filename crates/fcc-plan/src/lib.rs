@@ -15,11 +15,14 @@
 
 mod check;
 mod command;
+mod duration;
 mod file;
+mod flyable;
 mod geodesic;
 mod ground;
 mod inside;
 mod item;
+mod level;
 mod outline;
 mod path;
 mod plan;
@@ -29,10 +32,12 @@ mod route;
 mod runway;
 mod wpl;
 
-pub use check::{Conditions, check, landing_elevation_m, longest_s};
+pub use check::{Conditions, check, landing_elevation_m};
+pub use duration::longest_s;
 pub use file::{FileError, Format, read, read_file, write};
 pub use ground::{resolve, terrain_problems};
 pub use item::{Altitude, AltitudeDatum, Item, Loiter, LoiterEnd, Place, Speed};
+pub use level::Level;
 pub use plan::{
     Circle, Fence, Home, Identity, Obstacle, Plan, PlanHash, Polygon, RallyPoint, limits,
 };

@@ -1,6 +1,7 @@
 //! What a take-off and a landing need.
 
 use crate::check::{Conditions, Leg, above_sea_level};
+use crate::flyable::direction_problem;
 use crate::item::Item;
 use crate::plan::Plan;
 
@@ -20,9 +21,11 @@ pub(crate) fn last_leg(
     let above_m = leg.from.1 - leg.to.1;
     // A plan that only lands begins where the aircraft is.
     if above_m != 0.0 && above_m < LEAST_M {
+        let side = if above_m < 0.0 { "below" } else { "above" };
         let message = format!(
-            "the leg to the landing begins {above_m:.0} m above the runway: begin it at least \
-             {LEAST_M:.0} m above"
+            "the leg to the landing begins {:.0} m {side} the runway: begin it at least \
+             {LEAST_M:.0} m above",
+            above_m.abs()
         );
         return Some(("approach", message));
     }
@@ -38,12 +41,22 @@ pub(crate) fn last_leg(
     })
 }
 
-/// What is behind a landing is not flown, and a take-off climbs before it turns.
+/// What is behind a landing is not flown, a take-off climbs before it turns, and a runway
+/// has a direction.
 pub(crate) fn runway_problem(
     plan: &Plan,
     number: usize,
     item: &Item,
 ) -> Option<(&'static str, String)> {
+    let before = plan.items.get(..number - 1).unwrap_or_default();
+    let from = match item {
+        Item::Takeoff { .. } => plan.home.map(|home| home.place),
+        _ => before.iter().rev().find_map(Item::place),
+    };
+    let direction = from.zip(item.place());
+    if let Some(message) = direction.and_then(|(from, to)| direction_problem(from, to, item)) {
+        return Some(("place", message));
+    }
     match item {
         Item::Takeoff { altitude, .. } => {
             let (home_m, altitude_m) = (plan.home?.altitude_m, above_sea_level(*altitude, plan));
@@ -53,7 +66,6 @@ pub(crate) fn runway_problem(
             })
         }
         Item::Land { .. } => {
-            let before = plan.items.get(..number).unwrap_or_default();
             let is_takeoff = |item: &Item| matches!(item, Item::Takeoff { .. });
             if item.place().is_none() && !before.iter().any(is_takeoff) {
                 let message = "without a place it lands where it took off, and no take-off is \

@@ -54,7 +54,7 @@ impl Failure {
 impl From<OpenError> for Failure {
     fn from(error: OpenError) -> Self {
         let exit = match error {
-            OpenError::AnotherPlant { .. } => Exit::Usage,
+            OpenError::AnotherPlant { .. } | OpenError::NotARecording { .. } => Exit::Usage,
             OpenError::CutInDescription { .. } => Exit::Incomplete,
             _ => Exit::Failure,
         };

@@ -13,7 +13,7 @@ use super::failure::Failure;
 use super::outcome;
 use crate::cli::{FlyArgs, RecordingArgs};
 use crate::exit::Exit;
-use crate::observers::{Announcer, Service, StatusLine, aircraft};
+use crate::observers::{Announcer, Beginning, Service, StatusLine, aircraft};
 use crate::output;
 #[cfg(feature = "live")]
 use crate::process::own_program;
@@ -37,7 +37,7 @@ pub(super) fn fly(args: &FlyArgs) -> Result<Exit, Failure> {
             Pace::RealTime
         },
         length: match length_s.filter(|_| args.seconds.is_none()) {
-            Some(length_s) => Length::Landed(length_s),
+            Some(length_s) => Length::Flown(length_s),
             None => Length::Engaged(
                 args.seconds
                     .unwrap_or_else(|| config.guidance.default_length_s()),
@@ -71,6 +71,7 @@ pub(super) fn conduct(
     let recording = RecordingRequest::of(config, as_given);
     let mut observers = assembly.observers(config, plan.pace, recording);
     observers.push(Box::new(Announcer::default()));
+    observers.push(Box::new(Beginning(config.remarks_at_start())));
     if !quiet {
         observers.push(Box::new(StatusLine::new(aircraft::describe)));
     }

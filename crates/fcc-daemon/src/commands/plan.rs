@@ -42,6 +42,8 @@ struct Checked {
     sha256: Option<String>,
     items: usize,
     problems: Vec<Problem>,
+    /// What is accepted, and worth a look.
+    remarks: Vec<String>,
 }
 
 /// Checks plans: the exit code is that of the worst.
@@ -70,7 +72,10 @@ fn print(checked: &Checked, exit: Exit) -> Exit {
     let file = &checked.file;
     if let (true, Some(sha256)) = (checked.ok, &checked.sha256) {
         let hash = sha256.get(..12).unwrap_or_default();
-        let text = format!("{file}: valid: {} items, {hash}", checked.items);
+        let mut text = format!("{file}: valid: {} items, {hash}", checked.items);
+        for remark in &checked.remarks {
+            let _ = write!(text, "\n{file}: {remark}");
+        }
         return output::result(text, exit);
     }
     for problem in &checked.problems {
@@ -87,6 +92,7 @@ fn check_file(path: &Path, config: &Config) -> (Checked, Exit) {
         sha256: None,
         items: 0,
         problems,
+        remarks: Vec::new(),
     };
     let plan = match fcc_plan::read_file(path) {
         Ok(plan) => plan,
@@ -102,8 +108,14 @@ fn check_file(path: &Path, config: &Config) -> (Checked, Exit) {
         Ok(flown) => (flown, Vec::new(), Exit::Success),
         Err(problems) => (plan, problems, Exit::Usage),
     };
+    let remarks = if problems.is_empty() {
+        config.plan_remarks(&plan)
+    } else {
+        Vec::new()
+    };
     let checked = Checked {
         file,
+        remarks,
         ok: problems.is_empty(),
         sha256: Some(plan.hash().to_string()),
         items: plan.items.len(),

@@ -51,7 +51,9 @@ pub(super) fn replay(args: &ReplayArgs) -> Result<Exit, Failure> {
 /// Why files are no recording that can be replayed.
 pub(super) fn not_opened(error: ChainError) -> Failure {
     let exit = match error {
-        ChainError::Open(OpenError::AnotherPlant { .. }) => Exit::Usage,
+        ChainError::Open(OpenError::AnotherPlant { .. } | OpenError::NotARecording { .. }) => {
+            Exit::Usage
+        }
         ChainError::Open(OpenError::Io { .. }) => Exit::Failure,
         _ => Exit::NotReplayed,
     };

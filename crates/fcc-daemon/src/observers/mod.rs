@@ -2,10 +2,12 @@
 
 pub(crate) mod aircraft;
 mod announcer;
+mod beginning;
 mod service;
 mod status;
 
 pub(crate) use announcer::Announcer;
+pub(crate) use beginning::Beginning;
 pub(crate) use service::Service;
 pub(crate) use status::StatusLine;
 
@@ -18,6 +20,7 @@ mod tests {
     #[test]
     fn every_observer_conforms_to_the_trait() {
         observer_conforms(|| Box::new(Announcer::default()));
+        observer_conforms(|| Box::new(Beginning(Vec::new())));
         observer_conforms(|| Box::new(StatusLine::new(aircraft::describe)));
         observer_conforms(|| Box::new(Service::from_environment()));
     }

@@ -26,6 +26,7 @@ mod release_helper;
 mod rights;
 mod service_unit;
 mod signals;
+pub(crate) mod standard_output;
 
 use std::io;
 use std::sync::Arc;

@@ -6,6 +6,7 @@ mod calibrate;
 mod damaged;
 mod named_files;
 mod output;
+mod plans;
 mod probe;
 mod recordings;
 mod remarks;

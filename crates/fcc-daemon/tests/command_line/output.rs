@@ -120,6 +120,22 @@ fn an_output_that_is_not_open_for_writing_is_a_failure() {
     }
 }
 
+/// What Rust's runtime opens in its place takes everything.
+#[test]
+fn an_output_that_is_closed_is_a_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    fly(folder.path());
+    for words in ["list", "list --json", "completions bash", "--version"] {
+        let mut shell = std::process::Command::new("sh");
+        let closed = format!("\"$0\" {words} >&-");
+        shell.args(["-c", &closed, env!("CARGO_BIN_EXE_fccd")]);
+        let ended = shell.current_dir(folder.path()).output().unwrap();
+        let said = String::from_utf8(ended.stderr).unwrap();
+        assert_eq!(ended.status.code(), Some(1), "{words}: {said}");
+        assert!(said.contains("Bad file descriptor"), "{words}: {said}");
+    }
+}
+
 #[test]
 fn the_exit_code_is_that_of_the_findings() {
     let folder = tempfile::tempdir().unwrap();

@@ -81,7 +81,7 @@ fn a_file_that_is_not_a_recording_or_would_be_lost_is_refused() {
     let other = other.to_str().unwrap();
     for arguments in [vec![other], vec![other, "--html", other]] {
         let output = fccd(&arguments);
-        assert_eq!(output.status.code(), Some(1));
+        assert_eq!(output.status.code(), Some(2));
         let stderr = String::from_utf8(output.stderr).unwrap();
         assert!(stderr.contains("other.mcap"), "{stderr}");
     }

@@ -22,6 +22,7 @@ mod error;
 mod exactly;
 mod gpio;
 mod gpsd;
+mod ground;
 mod guidance;
 mod lines;
 mod navigation;
@@ -41,6 +42,7 @@ mod servo_board;
 mod servos;
 mod shared_devices;
 mod similar;
+mod start;
 mod telemetry;
 mod terrain;
 mod values;
@@ -276,29 +278,15 @@ impl Config {
                 section.engage_switch
             ));
         }
-        if let Some(section) = &self.built_in
-            && section.raw_sensors == RawSensorsChoice::None
-            && !self.has_inertial_unit()
-            && self.navigation.method != NavigationMethod::Measured
-        {
-            remarks.push(
-                "navigation.method computes attitude from raw readings, and built-in.raw_sensors \
-                 is \"none\": nothing will engage"
-                    .to_owned(),
-            );
-        }
         remarks.extend(raw_readings::without_effect(self, &places));
-        if self.has_board()
-            && self.is_without_simulator()
-            && self.navigation.method == NavigationMethod::Measured
-        {
+        remarks.extend(self.remarks_at_start());
+        if self.plan.file.is_some() && !self.flies_plan() {
             remarks.push(
-                "the sensors of a board give raw readings, and navigation.method is \"measured\": \
-                 nothing will engage; choose \"kalman\""
+                "plan.file has no effect: guidance.mode is another one; choose \"plan\", or fly \
+                 with --plan FILE"
                     .to_owned(),
             );
         }
-        remarks.extend(self.airspeed_remark());
         remarks.extend(self.stick_remark());
         if self.actuators().is_empty() {
             remarks.push(NO_ACTUATOR.to_owned());

@@ -6,7 +6,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use fcc_core::flight::path::{L1Config, NpfgConfig};
 use fcc_core::flight::route::{LawConfig, Route, RouteConfig};
 use fcc_core::units::{FOOT_M, KNOT_MPS};
-use fcc_plan::{Conditions, FileError, Format, Identity, Item, Problem, Steps};
+use fcc_plan::{Conditions, FileError, Format, Identity, Item, Place, Problem, Steps};
 use serde::{Deserialize, Serialize};
 
 use super::autopilot::RunwaySection;
@@ -162,9 +162,12 @@ impl Config {
         let AutopilotSection {
             envelope, runway, ..
         } = &self.autopilot;
+        let airspeeds = self.autopilot_config().envelope.allowed_airspeeds();
         let glide_path = runway.glide_path_deg.to_radians().tan();
         Conditions {
             airspeed_mps: self.autopilot.reference_airspeed_kt * KNOT_MPS,
+            slowest_mps: *airspeeds.start(),
+            fastest_mps: *airspeeds.end(),
             wind_mps: self.plan.wind_kt * KNOT_MPS,
             bank_rad: self
                 .plan
@@ -313,10 +316,19 @@ impl Config {
     }
 
     /// How long the plan takes at most, s: each leg against the wind that it is checked
-    /// for, with its turns.
+    /// for, with its turns, and the way from where the built-in aircraft begins.
     pub fn plan_length_s(&self) -> Option<f64> {
         let plan = self.plan.plan()?;
         let conditions = self.plan_conditions();
-        Some(fcc_plan::longest_s(plan, &conditions))
+        let begin = self.built_in.as_ref().and_then(|built_in| {
+            Some(Place {
+                latitude_deg: built_in.latitude_deg?,
+                longitude_deg: built_in.longitude_deg?,
+            })
+        });
+        let first = plan.items.iter().find_map(Item::place);
+        let way_m = begin.zip(first).map_or(0.0, |(from, to)| from.to(to).0);
+        let way_s = way_m / (conditions.airspeed_mps - conditions.wind_mps).max(1.0);
+        Some(fcc_plan::longest_s(plan, &conditions) + way_s)
     }
 }

@@ -37,7 +37,10 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
         config.failsafe.sensor_max_age_ms,
     );
     if silent_s * 1e3 < max_age_ms as f64 {
-        let message = format!("is {silent_s}: choose at least sensor_max_age_ms, {max_age_ms} ms");
+        let message = format!(
+            "is {silent_s}: choose at least {}, which is failsafe.sensor_max_age_ms in s",
+            max_age_ms as f64 * 1e-3
+        );
         let keys = ["failsafe.all_silent_s", "failsafe.sensor_max_age_ms"];
         report(&keys, message);
     }

@@ -155,7 +155,8 @@ impl Config {
     pub fn checked_plan(&self, plan: &Plan) -> Result<Plan, Vec<Problem>> {
         let checked = self.with_ground(plan, |terrain| {
             let Some(terrain) = terrain else {
-                let problems = self.problems_in_the_air(plan);
+                let mut problems = self.problems_in_the_air(plan);
+                problems.extend(self.built_in_problems(plan));
                 return Ok::<_, Vec<Problem>>((plan.clone(), problems));
             };
             let plan = fcc_plan::resolve(plan, terrain)?;
@@ -190,6 +191,7 @@ impl Config {
             }
         }
         problems.extend(self.runway_problems(plan));
+        problems.extend(self.floor_problems(plan));
         problems
     }
 }

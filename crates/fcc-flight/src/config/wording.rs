@@ -17,7 +17,7 @@ pub(super) fn reword(message: &str, key: Option<&str>) -> String {
         .or_else(|| unknown_key(message))
         .or_else(|| unknown_value(message))
         .or_else(|| wrong_type(message, range.as_deref()))
-        .or_else(|| missing_key(message));
+        .or_else(|| missing_key(message, key));
     plain.unwrap_or_else(|| match message {
         "duplicate key" => "is given a second time: keep one".to_owned(),
         "wanted string or table" => "choose a text in quotes".to_owned(),
@@ -108,8 +108,13 @@ fn wrong_type(message: &str, range: Option<&str>) -> Option<String> {
     })
 }
 
-fn missing_key(message: &str) -> Option<String> {
+fn missing_key(message: &str, section: Option<&str>) -> Option<String> {
     let name = message.strip_prefix("missing field `")?.strip_suffix('`')?;
+    if (section, name) == (Some("guidance"), "mode") {
+        let what = "says nothing without the key `mode`: add mode = \"timed-pattern\", \"hold\" or \
+                    \"plan\", or remove the section";
+        return Some(what.to_owned());
+    }
     Some(format!(
         "the key `{name}` is missing: add it as in the examples in the folder config/"
     ))
@@ -171,6 +176,14 @@ mod tests {
         ] {
             assert_eq!(messages(text), [expected]);
         }
+        let guidance = messages("[guidance]\nhold_s = 5\n");
+        let words =
+            "f:2: guidance: says nothing without the key `mode`: add mode = \"timed-pattern\"";
+        assert!(guidance[0].starts_with(words), "{guidance:?}");
+        let silent = messages("[failsafe]\nall_silent_s = 0.1\n");
+        let words = "f:3: failsafe.all_silent_s: is 0.1: choose at least 0.25, which is \
+                     failsafe.sensor_max_age_ms in s";
+        assert_eq!(silent, [words]);
         let timer = messages("[loop]\ntimer = 5\n");
         assert!(
             timer[0].starts_with("f:3: loop.timer: is 5: choose"),

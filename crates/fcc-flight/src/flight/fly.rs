@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use fcc_core::flight::Autopilot;
+use fcc_core::flight::guidance::Mode;
 use fcc_core::framework::{ActuatorFault, ControlAuthority, PlantId, Released, State};
 use fcc_runtime::{Ending, Link, Loop, LoopReport, Machine, Parts, SpawnError, WatchdogConfig};
 use fcc_timer::{ManualTimer, RealtimeGranted, Timer, TimerError};
@@ -14,6 +15,7 @@ use super::follow::Follower;
 use super::ground::GroundWatch;
 use super::hang::HangWatch;
 use super::host::Host;
+use super::monitor::Over;
 use super::observer::{Facts, Observer};
 use super::observers::{Names, Observers};
 use super::outcome::Outcome;
@@ -70,6 +72,7 @@ pub fn fly(
     };
     let timer_name = timer.name();
     let names = Names::of(&assembly);
+    let flies_plan = assembly.autopilot.config().guidance.mode() == Mode::Plan;
     let mut observers = Observers::new(observers, names.clone());
     observers.prepare();
     let started_unix_ns = SystemTime::now()
@@ -137,7 +140,13 @@ pub fn fly(
         outcome.hit_ground(impact);
     } else if matches!(report.ending, Ending::StopFlag) {
         let over = observers.monitor.over(plan.length);
-        outcome.explain(host.interrupted_by(), over, observers.refusal.as_deref());
+        let interrupted = host.interrupted_by();
+        outcome.explain(interrupted, over, observers.refusal.as_deref());
+        let is_flown = !flies_plan || observers.monitor.is_flown;
+        let over = over.filter(|over| matches!(over, Over::Time | Over::GivenUp));
+        if let Some(over) = over.filter(|_| interrupted.is_none() && !is_flown) {
+            outcome.was_not_flown(observers.flown, observers.given_up.as_deref(), over);
+        }
     }
     // The controls have been released; writing to the disk may take time now.
     let ending = outcome.ending.clone();

@@ -11,6 +11,7 @@ use fcc_telemetry::FlightMessage;
 use super::ground::GroundWatch;
 use super::hang::{HangWatch, Hung};
 use super::host::Host;
+use super::monitor::Over;
 use super::observers::Observers;
 use super::pilot::Pilot;
 use super::plan::Length;
@@ -38,8 +39,11 @@ impl Follower<'_> {
     pub(super) fn drain(&mut self) {
         while let Some(message) = self.link.messages.receive() {
             self.take(&message);
-            if self.observers.monitor.over(self.length).is_some() {
+            if let Some(over) = self.observers.monitor.over(self.length) {
                 self.link.stop.stop();
+                if over == Over::Ground {
+                    self.ground.touch();
+                }
             }
         }
         if let Some(impact) = self.ground.hits() {

@@ -6,7 +6,8 @@ use fcc_sim::{Truth, TruthHandle};
 use fcc_telemetry::units::{M_FT, MPS_KT};
 use serde::Serialize;
 
-/// The impact of a simulated aircraft on the ground, by its truth.
+/// The impact of a simulated aircraft on the ground, or where its wheels touched it and were
+/// not to, by its truth.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize)]
 pub struct Impact {
     /// Simulated time.
@@ -69,6 +70,7 @@ impl fmt::Display for Impact {
 #[derive(Default)]
 pub(super) struct GroundWatch {
     truth: Option<TruthHandle>,
+    touched: Option<Impact>,
     pub(super) impact: Option<Impact>,
 }
 
@@ -77,8 +79,15 @@ impl GroundWatch {
     pub(super) fn new(truth: Option<TruthHandle>) -> Self {
         Self {
             truth,
+            touched: None,
             impact: None,
         }
+    }
+
+    /// Its wheels touch the ground where they are not to: that counts as an impact.
+    pub(super) fn touch(&mut self) {
+        let truth = self.truth.as_ref().map(TruthHandle::get);
+        self.touched = self.touched.or(truth.map(|truth| Impact::from(&truth)));
     }
 
     /// The impact, once.
@@ -86,11 +95,9 @@ impl GroundWatch {
         if self.impact.is_some() {
             return None;
         }
-        self.impact = self
-            .truth
-            .as_ref()
-            .and_then(TruthHandle::impact)
-            .map(|truth| Impact::from(&truth));
+        let hard = self.truth.as_ref().and_then(TruthHandle::impact);
+        let hard = hard.map(|truth| Impact::from(&truth));
+        self.impact = hard.or(self.touched);
         self.impact
     }
 }

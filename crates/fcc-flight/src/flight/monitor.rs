@@ -10,8 +10,12 @@ use super::plan::Length;
 pub(super) enum Over {
     /// Its time has passed.
     Time,
-    /// Its plan has landed.
-    Landed,
+    /// Its plan is flown to its end.
+    Flown,
+    /// Its take-off was given up, and it stands.
+    GivenUp,
+    /// The wheels touched the ground where they are not to.
+    Ground,
     /// The loop entered failsafe.
     Failsafe,
     /// Engaging was refused.
@@ -27,8 +31,12 @@ pub(super) struct Monitor {
     engaged_at_s: Option<f64>,
     failed: bool,
     refused: bool,
-    /// Whether its plan has landed.
-    pub(super) landed: bool,
+    /// Whether its plan is flown to its end: it has landed, or circles there.
+    pub(super) is_flown: bool,
+    /// Whether its take-off was given up, and it stands.
+    pub(super) gave_up: bool,
+    /// Whether the wheels touched the ground outside of a take-off and a landing.
+    pub(super) touched: bool,
 }
 
 impl Monitor {
@@ -85,7 +93,7 @@ impl Monitor {
         let time_is_up = match length {
             Length::Open => return None,
             Length::Ticks(ticks) => return (self.at.tick >= ticks).then_some(Over::Time),
-            Length::Engaged(seconds) | Length::Landed(seconds) => self
+            Length::Engaged(seconds) | Length::Flown(seconds) => self
                 .engaged_at_s
                 .is_some_and(|at_s| time_s - at_s >= seconds - ROUNDING_S),
             Length::Whole(seconds) => time_s >= seconds - ROUNDING_S,
@@ -94,8 +102,12 @@ impl Monitor {
             Some(Over::Refused)
         } else if self.failed {
             Some(Over::Failsafe)
-        } else if self.landed && matches!(length, Length::Landed(_)) {
-            Some(Over::Landed)
+        } else if self.touched {
+            Some(Over::Ground)
+        } else if self.is_flown && matches!(length, Length::Flown(_)) {
+            Some(Over::Flown)
+        } else if self.gave_up && matches!(length, Length::Flown(_)) {
+            Some(Over::GivenUp)
         } else {
             time_is_up.then_some(Over::Time)
         }

@@ -1,8 +1,10 @@
 //! All observers of a flight.
 
 use fcc_core::flight::guidance::{Mode, Progress};
-use fcc_core::flight::{Autopilot, AutopilotCommand, ITEM_REACHED};
-use fcc_core::framework::{EventKind, Message};
+use fcc_core::flight::{
+    Autopilot, AutopilotCommand, ITEM_REACHED, gives_up_runway, touches_ground,
+};
+use fcc_core::framework::{EventKind, Message, Notice};
 use fcc_runtime::CommandSender;
 use fcc_telemetry::{FlightMessage, describe_event};
 
@@ -13,13 +15,18 @@ use super::observer::{Access, Facts, Observer, Reports};
 use super::outcome::Outcome;
 use crate::config::NO_ACTUATOR;
 
+/// Slower than this over the ground it stands, m/s.
+const STANDS_MPS: f64 = 0.3;
+
 /// All observers of a flight, each called in turn.
 pub(super) struct Observers {
     all: Vec<Box<dyn Observer<Autopilot>>>,
     names: Names,
     pub(super) monitor: Monitor,
-    /// Of the last record.
-    flown: Progress,
+    /// Of the last record that was engaged.
+    pub(super) flown: Progress,
+    /// Why a take-off or a landing was given up since an item was reached.
+    pub(super) given_up: Option<String>,
     /// Why engaging was refused last.
     pub(super) refusal: Option<String>,
     reports: Reports,
@@ -32,6 +39,7 @@ impl Observers {
             names,
             monitor: Monitor::default(),
             flown: Progress::default(),
+            given_up: None,
             refusal: None,
             reports: Reports::default(),
         }
@@ -53,23 +61,21 @@ impl Observers {
         let at = self.monitor.take(message);
         match message {
             Message::Tick(record) => {
-                self.flown = record.setpoints.guidance;
+                self.follow_progress(record.setpoints.guidance);
+                let estimate = &record.estimate;
+                let stands = estimate.north_mps.hypot(estimate.east_mps) < STANDS_MPS;
+                self.monitor.gave_up |=
+                    stands && self.flown.mode == Mode::Takeoff && self.given_up.is_some();
                 for observer in &mut self.all {
                     observer.record(record, &at);
                 }
             }
             Message::Event(event) => {
-                // A landing's end is reached when the aircraft stands. The waypoint before it
-                // may be reached in the tick in which the landing begins.
-                let (mode, item) = (self.flown.mode, self.flown.item);
-                self.monitor.landed |= mode == Mode::Land
-                    && matches!(
-                        event.kind,
-                        EventKind::Noticed(notice)
-                            if notice.kind == ITEM_REACHED && u32::from(notice.item) == item
-                    );
                 let words =
                     describe_event::<Autopilot>(event, &self.names.sensors, &self.names.actuators);
+                if let EventKind::Noticed(notice) = &event.kind {
+                    self.follow_plan(notice, &words);
+                }
                 for observer in &mut self.all {
                     observer.event(event, &words, &at);
                 }
@@ -80,6 +86,33 @@ impl Observers {
                     self.refusal = Some(words);
                 }
             }
+        }
+    }
+
+    /// Follows what is flown: another item than the last one is to be flown first.
+    fn follow_progress(&mut self, now: Progress) {
+        if now.mode == Mode::None {
+            return;
+        }
+        if now.item > 0 && now.item != self.flown.item {
+            self.monitor.is_flown = false;
+        }
+        self.flown = now;
+    }
+
+    /// Follows how far the plan is flown.
+    fn follow_plan(&mut self, notice: &Notice, words: &str) {
+        self.monitor.touched |= touches_ground(notice);
+        if gives_up_runway(notice) {
+            self.given_up = Some(words.to_owned());
+        }
+        if notice.kind == ITEM_REACHED {
+            // A landing's end is reached when the aircraft stands. The waypoint before it
+            // may be reached in the tick in which the landing begins.
+            let (mode, item) = (self.flown.mode, self.flown.item);
+            let has_landed = mode == Mode::Land && u32::from(notice.item) == item;
+            self.monitor.is_flown = has_landed || notice.item == 0;
+            self.given_up = None;
         }
     }
 

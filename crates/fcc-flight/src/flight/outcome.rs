@@ -1,5 +1,6 @@
 //! The outcome of a flight, for users and tools.
 
+use fcc_core::flight::guidance::{Mode, Progress};
 use fcc_runtime::{Ending, LoopReport};
 use fcc_telemetry::{FlightScore, Realtime, ScoredBy, TimingReport};
 use fcc_timer::RealtimeGranted;
@@ -63,6 +64,8 @@ pub enum Conclusion {
     /// It was not flown as planned: the timer failed, engaging was refused, or
     /// control had to be given back at once and that ends the program.
     Failed,
+    /// The plan was not flown to its end in the time that there was.
+    NotFlown,
     /// It entered failsafe.
     Failsafe,
     /// The simulated aircraft hit the ground.
@@ -163,6 +166,27 @@ impl Outcome {
         self.impact = Some(impact);
     }
 
+    /// The plan is not flown to its end: what was flown, and why.
+    pub(super) fn was_not_flown(&mut self, flown: Progress, given_up: Option<&str>, over: Over) {
+        if self.conclusion == Conclusion::Completed {
+            self.conclusion = Conclusion::NotFlown;
+        }
+        let flown = match (flown.mode, flown.item) {
+            (Mode::None, _) => "it was not engaged".to_owned(),
+            (mode, 0) => format!("the mode {mode} was flown"),
+            (mode, item) => format!("item {item} was flown, in the mode {mode}"),
+        };
+        let why = match given_up {
+            Some(why) => format!("; {why}"),
+            None => ": give it more time (--seconds), or a shorter plan".to_owned(),
+        };
+        let time = match over {
+            Over::Time => "the time to fly is over, and ",
+            _ => "",
+        };
+        self.ending = format!("{time}the plan is not flown to its end: {flown}{why}");
+    }
+
     /// Says who stopped a loop that was stopped from outside.
     /// `refusal` is why engaging was refused last, if it was.
     pub(super) fn explain(
@@ -175,7 +199,14 @@ impl Outcome {
         self.ending = match (interrupted_by, over) {
             (Some(by), _) => format!("interrupted by {by}"),
             (None, Some(Over::Time)) => "the time to fly is over".to_owned(),
-            (None, Some(Over::Landed)) => "the plan has landed".to_owned(),
+            (None, Some(Over::GivenUp)) => "the take-off was given up".to_owned(),
+            (None, Some(Over::Flown)) => "the plan is flown to its end".to_owned(),
+            (None, Some(Over::Ground)) => {
+                if matches!(self.conclusion, Conclusion::Completed | Conclusion::Failed) {
+                    self.conclusion = Conclusion::HitGround;
+                }
+                "the wheels touched the ground outside of a take-off or a landing".to_owned()
+            }
             (None, Some(Over::Failsafe)) => {
                 "it entered failsafe, which ends a flight of a given length".to_owned()
             }

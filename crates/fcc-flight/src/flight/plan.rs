@@ -10,15 +10,16 @@ pub enum Pace {
 }
 
 /// When a flight is over. One of a given length is also over when it cannot be
-/// flown: engaging is refused, or the loop enters failsafe.
+/// flown: engaging is refused, the loop enters failsafe, or the wheels touch the ground
+/// outside of a take-off and a landing.
 #[derive(Clone, Copy, Debug)]
 pub enum Length {
     /// When it is stopped.
     Open,
     /// This many seconds after the first engagement, standby after it included.
     Engaged(f64),
-    /// When its plan has landed, or so many seconds after the first engagement.
-    Landed(f64),
+    /// When its plan is flown to its end, or so many seconds after the first engagement.
+    Flown(f64),
     /// This many seconds after the first tick.
     Whole(f64),
     /// After this many ticks, missed ones included, whatever happens. In lockstep

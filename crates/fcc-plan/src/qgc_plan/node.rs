@@ -6,6 +6,7 @@ use serde_json::{Map, Value};
 
 use crate::command::{Refusal, check, place};
 use crate::item::Place;
+use crate::problem::quoted;
 
 /// A value and its path, such as `mission.items[3].params[4]`.
 #[derive(Clone)]
@@ -34,6 +35,22 @@ impl<'a> Node<'a> {
         match self.value {
             Value::Object(object) => Ok(object),
             _ => self.refuse("give an object, {...}"),
+        }
+    }
+
+    /// Refuses keys other than these: one with another name would have no effect.
+    pub(super) fn only(&self, known: &[&str]) -> Result<(), Refusal> {
+        let unknown = self
+            .object()?
+            .keys()
+            .find(|key| !known.contains(&key.as_str()));
+        match unknown {
+            None => Ok(()),
+            Some(key) => self.refuse(format!(
+                "has a key \"{}\", and there is none of this name: choose {}",
+                quoted(key),
+                known.join(", ")
+            )),
         }
     }
 

@@ -179,6 +179,7 @@ impl Reader {
             return Ok(());
         };
         version(&own, 1)?;
+        own.only(&["version", "floor", "ceiling", "obstacles"])?;
         let altitude = |key: &str| {
             let node = own.optional(key)?;
             node.map(|node| node.number(&ALTITUDE_M)).transpose()

@@ -4,6 +4,7 @@
 mod any_plan;
 mod checking;
 mod flown;
+mod flyable;
 mod geometry;
 mod reading;
 mod refusals;

@@ -59,6 +59,8 @@ impl Ground {
 fn conditions(wind_kt: f64) -> Conditions {
     Conditions {
         airspeed_mps: 100.0 * KT,
+        slowest_mps: 78.0 * KT,
+        fastest_mps: 120.0 * KT,
         wind_mps: wind_kt * KT,
         bank_rad: 30.0_f64.to_radians(),
         climb_mps: 3.5,

@@ -11,6 +11,9 @@ use serde::{Deserialize, Serialize};
 /// feet is not round in SI units.
 const ROUNDING: f64 = 0.005;
 
+/// Of this set point 0 is no item: it resumes the plan.
+const RESUMES_AT_0: &str = "plan_item";
+
 /// A set point out of its limits, in the unit at the end of its name.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 pub struct OutsideLimits {
@@ -58,6 +61,9 @@ impl OutsideLimits {
             " "
         };
         let quantity = quantity(&self.name);
+        if self.name == RESUMES_AT_0 {
+            return format!("{quantity} is {value}: the plan has items 1 to {most}");
+        }
         format!("{quantity} is {value}{space}{unit}: choose {least} to {most}{space}{unit}")
     }
 }
@@ -118,6 +124,11 @@ mod tests {
         assert_eq!(
             heading.text_in(AVIATION),
             "heading is 401.07°: choose -360 to 360°"
+        );
+        let item = OutsideLimits::of("plan_item", 99.0, &(0.0..=9.0)).unwrap();
+        assert_eq!(
+            item.text_in(AVIATION),
+            "plan item is 99: the plan has items 1 to 9"
         );
         let room = OutsideLimits::of("room_c", 99.0, &(5.0..=30.0)).unwrap();
         assert_eq!(room.to_string(), "room is 99 °C: choose 5 to 30 °C");

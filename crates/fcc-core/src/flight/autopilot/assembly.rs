@@ -32,6 +32,8 @@ impl Autopilot {
             on_runway: RunwayControl::default(),
             left_plan: None,
             took_off: None,
+            end_is_told: false,
+            has_flown: false,
             contingencies: Contingencies::default(),
             battery: Delayed::default(),
             engine: Delayed::default(),

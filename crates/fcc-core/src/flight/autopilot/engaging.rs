@@ -57,6 +57,7 @@ impl Autopilot {
     /// Engages: what is flown now is held, or the pattern begins.
     pub(super) fn begin_flight(&mut self, now: Time) {
         self.distrusted = Flags::NONE;
+        self.has_flown = false;
         self.contingencies.reset();
         self.pilot.set_engaged(true);
         self.degraded = Degraded::default();

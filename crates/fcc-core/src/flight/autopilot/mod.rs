@@ -17,6 +17,7 @@ mod following;
 mod future;
 mod gliding;
 mod ground_below;
+mod ground_contact;
 mod ground_motion;
 mod notices;
 mod observe;
@@ -61,6 +62,7 @@ pub use replacing::PlanReplacement;
 pub use resume::Resume;
 pub use routing::ITEM_REACHED;
 use runway::RunwayControl;
+pub use runway::{gives_up_runway, touches_ground};
 pub use scale::Scale;
 use whereabouts::Whereabouts;
 
@@ -129,6 +131,10 @@ pub struct Autopilot {
     /// The plan that was left for another mode.
     left_plan: Option<OverGroundMode>,
     took_off: Option<TookOff>,
+    /// Whether the end of the plan is told.
+    end_is_told: bool,
+    /// Whether the wheels were off the ground since engaging.
+    has_flown: bool,
     contingencies: Contingencies,
     /// Whether the battery is low, and the engine out.
     battery: Delayed,

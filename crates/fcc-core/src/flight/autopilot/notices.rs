@@ -28,6 +28,9 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
             f,
             "nothing can be held any longer: gliding in a gentle turn, with idle throttle"
         ),
+        routing::ITEM_REACHED if notice.item == 0 => {
+            f.write_str("the plan is flown to its end: circling")
+        }
         routing::ITEM_REACHED => write!(f, "item {} of the plan is reached", notice.item),
         contingency::CONTINGENCY => contingency::write(notice, f),
         refusal::COMMAND_ANSWER => refusal::write(notice, f),

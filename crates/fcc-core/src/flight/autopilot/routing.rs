@@ -12,7 +12,8 @@ use crate::flight::{AltitudeReference, Position, Setpoints};
 use crate::framework::{Flags, Notice};
 
 /// The number of the notice that an item of the plan is reached, whose number is its
-/// item; a landing is, when the aircraft stands.
+/// item; a landing is, when the aircraft stands. Item 0 is the end of a plan that does not
+/// land.
 pub const ITEM_REACHED: u8 = 30;
 
 impl Autopilot {
@@ -58,10 +59,26 @@ impl Autopilot {
                 ..Notice::default()
             });
         }
+        self.tell_end(is_plan && reached.is_some());
+        self.watch_ground_contact();
         let others = [self.contingencies.take_news(), self.on_runway.take_news()];
         if let Some(news) = others.into_iter().flatten().last() {
             self.news = Some(news);
         }
+    }
+
+    /// Tells once that a plan is flown to its end, in a tick that has no other news of it.
+    fn tell_end(&mut self, has_news: bool) {
+        let mode = self.guidance.over_ground();
+        let has_ended = mode.is_some_and(OverGroundMode::has_ended);
+        if has_ended && !self.end_is_told && !has_news {
+            self.news = Some(Notice {
+                kind: ITEM_REACHED,
+                ..Notice::default()
+            });
+            self.end_is_told = true;
+        }
+        self.end_is_told &= has_ended;
     }
 
     /// The pressure altitude of mean sea level, m.

@@ -26,6 +26,7 @@ use crate::flight::route::{HELD_MPS, RunwayDemand, RunwayPhase, RunwayReason, St
 use crate::framework::Notice;
 use crate::units::GRAVITY_MPS2;
 pub(super) use notices::{RUNWAY, write};
+pub use notices::{gives_up_runway, touches_ground};
 
 /// Rudder per heading error, 1/rad, per its integral, 1/(rad s), and per yaw rate, s, at
 /// the reference airspeed.

@@ -109,6 +109,11 @@ impl OverGroundMode {
         self.follower.reached().map(|index| index.saturating_add(1))
     }
 
+    /// Whether the plan is flown to its end, and the aircraft circles there.
+    pub fn has_ended(&self) -> bool {
+        self.is_plan() && self.follower.has_ended()
+    }
+
     /// The index of the step that is flown, from 0.
     pub fn index(&self) -> usize {
         self.follower.index()

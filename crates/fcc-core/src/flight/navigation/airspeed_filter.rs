@@ -29,10 +29,9 @@ const LIFT_BY_ITSELF: f64 = 3.0;
 const RESTORED_SD_MPS: f64 = 2.0;
 /// That of one which the sensor had before it stepped, m/s.
 const KNOWN_SD_MPS: f64 = 1.0;
-/// The share of a change of thrust that the model does not explain, ...
-const THRUST_ERROR: f64 = 0.15;
-/// ... the time in which that counts as a lasting offset, s, and its weights in
-/// the noise of a correction and of the comparison of two airspeeds.
+/// The time in which a change of thrust that the model does not explain counts as a
+/// lasting offset, s, and its weights in the noise of a correction and of the comparison of
+/// two airspeeds.
 const THRUST_SETTLES_S: f64 = 5.0;
 const THRUST_NOISE: f64 = 3.0;
 /// Beyond these innovations the force is not explained by airspeed: an engine
@@ -287,13 +286,13 @@ impl AirspeedFilter {
     }
 
     fn correct_by_axial_force(&mut self, sample: &ForceSample, dt_s: f64) {
-        let Some((thrust, change)) = sample.thrust else {
+        let Some((thrust, unknown)) = sample.thrust else {
             self.axial = Vote::default();
             return;
         };
         let slower = self.slower();
         let induced = squared(sample.up * slower);
-        let unexplained = squared(THRUST_ERROR * self.x[3] * change);
+        let unexplained = squared(self.x[3] * unknown);
         self.covariance[2][2] += unexplained * dt_s / THRUST_SETTLES_S;
         let drag = 2.0 * (PARASITE_DRAG_RATIO / squared(slower));
         let per_mps = -(self.x[3] * thrust * slower

@@ -8,6 +8,7 @@ use super::scalar_update::squared;
 use super::upward::Upward;
 use super::wind::OverGround;
 use crate::blocks::{LowPass, smoothing_factor};
+use libm::hypot;
 
 mod compare;
 mod ground;
@@ -23,10 +24,16 @@ use step::StepDetector;
 const CORRECTED_S: f64 = 0.1;
 /// The throttle's lag: propeller and engine follow it over this time, s. Thrust
 /// is taken as proportional to its square: the power of a piston engine rises
-/// with the pressure in its manifold, which rises with the throttle's angle.
+/// with the pressure in its manifold, which rises with the throttle's angle. Where a
+/// lever gives a share of the power, it is proportional to the throttle; what is between
+/// both is not known before it was flown.
 const THRUST_LAG_S: f64 = 1.7;
 /// The time over which a change of thrust counts as recent, s.
 const THRUST_RECENT_S: f64 = 10.0;
+/// The share of a change of thrust that the model does not explain; and of the change of
+/// what is between both laws of the throttle.
+const THRUST_ERROR: f64 = 0.15;
+const LAW_SHARE: f64 = 0.5;
 /// The time for which a filter runs without the sensor before it is compared, s.
 const ALONE_S: f64 = 20.0;
 /// The lags of the forces' vote and of the sensor's difference, s.
@@ -87,6 +94,7 @@ pub(super) struct AirspeedMonitor {
     sensor_s: f64,
     thrust: LowPass,
     recent_thrust: LowPass,
+    recent_law: LowPass,
     gusts_mps2: f64,
     difference: LowPass,
     vote: LowPass,
@@ -133,6 +141,7 @@ impl AirspeedMonitor {
             sensor_s: 0.0,
             thrust: LowPass::new(THRUST_LAG_S),
             recent_thrust: LowPass::new(THRUST_RECENT_S),
+            recent_law: LowPass::new(THRUST_RECENT_S),
             gusts_mps2: 1.0,
             difference: LowPass::new(DIFFERENCE_LAG_S),
             vote: LowPass::new(VOTE_LAG_S),
@@ -320,11 +329,20 @@ impl AirspeedMonitor {
         true
     }
 
-    /// Thrust over that at full throttle, and its recent change.
+    /// Thrust over that at full throttle, and what of its recent change is not known, one
+    /// standard deviation.
     fn thrust_of(&mut self, throttle: Option<f64>, dt_s: f64) -> Option<(f64, f64)> {
         let follows = self.thrust.step(throttle?, dt_s);
+        let thrust = squared(follows);
         let recent = self.recent_thrust.step(follows, dt_s);
-        Some((squared(follows), squared(follows) - squared(recent)))
+        // From the square of the throttle to the throttle itself.
+        let law = follows - thrust;
+        let law_change = law - self.recent_law.step(law, dt_s);
+        let unknown = hypot(
+            THRUST_ERROR * (thrust - squared(recent)),
+            LAW_SHARE * law_change,
+        );
+        Some((thrust, unknown))
     }
 
     fn add(&mut self, sample: &ForceSample, sensor_mps: Option<(f64, u8)>, dt_s: f64) {

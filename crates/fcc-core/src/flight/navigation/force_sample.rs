@@ -29,8 +29,8 @@ pub(super) struct ForceSample {
     pub(super) climbs_by_lift: bool,
     /// √(density over its value at sea level).
     pub(super) sqrt_density: f64,
-    /// Thrust over that at full throttle and V₀, and its change over seconds;
-    /// none if the throttle is not known.
+    /// Thrust over that at full throttle and V₀, and what of its change over seconds is not
+    /// known, one standard deviation; none if the throttle is not known.
     pub(super) thrust: Option<(f64, f64)>,
     /// Standard deviation of vertical gusts, m/s.
     pub(super) gusts_mps: f64,

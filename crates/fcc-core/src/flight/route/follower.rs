@@ -12,7 +12,7 @@ use super::glide::GlideFlight;
 use super::leg::Leg;
 use super::runway::RunwayFlight;
 use super::sequence::{Sequence, Steps};
-use super::step::{Destination, Route, Step};
+use super::step::{Destination, Route, Step, Until};
 use super::{OverGround, PLANNED_SHARE, ROLL_LAG_S, RouteConfig};
 use crate::flight::path::{LateralLaw, Law, LocalPlane, Motion, Path, length};
 
@@ -170,6 +170,16 @@ impl Follower {
     /// Whether a straight leg is flown, and no turn or circle.
     pub const fn is_on_leg(&self) -> bool {
         matches!(self.phase, Phase::Leg(_))
+    }
+
+    /// Whether it circles where its last step has led, and no step follows. A landing that
+    /// was given up is not the end of a route.
+    pub fn has_ended(&self) -> bool {
+        let circles = matches!(
+            (&self.phase, &self.goal.kind),
+            (Phase::Circle(_), GoalKind::Circle(circle)) if circle.until == Until::Never
+        );
+        circles && !self.has_no_more_landings() && self.sequence.peek(self.index + 1).is_none()
     }
 
     /// The acceleration to the right of the air velocity that is demanded, m/s².

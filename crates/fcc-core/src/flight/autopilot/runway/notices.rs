@@ -23,6 +23,18 @@ impl RunwayControl {
     }
 }
 
+/// Whether a notice says that the wheels touch the ground where neither a take-off nor a
+/// landing is flown.
+pub fn touches_ground(notice: &Notice) -> bool {
+    notice.kind == RUNWAY && notice.item == RunwayReason::Touched as u16
+}
+
+/// Whether a notice says why a take-off or a landing is given up.
+pub fn gives_up_runway(notice: &Notice) -> bool {
+    let others = [RunwayReason::Touched, RunwayReason::RangeFinder];
+    notice.kind == RUNWAY && others.iter().all(|other| notice.item != *other as u16)
+}
+
 /// Writes the notice of a runway.
 pub(in super::super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     let number = u8::try_from(notice.item).unwrap_or_default();

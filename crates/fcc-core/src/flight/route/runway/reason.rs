@@ -5,7 +5,7 @@ use core::fmt;
 use crate::schema;
 
 schema! {
-    /// Why a take-off or a landing is given up.
+    /// Why a take-off or a landing is given up, or what else there is to tell of the ground.
     pub enum RunwayReason {
         /// It is not given up.
         None = 0,
@@ -37,6 +37,8 @@ schema! {
         Receiver = 14,
         /// It was given up too often.
         NoMore = 15,
+        /// The wheels touch the ground, and neither a take-off nor a landing is flown.
+        Touched = 16,
     }
 }
 
@@ -74,6 +76,10 @@ impl fmt::Display for RunwayReason {
                  item of the plan, the landing for three more"
             }
             Self::Failsafe => "the take-off is given up",
+            Self::Touched => {
+                "the wheels touch the ground outside of a take-off or a landing: climb, or take \
+                 over"
+            }
         })
     }
 }

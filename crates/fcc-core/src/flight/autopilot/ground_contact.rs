@@ -1,0 +1,31 @@
+//! The wheels on the ground where neither a take-off nor a landing is flown.
+
+use super::Autopilot;
+use crate::flight::guidance::Mode;
+use crate::flight::route::RunwayReason;
+
+/// A range finder that shows more than this above what it shows on the wheels contradicts
+/// their switch, m.
+const CLEAR_M: f64 = 1.0;
+
+impl Autopilot {
+    /// Announces that an aircraft that has flown is on its wheels, and is not to be. Where
+    /// nothing measures the weight on the wheels nothing is known of it.
+    pub(super) fn watch_ground_contact(&mut self) {
+        let Some(on_wheels) = self.ground.on_wheels() else {
+            return;
+        };
+        let is_clear = self.ground.here().and_then(|here| here.height_m);
+        let on_wheels_m = self.config.route.runway.height_on_wheels_m;
+        let is_clear = is_clear.is_some_and(|height_m| height_m > on_wheels_m + CLEAR_M);
+        if !on_wheels || is_clear {
+            self.has_flown = true;
+            return;
+        }
+        let is_expected = self.runway().is_some() || self.guidance.mode() == Mode::Glide;
+        if self.has_flown && !is_expected {
+            self.on_runway.announce(RunwayReason::Touched);
+        }
+        self.has_flown = false;
+    }
+}

@@ -1,0 +1,168 @@
+//! Plans that are refused, flown to their end, and not.
+
+use std::fs;
+use std::path::Path;
+
+use super::fccd;
+
+/// Altitudes above home, which is at 120 m: a leg to the north, and a landing behind it.
+const STRAIGHT_IN: &str = "QGC WPL 110\n\
+     0 1 0 16 0 0 0 0 45.00 8 120 1\n\
+     1 0 3 16 0 0 0 0 45.03 8 150 1\n\
+     2 0 3 21 0 0 0 0 45.08 8 0 1\n";
+const CIRCUIT: &str = include_str!("../../../../config/plans/circuit.waypoints");
+
+fn legs(latitude_deg: f64, above_home_m: f64) -> String {
+    let mut text = format!("QGC WPL 110\n0 1 0 16 0 0 0 0 {latitude_deg} 8 120 1\n");
+    for n in 1..3 {
+        let north_deg = latitude_deg + 0.02 * f64::from(n);
+        text += &format!("{n} 0 3 16 0 0 0 0 {north_deg} 8 {above_home_m} 1\n");
+    }
+    text
+}
+
+fn ended(folder: &Path, words: &[&str]) -> (Option<i32>, String) {
+    let output = fccd(folder, words).output().unwrap();
+    let both = [output.stdout, output.stderr].concat();
+    (output.status.code(), String::from_utf8(both).unwrap())
+}
+
+/// Flies a plan in lockstep.
+fn flown(plan: &str, config: &str, more: &[&str]) -> (Option<i32>, String) {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.waypoints"), plan).unwrap();
+    fs::write(
+        folder.path().join("a.toml"),
+        format!("[built-in]\n{config}"),
+    )
+    .unwrap();
+    let fly = ["fly", "--lockstep", "--no-recording", "--quiet"];
+    let files = ["--config", "a.toml", "--plan", "a.waypoints"];
+    let words: Vec<&str> = fly.iter().chain(&files).chain(more).copied().collect();
+    ended(folder.path(), &words)
+}
+
+/// Home is at 120 m: -200 m above it is below the sea.
+#[test]
+fn a_plan_below_home_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("low.waypoints"), legs(45.0, -200.0)).unwrap();
+    let words = "low.waypoints: item 1: altitude: -80 m above mean sea level is 200 m below the \
+                 elevation of home, 120 m";
+    let check = ["plan", "check", "low.waypoints"];
+    for command in [
+        &check[..],
+        &["fly", "--plan", "low.waypoints", "--lockstep"],
+    ] {
+        let (exit, said) = ended(folder.path(), command);
+        assert_eq!((exit, said.contains(words)), (Some(2), true), "{said}");
+    }
+    // Another aircraft may be over a valley.
+    fs::write(folder.path().join("x.toml"), "[x-plane]\n").unwrap();
+    let with = ["plan", "check", "low.waypoints", "--config", "x.toml"];
+    let (exit, said) = ended(folder.path(), &with);
+    assert_eq!(
+        (exit, said.contains("is there a valley?")),
+        (Some(0), true),
+        "{said}"
+    );
+}
+
+/// 0.5 m above the ground the wheels, 1.35 m below the centre of gravity, are on it.
+#[test]
+fn an_aircraft_that_touches_the_ground_has_hit_it() {
+    let (exit, said) = flown(
+        &legs(45.0, 0.5),
+        "ground_ft = 393.7\naltitude_ft = 800.0\n",
+        &[],
+    );
+    assert_eq!(exit, Some(16), "{said}");
+    let words = "the wheels touch the ground outside of a take-off or a landing";
+    assert!(said.contains(words), "{said}");
+    assert!(
+        said.contains("ended: the aircraft hit the ground"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_plan_without_the_time_is_not_flown() {
+    let (exit, said) = flown(STRAIGHT_IN, "", &["--seconds", "60"]);
+    assert_eq!(exit, Some(19), "{said}");
+    let words = "ended: the time to fly is over, and the plan is not flown to its end: item 1 was \
+                 flown, in the mode plan: give it more time (--seconds)";
+    assert!(said.contains(words), "{said}");
+}
+
+/// Set to 1030 hPa, which is 140 m off the standard 1013.25 hPa of the built-in aircraft.
+#[test]
+fn a_refused_take_off_is_no_flown_plan() {
+    let altimeter = "[altimeter]\nsetting_hpa = 1030.0\n";
+    let (exit, said) = flown(CIRCUIT, altimeter, &[]);
+    assert_eq!(exit, Some(19), "{said}");
+    let words = "ended: the plan is not flown to its end: item 1 was flown, in the mode take-off; \
+                 no take-off: the altimeter does not show the elevation of the plan's home";
+    assert!(said.contains(words), "{said}");
+}
+
+#[test]
+fn plans_are_flown_to_their_end() {
+    let mut back = legs(45.0, 800.0);
+    back += "3 0 3 20 0 0 0 0 0 0 0 1\n";
+    for plan in [&legs(45.0, 800.0), &back, CIRCUIT] {
+        let (exit, said) = flown(plan, "", &[]);
+        assert_eq!(exit, Some(0), "{said}");
+        assert!(
+            said.contains("ended: the plan is flown to its end"),
+            "{said}"
+        );
+    }
+}
+
+/// The throttle is closed for the deceleration to the approach's airspeed, and opened again:
+/// with a lever that gives a share of the power that is another thrust than with one whose
+/// square does. The sensor was doubted in 20 of 20 flights.
+#[test]
+fn a_sound_airspeed_is_not_doubted_on_a_calm_approach() {
+    for seed in ["1", "2", "3"] {
+        let (exit, said) = flown(STRAIGHT_IN, "", &["--seed", seed]);
+        assert_eq!(exit, Some(0), "{said}");
+        assert!(!said.contains("is doubted"), "seed {seed}: {said}");
+    }
+}
+
+/// In degrees, and before the flight.
+#[test]
+fn plans_near_a_pole_are_refused() {
+    for (latitude_deg, words) in [
+        (89.9, "is too near to a pole: fly between -85° and 85°"),
+        (81.0, "can between -80° and 80° only"),
+    ] {
+        let (exit, said) = flown(&legs(latitude_deg, 500.0), "", &[]);
+        assert_eq!((exit, said.contains(words)), (Some(2), true), "{said}");
+    }
+}
+
+#[test]
+fn what_nothing_measures_is_said() {
+    let limits = "[contingency]\nbattery_voltage_v = 11.0\nengine_out_below_rpm = 500.0\n";
+    let (_, said) = flown(STRAIGHT_IN, limits, &["--seconds", "1"]);
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("c.toml"),
+        format!("[built-in]\n{limits}"),
+    )
+    .unwrap();
+    let (exit, checked) = ended(folder.path(), &["check", "c.toml"]);
+    assert_eq!(exit, Some(0), "{checked}");
+    fs::write(folder.path().join("x.toml"), format!("[x-plane]\n{limits}")).unwrap();
+    let (_, of_x_plane) = ended(folder.path(), &["check", "x.toml"]);
+    for words in [
+        "contingency.battery_voltage_v is 11, and no sensor here measures the voltage",
+        "contingency.engine_out_below_rpm is 500, and no sensor here measures the speed",
+    ] {
+        assert!(said.contains(words), "{said}");
+        assert!(checked.contains(words), "{checked}");
+        assert!(!of_x_plane.contains(words), "{of_x_plane}");
+    }
+}

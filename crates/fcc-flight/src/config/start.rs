@@ -1,0 +1,83 @@
+//! What a user should know before a flight begins.
+
+use super::x_plane::InputChoice;
+use super::{Config, NavigationMethod, RawSensorsChoice};
+
+impl Config {
+    /// What keeps the aircraft from engaging, what is watched and not measured, and what is
+    /// worth a look in the plan.
+    pub fn remarks_at_start(&self) -> Vec<String> {
+        let mut remarks = Vec::new();
+        if let Some(section) = &self.built_in
+            && section.raw_sensors == RawSensorsChoice::None
+            && !self.has_inertial_unit()
+            && self.navigation.method != NavigationMethod::Measured
+        {
+            remarks.push(
+                "navigation.method computes attitude from raw readings, and built-in.raw_sensors \
+                 is \"none\": nothing will engage; choose \"board\" or \"phone\" for them, or \
+                 \"measured\" for the method"
+                    .to_owned(),
+            );
+        }
+        if self.has_board()
+            && self.is_without_simulator()
+            && self.navigation.method == NavigationMethod::Measured
+        {
+            remarks.push(
+                "the sensors of a board give raw readings, and navigation.method is \"measured\": \
+                 nothing will engage; choose \"kalman\""
+                    .to_owned(),
+            );
+        }
+        remarks.extend(self.airspeed_remark());
+        remarks.extend(self.unmeasured_limits());
+        let plan = self.plan.plan().filter(|_| self.flies_plan());
+        remarks.extend(plan.map_or_else(Vec::new, |plan| self.plan_remarks(plan)));
+        remarks
+    }
+
+    /// Limits of `[contingency]` for what no sensor of the configuration measures. X-Plane's
+    /// datarefs have the voltage of a battery and the speed of an engine, and nothing else
+    /// has.
+    fn unmeasured_limits(&self) -> Vec<String> {
+        let section = &self.contingency;
+        let has_datarefs = self
+            .x_planes()
+            .any(|(_, section)| section.input == InputChoice::Rref);
+        let low = "before a take-off it does not engage, and in flight a low battery is not found; \
+                   take the limit out";
+        let out = "an engine that is out is not found; set contingency.engine_out_by_thrust = \
+                   true, or take the limit out";
+        let limits = [
+            (
+                "battery_charge_percent",
+                section.battery_charge_percent,
+                "the charge of a battery",
+                low,
+            ),
+            (
+                "battery_voltage_v",
+                section.battery_voltage_v.filter(|_| !has_datarefs),
+                "the voltage of a battery",
+                low,
+            ),
+            (
+                "engine_out_below_rpm",
+                section
+                    .engine_out_below_rpm
+                    .filter(|_| !has_datarefs && !section.engine_out_by_thrust),
+                "the speed of an engine",
+                out,
+            ),
+        ];
+        let limits = limits.into_iter();
+        let without = limits.filter_map(|(key, limit, what, so)| {
+            let limit = limit?;
+            Some(format!(
+                "contingency.{key} is {limit}, and no sensor here measures {what}: {so}"
+            ))
+        });
+        without.collect()
+    }
+}
