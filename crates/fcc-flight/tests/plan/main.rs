@@ -8,6 +8,7 @@ mod contingency;
 mod drawn_fences;
 mod flight;
 mod glide;
+mod lost_low;
 mod refused;
 mod replacing;
 mod terrain;

@@ -6,6 +6,7 @@ use core::time::Duration;
 
 use coming_and_going::{FORGOTTEN_SLOWER, Intermittent, Repeated};
 
+use super::runway::Low;
 use super::{Autopilot, FailsafeEnd, flags};
 use crate::flight::Measurements;
 use crate::flight::navigation::{AirspeedSource, Lost, MotionDoubt};
@@ -159,8 +160,12 @@ pub(super) fn held_without(lost: Flags) -> Held {
 pub(super) struct Degraded {
     /// The loop is in failsafe.
     pub(super) is_failsafe: bool,
-    /// The altitude at its beginning, m.
+    /// The altitude at its beginning, or after a climb from a runway, m.
     pub(super) altitude_m: f64,
+    /// What is flown first, over a runway; and the airspeed of the pitch and the power that
+    /// are held, if it is not the commanded one, m/s.
+    pub(super) low: Low,
+    pub(super) trimmed_mps: Option<f64>,
     /// The quantities that were frozen in it.
     pub(super) frozen: Flags,
     /// How long it has lasted, s.

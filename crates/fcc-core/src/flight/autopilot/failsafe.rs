@@ -114,6 +114,7 @@ impl Autopilot {
         self.distrusted |= Flags::from_bits(jumped);
         if !self.degraded.is_failsafe {
             self.degraded.begin(self.navigation.estimate().altitude_m);
+            self.begin_low();
             if self.frozen().contains(flags::FROZEN_BODY_RATES) {
                 let trims = Surfaces {
                     throttle: self.last.throttle,
@@ -150,12 +151,15 @@ impl Autopilot {
             return recovering;
         }
         let (schedule, dt_s) = (self.schedule_at(estimate.airspeed_mps), self.clock.step_s());
+        if !idle && let Some(low) = self.fly_low(lost, &estimate, dt_s) {
+            return low;
+        }
         let envelope = self.envelope_without(lost, &estimate);
         // A constant pitch: one that follows the airspeed lets it diverge.
         let trimmed = self.schedule_at(if glides {
             self.config.envelope.best_glide_airspeed_mps
         } else {
-            self.targets.airspeed_mps
+            self.trimmed_mps()
         });
         let roll_rad = if glides { config.glide_bank_rad } else { 0.0 };
         let lateral = self.heading.hold_bank(roll_rad, &estimate, schedule, dt_s);
@@ -214,12 +218,18 @@ impl Autopilot {
             estimate.airspeed_mps = if self.degraded.glides {
                 self.config.envelope.best_glide_airspeed_mps
             } else {
-                self.targets.airspeed_mps
+                self.trimmed_mps()
             };
             estimate.true_airspeed_mps =
                 true_airspeed_mps(estimate.airspeed_mps, estimate.altitude_m);
         }
         estimate
+    }
+
+    /// The airspeed of the pitch and the power that are held, m/s.
+    fn trimmed_mps(&self) -> f64 {
+        let other_mps = self.degraded.trimmed_mps;
+        other_mps.unwrap_or(self.targets.airspeed_mps)
     }
 
     /// The envelope. An airspeed that is not known, but assumed, is inside of it: no

@@ -11,6 +11,7 @@
 //!
 //! Without power the approach is that of the [glide](super::gliding).
 
+mod in_failsafe;
 mod notices;
 mod on_wheels;
 
@@ -25,6 +26,7 @@ use crate::flight::navigation::Estimate;
 use crate::flight::route::{HELD_MPS, RunwayDemand, RunwayPhase, RunwayReason, Step};
 use crate::framework::Notice;
 use crate::units::GRAVITY_MPS2;
+pub(super) use in_failsafe::Low;
 pub(super) use notices::{RUNWAY, write};
 pub use notices::{gives_up_runway, touches_ground};
 
@@ -276,7 +278,9 @@ impl Autopilot {
             RunwayPhase::Roll => (opening, 0.0, 0.0, 0.0),
             RunwayPhase::RollOut | RunwayPhase::Stopped => {
                 let fast_mps = HELD_BACK_BELOW * self.config.route.runway.approach_mps;
-                let slow = 1.0 - estimate.airspeed_mps / fast_mps;
+                // Whichever is more: an airspeed that is wrong raises no nose.
+                let speed_mps = estimate.airspeed_mps.max(demand.ground_speed_mps);
+                let slow = 1.0 - speed_mps / fast_mps;
                 (closing, 0.0, 0.0, limit(slow, 0.0, 1.0))
             }
             RunwayPhase::Approach if demand.is_powerless => {

@@ -30,13 +30,15 @@ impl Autopilot {
         let phase = self.runway()?.phase;
         let rolls = match self.ground.on_wheels() {
             _ if phase == RunwayPhase::Hand => true,
-            Some(on_wheels) => on_wheels && phase.is_on_wheels(),
+            Some(on_wheels) => on_wheels && (phase.is_on_wheels() || self.lands_in_failsafe()),
             None => phase.is_on_wheels() && phase != RunwayPhase::Rotate,
         };
         if !rolls {
             return None;
         }
-        self.guidance.go_around();
+        if !self.lands_in_failsafe() {
+            self.guidance.go_around();
+        }
         let (config, dt_s) = (self.config.route.runway, self.clock.step_s());
         let yaw_radps = if lost.contains(flags::BODY_RATES) {
             0.0

@@ -4,6 +4,7 @@ use libm::{fabs, tan};
 
 use super::{
     ALTIMETER_OFF_M, Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase, RunwayReason,
+    WEIGHT_WRONG_M,
 };
 use crate::flight::path::Motion;
 use crate::flight::route::OverGround;
@@ -25,8 +26,6 @@ const LIES_MPS: f64 = 1.0;
 const LIES_SHARE: f64 = 0.5;
 /// A bounce to this height is flared again, m.
 const BOUNCES_M: f64 = 1.0;
-/// Wheels that bear weight above this height do not, m.
-const WEIGHT_WRONG_M: f64 = 15.0;
 /// Before the runway, less than this share of the glide path's height above the ground is
 /// too near.
 const GROUND_SHARE: f64 = 0.3;

@@ -39,6 +39,8 @@ schema! {
         NoMore = 15,
         /// The wheels touch the ground, and neither a take-off nor a landing is flown.
         Touched = 16,
+        /// The airspeed is less than the wheels tell.
+        NoAirspeed = 17,
     }
 }
 
@@ -74,6 +76,10 @@ impl fmt::Display for RunwayReason {
             Self::NoMore => {
                 "the landing was given up three times: circling over the runway; command an \
                  item of the plan, the landing for three more"
+            }
+            Self::NoAirspeed => {
+                "the take-off is given up: the airspeed stays below rotate_kt at 15 kt more over \
+                 the ground; look at the pitot tube, its cover, and the wind"
             }
             Self::Failsafe => "the take-off is given up",
             Self::Touched => {

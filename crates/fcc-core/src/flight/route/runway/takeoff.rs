@@ -5,6 +5,7 @@ use nalgebra::Vector2;
 
 use super::{
     ALTIMETER_OFF_M, Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase, RunwayReason,
+    WEIGHT_WRONG_M,
 };
 use crate::blocks::wrap_pi;
 use crate::flight::path::{Motion, length};
@@ -12,6 +13,9 @@ use crate::flight::route::{OverGround, TookOff};
 
 /// Off the wheels, and so high, m, it climbs.
 const CLIMBS_M: f64 = 3.0;
+/// Of a tail wind with which none takes off, m/s (15 kt): an airspeed that is farther below
+/// the speed over the ground is wrong.
+const MOST_TAIL_WIND_MPS: f64 = 7.716_667;
 /// Farther off the centre line a take-off is given up, m.
 const MOST_CROSS_TRACK_M: f64 = 12.0;
 /// The nose is so near to the runway's direction as a take-off begins, rad: 20°.
@@ -119,7 +123,13 @@ impl RunwayFlight {
         let rolled_m = self.began_m - self.left_m(motion);
         // A throw may be slower than what flies.
         let flies = !self.config.is_thrown() || here.airspeed_mps >= self.config.rotate_mps;
-        let lifts_off = flies && here.on_wheels != Some(true) && self.demand.height_m > CLIMBS_M;
+        let on_wheels = here.on_wheels == Some(true);
+        if on_wheels && self.demand.height_m > WEIGHT_WRONG_M {
+            self.is_weight_wrong = true;
+        }
+        let weighs = on_wheels && !self.is_weight_wrong;
+        let lifts_off = flies && !weighs && self.demand.height_m > CLIMBS_M;
+        let by_ground_mps = self.demand.ground_speed_mps - MOST_TAIL_WIND_MPS;
         match self.phase {
             RunwayPhase::Hand => self.wait_for_throw(here, dt_s),
             RunwayPhase::Roll if self.demand.cross_track_m.abs() > MOST_CROSS_TRACK_M => {
@@ -130,6 +140,9 @@ impl RunwayFlight {
             }
             RunwayPhase::Roll if here.airspeed_mps >= self.config.rotate_mps => {
                 self.phase = RunwayPhase::Rotate;
+            }
+            RunwayPhase::Roll if by_ground_mps > self.config.rotate_mps => {
+                self.give_up(RunwayPhase::RollOut, RunwayReason::NoAirspeed);
             }
             RunwayPhase::Rotate if lifts_off => self.phase = RunwayPhase::Climb,
             RunwayPhase::Climb if here.altitude_m > self.altitude_m - REACHED_M => {
