@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use fcc_core::flight::calibration::Calibration;
 use fcc_core::flight::{Measurements, Surfaces};
-use fcc_core::framework::{Actuator, Sensor, Switch, Tick, Time};
+use fcc_core::framework::{Actuator, Reading, Sensor, Switch, Tick, Time};
 use fcc_flight::config::Aircraft;
 use fcc_sim::Simulation;
 use pyo3::prelude::*;
@@ -92,6 +92,8 @@ impl PyAircraft {
             missed: 0,
             dt_s,
         };
+        // A range finder that sees no ground gives nothing, and not its last range anew.
+        measured.range_m = Reading::default();
         simulation.sensor.sample(tick, measured).map_err(|_| {
             errors::FLIGHT.with("the aircraft is out of bounds: its state is not finite any more")
         })?;

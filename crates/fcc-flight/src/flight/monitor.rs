@@ -65,10 +65,8 @@ impl Monitor {
                         ..
                     }
                 );
-                self.refused |= matches!(
-                    event.kind,
-                    EventKind::EngageRefused { .. } | EventKind::EngageRefusedBySwitch
-                );
+                // A command that comes before the switch is on is no attempt of the flight.
+                self.refused |= matches!(event.kind, EventKind::EngageRefused { .. });
                 FlightTime {
                     time_s: self.seconds(event.time.as_nanos()),
                     tick: event.tick,
