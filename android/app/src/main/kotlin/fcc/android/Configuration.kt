@@ -51,7 +51,9 @@ class Configuration(private val context: Context) {
 
     companion object {
         private val LINE = Regex("""\bconfiguration:(\d+)""")
-        private val PHONE = Regex("""^\s*kind\s*=\s*["']phone["']""", RegexOption.MULTILINE)
+
+        /** In a table of its own, or in a list: `sensor = [{ kind = "phone" }]`. */
+        private val PHONE = Regex("""^[^#\n]*\bkind["']?\s*=\s*["']+phone["']""", RegexOption.MULTILINE)
 
         /** The first line that a message names, from 1. */
         fun lineOf(message: String): Int? = LINE.find(message)?.groupValues?.get(1)?.toInt()

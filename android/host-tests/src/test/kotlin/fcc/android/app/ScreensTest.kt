@@ -201,6 +201,22 @@ class ScreensTest {
     }
 
     @Test
+    fun `what is being saved while the activity is made anew counts as saved`() {
+        activity.open(MainActivity.SETTINGS)
+        val text = "[built-in]\n[loop]\nrate_hz = 50\n"
+        val field = activity.findViewById<EditText>(R.id.text)
+        // It takes a second to say what is wrong with each of its lines.
+        field.setText((0..8_000).joinToString("\n", "[built-in]\n") { "k$it = 1" })
+        activity.touch(R.id.check)
+        field.setText(text)
+        activity.touch(R.id.save)
+        controller.recreate()
+        phone.eventually("saved") { Configuration(phone.app).text() == text }
+        phone.eventually("it is the saved one") { activity.words(R.id.message).startsWith("This is the saved") }
+        assertFalse(activity.findViewById<View>(R.id.discard).isEnabled)
+    }
+
+    @Test
     fun `a configuration that cannot be flown is refused with the line, and not saved`() {
         activity.open(MainActivity.SETTINGS)
         val text = activity.findViewById<EditText>(R.id.text)
