@@ -13,6 +13,8 @@ import fcc.android.Phase
 import fcc.android.R
 import fcc.android.screens.MainActivity
 import java.io.FileNotFoundException
+import java.util.concurrent.atomic.AtomicBoolean
+import kotlin.concurrent.thread
 import org.junit.After
 import org.junit.Assert.assertEquals
 import org.junit.Assert.assertFalse
@@ -214,6 +216,24 @@ class ScreensTest {
         phone.eventually("saved") { Configuration(phone.app).text() == text }
         phone.eventually("it is the saved one") { activity.words(R.id.message).startsWith("This is the saved") }
         assertFalse(activity.findViewById<View>(R.id.discard).isEnabled)
+    }
+
+    /** As a service, a calibration and another activity do. */
+    @Test
+    fun `a configuration that is read while it is saved is saved`() {
+        val isOver = AtomicBoolean()
+        val reader = thread {
+            while (!isOver.get()) Configuration(phone.app).text()
+        }
+        try {
+            repeat(500) {
+                Configuration(phone.app).save("# $it\n$FLOWN")
+                assertEquals("# $it\n$FLOWN", Configuration(phone.app).text())
+            }
+        } finally {
+            isOver.set(true)
+            reader.join()
+        }
     }
 
     @Test
