@@ -128,6 +128,8 @@ class Timing(timing: JSONObject) {
 
 /** How far the recorder is. */
 class RecordingProgress(recording: JSONObject) {
+    /** The path of what is written now. */
+    val file = recording.text("file")
     val bytes = recording.getLong("bytes")
     val notRecorded = recording.getLong("not_recorded")
     val stopped = recording.text("stopped")

@@ -11,10 +11,13 @@ import fcc.android.Configuration
 import fcc.android.Flight
 import fcc.android.Phase
 import fcc.android.R
+import fcc.android.RecordingEntry
+import fcc.android.Recordings
 import fcc.android.screens.MainActivity
 import java.io.FileNotFoundException
 import java.util.concurrent.atomic.AtomicBoolean
 import kotlin.concurrent.thread
+import org.json.JSONObject
 import org.junit.After
 import org.junit.Assert.assertEquals
 import org.junit.Assert.assertFalse
@@ -322,6 +325,20 @@ class ScreensTest {
         phone.eventually("deleted") { !file.exists() }
         activity.open(MainActivity.FLY)
         phone.eventually("gone for good") { file.parentFile!!.list()!!.isEmpty() }
+    }
+
+    /** As from a list that was read before the flight wrote to it. */
+    @Test
+    fun `what a flight writes is not deleted, whatever the list says`() {
+        phone.fly()
+        val file = phone.recordings.fileOf(Recordings.folder(phone.app).list()!!.single { it.endsWith(".mcap") })
+        assertFalse(phone.recordings.delete(file))
+        assertTrue(file.exists())
+        phone.endFlight()
+        assertEquals(1, phone.recordings.list().single { it.wholeness == "whole" }.part)
+        assertTrue(phone.recordings.delete(file))
+        assertTrue(phone.recordings.restore(file))
+        assertTrue(RecordingEntry(JSONObject("""{"path": "a", "error": "a: still being written, 8 bytes so far"}""")).isBeingWritten)
     }
 
     @Test
