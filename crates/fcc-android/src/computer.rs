@@ -13,7 +13,7 @@ use fcc_telemetry::Command;
 use crate::failure::Failure;
 use crate::flight::Flight;
 use crate::listener::Notifier;
-use crate::live::Live;
+use crate::live::{self, Live};
 
 /// The name of the configuration in messages.
 const CONFIG_NAME: &str = "configuration";
@@ -73,7 +73,7 @@ impl Computer {
         if let Some(over) = flight.take() {
             over.stop();
         }
-        if self.live.is_hung() {
+        if live::is_hung() {
             return Err(Failure::Flight(
                 "the loop of an earlier flight hangs in this process: end the app, and start it \
                  again"

@@ -34,6 +34,8 @@ const STACK_BYTES: usize = 8 * 1024 * 1024;
 /// A flight that has begun.
 pub(crate) struct Flight {
     thread: JoinHandle<()>,
+    /// Set before the app is told that it has ended.
+    is_over: Arc<AtomicBool>,
     stop: StopRequest,
     commander: Commander,
     phone: PhoneHandle,
@@ -65,6 +67,8 @@ impl Flight {
             phone,
         };
         let (live, notifier) = (Arc::clone(live), notifier.clone());
+        let is_over = Arc::new(AtomicBool::new(false));
+        let ends = Arc::clone(&is_over);
         let thread = thread::Builder::new()
             .name("fcc-flight".to_owned())
             .stack_size(STACK_BYTES)
@@ -76,6 +80,7 @@ impl Flight {
                     Err(why) => why.clone(),
                 };
                 live.end(ended.as_ref().ok(), &why);
+                ends.store(true, Ordering::SeqCst);
                 // If the flight had begun, nobody waits for that any more.
                 if begun.try_send(Err(why.clone())).is_err() {
                     notifier.tell(Notice::Ended(why));
@@ -85,6 +90,7 @@ impl Flight {
         match has_begun.recv() {
             Ok(Ok(commander)) => Ok(Self {
                 thread,
+                is_over,
                 stop,
                 commander,
                 phone: handle,
@@ -99,7 +105,7 @@ impl Flight {
 
     /// Whether it has ended by itself.
     pub(crate) fn is_over(&self) -> bool {
-        self.thread.is_finished()
+        self.is_over.load(Ordering::SeqCst)
     }
 
     /// Its end for commands.

@@ -2,10 +2,11 @@
 //! messages, read by the app's threads. The loop's thread never waits for it.
 
 use std::collections::VecDeque;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements};
+use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, flags};
 use fcc_core::framework::{Controller, EventKind, Flags, Reading, Readings as _, State, Time};
 use fcc_flight::flight::{
     Access, Conclusion, EventEntry, Facts, Flapping, FlightTime, Observer, Outcome, Report, Reports,
@@ -25,6 +26,9 @@ const MOST_REPORTS: usize = 50;
 const SENSORS_EVERY: Duration = Duration::from_millis(200);
 /// How often the statistics of the timing are computed.
 const TIMING_EVERY: Duration = Duration::from_millis(500);
+
+/// Whether a loop hangs in this process: nothing flies in it again, by whatever computer.
+static HUNG: AtomicBool = AtomicBool::new(false);
 
 /// What a screen shows. Its JSON is described in docs/android.md.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -76,6 +80,7 @@ struct Now {
     faults: Vec<&'static str>,
     /// What was measured at least once.
     readings: Vec<ShownReading>,
+    // Of these four none that is lost.
     roll_rad: Option<f64>,
     pitch_rad: Option<f64>,
     heading_rad: Option<f64>,
@@ -142,6 +147,11 @@ impl From<&RecorderStatus> for Recording {
     }
 }
 
+/// Whether a loop of this process hangs.
+pub(crate) fn is_hung() -> bool {
+    HUNG.load(Ordering::SeqCst)
+}
+
 /// The state that is shared with the app's threads.
 pub(crate) struct Live(Mutex<Shown>);
 
@@ -154,14 +164,10 @@ impl Live {
     }
 
     pub(crate) fn to_json(&self) -> String {
-        let shown = self.lock().clone();
+        let mut shown = self.lock().clone();
+        shown.hung = is_hung();
         // A struct of numbers and texts can be written.
         serde_json::to_string(&shown).unwrap_or_default()
-    }
-
-    /// Whether a loop of this process hangs.
-    pub(crate) fn is_hung(&self) -> bool {
-        self.lock().hung
     }
 
     pub(crate) fn show_hints(&self, hints: &ShownHints) {
@@ -172,7 +178,9 @@ impl Live {
     pub(crate) fn end(&self, outcome: Option<&Outcome>, ending: &str) {
         let mut shown = self.lock();
         shown.flying = false;
-        shown.hung |= outcome.is_some_and(|outcome| outcome.conclusion == Conclusion::Hung);
+        if outcome.is_some_and(|outcome| outcome.conclusion == Conclusion::Hung) {
+            HUNG.store(true, Ordering::SeqCst);
+        }
         shown.outcome = outcome.and_then(|outcome| serde_json::to_value(outcome).ok());
         shown.ending = Some(ending.to_owned());
     }
@@ -332,7 +340,15 @@ impl Now {
         // of them its estimate is of zeros.
         let is_by_raw = !measured.raw_body_rates.is_never()
             && [estimate.roll_rad, estimate.pitch_rad, estimate.heading_rad] != [0.0; 3];
-        let has_attitude = !measured.attitude.is_never() || is_by_raw;
+        // What is lost is shown as unknown: an old horizon is taken for that of now.
+        let lost = if state.holds_control() {
+            record.faults
+        } else {
+            record.engage_inhibits
+        };
+        let is_known = |flag| !lost.intersects(flag);
+        let has_attitude =
+            (!measured.attitude.is_never() || is_by_raw) && is_known(flags::ATTITUDE);
         let altitude_m = known(&measured.altitude_m)
             .or((!measured.static_pressure_pa.is_never()).then_some(estimate.altitude_m));
         let airspeed_mps = known(&measured.airspeed_mps)
@@ -348,9 +364,13 @@ impl Now {
             readings: readings(measured, record.tick.woke),
             roll_rad: has_attitude.then_some(estimate.roll_rad),
             pitch_rad: has_attitude.then_some(estimate.pitch_rad),
-            heading_rad: known(&measured.heading_rad).or(is_by_raw.then_some(estimate.heading_rad)),
-            airspeed_mps,
-            altitude_m: altitude_m.map(|pressure_m| pressure_m - altitude.datum_m),
+            heading_rad: known(&measured.heading_rad)
+                .or(is_by_raw.then_some(estimate.heading_rad))
+                .filter(|_| is_known(flags::HEADING)),
+            airspeed_mps: airspeed_mps.filter(|_| is_known(flags::AIRSPEED)),
+            altitude_m: altitude_m
+                .map(|pressure_m| pressure_m - altitude.datum_m)
+                .filter(|_| is_known(flags::ALTITUDE)),
             climb_rate_mps: estimate.climb_rate_mps,
             altitude_reference: altitude.reference,
             altimeter_setting_hpa: altitude.setting_hpa,

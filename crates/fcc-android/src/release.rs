@@ -13,7 +13,7 @@ use std::fs::File;
 use std::io::{self, Write};
 use std::os::fd::OwnedFd;
 use std::path::Path;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -44,6 +44,34 @@ pub(crate) fn add_helper(pipe: OwnedFd) {
     *ARRIVED.lock().unwrap_or_else(PoisonError::into_inner) = Some(pipe);
 }
 
+/// Whether a flight of this process can hold a plant: the second process and the mark
+/// know of one.
+static IS_TAKEN: AtomicBool = AtomicBool::new(false);
+
+/// The turn of the one flight that can hold a plant, until it is over.
+#[derive(Debug)]
+struct Turn;
+
+impl Turn {
+    /// # Errors
+    /// When another flight has it.
+    fn take() -> io::Result<Self> {
+        if IS_TAKEN.swap(true, Ordering::SeqCst) {
+            return Err(io::Error::other(
+                "another flight of this app goes on, and if the app is killed only one of them is \
+                 released: stop it first",
+            ));
+        }
+        Ok(Self)
+    }
+}
+
+impl Drop for Turn {
+    fn drop(&mut self) {
+        IS_TAKEN.store(false, Ordering::SeqCst);
+    }
+}
+
 #[derive(Debug)]
 struct Notice {
     /// The number of the last takeover, and of the last whose release is confirmed.
@@ -72,18 +100,20 @@ pub(crate) struct Outliving {
     due: Option<Instant>,
     answers: Option<(PlantId, u16)>,
     was_held: bool,
+    _turn: Turn,
 }
 
 impl Outliving {
     /// Of a flight that is about to begin; the mark is in `folder`.
     ///
     /// # Errors
-    /// When the configuration cannot be passed on.
+    /// When the configuration cannot be passed on, or another flight goes on.
     pub(crate) fn new(
         authority: &Arc<dyn ControlAuthority>,
         config: &Config,
         folder: &Path,
     ) -> io::Result<Self> {
+        let turn = Turn::take()?;
         authority.notify(&NOTICE);
         let mark = Mark::in_folder(folder);
         let mut this = Self {
@@ -94,6 +124,7 @@ impl Outliving {
             due: Some(Instant::now() + HELPER_WITHIN),
             answers: None,
             was_held: false,
+            _turn: turn,
         };
         if let Some(pipe) = NOTICE.helpers.last() {
             let mut pipe = File::from(pipe.try_clone_to_owned()?);

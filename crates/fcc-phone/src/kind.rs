@@ -8,6 +8,13 @@ use crate::Accuracy;
 /// hPa, in which a barometer gives pressure (`ASENSOR_TYPE_PRESSURE`).
 const PA_PER_HPA: f64 = 100.0;
 
+/// What an event says if one of its values is no number.
+const NO_NUMBER: &str = "what it gives is no number";
+/// What it says if no sensor of a phone can measure that: what would integrate it would
+/// not be rid of it for minutes.
+const BEYOND_MEASURE: &str =
+    "it gives what no such sensor can measure: it is broken, or has another unit";
+
 /// A sensor that Android gives events of.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -65,8 +72,22 @@ impl Kind {
         }
     }
 
-    /// What an event of a type says; none if a number of it is none.
-    pub(crate) fn read(self, of_type: i32, data: &[f32; 16]) -> Option<Reading> {
+    /// The most that a sensor of a phone can measure along an axis, and some times that:
+    /// 16 g, 2,000 °/s, 4,912 µT, 1,100 hPa.
+    const fn most(self) -> f64 {
+        match self {
+            Self::Accelerometer => 1_000.0,
+            Self::Gyroscope => 100.0,
+            Self::Magnetometer => 20_000.0,
+            Self::Barometer => 2_000.0 * PA_PER_HPA,
+        }
+    }
+
+    /// What an event of a type says.
+    ///
+    /// # Errors
+    /// When it is no number, or nothing that can be measured: what is wrong.
+    pub(crate) fn read(self, of_type: i32, data: &[f32; 16]) -> Result<Reading, &'static str> {
         let [x, y, z, bias_x, bias_y, bias_z, ..] = data.map(f64::from);
         let has_bias = matches!(
             of_type,
@@ -91,8 +112,14 @@ impl Kind {
             },
         };
         let numbers = reading.bias.unwrap_or_default();
-        let all = reading.values.iter().chain(&numbers);
-        all.copied().all(f64::is_finite).then_some(reading)
+        let mut all = reading.values.iter().chain(&numbers);
+        if !all.clone().all(|number| number.is_finite()) {
+            return Err(NO_NUMBER);
+        }
+        if all.any(|number| number.abs() > self.most()) {
+            return Err(BEYOND_MEASURE);
+        }
+        Ok(reading)
     }
 
     /// A reading as the measured value, less a bias.
@@ -179,8 +206,26 @@ mod tests {
 
     #[test]
     fn what_is_no_number_is_no_reading() {
-        assert_eq!(Kind::Barometer.read(6, &data(&[f32::NAN])), None);
+        assert_eq!(Kind::Barometer.read(6, &data(&[f32::NAN])), Err(NO_NUMBER));
         let no_bias = data(&[0.0, 0.0, 0.0, f32::INFINITY]);
-        assert_eq!(Kind::Gyroscope.read(16, &no_bias), None);
+        assert_eq!(Kind::Gyroscope.read(16, &no_bias), Err(NO_NUMBER));
+    }
+
+    /// The largest number, a pressure in Pa, milligravities, and such a bias.
+    #[test]
+    fn what_nothing_can_measure_is_no_reading() {
+        for (kind, of_type, values) in [
+            (Kind::Accelerometer, 35, [0.0, f32::MAX, 0.0, 0.0]),
+            (Kind::Accelerometer, 1, [0.0, 0.0, -1_001.0, 0.0]),
+            (Kind::Gyroscope, 16, [0.0, 0.0, 0.0, f32::MIN]),
+            (Kind::Magnetometer, 14, [f32::MAX; 4]),
+            (Kind::Barometer, 6, [101_325.0, 0.0, 0.0, 0.0]),
+        ] {
+            assert_eq!(kind.read(of_type, &data(&values)), Err(BEYOND_MEASURE));
+        }
+        // 16 g, 2,000 °/s and a magnet beside the phone.
+        assert!(Kind::Accelerometer.read(35, &data(&[157.0; 3])).is_ok());
+        assert!(Kind::Gyroscope.read(16, &data(&[34.9; 3])).is_ok());
+        assert!(Kind::Magnetometer.read(14, &data(&[4_912.0; 3])).is_ok());
     }
 }

@@ -110,7 +110,7 @@ impl PhoneSource {
             what,
         };
         let reading = self.of.kind.read(event.sensor_type, &event.data);
-        let reading = reading.ok_or_else(|| malformed("what it gives is no number"))?;
+        let reading = reading.map_err(malformed)?;
         let clock = match &mut self.phase {
             Phase::Known(clock) => *clock,
             Phase::Trial(trial) => {

@@ -15,6 +15,8 @@ use nix::sys::time::TimeValLike;
 use nix::time::{ClockId, clock_gettime};
 use serde::Serialize;
 
+use crate::library::refused;
+
 /// A sensor's processor has a clock of its own, which is set by the phone's: it may be
 /// ahead by this.
 const MOST_AHEAD_NS: i64 = 2_000_000;
@@ -131,17 +133,22 @@ pub(crate) struct Trial {
     first_ns: i64,
     last_ns: i64,
     youngest_ns: Option<i64>,
+    /// When the first one arrived.
+    began: Option<Time>,
 }
 
 /// For so many events, and for so long.
 const TRIAL_EVENTS: u32 = 10;
 const TRIAL: Duration = Duration::from_millis(200);
+/// Stamps that have not advanced by as much in this time stand still, or go back: a sensor
+/// that waits for its batch gives them after 1 s at the latest, or has stalled.
+const LONGEST_TRIAL: Duration = Duration::from_secs(3);
 
 impl Trial {
     /// Takes an event that arrived now; clock and rate, Hz, when enough is known.
     ///
     /// # Errors
-    /// When its stamps are of no known clock.
+    /// When its stamps are of no known clock, or do not advance.
     pub(crate) fn take(
         &mut self,
         device: &'static str,
@@ -167,6 +174,16 @@ impl Trial {
         };
         let lasted_ns = self.last_ns.saturating_sub(self.first_ns);
         if lasted_ns < TRIAL.as_nanos() as i64 {
+            let began = *self.began.get_or_insert(now.monotonic);
+            if now.monotonic.since(began) > LONGEST_TRIAL {
+                let what = format!(
+                    "the time stamps of its events do not advance: {} s in {} s; end other apps, \
+                     or start the phone again",
+                    lasted_ns as f64 * 1e-9,
+                    LONGEST_TRIAL.as_secs()
+                );
+                return Err(refused(device, what));
+            }
             return Ok(None);
         }
         let rate_hz = f64::from(self.events - 1) / (lasted_ns as f64 * 1e-9);
@@ -227,6 +244,25 @@ mod tests {
         for ahead_ns in [1_800_000_000 * S, -5_000 * S, 8 * MS] {
             let wrong = tried(0, ahead_ns, 5 * MS).unwrap_err();
             assert!(matches!(wrong, DeviceError::WrongClock { .. }), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn stamps_that_do_not_advance_are_refused() {
+        for step_ns in [0, -10_000, 1_000] {
+            let mut trial = Trial::default();
+            let wrong = (0..1_000).find_map(|number| {
+                let now = now(5_000 * S + number * 10 * MS, 0);
+                // Younger than what is of another clock.
+                let stamp_ns = now.monotonic.as_nanos().min(5_000 * S) + number * step_ns;
+                trial
+                    .take("test", stamp_ns, now)
+                    .err()
+                    .map(|wrong| (number, wrong))
+            });
+            let (number, wrong) = wrong.unwrap();
+            assert!((300..320).contains(&number), "{number}");
+            assert!(wrong.to_string().contains("do not advance"), "{wrong}");
         }
     }
 

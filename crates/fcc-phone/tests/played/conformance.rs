@@ -30,7 +30,8 @@ impl Bench {
     fn feed(&self, stamp_ns: i64) {
         self.now.store(stamp_ns.max(BEGAN_NS), Ordering::Relaxed);
         for of_type in [ACCELEROMETER, GYROSCOPE] {
-            let values = [stamp_ns as f64 * 1e-9, 0.0, 9.81];
+            // Another one each time, that a sensor can measure.
+            let values = [(stamp_ns % 10_000_000_000) as f64 * 1e-9, 0.0, 9.81];
             let event = json!({"stamp_ns": stamp_ns, "values": values});
             tell(&self.package, of_type, "event", &event);
         }

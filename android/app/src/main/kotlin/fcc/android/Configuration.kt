@@ -12,7 +12,7 @@ class Configuration(private val context: Context) {
 
     /** The text; the built-in aircraft's before one is saved. */
     fun text(): String = try {
-        String(AtomicFile(file).readFully())
+        synchronized(FILE) { String(AtomicFile(file).readFully()) }
     } catch (_: FileNotFoundException) {
         example(R.raw.example_built_in)
     }
@@ -37,7 +37,7 @@ class Configuration(private val context: Context) {
      *
      * @throws IOException if there is no room for it.
      */
-    fun save(text: String) {
+    fun save(text: String) = synchronized(FILE) {
         val atomic = AtomicFile(file)
         val stream = atomic.startWrite()
         try {
@@ -50,8 +50,13 @@ class Configuration(private val context: Context) {
     }
 
     companion object {
+        /** Who reads an [AtomicFile] deletes what is being written, and the writer is not told. */
+        private val FILE = Any()
+
         private val LINE = Regex("""\bconfiguration:(\d+)""")
-        private val PHONE = Regex("""^\s*kind\s*=\s*["']phone["']""", RegexOption.MULTILINE)
+
+        /** In a table of its own, or in a list: `sensor = [{ kind = "phone" }]`. */
+        private val PHONE = Regex("""^[^#\n]*\bkind["']?\s*=\s*["']+phone["']""", RegexOption.MULTILINE)
 
         /** The first line that a message names, from 1. */
         fun lineOf(message: String): Int? = LINE.find(message)?.groupValues?.get(1)?.toInt()

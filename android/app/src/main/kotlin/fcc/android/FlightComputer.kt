@@ -1,6 +1,7 @@
 package fcc.android
 
 import java.io.File
+import org.json.JSONObject
 
 /**
  * A flight control computer: one configuration, flown any number of times.
@@ -54,10 +55,14 @@ class FlightComputer(
      * @throws CommandException if one is unknown or out of its limits, or if it is
      * not engaged.
      */
-    fun set(setpoints: Map<String, Double>): Long =
-        Native.command(handle, setpoints.entries.joinToString(",", "{\"Set\":[", "]}") { (name, value) ->
-            "[\"$name\",$value]"
-        })
+    fun set(setpoints: Map<String, Double>): Long {
+        // JSON has neither NaN nor infinity.
+        setpoints.entries.find { !it.value.isFinite() }?.let { (name, value) ->
+            throw CommandException("$name is $value, which is no command: give a number")
+        }
+        val pairs = setpoints.entries.joinToString(",") { (name, value) -> "[${JSONObject.quote(name)},$value]" }
+        return Native.command(handle, "{\"Set\":[$pairs]}")
+    }
 
     /**
      * Hands a position of the location service in, for a flight with a sensor of the

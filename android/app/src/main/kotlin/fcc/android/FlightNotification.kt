@@ -8,6 +8,7 @@ import android.app.Service
 import android.content.Intent
 import android.os.Build
 import fcc.android.screens.MainActivity
+import fcc.android.screens.silence
 import fcc.android.screens.words
 
 /** The notification of a flight: its state, and an action that ends it. */
@@ -49,6 +50,7 @@ class FlightNotification(private val service: Service) {
         return when {
             now.faults.isNotEmpty() -> now.faults.joinToString()
             now.hasControl -> now.mode
+            now.isSilent -> service.silence(state)
             now.engageInhibits.isNotEmpty() ->
                 service.getString(R.string.inhibited, now.engageInhibits.joinToString())
             else -> service.getString(R.string.ready)

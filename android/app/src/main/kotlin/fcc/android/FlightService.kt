@@ -134,19 +134,25 @@ class FlightService : Service() {
     }
 
     private fun refused(error: RuntimeException): Boolean {
-        Flight.refuse(getString(R.string.service_refused, error.message.orEmpty()))
+        // What flies goes on, and its state is what the screens have to show.
+        if (Flight.phase == Phase.IDLE) Flight.refuse(getString(R.string.service_refused, error.message.orEmpty()))
         return false
     }
 
-    /** Without the permission for locations the system refuses that type. */
+    /**
+     * Without the permission for locations the system refuses that type. In flight it is what
+     * flies that counts, and not what has been saved meanwhile.
+     */
     private fun types(config: String?): Int {
-        val uses = config?.let(Configuration::usesPhone) ?: (positions != null)
+        val next = config.takeIf { Flight.phase == Phase.IDLE }
+        val uses = next?.let(Configuration::usesPhone) ?: (positions != null)
         val location = if (uses && Positions.isPermitted(this)) ServiceInfo.FOREGROUND_SERVICE_TYPE_LOCATION else 0
         return ServiceInfo.FOREGROUND_SERVICE_TYPE_CONNECTED_DEVICE or location
     }
 
     override fun onDestroy() {
-        val isFlying = Flight.phase != Phase.IDLE
+        // Of an earlier service that still ends its flight this one knows nothing.
+        val isFlying = flights > 0 && Flight.phase != Phase.IDLE
         flights += 1
         stopFeeding()
         worker.execute {

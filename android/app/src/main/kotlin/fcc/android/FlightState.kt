@@ -57,9 +57,19 @@ class Tick(now: JSONObject) {
     val missed = now.getLong("missed")
     val overruns = now.getLong("overruns")
 
+    /** Whether nothing arrives, from whatever source: of all readings none is of this second. */
+    val isSilent get() = timeS > SILENT_S && readings.all { it.ageMs > SILENT_S * 1e3 }
+
     /** Whether the autopilot moves the controls, or holds them. */
     val hasControl get() = state == "engaged" || state == "failsafe"
 }
+
+/** `failsafe.sensor_max_age_ms`, and when the library calls a receiver silent. */
+private const val OLD_MS = 250.0
+private const val OLD_FIX_MS = 3_000.0
+
+/** Simulators, boards and phones give something some times in a second. */
+private const val SILENT_S = 1.0
 
 /** Set points, the altitude above the same as that of the tick. */
 class Desired(desired: JSONObject) {
@@ -73,6 +83,9 @@ class Reading(reading: JSONObject) {
     val name: String = reading.getString("name")
     val source = reading.getInt("source")
     val ageMs = reading.getDouble("age_ms")
+
+    /** Older than the loop permits by default; receivers give a position a second. */
+    val isOld get() = ageMs > if (name == "satellite navigation") OLD_FIX_MS else OLD_MS
 }
 
 /** What the kernel granted the loop's thread. */
@@ -115,6 +128,8 @@ class Timing(timing: JSONObject) {
 
 /** How far the recorder is. */
 class RecordingProgress(recording: JSONObject) {
+    /** The path of what is written now. */
+    val file = recording.text("file")
     val bytes = recording.getLong("bytes")
     val notRecorded = recording.getLong("not_recorded")
     val stopped = recording.text("stopped")
@@ -131,6 +146,9 @@ class SensorHealth(sensor: JSONObject) {
     val accuracy = sensor.text("accuracy")
     val ageMs = sensor.number("age_ms")
     val trouble = sensor.text("trouble")
+
+    /** Whether it gives less than half of what it was asked for. */
+    val isSlow get() = measuredHz != null && askedHz != null && measuredHz < askedHz / 2
 }
 
 internal fun JSONObject.number(name: String): Double? = if (isNull(name)) null else getDouble(name)

@@ -28,7 +28,12 @@ class RecordingEntry(entry: JSONObject) {
     val error = entry.text("error")
 
     /** Of the flight that goes on: neither shared nor deleted. */
-    val isBeingWritten get() = wholeness == "being-written"
+    val isBeingWritten get() = wholeness == "being-written" || STILL_WRITTEN in error.orEmpty()
+
+    private companion object {
+        /** Of one that has just begun, in which there is nothing to read yet. */
+        const val STILL_WRITTEN = "still being written"
+    }
 }
 
 /** What a report says on a recording. */
@@ -65,8 +70,17 @@ class Recordings(private val folder: File) {
     /** The recording of this name, there or not. */
     fun fileOf(name: String) = File(folder, name)
 
-    /** Whether it is deleted, until it is restored. */
-    fun delete(file: File): Boolean = file.renameTo(asDeleted(file))
+    /**
+     * Whether it is deleted, until it is restored; not what a flight writes, whatever it was
+     * when it was listed: the flight would lose what is in it.
+     *
+     * @throws RecordingException if the folder cannot be read.
+     */
+    fun delete(file: File): Boolean = !isBeingWritten(file) && file.renameTo(asDeleted(file))
+
+    private fun isBeingWritten(file: File) =
+        (Flight.phase != Phase.IDLE && Flight.state().recording?.file == file.path) ||
+            list().any { it.file == file && it.isBeingWritten }
 
     /** Whether what was deleted is there again. */
     fun restore(file: File): Boolean = asDeleted(file).renameTo(file)

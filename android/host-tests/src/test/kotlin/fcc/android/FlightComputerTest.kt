@@ -157,6 +157,81 @@ class FlightComputerTest {
         }
     }
 
+    /** Whatever a name is, it is one, and not a part of the command. */
+    @Test
+    fun `a set point that is no name or no number is refused with it`() {
+        FlightComputer(BUILT_IN, folder()).use { computer ->
+            computer.start()
+            eventually("ready") { computer.now()?.getJSONArray("engage_inhibits")?.length() == 0 }
+            computer.engage()
+            for (name in listOf("\"", "\\", "\u0000", "\uD800", "heading_rad\",1.0],[\"airspeed_mps", "a\nb")) {
+                val refused = assertThrows(name, CommandException::class.java) { computer.set(mapOf(name to 50.0)) }
+                assertTrue(refused.message, "there is no set point" in refused.message!!)
+            }
+            for (value in listOf(Double.NaN, Double.POSITIVE_INFINITY, Double.NEGATIVE_INFINITY)) {
+                val refused = assertThrows(CommandException::class.java) { computer.set(mapOf("heading_rad" to value)) }
+                assertTrue(refused.message, "heading_rad is $value" in refused.message!!)
+            }
+        }
+    }
+
+    /** The thread of the flight that has ended may still be there. */
+    @Test
+    fun `a listener that is told the end may start the next flight at once`() {
+        val flights = 200
+        val refused = LinkedBlockingQueue<String>()
+        val ended = java.util.concurrent.CountDownLatch(flights)
+        lateinit var computer: FlightComputer
+        val listener = object : Listener by Heard() {
+            override fun stateChanged(state: String) {
+                if (state == "standby") kotlin.concurrent.thread { computer.stop() }
+            }
+
+            override fun ended(reason: String) {
+                ended.countDown()
+                if (ended.count > 0) runCatching { computer.start() }.onFailure { refused.add("$it") }
+            }
+        }
+        val config = "$BUILT_IN[recording]\nenabled = false\n[loop]\nrate_hz = 500\n[realtime]\nlock_memory = false\n"
+        computer = FlightComputer(config, folder(), listener)
+        computer.use {
+            it.start()
+            assertTrue("${ended.count} left, $refused", ended.await(60, TimeUnit.SECONDS))
+            assertEquals(emptyList<String>(), refused.toList())
+        }
+    }
+
+    /** What is told to the second process, and the file `held`, are of one flight. */
+    @Test
+    fun `while a flight may hold X-Plane no other one begins, and what it holds stays stored`() {
+        fun config(of: XPlanePeer) = "[x-plane]\nsimulator = \"${of.address}\"\n[engage]\ncommand_needs_switch = false\n" +
+            "[guidance]\nmode = \"hold\"\n[realtime]\nlock_memory = false\n"
+        XPlanePeer().use { xPlane ->
+            XPlanePeer().use { anotherXPlane ->
+                val recordings = folder()
+                FlightComputer(config(xPlane), recordings).use { first ->
+                    first.start()
+                    eventually("ready", 40) { first.now()?.getJSONArray("engage_inhibits")?.length() == 0 }
+                    first.engage()
+                    eventually("it is held") { xPlane.isOverridden && File(recordings, "held").exists() }
+                    for (peer in listOf(xPlane, anotherXPlane)) {
+                        FlightComputer(config(peer), recordings).use { second ->
+                            val refused = assertThrows(FlightException::class.java) { second.start() }
+                            assertTrue(refused.message, "another flight" in refused.message!!)
+                        }
+                    }
+                    Thread.sleep(500)
+                    assertTrue(File(recordings, "held").exists())
+                    assertTrue(xPlane.isOverridden)
+                    assertEquals("engaged", first.now()!!.getString("state"))
+                    first.stop()
+                    assertFalse(File(recordings, "held").exists())
+                }
+                FlightComputer(config(anotherXPlane), recordings).use { it.start() }
+            }
+        }
+    }
+
     @Test
     fun `after it is closed every method says so, in any thread`() {
         val computer = FlightComputer(BUILT_IN, folder())

@@ -40,6 +40,11 @@ class InjectedHangTest {
                 assertEquals(0, outcome.getJSONObject("recording").getLong("not_recorded"))
                 val refused = assertThrows(FlightException::class.java) { computer.start() }
                 assertTrue(refused.message, "hangs in this process" in refused.message!!)
+                // Nor by another one, which an app makes for each flight.
+                FlightComputer(config, folder(), heard).use { another ->
+                    assertTrue(another.json().getBoolean("hung"))
+                    assertThrows(FlightException::class.java) { another.start() }
+                }
             }
         }
     }

@@ -76,6 +76,20 @@ class PhoneTest {
         }
     }
 
+    /** The largest number of 32 bits, which no attitude recovers from for a minute and more. */
+    @Test
+    fun `values that no sensor can measure are not used, with the reason`() {
+        FlightComputer(byPhone, folder(), null, "fcc.beyond.measure").use { computer ->
+            computer.start()
+            eventually("the reason is shown") {
+                "no such sensor can measure" in sensors(computer)["accelerometer"]?.optString("trouble").orEmpty()
+            }
+            eventually("the gyroscope is read") { !sensors(computer).getValue("gyroscope").isNull("age_ms") }
+            assertTrue(computer.now()!!.isNull("roll_rad"))
+            assertThrows(CommandException::class.java) { computer.engage() }
+        }
+    }
+
     @Test
     fun `stamps of a wrong clock inhibit engaging, with the reason`() {
         val heard = Heard()

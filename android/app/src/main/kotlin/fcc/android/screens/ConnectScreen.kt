@@ -136,7 +136,7 @@ internal class ConnectScreen(
             Row(
                 listOfNotNull(reading.name, source).joinToString(": "),
                 activity.age(reading.ageMs),
-                if (reading.ageMs > OLD_MS) Tone.BAD else Tone.GOOD,
+                if (reading.isOld) Tone.BAD else Tone.GOOD,
             )
         }
     }
@@ -156,7 +156,7 @@ internal class ConnectScreen(
             sensor.ageMs?.let { activity.age(it) },
         )
         return listOfNotNull(
-            Row(sensor.kind, rate, if (sensor.trouble != null) Tone.BAD else Tone.GOOD),
+            Row(sensor.kind, rate, if (sensor.trouble != null || sensor.isSlow) Tone.BAD else Tone.GOOD),
             sensor.trouble?.let { Row(it, tone = Tone.BAD) },
             details.takeIf { it.isNotEmpty() }?.let { Row(it.joinToString(), tone = Tone.DIM) },
         )
@@ -183,9 +183,6 @@ internal class ConnectScreen(
 
         /** Seldom: other processes answer. */
         const val LOOKED_EVERY_MS = 2_000L
-
-        /** Older than the loop permits by default, `failsafe.sensor_max_age_ms`. */
-        const val OLD_MS = 250.0
     }
 }
 

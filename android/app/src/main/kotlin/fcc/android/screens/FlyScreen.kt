@@ -76,6 +76,8 @@ internal class FlyScreen(
         val lines = listOfNotNull(
             refusal,
             now?.faults?.takeIf { it.isNotEmpty() }?.joinToString(),
+            // The cause, before what follows from it.
+            now?.takeIf { !it.hasControl && it.isSilent }?.let { activity.silence(state) },
             now?.takeIf { !it.hasControl && it.engageInhibits.isNotEmpty() }
                 ?.let { activity.getString(R.string.inhibited, it.engageInhibits.joinToString()) },
             state.ending?.takeIf { state.phase == Phase.IDLE }

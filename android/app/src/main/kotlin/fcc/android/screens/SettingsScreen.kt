@@ -42,6 +42,18 @@ internal class SettingsScreen(private val activity: Activity) : Screen {
             view.findViewById<Button>(button).setOnClickListener { text.setText(configuration.example(example)) }
         }
         showWhetherChanged()
+        lookAgain()
+    }
+
+    /** What is saved once an activity before this one, made anew meanwhile, has saved. */
+    private fun lookAgain() = checking.execute {
+        val now = configuration.text()
+        activity.runOnUiThread {
+            if (!activity.isDestroyed && now != saved) {
+                saved = now
+                showWhetherChanged()
+            }
+        }
     }
 
     override fun show(state: FlightState) = Unit

@@ -1,6 +1,7 @@
 package fcc.android.screens
 
 import android.content.Context
+import fcc.android.FlightState
 import fcc.android.Phase
 import fcc.android.R
 import fcc.android.Tick
@@ -39,6 +40,10 @@ internal fun minutes(s: Double): String = s.roundToInt().let { "%d:%02d".format(
 /** A size, in the larger of kB and MB. */
 internal fun bytes(count: Long): String =
     if (count < 1_000_000) "%d kB".format((count + 500) / 1_000) else "%.1f MB".format(count / 1e6)
+
+/** That nothing arrives from what is read; what to do is on the screen *connect*, too. */
+internal fun Context.silence(state: FlightState): String =
+    getString(R.string.silent, state.sources.joinToString().ifEmpty { getString(R.string.silent_sources) })
 
 /** What a phase is called while no tick is known. */
 internal val Phase.words: Int

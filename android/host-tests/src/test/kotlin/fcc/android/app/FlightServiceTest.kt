@@ -104,6 +104,50 @@ class FlightServiceTest {
         assertNull(Flight.state().ending)
     }
 
+    /** As of a phone that permits no more while the app is not in front. */
+    @Test
+    fun `a service that is refused in flight hides no flight`() {
+        phone.fly()
+        val shadow = shadowOf(phone.service!!.get())
+        shadow.setThrowInStartForeground(IllegalStateException("not allowed"))
+        phone.start(FLOWN)
+        phone.pass(100)
+        shadow.setThrowInStartForeground(null)
+        assertTrue(phone.isIn("standby"))
+        assertNull(Flight.state().ending)
+        Flight.engage()
+        phone.eventually("engaged") { phone.isIn("engaged") }
+    }
+
+    @Test
+    fun `a service that ends while an earlier one ends its flight ends nothing else`() {
+        phone.fly()
+        phone.destroyService()
+        repeat(20) {
+            phone.deliver(null)
+            phone.destroyService()
+        }
+        phone.eventually("it has ended") { Flight.phase == Phase.IDLE }
+        phone.fly()
+        val since = phone.tick()!!.timeS
+        phone.eventually("it flies on") { phone.tick()?.let { it.timeS > since + 1.0 } == true }
+        assertEquals(Phase.FLYING, Flight.phase)
+    }
+
+    /** Without it positions end when the screen goes off. */
+    @Config(sdk = [34, 35])
+    @Test
+    fun `a configuration that is saved in flight does not change the service's types`() {
+        shadowOf(phone.app).grantPermissions(Manifest.permission.ACCESS_FINE_LOCATION)
+        phone.start("actuator = []\n[navigation]\nmethod = \"kalman\"\n[[sensor]]\nkind = \"phone\"\n")
+        phone.eventually("it flies") { phone.tick() != null }
+        val types = phone.service!!.get().foregroundServiceType
+        assertEquals(ServiceInfo.FOREGROUND_SERVICE_TYPE_LOCATION, types and ServiceInfo.FOREGROUND_SERVICE_TYPE_LOCATION)
+        phone.start(FLOWN)
+        phone.pass(100)
+        assertEquals(types, phone.service!!.get().foregroundServiceType)
+    }
+
     @Config(sdk = [34, 35])
     @Test
     fun `a location is a type of the service only where it is permitted and used`() {

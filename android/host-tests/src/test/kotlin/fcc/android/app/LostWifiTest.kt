@@ -1,5 +1,6 @@
 package fcc.android.app
 
+import android.view.View
 import android.widget.Button
 import fcc.android.Flight
 import fcc.android.R
@@ -50,13 +51,19 @@ class LostWifiTest {
         phone.eventually("X-Plane's controls are taken") { xPlane.isOverridden }
     }
 
+    private fun attitudeIs(words: String) = words in activity.findViewById<View>(R.id.attitude).contentDescription
+
     private fun losesItsControls() {
+        phone.eventually("the attitude is shown") { attitudeIs("Roll") }
         phone.eventually("the screen says it") { SILENT in activity.words(R.id.problem) }
+        phone.eventually("nothing old is shown as attitude") { attitudeIs("Attitude unknown") }
         phone.eventually("failsafe") { phone.isIn("failsafe") }
         phone.eventually("the notification says it") { phone.notificationWords().startsWith("Failsafe / ") }
         phone.eventually("given back") { phone.isIn("standby") }
         // Of the failsafe that is over the screen may still show its reason.
         phone.eventually("what is missing is said") { MISSING in activity.words(R.id.problem) }
+        phone.eventually("and why") { activity.words(R.id.problem).lines().first().startsWith(NOTHING) }
+        phone.eventually("the notification says why") { phone.notificationWords().startsWith("Standby / $NOTHING") }
     }
 
     /** Longer than what a failsafe needs to end by itself, and a release to be confirmed. */
@@ -107,6 +114,17 @@ class LostWifiTest {
         engageOnScreen()
     }
 
+    @Test
+    fun `before anything arrives the screen says so, and with the first readings it does not`() {
+        xPlane.isSilent = true
+        phone.start(config(others = "[engage]\ncommand_needs_switch = false\n"))
+        phone.eventually("the screen says it") { activity.words(R.id.problem).lines().first().startsWith(NOTHING) }
+        phone.eventually("the notification says it") { phone.notificationWords().startsWith("Standby / $NOTHING") }
+        xPlane.isSilent = false
+        phone.eventually("it is not said any more") { NOTHING !in activity.words(R.id.problem) }
+        engageOnScreen()
+    }
+
     private fun config(others: String = "") = """
 [x-plane]
 simulator = "${xPlane.address}"
@@ -121,6 +139,9 @@ $others"""
 
     private companion object {
         const val SILENT = "nothing arrives from the simulator"
+
+        /** In standby, as long as it is so. */
+        const val NOTHING = "Nothing arrives from X-Plane"
 
         /** In standby, of each reading that is needed. */
         const val MISSING = "is missing or too old"

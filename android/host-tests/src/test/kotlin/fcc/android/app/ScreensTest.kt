@@ -11,8 +11,13 @@ import fcc.android.Configuration
 import fcc.android.Flight
 import fcc.android.Phase
 import fcc.android.R
+import fcc.android.RecordingEntry
+import fcc.android.Recordings
 import fcc.android.screens.MainActivity
 import java.io.FileNotFoundException
+import java.util.concurrent.atomic.AtomicBoolean
+import kotlin.concurrent.thread
+import org.json.JSONObject
 import org.junit.After
 import org.junit.Assert.assertEquals
 import org.junit.Assert.assertFalse
@@ -201,6 +206,40 @@ class ScreensTest {
     }
 
     @Test
+    fun `what is being saved while the activity is made anew counts as saved`() {
+        activity.open(MainActivity.SETTINGS)
+        val text = "[built-in]\n[loop]\nrate_hz = 50\n"
+        val field = activity.findViewById<EditText>(R.id.text)
+        // It takes a second to say what is wrong with each of its lines.
+        field.setText((0..8_000).joinToString("\n", "[built-in]\n") { "k$it = 1" })
+        activity.touch(R.id.check)
+        field.setText(text)
+        activity.touch(R.id.save)
+        controller.recreate()
+        phone.eventually("saved") { Configuration(phone.app).text() == text }
+        phone.eventually("it is the saved one") { activity.words(R.id.message).startsWith("This is the saved") }
+        assertFalse(activity.findViewById<View>(R.id.discard).isEnabled)
+    }
+
+    /** As a service, a calibration and another activity do. */
+    @Test
+    fun `a configuration that is read while it is saved is saved`() {
+        val isOver = AtomicBoolean()
+        val reader = thread {
+            while (!isOver.get()) Configuration(phone.app).text()
+        }
+        try {
+            repeat(500) {
+                Configuration(phone.app).save("# $it\n$FLOWN")
+                assertEquals("# $it\n$FLOWN", Configuration(phone.app).text())
+            }
+        } finally {
+            isOver.set(true)
+            reader.join()
+        }
+    }
+
+    @Test
     fun `a configuration that cannot be flown is refused with the line, and not saved`() {
         activity.open(MainActivity.SETTINGS)
         val text = activity.findViewById<EditText>(R.id.text)
@@ -286,6 +325,20 @@ class ScreensTest {
         phone.eventually("deleted") { !file.exists() }
         activity.open(MainActivity.FLY)
         phone.eventually("gone for good") { file.parentFile!!.list()!!.isEmpty() }
+    }
+
+    /** As from a list that was read before the flight wrote to it. */
+    @Test
+    fun `what a flight writes is not deleted, whatever the list says`() {
+        phone.fly()
+        val file = phone.recordings.fileOf(Recordings.folder(phone.app).list()!!.single { it.endsWith(".mcap") })
+        assertFalse(phone.recordings.delete(file))
+        assertTrue(file.exists())
+        phone.endFlight()
+        assertEquals(1, phone.recordings.list().single { it.wholeness == "whole" }.part)
+        assertTrue(phone.recordings.delete(file))
+        assertTrue(phone.recordings.restore(file))
+        assertTrue(RecordingEntry(JSONObject("""{"path": "a", "error": "a: still being written, 8 bytes so far"}""")).isBeingWritten)
     }
 
     @Test
