@@ -131,6 +131,18 @@ fn a_sound_airspeed_is_not_doubted_on_a_calm_approach() {
     }
 }
 
+/// In calm air raw sensors show little but their noise.
+#[test]
+fn outputs_without_a_delay_are_not_late_in_calm_air() {
+    let raw = "raw_sensors = \"board\"\n[navigation]\nmethod = \"kalman\"\n";
+    let from_home = STRAIGHT_IN
+        .replace("45.03", "45.05")
+        .replace("45.08", "45.12");
+    let (exit, said) = flown(&from_home.replace("150", "250"), raw, &["--seed", "4"]);
+    assert_eq!(exit, Some(0), "{said}");
+    assert!(!said.contains("take effect too late"), "{said}");
+}
+
 /// In degrees, and before the flight.
 #[test]
 fn plans_near_a_pole_are_refused() {
