@@ -1,5 +1,6 @@
 //! Plans that are refused, flown to their end, and not.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
@@ -16,7 +17,7 @@ fn legs(latitude_deg: f64, above_home_m: f64) -> String {
     let mut text = format!("QGC WPL 110\n0 1 0 16 0 0 0 0 {latitude_deg} 8 120 1\n");
     for n in 1..3 {
         let north_deg = latitude_deg + 0.02 * f64::from(n);
-        text += &format!("{n} 0 3 16 0 0 0 0 {north_deg} 8 {above_home_m} 1\n");
+        writeln!(text, "{n} 0 3 16 0 0 0 0 {north_deg} 8 {above_home_m} 1").unwrap();
     }
     text
 }
