@@ -105,8 +105,14 @@ pub fn terrain_problems(
     let mut problems = Vec::new();
     for (item, worst) in worst {
         if let Some((lacks_m, ground_m, piece)) = worst.low {
+            let below_m = ground_m - piece.low_m;
+            let side = if below_m > 0.0 {
+                format!(", {below_m:.0} m below")
+            } else {
+                " over".to_owned()
+            };
             let message = format!(
-                "{} it is at {:.0} m over ground of {ground_m:.0} m, at {:.5}, {:.5}, with {:.0} m \
+                "{} it is at {:.0} m{side} ground of {ground_m:.0} m, at {:.5}, {:.5}, with {:.0} m \
                  to be kept: fly {:.0} m higher there, or around it",
                 part(&piece),
                 piece.low_m,

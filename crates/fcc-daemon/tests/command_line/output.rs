@@ -215,11 +215,14 @@ fn a_flight_that_ends_on_the_ground_has_an_exit_code_of_its_own() {
     assert_eq!(ended.status.code(), Some(16));
     let found: Value = serde_json::from_slice(&ended.stdout).unwrap();
     let impact = &found["impact"];
-    assert!((impact["altitude_ft"].as_f64().unwrap() - 995.0).abs() < 1.0);
+    // Its wheels are 1.35 m, or 4.4 ft, below it.
+    let above_ft = impact["altitude_ft"].as_f64().unwrap() - 995.0;
+    assert!((-1.0..5.5).contains(&above_ft), "{above_ft}");
     assert!(impact["sink_rate_fpm"].as_f64().unwrap() > 100.0);
     assert!((60.0..130.0).contains(&impact["airspeed_kt"].as_f64().unwrap()));
     let at_s = impact["time_s"].as_f64().unwrap();
-    assert!((3.0..60.0).contains(&at_s), "{at_s}");
+    // Engaged after 2 s.
+    assert!((2.0..60.0).contains(&at_s), "{at_s}");
     let ending = found["ending"].as_str().unwrap();
     assert!(
         ending.starts_with("the aircraft hit the ground"),

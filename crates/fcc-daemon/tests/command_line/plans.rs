@@ -1,5 +1,6 @@
 //! Plans that are refused, flown to their end, and not.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
@@ -16,7 +17,7 @@ fn legs(latitude_deg: f64, above_home_m: f64) -> String {
     let mut text = format!("QGC WPL 110\n0 1 0 16 0 0 0 0 {latitude_deg} 8 120 1\n");
     for n in 1..3 {
         let north_deg = latitude_deg + 0.02 * f64::from(n);
-        text += &format!("{n} 0 3 16 0 0 0 0 {north_deg} 8 {above_home_m} 1\n");
+        writeln!(text, "{n} 0 3 16 0 0 0 0 {north_deg} 8 {above_home_m} 1").unwrap();
     }
     text
 }
@@ -129,6 +130,18 @@ fn a_sound_airspeed_is_not_doubted_on_a_calm_approach() {
         assert_eq!(exit, Some(0), "{said}");
         assert!(!said.contains("is doubted"), "seed {seed}: {said}");
     }
+}
+
+/// In calm air raw sensors show little but their noise.
+#[test]
+fn outputs_without_a_delay_are_not_late_in_calm_air() {
+    let raw = "raw_sensors = \"board\"\n[navigation]\nmethod = \"kalman\"\n";
+    let from_home = STRAIGHT_IN
+        .replace("45.03", "45.05")
+        .replace("45.08", "45.12");
+    let (exit, said) = flown(&from_home.replace("150", "250"), raw, &["--seed", "4"]);
+    assert_eq!(exit, Some(0), "{said}");
+    assert!(!said.contains("take effect too late"), "{said}");
 }
 
 /// In degrees, and before the flight.

@@ -142,7 +142,7 @@ pub fn fly(
         let over = observers.monitor.over(plan.length);
         let interrupted = host.interrupted_by();
         outcome.explain(interrupted, over, observers.refusal.as_deref());
-        let is_flown = !flies_plan || observers.monitor.is_flown;
+        let is_flown = !flies_plan || observers.monitor.plan.is_flown;
         let over = over.filter(|over| matches!(over, Over::Time | Over::GivenUp));
         if let Some(over) = over.filter(|_| interrupted.is_none() && !is_flown) {
             outcome.was_not_flown(observers.flown, observers.given_up.as_deref(), over);

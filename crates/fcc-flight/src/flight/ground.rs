@@ -12,7 +12,7 @@ use serde::Serialize;
 pub struct Impact {
     /// Simulated time.
     pub time_s: f64,
-    /// Of the ground, above mean sea level.
+    /// Of the aircraft, above mean sea level: that of the ground, or on its wheels.
     pub altitude_ft: f64,
     /// From where the flight began.
     pub north_m: f64,

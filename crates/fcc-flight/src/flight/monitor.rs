@@ -22,6 +22,17 @@ pub(super) enum Over {
     Refused,
 }
 
+/// How a plan is flown, by the events.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PlanProgress {
+    /// Whether its plan is flown to its end: it has landed, or circles there.
+    pub(super) is_flown: bool,
+    /// Whether its take-off was given up, and it stands.
+    pub(super) gave_up: bool,
+    /// Whether the wheels touched the ground outside of a take-off and a landing.
+    pub(super) touched: bool,
+}
+
 /// Determines the flight's time from the loop's messages.
 #[derive(Default)]
 pub(super) struct Monitor {
@@ -31,12 +42,7 @@ pub(super) struct Monitor {
     engaged_at_s: Option<f64>,
     failed: bool,
     refused: bool,
-    /// Whether its plan is flown to its end: it has landed, or circles there.
-    pub(super) is_flown: bool,
-    /// Whether its take-off was given up, and it stands.
-    pub(super) gave_up: bool,
-    /// Whether the wheels touched the ground outside of a take-off and a landing.
-    pub(super) touched: bool,
+    pub(super) plan: PlanProgress,
 }
 
 impl Monitor {
@@ -100,11 +106,11 @@ impl Monitor {
             Some(Over::Refused)
         } else if self.failed {
             Some(Over::Failsafe)
-        } else if self.touched {
+        } else if self.plan.touched {
             Some(Over::Ground)
-        } else if self.is_flown && matches!(length, Length::Flown(_)) {
+        } else if self.plan.is_flown && matches!(length, Length::Flown(_)) {
             Some(Over::Flown)
-        } else if self.gave_up && matches!(length, Length::Flown(_)) {
+        } else if self.plan.gave_up && matches!(length, Length::Flown(_)) {
             Some(Over::GivenUp)
         } else {
             time_is_up.then_some(Over::Time)

@@ -64,7 +64,7 @@ impl Observers {
                 self.follow_progress(record.setpoints.guidance);
                 let estimate = &record.estimate;
                 let stands = estimate.north_mps.hypot(estimate.east_mps) < STANDS_MPS;
-                self.monitor.gave_up |=
+                self.monitor.plan.gave_up |=
                     stands && self.flown.mode == Mode::Takeoff && self.given_up.is_some();
                 for observer in &mut self.all {
                     observer.record(record, &at);
@@ -95,14 +95,14 @@ impl Observers {
             return;
         }
         if now.item > 0 && now.item != self.flown.item {
-            self.monitor.is_flown = false;
+            self.monitor.plan.is_flown = false;
         }
         self.flown = now;
     }
 
     /// Follows how far the plan is flown.
     fn follow_plan(&mut self, notice: &Notice, words: &str) {
-        self.monitor.touched |= touches_ground(notice);
+        self.monitor.plan.touched |= touches_ground(notice);
         if gives_up_runway(notice) {
             self.given_up = Some(words.to_owned());
         }
@@ -111,7 +111,7 @@ impl Observers {
             // may be reached in the tick in which the landing begins.
             let (mode, item) = (self.flown.mode, self.flown.item);
             let has_landed = mode == Mode::Land && u32::from(notice.item) == item;
-            self.monitor.is_flown = has_landed || notice.item == 0;
+            self.monitor.plan.is_flown = has_landed || notice.item == 0;
             self.given_up = None;
         }
     }

@@ -124,6 +124,9 @@ fn a_ridge_across_a_leg_is_found_with_its_place_and_heights() {
     let heights = "along the leg it is at 1000 m over ground of 990 m";
     assert!(said[0].contains(heights), "{said:?}");
     assert!(said[0].contains("with 60 m to be kept: fly 50 m higher there"));
+    let below = Ground::flat(1_840.0).said(&plan(), 20.0);
+    let heights = "it is at 1000 m, 840 m below ground of 1840 m";
+    assert!(below[0].contains(heights), "{below:?}");
 }
 
 #[test]

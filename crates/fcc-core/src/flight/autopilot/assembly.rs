@@ -7,7 +7,7 @@ use super::{
     ActiveMode, Actuation, AltitudeReference, Autopilot, AutopilotConfig, BankCommand,
     Contingencies, Degraded, Delayed, Following, GroundMotion, KeptTrims, Measurements,
     PilotTakeover, PlantClock, ReadingAges, Recovery, RunwayControl, Setpoints, Surfaces, Targets,
-    Time, Whereabouts,
+    Time, ToldOnce, Whereabouts,
 };
 use crate::framework::Flags;
 
@@ -32,8 +32,7 @@ impl Autopilot {
             on_runway: RunwayControl::default(),
             left_plan: None,
             took_off: None,
-            end_is_told: false,
-            has_flown: false,
+            told_once: ToldOnce::default(),
             contingencies: Contingencies::default(),
             battery: Delayed::default(),
             engine: Delayed::default(),

@@ -2,6 +2,7 @@
 
 use super::capture::Capture;
 use super::degraded::Degraded;
+use super::ground_contact::ToldOnce;
 use super::upset::is_far_from_level;
 use super::{Autopilot, flags};
 use crate::flight::control::ElevatorTrim;
@@ -57,7 +58,7 @@ impl Autopilot {
     /// Engages: what is flown now is held, or the pattern begins.
     pub(super) fn begin_flight(&mut self, now: Time) {
         self.distrusted = Flags::NONE;
-        self.has_flown = false;
+        self.told_once = ToldOnce::default();
         self.contingencies.reset();
         self.pilot.set_engaged(true);
         self.degraded = Degraded::default();

@@ -8,6 +8,15 @@ use crate::flight::route::RunwayReason;
 /// their switch, m.
 const CLEAR_M: f64 = 1.0;
 
+/// What is told once.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ToldOnce {
+    /// Whether the wheels were off the ground, since engaging or since that was told.
+    has_flown: bool,
+    /// Whether the end of the plan is told.
+    pub(super) end: bool,
+}
+
 impl Autopilot {
     /// Announces that an aircraft that has flown is on its wheels, and is not to be. Where
     /// nothing measures the weight on the wheels nothing is known of it.
@@ -19,13 +28,13 @@ impl Autopilot {
         let on_wheels_m = self.config.route.runway.height_on_wheels_m;
         let is_clear = is_clear.is_some_and(|height_m| height_m > on_wheels_m + CLEAR_M);
         if !on_wheels || is_clear {
-            self.has_flown = true;
+            self.told_once.has_flown = true;
             return;
         }
         let is_expected = self.runway().is_some() || self.guidance.mode() == Mode::Glide;
-        if self.has_flown && !is_expected {
+        if self.told_once.has_flown && !is_expected {
             self.on_runway.announce(RunwayReason::Touched);
         }
-        self.has_flown = false;
+        self.told_once.has_flown = false;
     }
 }

@@ -51,6 +51,7 @@ use degraded::Degraded;
 use failsafe::KeptTrims;
 pub use failsafe::{FailsafeConfig, FailsafeEnd};
 use following::Following;
+use ground_contact::ToldOnce;
 use ground_motion::GroundMotion;
 use pilot_takeover::PilotTakeover;
 pub use pilot_takeover::StickTakeover;
@@ -131,10 +132,7 @@ pub struct Autopilot {
     /// The plan that was left for another mode.
     left_plan: Option<OverGroundMode>,
     took_off: Option<TookOff>,
-    /// Whether the end of the plan is told.
-    end_is_told: bool,
-    /// Whether the wheels were off the ground since engaging.
-    has_flown: bool,
+    told_once: ToldOnce,
     contingencies: Contingencies,
     /// Whether the battery is low, and the engine out.
     battery: Delayed,

@@ -71,14 +71,14 @@ impl Autopilot {
     fn tell_end(&mut self, has_news: bool) {
         let mode = self.guidance.over_ground();
         let has_ended = mode.is_some_and(OverGroundMode::has_ended);
-        if has_ended && !self.end_is_told && !has_news {
+        if has_ended && !self.told_once.end && !has_news {
             self.news = Some(Notice {
                 kind: ITEM_REACHED,
                 ..Notice::default()
             });
-            self.end_is_told = true;
+            self.told_once.end = true;
         }
-        self.end_is_told &= has_ended;
+        self.told_once.end &= has_ended;
     }
 
     /// The pressure altitude of mean sea level, m.

@@ -29,7 +29,12 @@ const FIRST_AFTER: u32 = 120;
 const SETTLES_FOR: u32 = 40;
 /// A smaller mean square of the pitch acceleration, (rad/s²)², says nothing.
 const LEAST_MOTION: f64 = 4e-4;
-/// The part of it that the elevator must explain.
+/// Nor does a smaller mean square of the elevator (1 % of its travel): the loops move it by
+/// the noise of the rates, which is in the acceleration, too, and seems to follow it late. By
+/// raw sensors in calm air it is 4e-5 at most, in light gusts 1e-3; a latency that matters
+/// makes the loops move it more.
+const LEAST_MOVED: f64 = 1e-4;
+/// The part of the acceleration that the elevator must explain.
 const LEAST_EXPLAINED: f64 = 0.2;
 /// Another model is believed if it leaves less than this part of what the
 /// present one leaves unexplained.
@@ -299,7 +304,10 @@ impl ElevatorResponse {
         } else {
             without
         };
-        let is_seen = explained.left > LEAST_MOTION
+        let command = self.plays.first().and_then(|play| play.sums.first());
+        let moves = command.is_some_and(|sums| sums.mean_square() > LEAST_MOVED);
+        let is_seen = moves
+            && explained.left > LEAST_MOTION
             && explained.left - left > LEAST_EXPLAINED * explained.left;
         // A play that is seldom crossed looks like a long delay.
         let may_be_play = width == 0.0

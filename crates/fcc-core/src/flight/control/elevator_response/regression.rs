@@ -31,6 +31,11 @@ pub(super) struct Explained {
 }
 
 impl Sums {
+    /// Of the position.
+    pub(super) const fn mean_square(&self) -> f64 {
+        self.square
+    }
+
     /// Averages the products with one sample, of which `new` is the share.
     pub(super) fn add(&mut self, position: f64, [rate, load, acceleration]: [f64; 3], new: f64) {
         let mean = |old: &mut f64, product: f64| *old += new * (product - *old);
