@@ -13,8 +13,7 @@ const MOST_SITES: usize = 16;
 /// Lower than this it does not turn into the wind, where no site is reached, m.
 const LEAST_TURN_M: f64 = 150.0;
 /// The flare lasts 4.9 s longer than the glide from its height would: from 8.8 m with 3.7 m/s
-/// and a time constant of 2.5 s, 2.5 ln(8.8/0.5 + 1) - 8.8/3.7. Two thirds of it are counted
-/// on, s: long is better than short.
+/// and a time constant of 2.5 s, 2.5 ln(8.8/0.5 + 1) - 8.8/3.7.
 const FLOATS_S: f64 = 4.9;
 
 /// A site that is reached, and how.

@@ -12,6 +12,7 @@ use crate::flight::route::{OverGround, ROLL_LAG_S, RouteConfig};
 pub(super) const CIRCLE_SPARE: f64 = 0.15;
 
 impl GlideFlight {
+    /// Goes on to the next stage; the landing, near the end of the final.
     pub(super) fn go_on(
         &mut self,
         here: &OverGround,

@@ -27,7 +27,7 @@ const BRAKES_MPS2: f64 = 1.7;
 /// The wheels touch with this much left of the flare, m.
 const TOUCHES_M: f64 = 0.5;
 
-/// Numbers of SplitMix64 (Steele, Lea and Flood 2014), from 0 to 1.
+/// Numbers of `SplitMix64` (Steele, Lea and Flood 2014), from 0 to 1.
 struct Numbers(u64);
 
 impl Numbers {
