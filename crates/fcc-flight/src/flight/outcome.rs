@@ -180,11 +180,11 @@ impl Outcome {
             Some(why) => format!("; {why}"),
             None => ": give it more time (--seconds), or a shorter plan".to_owned(),
         };
-        let time = match over {
-            Over::Time => "the time to fly is over, and ",
-            _ => "",
+        let what = match over {
+            Over::Time => "the time to fly is over, and the plan is not flown to its end",
+            _ => "the plan is not flown to its end",
         };
-        self.ending = format!("{time}the plan is not flown to its end: {flown}{why}");
+        self.ending = format!("{what}: {flown}{why}");
     }
 
     /// Says who stopped a loop that was stopped from outside.
