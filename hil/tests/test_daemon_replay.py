@@ -19,7 +19,8 @@ LEAST_OUTPUTS_PER_TICK = 34
 
 SUCCESS = 0
 FAILSAFE = 3
-NOT_REPLAYED = 8
+USAGE = 2
+"""Also for a file that is no recording."""
 
 QUICK_PATTERN = 'mode = "timed-pattern"\nhold_s = 2.0\nleg_s = 3.0'
 
@@ -85,5 +86,5 @@ def test_a_file_that_is_not_a_recording_is_refused(fccd: Path, tmp_path: Path) -
     other = tmp_path / "other.mcap"
     other.write_bytes(b"not a recording")
     exit_code, found = replay(fccd, other)
-    assert exit_code == NOT_REPLAYED
+    assert exit_code == USAGE
     assert "not an MCAP file" in found["error"]
