@@ -59,7 +59,7 @@ impl Autopilot {
                 ..Notice::default()
             });
         }
-        self.tell_end(is_plan && reached.is_some());
+        self.announce_end(is_plan && reached.is_some());
         self.watch_ground_contact();
         let others = [self.contingencies.take_news(), self.on_runway.take_news()];
         if let Some(news) = others.into_iter().flatten().last() {
@@ -67,8 +67,8 @@ impl Autopilot {
         }
     }
 
-    /// Tells once that a plan is flown to its end, in a tick that has no other news of it.
-    fn tell_end(&mut self, has_news: bool) {
+    /// Announces once that a plan is flown to its end, in a tick that has no other news of it.
+    fn announce_end(&mut self, has_news: bool) {
         let mode = self.guidance.over_ground();
         let has_ended = mode.is_some_and(OverGroundMode::has_ended);
         if has_ended && !self.told_once.end && !has_news {
