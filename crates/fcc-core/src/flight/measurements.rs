@@ -167,7 +167,8 @@ schema! {
 }
 
 schema! {
-    /// Turn rates about the body axes, rad/s.
+    /// Turn rates about the body axes, rad/s. Nothing that flies turns as fast as the
+    /// end of the range, and gyroscopes measure a third of it.
     ///
     /// ```
     /// use fcc_core::flight::BodyRates;
@@ -179,20 +180,21 @@ schema! {
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct BodyRates {
         /// P, about x: right wing down.
-        #[field(1, column = "roll_rate_radps")]
+        #[field(1, range = -100.0..=100.0, column = "roll_rate_radps")]
         pub roll_radps: f64,
         /// Q, about y: nose up.
-        #[field(2, column = "pitch_rate_radps")]
+        #[field(2, range = -100.0..=100.0, column = "pitch_rate_radps")]
         pub pitch_radps: f64,
         /// R, about z: nose right.
-        #[field(3, column = "yaw_rate_radps")]
+        #[field(3, range = -100.0..=100.0, column = "yaw_rate_radps")]
         pub yaw_radps: f64,
     }
 }
 
 schema! {
     /// Acceleration minus gravity, along the body axes, m/s², as an
-    /// accelerometer measures it. In level unaccelerated flight z is -9.81.
+    /// accelerometer measures it. In level unaccelerated flight z is -9.81. The range
+    /// is some 100 g, six times that of usual accelerometers.
     ///
     /// ```
     /// use fcc_core::flight::SpecificForce;
@@ -204,13 +206,13 @@ schema! {
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct SpecificForce {
         /// Forward.
-        #[field(1)]
+        #[field(1, range = -1e3..=1e3)]
         pub x_mps2: f64,
         /// Right.
-        #[field(2)]
+        #[field(2, range = -1e3..=1e3)]
         pub y_mps2: f64,
         /// Down.
-        #[field(3)]
+        #[field(3, range = -1e3..=1e3)]
         pub z_mps2: f64,
     }
 }

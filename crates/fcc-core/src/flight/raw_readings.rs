@@ -6,7 +6,8 @@ use crate::schema;
 
 schema! {
     /// The magnetic field along the body axes, µT: the earth's, 22 to 67 µT,
-    /// and what the aircraft adds to it.
+    /// and what the aircraft adds to it. The range is four times the 4,912 µT that
+    /// magnetometers of phones measure.
     ///
     /// ```
     /// use fcc_core::flight::MagneticField;
@@ -18,13 +19,13 @@ schema! {
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct MagneticField {
         /// Forward.
-        #[field(1)]
+        #[field(1, range = -2e4..=2e4)]
         pub x_ut: f64,
         /// Right.
-        #[field(2)]
+        #[field(2, range = -2e4..=2e4)]
         pub y_ut: f64,
         /// Down.
-        #[field(3)]
+        #[field(3, range = -2e4..=2e4)]
         pub z_ut: f64,
     }
 }

@@ -38,11 +38,14 @@ use failure::Failure;
 use crate::cli::{Action, Cli};
 use crate::exit::Exit;
 use crate::output;
-use crate::process::survive_file_size_limit;
+use crate::process::{raise_stack_limit, survive_file_size_limit};
 
 /// Runs the command of the command line.
 pub fn run() -> Exit {
     let json = std::env::args_os().any(|argument| argument == "--json");
+    if let Err(why) = raise_stack_limit() {
+        return Failure::new(why).print(json);
+    }
     if let Err(error) = survive_file_size_limit() {
         output::message(format_args!("fccd: SIGXFSZ cannot be caught: {error}"));
     }

@@ -13,6 +13,7 @@
 //! | `rights` | gives up the rights of root before a flight |
 //! | `service_unit` | what the installed service's unit prevents |
 //! | `signals` | the signals that end a flight, and those that must not |
+//! | `stack` | the limit on the stack |
 
 mod daemon_pipe;
 mod instance_lock;
@@ -26,6 +27,7 @@ mod release_helper;
 mod rights;
 mod service_unit;
 mod signals;
+mod stack;
 pub(crate) mod standard_output;
 
 use std::io;
@@ -57,6 +59,7 @@ pub(crate) use rights::{RightsError, give_up, unknown_names};
 pub(crate) use service_unit::commanders_refused;
 use signals::{BlockedSignals, Caught};
 pub(crate) use signals::{end_with_parent, survive_file_size_limit, tolerate};
+pub(crate) use stack::raise_stack_limit;
 
 /// The interval of checks of the lock's file and, while control is held, for a
 /// release helper of an earlier daemon, which would release it.

@@ -1,6 +1,22 @@
 //! Words that the command line does not know.
 
+use std::process::Command;
+
 use super::fccd;
+
+/// A flight needs more stack than this to begin: without raising the limit the kernel
+/// would end the program.
+#[test]
+fn a_small_limit_on_the_stack_is_raised() {
+    let folder = tempfile::tempdir().unwrap();
+    let fly = "ulimit -S -s 256; exec \"$0\" fly --lockstep --quiet --seconds 1 --no-recording";
+    let flown = Command::new("sh")
+        .args(["-c", fly, env!("CARGO_BIN_EXE_fccd")])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert!(flown.status.success(), "{flown:?}");
+}
 
 /// The usage is that of the command, and no word is proposed that means
 /// something else.

@@ -101,6 +101,36 @@ fn impossible_and_future_readings_are_not_used() {
     assert!(found.attitude.value.roll_rad.abs() < 0.02);
 }
 
+/// A register that is read wrong: finite, and nothing that a sensor can measure. A
+/// single one, integrated, would cost the attitude for minutes.
+#[test]
+fn finite_readings_that_nothing_can_measure_are_not_used() {
+    for [force, rate, field] in [
+        [3.4e38, 0.0, 0.0],
+        [0.0, -3.4e38, 0.0],
+        [0.0, 0.0, 3.4e38],
+        // 300 g; ten turns each in a tenth of a second; 30 mT.
+        [-2_942.0, 628.0, 30_000.0],
+    ] {
+        let mut navigation = RawNavigation::new(config());
+        for n in 0..400 {
+            let mut measured = raw(tick(n), [20.0, 40.0]);
+            if n == 200 {
+                measured.raw_specific_force.value.x_mps2 += force;
+                measured.raw_body_rates.value.roll_radps += rate;
+                measured.magnetic_field.value.x_ut += field;
+            }
+            let found = navigation.step(tick(n), &measured);
+            if n > 100 {
+                let attitude = found.attitude.value;
+                assert!(attitude.roll_rad.abs() < 0.02 && attitude.pitch_rad.abs() < 0.02);
+                let off_rad = found.heading_rad.value - core::f64::consts::FRAC_PI_2;
+                assert!(off_rad.abs() < 0.02, "{n}: {off_rad}");
+            }
+        }
+    }
+}
+
 /// A driver that repeats its last sample, while the aircraft begins to bank.
 #[test]
 fn a_gyroscope_that_repeats_itself_in_motion_is_left_out() {
