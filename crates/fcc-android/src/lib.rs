@@ -19,6 +19,7 @@
 //! | `calibration` | a guided calibration in a thread of its own |
 //! | `phone` | the phone's sensors in a flight |
 //! | `live` | the state for the screens |
+//! | `now` | its newest tick |
 //! | `hints` | performance hints for the loop's thread |
 //! | `commands` | commands of the app, and what became of them |
 //! | `report` | a report on a recording |
@@ -38,6 +39,7 @@ mod hints;
 mod listener;
 mod live;
 pub mod native;
+mod now;
 mod phone;
 mod release;
 mod report;

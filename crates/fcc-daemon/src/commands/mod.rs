@@ -11,6 +11,7 @@ mod fly;
 mod list;
 mod outcome;
 mod plan;
+mod plan_picture;
 mod probe;
 mod progress;
 #[cfg(feature = "live")]

@@ -6,7 +6,7 @@ use fcc_report::{FlightAddition, FlightReport, FlightSurvey, TABLES};
 use fcc_telemetry::FlightMessage;
 
 use super::failure::Failure;
-use super::plan::lines;
+use super::plan_picture::lines;
 use super::progress;
 use crate::cli::ReportArgs;
 use crate::exit::Exit;

@@ -10,6 +10,7 @@ mod plans;
 mod probe;
 mod recordings;
 mod remarks;
+mod results;
 mod servos;
 mod setpoints;
 mod top;
