@@ -7,7 +7,7 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 use fcc_core::flight::GnssFix;
 use fcc_linux::serial::{
-    Crsf, Epochs, Frames, Nmea, Protocol, ReceiverFrame, Sbus, Ubx, UbxMessage,
+    Crsf, Epoch, Epochs, Frames, Nmea, Protocol, ReceiverFrame, Sbus, Ubx, UbxMessage,
 };
 
 libfuzzer_sys::fuzz_target!(|input: &[u8]| {
@@ -23,7 +23,11 @@ libfuzzer_sys::fuzz_target!(|input: &[u8]| {
         1 => {
             let mut epochs = Epochs::default();
             let sentences = found::<Nmea>(bytes, cut).into_iter();
-            sentences.filter_map(|sentence| epochs.take(sentence)).for_each(|fix| check(&fix));
+            sentences.for_each(|sentence| {
+                if let Epoch::Complete(fix) = epochs.take(sentence) {
+                    check(&fix);
+                }
+            });
         }
         2 => found::<Sbus>(bytes, cut).iter().for_each(in_range),
         _ => found::<Crsf>(bytes, cut).iter().for_each(in_range),

@@ -32,6 +32,8 @@ pub struct DeviceSensor<V> {
     pub(crate) newest: Time,
     /// Until the next sample.
     pub(crate) fault: Option<SensorFault>,
+    /// Whether something arrived since the last sample that is none.
+    pub(crate) malformed: bool,
     pub(crate) _thread: ThreadHandle,
 }
 
@@ -65,13 +67,12 @@ impl<V: Measured> DeviceSensor<V> {
 
 impl<V: Measured> Sensor<Measurements> for DeviceSensor<V> {
     fn sample(&mut self, tick: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
-        let mut malformed = false;
         let mut pending: Option<Sample<V>> = None;
         for _ in 0..self.messages.buffer().capacity() {
             match self.next(tick.woke) {
                 Some(Message::Sample(sample)) if self.is_in_order(&sample, tick.woke) => {
                     self.newest = sample.taken;
-                    self.fault = None;
+                    (self.fault, self.malformed) = (None, false);
                     let merged = pending.as_ref().and_then(|old| V::merged(old, &sample));
                     if let (None, Some(old)) = (&merged, &pending) {
                         V::write(old, into);
@@ -79,7 +80,7 @@ impl<V: Measured> Sensor<Measurements> for DeviceSensor<V> {
                     pending = Some(merged.unwrap_or(sample));
                 }
                 Some(Message::Sample(_) | Message::Fault(SensorFault::Malformed)) => {
-                    malformed = true;
+                    self.malformed = true;
                 }
                 Some(Message::Fault(fault)) => self.fault = Some(fault),
                 None => break,
@@ -94,7 +95,7 @@ impl<V: Measured> Sensor<Measurements> for DeviceSensor<V> {
         if self.newest.is_never() || tick.woke.since(self.newest) > self.silent_after {
             return Err(SensorFault::Silent);
         }
-        if malformed {
+        if self.malformed {
             return Err(SensorFault::Malformed);
         }
         Ok(())

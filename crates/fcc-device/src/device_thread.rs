@@ -123,6 +123,7 @@ impl DeviceThread {
             fallback_after: self.fallback_after,
             newest: Time::NEVER,
             fault: None,
+            malformed: false,
             _thread: ThreadHandle {
                 end: handle,
                 thread: Some(thread),

@@ -17,14 +17,67 @@ impl Measured for GnssFix {
 /// have none for another reason, m/s.
 const STANDING_MPS: f64 = 0.5;
 
-/// North and east, m/s, of a speed and its course from true north; a receiver that
-/// stands has no course.
+/// North and east, m/s, of a speed and its course from true north, 0 to 360°; a receiver
+/// that stands has no course. None of what is no speed, and no course.
 pub fn velocity_over_ground(speed_mps: f64, course_deg: Option<f64>) -> Option<[f64; 2]> {
+    let is_course = course_deg.is_none_or(|course| (0.0..=360.0).contains(&course));
+    if speed_mps.is_nan() || speed_mps < 0.0 || !is_course {
+        return None;
+    }
     let Some(course_deg) = course_deg else {
         return (speed_mps < STANDING_MPS).then_some([0.0; 2]);
     };
     let (sin, cos) = libm::sincos(course_deg.to_radians());
     Some([speed_mps * cos, speed_mps * sin])
+}
+
+/// A fix that is earlier by less is an older one that arrives again; by more, the
+/// receiver has set its clock, s.
+const OLDER_S: f64 = 10.0;
+
+/// Whether fixes are of later and later epochs. Of a receiver, or of what passes its
+/// messages on, that hangs, the last fix arrives again and again.
+///
+/// ```
+/// use fcc_device::EpochOrder;
+///
+/// // By the seconds of a week.
+/// let mut order = EpochOrder::within(604_800.0);
+/// assert!(order.is_later(604_799.8) && order.is_later(0.0));
+/// assert!(!order.is_later(0.0) && !order.is_later(604_799.8));
+/// assert!(order.is_later(300_000.0));
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct EpochOrder {
+    period_s: f64,
+    last_s: Option<f64>,
+}
+
+impl EpochOrder {
+    /// Of times that begin anew after this long, s.
+    pub const fn within(period_s: f64) -> Self {
+        Self {
+            period_s,
+            last_s: None,
+        }
+    }
+
+    /// Of times of day.
+    pub const fn of_day() -> Self {
+        Self::within(DAY_S)
+    }
+
+    /// Whether a time, s, is later than the last one that was.
+    pub fn is_later(&mut self, time_s: f64) -> bool {
+        let is_later = self.last_s.is_none_or(|last_s| {
+            let ahead_s = (time_s - last_s).rem_euclid(self.period_s);
+            ahead_s > 0.0 && ahead_s < self.period_s - OLDER_S
+        });
+        if is_later {
+            self.last_s = Some(time_s);
+        }
+        is_later
+    }
 }
 
 const DAY_S: f64 = 86_400.0;

@@ -49,5 +49,5 @@ pub use clock::{Clock, monotonic};
 pub use device_sensor::DeviceSensor;
 pub use device_thread::{DeviceStatus, DeviceThread};
 pub use error::DeviceError;
-pub use fix::{VerticalSpeed, velocity_over_ground};
-pub use source::{Measured, NO_FIX, RawValues, Sample, Source, WAIT};
+pub use fix::{EpochOrder, VerticalSpeed, velocity_over_ground};
+pub use source::{Measured, NO_FIX, REPEATED_FIX, RawValues, Sample, Source, WAIT};

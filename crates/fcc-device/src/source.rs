@@ -35,6 +35,10 @@ pub trait Source {
 pub const NO_FIX: &str = "it has no three-dimensional fix: give its antenna a free view of \
                                  the sky, and wait; the first takes minutes";
 
+/// What is said of receivers whose fixes are all of an epoch that was there before.
+pub const REPEATED_FIX: &str = "its fixes repeat a time, or go back in time, and are not used: \
+                                start it anew, and what passes its messages on";
+
 /// What was measured, and when, on the loop's clock.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Sample<V> {

@@ -64,9 +64,15 @@ pub(crate) fn open<'a>(name: &str, version: u32, bytes: &'a [u8]) -> Result<&'a 
 /// is in a file with the extension `new`.
 pub(crate) fn replace(path: &Path, new: &str, bytes: &[u8]) -> io::Result<()> {
     let new = path.with_extension(new);
-    let mut file = fcc_record::create_anew(&new)?;
-    file.write_all(bytes)?;
-    file.sync_data()?;
+    let written = fcc_record::create_anew(&new).and_then(|mut file| {
+        file.write_all(bytes)?;
+        file.sync_data()
+    });
+    if let Err(error) = written {
+        // A part of it is of no use.
+        let _ = fs::remove_file(&new);
+        return Err(error);
+    }
     fs::rename(&new, path)?;
     sync_folder(path)
 }

@@ -42,6 +42,7 @@
 //! | [`servo`] | servos |
 //! | [`probe`] | what is connected |
 //! | [`iio`] | the kernel's own drivers of chips |
+//! | `claim` | one entry or program for each device |
 //! | `pace`, `device_clock` | when a sample is due; a device's own clock on the loop's |
 #![forbid(unsafe_code)]
 
@@ -56,6 +57,7 @@ pub mod probe;
 pub mod serial;
 pub mod servo;
 
+pub use claim::DeviceOwner;
 pub use fcc_device::{
     Clock, DeviceError, DeviceSensor, DeviceStatus, DeviceThread, Measured, RawValues, Sample,
     Source, WAIT, monotonic,

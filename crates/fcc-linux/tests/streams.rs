@@ -1,7 +1,7 @@
 //! Frames in streams: cut anywhere, with noise between, and bytes that are none.
 #![allow(clippy::indexing_slicing, reason = "helper functions of tests")]
 
-use fcc_linux::serial::{Begin, Crsf, Epochs, Frames, Nmea, Protocol, Sbus, Ubx};
+use fcc_linux::serial::{Begin, Crsf, Epoch, Epochs, Frames, Nmea, Protocol, Sbus, Ubx};
 use proptest::prelude::*;
 
 /// Acknowledgement of a configuration, encoded by pyubx2.
@@ -120,7 +120,7 @@ proptest! {
             let text = format!("GN{kind},101112,{}", fields.join(","));
             let sum = text.bytes().fold(0, |sum, byte| sum ^ byte);
             frames.push(format!("${text}*{sum:02x}").as_bytes(), |sentence| {
-                if let Some(fix) = epochs.take(sentence) {
+                if let Epoch::Complete(fix) = epochs.take(sentence) {
                     assert!(fix.position.latitude_rad.abs() <= core::f64::consts::FRAC_PI_2);
                     assert!(fix.position.longitude_rad.abs() <= core::f64::consts::PI);
                     assert!(fix.position.altitude_m.is_finite());

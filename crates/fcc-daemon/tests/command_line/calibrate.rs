@@ -291,6 +291,32 @@ fn what_cannot_be_stored_is_refused_before_the_first_step() {
     }
 }
 
+/// The disk becomes full while the sensor is turned: no file may be longer than nothing.
+#[test]
+fn what_cannot_be_stored_in_the_end_is_printed() {
+    let folder = tempfile::tempdir().unwrap();
+    with_config(folder.path(), "");
+    let calibrate = "ulimit -f 0; exec \"$0\" calibrate accelerometer raw.toml --lockstep \"$@\"";
+    for json in [&["--json"][..], &[]] {
+        let done = std::process::Command::new("sh")
+            .args(["-c", calibrate, env!("CARGO_BIN_EXE_fccd")])
+            .args(json)
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        assert_eq!(done.status.code(), Some(1), "{}", said(&done));
+        assert!(
+            said(&done).contains("cannot be written: "),
+            "{}",
+            said(&done)
+        );
+        let printed = String::from_utf8_lossy(&done.stdout).into_owned();
+        assert!(printed.contains("bias"), "{printed}");
+        assert!(!folder.path().join(FILE).exists());
+        assert!(!folder.path().join(format!("{FILE}.new")).exists());
+    }
+}
+
 /// A gyroscope of the kernel's Industrial I/O: what devices give has the time of
 /// the loop's clock.
 #[test]

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use fcc_core::flight::Measurements;
 use fcc_core::framework::{Controller, Sensor};
 use fcc_linux::iio::Iio;
-use fcc_linux::{DeviceSensor, DeviceStatus, DeviceThread, RawValues};
+use fcc_linux::{DeviceOwner, DeviceSensor, DeviceStatus, DeviceThread, RawValues};
 
 use super::assemble::AssemblyError;
 use super::calibrated::Calibrated;
@@ -70,7 +70,11 @@ pub(crate) fn uncalibrated(
         }
         BoardSensor::Iio(section) => {
             let config = section.to_linux();
-            thread.start(move || Iio::open(&config))
+            let mut owner = DeviceOwner::default();
+            thread.start(move || {
+                owner.claim(&config.folder()?)?;
+                Iio::open(&config)
+            })
         }
         BoardSensor::Phone(_) => return Err(AssemblyError::NoPhone),
     };

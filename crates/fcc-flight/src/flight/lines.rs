@@ -7,7 +7,7 @@ use fcc_core::framework::Sensor;
 use fcc_linux::gpio::{GpioLine, GpioSwitch};
 use fcc_linux::gpsd::Gpsd;
 use fcc_linux::serial::{GnssReceiver, RcReceiver};
-use fcc_linux::{Clock, DeviceThread, monotonic};
+use fcc_linux::{Clock, DeviceOwner, DeviceThread, monotonic};
 
 use super::assemble::AssemblyError;
 use super::board::WatchedDevice;
@@ -37,7 +37,11 @@ fn started(
     match line {
         LineSensor::Gnss(section) => {
             let settings = section.to_linux();
-            let sensor = thread.start(move || GnssReceiver::open(&settings, monotonic))?;
+            let mut owner = DeviceOwner::default();
+            let sensor = thread.start(move || {
+                owner.claim(&settings.line.path)?;
+                GnssReceiver::open(&settings, monotonic)
+            })?;
             Ok(calibrated(Box::new(sensor), &section.calibration))
         }
         LineSensor::Gpsd(section) => {
@@ -48,7 +52,11 @@ fn started(
         LineSensor::Rc(section) => {
             let (protocol, channels) = (section.protocol(), section.channels());
             let line = protocol.line(&section.path);
-            let open = move || RcReceiver::open(&line, protocol, channels, monotonic);
+            let mut owner = DeviceOwner::default();
+            let open = move || {
+                owner.claim(&line.path)?;
+                RcReceiver::open(&line, protocol, channels, monotonic)
+            };
             Ok(Box::new(thread.start(open)?))
         }
         LineSensor::Switch(section) => {

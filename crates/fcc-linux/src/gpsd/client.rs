@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use fcc_core::flight::GnssFix;
 use fcc_core::framework::Time;
-use fcc_device::NO_FIX;
+use fcc_device::{NO_FIX, REPEATED_FIX};
 use nix::errno::Errno;
 
 use super::{Lines, Report};
@@ -42,7 +42,9 @@ pub struct Gpsd {
     clock: Box<dyn Fn() -> Time + Send>,
     lines: Lines,
     heard: Instant,
-    is_without_fix: bool,
+    /// The time of the last fix.
+    fixed: Option<String>,
+    waits_for: Option<&'static str>,
 }
 
 impl fmt::Debug for Gpsd {
@@ -81,14 +83,16 @@ impl Gpsd {
             clock: Box::new(clock),
             lines: Lines::default(),
             heard: Instant::now(),
-            is_without_fix: false,
+            fixed: None,
+            waits_for: None,
         })
     }
 
     /// The newest fix of what was received.
     fn parse(&mut self, bytes: &[u8]) -> Result<Option<GnssFix>, DeviceError> {
         let (mut newest, mut trouble, mut heard) = (None, None, self.heard);
-        let mut is_without_fix = self.is_without_fix;
+        let mut waits_for = self.waits_for;
+        let fixed = &mut self.fixed;
         let device = name(&self.settings);
         let wanted = self.settings.device.as_ref();
         let refused = |what: String| DeviceError::Refused {
@@ -96,9 +100,18 @@ impl Gpsd {
             what,
         };
         let mut take = |line: &[u8]| match Report::read(line) {
-            Ok(Report::Fix { device, fix }) if wanted.is_none() || device.as_ref() == wanted => {
-                is_without_fix = fix.is_none();
-                newest = fix.or(newest);
+            Ok(Report::Fix { device, time, fix })
+                if wanted.is_none() || device.as_ref() == wanted =>
+            {
+                let is_repeated = time.is_some() && time == *fixed;
+                waits_for = match fix {
+                    Some(_) if is_repeated => Some(REPEATED_FIX),
+                    Some(_) => None,
+                    None => Some(NO_FIX),
+                };
+                if fix.is_some() && !is_repeated {
+                    (newest, *fixed) = (fix, time);
+                }
             }
             Ok(Report::Devices(all)) => {
                 trouble = wanted.filter(|path| !all.contains(path)).map(|path| {
@@ -130,7 +143,7 @@ impl Gpsd {
             heard = Instant::now();
             take(line);
         });
-        (self.heard, self.is_without_fix) = (heard, is_without_fix);
+        (self.heard, self.waits_for) = (heard, waits_for);
         match (newest, trouble) {
             (None, Some(trouble)) => Err(trouble),
             (newest, _) => Ok(newest),
@@ -199,7 +212,7 @@ impl Source for Gpsd {
     }
 
     fn waits_for(&self) -> Option<&'static str> {
-        self.is_without_fix.then_some(NO_FIX)
+        self.waits_for
     }
 }
 

@@ -11,6 +11,8 @@ pub enum Report {
     Fix {
         /// The receiver's path, such as `/dev/ttyACM0`.
         device: Option<String>,
+        /// Its time, UTC by ISO 8601; none if the receiver has not said it.
+        time: Option<String>,
         /// Its fix; none if it has no three-dimensional one that it measured.
         fix: Option<GnssFix>,
     },
@@ -59,6 +61,7 @@ struct Device {
 #[derive(Default)]
 struct Tpv {
     device: Option<String>,
+    time: Option<String>,
     /// 0 and 1 none, 2 two-dimensional, 3 three-dimensional.
     mode: u8,
     /// 5 dead reckoning, 8 simulated; missing for a usual fix.
@@ -100,6 +103,7 @@ impl Report {
             Object::Tpv(tpv) => Self::Fix {
                 fix: tpv.fix(),
                 device: tpv.device,
+                time: tpv.time,
             },
             Object::Version { proto_major } => Self::Version {
                 protocol: proto_major,

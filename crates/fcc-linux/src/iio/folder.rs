@@ -1,8 +1,11 @@
 //! The files of a device.
 
-use std::fs::{self, File};
+use std::fs::{self, OpenOptions};
 use std::io::{self, ErrorKind, Read};
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::PathBuf;
+
+use nix::fcntl::OFlag;
 
 use crate::DeviceError;
 
@@ -35,7 +38,11 @@ impl Folder {
     /// When it cannot be read, or is no text.
     pub fn text(&self, name: &str) -> io::Result<String> {
         let mut text = String::new();
-        File::open(self.0.join(name))?
+        // A named pipe in the file's place is not waited for.
+        OpenOptions::new()
+            .read(true)
+            .custom_flags(OFlag::O_NONBLOCK.bits())
+            .open(self.0.join(name))?
             .take(MOST_BYTES)
             .read_to_string(&mut text)?;
         Ok(text.trim_end().to_owned())

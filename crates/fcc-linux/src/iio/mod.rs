@@ -145,6 +145,14 @@ impl Source for Iio {
 }
 
 impl IioConfig {
+    /// The folder of the only device with that name.
+    ///
+    /// # Errors
+    /// When there is none or more than one of that name.
+    pub fn folder(&self) -> Result<PathBuf, DeviceError> {
+        Ok(self.roots.sysfs.join(self.find()?))
+    }
+
     /// The node of the only device with that name.
     fn find(&self) -> Result<String, DeviceError> {
         let sysfs = &self.roots.sysfs;

@@ -1,7 +1,7 @@
 //! Fixes from the sentences of NMEA, each of which has a part of one.
 
 use fcc_core::flight::{GnssFix, Position, Velocity};
-use fcc_device::VerticalSpeed;
+use fcc_device::{EpochOrder, VerticalSpeed};
 
 use super::Sentence;
 
@@ -10,18 +10,42 @@ use super::Sentence;
 /// GGA and RMC with the same time make a fix, whichever comes first. The
 /// vertical speed is that of [`VerticalSpeed`]: a receiver that speaks
 /// UBX gives a better one. Accuracies are those of the last GST, 0 without.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Epochs {
     motion: Option<(f64, [f64; 2])>,
     place: Option<(f64, Position)>,
     accuracy_m: [f64; 2],
     /// Sentences have none.
     vertical_speed: VerticalSpeed,
+    order: EpochOrder,
+}
+
+/// What a sentence adds.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Epoch {
+    /// Its last part.
+    Complete(GnssFix),
+    /// The last part of one that is not later than the one before.
+    Repeated,
+    /// A part.
+    Incomplete,
+}
+
+impl Default for Epochs {
+    fn default() -> Self {
+        Self {
+            motion: None,
+            place: None,
+            accuracy_m: [0.0; 2],
+            vertical_speed: VerticalSpeed::default(),
+            order: EpochOrder::of_day(),
+        }
+    }
 }
 
 impl Epochs {
-    /// Takes a sentence; the fix that it completes, if it does.
-    pub fn take(&mut self, sentence: Sentence) -> Option<GnssFix> {
+    /// Takes a sentence.
+    pub fn take(&mut self, sentence: Sentence) -> Epoch {
         match sentence {
             Sentence::Motion {
                 time_s,
@@ -35,18 +59,26 @@ impl Epochs {
                 vertical_m,
             } => {
                 self.accuracy_m = [horizontal_m, vertical_m];
-                return None;
+                return Epoch::Incomplete;
             }
         }
-        let (moved_at, [north_mps, east_mps]) = self.motion?;
-        let (time_s, position) = self.place?;
+        let (Some((moved_at, [north_mps, east_mps])), Some((time_s, position))) =
+            (self.motion, self.place)
+        else {
+            return Epoch::Incomplete;
+        };
         if moved_at != time_s {
-            return None;
+            return Epoch::Incomplete;
         }
         (self.motion, self.place) = (None, None);
-        let down_mps = self.vertical_speed.down_mps(time_s, position.altitude_m)?;
+        if !self.order.is_later(time_s) {
+            return Epoch::Repeated;
+        }
+        let Some(down_mps) = self.vertical_speed.down_mps(time_s, position.altitude_m) else {
+            return Epoch::Incomplete;
+        };
         let [horizontal_accuracy_m, vertical_accuracy_m] = self.accuracy_m;
-        Some(GnssFix {
+        Epoch::Complete(GnssFix {
             position,
             velocity: Velocity {
                 north_mps,

@@ -5,9 +5,11 @@ use core::time::Duration;
 
 use fcc_core::flight::GnssFix;
 use fcc_core::framework::Time;
-use fcc_device::NO_FIX;
+use fcc_device::{EpochOrder, NO_FIX, REPEATED_FIX};
 
-use super::{Epochs, Frames, LineSettings, Nmea, SerialLine, Ubx, UbxMessage, configuration};
+use super::{
+    Epoch, Epochs, Frames, LineSettings, Nmea, SerialLine, Ubx, UbxMessage, configuration,
+};
 use crate::{DeviceError, Sample, Source};
 
 /// Sentences are used if there was no message in UBX for so long: in them the
@@ -16,6 +18,8 @@ const UBX_SILENT: Duration = Duration::from_secs(2);
 /// How often the configuration is sent while there is no fix message in UBX: a
 /// receiver that lost its power has lost it.
 const CONFIGURED_EVERY: Duration = Duration::from_secs(5);
+/// The times of UBX are those of a GPS week, s.
+const WEEK_S: f64 = 604_800.0;
 /// With less than one message in so many bytes they are not understood: a receiver
 /// with all of its messages sends 3 kB in a second.
 const NOTHING_UNDERSTOOD: usize = 10_000;
@@ -40,11 +44,12 @@ pub struct GnssReceiver {
     ubx: Frames<Ubx>,
     nmea: Frames<Nmea>,
     epochs: Epochs,
+    order: EpochOrder,
     last_ubx: Time,
     configured: Time,
     refused: bool,
     not_understood: usize,
-    is_without_fix: bool,
+    waits_for: Option<&'static str>,
 }
 
 impl fmt::Debug for GnssReceiver {
@@ -61,6 +66,7 @@ struct Found {
     by_ubx: Option<GnssFix>,
     by_nmea: Option<GnssFix>,
     has_ubx: bool,
+    is_repeated: bool,
     messages: usize,
     refused: bool,
 }
@@ -81,11 +87,12 @@ impl GnssReceiver {
             ubx: Frames::default(),
             nmea: Frames::default(),
             epochs: Epochs::default(),
+            order: EpochOrder::within(WEEK_S),
             last_ubx: Time::NEVER,
             configured: Time::NEVER,
             refused: false,
             not_understood: 0,
-            is_without_fix: false,
+            waits_for: None,
         })
     }
 
@@ -102,11 +109,16 @@ impl GnssReceiver {
 
     fn parse(&mut self, bytes: &[u8]) -> Found {
         let mut found = Found::default();
+        let order = &mut self.order;
         self.ubx.push(bytes, |message| {
             found.messages += 1;
             match message {
                 UbxMessage::NavPvt(pvt) => {
-                    (found.has_ubx, found.by_ubx) = (true, pvt.usable());
+                    let mut is_later = || order.is_later(f64::from(pvt.time_of_week_ms) * 1e-3);
+                    let usable = pvt.usable();
+                    found.is_repeated = usable.is_some() && !is_later();
+                    found.by_ubx = usable.filter(|_| !found.is_repeated);
+                    found.has_ubx = true;
                 }
                 UbxMessage::Configured(is_accepted) => found.refused |= !is_accepted,
             }
@@ -114,8 +126,10 @@ impl GnssReceiver {
         let epochs = &mut self.epochs;
         self.nmea.push(bytes, |sentence| {
             found.messages += 1;
-            if let Some(fix) = epochs.take(sentence) {
-                found.by_nmea = Some(fix);
+            match epochs.take(sentence) {
+                Epoch::Complete(fix) => found.by_nmea = Some(fix),
+                Epoch::Repeated => found.is_repeated = true,
+                Epoch::Incomplete => {}
             }
         });
         found
@@ -142,7 +156,9 @@ impl GnssReceiver {
             );
         }
         let is_damaged = self.ubx.damaged() + self.nmea.damaged() > damaged;
-        is_damaged.then_some("a message arrived damaged: check the line and its length")
+        is_damaged.then_some(
+            "a message arrived damaged, or says what is impossible: check the line and its length",
+        )
     }
 }
 
@@ -162,10 +178,14 @@ impl Source for GnssReceiver {
         let has_only_nmea = now.since(self.last_ubx) > UBX_SILENT;
         let fix = found.by_ubx.or(found.by_nmea.filter(|_| has_only_nmea));
         if let Some(fix) = fix {
-            (self.not_understood, self.is_without_fix) = (0, false);
+            (self.not_understood, self.waits_for) = (0, None);
             return Ok(Some(Sample::new(now, fix)));
         }
-        self.is_without_fix |= found.messages > 0;
+        if found.is_repeated {
+            self.waits_for = Some(REPEATED_FIX);
+        } else if found.messages > 0 {
+            self.waits_for = self.waits_for.or(Some(NO_FIX));
+        }
         match self.trouble(&found, length, damaged) {
             Some(what) => Err(DeviceError::Malformed {
                 device: self.line.path().display().to_string(),
@@ -176,6 +196,6 @@ impl Source for GnssReceiver {
     }
 
     fn waits_for(&self) -> Option<&'static str> {
-        self.is_without_fix.then_some(NO_FIX)
+        self.waits_for
     }
 }

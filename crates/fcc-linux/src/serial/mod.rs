@@ -24,7 +24,7 @@ mod ubx;
 
 pub use channels::{CHANNELS, ReceiverFrame, position, pulse_us};
 pub use crsf::Crsf;
-pub use epoch::Epochs;
+pub use epoch::{Epoch, Epochs};
 pub use frames::{Begin, Frames, Protocol};
 pub use gnss::{GnssReceiver, GnssSettings};
 pub use line::{LineSettings, SerialLine};

@@ -116,19 +116,29 @@ fn motion(fields: &mut str::Split<'_, char>) -> Option<Sentence> {
     // Before version 2.3 there is none. E estimated, M manual, S simulated, N none.
     let mode = fields.nth(3).unwrap_or_default();
     let is_fix = status == "A" && !matches!(mode, "E" | "M" | "S" | "N");
-    let velocity_mps = is_fix.then(|| velocity(knots, course)).flatten();
+    // Without them the receiver has no fix yet, whatever it says.
+    let has_motion = is_fix && !knots.is_empty();
+    let velocity_mps = if has_motion {
+        velocity(knots, course)?
+    } else {
+        None
+    };
     Some(Sentence::Motion {
         time_s,
         velocity_mps,
     })
 }
 
-fn velocity(knots: &str, course: &str) -> Option<[f64; 2]> {
+/// None if it is damaged; of one that moves without a course there is no velocity.
+fn velocity(knots: &str, course: &str) -> Option<Option<[f64; 2]>> {
+    let speed_mps = number(knots)? * MPS_PER_KNOT;
     let course_deg = match course {
         "" => None,
         course => Some(number(course)?),
     };
-    velocity_over_ground(number(knots)? * MPS_PER_KNOT, course_deg)
+    let velocity_mps = velocity_over_ground(speed_mps, course_deg);
+    let is_possible = velocity_mps.is_some() || course_deg.is_none() && speed_mps >= 0.0;
+    is_possible.then_some(velocity_mps)
 }
 
 /// Time, latitude, N or S, longitude, E or W, quality, satellites, dilution,
@@ -143,18 +153,16 @@ fn place(fields: &mut str::Split<'_, char>) -> Option<Sentence> {
     ];
     // 0 no fix, 6 estimated, 7 manual, 8 simulated.
     let is_fix = matches!(fields.next()?, "1" | "2" | "3" | "4" | "5");
-    let altitude = fields.nth(2)?;
+    let [altitude, unit] = [fields.nth(2)?, fields.next()?];
     let position = || {
         Some(Position {
             latitude_rad: angle(latitude, north, ["N", "S"], 90.0)?,
             longitude_rad: angle(longitude, east, ["E", "W"], 180.0)?,
-            altitude_m: number(altitude)?,
+            altitude_m: number(altitude).filter(|_| unit == "M")?,
         })
     };
-    Some(Sentence::Place {
-        time_s,
-        position: is_fix.then(position).flatten(),
-    })
+    let position = if is_fix { Some(position()?) } else { None };
+    Some(Sentence::Place { time_s, position })
 }
 
 /// Time, RMS of the ranges, the ellipse's axes and direction, and the standard

@@ -6,6 +6,7 @@
 //! items in 6.9.
 
 use fcc_core::flight::{GnssFix, Position, Velocity};
+use fcc_core::framework::schema::in_range;
 
 use super::{Begin, Protocol};
 
@@ -86,13 +87,17 @@ impl Protocol for Ubx {
             return Begin::Damaged;
         }
         let message = if length == NAV_PVT_LENGTH {
-            nav_pvt(payload).map(UbxMessage::NavPvt)
+            let possible = nav_pvt(payload).filter(|pvt| in_range(&pvt.fix.position));
+            match possible {
+                Some(pvt) => UbxMessage::NavPvt(pvt),
+                None => return Begin::Damaged,
+            }
         } else if payload == CFG_VALSET {
-            Some(UbxMessage::Configured(head.get(2..4) == Some(&ACK_ACK)))
+            UbxMessage::Configured(head.get(2..4) == Some(&ACK_ACK))
         } else {
-            None
+            return Begin::Noise;
         };
-        message.map_or(Begin::Noise, |message| Begin::Frame(message, frame.len()))
+        Begin::Frame(message, frame.len())
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::io::Write;
 use std::net::{TcpListener, TcpStream};
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 use fcc_conformance::{SensorBench, VanishingSource, sensor_conformance};
@@ -122,6 +123,19 @@ impl Bench {
     }
 }
 
+/// [`TPV`] at another time, later each time.
+fn later_tpv() -> String {
+    static SENT: AtomicU32 = AtomicU32::new(0);
+    let number = SENT.fetch_add(1, Ordering::Relaxed);
+    let time = format!(
+        "T10:{:02}:{:02}.{:03}Z",
+        number / 60_000,
+        number / 1_000 % 60,
+        number % 1_000
+    );
+    TPV.replace("T10:11:07.000Z", &time)
+}
+
 impl SensorBench for Bench {
     type Measurements = Measurements;
 
@@ -144,7 +158,8 @@ impl SensorBench for Bench {
     fn provide(&mut self) {
         self.watched.next();
         if let Some((_, stream)) = &mut self.gpsd {
-            stream.write_all(format!("{TPV}\r\n").as_bytes()).unwrap();
+            let line = format!("{}\r\n", later_tpv());
+            stream.write_all(line.as_bytes()).unwrap();
             self.watched.settle();
         }
     }
@@ -269,6 +284,13 @@ fn a_receiver_without_a_fix_is_no_fault() {
     stream.write_all(format!("{TPV}\n").as_bytes()).unwrap();
     until(&|| status.waits_for().is_none());
     assert_eq!(status.trouble(), None);
+    // It hangs, and repeats what it knew last.
+    stream.write_all(format!("{TPV}\n").as_bytes()).unwrap();
+    until(&|| {
+        status
+            .waits_for()
+            .is_some_and(|said| said.contains("repeat a time"))
+    });
 }
 
 #[test]

@@ -14,6 +14,8 @@ mod real_gpsd;
 mod speaking;
 mod watched;
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use fcc_conformance::{SensorBench, VanishingSource, sensor_conformance};
 use fcc_core::flight::{GnssFix, Measurements};
 use fcc_core::framework::{Sensor, Time};
@@ -36,6 +38,22 @@ const NAV_PVT: [u8; 100] = [
     0x2c, 0x00, 0xa2, 0x00, 0x00, 0x00, 0x12, 0x19, 0x26, 0x3b, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
     0x00, 0x00, 0x57, 0x03,
 ];
+
+/// The same of another epoch, later each time.
+fn later_nav_pvt() -> Vec<u8> {
+    static SENT: AtomicU32 = AtomicU32::new(0);
+    let later_ms = 200 * SENT.fetch_add(1, Ordering::Relaxed);
+    let mut message = NAV_PVT;
+    let time_ms = u32::from_le_bytes(message[6..10].try_into().unwrap());
+    message[6..10].copy_from_slice(&(time_ms + later_ms).to_le_bytes());
+    // Fletcher's, as in 3.4 of the interface description.
+    let sum = message[2..98].iter().fold([0_u8; 2], |[a, b], byte| {
+        let a = a.wrapping_add(*byte);
+        [a, b.wrapping_add(a)]
+    });
+    message[98..].copy_from_slice(&sum);
+    message.to_vec()
+}
 
 /// A capture in Betaflight's tests: see `receivers.rs`.
 const CRSF: [u8; 26] = [
@@ -120,7 +138,7 @@ fn pilots(measured: &Measurements) -> Vec<Time> {
     vec![measured.engage_switch.taken, measured.pilot_controls.taken]
 }
 
-bench!(Gnss: GnssFix, gnss(), &NAV_PVT, |measured: &Measurements| vec![measured.gnss.taken]);
+bench!(Gnss: GnssFix, gnss(), &later_nav_pvt(), |measured: &Measurements| vec![measured.gnss.taken]);
 // A switch is known after three frames.
 bench!(SbusBench: RcValues, rc(RcProtocol::Sbus), &[SBUS; 3].concat(), pilots);
 bench!(CrsfBench: RcValues, rc(RcProtocol::Crsf), &[CRSF; 3].concat(), pilots);

@@ -64,6 +64,22 @@ fn a_receiver_is_configured_and_one_that_refuses_is_used_as_it_is() {
     assert_eq!(fix.taken, Time::from_nanos(100_000_000_000));
 }
 
+/// What passes messages on hangs, and sends the last one again and again.
+#[test]
+fn a_fix_that_arrives_again_is_not_used_and_that_is_said() {
+    let (mut device, path, _open) = line();
+    let mut receiver = receiver(path, 100);
+    device.write_all(&NAV_PVT).unwrap();
+    assert!(receiver.read().unwrap().is_some());
+    assert_eq!(receiver.waits_for(), None);
+    for _ in 0..3 {
+        device.write_all(&NAV_PVT).unwrap();
+        assert_eq!(receiver.read().unwrap(), None);
+    }
+    let said = receiver.waits_for().unwrap();
+    assert!(said.starts_with("its fixes repeat a time"), "{said}");
+}
+
 #[test]
 fn sentences_beside_ubx_are_not_used() {
     let (mut device, path, _open) = line();

@@ -36,7 +36,8 @@ const KINDS: [Kind; 8] = [
     kind("gyroscope", 3, (-150.0, 150.0), "rad/s"),
     kind("accelerometer", 3, (-2_000.0, 2_000.0), "m/s²"),
     kind("magnetometer", 3, (-5_000.0, 5_000.0), "µT"),
-    kind("static_pressure", 1, (1_000.0, 120_000.0), "Pa"),
+    // At 20 km it is 5,500 Pa, and at sea level 1,013 hPa.
+    kind("static_pressure", 1, (2_000.0, 120_000.0), "Pa"),
     kind("differential_pressure", 1, (-20_000.0, 20_000.0), "Pa"),
     kind("airspeed", 1, (-50.0, 200.0), "m/s"),
     kind("gnss_position", 3, (-100_000.0, 100_000.0), "rad, rad, m"),
@@ -177,6 +178,12 @@ impl Sources {
                 observation,
             });
         }
+        if kind.name == "accelerometer" && is_in_g(&series.rows) {
+            return Err(PyValueError::new_err(
+                "accelerometer: the strength of its middle sample is about 1: it is in m/s², 9.8 \
+                 at rest; is it in g?",
+            ));
+        }
         // Some may be spoilt; most are not possible if they are in another unit.
         if 2 * kept < series.rows.len() {
             return Err(PyValueError::new_err(format!(
@@ -312,6 +319,18 @@ fn observation(name: &str, row: [f64; 3]) -> Observation {
         }),
         _ => Observation::Velocity(row),
     }
+}
+
+/// Whether the middle one of the strengths is that of gravity in g, and not 9.8.
+fn is_in_g(rows: &[[f64; 3]]) -> bool {
+    let mut strengths: Vec<f64> = rows
+        .iter()
+        .map(|row| row.iter().map(|along| along * along).sum::<f64>().sqrt())
+        .collect();
+    strengths.sort_by(f64::total_cmp);
+    strengths
+        .get(strengths.len() / 2)
+        .is_some_and(|middle| (0.8..1.2).contains(middle))
 }
 
 fn nothing() -> PyErr {

@@ -79,19 +79,31 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<Exit, Failure> {
         let message = format_args!("no calibration of the {kind}: {refusal}. Nothing was changed");
         Failure::of(Exit::CalibrationRefused, message.to_string())
     })?;
-    let is_stored = file.is_some();
-    if let Some(mut file) = file {
-        file.add(found.clone()).map_err(wrong)?;
-    }
+    let stored = match file {
+        Some(mut file) => file.add(found.clone()).map(|()| true),
+        None => Ok(false),
+    };
     let printed = Printed {
         found: &found,
-        file: is_stored.then(|| path.display().to_string()),
+        file: matches!(stored, Ok(true)).then(|| path.display().to_string()),
         enabled: config.calibration.enabled,
     };
+    // What was measured is not lost with the disk that was full meanwhile.
+    let exit = match &stored {
+        Ok(_) => Exit::Success,
+        Err(error) => {
+            output::message(format_args!(
+                "fccd: {}: {error}. What was found is printed, and its keys can be put into {}",
+                path.display(),
+                args.config.display()
+            ));
+            Exit::Failure
+        }
+    };
     if args.json {
-        return Ok(output::json(&printed, Exit::Success));
+        return Ok(output::json(&printed, exit));
     }
-    Ok(output::result(text(&printed), Exit::Success))
+    Ok(output::result(text(&printed), exit))
 }
 
 /// How much is to be done.
@@ -130,7 +142,7 @@ fn text(printed: &Printed<'_>) -> String {
         Some(file) => {
             format!("stored in {file}; flights do not use it, for calibration.enabled is false")
         }
-        None => "not stored (--dry-run)".to_owned(),
+        None => "not stored".to_owned(),
     };
     format!(
         "{kind} of {sensor}: an error of {error:.3} {unit} is left ({error_limit:.3} {unit} is \
