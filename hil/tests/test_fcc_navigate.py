@@ -116,6 +116,8 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"gyroscope": (TIMES_S, GYROSCOPE[1] + 400.0)}, "in rad/s"),
     ({"gyroscope": GYROSCOPE, "gnss_position": still([47.0, 8.0, 1.0])}, "degrees"),
     ({"gyroscope": GYROSCOPE, "static_pressure": (TIMES_S, TIMES_S)}, "in Pa"),
+    ({"gyroscope": GYROSCOPE, "static_pressure": (TIMES_S, 0 * TIMES_S + 1013.25)}, "in Pa"),
+    ({"accelerometer": (TIMES_S, ACCELEROMETER[1] / 9.80665)}, "is it in g"),
     ({"gyroscope": GYROSCOPE, "delays_s": {"radar": 0.1}}, "radar"),
     ({"gyroscope": GYROSCOPE, "delays_s": {"airspeed": 210.0}}, "0 to 0.5"),
     ({"gyroscope": GYROSCOPE, "mounting": np.eye(3) * 2}, "no rotation"),
