@@ -178,6 +178,7 @@ fn in_a_tail_wind_it_lands_against_the_runway_s_direction() {
     let (mut flight, stops) = with_engine(&away_from_runway(60.0), keys);
     let (sink_fpm, lowered_m) = glide_down(&mut flight, &stops, 40);
     let truth = flight.truth.get();
+    assert!((80.0..450.0).contains(&lowered_m), "{lowered_m}");
     println!(
         "stands {:.0} m north, {:.1} m east, sink {sink_fpm:.0} ft/min",
         truth.north_m, truth.east_m
@@ -194,6 +195,8 @@ fn where_nothing_is_reached_it_lands_into_the_wind() {
     let keys = "[built-in]\nnoise = false\nwind_from_deg = 60\nwind_kt = 15\n";
     let (mut flight, stops) = with_engine(&away_from_runway(200.0), keys);
     let (sink_fpm, lowered_m) = glide_down(&mut flight, &stops, 340);
+    // As soon as it is known that no final follows.
+    assert!(lowered_m > 900.0, "{lowered_m}");
     assert!(flight.distance_m(HOME) > 10_000.0);
     let heading_deg = flight
         .truth
