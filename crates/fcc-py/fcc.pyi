@@ -422,6 +422,7 @@ class Surfaces:
         left_brake: float = ...,
         right_brake: float = ...,
         nose_wheel: float = ...,
+        gear: float = ...,
     ) -> Surfaces: ...
     @property
     def throttle(self) -> float:
@@ -458,6 +459,10 @@ class Surfaces:
     @property
     def nose_wheel(self) -> float:
         """The nose wheel's steering, positive to the right."""
+
+    @property
+    def gear(self) -> float:
+        """The landing gear, 0 up, 1 down; NaN leaves it as it is."""
 
     # </schema>
     def to_array(self) -> _Array: ...

@@ -36,6 +36,8 @@ ELEVATOR_TRIM = "sim/flightmodel/controls/elv_trim"
 """-1 full nose down .. 1 full nose up; needs no override."""
 FLAPS = "sim/cockpit2/controls/flap_ratio"
 """0 up .. 1 full; needs no override."""
+GEAR = "sim/cockpit2/controls/gear_handle_down"
+"""The handle, an int: 0 up, 1 down; needs no override."""
 OVERRIDE_BRAKES = _OVERRIDE + "override_toe_brakes"
 LEFT_BRAKE = "sim/cockpit2/controls/left_brake_ratio"
 RIGHT_BRAKE = "sim/cockpit2/controls/right_brake_ratio"
@@ -76,7 +78,7 @@ _FULL = (-1.0, 1.0)
 _RANGES = {
     **dict.fromkeys((*YOKE, *_SERVO, *_ARTSTAB, ELEVATOR_TRIM), _FULL),
     THROTTLE_USE: (-1.0, 1.2),
-    **dict.fromkeys((THROTTLE_LEVER, FLAPS, LEFT_BRAKE, RIGHT_BRAKE), (0.0, 1.0)),
+    **dict.fromkeys((THROTTLE_LEVER, FLAPS, LEFT_BRAKE, RIGHT_BRAKE, GEAR), (0.0, 1.0)),
     PITOT_ICE: (0.0, 1.0),
 }
 _NEEDS = {
@@ -151,6 +153,7 @@ class Cockpit:
             OVERRIDE_AUTOPILOT: 0.0,
             OVERRIDE_BRAKES: 0.0,
             FLAPS: 0.0,
+            GEAR: 1.0,
             LEFT_BRAKE: 0.0,
             RIGHT_BRAKE: 0.0,
             SERVOS_ON: 0.0,
@@ -174,6 +177,7 @@ class Cockpit:
         ):
             self._values.update({(name, i): value for i in range(size)})
         self._moves_flaps = False
+        self._moves_gear = False
         self._return_yoke()
 
     def element(self, path: str) -> Element | None:
@@ -287,13 +291,16 @@ class Cockpit:
             # Otherwise they are as the pilot has set them.
             left_brake=self._values[LEFT_BRAKE, 0] if held else None,
             right_brake=self._values[RIGHT_BRAKE, 0] if held else None,
+            gear=self._values[GEAR, 0] if self._moves_gear else None,
         )
 
     def _take(self, time_s: float, element: Element, value: float) -> None:
         name = element[0]
         was_on = self.is_on(name)
-        self._values[element] = value
+        # An int takes the integer part of what is written.
+        self._values[element] = float(int(value)) if name == GEAR else value
         self._moves_flaps |= name == FLAPS
+        self._moves_gear |= name == GEAR
         if name in (OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES) and was_on and not self.is_on(name):
             self._release(time_s, name)
         elif name == THROTTLE_LEVER:

@@ -97,6 +97,7 @@ def as_controls(surfaces: fcc.Surfaces) -> Controls:
         left_brake=_given(surfaces.left_brake),
         right_brake=_given(surfaces.right_brake),
         nose_wheel=_given(surfaces.nose_wheel),
+        gear=_given(surfaces.gear),
     )
 
 

@@ -185,10 +185,13 @@ class Plant:
             left_brake=controls.left_brake,
             right_brake=controls.right_brake,
             nose_wheel=controls.nose_wheel,
+            gear=controls.gear,
         )
         fdm = self.fdm
         for path, value in (
             ("fcs/flap-cmd-norm", controls.flaps),
+            # Without effect on a gear that is not retractable.
+            ("gear/gear-cmd-norm", controls.gear),
             ("fcs/left-brake-cmd-norm", controls.left_brake),
             ("fcs/right-brake-cmd-norm", controls.right_brake),
             ("fcs/center-brake-cmd-norm", None if controls.left_brake is None else 0.0),

@@ -17,6 +17,7 @@ from enum import Enum
 from .cockpit import (
     ENGAGE_SWITCH,
     FLAPS,
+    GEAR,
     LEFT_BRAKE,
     OVERRIDE_JOYSTICK,
     OVERRIDE_THROTTLES,
@@ -40,14 +41,20 @@ from .units import KT_TO_MPS
 AIRSPEED = "sim/flightmodel/position/indicated_airspeed"
 DIFFERENTIAL_PRESSURE = "fccd/servo_board/differential_pressure_pa"
 _THROTTLE = f"{THROTTLE_USE}[0]"
-_WHEELS = (FLAPS, LEFT_BRAKE, RIGHT_BRAKE)
-"""0..1, with the joystick's override; they stay as they are in the failsafe."""
+_WHEELS = (FLAPS, LEFT_BRAKE, RIGHT_BRAKE, GEAR)
+"""0..1, with the joystick's override; they stay as they are in the failsafe, but for the gear,
+which is down then."""
 
 _PERIOD_S = 0.02
 """Between two replies."""
 FAILSAFE_AFTER_S = 0.2
-_ROWS = {8: (0, YOKE), 25: (0, (_THROTTLE,)), 13: (3, (FLAPS,)), 14: (2, _WHEELS[1:])}
-"""Of DATA: the first column, and what is set."""
+_ROWS: dict[int, dict[int, str]] = {
+    8: dict(enumerate(YOKE)),
+    25: {0: _THROTTLE},
+    13: {3: FLAPS},
+    14: {0: GEAR, 2: LEFT_BRAKE, 3: RIGHT_BRAKE},
+}
+"""Of DATA: what is set by which column."""
 _CRC = struct.Struct("<I")
 _LONGEST_RUN = 254
 _LONGEST_FRAME = 246
@@ -234,6 +241,7 @@ class ServoBoard:
             flaps=self._written.get(FLAPS, otherwise.flaps),
             left_brake=self._written.get(LEFT_BRAKE, otherwise.left_brake),
             right_brake=self._written.get(RIGHT_BRAKE, otherwise.right_brake),
+            gear=1.0 if safe and GEAR in self._written else self._written.get(GEAR, otherwise.gear),
         )
 
     def _names(self) -> set[str]:
@@ -250,6 +258,8 @@ class ServoBoard:
             return readings.differential_pressure_pa
         if path == self._switch:
             return None if readings.engage_switch is None else float(readings.engage_switch)
+        if path == GEAR:
+            return self.drive(_CENTRED).gear
         if path in _WHEELS:
             return self._written.get(path)
         is_free = self.control is Control.FREE
@@ -260,11 +270,11 @@ class ServoBoard:
         return dict(zip((*YOKE, _THROTTLE), values, strict=True))[path]
 
     def _write_row(self, now_s: float, row: int, values: tuple[float, ...]) -> bool:
-        first, targets = _ROWS.get(row, (0, ()))
+        targets = _ROWS.get(row, {})
         each = [
-            self._write(now_s, path, value)
-            for path, value in zip(targets, values[first:], strict=False)
-            if value != UNUSED
+            self._write(now_s, path, values[column])
+            for column, path in targets.items()
+            if values[column] != UNUSED
         ]
         return bool(targets) and all(each)
 

@@ -86,3 +86,5 @@ class Controls:
     right_brake: float | None = None
     nose_wheel: float | None = None
     """-1..1, positive to the right; None: it is steered with the rudder."""
+    gear: float | None = None
+    """0 up .. 1 down; None leaves it as it is."""

@@ -336,6 +336,7 @@ class World:
             flaps=to.flaps,
             left_brake=to.left_brake,
             right_brake=to.right_brake,
+            gear=to.gear,
         )
 
     def _remember(self, state: State) -> None:

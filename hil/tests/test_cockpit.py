@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from fcc_hil.cockpit import (
+    GEAR,
     GENERIC_LIGHTS,
     OVERRIDE_JOYSTICK,
     OVERRIDE_THROTTLES,
@@ -57,6 +58,14 @@ def test_a_release_restores_the_trimmed_controls_and_is_recorded() -> None:
     # Clearing an override that is not set is not a release.
     cockpit.write(3.0, OVERRIDE_JOYSTICK, 0.0)
     assert len(cockpit.releases) == 2
+
+
+def test_the_gears_handle_is_an_int_and_stays_until_it_is_moved() -> None:
+    cockpit = Cockpit(TRIMMED)
+    assert (cockpit.read(GEAR), cockpit.controls().gear) == (1.0, None)
+    for value, handle in ((0.0, 0.0), (1.0, 1.0), (0.9, 0.0)):
+        assert cockpit.write(0.0, GEAR, value)
+        assert (cockpit.read(GEAR), cockpit.controls().gear) == (handle, handle)
 
 
 def test_values_are_clipped_to_the_range() -> None:

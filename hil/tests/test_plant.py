@@ -108,6 +108,13 @@ def test_controls_are_clipped_to_their_range() -> None:
     assert plant.controls == limits
 
 
+def test_a_gear_that_is_not_written_stays_where_it_is() -> None:
+    plant = Plant("c172p")
+    for written, commanded in ((None, 1.0), (0.0, 0.0), (None, 0.0), (1.0, 1.0)):
+        plant.write(Controls(gear=written))
+        assert plant.fdm["gear/gear-cmd-norm"] == commanded
+
+
 def test_a_trim_that_is_not_written_stays_where_it_is() -> None:
     plant = Plant("c172p")
     trimmed = plant.controls.elevator_trim

@@ -107,19 +107,21 @@ def test_control_is_taken_followed_and_released() -> None:
     assert (board.control, board.drive(PILOT)) == (Control.FREE, PILOT)
 
 
-def test_flaps_and_brakes_stay_as_written_until_the_release() -> None:
+def test_flaps_brakes_and_gear_stay_as_written_until_the_release() -> None:
     board = held()
     unused = -999.0
     flaps = struct.pack("<i8f", 13, unused, unused, unused, 0.5, *[unused] * 4)
-    brakes = struct.pack("<i8f", 14, 1.0, 1.0, 0.25, 0.75, *[unused] * 4)
+    brakes = struct.pack("<i8f", 14, 0.0, 1.0, 0.25, 0.75, *[unused] * 4)
     assert board.receive(0.1, "line", b"DATA\0" + flaps + brakes)
     driven = board.drive(PILOT)
     assert (driven.flaps, driven.left_brake, driven.right_brake) == (0.5, 0.25, 0.75)
+    assert driven.gear == 0.0
     assert board.receive(0.1, "line", dref(LEFT_BRAKE, 3.0))
     assert board.receive(0.1, "line", rref(50, 7, LEFT_BRAKE))
     assert pairs(board.poll(0.4, Readings())) == {7: 1.0}
     driven = board.drive(PILOT)
     assert (board.control, driven.flaps, driven.left_brake) == (Control.FAILSAFE, 0.5, 1.0)
+    assert driven.gear == 1.0
     board.receive(0.5, "line", dref(OVERRIDE_JOYSTICK, 0.0))
     assert board.drive(PILOT).flaps is None
 

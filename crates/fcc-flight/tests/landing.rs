@@ -34,6 +34,8 @@ struct Flown {
     /// The largest distance from the centre line on the wheels, m.
     off_m: f64,
     modes: Vec<Mode>,
+    /// The gear that is written, whenever it changes, and the truth then.
+    gear: Vec<(Option<f64>, Mode, Truth)>,
     record: FlightRecord,
 }
 
@@ -60,6 +62,7 @@ fn fly_plan(file: &str, keys: &str) -> Flown {
         end: Truth::default(),
         off_m: 0.0,
         modes: Vec::with_capacity(100),
+        gear: Vec::with_capacity(100),
         record: FlightRecord::default(),
     };
     let ((), calls) = allocator_calls(|| {
@@ -77,6 +80,10 @@ fn fly_plan(file: &str, keys: &str) -> Flown {
             }
             let on_wheels = flown.record.measurements.weight_on_wheels.value > 0.5;
             let now = truth.get();
+            let gear = flown.record.outputs.gear;
+            if flown.gear.last().is_none_or(|(before, ..)| *before != gear) {
+                flown.gear.push((gear, mode, now));
+            }
             if on_wheels {
                 flown.off_m = flown.off_m.max(now.east_m.abs());
             } else if now.altitude_m < ELEVATION_M + 20.0 {
@@ -94,13 +101,50 @@ fn fly_plan(file: &str, keys: &str) -> Flown {
     flown
 }
 
+/// A fixed gear is not written. Another one is down from the roll to 30 m, up in the climb,
+/// and down from the approach to the end, as the runway's is the last leg.
+fn assert_gear(flown: &Flown, is_retractable: bool) {
+    let written: Vec<_> = flown.gear.iter().map(|(gear, ..)| *gear).collect();
+    if !is_retractable {
+        assert_eq!(written, [None]);
+        return;
+    }
+    let [
+        _,
+        (_, first, stands),
+        (_, second, climbs),
+        _,
+        (_, last, begins),
+    ] = flown.gear[..]
+    else {
+        panic!("{written:?}");
+    };
+    assert_eq!(written, [None, Some(1.0), Some(0.0), None, Some(1.0)]);
+    assert_eq!(
+        [first, second, last],
+        [Mode::Takeoff, Mode::Takeoff, Mode::Land]
+    );
+    assert!(stands.velocity.north_mps.abs() < 0.1, "{stands:?}");
+    let height_m = climbs.altitude_m - ELEVATION_M;
+    assert!((30.0..36.0).contains(&height_m), "{height_m}");
+    assert!(climbs.velocity.down_mps < -0.5, "{climbs:?}");
+    // Before the glide path of 3° is met.
+    let (above_m, before_m) = (begins.altitude_m - ELEVATION_M, AIMED_M - begins.north_m);
+    assert!(
+        above_m / before_m < 3.0_f64.to_radians().tan(),
+        "{above_m} {before_m}"
+    );
+}
+
 /// The issue's limits: 30 m of runway, ±5 m, 200 ft/min, 5°.
 #[test]
 fn takes_off_and_lands_in_8_kt_across_from_either_side() {
-    for from_deg in [90, 270] {
+    for (from_deg, is_retractable) in [(90, false), (270, true)] {
         let flown = fly(&format!(
-            "noise = false\nwind_kt = 8\nwind_from_deg = {from_deg}\n"
+            "noise = false\nwind_kt = 8\nwind_from_deg = {from_deg}\n[autopilot.runway]\n\
+             retractable_gear = {is_retractable}\n"
         ));
+        assert_gear(&flown, is_retractable);
         let modes = [Mode::None, Mode::Takeoff, Mode::Plan, Mode::Land];
         assert_eq!(flown.modes, modes);
         assert_eq!(flown.record.state.state(), State::Engaged);

@@ -51,6 +51,9 @@ pub struct Drive {
     /// Of the left and the right wheel, 0 released to 1 full, as the flaps: in the air
     /// they are released.
     pub brakes: Option<[f32; 2]>,
+    /// A retractable landing gear, 0 up to 1 down, once it was written: it stays as it
+    /// is. In a failsafe it is down.
+    pub gear: Option<f32>,
 }
 
 /// A servo board. `P` tells computers apart: the address and port over UDP, `()`
@@ -69,8 +72,8 @@ pub struct Board<P = ()> {
     /// What was written since the override was set.
     yoke: [Option<f32>; 3],
     throttle: Option<f32>,
-    /// Flaps, left and right brake: with the joystick's override.
-    wheels: [Option<f32>; 3],
+    /// Flaps, left and right brake, gear: with the joystick's override.
+    wheels: [Option<f32>; 4],
     /// When surfaces or throttle were last written while control was held, or it
     /// was taken.
     written_ms: u32,
@@ -88,7 +91,7 @@ impl<P: Copy + PartialEq> Board<P> {
             overrides: [false; 2],
             yoke: [None; 3],
             throttle: None,
-            wheels: [None; 3],
+            wheels: [None; 4],
             written_ms: 0,
             is_lost: false,
             replied_ms: None,
@@ -175,7 +178,7 @@ impl<P: Copy + PartialEq> Board<P> {
     pub fn drive(&self) -> Drive {
         let control = self.control();
         let [joystick, throttles] = self.overrides;
-        let [flaps, left, right] = self.wheels;
+        let [flaps, left, right, gear] = self.wheels;
         let safe = self.config.failsafe;
         let (surfaces, throttle) = if control == Control::Failsafe {
             let surfaces = [safe.elevator, safe.aileron, safe.rudder];
@@ -194,6 +197,13 @@ impl<P: Copy + PartialEq> Board<P> {
             throttle: throttle.filter(|_| throttles),
             flaps,
             brakes: left.zip(right).map(|(left, right)| [left, right]),
+            gear: gear.map(|gear| {
+                if control == Control::Failsafe {
+                    1.0
+                } else {
+                    gear
+                }
+            }),
         }
     }
 
@@ -214,16 +224,24 @@ impl<P: Copy + PartialEq> Board<P> {
         index: i32,
         columns: [Option<f32>; 8],
     ) -> Result<(), NotForBoard> {
-        let (first, targets): (usize, &[Value]) = match index {
-            ROW_JOYSTICK => (0, &[Value::Elevator, Value::Aileron, Value::Rudder]),
-            ROW_THROTTLES => (0, &[Value::Throttle]),
-            ROW_FLAPS => (3, &[Value::Flaps]),
-            ROW_BRAKES => (2, &[Value::LeftBrake, Value::RightBrake]),
+        let targets: &[(usize, Value)] = match index {
+            ROW_JOYSTICK => &[
+                (0, Value::Elevator),
+                (1, Value::Aileron),
+                (2, Value::Rudder),
+            ],
+            ROW_THROTTLES => &[(0, Value::Throttle)],
+            ROW_FLAPS => &[(3, Value::Flaps)],
+            ROW_BRAKES => &[
+                (0, Value::Gear),
+                (2, Value::LeftBrake),
+                (3, Value::RightBrake),
+            ],
             _ => return Err(NotForBoard::NoSuchValue),
         };
         let mut outcome = Ok(());
-        for (target, column) in targets.iter().zip(columns.into_iter().skip(first)) {
-            if let Some(value) = column {
+        for (column, target) in targets {
+            if let Some(value) = columns.get(*column).copied().flatten() {
                 outcome = outcome.and(self.write(now_ms, *target, value));
             }
         }
@@ -245,7 +263,8 @@ impl<P: Copy + PartialEq> Board<P> {
             | Value::Rudder
             | Value::Flaps
             | Value::LeftBrake
-            | Value::RightBrake => joystick,
+            | Value::RightBrake
+            | Value::Gear => joystick,
             Value::Throttle => throttles,
             Value::Airspeed | Value::DifferentialPressure | Value::EngageSwitch => {
                 return Err(NotForBoard::NoSuchValue);
@@ -255,7 +274,7 @@ impl<P: Copy + PartialEq> Board<P> {
             return Err(NotForBoard::NotHeld);
         }
         let [elevator, aileron, rudder] = &mut self.yoke;
-        let [flaps, left, right] = &mut self.wheels;
+        let [flaps, left, right, gear] = &mut self.wheels;
         let (place, least) = match target {
             Value::Elevator => (elevator, -1.0),
             Value::Aileron => (aileron, -1.0),
@@ -263,6 +282,7 @@ impl<P: Copy + PartialEq> Board<P> {
             Value::Flaps => (flaps, 0.0),
             Value::LeftBrake => (left, 0.0),
             Value::RightBrake => (right, 0.0),
+            Value::Gear => (gear, 0.0),
             _ => (&mut self.throttle, 0.0),
         };
         *place = Some(value.clamp(least, 1.0));
@@ -285,7 +305,7 @@ impl<P: Copy + PartialEq> Board<P> {
         }
         *place = is_set;
         if of_joystick {
-            (self.yoke, self.wheels) = ([None; 3], [None; 3]);
+            (self.yoke, self.wheels) = ([None; 3], [None; 4]);
         } else {
             self.throttle = None;
         }
@@ -313,6 +333,7 @@ fn shown(
         Value::Flaps => drive.flaps,
         Value::LeftBrake => drive.brakes.map(|[left, _]| left),
         Value::RightBrake => drive.brakes.map(|[_, right]| right),
+        Value::Gear => drive.gear,
         Value::Airspeed | Value::DifferentialPressure | Value::EngageSwitch => readings.get(value),
     }
 }

@@ -42,10 +42,11 @@ pub(crate) enum Value {
     Flaps,
     LeftBrake,
     RightBrake,
+    Gear,
 }
 
 impl Value {
-    pub(crate) const COUNT: usize = 12;
+    pub(crate) const COUNT: usize = 13;
 
     /// By its dataref; none if the board does not have it.
     pub(crate) fn of(path: &[u8], engage_switch: &str) -> Option<Self> {
@@ -63,6 +64,7 @@ impl Value {
             b"sim/cockpit2/controls/flap_ratio" => Some(Self::Flaps),
             b"sim/cockpit2/controls/left_brake_ratio" => Some(Self::LeftBrake),
             b"sim/cockpit2/controls/right_brake_ratio" => Some(Self::RightBrake),
+            b"sim/cockpit2/controls/gear_handle_down" => Some(Self::Gear),
             path if path == DIFFERENTIAL_PRESSURE.as_bytes() => Some(Self::DifferentialPressure),
             _ => None,
         }

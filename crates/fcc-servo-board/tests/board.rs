@@ -121,6 +121,7 @@ fn drive(control: Control, surfaces: Option<[f32; 3]>, throttle: Option<f32>) ->
         throttle,
         flaps: None,
         brakes: None,
+        gear: None,
     }
 }
 
@@ -154,7 +155,7 @@ fn surfaces_are_followed_once_control_is_taken() {
 }
 
 #[test]
-fn flaps_and_brakes_stay_as_written_until_the_release() {
+fn flaps_brakes_and_gear_stay_as_written_until_the_release() {
     let [flaps, brakes] = [
         "sim/cockpit2/controls/flap_ratio",
         "sim/cockpit2/controls/left_brake_ratio",
@@ -167,16 +168,17 @@ fn flaps_and_brakes_stay_as_written_until_the_release() {
         (bench.board.drive().flaps, bench.board.drive().brakes),
         (None, None)
     );
-    // Column 3 of row 13, columns 2 and 3 of row 14.
+    // Column 3 of row 13, columns 0, 2 and 3 of row 14.
     let rows = [
         row(13, &[AS_IT_IS, AS_IT_IS, AS_IT_IS, 0.5]),
-        row(14, &[1.0, 1.0, 0.25, 0.75]),
+        row(14, &[0.0, 1.0, 0.25, 0.75]),
     ];
     bench
         .give(&[b"DATA\0", &rows.concat()[..]].concat())
         .unwrap();
     let driven = |bench: &Bench| (bench.board.drive().flaps, bench.board.drive().brakes);
     assert_eq!(driven(&bench), (Some(0.5), Some([0.25, 0.75])));
+    assert_eq!(bench.board.drive().gear, Some(0.0));
     bench.give(&dref(brakes, 3.0)).unwrap();
     bench.give(&dref(flaps, -1.0)).unwrap();
     bench.subscribe(&[flaps, brakes]);
@@ -184,8 +186,13 @@ fn flaps_and_brakes_stay_as_written_until_the_release() {
     bench.wait(200);
     assert_eq!(bench.board.control(), Control::Failsafe);
     assert_eq!(driven(&bench), (Some(0.0), Some([1.0, 0.75])));
+    // The wheels are out where the aircraft comes down; back in control, as written.
+    assert_eq!(bench.board.drive().gear, Some(1.0));
+    bench.give(&dref(flaps, 0.0)).unwrap();
+    assert_eq!(bench.board.drive().gear, Some(0.0));
     bench.give(&dref(JOYSTICK, 0.0)).unwrap();
     assert_eq!(driven(&bench), (None, None));
+    assert_eq!(bench.board.drive().gear, None);
 }
 
 #[test]

@@ -75,6 +75,7 @@ impl<W: Way> ActuatorBench for Bench<W> {
             flaps: Some(0.5),
             left_brake: Some(0.25),
             right_brake: Some(0.125),
+            gear: Some(1.0),
             ..Surfaces::IDLE
         }
     }

@@ -37,7 +37,7 @@
 //! | [`motion`] | the equations of motion and their integration |
 //! | [`turbulence`] | Dryden gusts |
 //!
-//! Not modelled: take-off and landing, flaps, the engine's speed, torque,
+//! Not modelled: take-off and landing, flaps, a retractable gear, the engine's speed, torque,
 //! gyroscopic effect and slipstream, ice, fuel burn (mass is constant) and Mach
 //! number.
 #![forbid(unsafe_code)]

@@ -15,9 +15,9 @@ use crate::truth::{NUMBERS, Truth};
 /// The state shared by sensor, actuator and observers.
 #[derive(Debug, Default)]
 pub(crate) struct SharedState {
-    /// Bits of throttle, elevator, aileron, rudder, elevator trim, flaps, brakes and
-    /// nose wheel, NaN for none.
-    commands: [AtomicU64; 9],
+    /// Bits of throttle, elevator, aileron, rudder, elevator trim, flaps, brakes,
+    /// nose wheel and gear, NaN for none.
+    commands: [AtomicU64; 10],
     /// Whether the actuator holds the controls.
     held: AtomicBool,
     /// 0 by the script, 1 off, 2 on.
@@ -44,6 +44,7 @@ impl SharedState {
             given(surfaces.left_brake),
             given(surfaces.right_brake),
             given(surfaces.nose_wheel),
+            given(surfaces.gear),
         ];
         for (place, value) in self.commands.iter().zip(values) {
             place.store(value.to_bits(), Ordering::Relaxed);
@@ -71,6 +72,7 @@ impl SharedState {
             left,
             right,
             nose,
+            gear,
         ] = self
             .commands
             .each_ref()
@@ -86,6 +88,7 @@ impl SharedState {
             left_brake: given(left),
             right_brake: given(right),
             nose_wheel: given(nose),
+            gear: given(gear),
         })
     }
 

@@ -60,6 +60,7 @@ impl Servos {
             left_brake: commands.left_brake.or(positions.left_brake),
             right_brake: commands.right_brake.or(positions.right_brake),
             nose_wheel: commands.nose_wheel.or(positions.nose_wheel),
+            gear: commands.gear.or(positions.gear),
         }
     }
 }

@@ -4,7 +4,7 @@
 //! A release therefore centres the surfaces and then clears the overrides, in
 //! this order. The throttle has no centre position: it stays where it is until
 //! its override is cleared and the lever in the cockpit has control again. The
-//! elevator's trim and the flaps need no override, and stay where they are. The
+//! elevator's trim, the flaps and the gear need no override, and stay where they are. The
 //! brakes' override is set with the first brake that is written.
 
 use fcc_core::flight::Surfaces;
@@ -19,14 +19,15 @@ use crate::quantity::{YOKE_HEADING, YOKE_PITCH, YOKE_ROLL};
 const THROTTLE: &str = "sim/flightmodel/engine/ENGN_thro_use";
 const OVERRIDE_BRAKES: &str = "sim/operation/override/override_toe_brakes";
 /// What is written only when it is given: each tick the first ones of what there is.
-pub(crate) const OCCASIONAL: [&str; 5] = [
+pub(crate) const OCCASIONAL: [&str; 6] = [
     ELEVATOR_TRIM,
     "sim/cockpit2/controls/flap_ratio",
     OVERRIDE_BRAKES,
     "sim/cockpit2/controls/left_brake_ratio",
     "sim/cockpit2/controls/right_brake_ratio",
+    "sim/cockpit2/controls/gear_handle_down",
 ];
-/// A servo board gets flaps and brakes in one of so many datagrams: a slow serial line
+/// A servo board gets flaps, brakes and gear in one of so many datagrams: a slow serial line
 /// has no room for them in each.
 const WHEELS_EVERY: u8 = 8;
 
@@ -62,7 +63,7 @@ enum Encoding {
     Data {
         engines: usize,
         datagram: [u8; data::size(4)],
-        /// Of a servo board, where flaps and brakes are rows, too: datagrams since
+        /// Of a servo board, where flaps, brakes and gear are rows, too: datagrams since
         /// they were in one, up to [`WHEELS_EVERY`].
         wheels: Option<u8>,
     },
@@ -105,8 +106,8 @@ impl Controls {
             overrides: [write_to(OVERRIDE_JOYSTICK)?, write_to(OVERRIDE_THROTTLES)?],
             encoding,
             occasional: {
-                let [trim, flaps, overrides, left, right] = OCCASIONAL.map(write_to);
-                [trim?, flaps?, overrides?, left?, right?]
+                let [trim, flaps, overrides, left, right, gear] = OCCASIONAL.map(write_to);
+                [trim?, flaps?, overrides?, left?, right?, gear?]
             },
             brakes: write_to(OVERRIDE_BRAKES)?,
             has_brakes: false,

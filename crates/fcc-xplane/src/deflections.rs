@@ -3,7 +3,8 @@
 //! The signs are those used throughout: X-Plane's `yoke_pitch_ratio` is
 //! positive nose up, `yoke_roll_ratio` positive right, `yoke_heading_ratio`
 //! positive nose right, each -1..1, and so are the columns of row 8; throttles
-//! are 0..1. So are flaps and brakes; the nose wheel follows `yoke_heading_ratio`.
+//! are 0..1. So are flaps and brakes; the nose wheel follows `yoke_heading_ratio`. The
+//! gear's handle is up or down, 0 or 1.
 
 use core::iter;
 
@@ -14,7 +15,7 @@ use crate::protocol::data::Row;
 /// Rows of Data Output.
 const ROW_JOYSTICK: i32 = 8;
 const ROW_THROTTLES: i32 = 25;
-/// Those of flaps and brakes: flaps are column 3, brakes 2 and 3.
+/// Those of flaps, gear and brakes: flaps are column 3, the gear 0, brakes 2 and 3.
 const ROW_FLAPS: i32 = 13;
 const ROW_BRAKES: i32 = 14;
 
@@ -26,19 +27,19 @@ pub(crate) struct Deflections {
     pub(crate) throttle: Option<f32>,
     /// What is written only when it is given, in the order of
     /// [`OCCASIONAL`](crate::controls::OCCASIONAL).
-    pub(crate) occasional: [Option<f32>; 5],
+    pub(crate) occasional: [Option<f32>; 6],
 }
 
 impl Deflections {
     pub(crate) const CENTRED: Self = Self {
         yoke: [Some(0.0); 3],
         throttle: None,
-        occasional: [None; 5],
+        occasional: [None; 6],
     };
     pub(crate) const AS_THEY_ARE: Self = Self {
         yoke: [None; 3],
         throttle: None,
-        occasional: [None; 5],
+        occasional: [None; 6],
     };
 
     /// Limited to their ranges; NaN leaves a control unchanged. The loop has
@@ -50,18 +51,20 @@ impl Deflections {
         let overrides = brakes.iter().any(Option::is_some).then_some(1.0);
         let trim = surfaces.elevator_trim.and_then(|trim| ratio(trim, -1.0));
         let flaps = surfaces.flaps.and_then(|flaps| ratio(flaps, 0.0));
+        let gear = surfaces.gear.filter(|gear| !gear.is_nan());
+        let gear = gear.map(|gear| if gear < 0.5 { 0.0 } else { 1.0 });
         Self {
             yoke: yoke_ratios(surfaces),
             throttle: ratio(surfaces.throttle, 0.0),
-            occasional: [trim, flaps, overrides, left, right],
+            occasional: [trim, flaps, overrides, left, right, gear],
         }
     }
 
-    /// As rows: joystick and throttles, then those of flaps and brakes, which a servo
-    /// board has.
+    /// As rows: joystick and throttles, then those of flaps, brakes and gear, which a
+    /// servo board has.
     pub(crate) fn rows(&self, engines: usize) -> [Row; 4] {
         let [elevator, aileron, rudder] = self.yoke;
-        let [_, flaps, _, left, right] = self.occasional;
+        let [_, flaps, _, left, right, gear] = self.occasional;
         let none = None;
         [
             (
@@ -75,16 +78,16 @@ impl Deflections {
             (ROW_FLAPS, [none, none, none, flaps, none, none, none, none]),
             (
                 ROW_BRAKES,
-                [none, none, left, right, none, none, none, none],
+                [gear, none, left, right, none, none, none, none],
             ),
         ]
         .map(|(index, columns)| Row { index, columns })
     }
 
-    /// Whether there are flaps or brakes.
+    /// Whether there are flaps, brakes or gear.
     pub(crate) fn moves_wheels(&self) -> bool {
-        let [_, flaps, _, left, right] = self.occasional;
-        flaps.or(left).or(right).is_some()
+        let [_, flaps, _, left, right, gear] = self.occasional;
+        flaps.or(left).or(right).or(gear).is_some()
     }
 
     /// Elevator, aileron, rudder, the throttle of every engine, then what is

@@ -1,5 +1,5 @@
 //! The loop of a servo board's firmware: a UART, a pitot tube, a switch, the
-//! servos of the surfaces, of flaps and of brakes. `no_std`; what it takes for a certain microcontroller is a
+//! servos of the surfaces, of flaps, of brakes and of a gear. `no_std`; what it takes for a certain microcontroller is a
 //! [`Hardware`] of it.
 //!
 //! ```sh
@@ -25,14 +25,14 @@ pub trait Hardware {
     /// The engage switch, debounced.
     fn is_switched_on(&mut self) -> bool;
     /// Sets the pulses of elevator, aileron, rudder, throttle, flaps, left and right
-    /// brake, µs. A nose wheel is connected to the rudder.
-    fn set_pulses_us(&mut self, pulses: [f32; 7]);
+    /// brake, and gear, µs. A nose wheel is connected to the rudder.
+    fn set_pulses_us(&mut self, pulses: [f32; 8]);
     /// Restarts the watchdog timer.
     fn feed_watchdog(&mut self);
 }
 
 /// A servo's middle position and its travel to either side, and the position of an
-/// idle throttle, flaps that are up and a brake that is released, and their travel, µs.
+/// idle throttle, flaps and a gear that are up and a brake that is released, and their travel, µs.
 const MIDDLE_US: f32 = 1_500.0;
 const TRAVEL_US: f32 = 500.0;
 const IDLE_US: f32 = 1_000.0;
@@ -90,6 +90,7 @@ impl Firmware {
         let throttle = drive.throttle.unwrap_or(safe.throttle);
         let flaps = drive.flaps.unwrap_or(0.0);
         let [left, right] = drive.brakes.unwrap_or_default();
+        let gear = drive.gear.unwrap_or(1.0);
         hardware.set_pulses_us([
             MIDDLE_US + TRAVEL_US * elevator,
             MIDDLE_US + TRAVEL_US * aileron,
@@ -98,6 +99,7 @@ impl Firmware {
             IDLE_US + FULL_US * flaps,
             IDLE_US + FULL_US * left,
             IDLE_US + FULL_US * right,
+            IDLE_US + FULL_US * gear,
         ]);
         hardware.feed_watchdog();
         drive.control
@@ -115,7 +117,7 @@ mod tests {
         now_ms: u32,
         line: VecDeque<u8>,
         sent: Vec<u8>,
-        pulses: [f32; 7],
+        pulses: [f32; 8],
         fed: u32,
     }
 
@@ -140,7 +142,7 @@ mod tests {
             true
         }
 
-        fn set_pulses_us(&mut self, pulses: [f32; 7]) {
+        fn set_pulses_us(&mut self, pulses: [f32; 8]) {
             self.pulses = pulses;
         }
 
@@ -159,7 +161,7 @@ mod tests {
         let mut line = Encoder::new();
         assert_eq!(firmware.step(&mut bench), Control::Free);
         let idle = [
-            1_500.0, 1_500.0, 1_500.0, 1_000.0, 1_000.0, 1_000.0, 1_000.0,
+            1_500.0, 1_500.0, 1_500.0, 1_000.0, 1_000.0, 1_000.0, 1_000.0, 2_000.0,
         ];
         assert_eq!(bench.pulses, idle);
         for message in [
@@ -173,6 +175,7 @@ mod tests {
             dref("sim/cockpit2/controls/flap_ratio", 0.5),
             dref("sim/cockpit2/controls/left_brake_ratio", 0.0),
             dref("sim/cockpit2/controls/right_brake_ratio", 0.75),
+            dref("sim/cockpit2/controls/gear_handle_down", 0.0),
         ] {
             let mut frame = [0; MAX_FRAME];
             bench.line.extend(line.frame(&message, &mut frame).unwrap());
@@ -181,7 +184,7 @@ mod tests {
         assert_eq!(firmware.step(&mut bench), Control::Held);
         let surfaces = [2_000.0, 1_000.0, 1_750.0, 1_250.0];
         assert_eq!(bench.pulses[..4], surfaces);
-        assert_eq!(bench.pulses[4..], [1_500.0, 1_000.0, 1_750.0]);
+        assert_eq!(bench.pulses[4..], [1_500.0, 1_000.0, 1_750.0, 1_000.0]);
         let mut computer = Decoder::new();
         let mut replies = Vec::new();
         for byte in &bench.sent {
@@ -194,8 +197,8 @@ mod tests {
         bench.now_ms = 220;
         assert_eq!(firmware.step(&mut bench), Control::Failsafe);
         assert_eq!(bench.pulses[..4], idle[..4]);
-        // Flaps and brakes stay.
-        assert_eq!(bench.pulses[4..], [1_500.0, 1_000.0, 1_750.0]);
+        // Flaps and brakes stay; the gear is down.
+        assert_eq!(bench.pulses[4..], [1_500.0, 1_000.0, 1_750.0, 2_000.0]);
         assert_eq!(bench.fed, 4);
     }
 }

@@ -44,6 +44,9 @@ schema! {
         /// steered by itself.
         #[field(9, range = -1.0..=1.0)]
         pub nose_wheel: Option<f64>,
+        /// The landing gear, 0 up, 1 down; NaN leaves it as it is.
+        #[field(10, range = 0.0..=1.0)]
+        pub gear: Option<f64>,
     }
 }
 
@@ -59,6 +62,7 @@ impl Surfaces {
         left_brake: None,
         right_brake: None,
         nose_wheel: None,
+        gear: None,
     };
 
     /// Whether every value is finite and in its range; those that an aircraft need not
@@ -71,6 +75,7 @@ impl Surfaces {
             left_brake: given(self.left_brake),
             right_brake: given(self.right_brake),
             nose_wheel: given(self.nose_wheel),
+            gear: given(self.gear),
             ..*self
         })
     }

@@ -112,6 +112,7 @@ macro_rules! section {
         $(#[$meta:meta])*
         $section:ident for $core:ident {
             $( $(#[$doc:meta])* $file_field:ident => $core_field:ident * $factor:expr ),* $(,)?
+            $(; $( $(#[$flag_doc:meta])* $flag:ident ),* $(,)? )?
         }
     ) => {
         $(#[$meta])*
@@ -119,17 +120,24 @@ macro_rules! section {
         #[serde(default, deny_unknown_fields)]
         pub struct $section {
             $( $(#[$doc])* pub $file_field: f64, )*
+            $( $( $(#[$flag_doc])* pub $flag: bool, )* )?
         }
 
         impl From<&$core> for $section {
             fn from(core: &$core) -> Self {
-                Self { $( $file_field: rounded(core.$core_field / $factor), )* }
+                Self {
+                    $( $file_field: rounded(core.$core_field / $factor), )*
+                    $( $( $flag: core.$flag, )* )?
+                }
             }
         }
 
         impl From<&$section> for $core {
             fn from(section: &$section) -> Self {
-                Self { $( $core_field: section.$file_field * $factor, )* }
+                Self {
+                    $( $core_field: section.$file_field * $factor, )*
+                    $( $( $flag: section.$flag, )* )?
+                }
             }
         }
 
@@ -329,7 +337,9 @@ section! {
         /// Off the airspeed of the approach.
         most_off_airspeed_kt => most_off_airspeed_mps * KNOT_MPS,
         /// Bank.
-        most_bank_deg => most_bank_rad * DEGREE_RAD,
+        most_bank_deg => most_bank_rad * DEGREE_RAD;
+        /// Whether the gear is retracted in flight.
+        retractable_gear,
     }
 }
 

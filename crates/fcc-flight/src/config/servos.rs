@@ -68,8 +68,8 @@ pub struct ServoSection {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub slew_per_s: Option<f64>,
     /// Where it goes without the loop.
-    #[serde(default)]
-    pub failsafe: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failsafe: Option<f64>,
 }
 
 const USUAL: ServoChannel = ServoChannel::new(Drives::Elevator);
@@ -106,6 +106,8 @@ pub enum DrivesChoice {
     RightBrake,
     /// The nose wheel.
     NoseWheel,
+    /// The landing gear.
+    Gear,
 }
 
 /// What servos do while nobody has control.
@@ -137,24 +139,26 @@ impl Default for ServosSection {
 
 impl ServoSection {
     fn to_linux(&self) -> ServoChannel {
+        let drives = match self.drives {
+            DrivesChoice::Elevator => Drives::Elevator,
+            DrivesChoice::Aileron => Drives::Aileron,
+            DrivesChoice::Rudder => Drives::Rudder,
+            DrivesChoice::Throttle => Drives::Throttle,
+            DrivesChoice::Flaps => Drives::Flaps,
+            DrivesChoice::LeftBrake => Drives::LeftBrake,
+            DrivesChoice::RightBrake => Drives::RightBrake,
+            DrivesChoice::NoseWheel => Drives::NoseWheel,
+            DrivesChoice::Gear => Drives::Gear,
+        };
         ServoChannel {
-            drives: match self.drives {
-                DrivesChoice::Elevator => Drives::Elevator,
-                DrivesChoice::Aileron => Drives::Aileron,
-                DrivesChoice::Rudder => Drives::Rudder,
-                DrivesChoice::Throttle => Drives::Throttle,
-                DrivesChoice::Flaps => Drives::Flaps,
-                DrivesChoice::LeftBrake => Drives::LeftBrake,
-                DrivesChoice::RightBrake => Drives::RightBrake,
-                DrivesChoice::NoseWheel => Drives::NoseWheel,
-            },
+            drives,
             min_us: self.min_us,
             centre_us: self.centre_us,
             max_us: self.max_us,
             is_reversed: self.reversed,
             trim: self.trim,
             slew_per_s: self.slew_per_s,
-            failsafe: self.failsafe,
+            failsafe: self.failsafe.unwrap_or(drives.usual_failsafe()),
         }
     }
 

@@ -64,11 +64,13 @@ impl Actuator<Surfaces> for Throttle {
     }
 }
 
-/// A flight with an engine, and what stops it.
+const RETRACTABLE: &str = "[autopilot.runway]\nretractable_gear = true\n";
+
+/// A flight with an engine, and what stops it; its gear is retractable.
 fn with_engine(plan: &str, keys: &str) -> (Flight, Arc<AtomicBool>) {
     let stops = Arc::new(AtomicBool::new(false));
     let stopped = Arc::clone(&stops);
-    let keys = format!("[contingency]\nengine_out_below_rpm = 300\n{keys}");
+    let keys = format!("[contingency]\nengine_out_below_rpm = 300\n{RETRACTABLE}{keys}");
     let flight = Flight::with(plan, &keys, |sensor| {
         Box::new(Engine(sensor, Arc::clone(&stopped)))
     });
@@ -102,8 +104,9 @@ fn stands(flight: &Flight) -> bool {
     flight.truth.get().altitude_m < 3.0 && velocity.north_mps.hypot(velocity.east_mps) < 0.3
 }
 
-/// Lets the engine stop after a time, s; the sink rate at the touch, ft/min.
-fn glide_down(flight: &mut Flight, stops: &AtomicBool, after_s: u64) -> f64 {
+/// Lets the engine stop after a time, s; the sink rate at the touch, ft/min, and the height
+/// at which the gear was lowered, m.
+fn glide_down(flight: &mut Flight, stops: &AtomicBool, after_s: u64) -> (f64, f64) {
     for _ in 0..after_s * RATE {
         flight.tick();
     }
@@ -113,18 +116,25 @@ fn glide_down(flight: &mut Flight, stops: &AtomicBool, after_s: u64) -> f64 {
     // 2 s, and a tick.
     let after_s = (flight.record.tick.number - from) as f64 / RATE as f64;
     assert!((2.0..2.2).contains(&after_s), "{after_s}");
-    let (mut sink_fpm, mut falling_fpm) = (None, 0.0);
+    let (mut sink_fpm, mut falling_fpm, mut lowered) = (None, 0.0, None);
     flight.fly_until(1_000.0, |flight| {
         assert_eq!(flight.mode(), Mode::Glide);
         assert_eq!(flight.record.setpoints.contingency, Contingency::EngineOut);
+        let gear = flight.record.outputs.gear;
+        assert_ne!(gear, Some(0.0));
+        if gear == Some(1.0) {
+            lowered.get_or_insert(flight.truth.get());
+        }
         if flight.record.measurements.weight_on_wheels.value >= 0.5 {
             sink_fpm.get_or_insert(falling_fpm);
+            assert_eq!(gear, Some(1.0));
         }
         falling_fpm = flight.truth.get().velocity.down_mps / FT * 60.0;
         stands(flight)
     });
     assert!(flight.truth.impact().is_none());
-    sink_fpm.expect("it has touched")
+    let lowered = lowered.expect("the gear was lowered");
+    (sink_fpm.expect("it has touched"), lowered.altitude_m)
 }
 
 /// From 3,000 ft, on any course from the runway, in wind from any side of 10 kt: on the
@@ -143,14 +153,17 @@ fn without_the_engine_it_lands_on_the_runway() {
             "[built-in]\nnoise = false\nwind_from_deg = {wind_from_deg}\nwind_kt = {wind_kt}\n"
         );
         let (mut flight, stops) = with_engine(&away_from_runway(course_deg), &keys);
-        let sink_fpm = glide_down(&mut flight, &stops, after_s);
+        let (sink_fpm, lowered_m) = glide_down(&mut flight, &stops, after_s);
         assert!(flight.happened("the engine is out: gliding"));
         let truth = flight.truth.get();
         println!(
             "course {course_deg}, wind {wind_kt} kt from {wind_from_deg}: stands {:.0} m north, \
-             {:.1} m east, sink {sink_fpm:.0} ft/min",
+             {:.1} m east, sink {sink_fpm:.0} ft/min, gear lowered {lowered_m:.0} m high",
             truth.north_m, truth.east_m
         );
+        // A quarter of a circle of 290 m and a final of 400 m cost 95 m at a ratio of 9;
+        // not before: it began 914 m high.
+        assert!((80.0..450.0).contains(&lowered_m), "{lowered_m}");
         assert!(sink_fpm < 500.0, "{sink_fpm}");
         assert!(truth.east_m.abs() < 15.0, "{truth:?}");
         assert!((0.0..1_100.0).contains(&truth.north_m), "{truth:?}");
@@ -163,8 +176,9 @@ fn without_the_engine_it_lands_on_the_runway() {
 fn in_a_tail_wind_it_lands_against_the_runway_s_direction() {
     let keys = "[built-in]\nnoise = false\nwind_from_deg = 180\nwind_kt = 12\n";
     let (mut flight, stops) = with_engine(&away_from_runway(60.0), keys);
-    let sink_fpm = glide_down(&mut flight, &stops, 40);
+    let (sink_fpm, lowered_m) = glide_down(&mut flight, &stops, 40);
     let truth = flight.truth.get();
+    assert!((80.0..450.0).contains(&lowered_m), "{lowered_m}");
     println!(
         "stands {:.0} m north, {:.1} m east, sink {sink_fpm:.0} ft/min",
         truth.north_m, truth.east_m
@@ -180,7 +194,9 @@ fn in_a_tail_wind_it_lands_against_the_runway_s_direction() {
 fn where_nothing_is_reached_it_lands_into_the_wind() {
     let keys = "[built-in]\nnoise = false\nwind_from_deg = 60\nwind_kt = 15\n";
     let (mut flight, stops) = with_engine(&away_from_runway(200.0), keys);
-    let sink_fpm = glide_down(&mut flight, &stops, 340);
+    let (sink_fpm, lowered_m) = glide_down(&mut flight, &stops, 340);
+    // As soon as it is known that no final follows.
+    assert!(lowered_m > 900.0, "{lowered_m}");
     assert!(flight.distance_m(HOME) > 10_000.0);
     let heading_deg = flight
         .truth

@@ -42,11 +42,12 @@ impl Sensor<Measurements> for Falsified {
     }
 }
 
-/// A flight with calm air, and what falsifies it.
+/// A flight with calm air and a retractable gear, and what falsifies it.
 fn flight(falsify: Falsify) -> (Flight, Arc<AtomicBool>) {
     let is_asked = Arc::new(AtomicBool::new(false));
     let asked = Arc::clone(&is_asked);
-    let flight = Flight::with(&there_and_back(), "[built-in]\nnoise = false\n", |sensor| {
+    let keys = "[autopilot.runway]\nretractable_gear = true\n[built-in]\nnoise = false\n";
+    let flight = Flight::with(&there_and_back(), keys, |sensor| {
         Box::new(Falsified {
             sensor,
             good: Measurements::default(),
@@ -80,6 +81,9 @@ fn what_is_lost_in_the_climb_of_a_take_off_ends_no_climb() {
             flight.fly_until(120.0, |flight| height_m(flight) > lost_m);
             assert_eq!(flight.mode(), Mode::Takeoff);
             is_asked.store(true, Ordering::Relaxed);
+            // It has gone up above 30 m, and is as it was then.
+            let gear = if lost_m > 31.0 { 0.0 } else { 1.0 };
+            assert_eq!(flight.record.outputs.gear, Some(gear));
             let mut highest_m = lost_m;
             for tick in 0..120 * 40 {
                 flight.tick();
@@ -91,6 +95,7 @@ fn what_is_lost_in_the_climb_of_a_take_off_ends_no_climb() {
                 assert!(now_m > highest_m - 30.0, "{what}, from {highest_m} m");
             }
             assert!(matches!(flight.record.state.state(), State::Failsafe(_)));
+            assert_eq!(flight.record.outputs.gear, None);
             assert!(
                 highest_m > lost_m + 60.0,
                 "{name} at {lost_m} m: {highest_m} m"
@@ -143,6 +148,7 @@ fn what_is_lost_in_the_flare_ends_on_the_runway() {
         });
         assert!(flight.truth.impact().is_none(), "{name}");
         assert!(touches_mps < GEAR_MPS, "{name}: {touches_mps} m/s");
+        assert_eq!(flight.record.outputs.gear, Some(1.0), "{name}");
     }
 }
 

@@ -21,6 +21,8 @@ pub enum Drives {
     RightBrake,
     /// -1 to 1, positive to the right.
     NoseWheel,
+    /// 0 up to 1 down.
+    Gear,
 }
 
 impl Drives {
@@ -37,7 +39,16 @@ impl Drives {
     const fn has_centre(self) -> bool {
         match self {
             Self::Elevator | Self::Aileron | Self::Rudder | Self::NoseWheel => true,
-            Self::Throttle | Self::Flaps | Self::LeftBrake | Self::RightBrake => false,
+            Self::Throttle | Self::Flaps | Self::LeftBrake | Self::RightBrake | Self::Gear => false,
+        }
+    }
+
+    /// Where it goes without the loop, unless another position is given: what may have to
+    /// land, lands on its wheels.
+    pub const fn usual_failsafe(self) -> f64 {
+        match self {
+            Self::Gear => 1.0,
+            _ => 0.0,
         }
     }
 
@@ -51,6 +62,7 @@ impl Drives {
             Self::Flaps => surfaces.flaps,
             Self::LeftBrake => surfaces.left_brake,
             Self::RightBrake => surfaces.right_brake,
+            Self::Gear => surfaces.gear,
             // Straight off the ground, and so at the touch-down: at the lift-off it
             // may have been deflected.
             Self::NoseWheel => Some(surfaces.nose_wheel.unwrap_or(0.0)),
@@ -118,7 +130,7 @@ pub enum ServoError {
 
 impl ServoChannel {
     /// Most servos': 1,000 to 2,000 µs, 1,500 in the middle. Failsafe is centred,
-    /// a throttle idle, flaps up and brakes released.
+    /// a throttle idle, flaps up, brakes released and the gear down.
     pub const fn new(drives: Drives) -> Self {
         Self {
             drives,
@@ -128,7 +140,7 @@ impl ServoChannel {
             is_reversed: false,
             trim: 0.0,
             slew_per_s: None,
-            failsafe: 0.0,
+            failsafe: drives.usual_failsafe(),
         }
     }
 

@@ -76,6 +76,7 @@ fn an_impossible_channel_is_refused() {
         Drives::Flaps,
         Drives::LeftBrake,
         Drives::RightBrake,
+        Drives::Gear,
     ] {
         let trim = ServoChannel {
             trim: 0.1,

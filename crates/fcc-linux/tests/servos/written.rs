@@ -112,7 +112,7 @@ fn a_slew_limit_makes_small_steps() {
 }
 
 /// Flaps and brakes stay where they were last written, at first at failsafe; the
-/// nose wheel is straight in the air.
+/// nose wheel is straight in the air. The gear's failsafe is down.
 #[test]
 fn what_a_runway_needs_is_left_as_it_is_in_the_air() {
     let drives = [
@@ -120,6 +120,7 @@ fn what_a_runway_needs_is_left_as_it_is_in_the_air() {
         Drives::LeftBrake,
         Drives::RightBrake,
         Drives::NoseWheel,
+        Drives::Gear,
     ];
     let mut channels = drives.map(ServoChannel::new);
     channels[0].failsafe = 0.1;
@@ -132,12 +133,13 @@ fn what_a_runway_needs_is_left_as_it_is_in_the_air() {
         left_brake: Some(0.25),
         right_brake: Some(0.75),
         nose_wheel: Some(-1.0),
+        gear: Some(0.0),
         ..in_the_air
     };
     for (surfaces, us) in [
-        (in_the_air, [1_100.0, 1_000.0, 1_000.0, 1_500.0]),
-        (rolls_out, [1_500.0, 1_250.0, 1_750.0, 1_000.0]),
-        (in_the_air, [1_500.0, 1_250.0, 1_750.0, 1_500.0]),
+        (in_the_air, [1_100.0, 1_000.0, 1_000.0, 1_500.0, 2_000.0]),
+        (rolls_out, [1_500.0, 1_250.0, 1_750.0, 1_000.0, 1_000.0]),
+        (in_the_air, [1_500.0, 1_250.0, 1_750.0, 1_500.0, 1_000.0]),
     ] {
         assert_eq!(actuator.apply(&Tick::default(), &surfaces), Ok(()));
         assert!(eventually(|| actuator.is_settled()));
@@ -145,7 +147,7 @@ fn what_a_runway_needs_is_left_as_it_is_in_the_air() {
     }
     actuator.release().unwrap();
     assert!(eventually(|| actuator.is_settled()));
-    let released = [1_100.0, 1_000.0, 1_000.0, 1_500.0];
+    let released = [1_100.0, 1_000.0, 1_000.0, 1_500.0, 2_000.0];
     assert!(written.0.lock().unwrap().ends_with(&released));
 }
 

@@ -302,5 +302,6 @@ impl<W: Way> Bench<W> {
             && same(drive.flaps, outputs.flaps)
             && same(left, outputs.left_brake)
             && same(right, outputs.right_brake)
+            && same(drive.gear, outputs.gear)
     }
 }

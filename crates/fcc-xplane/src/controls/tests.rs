@@ -114,9 +114,45 @@ fn by_rows_it_is_one_datagram_with_joystick_and_throttles() {
     assert_eq!(datagrams, [expected]);
 }
 
-/// The rows are X-Plane's: 13 has the flaps in column 3, 14 the brakes in 2 and 3.
+/// X-Plane's dataref is an int, 0 up and 1 down; in rows it is a dataref, too.
 #[test]
-fn a_servo_board_has_flaps_and_brakes_in_each_eighth_datagram() {
+fn the_gears_handle_is_up_or_down_and_stays_at_a_release() {
+    for output in [Output::Dref, Output::Data] {
+        let config = XPlaneConfig {
+            output,
+            ..XPlaneConfig::default()
+        };
+        let mut controls = Controls::new(&config).unwrap();
+        let without = sent(|send| controls.set(&SURFACES, send).unwrap());
+        for (gear, handle) in [(0.0, 0.0), (1.0, 1.0), (0.49, 0.0), (7.0, 1.0)] {
+            let moved = Surfaces {
+                gear: Some(gear),
+                ..SURFACES
+            };
+            assert_eq!(controls.messages(&moved), without.len() + 1);
+            // Each time, as a datagram may be lost.
+            for _ in 0..2 {
+                let mut datagrams = sent(|send| controls.set(&moved, send).unwrap());
+                let last = named(&[datagrams.pop().unwrap()]);
+                let path = "sim/cockpit2/controls/gear_handle_down".to_owned();
+                assert_eq!(last, [(path, handle)]);
+                assert_eq!(datagrams, without);
+            }
+        }
+        let unknown = Surfaces {
+            gear: Some(f64::NAN),
+            ..SURFACES
+        };
+        assert_eq!(sent(|send| controls.set(&unknown, send).unwrap()), without);
+        let released = sent(|send| controls.release(send).unwrap());
+        assert!(!released.concat().windows(4).any(|path| path == b"gear"));
+    }
+}
+
+/// The rows are X-Plane's: 13 has the flaps in column 3, 14 the gear in 0 and the brakes
+/// in 2 and 3.
+#[test]
+fn a_servo_board_has_flaps_brakes_and_gear_in_each_eighth_datagram() {
     let config = XPlaneConfig {
         output: Output::Data,
         plant: PlantKind::ServoBoard,
@@ -127,6 +163,7 @@ fn a_servo_board_has_flaps_and_brakes_in_each_eighth_datagram() {
         flaps: Some(0.5),
         left_brake: Some(0.25),
         right_brake: Some(1.0),
+        gear: Some(1.0),
         ..SURFACES
     };
     let mut lengths = Vec::new();
@@ -147,7 +184,16 @@ fn a_servo_board_has_flaps_and_brakes_in_each_eighth_datagram() {
             row(13, [none, none, none, Some(0.5), none, none, none, none]),
             row(
                 14,
-                [none, none, Some(0.25), Some(1.0), none, none, none, none]
+                [
+                    Some(1.0),
+                    none,
+                    Some(0.25),
+                    Some(1.0),
+                    none,
+                    none,
+                    none,
+                    none
+                ]
             ),
         ]
     );

@@ -311,7 +311,8 @@ impl Controller for Autopilot {
     }
 
     fn control(&mut self, tick: &Tick, _measurements: &Measurements) -> Surfaces {
-        self.last = self.fly(tick.woke);
+        let outputs = self.fly(tick.woke);
+        self.last = self.with_gear(outputs);
         self.last
     }
 
@@ -327,7 +328,11 @@ impl Controller for Autopilot {
                 .watch(&self.last, &estimate, self.clock.step_s());
         }
         let held = self.safest(tick.woke, &seen);
-        let outputs = self.stop_on_wheels(lost).unwrap_or(held);
+        let stops = self.stop_on_wheels(lost);
+        let outputs = Surfaces {
+            gear: self.gear_in_failsafe(stops.is_some()),
+            ..stops.unwrap_or(held)
+        };
         self.last = self.with_trim(tick.woke, outputs, lost);
         self.last
     }

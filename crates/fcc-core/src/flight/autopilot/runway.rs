@@ -11,6 +11,7 @@
 //!
 //! Without power the approach is that of the [glide](super::gliding).
 
+mod gear;
 mod in_failsafe;
 mod notices;
 mod on_wheels;

@@ -62,6 +62,11 @@ impl OverGroundMode {
         self.follower.runway()
     }
 
+    /// Whether a glide without power is in the turn to its final, or on it.
+    pub const fn glides_to_land(&self) -> bool {
+        self.follower.glides_to_land()
+    }
+
     /// Whether a landing was given up so often that it is not tried again.
     pub const fn has_no_more_landings(&self) -> bool {
         self.follower.has_no_more_landings()

@@ -35,6 +35,11 @@ impl Follower {
         }
     }
 
+    /// Whether a glide without power is in the turn to its final, or on it.
+    pub const fn glides_to_land(&self) -> bool {
+        matches!(&self.phase, Phase::Glide(flight) if flight.is_on_final())
+    }
+
     /// Whether a landing was given up so often that it is not tried again.
     pub const fn has_no_more_landings(&self) -> bool {
         self.given_up >= MOST_LANDINGS

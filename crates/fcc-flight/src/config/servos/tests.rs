@@ -186,7 +186,8 @@ fn servos_and_lines_are_restored_unchanged() {
                 [[actuator.channel]]\ndrives = \"elevator\"\noutput = 4\n\
                 [[actuator.channel]]\ndrives = \"flaps\"\noutput = 5\nfailsafe = 0.3\n\
                 [[actuator.channel]]\ndrives = \"right-brake\"\noutput = 6\n\
-                [[actuator.channel]]\ndrives = \"nose-wheel\"\noutput = 7\ntrim = 0.05\n";
+                [[actuator.channel]]\ndrives = \"nose-wheel\"\noutput = 7\ntrim = 0.05\n\
+                [[actuator.channel]]\ndrives = \"gear\"\noutput = 8\n";
     let written = Config::parse(text, "test").unwrap().to_toml().unwrap();
     let again = Config::parse(&written, "again").unwrap();
     assert_eq!(again.to_toml().unwrap(), written);

@@ -171,6 +171,7 @@ fn numbers(measurements: &Measurements) -> Vec<f64> {
         &mut surfaces.left_brake,
         &mut surfaces.right_brake,
         &mut surfaces.nose_wheel,
+        &mut surfaces.gear,
     ] {
         *value = Some(value.unwrap_or(0.0));
     }

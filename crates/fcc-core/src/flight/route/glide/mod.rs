@@ -229,6 +229,11 @@ impl GlideFlight {
         self.go_on(here, &motion, config)
     }
 
+    /// Whether it is in the turn to its final, or on it.
+    pub(super) const fn is_on_final(&self) -> bool {
+        matches!(self.stage, Stage::Turn(_) | Stage::Final)
+    }
+
     /// Computes the way to the site; whether it is reached.
     fn aim(&mut self, here: &OverGround, motion: &Motion) -> bool {
         let (at_m, course) = (motion.position_m, course_of(motion.ground_velocity_mps));

@@ -28,6 +28,8 @@ pub struct RunwayConfig {
     pub takeoff_flaps: f64,
     /// Flaps of the landing, 0..=1.
     pub landing_flaps: f64,
+    /// Whether the gear is retracted in flight; a fixed one is not written.
+    pub retractable_gear: bool,
     /// Brake of the roll-out, 0..=1.
     pub brake: f64,
     /// The radius of a turn with the nose wheel fully deflected, m.
@@ -71,6 +73,7 @@ impl Default for RunwayConfig {
             touchdown_mps: 0.203_2, // 40 ft/min
             takeoff_flaps: 0.0,
             landing_flaps: 0.0,
+            retractable_gear: false,
             brake: 0.5,
             steering_radius_m: 9.0,
             height_on_wheels_m: 1.3,
