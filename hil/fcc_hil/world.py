@@ -13,6 +13,8 @@ from dataclasses import dataclass, replace
 
 from .cockpit import (
     ELEVATOR_TRIM,
+    FAILED,
+    GENERATOR_FAILURE,
     OVERRIDE_JOYSTICK,
     OVERRIDE_THROTTLES,
     SIM_SPEED,
@@ -271,6 +273,8 @@ class World:
         self._follow_qnh(seconds)
         state = self.plant.state()
         self._autopilot.step(state, self.cockpit)
+        failure = self.cockpit.read(GENERATOR_FAILURE)
+        self.plant.battery.alternator_fails = failure == FAILED
         self._move_surfaces(self.settings.surface_rate * seconds)
         self.plant.write(self.surfaces, self.cockpit.throttles())
         self._owed_steps += seconds * STEPS_PER_SECOND

@@ -6,7 +6,7 @@ use std::time::Duration;
 use fcc_core::flight::guidance::Mode;
 use fcc_core::flight::inertial::metres_per_radian;
 use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Surfaces};
-use fcc_core::framework::{Actuator, LoopCommand, Sensor};
+use fcc_core::framework::{Actuator, LoopCommand, Sensor, SensorFault, Tick};
 use fcc_flight::config::{Config, PreparedPlan};
 use fcc_flight::flight::assemble;
 use fcc_plan::{Home, Item, Place, Plan};
@@ -37,6 +37,24 @@ pub(crate) fn line(number: usize, command: u16, parameters: [f64; 4], at: Place)
     let [a, b, c, d] = parameters;
     let (latitude, longitude) = (at.latitude_deg, at.longitude_deg);
     format!("{number} 0 0 {command} {a} {b} {c} {d} {latitude:.9} {longitude:.9} {ALTITUDE_M} 1\n")
+}
+
+/// A sensor without a reading, which is taken out of its measurements.
+pub(crate) struct Without(
+    pub(crate) Box<dyn Sensor<Measurements>>,
+    pub(crate) fn(&mut Measurements),
+);
+
+impl Sensor<Measurements> for Without {
+    fn name(&self) -> &str {
+        self.0.name()
+    }
+
+    fn sample(&mut self, tick: &Tick, measurements: &mut Measurements) -> Result<(), SensorFault> {
+        self.0.sample(tick, measurements)?;
+        (self.1)(measurements);
+        Ok(())
+    }
 }
 
 /// A flight of the built-in aircraft.
