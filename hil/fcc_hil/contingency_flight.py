@@ -235,9 +235,7 @@ def use_battery(seed: int, *, wind_kt: float) -> tuple[LandingScore | None, Watc
 
     watch = Alternator(_DESCENDS_S + drawn.after_s)
     keys = '[contingency]\nbattery_voltage_v = 24.5\nbattery_low = "land"\n'
-    conditions = PlanConditions(
-        weather=drawn.weather, seed=seed, sensors="board-rtk", config=keys
-    )
+    conditions = PlanConditions(weather=drawn.weather, seed=seed, sensors="board-rtk", config=keys)
     home, first = drawn.legs[0], drawn.legs[1]
     legs = [
         replace(home, altitude_m=0.0),

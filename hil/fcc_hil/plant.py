@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import jsbsim
 
 from .aircraft import Aircraft, by_name
-from .battery import Battery
+from .electrical import Battery
 from .settle import SettlingPilot
 from .state import Controls, State
 from .terrain_tiles import Tiles
@@ -141,7 +141,6 @@ class Plant:
             throttle=self.trim.throttle, elevator_trim=-float(fdm[_ELEVATOR_TRIM])
         )
         self._set_turbulence(weather)
-        self.battery = Battery()
         self.steps = 0
         """Steps of 1/120 s since the set-up was done."""
 

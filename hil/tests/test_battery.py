@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
-import pytest
+from pathlib import Path
 
-from fcc_hil.battery import Battery
-from fcc_hil.plant import Plant
+import pytest
 from standin_bench import Bench
+
+from fcc_hil import battery
+from fcc_hil.electrical import Battery
+from fcc_hil.flight import Flight
+from fcc_hil.plant import Plant
+from fcc_hil.sensor_faults import Faults
+
+TWELVE_LEGS = Path(__file__).parents[2] / "config/plans/twelve-legs.waypoints"
 
 CRUISE_RADPS = 240.0
 VOLTAGE = "sim/cockpit2/electrical/battery_voltage_actual_volts[0]"
@@ -51,3 +58,18 @@ def test_a_client_reads_the_voltage_and_a_failed_generator_lowers_it() -> None:
         assert bench.frames(5)[1] == 28.0
     finally:
         bench.close()
+
+
+@pytest.mark.autopilot(
+    mode="plan",
+    plan=TWELVE_LEGS,
+    config="[contingency]\nbattery_voltage_v = 24.5\nbattery_low_after_s = 2\n",
+)
+def test_a_voltage_that_drifts_is_acted_on(flight: Flight, faults: Faults) -> None:
+    """From 28 V by 0.5 V in a second: low after 7 s, and for 2 s then."""
+    flight.engages(by=3)
+    fault = faults.drift(battery, per_s=-0.5)
+    flight.flies(12)
+    (told,) = [event for event in flight.rig.events if "the battery is low" in event.text]
+    assert told.text == "the battery is low: returning"
+    assert told.time_s - fault.begins_s == pytest.approx(9.0, abs=0.1)

@@ -167,7 +167,7 @@ fn what_nothing_measures_is_said() {
         said
     };
     let voltage = "battery_voltage_v = 11.0\nengine_out_below_rpm = 500.0\n";
-    let of_rows = checked("[x-plane]\ninput = \"data\"\n", voltage);
+    let of_rows = checked("[x-plane]\ninput = \"data\"\nlocal_port = 49005\n", voltage);
     for words in [
         "contingency.battery_voltage_v is 11, and no sensor here measures the voltage",
         "contingency.engine_out_below_rpm is 500, and no sensor here measures the speed",
