@@ -44,7 +44,7 @@ endif
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-contingencies test-fences test-glides test-guidance test-landings test-landings-beside test-raw-edges test-upsets test-android android android-check android-package test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
+.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-contingencies test-fences test-glides test-guidance test-landings test-landings-beside test-plan-real-time test-raw-edges test-upsets test-android android android-check android-package test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -64,6 +64,8 @@ fly-jsbsim: build $(STAMPS)/python ## Fly JSBSim's Cessna over X-Plane's protoco
 PLAN ?= config/plans/circuit.waypoints
 WIND ?= 8
 WIND_FROM ?= 270
+# A folder of elevation tiles (.hgt), for fly-plan-jsbsim.
+TERRAIN ?=
 
 fly-plan: build ## Fly a plan with the built-in aircraft, as fast as it computes, and draw it (PLAN= WIND= WIND_FROM=)
 	@mkdir -p target
@@ -73,10 +75,10 @@ fly-plan: build ## Fly a plan with the built-in aircraft, as fast as it computes
 	$(FCCD) report --html target/fly-plan.html $$(ls -t target/fly-plan/*.mcap | head -1) > /dev/null
 	@echo "the ground track is in target/fly-plan.html"
 
-fly-plan-jsbsim: build $(STAMPS)/python-module ## Fly a plan with JSBSim over X-Plane's protocol, in real time, scored from its truth (PLAN= WIND= WIND_FROM= SEED= JSON=)
+fly-plan-jsbsim: build $(STAMPS)/python-module ## Fly a plan with JSBSim over X-Plane's protocol, in real time, scored from its truth (PLAN= WIND= WIND_FROM= SEED= JSON= TERRAIN=)
 	@mkdir -p target
 	$(PYTHON) -m fcc_hil plan --realtime --fccd $(FCCD) --plan $(PLAN) --wind $(WIND) --wind-from $(WIND_FROM) --seed $(SEED) \
-	    --json $(if $(filter-out file,$(origin JSON)),$(JSON),target/fly-plan-jsbsim.json) --plot target/fly-plan-jsbsim.png
+	    $(if $(TERRAIN),--terrain $(TERRAIN)) --json $(if $(filter-out file,$(origin JSON)),$(JSON),target/fly-plan-jsbsim.json) --plot target/fly-plan-jsbsim.png
 
 test: lint test-rust check-cross test-python ## Run every check and every test
 
@@ -134,6 +136,9 @@ test-landings: $(STAMPS)/python-module ## Take off, fly a circuit and land 100 t
 
 test-landings-beside: $(STAMPS)/python-module ## The same 60 times: other aircraft, a plain receiver without a range finder (20 minutes)
 	FCC_LANDINGS_BESIDE=4 $(PYTHON) $(SEVERAL) hil/tests/test_landing.py
+
+test-plan-real-time: build $(STAMPS)/python-module ## Fly legs by a plan with JSBSim over X-Plane's protocol, longer than in `make test` (2 minutes)
+	FCC_PLAN_REAL_TIME=1 FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil/tests/test_plan_real_time.py
 
 # The app's classes and its native library, on this machine's Java. Its own report of
 # what native code does wrong (-Xcheck:jni) is in the output and no failure by itself.
