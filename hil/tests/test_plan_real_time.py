@@ -19,11 +19,11 @@ LEGS = """QGC WPL 110
 """1.4 km to the north, and 1.7 km after a turn of 37 degrees."""
 SHORT = """QGC WPL 110
 0 0 0 16 0 0 0 0 47.0 8.0 914.4 1
-1 0 0 16 0 60 0 0 47.0080 8.0 914.4 1
-2 0 0 16 0 60 0 0 47.0125 8.0007 914.4 1
+1 0 0 16 0 60 0 0 47.0095 8.0 914.4 1
+2 0 0 16 0 60 0 0 47.0148 8.0008 914.4 1
 """
-"""890 m to the north, and 500 m after a turn of 6 degrees."""
-RIDGE_DEG, RIDGE_M, GROUND_M = 47.0105, 700.0, 400.0
+"""1.1 km to the north, and 590 m after a turn of 6 degrees."""
+RIDGE_DEG, RIDGE_M, GROUND_M = 47.0125, 700.0, 400.0
 PLANS = [SHORT, LEGS] if os.environ.get("FCC_PLAN_REAL_TIME") == "1" else [SHORT]
 
 
