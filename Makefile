@@ -49,8 +49,12 @@ endif
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
+# With the features that libraries have in the Python module, which shares them then: `cargo`
+# chooses those of all packages that are named. Of these only the daemon is built.
+BUILD_FCCD := cargo build --locked --release -p fcc-daemon -p fcc-py --bin fccd
+
 build: $(STAMPS)/rust
-	cargo build --locked --release -p fcc-daemon
+	$(BUILD_FCCD)
 
 fly: build ## Fly the built-in aircraft through the timed pattern, in real time
 	$(FCCD) fly
@@ -91,7 +95,7 @@ test-rust: $(STAMPS)/rust $(STAMPS)/gpsd
 	    { echo "$$crate is compiled with an aircraft: see above"; exit 1; }; done
 
 test-python: faulty $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/systemd
-	cargo build --locked --release -p fcc-daemon -p thermostat
+	$(BUILD_FCCD) -p thermostat --bin thermostat
 	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) \
 	    $(PYTHON) -m pytest hil --numprocesses auto --dist loadfile
 
@@ -178,7 +182,7 @@ android-package: $(STAMPS)/java $(STAMPS)/aapt ## Put the app together, unsigned
 	./scripts/android-package $(TARGET)
 
 faulty: $(STAMPS)/rust
-	cargo build --locked --release -p fcc-daemon --features fault-injection
+	$(BUILD_FCCD) --features fcc-daemon/fault-injection
 	cp $(FCCD) $(FAULTY)
 
 lint: lint-rust lint-python deny ## Check formatting, lints, licences

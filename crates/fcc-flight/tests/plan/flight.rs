@@ -90,6 +90,30 @@ impl Flight {
         around: impl Fn(Box<dyn Sensor<Measurements>>) -> Box<dyn Sensor<Measurements>>,
         around_actuator: impl Fn(Box<dyn Actuator<Surfaces>>) -> Box<dyn Actuator<Surfaces>>,
     ) -> Self {
+        let timer = ManualTimer::new(Duration::from_millis(25)).unwrap();
+        Self::timed(timer, plan, keys, around, around_actuator)
+    }
+
+    /// With sensors that are put around the aircraft's, and a warm-up before each tick, which
+    /// takes as long as the tick.
+    pub(crate) fn warmed_up(
+        plan: &str,
+        keys: &str,
+        around: impl Fn(Box<dyn Sensor<Measurements>>) -> Box<dyn Sensor<Measurements>>,
+    ) -> Self {
+        let timer = ManualTimer::new(Duration::from_millis(25)).unwrap();
+        Self::timed(timer.with_warm_up(), plan, keys, around, |actuator| {
+            actuator
+        })
+    }
+
+    fn timed(
+        timer: ManualTimer,
+        plan: &str,
+        keys: &str,
+        around: impl Fn(Box<dyn Sensor<Measurements>>) -> Box<dyn Sensor<Measurements>>,
+        around_actuator: impl Fn(Box<dyn Actuator<Surfaces>>) -> Box<dyn Actuator<Surfaces>>,
+    ) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a.waypoints");
         std::fs::write(&file, plan).unwrap();
@@ -99,11 +123,7 @@ impl Flight {
         config.load_plan(1_790_000_000).unwrap();
         let assembly = assemble(&config).unwrap();
         let parts = Parts {
-            timer: Box::new(
-                ManualTimer::new(Duration::from_millis(25))
-                    .unwrap()
-                    .with_warm_up(),
-            ),
+            timer: Box::new(timer),
             sensors: assembly.sensors.into_iter().map(around).collect(),
             controller: Autopilot::new(*assembly.autopilot.config()),
             actuators: assembly

@@ -69,7 +69,7 @@ fn with_engine(plan: &str, keys: &str) -> (Flight, Arc<AtomicBool>) {
     let stops = Arc::new(AtomicBool::new(false));
     let stopped = Arc::clone(&stops);
     let keys = format!("[contingency]\nengine_out_below_rpm = 300\n{keys}");
-    let flight = Flight::with(plan, &keys, |sensor| {
+    let flight = Flight::warmed_up(plan, &keys, |sensor| {
         Box::new(Engine(sensor, Arc::clone(&stopped)))
     });
     (flight, stops)
