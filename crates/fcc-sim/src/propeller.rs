@@ -2,7 +2,7 @@
 //!
 //! The propeller's inertia is left out: the engine's torque is at each moment what the
 //! propeller takes, `2πM = C_P·ρn²d⁵`, with `C_P = C_P0 - k·J²` and `J = V/nd`
-//! (McCormick, *Aerodynamics, Aeronautics and Flight Mechanics*, 1995, ch. 6, for the
+//! (Phillips, *Mechanics of Flight*, 2010, ch. 2, for the
 //! coefficients), which gives `n` without iteration.
 
 use core::f64::consts::TAU;
