@@ -44,13 +44,17 @@ endif
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-contingencies test-fences test-glides test-guidance test-landings test-landings-beside test-raw-edges test-upsets test-android android android-check android-package test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
+.PHONY: advisories lock reproducible package-check wheels deb test-attacks test-contingencies test-fences test-glides test-guidance test-landings test-landings-beside test-plan-real-time test-raw-edges test-upsets test-android android android-check android-package test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
+# With the features that libraries have in the Python module, which shares them then: `cargo`
+# chooses those of all packages that are named. Of these only the daemon is built.
+BUILD_FCCD := cargo build --locked --release -p fcc-daemon -p fcc-py --bin fccd
+
 build: $(STAMPS)/rust
-	cargo build --locked --release -p fcc-daemon
+	$(BUILD_FCCD)
 
 fly: build ## Fly the built-in aircraft through the timed pattern, in real time
 	$(FCCD) fly
@@ -64,6 +68,8 @@ fly-jsbsim: build $(STAMPS)/python ## Fly JSBSim's Cessna over X-Plane's protoco
 PLAN ?= config/plans/circuit.waypoints
 WIND ?= 8
 WIND_FROM ?= 270
+# A folder of elevation tiles (.hgt), for fly-plan-jsbsim.
+TERRAIN ?=
 
 fly-plan: build ## Fly a plan with the built-in aircraft, as fast as it computes, and draw it (PLAN= WIND= WIND_FROM=)
 	@mkdir -p target
@@ -73,10 +79,10 @@ fly-plan: build ## Fly a plan with the built-in aircraft, as fast as it computes
 	$(FCCD) report --html target/fly-plan.html $$(ls -t target/fly-plan/*.mcap | head -1) > /dev/null
 	@echo "the ground track is in target/fly-plan.html"
 
-fly-plan-jsbsim: build $(STAMPS)/python-module ## Fly a plan with JSBSim over X-Plane's protocol, in real time, scored from its truth (PLAN= WIND= WIND_FROM= SEED= JSON=)
+fly-plan-jsbsim: build $(STAMPS)/python-module ## Fly a plan with JSBSim over X-Plane's protocol, in real time, scored from its truth (PLAN= WIND= WIND_FROM= SEED= JSON= TERRAIN=)
 	@mkdir -p target
 	$(PYTHON) -m fcc_hil plan --realtime --fccd $(FCCD) --plan $(PLAN) --wind $(WIND) --wind-from $(WIND_FROM) --seed $(SEED) \
-	    --json $(if $(filter-out file,$(origin JSON)),$(JSON),target/fly-plan-jsbsim.json) --plot target/fly-plan-jsbsim.png
+	    $(if $(TERRAIN),--terrain $(TERRAIN)) --json $(if $(filter-out file,$(origin JSON)),$(JSON),target/fly-plan-jsbsim.json) --plot target/fly-plan-jsbsim.png
 
 test: lint test-rust check-cross test-python ## Run every check and every test
 
@@ -89,7 +95,7 @@ test-rust: $(STAMPS)/rust $(STAMPS)/gpsd
 	    { echo "$$crate is compiled with an aircraft: see above"; exit 1; }; done
 
 test-python: faulty $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/systemd
-	cargo build --locked --release -p fcc-daemon -p thermostat
+	$(BUILD_FCCD) -p thermostat --bin thermostat
 	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) \
 	    $(PYTHON) -m pytest hil --numprocesses auto --dist loadfile
 
@@ -135,6 +141,9 @@ test-landings: $(STAMPS)/python-module ## Take off, fly a circuit and land 100 t
 test-landings-beside: $(STAMPS)/python-module ## The same 60 times: other aircraft, a plain receiver without a range finder (20 minutes)
 	FCC_LANDINGS_BESIDE=4 $(PYTHON) $(SEVERAL) hil/tests/test_landing.py
 
+test-plan-real-time: build $(STAMPS)/python-module ## Fly legs by a plan with JSBSim over X-Plane's protocol, longer than in `make test` (2 minutes)
+	FCC_PLAN_REAL_TIME=1 FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil/tests/test_plan_real_time.py
+
 # The app's classes and its native library, on this machine's Java. Its own report of
 # what native code does wrong (-Xcheck:jni) is in the output and no failure by itself.
 ANDROID := target/android
@@ -173,7 +182,7 @@ android-package: $(STAMPS)/java $(STAMPS)/aapt ## Put the app together, unsigned
 	./scripts/android-package $(TARGET)
 
 faulty: $(STAMPS)/rust
-	cargo build --locked --release -p fcc-daemon --features fault-injection
+	$(BUILD_FCCD) --features fcc-daemon/fault-injection
 	cp $(FCCD) $(FAULTY)
 
 lint: lint-rust lint-python deny ## Check formatting, lints, licences

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from .state import State
+import numpy as np
 
-_MEANT = frozenset({"", "none", "take-off", "land"})
+from .flown_plan import FlownPlan
+
+_MEANT = ["", "none", "take-off", "land"]
 """Modes in which the ground is to be near."""
 
 
@@ -23,24 +26,16 @@ class TerrainScore:
     """Whether it touched the ground there."""
 
 
-class Clearance:
-    """The least height over the ground so far."""
-
-    def __init__(self) -> None:
-        """Begin with nothing flown."""
-        self._lowest_m = math.inf
-        self._at_deg = (math.nan, math.nan)
-        self._collides = False
-
-    def note(self, state: State, mode: str) -> None:
-        """Take the truth of a tick, flown in this mode."""
-        if mode in _MEANT:
-            return
-        self._collides |= state.on_ground or state.height_m <= 0.0
-        if state.height_m < self._lowest_m:
-            self._lowest_m = state.height_m
-            self._at_deg = math.degrees(state.latitude_rad), math.degrees(state.longitude_rad)
-
-    def score(self) -> TerrainScore:
-        """Return it."""
-        return TerrainScore(self._lowest_m, *self._at_deg, self._collides)
+def score(flown: FlownPlan, modes: Sequence[str]) -> TerrainScore:
+    """Return it, by the mode of each row."""
+    watched = np.flatnonzero(~np.isin(modes, _MEANT))
+    if not len(watched):
+        return TerrainScore(math.inf, math.nan, math.nan, collides=False)
+    height_m = flown.height_m[watched]
+    lowest = watched[np.argmin(height_m)]
+    return TerrainScore(
+        float(flown.height_m[lowest]),
+        math.degrees(flown.latitude_rad[lowest]),
+        math.degrees(flown.longitude_rad[lowest]),
+        collides=bool(((height_m <= 0.0) | (flown.on_ground[watched] > 0.0)).any()),
+    )

@@ -64,6 +64,9 @@ YAW_DAMPER_ON = "sim/cockpit2/switches/yaw_damper_on"
 ALTIMETER_SETTING = "sim/cockpit2/gauges/actuators/barometer_setting_in_hg_pilot"
 PITOT_ICE = "sim/flightmodel/failures/pitot_ice"
 """0 none .. 1 blocked."""
+GENERATOR_FAILURE = "sim/operation/failures/rel_genera0"
+"""Of the first engine's: 6 has failed."""
+FAILED = 6.0
 SIM_SPEED = "sim/time/sim_speed"
 """1 real time, 2 twice as fast; 0 stops."""
 
@@ -163,6 +166,7 @@ class Cockpit:
             YAW_DAMPER_ON: 0.0,
             ALTIMETER_SETTING: altimeter_inhg,
             PITOT_ICE: 0.0,
+            GENERATOR_FAILURE: 0.0,
             ELEVATOR_TRIM: pilot.elevator_trim or 0.0,
             SIM_SPEED: 1.0,
             **dict.fromkeys((*YOKE, *_SERVO, *_ARTSTAB), 0.0),

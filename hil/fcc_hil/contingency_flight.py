@@ -1,7 +1,7 @@
 """Flights of a plan with JSBSim by raw sensors in which something is lost on the way.
 
-The position for a while or for good, the commander, the battery's charge. Where it happens, the
-legs and the wind are drawn.
+The position for a while or for good, the commander, the alternator. Where it happens, the legs and
+the wind are drawn.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ _ON_CIRCLE = 1.1
 _SETTLES_S, _AROUND_S = 30.0, 110.0
 """Onto the circle, and around it once at 100 kt, in 20 kt."""
 _LONGEST_S = 1_500.0
-_FULL, _USED_PER_S = 0.5, 0.002
-"""The battery's charge, and how much of it is used in a second."""
+_CAPACITY_AH = 1.5
+"""Of an aged battery: 15 A empty it in six minutes."""
 _APPROACH_M, _APPROACH_HEIGHT_M = 6_000.0, 250.0
 _LOW_M, _FAR = 450.0, (-31_000.0, 0.0)
 """The altitude from which it lands, and a place that it does not come to."""
@@ -220,17 +220,22 @@ def lose_commander(seed: int, *, wind_kt: float, promised_s: float) -> tuple[Rec
 
 
 def use_battery(seed: int, *, wind_kt: float) -> tuple[LandingScore | None, Watch]:
-    """Use the battery up on the way out; it lands by the plan's landing."""
+    """Lose the alternator on the way out; it lands by the plan's landing.
+
+    The voltage is that below which the handbook of a 172S warns.
+    """
     drawn = draw(seed, wind_kt)
-    watch = Watch(_DESCENDS_S + drawn.after_s)
 
-    def charge(values: fcc.Measurements, time_s: float) -> None:
-        values.battery_charge = max(0.0, _FULL - _USED_PER_S * max(0.0, time_s - watch.lost_s))
+    class Alternator(Watch):
+        def step(self, rig: LockstepRig) -> None:
+            battery = rig.plant.battery
+            battery.capacity_ah = _CAPACITY_AH
+            battery.alternator_fails = rig.time_s >= self.lost_s
+            super().step(rig)
 
-    keys = '[contingency]\nbattery_charge_percent = 25\nbattery_low = "land"\n'
-    conditions = PlanConditions(
-        weather=drawn.weather, seed=seed, sensors="board-rtk", config=keys, raw_fault=charge
-    )
+    watch = Alternator(_DESCENDS_S + drawn.after_s)
+    keys = '[contingency]\nbattery_voltage_v = 24.5\nbattery_low = "land"\n'
+    conditions = PlanConditions(weather=drawn.weather, seed=seed, sensors="board-rtk", config=keys)
     home, first = drawn.legs[0], drawn.legs[1]
     legs = [
         replace(home, altitude_m=0.0),

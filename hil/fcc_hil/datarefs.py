@@ -42,6 +42,7 @@ _STABILISED = "sim/joystick/FC_"
 _ICAO = "sim/aircraft/view/acf_ICAO"
 """A string: its elements are characters."""
 _ALTITUDE = "sim/cockpit2/gauges/indicators/altitude_ft_pilot"
+_BATTERY = "sim/cockpit2/electrical/battery_voltage_actual_volts[0]"
 
 
 def _pitch_deg(r: Readout) -> float:
@@ -127,6 +128,7 @@ _READABLE: dict[str, Getter] = {
     "sim/cockpit2/engine/indicators/engine_speed_rpm[0]": lambda r: (
         r.state.engine_speed_radps * 60.0 / math.tau
     ),
+    _BATTERY: lambda r: r.state.battery_voltage_v,
     "sim/flightmodel/failures/onground_any": lambda r: float(r.state.on_ground),
     "sim/aircraft/engine/acf_num_engines": lambda r: float(r.cockpit.engines),
     "sim/version/xplane_internal_version": lambda r: float(r.dialect.version),
@@ -163,6 +165,7 @@ _TELLS: dict[str, tuple[str, ...]] = {
     "specific_force_z_mps2": (_P + "local_az", _F + "g_nrml"),
     "airspeed_mps": (_P + "indicated_airspeed",),
     "altitude_m": (_ALTITUDE, _P2 + "pressure_altitude"),
+    "battery_voltage_v": (_BATTERY,),
 }
 """The datarefs that are missing when the sensor for a field of `state.State` is silent.
 Accelerations are along the world's axes, so any missing one removes all three."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,6 +32,8 @@ class FlownPlan:
     heading_rad: Array
     down_mps: Array
     on_ground: Array
+    height_m: Array
+    """Above the ground."""
 
 
 def of_truth(truth: Truth) -> FlownPlan:
@@ -49,7 +53,14 @@ def of_truth(truth: Truth) -> FlownPlan:
         heading_rad=np.radians(truth["heading_deg"]),
         down_mps=-truth["climb_fpm"] * FT_TO_M / 60.0,
         on_ground=truth["on_ground"],
+        height_m=truth["height_ft"] * FT_TO_M,
     )
+
+
+def go_arounds(modes: Sequence[str]) -> int:
+    """Return how often a landing was given up, by the mode of each row."""
+    changes = itertools.pairwise(modes)
+    return sum(before != "go-around" and mode == "go-around" for before, mode in changes)
 
 
 def moved_m(flown: FlownPlan, rows: int) -> float:

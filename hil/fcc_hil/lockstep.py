@@ -71,6 +71,7 @@ def measurements(state: State) -> fcc.Measurements:
         altitude_m=state.altitude_m,
         weight_on_wheels=float(state.on_ground),
         engine_speed_radps=state.engine_speed_radps,
+        battery_voltage_v=state.battery_voltage_v,
     )
 
 

@@ -14,7 +14,7 @@ from .faulty_sensors import FaultySensors, SensorFault
 from .lockstep import as_controls, as_surfaces, measurements
 from .noise import NoiseLevels, SensorNoise
 from .plant import STEPS_PER_SECOND, Plant
-from .quantities import SENSORS
+from .quantities import READINGS
 from .raw_calibration import Calibration
 from .raw_sensors import RawSensors
 from .receiver import Receiver, ReceiverReadings
@@ -219,4 +219,4 @@ class LockstepRig:
 
 def _sensors_of(channels: frozenset[str]) -> list[str]:
     """Return the sensors with a missing channel: an incomplete reading is not passed on."""
-    return [name for name, parts in SENSORS.items() if not channels.isdisjoint(parts)]
+    return [name for name, parts in READINGS.items() if not channels.isdisjoint(parts)]

@@ -97,14 +97,13 @@ def _in_real_time(
         for option, is_given in (
             ("--position precise", options.position == "precise"),
             ("--no-range-finder", options.no_range_finder),
-            ("--terrain", options.terrain is not None),
         )
         if is_given
     ]
     if given:
         raise ValueError(
             f"{' and '.join(given)} with --realtime: X-Plane's protocol has its own position and "
-            "height above the ground, which is level; leave it out"
+            "height above the ground; leave it out"
         )
     # A signal ends the daemon and the stand-in, too.
     signal.signal(signal.SIGTERM, interrupt)

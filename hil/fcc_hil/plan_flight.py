@@ -15,9 +15,8 @@ from pathlib import Path
 import fcc
 import numpy as np
 
-from . import plan_file, plan_score, plan_start
-from .clearance import Clearance
-from .flown_plan import FlownPlan
+from . import clearance, plan_file, plan_score, plan_start
+from .flown_plan import FlownPlan, go_arounds
 from .lockstep_rig import Conditions, LockstepRig
 from .plant import Weather
 from .raw_calibration import calibrate
@@ -25,7 +24,6 @@ from .raw_flight import MEASURED, RAW_STANDBY_S
 from .raw_sensors import FIELD_UT
 from .rig import FlightError
 from .standin import Settings
-from .terrain_tiles import Tiles
 
 SENSORS = "board"
 RUNWAY_STANDBY_S = 30.0
@@ -71,6 +69,13 @@ class PlanConditions:
     """The folder of elevation tiles that are the ground, and that the autopilot has, too."""
 
 
+def terrain_section(conditions: PlanConditions) -> str:
+    """Return the section that gives the autopilot the ground, if it is that of tiles."""
+    if conditions.terrain is None:
+        return ""
+    return f"[terrain]\nfolder = {json.dumps(str(conditions.terrain.resolve()))}\n"
+
+
 def fly(
     plan: Path,
     conditions: PlanConditions,
@@ -89,15 +94,10 @@ def fly(
     read = plan_file.read(plan)
     takes_off = plan_start.takes_off(read)
     text = configuration(plan, "kalman", conditions.law, conditions.weather.wind_kt)
-    tiles = None
-    if conditions.terrain is not None:
-        tiles = Tiles(conditions.terrain)
-        text += f"[terrain]\nfolder = {json.dumps(str(conditions.terrain.resolve()))}\n"
-    machine = fcc.Machine(text + conditions.config)
+    machine = fcc.Machine(text + terrain_section(conditions) + conditions.config)
     plant = plan_start.plant(
-        read, conditions.aircraft, seed=seed, weather=conditions.weather, terrain=tiles
+        read, conditions.aircraft, seed=seed, weather=conditions.weather, terrain=conditions.terrain
     )
-    clearance = Clearance()
     between = Conditions(
         raw_sensors=sensors,
         calibration=calibrate(sensors, seed, FIELD_UT),
@@ -116,7 +116,7 @@ def fly(
     seen = 0
     last = max(item.number for item in read.items if item.has_place)
     end_s = math.inf
-    modes = [""]
+    modes: list[str] = []
 
     def keep() -> bool:
         nonlocal seen, end_s
@@ -136,11 +136,10 @@ def fly(
                 state.heading_rad,
                 state.down_mps,
                 float(state.on_ground),
+                state.height_m,
             )
         )
-        clearance.note(state, points.guidance_mode)
-        if points.guidance_mode != modes[-1]:
-            modes.append(points.guidance_mode)
+        modes.append(points.guidance_mode)
         for event in rig.events[seen:]:
             if found := REACHED.search(event.text):
                 reached[int(found[1])] = event.time_s
@@ -154,6 +153,7 @@ def fly(
     if not rig.holds_control:
         raise FlightError("; ".join(event.text for event in rig.events[-3:]))
     flown = FlownPlan(*np.array(rows).T)
-    go_arounds = modes.count("go-around")
-    score = plan_score.score(read, flown, reached, LOITER_M, go_arounds)
-    return (replace(score, terrain=clearance.score()) if tiles else score), flown
+    score = plan_score.score(read, flown, reached, LOITER_M, go_arounds(modes))
+    if conditions.terrain is not None:
+        score = replace(score, terrain=clearance.score(flown, modes))
+    return score, flown

@@ -15,9 +15,9 @@ from pathlib import Path
 import fcc
 import numpy as np
 
-from . import plan_file, plan_flight, plan_score, plan_start
+from . import clearance, plan_file, plan_flight, plan_score, plan_start
 from .daemon_rig import DaemonRig
-from .flown_plan import FlownPlan, of_truth
+from .flown_plan import FlownPlan, go_arounds, of_truth
 from .plan_flight import PlanConditions
 from .rig import FlightError
 from .settings import Settings
@@ -26,7 +26,7 @@ from .truth import COLUMNS
 from .units import STANDARD_INHG
 
 _ENGAGE_S = 3.0
-_STEADY_S = 10.0
+_STEADY_S = 5.0
 """Before the switch goes on."""
 _LINE_S = 1.0
 
@@ -48,11 +48,13 @@ def fly(
         aircraft=conditions.aircraft,
         seed=conditions.seed,
         weather=conditions.weather,
+        terrain=conditions.terrain,
         # The plan's altitudes are those of the daemon's altimeter setting.
         qnh_inhg=STANDARD_INHG,
     )
     text = plan_flight.configuration(plan, "measured", conditions.law, conditions.weather.wind_kt)
-    rig = DaemonRig(fccd, plan_start.settings(read, simulator), text + conditions.config, scratch)
+    text += plan_flight.terrain_section(conditions) + conditions.config
+    rig = DaemonRig(fccd, plan_start.settings(read, simulator), text, scratch)
     try:
         rig.prepare()
         rig.fly_to(rig.time_s + _STEADY_S)
@@ -66,9 +68,11 @@ def fly(
         recordings = rig.save_recording(scratch / "flight.mcap")
     finally:
         rig.close()
-    flown, go_arounds = _with_demands(of_truth(truth), recordings)
-    loiter_m = plan_flight.LOITER_M
-    return plan_score.score(read, flown, reached, loiter_m, go_arounds), flown
+    flown, modes = _with_demands(of_truth(truth), recordings)
+    score = plan_score.score(read, flown, reached, plan_flight.LOITER_M, go_arounds(modes))
+    if conditions.terrain is not None:
+        score = replace(score, terrain=clearance.score(flown, modes))
+    return score, flown
 
 
 def _watch(
@@ -105,8 +109,8 @@ def _line(progress: Progress, engaged_at_s: float, reached: dict[int, float]) ->
     )
 
 
-def _with_demands(flown: FlownPlan, recordings: list[Path]) -> tuple[FlownPlan, int]:
-    """Add what the daemon recorded of its demands, by the simulator's clock; count go-arounds."""
+def _with_demands(flown: FlownPlan, recordings: list[Path]) -> tuple[FlownPlan, list[str]]:
+    """Add what the daemon recorded of its demands, by the simulator's clock, and its modes."""
     opened = [fcc.Recording(path) for path in recordings]
     records = np.concatenate([np.asarray(recording.records) for recording in opened])
     records = records[np.isfinite(records["plant_time_s"])]
@@ -114,8 +118,7 @@ def _with_demands(flown: FlownPlan, recordings: list[Path]) -> tuple[FlownPlan, 
         raise FlightError("the recording has no time of the simulator")
     at = np.searchsorted(records["plant_time_s"], flown.time_s, side="right") - 1
     then = records[np.maximum(at, 0)]
-    modes = records["desired_guidance_mode"]
-    is_go_around = modes == _code(opened[0], "desired_guidance_mode", "go around")
+    names: dict[int, str] = opened[0].columns["desired_guidance_mode"]["codes"]
     demanded = replace(
         flown,
         item=then["desired_guidance_item"].astype(np.float64),
@@ -123,9 +126,5 @@ def _with_demands(flown: FlownPlan, recordings: list[Path]) -> tuple[FlownPlan, 
         airspeed_demand_mps=then["desired_airspeed_mps"],
         altitude_demand_m=then["desired_altitude_above_reference_m"],
     )
-    return demanded, int(np.count_nonzero(is_go_around[1:] & ~is_go_around[:-1]))
-
-
-def _code(recording: fcc.Recording, column: str, name: str) -> int:
-    codes: dict[int, str] = recording.columns[column]["codes"]
-    return next(code for code, said in codes.items() if said == name)
+    # A recording's names have spaces, those of the module have none.
+    return demanded, [names[code].replace(" ", "-") for code in then["desired_guidance_mode"]]

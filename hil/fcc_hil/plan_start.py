@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 from .plan_file import TAKEOFF, Item, PlanFile
 from .plant import Plant, Weather
@@ -20,11 +21,15 @@ def takes_off(plan: PlanFile) -> bool:
 def settings(plan: PlanFile, simulator: Settings) -> Settings:
     """Return a simulator whose aircraft begins there, towards the plan's first place.
 
-    In flight over the plan's home, or on its wheels if the plan begins with a take-off.
+    In flight over the plan's home, or on its wheels if the plan begins with a take-off; there it
+    stands on the ground of the simulator's terrain.
     """
     home, off = plan.home, takes_off(plan)
     first = plan.items[0] if off else next(i for i in plan.items if i.has_place)
     elevation_ft = home.altitude_m / FT_TO_M if off else None
+    if simulator.terrain is not None and elevation_ft is not None:
+        tiles = Tiles(simulator.terrain)
+        elevation_ft = tiles.runway_ft(home.latitude_deg, home.longitude_deg, elevation_ft)
     return replace(
         simulator,
         start=Start(home.latitude_deg, home.longitude_deg, elevation_ft),
@@ -33,15 +38,11 @@ def settings(plan: PlanFile, simulator: Settings) -> Settings:
 
 
 def plant(
-    plan: PlanFile, aircraft: str, *, seed: int, weather: Weather, terrain: Tiles | None = None
+    plan: PlanFile, aircraft: str, *, seed: int, weather: Weather, terrain: Path | None = None
 ) -> Plant:
     """Return an aircraft that begins there, on the ground of `terrain`."""
-    begins = settings(plan, Settings())
+    begins = settings(plan, Settings(terrain=terrain))
     start = begins.start
-    elevation_ft = start.runway_elevation_ft
-    if terrain is not None and elevation_ft is not None:
-        known_m = terrain.elevation_m(start.latitude_deg, start.longitude_deg)
-        elevation_ft = elevation_ft if known_m is None else known_m / FT_TO_M
     begun = Plant(
         aircraft,
         seed=seed,
@@ -49,10 +50,10 @@ def plant(
         heading_deg=begins.heading_deg,
         latitude_deg=start.latitude_deg,
         longitude_deg=start.longitude_deg,
-        runway_elevation_ft=elevation_ft,
+        runway_elevation_ft=start.runway_elevation_ft,
     )
     if terrain is not None:
-        begun.fly_over(terrain)
+        begun.fly_over(Tiles(terrain))
     return begun
 
 

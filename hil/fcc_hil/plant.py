@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import jsbsim
 
 from .aircraft import Aircraft, by_name
+from .electrical import Battery
 from .settle import SettlingPilot
 from .state import Controls, State
 from .terrain_tiles import Tiles
@@ -92,6 +93,7 @@ class Plant:
         self.aircraft = by_name(aircraft) if isinstance(aircraft, str) else aircraft
         self.seed = seed
         self._terrain: Tiles | None = None
+        self.battery = Battery()
         weather = weather or Weather()
         self.fdm = fdm = jsbsim.FGFDMExec(None)
         fdm.set_debug_level(0)
@@ -221,6 +223,9 @@ class Plant:
                 self._follow_ground(self._terrain)
             run()
         self.steps += steps
+        # What turbines drive is not modelled: their generators feed.
+        speed_radps = self._engine_speed_radps() if self._has_pistons else math.inf
+        self.battery.step(steps * STEP_S, speed_radps)
 
     def state(self) -> State:
         """Return the true state now."""
@@ -255,7 +260,8 @@ class Plant:
             wind_east_mps=f["atmosphere/total-wind-east-fps"] * FT_TO_M,
             wind_down_mps=f["atmosphere/total-wind-down-fps"] * FT_TO_M,
             on_ground=f["gear/wow"] != 0.0,
-            engine_speed_radps=self._engine_rpm() * math.tau / 60.0,
+            engine_speed_radps=self._engine_speed_radps(),
+            battery_voltage_v=self.battery.voltage_v,
         )
 
     def _follow_ground(self, terrain: Tiles) -> None:
@@ -266,9 +272,9 @@ class Plant:
         if elevation_m is not None:
             fdm["position/terrain-elevation-asl-ft"] = elevation_m / FT_TO_M
 
-    def _engine_rpm(self) -> float:
+    def _engine_speed_radps(self) -> float:
         """Return the speed of a piston engine; 0 of another."""
-        return float(self.fdm[_ENGINE_RPM]) if self._has_pistons else 0.0
+        return float(self.fdm[_ENGINE_RPM]) * math.tau / 60.0 if self._has_pistons else 0.0
 
     def _silence_output(self) -> None:
         """Keep the model from writing its log files, which JSBSim opens even when disabled."""

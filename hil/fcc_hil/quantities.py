@@ -27,6 +27,7 @@ _HEIGHT = {"ft": 1.0, "m": FT_TO_M}
 _SPEED = {"kt": 1.0, "m/s": KT_TO_MPS, "km/h": 1.852}
 _CLIMB = {"ft/min": 1.0, "m/s": FT_TO_M / 60.0}
 _FORCE = {"g": 1.0, "m/s2": STANDARD_GRAVITY_MPS2}
+_VOLTAGE = {"V": 1.0}
 _FRACTION = {"": 1.0}
 
 
@@ -156,13 +157,14 @@ roll_rate = _rate("roll_rate", _RATES[0])
 pitch_rate = _rate("pitch_rate", _RATES[1])
 yaw_rate = _rate("yaw_rate", _RATES[2])
 specific_force = Quantity("specific_force", "g", _FORCE, None, _FORCES)
+battery = Quantity("battery", "V", _VOLTAGE, None, ("battery_voltage_v",))
 
 QUANTITIES: dict[str, Quantity] = {
     quantity.name: quantity
     for quantity in (
         *(heading, altitude, airspeed, bank, pitch, climb, lateral),
         *(elevator, aileron, rudder, throttle),
-        *(attitude, body_rates, roll_rate, pitch_rate, yaw_rate, specific_force),
+        *(attitude, body_rates, roll_rate, pitch_rate, yaw_rate, specific_force, battery),
     )
 }
 
@@ -170,7 +172,10 @@ SENSORS: dict[str, tuple[str, ...]] = {
     quantity.name: quantity.channels
     for quantity in (attitude, heading, body_rates, specific_force, airspeed, altitude)
 }
-"""The sensors that the autopilot has, with their channels."""
+"""The sensors that the autopilot flies by, with their channels."""
+
+READINGS = SENSORS | {battery.name: battery.channels}
+"""Everything that is measured and can have a fault."""
 
 
 def quantity_of(given: Quantity | str) -> Quantity:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from enum import Enum
+from pathlib import Path
 from typing import Any
 
 from .faults import Address, Faults
@@ -67,6 +68,9 @@ class Settings:
     version: int = 115_501
     """The version of X-Plane."""
     start: Start = Start()
+    terrain: Path | None = None
+    """The folder of elevation tiles that are the ground; None, and where they do not know it, for
+    level ground."""
     heading_deg: float = 0.0
     magnetic_variation_deg: float = 0.0
     """Positive where magnetic north lies east of true."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+from pathlib import Path
 from typing import Any, cast
 
 from . import actions
@@ -11,7 +12,9 @@ from .aircraft import AIRCRAFT
 from .faults import Address, Faults
 from .misbehaviour import MISBEHAVIOURS
 from .plant import Weather
+from .settings import Start
 from .standin import Settings
+from .terrain_tiles import Tiles
 from .udp import ReplyPort
 
 
@@ -78,6 +81,14 @@ def _frame_rates(text: str) -> tuple[float, float]:
     if not dash or not 1.0 <= rates_hz[0] <= rates_hz[1] <= 1_000.0:
         raise argparse.ArgumentTypeError(f"'{text}': give LEAST-GREATEST, as in 20-144")
     return rates_hz
+
+
+def _tiles(text: str) -> Path:
+    try:
+        Tiles(Path(text))
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+    return Path(text)
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -149,6 +160,14 @@ def add(parser: argparse.ArgumentParser) -> None:
         choices=("past", "still"),
         default="past",
         help="what the flight time does in a replay (default %(default)s)",
+    )
+    parser.add_argument("--latitude", type=float, default=0.0, metavar="DEG", help="initial")
+    parser.add_argument("--longitude", type=float, default=0.0, metavar="DEG", help="initial")
+    parser.add_argument(
+        "--terrain",
+        type=_tiles,
+        metavar="FOLDER",
+        help="elevation tiles (.hgt) that are the ground (level)",
     )
     parser.add_argument("--heading", type=float, default=0.0, metavar="DEG", help="initial heading")
     parser.add_argument(
@@ -224,6 +243,8 @@ def settings(options: argparse.Namespace) -> Settings:
         port=options.port,
         reply_port=options.reply_port,
         version=options.xplane_version,
+        start=Start(options.latitude, options.longitude),
+        terrain=options.terrain,
         heading_deg=options.heading,
         magnetic_variation_deg=options.variation,
         weather=Weather(

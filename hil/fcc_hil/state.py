@@ -63,6 +63,7 @@ class State:
     on_ground: bool
     engine_speed_radps: float = 0.0
     """Of the first engine."""
+    battery_voltage_v: float = 0.0
 
 
 @dataclass(slots=True)

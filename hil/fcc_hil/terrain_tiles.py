@@ -12,6 +12,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from .units import FT_TO_M
+
 _SIDES = (3_601, 1_201)
 """Posts of a side: 1 and 3 seconds of arc."""
 _VOID = -32_768
@@ -44,6 +46,11 @@ class Tiles:
             return None
         down, right = row - top, column - left
         return float(np.array([1.0 - down, down]) @ posts @ np.array([1.0 - right, right]))
+
+    def runway_ft(self, latitude_deg: float, longitude_deg: float, otherwise_ft: float) -> float:
+        """Return the elevation of a runway there, which is that of the ground if it is known."""
+        known_m = self.elevation_m(latitude_deg, longitude_deg)
+        return otherwise_ft if known_m is None else known_m / FT_TO_M
 
     def _tile(self, south: int, west: int) -> npt.NDArray[np.int16] | None:
         name = f"{'NS'[south < 0]}{abs(south):02}{'EW'[west < 0]}{abs(west):03}"

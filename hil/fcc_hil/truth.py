@@ -38,6 +38,7 @@ COLUMNS = (
     "latitude_deg",
     "longitude_deg",
     "on_ground",
+    "height_ft",
 )
 
 Row = tuple[float, ...]
@@ -66,6 +67,7 @@ def row(state: State, controls: Controls) -> Row:
         math.degrees(state.latitude_rad),
         math.degrees(state.longitude_rad),
         float(state.on_ground),
+        state.height_m / FT_TO_M,
     )
 
 

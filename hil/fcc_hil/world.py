@@ -13,6 +13,8 @@ from dataclasses import dataclass, replace
 
 from .cockpit import (
     ELEVATOR_TRIM,
+    FAILED,
+    GENERATOR_FAILURE,
     OVERRIDE_JOYSTICK,
     OVERRIDE_THROTTLES,
     SIM_SPEED,
@@ -25,9 +27,10 @@ from .local_axes import LocalAxes, MeasuredAttitude
 from .plant import STEPS_PER_SECOND, Plant
 from .protocol import Dialect
 from .readout import SLOWEST_TRUE_PERIOD_S, Readout
-from .settings import Mode, Settings
+from .settings import Mode, Settings, Start
 from .simulator_autopilot import SimulatorAutopilot
 from .state import Controls, State
+from .terrain_tiles import Tiles
 from .truth import STEPS_PER_ROW, Row, row
 from .units import INHG_TO_PA
 
@@ -87,6 +90,7 @@ class World:
         self._qnh_inhg = self._qnh_aim_inhg = settings.qnh_inhg
         self.axes = LocalAxes()
         """The local axes, of OpenGL."""
+        self._tiles = None if settings.terrain is None else Tiles(settings.terrain)
         self.restart_flight()
 
     # What a person or the simulator does.
@@ -139,19 +143,8 @@ class World:
 
     def restart_flight(self) -> None:
         """Put the aircraft back to its start: the clock jumps back, everything is off."""
-        settings, start = self.settings, self.settings.start
-        self._set_up(
-            Plant(
-                settings.aircraft,
-                seed=settings.seed,
-                heading_deg=settings.heading_deg,
-                weather=settings.weather,
-                latitude_deg=start.latitude_deg,
-                longitude_deg=start.longitude_deg,
-                qnh_pa=self._qnh_inhg * INHG_TO_PA,
-                runway_elevation_ft=start.runway_elevation_ft,
-            )
-        )
+        settings = self.settings
+        self._set_up(settings.start, settings.heading_deg)
         self.cockpit = Cockpit(
             replace(self.plant.trim, elevator_trim=self.plant.controls.elevator_trim),
             self.plant.engines,
@@ -166,21 +159,19 @@ class World:
         The pilot holds what trims it, or idle on a runway. Switches stay as they are, so that a
         client has to notice by itself.
         """
-        state, settings = self.plant.state(), self.settings
+        state = self.plant.state()
         moved_deg = _RELOCATED_DEG if elsewhere else (0.0, 0.0)
         heading_deg = math.degrees(state.heading_rad) + (90.0 if elsewhere else 0.0)
-        self._set_up(
-            Plant(
-                settings.aircraft,
-                seed=settings.seed,
-                heading_deg=heading_deg % 360.0,
-                weather=settings.weather,
-                latitude_deg=math.degrees(state.latitude_rad) + moved_deg[0],
-                longitude_deg=math.degrees(state.longitude_rad) + moved_deg[1],
-                qnh_pa=self._qnh_inhg * INHG_TO_PA,
-                runway_elevation_ft=_RUNWAY_ELEVATION_FT if on_runway else None,
-            )
+        start = Start(
+            math.degrees(state.latitude_rad) + moved_deg[0],
+            math.degrees(state.longitude_rad) + moved_deg[1],
+            _RUNWAY_ELEVATION_FT if on_runway else None,
         )
+        if self._tiles is not None and on_runway:
+            place_deg = start.latitude_deg, start.longitude_deg
+            runway_ft = self._tiles.runway_ft(*place_deg, _RUNWAY_ELEVATION_FT)
+            start = replace(start, runway_elevation_ft=runway_ft)
+        self._set_up(start, heading_deg % 360.0)
         if clears_overrides:
             self.cockpit.clear_overrides()
         self.cockpit.set(SIM_SPEED, 1.0)
@@ -271,6 +262,8 @@ class World:
         self._follow_qnh(seconds)
         state = self.plant.state()
         self._autopilot.step(state, self.cockpit)
+        failure = self.cockpit.read(GENERATOR_FAILURE)
+        self.plant.battery.alternator_fails = failure == FAILED
         self._move_surfaces(self.settings.surface_rate * seconds)
         self.plant.write(self.surfaces, self.cockpit.throttles())
         self._owed_steps += seconds * STEPS_PER_SECOND
@@ -284,8 +277,20 @@ class World:
             self.shift_origin()
         self._remember(self.plant.state())
 
-    def _set_up(self, plant: Plant) -> None:
-        self.plant = plant
+    def _set_up(self, at: Start, heading_deg: float) -> None:
+        settings = self.settings
+        self.plant = plant = Plant(
+            settings.aircraft,
+            seed=settings.seed,
+            heading_deg=heading_deg,
+            weather=settings.weather,
+            latitude_deg=at.latitude_deg,
+            longitude_deg=at.longitude_deg,
+            qnh_pa=self._qnh_inhg * INHG_TO_PA,
+            runway_elevation_ft=at.runway_elevation_ft,
+        )
+        if self._tiles is not None:
+            plant.fly_over(self._tiles)
         self.enter(Mode.RUNNING)
         self.surfaces = Controls(throttle=plant.trim.throttle)
         start = plant.state()

@@ -67,6 +67,7 @@ def _flown(outside_m: float) -> FlownPlan:
         heading_rad=course,
         down_mps=0.0 * whole,
         on_ground=0.0 * whole,
+        height_m=900.0 * whole,
     )
 
 

@@ -8,10 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fcc_hil import plan_flight
-from fcc_hil.clearance import Clearance
+from fcc_hil import clearance, plan_flight
+from fcc_hil.clearance import TerrainScore
+from fcc_hil.flown_plan import of_truth
 from fcc_hil.plant import Plant
+from fcc_hil.state import Controls, State
 from fcc_hil.terrain_tiles import Tiles
+from fcc_hil.truth import Truth, row
 
 SIDE = 1_201
 RIDGE_M = 700.0
@@ -53,6 +56,11 @@ def test_what_is_no_tile_is_refused(tmp_path: Path) -> None:
         tiles.elevation_m(47.5, 8.5)
 
 
+def _scored(state: State, mode: str) -> TerrainScore:
+    flown = of_truth(Truth([row(state, Controls())]))
+    return clearance.score(flown, [mode])
+
+
 def test_the_plant_flies_over_the_tiles_and_touches_them(tmp_path: Path) -> None:
     """At 3,000 ft, 914.4 m; a ridge that is raised to 930 m is flown into."""
     plant = Plant("c172p", latitude_deg=47.03, longitude_deg=8.5, heading_deg=90.0)
@@ -60,17 +68,14 @@ def test_the_plant_flies_over_the_tiles_and_touches_them(tmp_path: Path) -> None
     plant.step()
     state = plant.state()
     assert state.height_m == pytest.approx(state.elevation_m - RIDGE_M, abs=1.0)
-    clearance = Clearance()
-    clearance.note(state, "plan")
-    assert not clearance.score().collides
-    assert clearance.score().lowest_m == pytest.approx(214.0, abs=10.0)
+    over = _scored(state, "plan")
+    assert not over.collides
+    assert over.lowest_m == pytest.approx(214.0, abs=10.0)
     _write(tmp_path, "N47E008.hgt", np.full(SIDE, 930.0))
     plant.fly_over(Tiles(tmp_path))
     plant.step()
-    clearance.note(plant.state(), "land")
-    assert not clearance.score().collides, "a landing is meant"
-    clearance.note(plant.state(), "plan")
-    assert clearance.score().collides
+    assert not _scored(plant.state(), "land").collides, "a landing is meant"
+    assert _scored(plant.state(), "plan").collides
 
 
 def test_a_plan_is_flown_over_the_tiles_and_scored(tmp_path: Path) -> None:

@@ -7,9 +7,11 @@ use crate::aerodynamics::{Deflections, Flow};
 use crate::airframe::Airframe;
 use crate::atmosphere::Air;
 use crate::config::{SimConfig, SimError};
+use crate::electrical::Battery;
 use crate::gear::{Ground, MOST_SINK_MPS};
 use crate::ground::GroundBelow;
 use crate::motion::{self, AirMotion, State};
+use crate::propeller::{running_radps, stopped_radps};
 use crate::servos::{Servos, deflections};
 use crate::trim::{Trim, trim};
 use crate::truth::{Truth, turn};
@@ -44,6 +46,8 @@ pub struct Aircraft {
     impact_s: Option<f64>,
     /// The commands with hands off the controls.
     hands_off: Surfaces,
+    engine_stops_at_s: Option<f64>,
+    battery: Battery,
 }
 
 impl Aircraft {
@@ -107,6 +111,8 @@ impl Aircraft {
             crashes: false,
             impact_s: None,
             hands_off,
+            engine_stops_at_s: config.engine_stops_at_s,
+            battery: Battery::new(config.electrical),
         })
     }
 
@@ -141,6 +147,8 @@ impl Aircraft {
             self.substep(substep_s);
             watch(self);
         }
+        let engine_radps = self.engine_speed_radps();
+        self.battery.step(dt_s, self.time_s, engine_radps);
         dt_s
     }
 
@@ -260,13 +268,44 @@ impl Aircraft {
         self.state = state;
     }
 
-    /// The present deflections of the control surfaces and the throttle.
+    /// The present deflections of the control surfaces and the throttle, which an engine
+    /// that has stopped has closed.
     pub fn deflections(&self) -> Deflections {
-        deflections(
+        let found = deflections(
             &self.airframe.travel,
             &self.positions,
             self.trim.elevator_rad,
-        )
+        );
+        if self.engine_is_out() {
+            return Deflections {
+                throttle: 0.0,
+                ..found
+            };
+        }
+        found
+    }
+
+    /// Whether the engine has stopped, as configured.
+    fn engine_is_out(&self) -> bool {
+        self.engine_stops_at_s
+            .is_some_and(|stops_s| self.time_s >= stops_s)
+    }
+
+    /// The speed of the engine and its propeller, rad/s.
+    pub fn engine_speed_radps(&self) -> f64 {
+        let propulsion = &self.airframe.propulsion;
+        let air = Air::at(self.state.altitude_m());
+        let airspeed_mps = self.state.air_velocity_mps(&self.motion).norm();
+        if self.engine_is_out() {
+            stopped_radps(propulsion, airspeed_mps, &air)
+        } else {
+            running_radps(propulsion, self.positions.throttle, airspeed_mps, &air)
+        }
+    }
+
+    /// The battery.
+    pub fn battery(&self) -> &Battery {
+        &self.battery
     }
 
     /// The present truth.

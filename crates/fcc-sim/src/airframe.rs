@@ -154,6 +154,11 @@ pub struct Propulsion {
     pub polar_slope: f64,
     /// Intercept `b` of the propeller polar.
     pub polar_intercept: f64,
+    /// Power coefficient of the propeller that does not advance, `C_P0`.
+    pub power_at_rest: f64,
+    /// By how much it falls with the square of the advance ratio:
+    /// `C_P = C_P0 - k·J²`.
+    pub power_fall: f64,
 }
 
 impl Airframe {
@@ -170,6 +175,7 @@ impl Airframe {
     /// | arm of the horizontal tail | JSBSim's c172p, 15.7 ft |
     /// | surface travel | FAA type certificate data sheet 3A12, model 172 |
     /// | torque, diameter, propeller polar | Lowry, *Performance of Light Aircraft* (1999), Cessna 172's data plate |
+    /// | power coefficient | through the middle of the static range of the engine speed of the same power and propeller, 2,280 to 2,400 rpm (Cessna 172N's handbook), and the rated 2,700 rpm at 123 kt |
     ///
     /// The 182 is heavier, so its inertia is somewhat too high here.
     pub const SKYHAWK: Self = Self {
@@ -266,6 +272,8 @@ const CESSNA_172_PROPULSION: Propulsion = Propulsion {
     diameter_m: 6.25 * FOOT_M,
     polar_slope: 1.70,
     polar_intercept: -0.0564,
+    power_at_rest: 0.0567,
+    power_fall: 0.0259,
 };
 
 const ROSKAM_A_LIFT: Lift = Lift {

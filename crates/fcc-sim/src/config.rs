@@ -4,6 +4,7 @@ use fcc_core::flight::terrain::Terrain;
 use thiserror::Error;
 
 use crate::airframe::Airframe;
+use crate::electrical::Electrical;
 use crate::raw::RawSensorSet;
 use crate::servos::Servos;
 use crate::trim::TrimError;
@@ -55,6 +56,10 @@ pub struct SimConfig {
     pub raw_sensors: Option<RawSensorSet>,
     /// When the engage switch is switched on and off.
     pub switch: SwitchScript,
+    /// When the engine stops for good, s of simulated time; none: never.
+    pub engine_stops_at_s: Option<f64>,
+    /// Battery and alternator.
+    pub electrical: Electrical,
     /// Longest step of the integration, s, 0.0001..=0.01: each tick is split
     /// into equal steps no longer than this.
     pub substep_s: f64,
@@ -176,6 +181,8 @@ impl Default for SimConfig {
                 on_at_s: Some(2.0),
                 off_at_s: None,
             },
+            engine_stops_at_s: None,
+            electrical: Electrical::default(),
             substep_s: 1.0 / 120.0,
             seed: 1,
         }
@@ -243,7 +250,8 @@ impl SimConfig {
             self.airframe.chord_m, self.airframe.propulsion.diameter_m,
             self.airframe.travel.elevator_up_rad, self.airframe.travel.elevator_down_rad,
             self.airframe.travel.aileron_rad, self.airframe.travel.rudder_rad,
-            self.servos.surfaces.rate_per_s, self.servos.throttle.rate_per_s
+            self.servos.surfaces.rate_per_s, self.servos.throttle.rate_per_s,
+            self.airframe.propulsion.power_at_rest, self.electrical.capacity_ah
                 => f64::MIN_POSITIVE, f64::MAX, "more than 0";
             self.airframe.inertia.xz => -largest_xz, largest_xz, "smaller than √(xx·zz)";
             self.servos.surfaces.lag_s, self.servos.throttle.lag_s => 0.0, 10.0, "0..=10 s";
@@ -257,11 +265,18 @@ impl SimConfig {
             self.magnetic_inclination_rad => -PI / 2.0, PI / 2.0, "-π/2..=π/2 rad";
             self.magnetic_strength_ut => 20.0, 70.0, "20..=70 µT";
             self.wind.speed_mps => 0.0, 60.0, "0..=60 m/s";
+            self.electrical.charge => 0.0, 1.0, "0..=1";
+            self.electrical.load_a => 0.0, 60.0, "0..=60 A";
             self.substep_s => 1e-4, 0.01, "0.0001..=0.01 s";
         }
         for (field, time_s) in [
             ("switch.on_at_s", self.switch.on_at_s),
             ("switch.off_at_s", self.switch.off_at_s),
+            ("engine_stops_at_s", self.engine_stops_at_s),
+            (
+                "electrical.alternator_stops_at_s",
+                self.electrical.alternator_stops_at_s,
+            ),
         ] {
             if let Some(value) = time_s.filter(|time_s| !(0.0..=f64::MAX).contains(time_s)) {
                 let allowed = "a time of 0 s or later";

@@ -2,8 +2,8 @@
 //!
 //! A rigid body with six degrees of freedom, the published derivatives of a
 //! light single-engined aircraft, a stall and a spin, an engine with a
-//! fixed-pitch propeller, actuators, the standard atmosphere, wind, gusts, sensor
-//! errors, and a ground that ends the flight. It advances by the time of the ticks with which it is sampled: in
+//! fixed-pitch propeller, a battery, actuators, the standard atmosphere, wind, gusts,
+//! sensor errors, and a ground that ends the flight. It advances by the time of the ticks with which it is sampled: in
 //! real time in a loop, or in lockstep some thousand times faster. The same
 //! seed gives the same flight to the last bit on every machine, because
 //! transcendental functions are those of `libm` and random numbers those of
@@ -34,11 +34,13 @@
 //! | [`airframe`] | mass, size, derivatives: data, with sources |
 //! | [`atmosphere`] | standard air, airspeeds |
 //! | [`aerodynamics`] | forces and moments of air and propeller |
+//! | [`propeller`] | the engine's speed |
+//! | [`electrical`] | battery and alternator |
 //! | [`motion`] | the equations of motion and their integration |
 //! | [`turbulence`] | Dryden gusts |
 //!
-//! Not modelled: take-off and landing, flaps, a retractable gear, the engine's speed, torque,
-//! gyroscopic effect and slipstream, ice, fuel burn (mass is constant) and Mach
+//! Not modelled: flaps, a retractable gear, the propeller's torque on the airframe,
+//! gyroscopic effect, inertia and slipstream, ice, fuel burn (mass is constant) and Mach
 //! number.
 #![forbid(unsafe_code)]
 
@@ -47,12 +49,14 @@ mod aircraft;
 pub mod airframe;
 pub mod atmosphere;
 mod config;
+pub mod electrical;
 pub mod gauss;
 pub mod gear;
 mod ground;
 mod handling;
 mod link;
 pub mod motion;
+pub mod propeller;
 mod raw;
 mod sensing;
 pub mod servos;
@@ -68,6 +72,7 @@ pub use airframe::Airframe;
 pub use config::{
     Channels, LONGEST_DELAY_MS, SensorConfig, SimConfig, SimError, SwitchScript, Wind,
 };
+pub use electrical::Electrical;
 pub use handling::{HandledSensors, HandlingFault, HandlingTask};
 pub use link::{SwitchHandle, TruthHandle};
 pub use raw::{AxisErrors, RawSensor, RawSensorSet, RawSensors, RawTruth, TrueErrors};

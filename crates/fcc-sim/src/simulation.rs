@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use fcc_core::flight::{Measurements, Plant, PlantState, Surfaces};
+use fcc_core::flight::{Battery, Measurements, Plant, PlantState, Surfaces};
 use fcc_core::framework::{Actuator, ActuatorFault, Reading, Sensor, SensorFault, Switch, Tick};
 
 use libm::cos;
@@ -146,6 +146,15 @@ impl Sensor<Measurements> for SimSensor {
         }
         let weight = f64::from(u8::from(self.aircraft.on_wheels()));
         into.weight_on_wheels = Reading::new(weight, taken);
+        into.engine_speed_radps = Reading::new(self.aircraft.engine_speed_radps(), taken);
+        let battery = self.aircraft.battery();
+        into.battery = Reading::new(
+            Battery {
+                voltage_v: Some(battery.voltage_v()),
+                charge: Some(battery.charge()),
+            },
+            taken,
+        );
         if let Some(raw) = &mut self.raw {
             raw.read(taken, into);
         }

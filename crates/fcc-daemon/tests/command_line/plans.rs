@@ -158,24 +158,34 @@ fn plans_near_a_pole_are_refused() {
 
 #[test]
 fn what_nothing_measures_is_said() {
-    let limits = "[contingency]\nbattery_voltage_v = 11.0\nengine_out_below_rpm = 500.0\n";
-    let (_, said) = flown(STRAIGHT_IN, limits, &["--seconds", "1"]);
     let folder = tempfile::tempdir().unwrap();
-    fs::write(
-        folder.path().join("c.toml"),
-        format!("[built-in]\n{limits}"),
-    )
-    .unwrap();
-    let (exit, checked) = ended(folder.path(), &["check", "c.toml"]);
-    assert_eq!(exit, Some(0), "{checked}");
-    fs::write(folder.path().join("x.toml"), format!("[x-plane]\n{limits}")).unwrap();
-    let (_, of_x_plane) = ended(folder.path(), &["check", "x.toml"]);
+    let checked = |simulator: &str, limits: &str| {
+        let text = format!("{simulator}\n[contingency]\n{limits}");
+        fs::write(folder.path().join("c.toml"), text).unwrap();
+        let (exit, said) = ended(folder.path(), &["check", "c.toml"]);
+        assert_eq!(exit, Some(0), "{said}");
+        said
+    };
+    let voltage = "battery_voltage_v = 11.0\nengine_out_below_rpm = 500.0\n";
+    let of_rows = checked("[x-plane]\ninput = \"data\"\nlocal_port = 49005\n", voltage);
     for words in [
         "contingency.battery_voltage_v is 11, and no sensor here measures the voltage",
         "contingency.engine_out_below_rpm is 500, and no sensor here measures the speed",
     ] {
-        assert!(said.contains(words), "{said}");
-        assert!(checked.contains(words), "{checked}");
-        assert!(!of_x_plane.contains(words), "{of_x_plane}");
+        assert!(of_rows.contains(words), "{of_rows}");
     }
+    let charge = "battery_charge_percent = 25.0\n";
+    let of_datarefs = checked("[x-plane]", &format!("{voltage}{charge}"));
+    let words = "contingency.battery_charge_percent is 25, and no sensor here measures the charge";
+    assert!(of_datarefs.contains(words), "{of_datarefs}");
+    assert_eq!(
+        of_datarefs.matches("no sensor here").count(),
+        1,
+        "{of_datarefs}"
+    );
+    let of_built_in = checked("[built-in]", &format!("{voltage}{charge}"));
+    assert!(!of_built_in.contains("no sensor here"), "{of_built_in}");
+    let limits = format!("[contingency]\n{voltage}{charge}");
+    let (_, said) = flown(STRAIGHT_IN, &limits, &["--seconds", "1"]);
+    assert!(!said.contains("no sensor here"), "{said}");
 }

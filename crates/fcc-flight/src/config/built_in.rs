@@ -2,7 +2,8 @@
 
 use fcc_core::units::{FOOT_M, KNOT_MPS};
 use fcc_sim::{
-    Channels, RawSensorSet, SensorConfig, Severity, SimConfig, SwitchScript, TrimError, Wind, trim,
+    Channels, Electrical, RawSensorSet, SensorConfig, Severity, SimConfig, SwitchScript, TrimError,
+    Wind, trim,
 };
 use serde::{Deserialize, Serialize};
 
@@ -42,6 +43,18 @@ pub struct BuiltInSection {
     /// [`BuiltInSection::engages_at_s`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub engage_at_s: Option<f64>,
+    /// When the engine stops for good; none: never.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub engine_stops_at_s: Option<f64>,
+    /// When the alternator fails; none: never.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub alternator_stops_at_s: Option<f64>,
+    /// What is left in the battery at the start.
+    pub battery_charge_percent: f64,
+    /// What the battery gives when it is full.
+    pub battery_capacity_ah: f64,
+    /// What everything on board takes.
+    pub electrical_load_a: f64,
     /// The seed: the same seed gives the same flight.
     pub seed: u64,
     /// The raw sensors, in addition to those that give attitude and altitude.
@@ -105,6 +118,11 @@ impl Default for BuiltInSection {
             noise: true,
             delay_ms: 0,
             engage_at_s: None,
+            engine_stops_at_s: None,
+            alternator_stops_at_s: None,
+            battery_charge_percent: 100.0,
+            battery_capacity_ah: 12.75,
+            electrical_load_a: 15.0,
             seed: 1,
             raw_sensors: RawSensorsChoice::None,
             calibration: CalibrationSection::default(),
@@ -189,6 +207,13 @@ impl From<&BuiltInSection> for SimConfig {
                 },
                 delay_ms: section.delay_ms,
                 ..SensorConfig::default()
+            },
+            engine_stops_at_s: section.engine_stops_at_s,
+            electrical: Electrical {
+                capacity_ah: section.battery_capacity_ah,
+                charge: section.battery_charge_percent / 100.0,
+                load_a: section.electrical_load_a,
+                alternator_stops_at_s: section.alternator_stops_at_s,
             },
             seed: section.seed,
             raw_sensors: match section.raw_sensors {

@@ -197,6 +197,11 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("built-in.wind_kt", 0.0, 60.0),
     ("built-in.delay_ms", 0.0, 1_000.0),
     ("built-in.engage_at_s", 1.2, 3_600.0),
+    ("built-in.engine_stops_at_s", 0.0, 86_400.0),
+    ("built-in.alternator_stops_at_s", 0.0, 86_400.0),
+    ("built-in.battery_charge_percent", 0.0, 100.0),
+    ("built-in.battery_capacity_ah", 0.1, 1_000.0),
+    ("built-in.electrical_load_a", 0.0, 60.0),
     ("built-in.seed", 0.0, 9e18),
 ];
 

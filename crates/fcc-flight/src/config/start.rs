@@ -38,9 +38,12 @@ impl Config {
     }
 
     /// Limits of `[contingency]` for what no sensor of the configuration measures. X-Plane's
-    /// datarefs have the voltage of a battery and the speed of an engine, and nothing else
-    /// has.
+    /// datarefs have the voltage of a battery and the speed of an engine, the built-in aircraft
+    /// also the charge, and nothing else has.
     fn unmeasured_limits(&self) -> Vec<String> {
+        if self.built_in.is_some() {
+            return Vec::new();
+        }
         let section = &self.contingency;
         let has_datarefs = self
             .x_planes()

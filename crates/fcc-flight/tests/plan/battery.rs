@@ -3,38 +3,24 @@
 use std::fmt::Write as _;
 
 use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{AutopilotCommand, Battery, Contingency, Measurements};
-use fcc_core::framework::{Reading, Sensor, SensorFault, State, Tick};
+use fcc_core::flight::{AutopilotCommand, Contingency};
+use fcc_core::framework::{Reading, State};
 
 use crate::contingency::{fenced, go_to};
-use crate::flight::{Flight, HOME, legs};
+use crate::flight::{Flight, HOME, Without, legs};
 
 /// Ticks of a second.
 const RATE: u64 = 40;
 
-/// A sensor with a battery of 12 V, whose charge and voltage fall by this share in each
-/// second.
-struct Draining(Box<dyn Sensor<Measurements>>, f64);
+/// What the built-in aircraft takes, A.
+const LOAD_A: f64 = 15.0;
 
-impl Sensor<Measurements> for Draining {
-    fn name(&self) -> &str {
-        self.0.name()
-    }
-
-    fn sample(&mut self, tick: &Tick, measurements: &mut Measurements) -> Result<(), SensorFault> {
-        self.0.sample(tick, measurements)?;
-        let left = 1.0 - self.1 * tick.number as f64 / RATE as f64;
-        let battery = Battery {
-            voltage_v: Some(12.0 * left),
-            charge: Some(left),
-        };
-        measurements.battery = Reading::new(battery, tick.woke);
-        Ok(())
-    }
-}
-
+/// A flight whose alternator does not feed, with a battery of which this share is used in
+/// each second. The keys end with those of `[built-in]`.
 fn draining(plan: &str, keys: &str, per_s: f64) -> Flight {
-    Flight::with(plan, keys, |sensor| Box::new(Draining(sensor, per_s)))
+    let capacity_ah = LOAD_A / (3_600.0 * per_s);
+    let keys = format!("{keys}alternator_stops_at_s = 0\nbattery_capacity_ah = {capacity_ah}\n");
+    Flight::new(plan, &keys)
 }
 
 /// Take-off to the north, 25 km there, and a landing sequence from 6 km in the south.
@@ -97,16 +83,18 @@ fn with_a_low_battery_it_lands_before_the_plan_does() {
 fn nothing_takes_off_with_a_low_battery() {
     let keys = |limit: &str| format!("[contingency]\n{limit}\n[built-in]\nnoise = false\n");
     for (limit, per_s, engages) in [
-        ("battery_charge_percent = 100", Some(0.000_001), false),
-        ("battery_voltage_v = 12.5", Some(0.0), false),
+        ("battery_charge_percent = 100", Some(0.000_005), false),
+        ("battery_voltage_v = 25.4", Some(0.000_005), false),
         ("battery_charge_percent = 25", None, false),
-        ("battery_charge_percent = 25", Some(0.0), true),
+        ("battery_charge_percent = 25", Some(0.000_005), true),
         ("", None, true),
     ] {
         let (plan, keys) = (there_and_back(), keys(limit));
         let mut flight = match per_s {
             Some(per_s) => draining(&plan, &keys, per_s),
-            None => Flight::new(&plan, &keys),
+            None => Flight::with(&plan, &keys, |sensor| {
+                Box::new(Without(sensor, |into| into.battery = Reading::default()))
+            }),
         };
         for _ in 0..30 * RATE {
             flight.tick();
@@ -119,10 +107,11 @@ fn nothing_takes_off_with_a_low_battery() {
     }
 }
 
-/// The battery is worse than a lost commander. Of 12 V, 10.5 V are left after 25 s.
+/// The battery is worse than a lost commander. Seven eighths of its charge are left after
+/// 25 s: 12 cells of 2.10 V, less 0.3 V at the load.
 #[test]
 fn the_worst_acts_and_a_command_ends_it() {
-    let keys = "[contingency]\ncommander_lost = \"loiter\"\nbattery_voltage_v = 10.5\n\
+    let keys = "[contingency]\ncommander_lost = \"loiter\"\nbattery_voltage_v = 24.9\n\
                 battery_low_after_s = 5\n[built-in]\n";
     let plan = legs(&[0.0, 60.0], 20_000.0, 0.0);
     let mut flight = draining(&plan, keys, 0.005);

@@ -6,7 +6,7 @@ use std::time::Duration;
 use fcc_core::flight::guidance::Mode;
 use fcc_core::flight::inertial::metres_per_radian;
 use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Surfaces};
-use fcc_core::framework::{Actuator, LoopCommand, Sensor};
+use fcc_core::framework::{Actuator, LoopCommand, Sensor, SensorFault, Tick};
 use fcc_flight::config::{Config, PreparedPlan};
 use fcc_flight::flight::assemble;
 use fcc_plan::{Home, Item, Place, Plan};
@@ -37,6 +37,24 @@ pub(crate) fn line(number: usize, command: u16, parameters: [f64; 4], at: Place)
     let [a, b, c, d] = parameters;
     let (latitude, longitude) = (at.latitude_deg, at.longitude_deg);
     format!("{number} 0 0 {command} {a} {b} {c} {d} {latitude:.9} {longitude:.9} {ALTITUDE_M} 1\n")
+}
+
+/// A sensor without a reading, which is taken out of its measurements.
+pub(crate) struct Without(
+    pub(crate) Box<dyn Sensor<Measurements>>,
+    pub(crate) fn(&mut Measurements),
+);
+
+impl Sensor<Measurements> for Without {
+    fn name(&self) -> &str {
+        self.0.name()
+    }
+
+    fn sample(&mut self, tick: &Tick, measurements: &mut Measurements) -> Result<(), SensorFault> {
+        self.0.sample(tick, measurements)?;
+        (self.1)(measurements);
+        Ok(())
+    }
 }
 
 /// A flight of the built-in aircraft.
@@ -72,6 +90,30 @@ impl Flight {
         around: impl Fn(Box<dyn Sensor<Measurements>>) -> Box<dyn Sensor<Measurements>>,
         around_actuator: impl Fn(Box<dyn Actuator<Surfaces>>) -> Box<dyn Actuator<Surfaces>>,
     ) -> Self {
+        let timer = ManualTimer::new(Duration::from_millis(25)).unwrap();
+        Self::timed(timer, plan, keys, around, around_actuator)
+    }
+
+    /// With sensors that are put around the aircraft's, and a warm-up before each tick, which
+    /// takes as long as the tick.
+    pub(crate) fn warmed_up(
+        plan: &str,
+        keys: &str,
+        around: impl Fn(Box<dyn Sensor<Measurements>>) -> Box<dyn Sensor<Measurements>>,
+    ) -> Self {
+        let timer = ManualTimer::new(Duration::from_millis(25)).unwrap();
+        Self::timed(timer.with_warm_up(), plan, keys, around, |actuator| {
+            actuator
+        })
+    }
+
+    fn timed(
+        timer: ManualTimer,
+        plan: &str,
+        keys: &str,
+        around: impl Fn(Box<dyn Sensor<Measurements>>) -> Box<dyn Sensor<Measurements>>,
+        around_actuator: impl Fn(Box<dyn Actuator<Surfaces>>) -> Box<dyn Actuator<Surfaces>>,
+    ) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a.waypoints");
         std::fs::write(&file, plan).unwrap();
@@ -81,11 +123,7 @@ impl Flight {
         config.load_plan(1_790_000_000).unwrap();
         let assembly = assemble(&config).unwrap();
         let parts = Parts {
-            timer: Box::new(
-                ManualTimer::new(Duration::from_millis(25))
-                    .unwrap()
-                    .with_warm_up(),
-            ),
+            timer: Box::new(timer),
             sensors: assembly.sensors.into_iter().map(around).collect(),
             controller: Autopilot::new(*assembly.autopilot.config()),
             actuators: assembly

@@ -11,7 +11,7 @@ use fcc_core::framework::{Actuator, ActuatorFault, Reading, Sensor, SensorFault,
 use fcc_plan::Place;
 use fcc_runtime::Message;
 
-use crate::flight::{Flight, HOME};
+use crate::flight::{Flight, HOME, Without};
 
 /// Ticks of a second.
 const RATE: u64 = 40;
@@ -70,8 +70,12 @@ const RETRACTABLE: &str = "[autopilot.runway]\nretractable_gear = true\n";
 fn with_engine(plan: &str, keys: &str) -> (Flight, Arc<AtomicBool>) {
     let stops = Arc::new(AtomicBool::new(false));
     let stopped = Arc::clone(&stops);
-    let keys = format!("[contingency]\nengine_out_below_rpm = 300\n{RETRACTABLE}{keys}");
-    let flight = Flight::with(plan, &keys, |sensor| {
+    let keys = format!(
+        "[contingency]
+engine_out_below_rpm = 300
+{RETRACTABLE}{keys}"
+    );
+    let flight = Flight::warmed_up(plan, &keys, |sensor| {
         Box::new(Engine(sensor, Arc::clone(&stopped)))
     });
     (flight, stops)
@@ -247,18 +251,36 @@ fn an_engine_that_runs_again_continues_the_plan() {
     assert_eq!(flight.mode(), Mode::Loiter);
 }
 
-/// With nothing configured an engine that stops changes nothing, and neither does one that
-/// is not measured.
+/// The engine of the built-in aircraft, which stops after a minute: what is not configured
+/// is not watched, and neither is what is not measured.
 #[test]
-fn what_is_not_configured_is_not_watched() {
+fn an_engine_that_stops_is_missed_if_it_is_watched() {
     let plan = away_from_runway(0.0);
-    for (keys, action) in [("", Mode::Plan), ("engine_out_below_rpm = 300", Mode::Plan)] {
-        let keys = format!("[contingency]\n{keys}\n[built-in]\nnoise = false\n");
-        let mut flight = Flight::new(&plan, &keys);
+    let below = "engine_out_below_rpm = 600";
+    for (keys, is_measured, mode) in [
+        ("", true, Mode::Plan),
+        (below, true, Mode::Glide),
+        (below, false, Mode::Plan),
+    ] {
+        let keys =
+            format!("[contingency]\n{keys}\n[built-in]\nnoise = false\nengine_stops_at_s = 60\n");
+        let mut flight = Flight::with(&plan, &keys, |sensor| {
+            if is_measured {
+                return sensor;
+            }
+            Box::new(Without(sensor, |into| {
+                into.engine_speed_radps = Reading::default();
+            }))
+        });
         for _ in 0..60 * RATE {
             flight.tick();
+            assert_eq!(flight.record.setpoints.contingency, Contingency::None);
         }
-        assert_eq!(flight.mode(), action);
+        // It slows down, and with it the propeller.
+        for _ in 0..15 * RATE {
+            flight.tick();
+        }
+        assert_eq!(flight.mode(), mode, "{keys}");
     }
 }
 

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use fcc_core::flight::Measurements;
 use fcc_core::flight::guidance::Mode;
+use fcc_core::flight::{AutopilotCommand, Measurements};
 use fcc_core::framework::{Sensor, SensorFault, State, Tick};
 
 use crate::battery::there_and_back;
@@ -61,6 +61,9 @@ fn flight(falsify: Falsify) -> (Flight, Arc<AtomicBool>) {
 fn height_m(flight: &Flight) -> f64 {
     flight.truth.get().altitude_m - ELEVATION_M
 }
+
+/// The item of the plan that begins it.
+const LANDING_SEQUENCE: u16 = 4;
 
 const LOST: [(&str, Falsify); 4] = [
     ("altitude", |now, good| now.altitude_m = good.altitude_m),
@@ -132,7 +135,10 @@ fn a_short_loss_in_a_take_off_is_climbed_through() {
 fn what_is_lost_in_the_flare_ends_on_the_runway() {
     for (name, falsify) in LOST {
         let (mut flight, is_asked) = flight(falsify);
-        flight.fly_until(2_000.0, |flight| flight.mode() == Mode::Land);
+        flight.fly_until(120.0, |flight| flight.mode() == Mode::Plan);
+        // Not far away first, and back.
+        flight.command(AutopilotCommand::Plan(LANDING_SEQUENCE));
+        flight.fly_until(600.0, |flight| flight.mode() == Mode::Land);
         flight.fly_until(400.0, |flight| height_m(flight) < 4.0);
         is_asked.store(true, Ordering::Relaxed);
         let mut touches_mps = 0.0;

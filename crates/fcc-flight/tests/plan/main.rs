@@ -191,7 +191,7 @@ fn a_plan_is_flown_without_the_allocator() {
             "wind_kt = 10\n[built-in]\nraw_sensors = \"{raw}\"\n[navigation]\nmethod = \
              \"{navigation}\"\n"
         );
-        let mut flight = Flight::new(&plan, &keys);
+        let mut flight = Flight::warmed_up(&plan, &keys, |sensor| sensor);
         let mut last = FlightRecord::default();
         let ((), calls) = allocator_calls(|| {
             for _ in 0..8_000 {

@@ -107,7 +107,7 @@ fn is_replayed_in_every_bit(flight: &Flight, plans: &[PreparedPlan], messages: &
 #[test]
 fn a_plan_is_replaced_a_hundred_times_at_drawn_moments() {
     let keys = "wind_kt = 15\n[built-in]\nwind_from_deg = 200\nwind_kt = 15\n";
-    let mut flight = Flight::new(&legs(&[0.0, 60.0], 8_000.0, 0.0), keys);
+    let mut flight = Flight::warmed_up(&legs(&[0.0, 60.0], 8_000.0, 0.0), keys, |sensor| sensor);
     let mut draws = Draws(2_026);
     let plans: Vec<_> = (0..100)
         .map(|n| drawn_and_valid(&flight, &mut draws, 1_790_000_001 + n))

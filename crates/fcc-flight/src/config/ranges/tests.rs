@@ -22,6 +22,8 @@ fn every_number_has_a_range() {
     if let Some(section) = &mut config.built_in {
         section.calibration.gnss.delay_ms = 1.0;
         section.engage_at_s = Some(2.0);
+        section.engine_stops_at_s = Some(60.0);
+        section.alternator_stops_at_s = Some(60.0);
     }
     config.engage.stick_takeover = Some(0.3);
     config.autopilot.airframe = Some(
