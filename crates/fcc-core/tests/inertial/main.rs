@@ -7,6 +7,7 @@
 
 mod chosen;
 mod consistency;
+mod drifts;
 mod flight;
 mod flights;
 mod gyroscope;

@@ -36,6 +36,9 @@ pub(crate) struct Fitted {
     pub(crate) slow_errors: bool,
     /// The end of the accelerometer's range, m/s².
     pub(crate) force_range: f64,
+    /// By how much the biases of gyroscopes and accelerometers change from a time on, rad/s²,
+    /// m/s³, s.
+    pub(crate) drifts: ([f64; 3], [f64; 3], f64),
 }
 
 impl Default for Fitted {
@@ -48,6 +51,7 @@ impl Default for Fitted {
             compass_turned: (0.0, f64::INFINITY),
             slow_errors: true,
             force_range: f64::INFINITY,
+            drifts: ([0.0; 3], [0.0; 3], f64::INFINITY),
         }
     }
 }
@@ -106,10 +110,16 @@ impl Run {
             let noise = random.vector(sigma);
             [0, 1, 2].map(|axis| value[axis] + bias[axis] + noise[axis])
         };
+        let (rate_drift, force_drift, from_s) = self.fitted.drifts;
+        let since_s = (truth.time_s - from_s).max(0.0);
+        let drifted =
+            |bias: [f64; 3], by: [f64; 3]| [0, 1, 2].map(|at| bias[at] + by[at] * since_s);
+        let rate_bias = drifted(self.rate_bias, rate_drift);
+        let force_bias = drifted(self.force_bias, force_drift);
         // 0.01 °/s/√Hz, 300 µg/√Hz.
-        let rates = noisy(&mut self.random, truth.rates, self.rate_bias, 0.0012);
+        let rates = noisy(&mut self.random, truth.rates, rate_bias, 0.0012);
         let range = self.fitted.force_range;
-        let force = noisy(&mut self.random, truth.force, self.force_bias, 0.02)
+        let force = noisy(&mut self.random, truth.force, force_bias, 0.02)
             .map(|axis| axis.clamp(-range, range));
         self.navigation.observe(now, Observation::Rates(rates));
         self.navigation

@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector2, Vector3};
 
+use super::drift::Drift;
 use super::innovations::Innovations;
 use super::motion::{Increment, Inertial, Motion, turn};
 use super::parameters as p;
@@ -57,6 +58,7 @@ pub(super) struct Filter {
     pub(super) mean_square_velocity: f64,
     /// Whether what is taken for rates is how the magnetic field turns.
     pub(super) turns_by_field: bool,
+    pub(super) drift: Drift,
     pending: Pending,
 }
 
@@ -89,6 +91,7 @@ impl Filter {
             rates: Vector3::zeros(),
             mean_square_velocity: 0.0,
             turns_by_field: false,
+            drift: Drift::default(),
             pending: Pending::default(),
         }
     }
@@ -185,6 +188,17 @@ impl Filter {
         self.add_variance(EARTH_FIELD, 3, walk(p::EARTH_FIELD_WALK));
         self.add_variance(BODY_FIELD, 3, walk(p::BODY_FIELD_WALK));
         self.add_variance(WIND, 2, walk(self.wind_walk()));
+        for (at, more) in (RATE_BIAS..).zip(self.drift.step(dt_s)) {
+            if more > 0.0 {
+                self.add_variance(at, 1, more);
+                let largest = if at < FORCE_BIAS {
+                    p::LARGEST_RATE_BIAS
+                } else {
+                    p::LARGEST_FORCE_BIAS
+                };
+                self.limit_variance(at, largest * largest);
+            }
+        }
         for axis in ATTITUDE..ATTITUDE + 3 {
             self.limit_variance(axis, UNKNOWN_ANGLE);
         }

@@ -23,6 +23,7 @@
 mod air;
 mod align;
 mod by_field;
+mod drift;
 mod filter;
 mod history;
 mod innovations;

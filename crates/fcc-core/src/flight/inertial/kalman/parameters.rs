@@ -48,6 +48,16 @@ pub(super) const RATE_BIAS_WALK_BY_ACCELERATION: f64 = 5.6e-5;
 /// Bias of accelerometers, m/s² (5 mg, calibrated), and its random walk, m/s²/√s.
 pub(super) const FORCE_BIAS: f64 = 0.05;
 pub(super) const FORCE_BIAS_WALK: f64 = 5e-4;
+/// Corrections of a bias are summed over this time, s, and beyond the square of so many
+/// standard deviations their sum is a drift. Chosen on flights of JSBSim: without a fault,
+/// in turbulence 5, the square is at most 2 (two of them).
+pub(super) const DRIFT_S: f64 = 15.0;
+pub(super) const DRIFT_GATE: f64 = 9.0;
+/// By how much the variance grows in that time, as a multiple of the square of the sum.
+pub(super) const DRIFT_GAIN: f64 = 3.0;
+/// How uncertain a bias becomes by that at most, rad/s, m/s².
+pub(super) const LARGEST_RATE_BIAS: f64 = 0.1;
+pub(super) const LARGEST_FORCE_BIAS: f64 = 5.0;
 /// The random walk of pressure altitude against altitude, m/√s: weather and the
 /// static port, 2 m in ten minutes.
 pub(super) const BAROMETER_WALK: f64 = 0.08;

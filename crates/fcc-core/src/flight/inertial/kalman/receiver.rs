@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, Vector3};
 
-use super::filter::{ATTITUDE, BAROMETER_BIAS, Filter, POSITION, STATES, VELOCITY};
+use super::filter::{ATTITUDE, BAROMETER_BIAS, FORCE_BIAS, Filter, POSITION, STATES, VELOCITY};
 use super::noise::{Noise, variances};
 use super::parameters as p;
 use super::update::{Corrects, Measurement};
@@ -115,6 +115,9 @@ impl Filter {
                 let sideways = (difference.xy().norm() - difference.z.abs()).max(0.0);
                 let tilt = sideways / (self.motion.gravity().z * p::RECEIVER_REFUSED_S);
                 self.add_variance(ATTITUDE, 3, (tilt * tilt).min(DOUBTED_ATTITUDE));
+                // Or an accelerometer is off by as much.
+                let off = sideways / p::RECEIVER_REFUSED_S;
+                self.add_variance(FORCE_BIAS, 2, off * off);
             }
             self.tracks.velocity.judged(taken, true);
         }

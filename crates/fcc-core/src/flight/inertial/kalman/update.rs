@@ -97,6 +97,7 @@ impl Filter {
         corrects: Corrects,
     ) {
         let mut error = StateVector::zeros();
+        let watches = corrects == Corrects::All && self.is_moving();
         for axis in 0..N {
             let row = measurement.jacobian.row(axis).transpose();
             let variance = measurement.variance[axis] * measurement.excess[axis];
@@ -107,6 +108,9 @@ impl Filter {
             }
             let mut gain = with_states / total;
             corrects.mask(&mut gain);
+            if watches {
+                self.drift.expect(&gain, &with_states);
+            }
             let left = measurement.difference[axis] - row.dot(&error);
             error += gain * left;
             // (I - K H) P (I - K H)ᵀ + K R Kᵀ, for any gain (Joseph's form), is
@@ -119,6 +123,9 @@ impl Filter {
                     *part -= gain * less_here + less * gain_here;
                 }
             }
+        }
+        if watches {
+            self.drift.corrected(&error);
         }
         self.inject(&error);
     }

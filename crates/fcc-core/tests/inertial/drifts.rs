@@ -1,0 +1,52 @@
+//! Inertial sensors whose biases drift in flight.
+
+use fcc_core::blocks::wrap_pi;
+use fcc_core::flight::orientation::euler_from_quaternion;
+
+use super::flight::Flight;
+use super::sensors::{Fitted, Run};
+
+const DRIFTS_S: f64 = 60.0;
+/// Wrong by more than this is the attitude lost, °.
+const LOST_DEG: f64 = 10.0;
+
+/// Turns to the left and to the right by 25° of bank, in between straight flight.
+fn turns(time_s: f64) -> (f64, f64, f64) {
+    let share = (time_s / 15.0).sin();
+    (25.0_f64.to_radians() * share * share * share, 0.0, 50.0)
+}
+
+/// The largest error of roll and pitch in two minutes of a drift, °, in severe turbulence.
+fn largest_error(rate: [f64; 3], force: [f64; 3], seed: u64) -> f64 {
+    let fitted = Fitted {
+        drifts: (rate.map(f64::to_radians), force, DRIFTS_S),
+        ..Fitted::default()
+    };
+    let flight = Flight::new(turns, 1.0, [-6.0, 8.0]).in_turbulence(seed);
+    let mut run = Run::new(flight, fitted, seed);
+    let mut largest = 0.0_f64;
+    run.until(DRIFTS_S, |_, _| {});
+    run.until(DRIFTS_S + 120.0, |truth, solution| {
+        let found = euler_from_quaternion(solution.quaternion);
+        let roll = wrap_pi(found.roll_rad - truth.angles.roll_rad);
+        let pitch = found.pitch_rad - truth.angles.pitch_rad;
+        largest = largest.max(roll.abs()).max(pitch.abs());
+    });
+    largest.to_degrees()
+}
+
+#[test]
+fn a_gyroscope_that_drifts_is_followed_with_a_receiver() {
+    for rate in [[0.05, 0.0, 0.0], [0.0, 0.05, 0.0], [0.0, -0.05, 0.0]] {
+        let error = largest_error(rate, [0.0; 3], 21);
+        assert!(error <= LOST_DEG, "{error}° with {rate:?} °/s²");
+    }
+}
+
+#[test]
+fn an_accelerometer_that_drifts_is_followed_with_a_receiver() {
+    for force in [[0.03, 0.0, 0.0], [0.0, 0.03, 0.0]] {
+        let error = largest_error([0.0; 3], force, 23);
+        assert!(error <= LOST_DEG, "{error}° with {force:?} m/s³");
+    }
+}
