@@ -118,6 +118,7 @@ impl Autopilot {
             plan_hash: plan.hash,
             plan_uploaded_unix_s: plan.uploaded_unix_s,
             contingency: self.contingencies.active(),
+            took_off: self.took_off.unwrap_or_default(),
             course_rad: track.course_rad,
             cross_track_m: track.cross_track_m,
             to_go_m: track.to_go_m,
@@ -293,8 +294,11 @@ impl Autopilot {
     /// Continues a mode over the ground after a restart; whether it is one.
     pub(super) fn resume_over_ground(&mut self, mode: Mode, item: u32) -> bool {
         match mode {
-            // Where it took off is not known any more.
-            Mode::Land | Mode::GoAround if item == 0 => self.return_home(),
+            Mode::Land | Mode::GoAround if item == 0 => {
+                if !self.land_back() {
+                    self.return_home();
+                }
+            }
             Mode::Plan | Mode::Takeoff | Mode::Land | Mode::GoAround => {
                 self.fly_plan(u16::try_from(item).unwrap_or(0));
             }
