@@ -1,5 +1,6 @@
 //! Guidance in a tick, and the modes that fly over the ground.
 
+use super::place_monitor::PlaceDoubt;
 use super::{Autopilot, flags};
 use crate::flight::control::{Envelope, Lateral, Schedule};
 use crate::flight::guidance::{ActiveMode, Mode, ModeInput, OverGroundMode};
@@ -157,10 +158,15 @@ impl Autopilot {
     /// What is reported of the position while it is flown by.
     pub(super) fn route_conditions(&self) -> Flags {
         let is_flown = self.guidance.over_ground().is_some();
-        Flags::NONE.with(
-            flags::DEAD_RECKONING,
-            is_flown && !self.ground.is_measured(),
-        )
+        let doubt = self.ground.place_doubt().filter(|_| is_flown);
+        let repeats = doubt == Some(PlaceDoubt::Repeats);
+        Flags::NONE
+            .with(
+                flags::DEAD_RECKONING,
+                is_flown && !self.ground.is_measured(),
+            )
+            .with(flags::REPEATED_FIX, repeats)
+            .with(flags::IMPOSSIBLE_FIX, doubt.is_some() && !repeats)
     }
 
     /// Flies the plan from an item on, counted from 1; 0: where it was left, or from
