@@ -4,11 +4,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
 use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{Measurements, Position, Velocity};
+use fcc_core::flight::{AutopilotCommand, Measurements, Position, Velocity};
 use fcc_core::framework::{Sensor, SensorFault, State, Tick};
 use fcc_plan::Place;
 
-use crate::flight::{Flight, legs};
+use crate::contingency::fenced;
+use crate::flight::{Flight, HOME, legs};
 
 const RATE: u64 = 40;
 
@@ -150,4 +151,32 @@ fn a_wrong_velocity_is_not_held_against_the_place() {
     }
     let told = |event: &String| event.contains("satellite navigation");
     assert!(!flight.events.iter().any(told), "{:#?}", flight.events);
+}
+
+/// The fence is kept by dead reckoning: 5 km around home, with a margin of 30 m, as the
+/// receiver stops 2 km from home.
+#[test]
+fn a_fence_is_kept_although_the_place_is_repeated() {
+    for does in [PLACE_REPEATED, ALL_REPEATED] {
+        let receiver = Arc::new(AtomicU8::new(0));
+        let mut flight = Flight::with(&fenced(&[], 5_000.0), "[built-in]\n", |sensor| {
+            Box::new(Receiver {
+                sensor,
+                does: Arc::clone(&receiver),
+                before: (Position::default(), Velocity::default()),
+            })
+        });
+        flight.fly_until(60.0, |flight| flight.record.state.state() == State::Engaged);
+        flight.command(AutopilotCommand::Heading(0.0));
+        flight.fly_until(200.0, |flight| flight.distance_m(HOME) > 2_000.0);
+        receiver.store(does, Ordering::Relaxed);
+        let mut most_m = 0.0_f64;
+        for _ in 0..300 * RATE {
+            flight.tick();
+            most_m = most_m.max(flight.distance_m(HOME));
+        }
+        println!("{does}: {:.0} m inside of the fence", 5_000.0 - most_m);
+        assert!(most_m < 5_000.0, "{does}: {most_m}");
+        assert!(flight.happened("the fence is near: turning away: returning"));
+    }
 }
