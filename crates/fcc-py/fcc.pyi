@@ -558,6 +558,22 @@ class Setpoints:
     def contingency(self) -> str:
         """What the autopilot does by itself, and why."""
 
+    @property
+    def took_off_latitude_rad(self) -> float:
+        """Geodetic latitude, rad."""
+
+    @property
+    def took_off_longitude_rad(self) -> float:
+        """Longitude, rad."""
+
+    @property
+    def took_off_course_rad(self) -> float:
+        """True course along the runway, rad."""
+
+    @property
+    def took_off_elevation_m(self) -> float:
+        """Of the aircraft on its wheels there, m above mean sea level."""
+
     # </schema>
     def __eq__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]

@@ -82,4 +82,4 @@ pub use watcher::WatcherOf;
 
 /// The version of all layouts except [`Info`]'s. Increase it with every change
 /// of one of them, or of a field's meaning.
-pub const LAYOUT: u32 = 3;
+pub const LAYOUT: u32 = 4;

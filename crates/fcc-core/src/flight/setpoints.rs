@@ -3,6 +3,7 @@
 use core::f64::consts::{PI, TAU};
 
 use super::guidance::Progress;
+use super::route::TookOff;
 use super::{AltitudeReference, Contingency};
 use crate::schema;
 
@@ -72,5 +73,8 @@ schema! {
         /// What the autopilot does by itself, and why.
         #[field(16)]
         pub contingency: Contingency,
+        /// Where the aircraft took off; in every state.
+        #[field(17, column = "took_off_*")]
+        pub took_off: TookOff,
     }
 }

@@ -143,6 +143,7 @@ fn a_resumed_flight_has_its_setting_and_reference() {
             surfaces: STANDING,
             altimeter_setting_pa: Some(30.2 * INHG_PA),
             altitude_reference: reference,
+            ..Resume::default()
         })
     };
     let commands = [resume(AltitudeReference::SeaLevel), setting(29.9)];

@@ -99,6 +99,7 @@ fn a_command_that_is_no_number_changes_nothing() {
                 surfaces,
                 altimeter_setting_pa: Some(no_number),
                 altitude_reference: AltitudeReference::PressureLevel,
+                ..Resume::default()
             })
         };
         let mut progress = Cockpit::engaged(GuidanceConfig::Hold)

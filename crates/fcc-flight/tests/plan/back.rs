@@ -3,8 +3,9 @@
 
 use std::fmt::Write as _;
 
-use fcc_core::flight::AutopilotCommand;
-use fcc_core::flight::guidance::Mode;
+use fcc_core::flight::guidance::{Mode, Progress};
+use fcc_core::flight::route::TookOff;
+use fcc_core::flight::{AutopilotCommand, Resume};
 use fcc_core::framework::State;
 use fcc_sim::Truth;
 
@@ -96,4 +97,48 @@ fn without_a_take_off_it_is_not_carried_out() {
                    take off";
     flight.fly_until(1.0, |flight| flight.happened(refused));
     assert_eq!(flight.mode(), Mode::Plan);
+}
+
+/// As a restart in flight does: with what the record of the flight before has, in another
+/// autopilot, which has seen no take-off. The ground is 120 m high (393.7 ft).
+#[test]
+fn after_a_restart_it_lands_where_it_took_off() {
+    let (before, start) = takes_off(&circuit(""), "");
+    let resume = |mode, item, took_off| {
+        AutopilotCommand::Resume(Resume {
+            progress: Progress {
+                mode,
+                item,
+                ..before.record.setpoints.guidance
+            },
+            took_off,
+            ..Resume::default()
+        })
+    };
+    let took_off = before.record.setpoints.took_off;
+    for (resumed, commanded) in [
+        (
+            resume(Mode::Plan, 1, took_off),
+            Some(AutopilotCommand::Land),
+        ),
+        // It was on its way back.
+        (resume(Mode::Land, 0, took_off), None),
+    ] {
+        let keys = "[built-in]\nnoise = false\nground_ft = 393.7\n";
+        let mut flight = Flight::new(&legs(&[30.0, 60.0], 9_000.0, 0.0), keys);
+        flight.fly_until(60.0, |flight| flight.record.state.state() == State::Engaged);
+        assert_eq!(flight.record.setpoints.took_off, TookOff::default());
+        flight.command(resumed);
+        flight.tick();
+        assert_eq!(flight.record.setpoints.took_off, took_off);
+        if let Some(command) = commanded {
+            flight.command(command);
+        }
+        lands_back(&mut flight, &start);
+    }
+    // Not known, it returns.
+    let mut flight = Flight::new(&legs(&[30.0], 9_000.0, 0.0), "[built-in]\n");
+    flight.fly_until(60.0, |flight| flight.record.state.state() == State::Engaged);
+    flight.command(resume(Mode::Land, 0, TookOff::default()));
+    flight.fly_until(0.1, |flight| flight.mode() == Mode::Return);
 }

@@ -10,6 +10,7 @@ mod flight;
 mod glide;
 mod lost_low;
 mod refused;
+mod repeated_place;
 mod replacing;
 mod terrain;
 mod terrain_ahead;

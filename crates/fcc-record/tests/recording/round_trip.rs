@@ -1,6 +1,7 @@
 //! What is recorded is read back bit for bit.
 
 use fcc_core::flight::guidance::{Mode, Progress, Targets};
+use fcc_core::flight::route::TookOff;
 use fcc_core::flight::{AltitudeReference, AutopilotCommand, Position, Resume, Surfaces};
 use fcc_core::framework::{
     ActuatorFault, Cause, EventKind, Flags, LoopCommand, Message, Notice, SensorFault, Stage,
@@ -35,6 +36,12 @@ const RESUME: Resume = Resume {
     },
     altimeter_setting_pa: Some(102_000.0),
     altitude_reference: AltitudeReference::Field,
+    took_off: TookOff {
+        latitude_rad: 0.82,
+        longitude_rad: -0.0,
+        course_rad: 1e-300,
+        elevation_m: 431.5,
+    },
 };
 
 /// Records, reads, and returns what was read from a file that must be finished.

@@ -27,7 +27,11 @@ impl Autopilot {
             replacement: Replacement::new(config.navigation.attitude_tau_s),
             frozen: FrozenDetector::new(config.frozen_after.as_secs_f64()),
             guidance: ActiveMode::None,
-            ground: GroundMotion::default(),
+            ground: if config.raw_navigation.is_some() {
+                GroundMotion::default()
+            } else {
+                GroundMotion::judging(config.envelope.min_airspeed_mps)
+            },
             bank: BankCommand::new(config.route.bank_rad, config.route.bank_rate_radps),
             on_runway: RunwayControl::default(),
             left_plan: None,

@@ -12,12 +12,13 @@ use libm::{atan2, cos, exp, hypot, sin};
 use nalgebra::Vector2;
 
 use super::ground_below::GroundBelow;
+use super::place_monitor::{Moving, PlaceDoubt, PlaceMonitor, Verdict};
 use crate::blocks::{limit, wrap_pi};
-use crate::flight::Measurements;
 use crate::flight::inertial::{Solution, metres_per_radian};
 use crate::flight::navigation::Estimate;
 use crate::flight::route::OverGround;
-use crate::framework::Time;
+use crate::flight::{Measurements, Position};
+use crate::framework::{Reading, Time};
 
 /// A reading is taken on by its velocity for so long at most.
 const LONGEST_AGE: Duration = Duration::from_secs(1);
@@ -51,6 +52,7 @@ const WIND_MPS: f64 = 1.5;
 pub(super) struct GroundMotion {
     here: OverGround,
     position_taken: Time,
+    place: PlaceMonitor,
     velocity_taken: Time,
     /// True north minus magnetic north, as the last velocity showed it, rad.
     variation_rad: f64,
@@ -64,6 +66,24 @@ pub(super) struct GroundMotion {
 }
 
 impl GroundMotion {
+    /// Holds positions against motion, of an aircraft that flies from this airspeed on, m/s.
+    pub(super) fn judging(flies_mps: f64) -> Self {
+        Self {
+            place: PlaceMonitor::new(flies_mps),
+            ..Self::default()
+        }
+    }
+
+    /// Why the measured position is not used, if it is not.
+    pub(super) const fn place_doubt(&self) -> Option<PlaceDoubt> {
+        self.place.doubt()
+    }
+
+    /// The aircraft is elsewhere: the next position is no jump.
+    pub(super) fn forget_place(&mut self) {
+        self.place = self.place.anew();
+    }
+
     /// Where the aircraft is, if it was ever known.
     pub(super) fn here(&self) -> Option<&OverGround> {
         (!self.position_taken.is_never() && self.here.is_finite()).then_some(&self.here)
@@ -167,7 +187,12 @@ impl GroundMotion {
             .weight_on_wheels
             .fresh(now, LONGEST_AGE)
             .map(|weight| weight >= 0.5);
-        if let Some(([north, east], variation_rad)) = wind {
+        let velocity = measured.velocity;
+        self.place.take_velocity(&velocity);
+        // Of a velocity that is repeated no wind is learned.
+        if let Some(([north, east], variation_rad)) = wind
+            && (self.place.has_new_velocity() || now.since(velocity.taken) > LONGEST_AGE)
+        {
             self.here.wind_mps = Vector2::new(north, east);
             if !self.stands_on_wheels() {
                 self.variation_rad = variation_rad;
@@ -175,8 +200,7 @@ impl GroundMotion {
         }
         self.follow_variation(estimate, dt_s);
         self.here.heading_rad = estimate.heading_rad + self.variation_rad;
-        let velocity = measured.velocity;
-        if velocity.taken > self.velocity_taken {
+        if velocity.taken > self.velocity_taken && !self.place.doubts_velocity() {
             self.velocity_taken = velocity.taken;
             let (north, east) = (velocity.value.north_mps, velocity.value.east_mps);
             self.here.ground_velocity_mps = Vector2::new(north, east);
@@ -189,28 +213,52 @@ impl GroundMotion {
                 }
                 None => estimate.heading_rad + self.variation_rad,
             };
-            let air = Vector2::new(cos(heading), sin(heading)) * estimate.true_airspeed_mps;
-            self.here.ground_velocity_mps = air + self.here.wind_mps;
+            self.here.ground_velocity_mps = through_air(&self.here, heading) + self.here.wind_mps;
         }
-        self.move_by(self.here.ground_velocity_mps * dt_s);
+        let here = self.here;
+        self.place.advance(
+            here.ground_velocity_mps,
+            || through_air(&here, here.heading_rad),
+            dt_s,
+        );
+        self.move_by(here.ground_velocity_mps * dt_s);
         self.lost_s += dt_s;
         if self.lost_s > RECKONED_AFTER_S {
             self.here.above_receiver_m = None;
         }
-        let position = measured.position;
+        self.take_position(now, &measured.position);
+    }
+
+    /// Follows a position that is new, unless it does not move as the aircraft.
+    fn take_position(&mut self, now: Time, position: &Reading<Position>) {
         if position.taken > self.position_taken && position.value.is_on_earth() {
             let is_first = self.position_taken.is_never();
             let age_s = now.since(position.taken).min(LONGEST_AGE).as_secs_f64();
             let since_s = self.lost_s;
+            let moved = self.here.ground_velocity_mps * age_s;
+            let off = self.way_to(position.value.latitude_rad, position.value.longitude_rad);
+            let off_m = off + moved;
+            let expected = !is_first && since_s <= RECKONED_AFTER_S;
+            let moving = Moving {
+                on_wheels: self.stands_on_wheels(),
+                airspeed_mps: self.here.airspeed_mps,
+                ground_mps: self.speed_mps(),
+                off_m: expected.then(|| hypot(off_m.x, off_m.y)),
+            };
+            match self.place.judge(position, &moving) {
+                Verdict::Use => {}
+                Verdict::Leave => return,
+                Verdict::LeaveSince([latitude_rad, longitude_rad], moved_m) => {
+                    let off_m = self.way_to(latitude_rad, longitude_rad) + moved_m;
+                    return self.move_by(off_m);
+                }
+            }
             let above_m = self.here.altitude_m - position.value.altitude_m;
             let was_m = self.here.above_receiver_m.unwrap_or(above_m);
             let followed_m = was_m + (above_m - was_m) * (1.0 - exp(-since_s / ALTITUDE_FOLLOWS_S));
             self.here.above_receiver_m = Some(followed_m).filter(|off_m| off_m.is_finite());
             self.position_taken = position.taken;
             self.lost_s = 0.0;
-            let moved = self.here.ground_velocity_mps * age_s;
-            let off = self.way_to(position.value.latitude_rad, position.value.longitude_rad);
-            let off_m = off + moved;
             let is_far = is_first || hypot(off_m.x, off_m.y) > FAR_M;
             let share = if is_far {
                 1.0
@@ -279,4 +327,9 @@ impl GroundMotion {
         self.here.latitude_rad = limit(latitude, -most, most);
         self.here.longitude_rad = wrap_pi(self.here.longitude_rad + by_m.y / east);
     }
+}
+
+/// The velocity through the air on a true heading, rad, m/s.
+fn through_air(here: &OverGround, heading_rad: f64) -> Vector2<f64> {
+    Vector2::new(cos(heading_rad), sin(heading_rad)) * here.true_airspeed_mps
 }

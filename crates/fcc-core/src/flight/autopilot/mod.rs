@@ -23,6 +23,7 @@ mod notices;
 mod observe;
 mod other_control;
 mod pilot_takeover;
+mod place_monitor;
 mod plant_clock;
 mod reading_age;
 mod refusal;

@@ -3,6 +3,7 @@
 
 use super::degraded::by_name;
 use super::future::{is_from_the_future, without_future};
+use super::place_monitor::PlaceDoubt;
 use super::plant_clock::Waiting;
 use super::reading_age::taken_of_needed;
 use super::whereabouts::Whereabouts;
@@ -112,7 +113,12 @@ impl Autopilot {
             self.whereabouts = Whereabouts::default();
         } else if self.clock.state().is_some() {
             let was_long = self.clock.gap().is_some_and(|gap| gap.was_long);
-            let by_receiver = self.raw.is_some() && !measured.gnss.is_never();
+            // A place that stands still says nothing, and the next one is far away.
+            let by_receiver = self.raw.is_some() && !measured.gnss.is_never()
+                || matches!(
+                    self.ground.place_doubt(),
+                    Some(PlaceDoubt::Repeats | PlaceDoubt::Moves)
+                );
             let passed_s = self.clock.passed_s();
             self.whereabouts
                 .step(measured, passed_s, was_long, by_receiver);
@@ -221,6 +227,7 @@ impl Autopilot {
         self.accepted = Measurements::default();
         self.distrusted = Flags::NONE;
         self.pass_gate(measured);
+        self.ground.forget_place();
         self.navigation.reset(&self.config.navigation);
         self.frozen = FrozenDetector::new(self.config.frozen_after.as_secs_f64());
         self.settled_s = None;

@@ -6,6 +6,7 @@ use libm::round;
 
 use super::Autopilot;
 use crate::flight::guidance::{ActiveMode, ModeInput, Progress};
+use crate::flight::route::TookOff;
 use crate::flight::{ALTIMETER_SETTINGS_PA, AltitudeReference, Surfaces};
 use crate::schema;
 
@@ -41,6 +42,9 @@ schema! {
         /// What the altitude refers to.
         #[field(6)]
         pub altitude_reference: AltitudeReference,
+        /// Where it took off, to land there again.
+        #[field(7, column = "took_off_*")]
+        pub took_off: TookOff,
     }
 }
 
@@ -57,6 +61,7 @@ impl Autopilot {
         if self.guidance.mode().after(input, config.mode()).is_none() {
             return;
         }
+        self.took_off = resume.took_off.known().or(self.took_off);
         if self.resume_over_ground(progress.mode, progress.item) {
             self.resume_altimeter(resume);
             self.take_over(&resume.surfaces);

@@ -1,5 +1,6 @@
 //! Guidance in a tick, and the modes that fly over the ground.
 
+use super::place_monitor::PlaceDoubt;
 use super::{Autopilot, flags};
 use crate::flight::control::{Envelope, Lateral, Schedule};
 use crate::flight::guidance::{ActiveMode, Mode, ModeInput, OverGroundMode};
@@ -118,6 +119,7 @@ impl Autopilot {
             plan_hash: plan.hash,
             plan_uploaded_unix_s: plan.uploaded_unix_s,
             contingency: self.contingencies.active(),
+            took_off: self.took_off.unwrap_or_default(),
             course_rad: track.course_rad,
             cross_track_m: track.cross_track_m,
             to_go_m: track.to_go_m,
@@ -156,10 +158,15 @@ impl Autopilot {
     /// What is reported of the position while it is flown by.
     pub(super) fn route_conditions(&self) -> Flags {
         let is_flown = self.guidance.over_ground().is_some();
-        Flags::NONE.with(
-            flags::DEAD_RECKONING,
-            is_flown && !self.ground.is_measured(),
-        )
+        let doubt = self.ground.place_doubt().filter(|_| is_flown);
+        let repeats = doubt == Some(PlaceDoubt::Repeats);
+        Flags::NONE
+            .with(
+                flags::DEAD_RECKONING,
+                is_flown && !self.ground.is_measured(),
+            )
+            .with(flags::REPEATED_FIX, repeats)
+            .with(flags::IMPOSSIBLE_FIX, doubt.is_some() && !repeats)
     }
 
     /// Flies the plan from an item on, counted from 1; 0: where it was left, or from
@@ -293,8 +300,11 @@ impl Autopilot {
     /// Continues a mode over the ground after a restart; whether it is one.
     pub(super) fn resume_over_ground(&mut self, mode: Mode, item: u32) -> bool {
         match mode {
-            // Where it took off is not known any more.
-            Mode::Land | Mode::GoAround if item == 0 => self.return_home(),
+            Mode::Land | Mode::GoAround if item == 0 => {
+                if !self.land_back() {
+                    self.return_home();
+                }
+            }
             Mode::Plan | Mode::Takeoff | Mode::Land | Mode::GoAround => {
                 self.fly_plan(u16::try_from(item).unwrap_or(0));
             }

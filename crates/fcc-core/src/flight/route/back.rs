@@ -1,23 +1,33 @@
 //! The runway that a take-off has recorded, and the way to a landing on it.
 
-use libm::tan;
+use core::f64::consts::PI;
+
+use libm::{cos, sin, tan};
 use nalgebra::Vector2;
 
 use super::step::{Step, Until};
 use super::{OverGround, RouteConfig};
+use crate::flight::Position;
 use crate::flight::path::right_of;
+use crate::schema;
 
-/// Where a take-off began, and in which direction.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct TookOff {
-    /// Geodetic latitude, rad.
-    pub latitude_rad: f64,
-    /// Longitude, rad.
-    pub longitude_rad: f64,
-    /// The way along the runway, (true north, east), of length 1.
-    pub course: Vector2<f64>,
-    /// Of the aircraft on its wheels there, m above mean sea level.
-    pub elevation_m: f64,
+schema! {
+    /// Where a take-off began, and in which direction; all 0 if it is not known.
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub struct TookOff {
+        /// Geodetic latitude, rad.
+        #[field(1)]
+        pub latitude_rad: f64,
+        /// Longitude, rad.
+        #[field(2)]
+        pub longitude_rad: f64,
+        /// True course along the runway, rad.
+        #[field(3, range = -PI..=PI)]
+        pub course_rad: f64,
+        /// Of the aircraft on its wheels there, m above mean sea level.
+        #[field(4)]
+        pub elevation_m: f64,
+    }
 }
 
 /// The steps of a landing where it took off.
@@ -32,6 +42,27 @@ const SLOWED: f64 = 1.2;
 const OVER_DECISION_M: f64 = 30.0;
 
 impl TookOff {
+    /// It, if it is known.
+    ///
+    /// ```
+    /// use fcc_core::flight::route::TookOff;
+    ///
+    /// assert_eq!(TookOff::default().known(), None);
+    /// let nowhere = TookOff { latitude_rad: f64::NAN, ..TookOff::default() };
+    /// assert_eq!(nowhere.known(), None);
+    /// let field = TookOff { latitude_rad: 0.82, longitude_rad: 0.14, ..TookOff::default() };
+    /// assert_eq!(field.known(), Some(field));
+    /// ```
+    pub fn known(self) -> Option<Self> {
+        let at = Position {
+            latitude_rad: self.latitude_rad,
+            longitude_rad: self.longitude_rad,
+            altitude_m: self.elevation_m,
+        };
+        let is_number = self.course_rad.is_finite() && self.elevation_m.is_finite();
+        (self != Self::default() && at.is_on_earth() && is_number).then_some(self)
+    }
+
     /// A circle to the left that touches the extended centre line, to get down to its
     /// height, the begin of the final, slower, and the landing, which is aimed at where
     /// the aircraft stood: a flare leads beyond it.
@@ -46,9 +77,10 @@ impl TookOff {
             longitude_rad: self.longitude_rad,
             ..OverGround::default()
         };
-        let begin_m = self.course * -final_m;
-        let touches_m = begin_m - self.course * STRAIGHT_M;
-        let centre_m = touches_m - right_of(self.course) * radius_m;
+        let course = Vector2::new(cos(self.course_rad), sin(self.course_rad));
+        let begin_m = course * -final_m;
+        let touches_m = begin_m - course * STRAIGHT_M;
+        let centre_m = touches_m - right_of(course) * radius_m;
         [
             Step::Loiter {
                 at: Some(start.plane_at(centre_m)),
@@ -85,7 +117,7 @@ mod tests {
         let took_off = TookOff {
             latitude_rad: 0.82,
             longitude_rad: 0.14,
-            course,
+            course_rad: libm::atan2(course.y, course.x),
             elevation_m: 430.0,
         };
         let steps = took_off.landing(150.0, &RouteConfig::default());

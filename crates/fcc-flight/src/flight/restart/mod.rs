@@ -192,6 +192,7 @@ impl Restart {
                         surfaces: record.outputs,
                         altimeter_setting_pa: Some(record.setpoints.altimeter_setting_pa),
                         altitude_reference: record.setpoints.altitude_reference,
+                        took_off: record.setpoints.took_off,
                     };
                     let place = SavedPlace::of(&record.measurements, record.tick.woke);
                     let plan = SavedPlan {

@@ -88,6 +88,7 @@ pub fn read_state(body: &[u8]) -> Option<bool> {
 #[cfg(test)]
 mod tests {
     use fcc_core::flight::guidance::{Mode, Progress, Targets};
+    use fcc_core::flight::route::TookOff;
     use fcc_core::flight::{AltitudeReference, Position, Resume, Surfaces};
     use proptest::prelude::*;
 
@@ -147,6 +148,12 @@ mod tests {
                 },
                 altimeter_setting_pa: Some(102_340.0),
                 altitude_reference: AltitudeReference::SeaLevel,
+                took_off: TookOff {
+                    latitude_rad: 0.82,
+                    longitude_rad: 0.14,
+                    course_rad: -2.6,
+                    elevation_m: 431.5,
+                },
             },
             commanded: SavedCommands {
                 go_to: Some(Position {
@@ -216,7 +223,7 @@ mod tests {
     #[test]
     fn what_no_aircraft_flies_is_damaged() {
         type Change = fn(&mut Saved);
-        let changes: [Change; 13] = [
+        let changes: [Change; 16] = [
             |saved| saved.resume.progress.captured.heading_rad = 1e300,
             |saved| saved.resume.progress.captured.altitude_m = 1e6,
             |saved| saved.resume.progress.captured.altitude_m = 1e308,
@@ -229,6 +236,9 @@ mod tests {
             |saved| saved.resume.progress.elapsed_s = 1e300,
             |saved| saved.resume.progress.elapsed_s = f64::NAN,
             |saved| saved.commanded.promised_s = Some(-1.0),
+            |saved| saved.resume.took_off.latitude_rad = 2.0,
+            |saved| saved.resume.took_off.course_rad = 4.0,
+            |saved| saved.resume.took_off.elevation_m = 1e5,
             |saved| {
                 let place = saved.commanded.go_to.as_mut();
                 place.unwrap().latitude_rad = 2.0;

@@ -1,9 +1,11 @@
 //! The layout of the stored state of a flight, and which states can be those of
 //! a flight.
 
+use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
 use fcc_core::flight::guidance::{Mode, Progress, Targets};
+use fcc_core::flight::route::TookOff;
 use fcc_core::flight::{AltitudeReference, Position, Resume, Surfaces};
 use fcc_telemetry::units::{COMMANDED_ALTIMETER_SETTING_PA, COMMANDED_HEADING_RAD};
 use serde::{Deserialize, Serialize};
@@ -61,11 +63,17 @@ pub(super) struct Page {
     go_to: Option<[f64; 3]>,
     #[serde(default)]
     promised_s: Option<f64>,
+    /// Latitude, longitude and course, rad, and elevation, m, of where it took off; not
+    /// in the files of earlier versions.
+    #[serde(default)]
+    took_off: Option<[f64; 4]>,
 }
 
 /// The pressure altitudes that a flight can have captured, m: those that can be
 /// commanded, by the lowest and the highest altimeter setting.
 const CAPTURED_ALTITUDE_M: RangeInclusive<f64> = -1_500.0..=21_000.0;
+/// True course of a runway, rad.
+const COURSE_RAD: RangeInclusive<f64> = -PI..=PI;
 /// No flight has lasted longer, s: 3 years.
 const LONGEST_S: f64 = 1e8;
 /// What a commander can promise, s.
@@ -80,6 +88,7 @@ impl Page {
             progress, surfaces, ..
         } = saved.resume;
         let targets = progress.captured;
+        let from = saved.resume.took_off;
         let (plant, position) = (saved.place.plant_time_s, saved.place.position);
         Self {
             boot: saved.at.boot.clone(),
@@ -109,6 +118,12 @@ impl Page {
             go_to: (saved.commanded.go_to)
                 .map(|to| [to.latitude_rad, to.longitude_rad, to.altitude_m]),
             promised_s: saved.commanded.promised_s,
+            took_off: (from != TookOff::default()).then_some([
+                from.latitude_rad,
+                from.longitude_rad,
+                from.course_rad,
+                from.elevation_m,
+            ]),
         }
     }
 
@@ -118,6 +133,7 @@ impl Page {
         let surfaces = self.surfaces();
         let mode = Mode::ALL.into_iter().find(|mode| mode.name() == self.mode);
         let commanded = self.commanded();
+        let took_off = self.took_off();
         if !self.can_be_flown() {
             return None;
         }
@@ -151,6 +167,7 @@ impl Page {
                 surfaces,
                 altimeter_setting_pa: self.altimeter_setting_pa,
                 altitude_reference: reference?,
+                took_off,
             },
             commanded,
         })
@@ -170,7 +187,23 @@ impl Page {
                 .is_none_or(|within_s| PROMISED_S.contains(&within_s))
             && (self.commanded().go_to)
                 .is_none_or(|to| to.is_on_earth() && CAPTURED_ALTITUDE_M.contains(&to.altitude_m))
+            && (self.took_off.is_none()
+                || (self.took_off().known()).is_some_and(|from| {
+                    COURSE_RAD.contains(&from.course_rad)
+                        && CAPTURED_ALTITUDE_M.contains(&from.elevation_m)
+                }))
             && self.surfaces().is_valid()
+    }
+
+    fn took_off(&self) -> TookOff {
+        let [latitude_rad, longitude_rad, course_rad, elevation_m] =
+            self.took_off.unwrap_or_default();
+        TookOff {
+            latitude_rad,
+            longitude_rad,
+            course_rad,
+            elevation_m,
+        }
     }
 
     fn commanded(&self) -> SavedCommands {

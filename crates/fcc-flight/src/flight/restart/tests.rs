@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, AtomicU32, Ordering};
 
 use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{AltitudeReference, Autopilot, Measurements, Setpoints, Surfaces};
+use fcc_core::flight::{Autopilot, Measurements, Setpoints};
 use fcc_core::framework::{
     ActuatorFault, ControlAuthority, Event, PlantId, Reading, Record, Released, Tick, Time,
 };
@@ -18,30 +18,11 @@ use super::super::plan::Pace;
 use super::*;
 
 mod elsewhere;
+mod flown;
 mod foreign_files;
 mod replaced_plan;
 
-const FLOWN: Resume = Resume {
-    progress: Progress {
-        mode: Mode::Hold,
-        item: 0,
-        elapsed_s: 20.0,
-        captured: Targets {
-            airspeed_mps: 50.0,
-            heading_rad: 1.0,
-            altitude_m: 900.0,
-        },
-    },
-    surfaces: Surfaces {
-        throttle: 0.6,
-        elevator: 0.0,
-        aileron: 0.0,
-        rudder: 0.0,
-        ..Surfaces::IDLE
-    },
-    altimeter_setting_pa: Some(102_000.0),
-    altitude_reference: AltitudeReference::SeaLevel,
-};
+use flown::FLOWN;
 
 /// A folder with the state left by a flight.
 struct Folder {
@@ -227,6 +208,7 @@ fn engaged(resume: &Resume) -> FlightMessage {
             guidance: resume.progress,
             altimeter_setting_pa: resume.altimeter_setting_pa.unwrap_or_default(),
             altitude_reference: resume.altitude_reference,
+            took_off: resume.took_off,
             ..Setpoints::default()
         },
         outputs: resume.surfaces,

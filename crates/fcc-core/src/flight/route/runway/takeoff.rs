@@ -95,7 +95,7 @@ impl RunwayFlight {
         self.took_off = Some(TookOff {
             latitude_rad: here.latitude_rad,
             longitude_rad: here.longitude_rad,
-            course: self.runway.course,
+            course_rad: wrap_pi(self.demand.course_rad),
             elevation_m: self.runway.elevation_m,
         });
     }
