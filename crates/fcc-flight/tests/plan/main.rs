@@ -9,6 +9,7 @@ mod drawn_fences;
 mod flight;
 mod glide;
 mod lost_low;
+mod range_jumps;
 mod refused;
 mod repeated_place;
 mod replacing;

@@ -99,6 +99,8 @@ pub(super) struct Contingencies {
     news: Option<Notice>,
     /// The ground ahead.
     terrain: TerrainWatch,
+    /// The share of the turns' bank that low airspeed and gusts have not allowed of late.
+    bank_missing: f64,
 }
 
 impl Contingencies {
@@ -136,6 +138,7 @@ impl Contingencies {
             kept: None,
             news: None,
             terrain: TerrainWatch::NONE,
+            bank_missing: 0.0,
         };
         self.renew_promise();
     }
@@ -181,6 +184,7 @@ impl Autopilot {
         if dt_s <= 0.0 {
             return;
         }
+        self.follow_bank(dt_s);
         self.keep_inside_fence();
         self.meet_engine_out();
         self.meet_low_battery();

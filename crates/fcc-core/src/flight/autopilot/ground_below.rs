@@ -44,6 +44,11 @@ impl GroundBelow {
         self.shows = false;
     }
 
+    /// Its ranges are not used any more, until it shows the right height on the wheels.
+    pub(super) const fn leave(&mut self) {
+        self.is_wrong = true;
+    }
+
     /// The aircraft stands: the height that is right then is `on_wheels_m`. Whether it
     /// shows another one, and did not before.
     pub(super) fn stand(&mut self, height_m: Option<f64>, on_wheels_m: f64) -> bool {

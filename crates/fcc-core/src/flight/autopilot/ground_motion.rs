@@ -147,6 +147,11 @@ impl GroundMotion {
         self.ground.expect_nothing();
     }
 
+    /// The range finder contradicts what it showed before.
+    pub(super) const fn leave_range(&mut self) {
+        self.ground.leave();
+    }
+
     /// Whether the position is one of dead reckoning.
     pub(super) fn is_reckoned(&self) -> bool {
         self.here().is_some() && self.lost_s > RECKONED_AFTER_S

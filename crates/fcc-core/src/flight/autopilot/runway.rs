@@ -167,6 +167,9 @@ impl Autopilot {
         if demand.reason == RunwayReason::LongFlare {
             self.ground.expect_no_range();
         }
+        if demand.reason == RunwayReason::RangeJump {
+            self.ground.leave_range();
+        }
         let (last, schedule) = (self.last, self.schedule());
         match demand.phase {
             RunwayPhase::Rotate => self.altitude.engage(last.elevator, estimate, schedule),

@@ -128,13 +128,10 @@ impl Follower {
                         elevation_m: self.goal.altitude_m,
                     };
                     let config = self.config.runway;
-                    Phase::Runway(RunwayFlight::landing(
-                        runway,
-                        here,
-                        &motion,
-                        config,
-                        abort_altitude_m,
-                    ))
+                    let before = self.ground_below_m.filter(|(at, _)| *at == runway.at);
+                    let flight =
+                        RunwayFlight::landing(runway, here, &motion, config, abort_altitude_m);
+                    Phase::Runway(flight.over_ground_below(before.map(|(_, below_m)| below_m)))
                 })
             }
             GoalKind::Circle(circle) => {

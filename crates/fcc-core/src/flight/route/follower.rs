@@ -68,6 +68,9 @@ pub struct Follower {
     pub(super) given_up: u8,
     /// Where the last take-off began.
     pub(super) took_off: Option<TookOff>,
+    /// Of the last landing: where, and how far below its elevation the ground was that the
+    /// range finder showed, m.
+    pub(super) ground_below_m: Option<(LocalPlane, f64)>,
 }
 
 /// How the aircraft flies its path, for observers.
@@ -154,6 +157,7 @@ impl Follower {
             reached: None,
             given_up: 0,
             took_off: None,
+            ground_below_m: None,
         }
     }
 

@@ -21,6 +21,18 @@ const BANKED_WITHIN_RAD: f64 = 0.122;
 /// A target that is more than this above the present airspeed is not reached on the
 /// circle, m/s.
 const FASTER_MPS: f64 = 3.0;
+/// The bank that gusts and airspeed allow is followed with this time constant, s: a third
+/// of a turn. A circle is planned with this share of the largest bank's tangent at least:
+/// twice the radius.
+const BANK_FOLLOWS_S: f64 = 8.0;
+const LEAST_BANK_SHARE: f64 = 0.4;
+/// The airspeed of a circle is so much above the one that its bank needs, m/s.
+const OVER_NEEDED_MPS: f64 = 2.0;
+/// Gusts up to this load, g, one standard deviation, are within the margin. Stronger ones
+/// carry the aircraft farther off: in severe ones, 0.35 g, by some 120 m in a turn, two
+/// standard deviations of 6 m/s over 10 s (MIL-F-8785C, 3.7).
+const CALM_GUSTS_G: f64 = 0.15;
+const GUSTS_M_PER_G: f64 = 600.0;
 /// How far ahead it is looked at whether the fence is left behind, s.
 const AHEAD_S: f64 = 5.0;
 /// The aircraft returns from the circle when its course leads there within this angle:
@@ -105,7 +117,7 @@ impl Autopilot {
         let Some(escape) = Escape::best(&fence, &here, &bank) else {
             return;
         };
-        let margin_m = self.config.contingency.fence_margin_m;
+        let margin_m = self.fence_margin_m();
         if is_met && stage == Stage::TurningAway {
             let returns = action == ContingencyAction::Return
                 && escape.clearance_m >= LEFT_SHARE * margin_m
@@ -150,10 +162,7 @@ impl Autopilot {
         };
         self.contingencies.kept = Some(circle);
         // Faster, it would not hold it.
-        self.targets.airspeed_mps = self
-            .targets
-            .airspeed_mps
-            .min(here.airspeed_mps + FASTER_MPS);
+        self.targets.airspeed_mps = self.circle_airspeed_mps(&here);
         self.circle(
             ModeInput::Pause,
             Some(circle.centre),
@@ -181,7 +190,34 @@ impl Autopilot {
 
     /// With a circle that is so far inside, the fence is left behind, m.
     fn fence_left_m(&self) -> f64 {
-        BEHIND_SHARE * self.config.contingency.fence_margin_m
+        BEHIND_SHARE * self.fence_margin_m()
+    }
+
+    /// How far inside circles stay, m: farther in gusts, which carry the aircraft off them.
+    fn fence_margin_m(&self) -> f64 {
+        let gusts_g = self.navigation.estimate().gust_load - CALM_GUSTS_G;
+        self.config.contingency.fence_margin_m + GUSTS_M_PER_G * gusts_g.max(0.0)
+    }
+
+    /// Follows what bank is allowed, `dt_s` seconds after the last time.
+    pub(super) fn follow_bank(&mut self, dt_s: f64) {
+        let envelope = &self.config.envelope;
+        let estimate = self.navigation.estimate();
+        let most_rad = self.config.route.bank_rad.min(envelope.max_bank_rad);
+        let allowed = tan(envelope.bank_limit_at_rad(estimate)) / tan(most_rad);
+        let off = 1.0 - allowed.min(1.0) - self.contingencies.bank_missing;
+        self.contingencies.bank_missing += off * (dt_s / BANK_FOLLOWS_S).min(1.0);
+    }
+
+    /// The indicated airspeed with which a circle is flown, m/s: of the target no more than
+    /// is soon reached, but what the circle's bank needs in these gusts.
+    fn circle_airspeed_mps(&self, here: &OverGround) -> f64 {
+        let (route, envelope) = (&self.config.route, &self.config.envelope);
+        let most_rad = route.bank_rad.min(envelope.max_bank_rad);
+        let gust_load = self.navigation.estimate().gust_load;
+        let needed_mps = envelope.floor_in_turn_mps(most_rad, gust_load) + OVER_NEEDED_MPS;
+        let soon_mps = (here.airspeed_mps + FASTER_MPS).max(needed_mps);
+        self.targets.airspeed_mps.min(soon_mps)
     }
 
     /// Tells that the fence is crossed, once until the aircraft is inside of it again.
@@ -203,10 +239,7 @@ impl Autopilot {
     /// its target, but no more than a little above the present one.
     pub(super) fn at_its_speed(&self, here: &OverGround) -> OverGround {
         let true_of_indicated = here.true_airspeed_mps / here.airspeed_mps.max(1.0);
-        let target_mps = self
-            .targets
-            .airspeed_mps
-            .min(here.airspeed_mps + FASTER_MPS);
+        let target_mps = self.circle_airspeed_mps(here);
         OverGround {
             true_airspeed_mps: here.true_airspeed_mps.max(target_mps * true_of_indicated),
             ..*here
@@ -223,11 +256,13 @@ impl Autopilot {
         let (route, envelope) = (&self.config.route, &self.config.envelope);
         let most_rad = route.bank_rad.min(envelope.max_bank_rad);
         let estimate = self.navigation.estimate();
+        let allowed = 1.0 - self.contingencies.bank_missing;
+        let share = allowed.clamp(LEAST_BANK_SHARE, PLANNED_SHARE);
         Bank {
             // It rolls on for the lag.
             now_rad: estimate.roll_rad + 2.0 * ROLL_LAG_S * estimate.body_rates.roll_radps,
             commanded_rad: self.setpoints.roll_rad,
-            turn_rad: atan(PLANNED_SHARE * tan(most_rad)),
+            turn_rad: atan(share * tan(most_rad)),
             rate_radps: route.bank_rate_radps,
             lag_s: ROLL_LAG_S,
         }

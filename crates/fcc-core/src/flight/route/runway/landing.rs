@@ -142,6 +142,11 @@ impl RunwayFlight {
             self.give_up(RunwayPhase::GoAround, RunwayReason::GlidePath);
         } else if is_low && !self.is_over_runway(motion) {
             self.give_up(RunwayPhase::GoAround, RunwayReason::Ground);
+        } else if self.is_range_doubted
+            && self.is_over_runway(motion)
+            && here.altitude_m - self.runway.elevation_m > COMMITTED_M
+        {
+            self.give_up(RunwayPhase::GoAround, RunwayReason::RangeJump);
         } else if self.is_altimeter_off(here) {
             self.give_up(RunwayPhase::GoAround, RunwayReason::Receiver);
         } else if self.demand.height_m <= self.flares_m() {
@@ -180,7 +185,8 @@ impl RunwayFlight {
         self.demand.climb_rate_mps = -flared_mps.min(sink_mps);
         self.flared_s += dt_s;
         // With a range finder that shows nothing, the ground is far.
-        let is_near = here.height_m.is_some() && height_m < FLOATS_M;
+        let is_ranged = here.height_m.is_some() && !self.is_range_doubted;
+        let is_near = is_ranged && height_m < FLOATS_M;
         let is_long = self.flared_s > LONGEST_FLARES * config.flare_s
             || here.airspeed_mps < SLOWEST_SHARE * config.approach_mps;
         let balloons = height_m > (BALLOONS * self.flares_m()).max(COMMITTED_M);

@@ -14,6 +14,7 @@
 mod config;
 mod landing;
 mod powerless;
+mod range;
 mod reason;
 mod takeoff;
 #[cfg(test)]
@@ -141,6 +142,10 @@ pub(super) struct RunwayFlight {
     thrown_s: f64,
     /// Where a take-off has begun.
     took_off: Option<TookOff>,
+    /// How far below the runway's elevation the ground is that ranges show, m.
+    ground_below_m: Option<f64>,
+    /// Whether they show other ground now, farther from that elevation.
+    is_range_doubted: bool,
 }
 
 /// What follows of a tick.
@@ -173,6 +178,8 @@ impl RunwayFlight {
             glide_sine: None,
             thrown_s: 0.0,
             took_off: None,
+            ground_below_m: None,
+            is_range_doubted: false,
             demand: RunwayDemand {
                 phase,
                 course_rad: libm::atan2(runway.course.y, runway.course.x),
@@ -233,12 +240,7 @@ impl RunwayFlight {
             cross_track_m: cross(course, motion.position_m),
             cross_track_mps: cross(course, motion.ground_velocity_mps),
             ground_speed_mps: course.dot(&motion.ground_velocity_mps),
-            height_m: here
-                .height_m
-                .filter(|_| self.is_over_runway(motion))
-                .map_or(here.altitude_m - self.runway.elevation_m, |above_m| {
-                    above_m - self.config.height_on_wheels_m
-                }),
+            height_m: self.height_m(here, motion),
             pitch_rad: self.pitch_rad,
             ..self.demand
         };

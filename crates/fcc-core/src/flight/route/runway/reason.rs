@@ -41,6 +41,8 @@ schema! {
         Touched = 16,
         /// The airspeed is less than the wheels tell.
         NoAirspeed = 17,
+        /// The range finder shows other ground than before, and the altitude does not.
+        RangeJump = 18,
     }
 }
 
@@ -80,6 +82,10 @@ impl fmt::Display for RunwayReason {
             Self::NoAirspeed => {
                 "the take-off is given up: the airspeed stays below rotate_kt at 15 kt more over \
                  the ground; look at the pitot tube, its cover, and the wind"
+            }
+            Self::RangeJump => {
+                "going around: the range finder and the altitude have ceased to agree; the \
+                 range finder is not used any more: land by the altimeter, set it"
             }
             Self::Failsafe => "the take-off is given up",
             Self::Touched => {

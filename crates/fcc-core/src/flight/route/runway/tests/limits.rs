@@ -78,3 +78,56 @@ fn ground_near_the_glide_path_is_gone_around_from() {
     follower.advance(&here, 0.025);
     assert_eq!(reason(&follower), Some(RunwayReason::Ground));
 }
+
+/// A landing, 1 km before the aim 52 m above it, with ground so much lower than the runway
+/// by the range finder, m; then lower on the path with other ground.
+fn over_ground_below(before_m: f64, now_m: f64, north_m: f64, height_m: f64) -> Follower {
+    let mut follower = landing();
+    for (north_m, height_m, below_m) in [(-1_000.0, 52.0, before_m), (north_m, height_m, now_m)] {
+        let here = OverGround {
+            height_m: Some(height_m + 1.3 + below_m),
+            ranges: true,
+            ..at(north_m, height_m, 35.0)
+        };
+        follower.advance(&here, 0.025);
+    }
+    follower
+}
+
+/// The path of 3° is at 20 m, 380 m before the aim.
+#[test]
+fn a_range_that_leaves_the_altitude_is_gone_around_from() {
+    for (before_m, now_m, expected) in [
+        (0.0, 8.0, RunwayReason::RangeJump),
+        (0.0, -8.0, RunwayReason::RangeJump),
+        (3.0, -12.0, RunwayReason::RangeJump),
+        (0.0, 30.0, RunwayReason::RangeJump),
+        (0.0, 3.0, RunwayReason::None),
+        // An altimeter that is off, and a runway on a plateau.
+        (10.0, 10.0, RunwayReason::None),
+        (-10.0, -10.0, RunwayReason::None),
+        (30.0, 0.0, RunwayReason::None),
+        (40.0, 5.0, RunwayReason::None),
+    ] {
+        let follower = over_ground_below(before_m, now_m, -380.0, 20.0);
+        assert_eq!(reason(&follower), Some(expected), "{before_m} {now_m}");
+        // Farther away the range finder is not descended by.
+        let follower = over_ground_below(before_m, now_m, -800.0, 42.0);
+        assert_eq!(
+            reason(&follower),
+            Some(RunwayReason::None),
+            "{before_m} {now_m}"
+        );
+    }
+}
+
+/// In the flare the lower of both is the height.
+#[test]
+fn in_the_flare_the_lower_one_of_range_and_altitude_counts() {
+    for (jump_m, expected_m) in [(3.0, 9.0), (12.0, 6.0), (-5.5, 0.5)] {
+        let follower = over_ground_below(0.0, jump_m, -115.0, 6.0);
+        let demand = follower.runway().unwrap();
+        assert_eq!(demand.reason, RunwayReason::None, "{jump_m}");
+        assert!((demand.height_m - expected_m).abs() < 1e-6, "{demand:?}");
+    }
+}

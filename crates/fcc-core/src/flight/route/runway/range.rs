@@ -1,0 +1,57 @@
+//! The height over a runway, by a range finder that is held against the altitude.
+
+use super::{RunwayFlight, RunwayPhase};
+use crate::flight::path::Motion;
+use crate::flight::route::OverGround;
+
+/// Ranges that show ground so much higher or lower than before are doubted, m: gradual
+/// slopes are followed, and an echo of the range finder itself is smaller.
+const JUMPS_M: f64 = 5.0;
+
+impl RunwayFlight {
+    /// With the ground that ranges showed in an earlier landing there: how far it was
+    /// below the runway's elevation, m.
+    pub(in crate::flight::route) const fn over_ground_below(self, below_m: Option<f64>) -> Self {
+        Self {
+            ground_below_m: below_m,
+            ..self
+        }
+    }
+
+    /// How far below the runway's elevation the ground is that ranges show, m.
+    pub(in crate::flight::route) const fn ground_below_m(&self) -> Option<f64> {
+        self.ground_below_m
+    }
+
+    /// Of the wheels above the ground, m: over the runway by the range finder, unless the
+    /// altitude is lower and the range is doubted.
+    pub(super) fn height_m(&mut self, here: &OverGround, motion: &Motion) -> f64 {
+        let by_altitude_m = here.altitude_m - self.runway.elevation_m;
+        let by_range_m = here.height_m.map(|m| m - self.config.height_on_wheels_m);
+        self.compare(by_range_m.map(|m| by_altitude_m - m));
+        match by_range_m.filter(|_| self.is_over_runway(motion)) {
+            Some(by_range_m) if self.is_range_doubted => by_range_m.min(by_altitude_m),
+            Some(by_range_m) => by_range_m,
+            None => by_altitude_m,
+        }
+    }
+
+    /// Holds the ground that ranges show, m below the runway's elevation, against that
+    /// before. Towards the runway it really steps: onto a plateau, out of a valley. Away
+    /// from it only the range finder does, where it is used; and there nobody knows which
+    /// of the two is right. Without power it lands on whatever is below.
+    fn compare(&mut self, below_m: Option<f64>) {
+        let (Some(now_m), RunwayPhase::Approach | RunwayPhase::Flare, None) =
+            (below_m, self.phase, self.glide_sine)
+        else {
+            self.is_range_doubted = false;
+            return;
+        };
+        self.is_range_doubted = self.ground_below_m.is_some_and(|before_m| {
+            (now_m - before_m).abs() > JUMPS_M && now_m.abs() > before_m.abs()
+        });
+        if !self.is_range_doubted {
+            self.ground_below_m = below_m;
+        }
+    }
+}
