@@ -116,10 +116,19 @@ fn motion(fields: &mut str::Split<'_, char>) -> Option<Sentence> {
     // Before version 2.3 there is none. E estimated, M manual, S simulated, N none.
     let mode = fields.nth(3).unwrap_or_default();
     let is_fix = status == "A" && !matches!(mode, "E" | "M" | "S" | "N");
-    // Without them the receiver has no fix yet, whatever it says.
-    let has_motion = is_fix && !knots.is_empty();
-    let velocity_mps = if has_motion {
-        velocity(knots, course)?
+    // Without a speed the receiver has no fix yet, whatever it says.
+    let velocity_mps = if is_fix && !knots.is_empty() {
+        let speed_mps = number(knots)? * MPS_PER_KNOT;
+        let course_deg = match course {
+            "" => None,
+            course => Some(number(course)?),
+        };
+        let velocity_mps = velocity_over_ground(speed_mps, course_deg);
+        // What moves may have no course; anything else without a velocity is damaged.
+        if velocity_mps.is_none() && (course_deg.is_some() || speed_mps < 0.0) {
+            return None;
+        }
+        velocity_mps
     } else {
         None
     };
@@ -127,18 +136,6 @@ fn motion(fields: &mut str::Split<'_, char>) -> Option<Sentence> {
         time_s,
         velocity_mps,
     })
-}
-
-/// None if it is damaged; of one that moves without a course there is no velocity.
-fn velocity(knots: &str, course: &str) -> Option<Option<[f64; 2]>> {
-    let speed_mps = number(knots)? * MPS_PER_KNOT;
-    let course_deg = match course {
-        "" => None,
-        course => Some(number(course)?),
-    };
-    let velocity_mps = velocity_over_ground(speed_mps, course_deg);
-    let is_possible = velocity_mps.is_some() || course_deg.is_none() && speed_mps >= 0.0;
-    is_possible.then_some(velocity_mps)
 }
 
 /// Time, latitude, N or S, longitude, E or W, quality, satellites, dilution,
