@@ -129,7 +129,7 @@ fn described(found: &Found) -> Connected {
         ),
         Found::Unreadable { path, why } => (
             path.display().to_string(),
-            "cannot be searched".to_owned(),
+            "cannot be used".to_owned(),
             why.clone(),
         ),
     };

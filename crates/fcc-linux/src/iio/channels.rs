@@ -94,6 +94,19 @@ impl Channels {
     /// When it measures nothing of the [quantities](Quantity), or one of its
     /// files cannot be read.
     pub fn of(folder: &Folder, is_differential: bool) -> Result<Self, DeviceError> {
+        Self::known(folder, is_differential)?.ok_or_else(|| DeviceError::Refused {
+            device: folder.shown(),
+            what: "it measures none of acceleration, turn rates, magnetic field, pressure, \
+                   temperature and distance: choose another device"
+                .to_owned(),
+        })
+    }
+
+    /// As [`Channels::of`]; none if it measures nothing of the [quantities](Quantity).
+    ///
+    /// # Errors
+    /// When one of its files cannot be read, or says what cannot be.
+    pub fn known(folder: &Folder, is_differential: bool) -> Result<Option<Self>, DeviceError> {
         let mut list = Vec::new();
         for quantity in Quantity::ALL {
             list.extend(channels(folder, quantity)?);
@@ -106,14 +119,9 @@ impl Channels {
             list.retain(|channel| channel.quantity != Quantity::Temperature);
         }
         if list.is_empty() {
-            return Err(DeviceError::Refused {
-                device: folder.shown(),
-                what: "it measures none of acceleration, turn rates, magnetic field, pressure, \
-                       temperature and distance: choose another device"
-                    .to_owned(),
-            });
+            return Ok(None);
         }
-        Ok(Self {
+        Ok(Some(Self {
             list,
             mounted: [
                 mounted(folder, Quantity::Acceleration)?,
@@ -121,7 +129,7 @@ impl Channels {
                 mounted(folder, Quantity::MagneticField)?,
             ],
             is_differential,
-        })
+        }))
     }
 
     /// What it measures, each once.

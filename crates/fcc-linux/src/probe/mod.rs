@@ -36,7 +36,8 @@ pub enum Found {
         name: String,
         /// What it measures.
         quantities: Vec<Quantity>,
-        /// Whether no other device has that name.
+        /// Whether that name says which it is: no other device has it, and it can be
+        /// written in a configuration.
         is_unique: bool,
     },
     /// An address that a driver of the kernel has: it is read by that.
@@ -44,7 +45,7 @@ pub enum Found {
         /// Where.
         wiring: Wiring,
     },
-    /// A bus that cannot be read.
+    /// A bus or a device of the kernel that cannot be read.
     Unreadable {
         /// Which.
         path: PathBuf,
@@ -108,20 +109,32 @@ pub fn probe(roots: &Roots) -> Vec<Found> {
     found
 }
 
-/// The devices of the kernel that measure something known.
+/// The devices of the kernel that measure something known, or cannot be read.
 pub fn devices(roots: &Roots) -> Vec<Found> {
     let all = roots.devices().unwrap_or_default();
     let of_name = |name: &str| all.iter().filter(|one| one.name == name).count();
-    let measuring = all.iter().filter_map(|device| {
-        let channels = Channels::of(&roots.folder(&device.node), false).ok()?;
-        Some(Found::Iio {
-            node: device.node.clone(),
-            name: device.name.clone(),
-            quantities: channels.quantities(),
-            is_unique: of_name(&device.name) == 1 && !device.name.is_empty(),
-        })
-    });
+    let measuring =
+        all.iter().filter_map(
+            |device| match Channels::known(&roots.folder(&device.node), false) {
+                Ok(channels) => Some(Found::Iio {
+                    node: device.node.clone(),
+                    name: device.name.clone(),
+                    quantities: channels?.quantities(),
+                    is_unique: of_name(&device.name) == 1 && is_plain(&device.name),
+                }),
+                Err(error) => Some(Found::Unreadable {
+                    path: roots.sysfs.join(&device.node),
+                    why: error.to_string(),
+                }),
+            },
+        );
     measuring.collect()
+}
+
+/// Whether a name can stand in a configuration as it is.
+fn is_plain(name: &str) -> bool {
+    let is_plain = |c: char| c.is_ascii_graphic() && !matches!(c, '"' | '\\');
+    !name.is_empty() && name.chars().all(is_plain)
 }
 
 /// Devices with this name and a number, in the order of their numbers.

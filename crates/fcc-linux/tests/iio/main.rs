@@ -170,6 +170,31 @@ fn what_the_kernel_has_is_found() {
     );
 }
 
+/// A device that is broken is shown, with what is wrong; a name that a configuration
+/// cannot hold is not written into it.
+#[test]
+fn what_the_kernel_has_and_cannot_be_used_is_found() {
+    let tree = Tree::new();
+    tree.put("iio:device0/name", "bmp\"388");
+    tree.put("iio:device0/in_pressure_input", "101.3");
+    tree.put("iio:device1/name", "mpu6050");
+    for axis in ["x", "y", "z"] {
+        tree.put(&format!("iio:device1/in_accel_{axis}_raw"), "0");
+    }
+    tree.put("iio:device1/in_accel_scale", "nan");
+    let found = probe::devices(&tree.config("", true).roots);
+    let entries: Vec<_> = found.iter().map(Found::entry).collect();
+    let by_number = "[[sensor]]\nkind = \"iio\"\ndevice = \"iio:device0\"\n";
+    assert_eq!(entries, [Some(by_number.to_owned()), None]);
+    let Some(Found::Unreadable { why, .. }) = found.last() else {
+        panic!("{found:?}");
+    };
+    assert!(
+        why.ends_with("iio:device1/in_accel_scale: is no number"),
+        "{why}"
+    );
+}
+
 #[test]
 fn what_cannot_be_opened_is_explained() {
     let mut tree = Tree::new();
