@@ -17,10 +17,10 @@ use fcc_telemetry::FlightMessage;
 
 use flights::{again, records};
 
-/// The outputs of a tick: 5 surfaces, 27 set points with guidance's progress, the
-/// estimate, the step's length, state, engage inhibits, faults, and whether they
-/// were sent.
-const OUTPUTS: u64 = 65;
+/// The outputs of a tick: surfaces, set points with guidance's progress and the runway of
+/// the take-off, the estimate, the step's length, state, engage inhibits, faults, and
+/// whether they were sent.
+const OUTPUTS: u64 = 70;
 
 /// Asserts that a replay is the same in every bit, and returns the states of
 /// the flight.
