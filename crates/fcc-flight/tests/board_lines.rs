@@ -45,9 +45,24 @@ enum Way {
     Gpsd(u16),
 }
 
+/// [`NAV_PVT`] of so many times 25 ms later: the time of week from byte 6 on, and the
+/// checksum of RFC 1145 over all between the first two bytes and itself.
+fn nav_pvt(later: u32) -> [u8; 100] {
+    let mut message = NAV_PVT;
+    let week_ms = u32::from_le_bytes(message[6..10].try_into().unwrap());
+    message[6..10].copy_from_slice(&(week_ms + 25 * later).to_le_bytes());
+    let sums = message[2..98].iter().fold((0_u8, 0_u8), |(a, b), byte| {
+        let a = a.wrapping_add(*byte);
+        (a, b.wrapping_add(a))
+    });
+    message[98..].copy_from_slice(&[sums.0, sums.1]);
+    message
+}
+
 /// A receiver that is connected until this is dropped.
 enum Receiver {
-    Line(File),
+    /// And how often it spoke.
+    Line(File, u32),
     Gpsd(Child),
 }
 
@@ -79,7 +94,7 @@ impl Way {
                 let path = folder.join("gnss");
                 let _ = fs::remove_file(&path);
                 symlink(ttyname(&pair.slave).unwrap(), path).unwrap();
-                Receiver::Line(pair.master.into())
+                Receiver::Line(pair.master.into(), 0)
             }
             Self::Gpsd(port) => {
                 let log = folder.join("receiver.nmea");
@@ -103,8 +118,9 @@ impl Way {
 impl Receiver {
     /// gpsfake speaks by itself.
     fn speak(&mut self) {
-        if let Self::Line(line) = self {
-            let _ = line.write(&NAV_PVT);
+        if let Self::Line(line, spoken) = self {
+            let _ = line.write(&nav_pvt(*spoken));
+            *spoken += 1;
         }
     }
 }

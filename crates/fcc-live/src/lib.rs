@@ -19,10 +19,10 @@
 //! | service | what | history |
 //! |---|---|---|
 //! | `fcc/INSTANCE/info` | [`Info`]: who publishes, in which layout | 1 |
-//! | `fcc/INSTANCE/columns/v3` | the columns of a record | 1 |
-//! | `fcc/INSTANCE/record/v3` | the record of each tick | 1 |
-//! | `fcc/INSTANCE/event/v3` | [`Event`]: what happened once | 64 |
-//! | `fcc/INSTANCE/status/v3` | [`Status`]: each second, how the run stands | 1 |
+//! | `fcc/INSTANCE/columns/v4` | the columns of a record | 1 |
+//! | `fcc/INSTANCE/record/v4` | the record of each tick | 1 |
+//! | `fcc/INSTANCE/event/v4` | [`Event`]: what happened once | 64 |
+//! | `fcc/INSTANCE/status/v4` | [`Status`]: each second, how the run stands | 1 |
 //!
 //! Commands are sent the other way: a [`Commander`] uses the service
 //! `fcc/INSTANCE/command/v4` and receives the result.

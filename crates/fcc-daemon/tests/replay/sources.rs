@@ -56,8 +56,8 @@ fn a_loss_that_is_failsafe_with_one_sensor_is_flown_through_with_two() {
     let two = flown(true, true);
     let states = assert_identical(&rough(), &two);
     assert_eq!(states, [State::Standby, State::Engaged]);
-    // The first twelve readings, and weight on wheels.
-    let all = Flags::from_bits(0b1111_1111_1111 | 1 << 23);
+    // The first twelve readings, weight on wheels, engine speed and battery.
+    let all = Flags::from_bits(0b1111_1111_1111 | 0b111 << 23);
     let (to, back) = ((0, 1), (1, 0));
     let change = |(from, to)| SourceChange {
         readings: all,
