@@ -119,9 +119,10 @@ impl Autopilot {
         };
         let margin_m = self.fence_margin_m();
         if is_met && stage == Stage::TurningAway {
-            let returns = action == ContingencyAction::Return && self.points_home(&here);
-            let least_m = LEFT_SHARE * margin_m;
-            if returns && self.leads_away(&fence, &here, &escape, least_m) {
+            let returns = action == ContingencyAction::Return
+                && escape.clearance_m >= LEFT_SHARE * margin_m
+                && self.points_home(&here);
+            if returns && self.leads_away(&fence, &here, &escape) {
                 self.contingencies.stage = Stage::Acting;
                 self.return_from_fence(&here);
             }
@@ -137,7 +138,9 @@ impl Autopilot {
         } else {
             margin_m
         };
-        let leads_away = is_met && self.leads_away(&fence, &here, &escape, LEAST_SHARE * margin_m);
+        let leads_away = is_met
+            && escape.clearance_m >= LEAST_SHARE * margin_m
+            && self.leads_away(&fence, &here, &escape);
         if escape.clearance_m >= needed_m || leads_away {
             return;
         }
@@ -271,34 +274,15 @@ impl Autopilot {
         plan.fence_return.or_else(|| plan.nearest_return(here))
     }
 
-    /// Whether the aircraft, without a turn, will be farther from the fence than now, if there
-    /// are at least so many metres now; or will have the whole margin, with none of the fence
-    /// on the way: in turbulence the circle that it is on may be inside although one with
-    /// the airspeed and the wind of this moment is not.
-    fn leads_away(&self, fence: &Fence<'_>, here: &OverGround, now: &Escape, least_m: f64) -> bool {
+    /// Whether the aircraft, without a turn, will be farther from the fence than now.
+    fn leads_away(&self, fence: &Fence<'_>, here: &OverGround, now: &Escape) -> bool {
         let bank = Bank {
             now_rad: 0.0,
             commanded_rad: 0.0,
             ..self.fastest_bank()
         };
-        let Some(later) = Escape::best(fence, &here.straight_on(AHEAD_S), &bank) else {
-            return false;
-        };
-        let has_least = now.clearance_m >= least_m && later.clearance_m > now.clearance_m;
-        has_least || self.has_whole_margin(fence, here, &later)
-    }
-
-    /// Whether a turn that is later has the margin at which the fence is left behind, and so
-    /// has each second of the way until then.
-    fn has_whole_margin(&self, fence: &Fence<'_>, here: &OverGround, later: &Escape) -> bool {
-        let margin_m = self.fence_margin_m();
-        let zero = Vector2::zeros();
-        let is_clear = |ahead_s: f64| {
-            let there = here.straight_on(ahead_s);
-            fence.clearance_m(there.latitude_rad, there.longitude_rad, zero) >= margin_m
-        };
-        later.clearance_m >= BEHIND_SHARE * margin_m
-            && (0_u8..=5).all(|second| is_clear(f64::from(second) * AHEAD_S / 5.0))
+        let later = Escape::best(fence, &here.straight_on(AHEAD_S), &bank);
+        later.is_some_and(|later| later.clearance_m > now.clearance_m)
     }
 
     /// Whether the course is the one to the circle on which the aircraft returns.
