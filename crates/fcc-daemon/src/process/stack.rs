@@ -1,12 +1,12 @@
 //! The stack of the first thread, which grows up to a limit of the process: beyond it
 //! the kernel ends the program, in flight as well.
 
-use nix::sys::resource::{Resource, getrlimit, setrlimit};
+use nix::sys::resource::{Resource, getrlimit, rlim_t, setrlimit};
 
 /// Enough for every command, and a usual limit. A flight needs some 0.9 MiB to begin.
-const WANTED_BYTES: u64 = 8 << 20;
+const WANTED_BYTES: rlim_t = 8 << 20;
 /// Less than this is refused.
-const LEAST_BYTES: u64 = 2 << 20;
+const LEAST_BYTES: rlim_t = 2 << 20;
 
 /// Raises the limit on the stack (`RLIMIT_STACK`) to what is wanted, as far as it may be
 /// raised.
