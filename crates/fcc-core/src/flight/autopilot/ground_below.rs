@@ -59,14 +59,16 @@ impl GroundBelow {
         self.is_wrong && !was_wrong
     }
 
-    /// `dt_s` seconds pass, at an altitude, m, with a height by the range finder, m. The
-    /// height above ground, m, if there is one.
+    /// `dt_s` seconds pass, at an altitude, m, that has `stepped_m` in them, with a height
+    /// by the range finder, m. The height above ground, m, if there is one.
     pub(super) fn step(
         &mut self,
         altitude_m: f64,
+        stepped_m: f64,
         height_m: Option<f64>,
         dt_s: f64,
     ) -> Option<f64> {
+        self.elevation_m += stepped_m;
         let height_m = height_m.filter(|height_m| !self.is_wrong && *height_m >= 0.0);
         let is_settled = self.fits_s >= SETTLES_S;
         self.shows |= is_settled;
@@ -105,7 +107,10 @@ mod tests {
                 let t_s = f64::from(tick) * DT_S;
                 let true_m = 38.0 - SINK_MPS * t_s;
                 // Altimeter 6 m too high.
-                (true_m, ground.step(126.0 + true_m, of(t_s, true_m), DT_S))
+                (
+                    true_m,
+                    ground.step(126.0 + true_m, 0.0, of(t_s, true_m), DT_S),
+                )
             })
             .take_while(|(true_m, _)| *true_m > 0.0)
             .collect()
@@ -159,10 +164,10 @@ mod tests {
         let mut ground = GroundBelow::default();
         assert!(ground.stand(Some(-3.4), 1.3) && !ground.stand(Some(-3.4), 1.3));
         for _ in 0..200 {
-            assert_eq!(ground.step(126.0, Some(4.0), DT_S), None);
+            assert_eq!(ground.step(126.0, 0.0, Some(4.0), DT_S), None);
         }
         assert!(!ground.stand(Some(1.4), 1.3));
-        let shown = (0..200).filter_map(|_| ground.step(126.0, Some(4.0), DT_S));
+        let shown = (0..200).filter_map(|_| ground.step(126.0, 0.0, Some(4.0), DT_S));
         assert_eq!(shown.last(), Some(4.0));
     }
 

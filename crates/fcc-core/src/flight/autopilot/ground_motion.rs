@@ -29,6 +29,9 @@ const ROLLS_MPS: f64 = 5.0;
 /// The receiver's altitude has noise: what the altimeter is off it is followed with this
 /// time constant, s.
 const ALTITUDE_FOLLOWS_S: f64 = 5.0;
+/// An altitude that differs more from that of the last tick, by its climb rate, has
+/// stepped, m.
+const STEPS_M: f64 = 4.0;
 /// Positions have noise: they are followed with this time constant, s, unless they
 /// are farther off than this, m.
 const FOLLOWS_S: f64 = 1.0;
@@ -61,6 +64,8 @@ pub(super) struct GroundMotion {
     /// The wind of navigation by raw readings, without gusts, as it was with a receiver.
     last_wind_mps: Option<Vector2<f64>>,
     ground: GroundBelow,
+    /// Of the last tick, m.
+    pressure_altitude_m: Option<f64>,
     /// What the range finder shows, m, upright.
     below_m: Option<f64>,
 }
@@ -185,7 +190,11 @@ impl GroundMotion {
             .range_m
             .fresh(now, RANGE_AGE)
             .map(|range_m| range_m * cos(estimate.roll_rad) * cos(estimate.pitch_rad));
-        self.here.height_m = self.ground.step(estimate.altitude_m, below_m, dt_s);
+        let stepped_m = self.altimeter_step_m(estimate, dt_s);
+        self.here.stepped_m = stepped_m;
+        self.here.height_m = self
+            .ground
+            .step(estimate.altitude_m, stepped_m, below_m, dt_s);
         self.here.ranges = self.ground.shows();
         self.below_m = below_m;
         self.here.on_wheels = measured
@@ -232,6 +241,16 @@ impl GroundMotion {
             self.here.above_receiver_m = None;
         }
         self.take_position(now, &measured.position);
+    }
+
+    /// By how much the pressure altitude has stepped since the last tick, m.
+    fn altimeter_step_m(&mut self, estimate: &Estimate, dt_s: f64) -> f64 {
+        let expected_m = self
+            .pressure_altitude_m
+            .replace(estimate.altitude_m)
+            .map(|was_m| was_m + estimate.climb_rate_mps * dt_s);
+        let off_m = expected_m.map_or(0.0, |m| estimate.altitude_m - m);
+        if off_m.abs() > STEPS_M { off_m } else { 0.0 }
     }
 
     /// Follows a position that is new, unless it does not move as the aircraft.

@@ -78,6 +78,8 @@ pub struct VerticalChannel {
     /// Consecutive samples that are this far above or below, see [`STEPPED_M`].
     beyond: i8,
     has_stepped: bool,
+    /// By how much those of the second before them differed, m.
+    error_m: f64,
 }
 
 /// An altimeter that differs by more than this, m, in so many consecutive samples,
@@ -89,6 +91,12 @@ const STEPPED_SAMPLES: i8 = 3;
 /// ... beyond so many standard deviations of what is expected: after a time in which
 /// nothing was measured the aircraft may be anywhere.
 const STEPPED_SDS: f64 = 4.0;
+
+/// And so has one that differs by this more than in the second before, m, and by so many
+/// standard deviations: an error of the accelerometers grows slowly.
+const JUMPED_M: f64 = 2.5;
+const JUMPED_SDS: f64 = 3.0;
+const BEFORE_S: f64 = 1.0;
 
 /// The largest bias of an intact accelerometer, m/s².
 const MAX_BIAS_MPS2: f64 = 2.0;
@@ -115,6 +123,7 @@ impl VerticalChannel {
             felt_mps2: 0.0,
             beyond: 0,
             has_stepped: false,
+            error_m: 0.0,
         }
     }
 
@@ -170,10 +179,10 @@ impl VerticalChannel {
             NewSample::Next(since_s) => {
                 let gains = self.covariance.correct(since_s);
                 let error_m = measured.value - self.state.altitude_m;
-                if !self.may_have_stepped(error_m, &gains) {
+                if !self.may_have_stepped(error_m, &gains, since_s) {
                     self.correct(error_m, &gains);
                 } else if self.beyond.abs() >= STEPPED_SAMPLES {
-                    self.beyond = 0;
+                    (self.beyond, self.error_m) = (0, 0.0);
                     self.has_stepped = true;
                     self.state.altitude_m = measured.value;
                     if let Some(mark) = &mut self.mark {
@@ -186,10 +195,15 @@ impl VerticalChannel {
     }
 
     /// Whether the altimeter differs as after a step; counts such samples.
-    fn may_have_stepped(&mut self, error_m: f64, gains: &Gains) -> bool {
-        let side = if error_m > 0.0 { 1 } else { -1 };
-        let expected_m2 = STEPPED_SDS * STEPPED_SDS * gains.variance_m2();
-        self.beyond = if error_m * error_m <= STEPPED_M * STEPPED_M + expected_m2 {
+    fn may_have_stepped(&mut self, error_m: f64, gains: &Gains, since_s: f64) -> bool {
+        let jump_m = error_m - self.error_m;
+        let side = if jump_m > 0.0 { 1 } else { -1 };
+        let is_beyond = |off_m: f64, most_m: f64, sds: f64| {
+            off_m * off_m > most_m * most_m + sds * sds * gains.variance_m2()
+        };
+        let is_off = is_beyond(error_m, STEPPED_M, STEPPED_SDS);
+        self.beyond = if !is_off && !is_beyond(jump_m, JUMPED_M, JUMPED_SDS) {
+            self.error_m += jump_m * (since_s / BEFORE_S).min(1.0);
             0
         } else if self.beyond.signum() == side {
             self.beyond + side

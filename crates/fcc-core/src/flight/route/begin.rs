@@ -128,10 +128,10 @@ impl Follower {
                         elevation_m: self.goal.altitude_m,
                     };
                     let config = self.config.runway;
-                    let before = self.ground_below_m.filter(|(at, _)| *at == runway.at);
+                    let before = self.ground_above_m.filter(|(at, _)| *at == runway.at);
                     let flight =
                         RunwayFlight::landing(runway, here, &motion, config, abort_altitude_m);
-                    Phase::Runway(flight.over_ground_below(before.map(|(_, below_m)| below_m)))
+                    Phase::Runway(flight.over_ground_above(before.map(|(_, above_m)| above_m)))
                 })
             }
             GoalKind::Circle(circle) => {

@@ -68,9 +68,9 @@ pub struct Follower {
     pub(super) given_up: u8,
     /// Where the last take-off began.
     pub(super) took_off: Option<TookOff>,
-    /// Of the last landing: where, and how far below its elevation the ground was that the
+    /// Of the last landing: where, and how far above its elevation the ground was that the
     /// range finder showed, m.
-    pub(super) ground_below_m: Option<(LocalPlane, f64)>,
+    pub(super) ground_above_m: Option<(LocalPlane, f64)>,
 }
 
 /// How the aircraft flies its path, for observers.
@@ -157,7 +157,7 @@ impl Follower {
             reached: None,
             given_up: 0,
             took_off: None,
-            ground_below_m: None,
+            ground_above_m: None,
         }
     }
 
@@ -214,6 +214,9 @@ impl Follower {
 
     /// `dt_s` seconds pass, with the aircraft here. With 0 nothing changes.
     pub fn advance(&mut self, here: &OverGround, dt_s: f64) {
+        if let Some((_, above_m)) = &mut self.ground_above_m {
+            *above_m += here.stepped_m;
+        }
         self.reached = None;
         if !(here.is_finite() && dt_s > 0.0) {
             return;

@@ -27,6 +27,8 @@ pub struct OverGround {
     /// How much higher that is than the satellite receiver's altitude, m, over some
     /// seconds; none where there is no receiver.
     pub above_receiver_m: Option<f64>,
+    /// By how much the altitude has stepped in this tick, m, where the aircraft has not.
+    pub stepped_m: f64,
     /// Velocity over the ground, m/s.
     pub ground_velocity_mps: Vector2<f64>,
     /// Where the air moves to, m/s.

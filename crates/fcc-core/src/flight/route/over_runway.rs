@@ -63,9 +63,9 @@ impl Follower {
         let outcome = flight.step(here, motion, dt_s);
         self.phase = Phase::Runway(flight);
         self.took_off = flight.took_off().or(self.took_off);
-        self.ground_below_m = flight
-            .ground_below_m()
-            .map(|below_m| (self.goal.at, below_m));
+        self.ground_above_m = flight
+            .ground_above_m()
+            .map(|above_m| (self.goal.at, above_m));
         if flight.runway.at != self.goal.at {
             // It was thrown elsewhere.
             self.goal.at = flight.runway.at;

@@ -112,10 +112,17 @@ impl RunwayFlight {
         match here.on_wheels {
             Some(true) if !self.is_weight_wrong => !ranged || height_m < BOUNCES_M,
             Some(false) if !ranged => false,
-            Some(_) => height_m < TOUCHES_M && is_slow,
+            Some(_) => height_m < TOUCHES_M && is_slow && self.may_be_down(here),
             // One without wheels may lie where its altimeter shows more.
             None => height_m < TOUCHES_M && is_slow || self.lies(here),
         }
+    }
+
+    /// Whether it may be down although its switch does not show weight: not where the
+    /// altitude is higher than the range finder shows. Without a switch the range finder is
+    /// all there is.
+    fn may_be_down(&self, here: &OverGround) -> bool {
+        here.on_wheels.is_none() || self.by_altitude_m(here) - self.demand.height_m < FLOATS_M
     }
 
     fn lies(&self, here: &OverGround) -> bool {
@@ -144,7 +151,7 @@ impl RunwayFlight {
             self.give_up(RunwayPhase::GoAround, RunwayReason::Ground);
         } else if self.is_range_doubted
             && self.is_over_runway(motion)
-            && here.altitude_m - self.runway.elevation_m > COMMITTED_M
+            && self.by_altitude_m(here) > COMMITTED_M
         {
             self.give_up(RunwayPhase::GoAround, RunwayReason::RangeJump);
         } else if self.is_altimeter_off(here) {
@@ -186,12 +193,14 @@ impl RunwayFlight {
         self.flared_s += dt_s;
         // With a range finder that shows nothing, the ground is far.
         let is_ranged = here.height_m.is_some() && !self.is_range_doubted;
-        let is_near = is_ranged && height_m < FLOATS_M;
+        let is_near = is_ranged && height_m < FLOATS_M && self.may_be_down(here);
         let is_long = self.flared_s > LONGEST_FLARES * config.flare_s
             || here.airspeed_mps < SLOWEST_SHARE * config.approach_mps;
         let balloons = height_m > (BALLOONS * self.flares_m()).max(COMMITTED_M);
         if on_wheels {
             self.phase = RunwayPhase::RollOut;
+        } else if self.is_range_doubted && self.by_altitude_m(here) > COMMITTED_M {
+            self.give_up(RunwayPhase::GoAround, RunwayReason::RangeJump);
         } else if self.glide_sine.is_none() && (balloons || is_long && here.ranges && !is_near) {
             self.give_up(RunwayPhase::GoAround, RunwayReason::LongFlare);
         }

@@ -142,8 +142,8 @@ pub(super) struct RunwayFlight {
     thrown_s: f64,
     /// Where a take-off has begun.
     took_off: Option<TookOff>,
-    /// How far below the runway's elevation the ground is that ranges show, m.
-    ground_below_m: Option<f64>,
+    /// How far above the runway's elevation the ground is that ranges show, m.
+    ground_above_m: Option<f64>,
     /// Whether they show other ground now, farther from that elevation.
     is_range_doubted: bool,
 }
@@ -178,7 +178,7 @@ impl RunwayFlight {
             glide_sine: None,
             thrown_s: 0.0,
             took_off: None,
-            ground_below_m: None,
+            ground_above_m: None,
             is_range_doubted: false,
             demand: RunwayDemand {
                 phase,
