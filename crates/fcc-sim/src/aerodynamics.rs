@@ -106,15 +106,22 @@ pub fn loads(
         flow.alpha_rad,
         flow.sin_cos_alpha,
     );
-    let drag = whole.drag;
-    let lift = whole.lift
+    // Flow along the wing presses nothing: of separated flow only the part across it counts
+    // (the independence principle, Schlichting 1979, section XI).
+    let across = flow.symmetric_mps / speed;
+    let pressed = 1.0 - whole.separated * (1.0 - across * across);
+    let drag = pressed * whole.drag;
+    let lift = pressed * whole.lift
         + pitch.lift_per_pitch_rate * rates.y * half_chord_time
         + pitch.lift_per_elevator * deflections.elevator_rad;
+    // In separated flow surfaces are plates: in flow from behind neither wing nor tail has
+    // the angle of attack of half a turn.
+    let angle_rad = flow.alpha_rad + whole.separated * (flow.sin_cos_alpha.0 - flow.alpha_rad);
     let pitching = pitch.zero
-        + pitch.per_alpha * flow.alpha_rad
+        + pressed * pitch.per_alpha * angle_rad
         + pitch.per_pitch_rate * rates.y * half_chord_time
         + pitch.per_elevator * deflections.elevator_rad
-        + stall::pitching(airframe, flow.alpha_rad, &whole);
+        + pressed * stall::pitching(airframe, angle_rad, &whole);
     let wing = stall::wing(airframe, flow, rates, deflections.aileron_rad);
     // What is due to the wing's rotation and ailerons is the strips' in separated
     // flow; sideslip, rudder and the tail's yaw damping stay.
@@ -131,8 +138,9 @@ pub fn loads(
         let rows = &airframe.lateral;
         (
             lateral(&rows.side, 0.0),
-            lateral(&rows.roll, rows.roll.per_yaw_rate) + wing.separated * wing.rolling,
-            lateral(&rows.yaw, 0.0) + wing.separated * wing.yawing,
+            lateral(&rows.roll, rows.roll.per_yaw_rate)
+                + wing.separated * across * across * wing.rolling,
+            lateral(&rows.yaw, 0.0) + wing.separated * across * across * wing.yawing,
         )
     };
 

@@ -188,22 +188,19 @@ pub fn derivative(
         state
             .attitude
             .inverse_transform_vector(&Vector3::new(0.0, 0.0, STANDARD_GRAVITY_MPS2));
-    let change = loads.force_n / mass + gravity - state.rates_radps.cross(&steady);
+    let (on_wheels, about) = ground.map_or_else(Default::default, |ground| {
+        airframe.gear.loads(state, ground)
+    });
+    let change = (loads.force_n + on_wheels) / mass + gravity - state.rates_radps.cross(&steady);
     let symmetric = flow.symmetric_mps.max(1.0);
     let bare = (through_air.x * change.z - through_air.z * change.x) / (symmetric * symmetric);
     let alpha_rate = bare / (1.0 + loads.lift_per_alpha_rate / (mass * symmetric));
     let late_lift = loads.lift_per_alpha_rate * alpha_rate / symmetric;
-    let force =
-        loads.force_n + Vector3::new(late_lift * through_air.z, 0.0, -late_lift * through_air.x);
-    let moment = loads.moment_nm + Vector3::new(0.0, loads.pitch_per_alpha_rate * alpha_rate, 0.0);
-    let (force, moment) = match ground {
-        Some(ground) => {
-            let (on_wheels, about) = airframe.gear.loads(state, ground);
-            (force + on_wheels, moment + about)
-        }
-        None => (force, moment),
-    };
-
+    let force = loads.force_n
+        + on_wheels
+        + Vector3::new(late_lift * through_air.z, 0.0, -late_lift * through_air.x);
+    let moment =
+        loads.moment_nm + about + Vector3::new(0.0, loads.pitch_per_alpha_rate * alpha_rate, 0.0);
     let specific_force_mps2 = force / mass;
     let mut acceleration_mps2 = state.attitude.transform_vector(&specific_force_mps2);
     acceleration_mps2.z += STANDARD_GRAVITY_MPS2;
