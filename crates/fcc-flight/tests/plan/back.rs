@@ -42,9 +42,8 @@ fn from(start: &Truth, course_rad: f64, now: &Truth) -> (f64, f64) {
 
 /// Flies until it stands, and asserts where and how the wheels touch.
 fn lands_back(flight: &mut Flight, start: &Truth) {
-    flight.fly_until(1_500.0, |flight| flight.mode() == Mode::Land);
     let mut touch = flight.truth.get();
-    flight.fly_until(300.0, |flight| {
+    flight.fly_until(1_800.0, |flight| {
         let on_wheels = flight.record.measurements.weight_on_wheels.value > 0.5;
         if !on_wheels {
             touch = flight.truth.get();
@@ -83,7 +82,9 @@ fn an_item_without_a_place_is_where_it_took_off() {
 fn a_command_lands_where_it_took_off() {
     let (mut flight, start) = takes_off(&circuit(""), "wind_kt = 8\nwind_from_deg = 300\n");
     flight.command(AutopilotCommand::Land);
-    flight.fly_until(1.0, |flight| flight.mode() == Mode::Return);
+    // On its way there, too: it is kept over a restart.
+    flight.fly_until(1.0, |flight| flight.mode() == Mode::Land);
+    assert_eq!(flight.record.setpoints.guidance.item, 0);
     lands_back(&mut flight, &start);
 }
 

@@ -117,7 +117,10 @@ impl Autopilot {
             AutopilotCommand::Resume(_) | AutopilotCommand::Heartbeat(_) => return Ok(()),
             AutopilotCommand::AltimeterSetting(_) => return self.may_set_altimeter(),
             AutopilotCommand::GoAround => {
-                let next = self.after(ModeInput::GoAround);
+                // A landing that was commanded is not one yet on its way there.
+                let next = self
+                    .after(ModeInput::GoAround)
+                    .filter(|_| self.is_landing());
                 return next.map(drop).ok_or(Refusal::NotLanding);
             }
             AutopilotCommand::Land if self.is_landing() => return Ok(()),

@@ -217,7 +217,9 @@ impl Autopilot {
             return true;
         }
         let height_m = self.config.route.return_height_m;
-        self.took_off.is_some() && self.fly_step(ModeInput::Return, Step::LandBack { height_m })
+        self.took_off.is_some()
+            && self.after(ModeInput::Return).is_some()
+            && self.fly_step(Mode::Land, Step::LandBack { height_m })
     }
 
     /// Flies a plan from the step with an index on.
@@ -252,7 +254,7 @@ impl Autopilot {
         clockwise: bool,
     ) {
         let altitude_m = self.targets.altitude_m - self.sea_level_m();
-        self.fly_step(input, loiter(at, altitude_m, radius_m, clockwise));
+        self.change_to(input, loiter(at, altitude_m, radius_m, clockwise));
     }
 
     /// Flies to a place, at its altitude or the present higher one, and circles there.
@@ -260,7 +262,7 @@ impl Autopilot {
         let altitude_m = place.altitude_m.max(here.altitude_m);
         let radius_m = self.config.route.loiter_radius_m;
         let step = loiter(Some(place.at), altitude_m, radius_m, RETURNS_CLOCKWISE);
-        self.fly_step(input, step);
+        self.change_to(input, step);
     }
 
     /// Flies to a place, and circles around it.
@@ -270,7 +272,7 @@ impl Autopilot {
         }
         let at = Some(LocalPlane::at(place.latitude_rad, place.longitude_rad));
         let radius_m = self.config.route.loiter_radius_m;
-        self.fly_step(
+        self.change_to(
             ModeInput::GoTo,
             loiter(at, place.altitude_m, radius_m, true),
         );
@@ -278,14 +280,18 @@ impl Autopilot {
 
     /// Returns to the nearest place to return to; without one it circles.
     pub(super) fn return_home(&mut self) {
-        self.fly_step(ModeInput::Return, Step::Return);
+        self.change_to(ModeInput::Return, Step::Return);
+    }
+
+    /// Flies one step in the mode that follows an input, if there is one.
+    fn change_to(&mut self, input: ModeInput, step: Step) {
+        if let Some(mode) = self.after(input) {
+            self.fly_step(mode, step);
+        }
     }
 
     /// Flies one step; whether it can be flown now.
-    fn fly_step(&mut self, input: ModeInput, step: Step) -> bool {
-        let Some(mode) = self.after(input) else {
-            return false;
-        };
+    fn fly_step(&mut self, mode: Mode, step: Step) -> bool {
         if self.ground.here().is_none() {
             return false;
         }
