@@ -42,7 +42,7 @@ exits! {
     HitGround = 16, "the built-in aircraft hit the ground";
     Overloaded = 17, "for too long the loop's ticks left no time to sleep; it released the controls and stopped";
     CalibrationRefused = 18, "a calibration would be poor, and was refused (calibrate)";
-    NotFlown = 19, "the plan was not flown to its end in the time that there was";
+    NotFlown = 19, "the plan was not flown to its end";
 }
 
 impl From<Exit> for ExitCode {

@@ -106,6 +106,29 @@ fn a_refused_take_off_is_no_flown_plan() {
     assert!(said.contains(words), "{said}");
 }
 
+/// It ends where it stands, and not when the time is over.
+#[test]
+fn a_glide_to_the_ground_ends_the_flight() {
+    let stops = "engine_stops_at_s = 60\n[contingency]\nengine_out_below_rpm = 500\n";
+    let (exit, said) = flown(CIRCUIT, stops, &[]);
+    assert_eq!(exit, Some(19), "{said}");
+    let words = "ended: the plan is not flown to its end: the mode glide was flown; it has glided \
+                 without power, and stands";
+    assert!(said.contains(words), "{said}");
+}
+
+/// It idles with 650 rpm.
+#[test]
+fn an_engine_that_is_out_takes_off_nowhere() {
+    let slow = "[contingency]\nengine_out_below_rpm = 800\n";
+    let (exit, said) = flown(CIRCUIT, slow, &[]);
+    assert_eq!(exit, Some(19), "{said}");
+    let words = "ended: the plan is not flown to its end: item 1 was flown, in the mode take-off; \
+                 the take-off is given up: the engine is out; start it, or set engine_out_below_rpm \
+                 below the speed at which it idles";
+    assert!(said.contains(words), "{said}");
+}
+
 #[test]
 fn plans_are_flown_to_their_end() {
     let mut back = legs(45.0, 800.0);

@@ -27,7 +27,7 @@ pub(super) enum Over {
 pub(super) struct PlanProgress {
     /// Whether its plan is flown to its end: it has landed, or circles there.
     pub(super) is_flown: bool,
-    /// Whether its take-off was given up, and it stands.
+    /// Whether its take-off was given up, or it has glided without power, and it stands.
     pub(super) gave_up: bool,
     /// Whether the wheels touched the ground outside of a take-off and a landing.
     pub(super) touched: bool,

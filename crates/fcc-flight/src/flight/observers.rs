@@ -64,8 +64,11 @@ impl Observers {
                 self.follow_progress(record.setpoints.guidance);
                 let estimate = &record.estimate;
                 let stands = estimate.north_mps.hypot(estimate.east_mps) < STANDS_MPS;
-                self.monitor.plan.gave_up |=
-                    stands && self.flown.mode == Mode::Takeoff && self.given_up.is_some();
+                if stands && self.flown.mode == Mode::Glide {
+                    self.given_up = Some("it has glided without power, and stands".to_owned());
+                }
+                let ends = matches!(self.flown.mode, Mode::Takeoff | Mode::Glide);
+                self.monitor.plan.gave_up |= stands && ends && self.given_up.is_some();
                 for observer in &mut self.all {
                     observer.record(record, &at);
                 }

@@ -64,7 +64,7 @@ pub enum Conclusion {
     /// It was not flown as planned: the timer failed, engaging was refused, or
     /// control had to be given back at once and that ends the program.
     Failed,
-    /// The plan was not flown to its end in the time that there was.
+    /// The plan was not flown to its end.
     NotFlown,
     /// It entered failsafe.
     Failsafe,

@@ -31,6 +31,7 @@ use core::fmt;
 
 use super::Autopilot;
 use crate::flight::guidance::Mode;
+use crate::flight::route::RunwayReason;
 use crate::framework::Notice;
 use crate::schema;
 pub use config::{ContingencyAction, ContingencyConfig};
@@ -261,7 +262,7 @@ impl Autopilot {
         };
         // Where the runway is, is not known well enough.
         if action != ContingencyAction::Continue {
-            self.guidance.go_around();
+            self.guidance.go_around(RunwayReason::Failsafe);
         }
         self.contingencies.is_loss_met = self.meet(Contingency::PositionLost, action);
     }

@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::{Autopilot, AutopilotCommand};
 use crate::flight::guidance::ModeInput;
-use crate::flight::route::RunwayDemand;
+use crate::flight::route::{RunwayDemand, RunwayReason};
 use crate::framework::Notice;
 
 /// The number of the notice that answers, below those of doubted sensors; the amount is the
@@ -131,7 +131,7 @@ impl Autopilot {
                 return Err(Refusal::OnWheels);
             }
             if demand.height_m < COMMANDED_M {
-                self.guidance.go_around();
+                self.guidance.go_around(RunwayReason::Failsafe);
                 return Err(Refusal::LowOverRunway);
             }
         }

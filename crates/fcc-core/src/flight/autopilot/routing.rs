@@ -325,7 +325,7 @@ impl Autopilot {
     /// Gives a landing up.
     pub(super) fn go_around(&mut self) {
         if self.after(ModeInput::GoAround).is_some() {
-            self.guidance.go_around();
+            self.guidance.go_around(RunwayReason::Failsafe);
         }
     }
 

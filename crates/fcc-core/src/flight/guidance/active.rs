@@ -4,7 +4,7 @@ use super::{
     Guidance, Hold, Mode, OverGroundMode, Progress, Targets, TimedPattern, TimedPatternConfig,
 };
 use crate::flight::navigation::Estimate;
-use crate::flight::route::OverGround;
+use crate::flight::route::{OverGround, RunwayReason};
 
 /// The guidance mode after engaging.
 ///
@@ -130,10 +130,10 @@ impl ActiveMode {
         }
     }
 
-    /// Gives a landing up.
-    pub fn go_around(&mut self) {
+    /// Gives a landing up, or the roll of a take-off for a reason.
+    pub fn go_around(&mut self, of_takeoff: RunwayReason) {
         if let Self::OverGround(mode) = self {
-            mode.go_around();
+            mode.go_around(of_takeoff);
         }
     }
 

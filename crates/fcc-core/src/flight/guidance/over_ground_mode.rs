@@ -2,7 +2,9 @@
 
 use super::{Mode, Progress, Targets};
 use crate::flight::navigation::Estimate;
-use crate::flight::route::{Follower, OverGround, RunwayDemand, RunwayPhase, TookOff, Track};
+use crate::flight::route::{
+    Follower, OverGround, RunwayDemand, RunwayPhase, RunwayReason, TookOff, Track,
+};
 
 /// A mode that follows a route over the ground. It commands a bank, and no heading.
 ///
@@ -82,9 +84,9 @@ impl OverGroundMode {
         self.follower.lands_back()
     }
 
-    /// Gives a landing up.
-    pub fn go_around(&mut self) {
-        self.follower.go_around();
+    /// Gives a landing up, or the roll of a take-off for a reason.
+    pub fn go_around(&mut self, of_takeoff: RunwayReason) {
+        self.follower.go_around(of_takeoff);
     }
 
     /// The targets for airspeed and altitude; the heading is the present one.

@@ -8,7 +8,7 @@ use libm::cos;
 use super::super::Autopilot;
 use super::{Contingency, ContingencyAction, PERMILLE};
 use crate::flight::guidance::{Mode, OverGroundMode};
-use crate::flight::route::{Follower, GlideConfig, RunwayPhase};
+use crate::flight::route::{Follower, GlideConfig, RunwayPhase, RunwayReason};
 use crate::framework::{Notice, Time};
 use crate::units::GRAVITY_MPS2;
 
@@ -78,7 +78,9 @@ impl Autopilot {
             return;
         }
         match self.runway().map(|demand| demand.phase) {
-            Some(RunwayPhase::Roll) => return self.guidance.go_around(),
+            Some(RunwayPhase::Roll) => return self.guidance.go_around(RunwayReason::Engine),
+            // It stands, and is about to roll.
+            None if self.waits_for_takeoff() => return,
             Some(phase) if phase.is_on_wheels() || phase == RunwayPhase::Flare => return,
             _ => {}
         }

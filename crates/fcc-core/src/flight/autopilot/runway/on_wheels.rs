@@ -6,7 +6,7 @@ use crate::blocks::limit_abs;
 use crate::flight::Surfaces;
 use crate::flight::control::Lateral;
 use crate::flight::navigation::Estimate;
-use crate::flight::route::{RunwayConfig, RunwayDemand, RunwayPhase};
+use crate::flight::route::{RunwayConfig, RunwayDemand, RunwayPhase, RunwayReason};
 use crate::framework::Flags;
 
 /// Heading towards the centre line per metre off it, rad/m, per m/s, and at most, rad.
@@ -37,7 +37,7 @@ impl Autopilot {
             return None;
         }
         if !self.lands_in_failsafe() {
-            self.guidance.go_around();
+            self.guidance.go_around(RunwayReason::Failsafe);
         }
         let (config, dt_s) = (self.config.route.runway, self.clock.step_s());
         let yaw_radps = if lost.contains(flags::BODY_RATES) {

@@ -218,14 +218,14 @@ impl RunwayFlight {
     }
 
     /// Gives it up: a landing, unless the wheels are on the ground, or a take-off, unless
-    /// they have left it.
-    pub(in crate::flight::route) const fn go_around(&mut self) {
+    /// they have left it, for a reason.
+    pub(in crate::flight::route) const fn go_around(&mut self, of_takeoff: RunwayReason) {
         match self.phase {
             RunwayPhase::Approach | RunwayPhase::Flare if self.glide_sine.is_none() => {
                 self.give_up(RunwayPhase::GoAround, RunwayReason::Commanded);
             }
             RunwayPhase::Hand | RunwayPhase::Roll => {
-                self.give_up(RunwayPhase::RollOut, RunwayReason::Failsafe);
+                self.give_up(RunwayPhase::RollOut, of_takeoff);
             }
             _ => {}
         }

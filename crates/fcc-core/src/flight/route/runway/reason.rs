@@ -43,6 +43,8 @@ schema! {
         NoAirspeed = 17,
         /// The range finder shows other ground than before, and the altitude does not.
         RangeJump = 18,
+        /// The engine is out before the wheels have left the ground.
+        Engine = 19,
     }
 }
 
@@ -86,6 +88,10 @@ impl fmt::Display for RunwayReason {
             Self::RangeJump => {
                 "going around: the range finder and the altitude have ceased to agree; the \
                  range finder is not used any more: land by the altimeter, set it"
+            }
+            Self::Engine => {
+                "the take-off is given up: the engine is out; start it, or set \
+                 engine_out_below_rpm below the speed at which it idles"
             }
             Self::Failsafe => "the take-off is given up",
             Self::Touched => {

@@ -201,7 +201,7 @@ fn the_third_landing_that_is_given_up_is_the_last() {
                 ..at(-1_000.0, 55.0, 35.0)
             };
             if is_commanded {
-                follower.go_around();
+                follower.go_around(RunwayReason::Failsafe);
             }
             follower.advance(&banked, 0.025);
             assert_eq!(phase(&follower), Some(RunwayPhase::GoAround));
@@ -228,7 +228,7 @@ fn the_third_landing_that_is_given_up_is_the_last() {
 #[test]
 fn a_landing_is_given_up_by_a_command_until_the_wheels_touch() {
     let mut follower = landing();
-    follower.go_around();
+    follower.go_around(RunwayReason::Failsafe);
     assert_eq!(phase(&follower), Some(RunwayPhase::GoAround));
     let mut follower = landing();
     let range = OverGround {
@@ -238,7 +238,7 @@ fn a_landing_is_given_up_by_a_command_until_the_wheels_touch() {
     };
     follower.advance(&range, 0.025);
     follower.advance(&range, 0.025);
-    follower.go_around();
+    follower.go_around(RunwayReason::Failsafe);
     assert_eq!(phase(&follower), Some(RunwayPhase::RollOut));
 }
 
