@@ -10,6 +10,7 @@ mod consistency;
 mod drifts;
 mod flight;
 mod flights;
+mod gaps;
 mod gyroscope;
 mod hand;
 mod matched;

@@ -29,6 +29,8 @@ pub(crate) struct Fitted {
     pub(crate) receiver: bool,
     /// The receiver is lost from here to there, s.
     pub(crate) receiver_lost_s: (f64, f64),
+    /// Gyroscopes and accelerometers are both lost from here to there, s.
+    pub(crate) inertial_lost_s: (f64, f64),
     /// The compass is turned by an angle from a time on, rad, s.
     pub(crate) compass_turned: (f64, f64),
     /// Errors that last: biases of the inertial sensors, the receiver's and the
@@ -48,6 +50,7 @@ impl Default for Fitted {
             airspeed: true,
             receiver: true,
             receiver_lost_s: (f64::INFINITY, f64::INFINITY),
+            inertial_lost_s: (f64::INFINITY, f64::INFINITY),
             compass_turned: (0.0, f64::INFINITY),
             slow_errors: true,
             force_range: f64::INFINITY,
@@ -121,9 +124,12 @@ impl Run {
         let range = self.fitted.force_range;
         let force = noisy(&mut self.random, truth.force, force_bias, 0.02)
             .map(|axis| axis.clamp(-range, range));
-        self.navigation.observe(now, Observation::Rates(rates));
-        self.navigation
-            .observe(now, Observation::SpecificForce(force));
+        let (lost_s, back_s) = self.fitted.inertial_lost_s;
+        if !(lost_s..back_s).contains(&truth.time_s) {
+            self.navigation.observe(now, Observation::Rates(rates));
+            self.navigation
+                .observe(now, Observation::SpecificForce(force));
+        }
         if self.fitted.compass && self.steps.is_multiple_of(2) {
             let field = self.field(&truth);
             let field = noisy(&mut self.random, field, self.hard_iron, 0.5);

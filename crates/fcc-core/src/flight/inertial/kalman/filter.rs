@@ -54,6 +54,8 @@ pub(super) struct Filter {
     /// their biases.
     pub(super) acceleration: Vector3<f64>,
     pub(super) rates: Vector3<f64>,
+    /// Whether that step had rates: without them it may turn in any way.
+    pub(super) knows_rates: bool,
     /// The mean square of the horizontal velocity, m²/s².
     pub(super) mean_square_velocity: f64,
     /// Whether what is taken for rates is how the magnetic field turns.
@@ -89,6 +91,7 @@ impl Filter {
             innovations: Innovations::default(),
             acceleration: Vector3::zeros(),
             rates: Vector3::zeros(),
+            knows_rates: false,
             mean_square_velocity: 0.0,
             turns_by_field: false,
             drift: Drift::default(),
@@ -100,6 +103,7 @@ impl Filter {
     pub(super) fn advance(&mut self, raw: &Raw, dt_s: f64) {
         let reading = self.without_bias(raw);
         self.rates = reading.rates;
+        self.knows_rates = raw.rates.is_some();
         let increment = self.motion.advance(&reading, dt_s);
         self.acceleration = increment.acceleration;
         self.accumulate(&increment, raw, dt_s);

@@ -31,7 +31,8 @@ pub(super) struct Inertial {
 /// What one step of dead reckoning has added.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Increment {
-    /// The change of velocity by the specific force: north, east, down, m/s.
+    /// The change of velocity by the specific force that was measured, which an error of
+    /// the attitude turns: north, east, down, m/s.
     pub(super) velocity: Vector3<f64>,
     /// The acceleration over the ground, m/s².
     pub(super) acceleration: Vector3<f64>,
@@ -60,13 +61,14 @@ impl Motion {
         let midway = self.attitude * half;
         self.attitude = midway * half;
         self.attitude.renormalize_fast();
-        let force = reading.force.map_or(-gravity, |force| midway * force);
-        let mean = self.velocity + 0.5 * (force + gravity) * dt_s;
-        self.velocity += (force + gravity) * dt_s;
+        let measured = reading.force.map(|force| midway * force);
+        let acceleration = measured.map_or(Vector3::zeros(), |force| force + gravity);
+        let mean = self.velocity + 0.5 * acceleration * dt_s;
+        self.velocity += acceleration * dt_s;
         self.shift(mean * dt_s);
         Increment {
-            velocity: force * dt_s,
-            acceleration: force + gravity,
+            velocity: measured.unwrap_or_default() * dt_s,
+            acceleration,
         }
     }
 

@@ -103,6 +103,10 @@ impl Filter {
             p::GATE,
             Corrects::All,
         ) {
+            // What has turned without gyroscopes may point anywhere, but moves ahead.
+            if !self.knows_rates && !has_heading && velocity.xy().norm() > MOVING_MPS {
+                self.take_heading_from_course();
+            }
             return;
         }
         if is_first || self.tracks.velocity.refused_s(taken) >= p::RECEIVER_REFUSED_S {
