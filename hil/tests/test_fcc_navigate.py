@@ -108,10 +108,80 @@ def test_what_is_not_finite_is_ignored() -> None:
     assert found["roll_rad"][-1] == pytest.approx(ROLL, abs=math.radians(1.0))
 
 
+def test_what_is_masked_is_left_out() -> None:
+    """Values that a mask hides are of another roll, more than half of them."""
+    hidden = np.arange(len(TIMES_S)) % 5 > 1
+    force = np.ma.array(ACCELEROMETER[1].copy(), mask=np.repeat(hidden[:, None], 3, axis=1))
+    force.data[hidden] *= [1.0, -1.0, 1.0]
+    found = fcc.navigate(gyroscope=GYROSCOPE, accelerometer=(TIMES_S, force))
+    assert len(found["t_s"]) == len(TIMES_S)
+    assert found["roll_rad"][-1] == pytest.approx(ROLL, abs=math.radians(1.0))
+    columns = (TIMES_S, *(force[:, axis] for axis in range(3)))
+    np.testing.assert_array_equal(
+        fcc.navigate(gyroscope=GYROSCOPE, accelerometer=columns)["roll_rad"], found["roll_rad"]
+    )
+    untimed = (np.ma.array(TIMES_S, mask=hidden), force.data)
+    found = fcc.navigate(gyroscope=GYROSCOPE, accelerometer=untimed)
+    assert found["roll_rad"][-1] == pytest.approx(ROLL, abs=math.radians(1.0))
+
+
+def moving(velocity: list[float]) -> dict[str, Any]:
+    """Return 60 s of a straight flight north-west, 30 and 10 m/s, at 1 m/s down."""
+    times_s = np.arange(60 * RATE_HZ) / RATE_HZ
+    fixes_s = np.arange(0.0, 60.0, 0.2)
+    place = [math.radians(47.0), math.radians(8.0), 1_000.0]
+    # The radius of the earth, to a third of a percent.
+    rates = [30.0 / 6.371e6, -10.0 / (6.371e6 * math.cos(place[0])), -1.0]
+    return {
+        "gyroscope": (times_s, np.zeros((len(times_s), 3))),
+        "accelerometer": (times_s, np.tile([0.0, 0.0, -9.81], (len(times_s), 1))),
+        "gnss_position": (fixes_s, np.array(place) + np.outer(fixes_s, rates)),
+        "gnss_velocity": (fixes_s, np.tile(velocity, (len(fixes_s), 1))),
+    }
+
+
+FLIGHT = moving([30.0, -10.0, 1.0])
+FIXES_S, PLACES = FLIGHT["gnss_position"]
+
+
+@pytest.mark.filterwarnings("error")
+def test_of_a_flight_nothing_is_said() -> None:
+    fcc.navigate(**FLIGHT)
+
+
+UNLIKELY: list[tuple[dict[str, Any], str]] = [
+    (moving([-10.0, 30.0, -1.0]), "as east, north, up"),
+    (moving([-10.0, 30.0, 1.0]), "north and east swapped"),
+    (moving([30.0, -10.0, -1.0]), "down for up"),
+    (FLIGHT | {"gnss_position": (FIXES_S, PLACES[:, [1, 0, 2]])}, "latitude before longitude"),
+    ({"gyroscope": (TIMES_S, GYROSCOPE[1] + [40.0, 0.0, 0.0])}, "are they in °/s"),
+    ({"gyroscope": (TIMES_S * 12.5, GYROSCOPE[1])}, "0.25 s apart.*milliseconds"),
+    (
+        FLIGHT | {"gnss_velocity": (FIXES_S * 3.0, FLIGHT["gnss_velocity"][1])},
+        r"gnss_velocity: 102 of its 300 .* covers 0 to 179",
+    ),
+]
+
+
+@pytest.mark.parametrize(("arguments", "words"), UNLIKELY)
+def test_of_what_is_unlikely_it_warns(arguments: dict[str, Any], words: str) -> None:
+    with pytest.warns(UserWarning, match=words):
+        fcc.navigate(**arguments)
+
+
+def later(by_s: float) -> dict[str, Any]:
+    return {"gyroscope": GYROSCOPE, "magnetometer": (TIMES_S + by_s, still(FIELD_UT)[1])}
+
+
 WRONG: list[tuple[dict[str, Any], str]] = [
     ({}, "neither gyroscope nor accelerometer"),
     ({"gyroscope": 3.0}, "gyroscope: it is no tuple"),
     ({"gyroscope": (TIMES_S, np.zeros((3, 3)))}, r"gyroscope: it has 400 times.*\(3, 3\)"),
+    ({"gyroscope": (TIMES_S, GYROSCOPE[1].T)}, r"\(3, 400\) \(are they transposed"),
+    ({"gyroscope": (TIMES_S * 1e3, GYROSCOPE[1])}, "20.* s apart.*milliseconds"),
+    (later(1000.0), r"1100 to 1107.98 s, the gyroscope 100 to 107.98 s"),
+    (later(-1000.0), r"magnetometer: 0 of its 400 .* one clock"),
+    ({"gyroscope": (np.ma.array(TIMES_S, mask=True), GYROSCOPE[1])}, "all its samples are masked"),
     ({"gyroscope": (TIMES_S[::-1], GYROSCOPE[1])}, "must not decrease"),
     ({"gyroscope": (TIMES_S, GYROSCOPE[1] + 400.0)}, "in rad/s"),
     ({"gyroscope": GYROSCOPE, "gnss_position": still([47.0, 8.0, 1.0])}, "degrees"),

@@ -1,7 +1,9 @@
 //! Navigation from arrays of raw samples.
 
+mod kind;
 mod magnetism;
 mod mounting;
+mod plausible;
 mod result;
 mod sources;
 
@@ -30,7 +32,12 @@ const LONGEST_WAIT_S: f64 = 0.05;
 /// n × 3 or three arrays of n for a vector. Any may be left out, but not both
 /// gyroscope and accelerometer; rates and times are as they are. Body axes
 /// forward, right, down; the accelerometer shows specific force, (0, 0, -9.8) at
-/// rest. Samples that are not finite or not possible are ignored.
+/// rest. Samples that are masked, not finite or not possible are ignored.
+///
+/// Sources whose times do not meet those of the gyroscope (or the accelerometer), or half a
+/// second and more between its samples, are a `ValueError`; samples mostly at other times,
+/// rates beyond 35 rad/s and a velocity that moves otherwise than the position a
+/// `UserWarning`.
 #[pyfunction]
 #[pyo3(signature = (
     *,
@@ -83,7 +90,7 @@ pub(crate) fn navigate<'py>(
         gnss_position,
         gnss_velocity,
     };
-    let sources = Sources::read(&given, delays_s, &mounting)?;
+    let sources = Sources::read(py, &given, delays_s, &mounting)?;
     let field = match sources.first_place() {
         Some(place) if sources.has_field() && !is_thesis => Some(earth_field_ut(place, year)?),
         _ => {
@@ -126,12 +133,13 @@ pub(crate) fn inertial_samples<'py>(
     gyroscope: Bound<'py, PyAny>,
     accelerometer: Bound<'py, PyAny>,
 ) -> PyResult<Vec<(Time, Observation)>> {
+    let py = gyroscope.py();
     let given = Given {
         gyroscope: Some(gyroscope),
         accelerometer: Some(accelerometer),
         ..Given::default()
     };
-    let sources = Sources::read(&given, None, &Mounting::read(None)?)?;
+    let sources = Sources::read(py, &given, None, &Mounting::read(None)?)?;
     let samples = sources.events.into_iter();
     Ok(samples
         .map(|event| (event.arrived, event.observation))

@@ -6,43 +6,15 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use super::kind::{KINDS, Kind, Series};
 use super::mounting::Mounting;
-use crate::arguments::{numbers, shape_words, within};
+use super::plausible;
+use crate::arguments::within;
 
 /// The longest delay, s: the filter keeps half a second of samples.
 const LONGEST_DELAY_S: f64 = 0.5;
 /// Times in s, from that of the first sample.
 const LONGEST_S: f64 = 1e9;
-
-/// One source: its name, the number of its values, what it is at most (a larger
-/// one is not possible), and in what.
-struct Kind {
-    name: &'static str,
-    width: usize,
-    range: (f64, f64),
-    unit: &'static str,
-}
-
-const fn kind(name: &'static str, width: usize, range: (f64, f64), unit: &'static str) -> Kind {
-    Kind {
-        name,
-        width,
-        range,
-        unit,
-    }
-}
-
-const KINDS: [Kind; 8] = [
-    kind("gyroscope", 3, (-150.0, 150.0), "rad/s"),
-    kind("accelerometer", 3, (-2_000.0, 2_000.0), "m/s²"),
-    kind("magnetometer", 3, (-5_000.0, 5_000.0), "µT"),
-    // At 20 km it is 5,500 Pa, and at sea level 1,013 hPa.
-    kind("static_pressure", 1, (2_000.0, 120_000.0), "Pa"),
-    kind("differential_pressure", 1, (-20_000.0, 20_000.0), "Pa"),
-    kind("airspeed", 1, (-50.0, 200.0), "m/s"),
-    kind("gnss_position", 3, (-100_000.0, 100_000.0), "rad, rad, m"),
-    kind("gnss_velocity", 3, (-1_000.0, 1_000.0), "m/s"),
-];
 
 /// What was given, in the order of `KINDS`.
 #[derive(Default)]
@@ -78,13 +50,9 @@ pub(super) struct Sources {
     first_place: Option<GeodeticPosition>,
 }
 
-struct Series {
-    times_s: Vec<f64>,
-    rows: Vec<[f64; 3]>,
-}
-
 impl Sources {
     pub(super) fn read(
+        py: Python<'_>,
         given: &Given<'_>,
         delays_s: Option<&Bound<'_, PyAny>>,
         mounting: &Mounting,
@@ -143,6 +111,8 @@ impl Sources {
                 sources.add(kind, series, delay_s, mounting)?;
             }
         }
+        // After the samples themselves: in a wrong unit they are not possible.
+        plausible::check(py, &series)?;
         sources.events.sort_by_key(|event| event.arrived);
         Ok(sources)
     }
@@ -185,12 +155,13 @@ impl Sources {
             ));
         }
         // Some may be spoilt; most are not possible if they are in another unit.
-        if 2 * kept < series.rows.len() {
+        let shown = series.rows.len() - series.masked;
+        if 2 * kept < shown {
             return Err(PyValueError::new_err(format!(
                 "{}: {} of {} samples are not possible: it is in {}, each finite{}",
                 kind.name,
-                series.rows.len() - kept,
-                series.rows.len(),
+                shown - kept,
+                shown,
                 kind.unit,
                 kind.bounds()
             )));
@@ -223,86 +194,6 @@ impl Sources {
     }
 }
 
-impl Kind {
-    /// The tuple of times and values.
-    fn read(&self, source: &Bound<'_, PyAny>) -> PyResult<Series> {
-        let name = self.name;
-        let parts: Vec<Bound<'_, PyAny>> = source
-            .try_iter()
-            .and_then(Iterator::collect)
-            .map_err(|_| PyTypeError::new_err(self.wanted("it is no tuple")))?;
-        let Some((times, values)) = parts.split_first() else {
-            return Err(PyValueError::new_err(self.wanted("it is empty")));
-        };
-        if values.len() != 1 && values.len() != self.width {
-            let has = format!("it has {} arrays", parts.len());
-            return Err(PyValueError::new_err(self.wanted(&has)));
-        }
-        let (shape, times_s) = numbers(&format!("{name}: t_s"), times)?;
-        if shape.len() != 1 || times_s.is_empty() {
-            let has = format!("its times are of shape {}", shape_words(&shape));
-            return Err(PyValueError::new_err(self.wanted(&has)));
-        }
-        check_times(name, &times_s)?;
-        let n = times_s.len();
-        let mut rows = vec![[0.0; 3]; n];
-        for (column, values) in values.iter().enumerate() {
-            let (shape, numbers) = numbers(&format!("{name}: values"), values)?;
-            let is_fitting = match shape.as_slice() {
-                [rows] => *rows == n && (parts.len() - 1 == self.width),
-                [rows, width] => *rows == n && *width == self.width && parts.len() == 2,
-                _ => false,
-            };
-            if !is_fitting {
-                let has = format!(
-                    "it has {n} times, and values of shape {}",
-                    shape_words(&shape)
-                );
-                return Err(PyValueError::new_err(self.wanted(&has)));
-            }
-            let width = numbers.len() / n;
-            for (row, given) in rows.iter_mut().zip(numbers.chunks_exact(width)) {
-                for (place, value) in row.iter_mut().skip(column).zip(given) {
-                    *place = *value;
-                }
-            }
-        }
-        Ok(Series { times_s, rows })
-    }
-
-    fn wanted(&self, has: &str) -> String {
-        let values = match (self.name, self.width) {
-            ("gnss_position", _) => "latitude_rad, longitude_rad, altitude_m",
-            (_, 1) => "values of shape (n,)",
-            _ => "values of shape (n, 3)",
-        };
-        format!(
-            "{}: {has}: give a tuple (t_s, {values}) in {}",
-            self.name, self.unit
-        )
-    }
-
-    fn is_possible(&self, row: &[f64; 3]) -> bool {
-        let (least, most) = self.range;
-        let in_range = row
-            .iter()
-            .take(self.width)
-            .all(|v| (least..=most).contains(v));
-        let [latitude, longitude, _] = row;
-        in_range
-            && (self.name != "gnss_position"
-                || (latitude.abs() <= std::f64::consts::FRAC_PI_2
-                    && longitude.abs() <= std::f64::consts::TAU))
-    }
-
-    fn bounds(&self) -> String {
-        if self.name == "gnss_position" {
-            return ", latitudes between -π/2 and π/2: are they in degrees?".to_owned();
-        }
-        format!(", between {} and {}", self.range.0, self.range.1)
-    }
-}
-
 fn observation(name: &str, row: [f64; 3]) -> Observation {
     let [first, second, third] = row;
     match name {
@@ -326,6 +217,7 @@ fn is_in_g(rows: &[[f64; 3]]) -> bool {
     let mut strengths: Vec<f64> = rows
         .iter()
         .map(|row| row.iter().map(|along| along * along).sum::<f64>().sqrt())
+        .filter(|strength| strength.is_finite())
         .collect();
     strengths.sort_by(f64::total_cmp);
     strengths
@@ -367,24 +259,6 @@ fn delays(given: Option<&Bound<'_, PyAny>>) -> PyResult<[f64; 8]> {
         *place = within(&what, delay, 0.0, LONGEST_DELAY_S)?;
     }
     Ok(delays)
-}
-
-fn check_times(name: &str, times_s: &[f64]) -> PyResult<()> {
-    let mut before = f64::NEG_INFINITY;
-    for (at, time_s) in times_s.iter().enumerate() {
-        if !time_s.is_finite() {
-            return Err(PyValueError::new_err(format!(
-                "{name}: t_s[{at}] is {time_s}: times must be finite"
-            )));
-        }
-        if *time_s < before {
-            return Err(PyValueError::new_err(format!(
-                "{name}: t_s[{at}] is {time_s}, after {before}: times must not decrease; sort them"
-            )));
-        }
-        before = *time_s;
-    }
-    Ok(())
 }
 
 /// Between two samples of an accelerometer that has times of its own, s.
