@@ -1,9 +1,10 @@
 //! Fences that are drawn, with a wind, a place outside of them, and a commander that
 //! may insist.
 
-use fcc_core::flight::AutopilotCommand;
 use fcc_core::flight::fence::{Fence, Shape, Zone};
+use fcc_core::flight::guidance::Mode;
 use fcc_core::flight::path::LocalPlane;
+use fcc_core::flight::{AutopilotCommand, Contingency};
 use fcc_core::framework::State;
 use fcc_plan::Place;
 use nalgebra::Vector2;
@@ -194,5 +195,74 @@ fn a_fence_is_kept_in_severe_gusts() {
             .collect();
         println!("{wind_kt} kt, severe gusts: {nearest_m:.0?} m inside");
         assert!(from.is_some() || nearest_m.iter().all(|m| *m > 0.0));
+    }
+}
+
+/// A heading at a drawn fence: how near the flight came to it, m, and the time from turning
+/// away until it circled at home, s; none within ten minutes.
+fn fly_and_return(seed: u64, wind_kt: f64, gusts: &str) -> (f64, Option<f64>) {
+    let mut drawn = Drawn(seed);
+    let drawing = Drawing::of(&mut drawn, 2_500.0);
+    let wind_from_deg = drawn.between(0.0, 359.0).round();
+    let course_deg = drawn.between(0.0, 360.0);
+    let keys = format!(
+        "[built-in]\nseed = {seed}\nwind_from_deg = {wind_from_deg}\nwind_kt = {wind_kt}\n{gusts}"
+    );
+    let mut flight = Flight::new(&fenced(&drawing.places, 0.0), &keys);
+    flight.fly_until(60.0, |flight| flight.record.state.state() == State::Engaged);
+    flight.command(AutopilotCommand::Heading(course_deg.to_radians()));
+    let (mut nearest_m, mut turned_s) = (f64::INFINITY, None);
+    for tick in 1..48_000 {
+        flight.tick();
+        nearest_m = nearest_m.min(drawing.inside_m(flight.place()));
+        let time_s = f64::from(tick) / 40.0;
+        if turned_s.is_none() && flight.record.setpoints.contingency == Contingency::Fence {
+            turned_s = Some(time_s);
+        }
+        let is_home = (flight.distance_m(HOME) - 800.0).abs() < 150.0;
+        let passed_s = turned_s.map(|turned_s| time_s - turned_s);
+        if passed_s.is_some_and(|s| s > 600.0) {
+            break;
+        }
+        if passed_s.is_some() && is_home && flight.mode() == Mode::Return {
+            return (nearest_m, passed_s);
+        }
+    }
+    (nearest_m, None)
+}
+
+/// Seeds that circled at the fence for ten minutes: the circle of the moment never had room,
+/// though the one that was flown had. The longest way is 9 km from home, four minutes.
+/// `FCC_FENCES_FROM=1001` flies 60 fences from there on in each wind and gusts.
+#[test]
+fn it_returns_from_a_fence_in_strong_wind() {
+    let from: Option<u64> = std::env::var("FCC_FENCES_FROM")
+        .ok()
+        .map(|from| from.parse().unwrap());
+    for wind_kt in [20.0, 25.0, 30.0, 35.0, 40.0] {
+        for gusts in ["", "gusts = \"light\"\n", "gusts = \"moderate\"\n"] {
+            let seeds = match from {
+                Some(from) => (from..from + 60).collect(),
+                None if wind_kt == 30.0 => vec![3, 7],
+                None => vec![],
+            };
+            let flown: Vec<(u64, f64, Option<f64>)> = seeds
+                .into_iter()
+                .map(|seed| {
+                    let (nearest_m, home_s) = fly_and_return(seed, wind_kt, gusts);
+                    (seed, nearest_m, home_s)
+                })
+                .collect();
+            let away: Vec<_> = flown.iter().filter(|row| row.2.is_none()).collect();
+            let nearest_m = flown.iter().map(|row| row.1).fold(f64::INFINITY, f64::min);
+            let slowest_s = flown.iter().filter_map(|row| row.2).fold(0.0, f64::max);
+            println!(
+                "{wind_kt} kt {gusts:?}: {} fences, {nearest_m:.0} m inside, home after \
+                 {slowest_s:.0} s; stay there: {away:.0?}",
+                flown.len()
+            );
+            assert!(flown.is_empty() || nearest_m > 0.0);
+            assert!(from.is_some() || away.is_empty() && slowest_s < 240.0);
+        }
     }
 }

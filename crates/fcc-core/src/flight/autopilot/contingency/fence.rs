@@ -34,7 +34,7 @@ const OVER_NEEDED_MPS: f64 = 2.0;
 const CALM_GUSTS_G: f64 = 0.15;
 const GUSTS_M_PER_G: f64 = 600.0;
 /// How far ahead it is looked at whether the fence is left behind, s.
-const AHEAD_S: f64 = 5.0;
+const AHEAD_S: u8 = 5;
 /// The aircraft returns from the circle when its course leads there within this angle:
 /// its cosine, of 3°, more than it turns in a tick.
 const POINTS_THERE: f64 = 0.998_6;
@@ -119,10 +119,13 @@ impl Autopilot {
         };
         let margin_m = self.fence_margin_m();
         if is_met && stage == Stage::TurningAway {
-            let returns = action == ContingencyAction::Return
-                && escape.clearance_m >= LEFT_SHARE * margin_m
-                && self.points_home(&here);
-            if returns && self.leads_away(&fence, &here, &escape) {
+            let returns = action == ContingencyAction::Return && self.points_home(&here);
+            let ahead_m = self.room_ahead_m(&fence, &here);
+            // The circle of this moment may need more room than the one that was turned
+            // onto: in strong wind, or a faster one.
+            let has_room = ahead_m >= margin_m
+                || escape.clearance_m >= LEFT_SHARE * margin_m && ahead_m > escape.clearance_m;
+            if returns && has_room {
                 self.contingencies.stage = Stage::Acting;
                 self.return_from_fence(&here);
             }
@@ -138,10 +141,12 @@ impl Autopilot {
         } else {
             margin_m
         };
-        let leads_away = is_met
-            && escape.clearance_m >= LEAST_SHARE * margin_m
-            && self.leads_away(&fence, &here, &escape);
-        if escape.clearance_m >= needed_m || leads_away {
+        if escape.clearance_m >= needed_m {
+            return;
+        }
+        // It is left behind, and so is the room that a turn at once would need.
+        let least_m = (LEAST_SHARE * margin_m).max(escape.clearance_m);
+        if is_met && self.room_ahead_m(&fence, &here) > least_m {
             return;
         }
         // A command does not make the circle another one while the aircraft is on it.
@@ -274,15 +279,25 @@ impl Autopilot {
         plan.fence_return.or_else(|| plan.nearest_return(here))
     }
 
-    /// Whether the aircraft, without a turn, will be farther from the fence than now.
-    fn leads_away(&self, fence: &Fence<'_>, here: &OverGround, now: &Escape) -> bool {
+    /// How far inside the best circle stays, m, that begins within the next seconds of
+    /// flying straight on, as far as that is inside.
+    fn room_ahead_m(&self, fence: &Fence<'_>, here: &OverGround) -> f64 {
         let bank = Bank {
             now_rad: 0.0,
             commanded_rad: 0.0,
             ..self.fastest_bank()
         };
-        let later = Escape::best(fence, &here.straight_on(AHEAD_S), &bank);
-        later.is_some_and(|later| later.clearance_m > now.clearance_m)
+        let least_m = LEAST_SHARE * self.fence_margin_m();
+        let zero = Vector2::zeros();
+        (1..=AHEAD_S)
+            .map(|s| here.straight_on(f64::from(s)))
+            .take_while(|here| {
+                fence.clearance_m(here.latitude_rad, here.longitude_rad, zero) >= least_m
+            })
+            .filter_map(|here| Escape::best(fence, &here, &bank))
+            .fold(f64::NEG_INFINITY, |most_m, escape| {
+                most_m.max(escape.clearance_m)
+            })
     }
 
     /// Whether the course is the one to the circle on which the aircraft returns.
