@@ -86,6 +86,12 @@ pub(super) struct Contingencies {
     before: Mode,
     /// Whether this loss of the position was acted on.
     is_loss_met: bool,
+    /// The indicated airspeed without gusts, m/s.
+    airspeed_mps: Option<f64>,
+    /// Whether the circle at the fence was left, and there was no room for another one yet.
+    waits_for_room: bool,
+    /// How often it was turned away from the fence since it was met.
+    turns: u8,
     /// Whether this low battery was acted on.
     is_battery_met: bool,
     /// Of a fence that is not acted on.
@@ -132,6 +138,9 @@ impl Contingencies {
             mode: Mode::None,
             before: Mode::None,
             is_loss_met: false,
+            airspeed_mps: None,
+            waits_for_room: false,
+            turns: 0,
             is_battery_met: false,
             side: Side::Inside,
             is_engine_met: false,

@@ -21,8 +21,8 @@ const BANKED_WITHIN_RAD: f64 = 0.122;
 /// A target that is more than this above the present airspeed is not reached on the
 /// circle, m/s.
 const FASTER_MPS: f64 = 3.0;
-/// The bank that gusts and airspeed allow is followed with this time constant, s: a third
-/// of a turn. A circle is planned with this share of the largest bank's tangent at least:
+/// The bank that gusts and airspeed allow, and the airspeed, are followed with this time
+/// constant, s: a third of a turn. A circle is planned with this share of the largest bank's tangent at least:
 /// twice the radius.
 const BANK_FOLLOWS_S: f64 = 8.0;
 const LEAST_BANK_SHARE: f64 = 0.4;
@@ -46,6 +46,9 @@ const BEHIND_SHARE: f64 = 1.5;
 const KEPT_SHARE: f64 = 0.75;
 const LEFT_SHARE: f64 = 0.5;
 const LEAST_SHARE: f64 = 0.25;
+
+/// Turned away so often, the aircraft stays on its circle.
+const MOST_TURNS: u8 = 3;
 
 /// On which side of the fence the aircraft is known to be.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -126,6 +129,7 @@ impl Autopilot {
             let has_room = ahead_m >= margin_m
                 || escape.clearance_m >= LEFT_SHARE * margin_m && ahead_m > escape.clearance_m;
             if returns && has_room {
+                self.contingencies.waits_for_room = true;
                 self.contingencies.stage = Stage::Acting;
                 self.return_from_fence(&here);
             }
@@ -142,11 +146,18 @@ impl Autopilot {
             margin_m
         };
         if escape.clearance_m >= needed_m {
+            self.contingencies.waits_for_room = false;
             return;
         }
-        // It is left behind, and so is the room that a turn at once would need.
-        let least_m = (LEAST_SHARE * margin_m).max(escape.clearance_m);
-        if is_met && self.room_ahead_m(&fence, &here) > least_m {
+        // The fence is left behind. Until there is room for a turn at once for the first time,
+        // it is enough that there soon is.
+        let least_m = LEAST_SHARE * margin_m;
+        let has_least = escape.clearance_m >= least_m;
+        let sure_m = escape.clearance_m.max(least_m);
+        if is_met
+            && (has_least || self.contingencies.waits_for_room)
+            && self.room_ahead_m(&fence, &here) > sure_m
+        {
             return;
         }
         // A command does not make the circle another one while the aircraft is on it.
@@ -160,14 +171,20 @@ impl Autopilot {
         }
         let circle = circle.unwrap_or_else(|| KeptCircle::of(&escape, &here));
         self.contingencies.active = Contingency::Fence;
-        self.contingencies.stage = if is_met || action == ContingencyAction::Loiter {
+        let turns = if is_met {
+            self.contingencies.turns.saturating_add(1)
+        } else {
+            1
+        };
+        self.contingencies.turns = turns;
+        self.contingencies.stage = if turns > MOST_TURNS || action == ContingencyAction::Loiter {
             Stage::Staying
         } else {
             Stage::TurningAway
         };
         self.contingencies.kept = Some(circle);
         // Faster, it would not hold it.
-        self.targets.airspeed_mps = self.circle_airspeed_mps(&here);
+        self.targets.airspeed_mps = self.circle_airspeed_mps();
         self.circle(
             ModeInput::Pause,
             Some(circle.centre),
@@ -204,24 +221,28 @@ impl Autopilot {
         self.config.contingency.fence_margin_m + GUSTS_M_PER_G * gusts_g.max(0.0)
     }
 
-    /// Follows what bank is allowed, `dt_s` seconds after the last time.
+    /// Follows what bank is allowed, and the airspeed, `dt_s` seconds after the last time.
     pub(super) fn follow_bank(&mut self, dt_s: f64) {
         let envelope = &self.config.envelope;
         let estimate = self.navigation.estimate();
         let most_rad = self.config.route.bank_rad.min(envelope.max_bank_rad);
         let allowed = tan(envelope.bank_limit_at_rad(estimate)) / tan(most_rad);
         let off = 1.0 - allowed.min(1.0) - self.contingencies.bank_missing;
-        self.contingencies.bank_missing += off * (dt_s / BANK_FOLLOWS_S).min(1.0);
+        let share = (dt_s / BANK_FOLLOWS_S).min(1.0);
+        self.contingencies.bank_missing += off * share;
+        let lasting_mps = self.lasting_airspeed_mps();
+        let off_mps = estimate.airspeed_mps - lasting_mps;
+        self.contingencies.airspeed_mps = Some(lasting_mps + off_mps * share);
     }
 
     /// The indicated airspeed with which a circle is flown, m/s: of the target no more than
     /// is soon reached, but what the circle's bank needs in these gusts.
-    fn circle_airspeed_mps(&self, here: &OverGround) -> f64 {
+    fn circle_airspeed_mps(&self) -> f64 {
         let (route, envelope) = (&self.config.route, &self.config.envelope);
         let most_rad = route.bank_rad.min(envelope.max_bank_rad);
         let gust_load = self.navigation.estimate().gust_load;
         let needed_mps = envelope.floor_in_turn_mps(most_rad, gust_load) + OVER_NEEDED_MPS;
-        let soon_mps = (here.airspeed_mps + FASTER_MPS).max(needed_mps);
+        let soon_mps = (self.lasting_airspeed_mps() + FASTER_MPS).max(needed_mps);
         self.targets.airspeed_mps.min(soon_mps)
     }
 
@@ -240,13 +261,20 @@ impl Autopilot {
         self.contingencies.side = side;
     }
 
-    /// The aircraft with the airspeed that it has or, in a gust, will have again: that of
-    /// its target, but no more than a little above the present one.
+    /// The indicated airspeed without gusts, m/s.
+    fn lasting_airspeed_mps(&self) -> f64 {
+        let now_mps = self.navigation.estimate().airspeed_mps;
+        self.contingencies.airspeed_mps.unwrap_or(now_mps)
+    }
+
+    /// The aircraft with the airspeed that it has without gusts or, if it is soon reached,
+    /// with that of its target.
     pub(super) fn at_its_speed(&self, here: &OverGround) -> OverGround {
         let true_of_indicated = here.true_airspeed_mps / here.airspeed_mps.max(1.0);
-        let target_mps = self.circle_airspeed_mps(here);
+        let lasting_mps = self.lasting_airspeed_mps();
+        let airspeed_mps = self.circle_airspeed_mps().max(lasting_mps);
         OverGround {
-            true_airspeed_mps: here.true_airspeed_mps.max(target_mps * true_of_indicated),
+            true_airspeed_mps: airspeed_mps * true_of_indicated,
             ..*here
         }
     }
