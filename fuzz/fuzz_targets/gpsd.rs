@@ -13,10 +13,11 @@ libfuzzer_sys::fuzz_target!(|input: &[u8]| {
     let (first, second) = bytes.split_at(usize::from(*cut).min(bytes.len()));
     let (mut cut, mut whole) = (Vec::new(), Vec::new());
     let mut lines = Lines::default();
-    lines.push(first, |line| cut.push(line.to_vec()));
-    lines.push(second, |line| cut.push(line.to_vec()));
-    Lines::default().push(bytes, |line| whole.push(line.to_vec()));
-    assert_eq!(cut, whole);
+    let by_pieces = lines
+        .push(first, |line| cut.push(line.to_vec()))
+        .and_then(|()| lines.push(second, |line| cut.push(line.to_vec())));
+    let at_once = Lines::default().push(bytes, |line| whole.push(line.to_vec()));
+    assert_eq!((cut, by_pieces), (whole.clone(), at_once));
     // The last line has no end yet.
     let last = bytes.rsplit(|byte| *byte == b'\n').next().unwrap_or_default();
     for line in whole.iter().map(Vec::as_slice).chain([last]) {

@@ -225,7 +225,8 @@ impl<S: Source, O: FnMut() -> Result<S, DeviceError>> Reader<S, O> {
                     Ended::Asked => return,
                     Ended::Failed(error, delivered) => {
                         self.report(&error);
-                        if delivered {
+                        // What is refused is so the next time, too.
+                        if delivered && !matches!(error, DeviceError::Refused { .. }) {
                             pause = first;
                         }
                     }

@@ -44,6 +44,7 @@
 //! | [`iio`] | the kernel's own drivers of chips |
 //! | `claim` | one entry or program for each device |
 //! | `pace`, `device_clock` | when a sample is due; a device's own clock on the loop's |
+//! | `traffic` | how much may arrive in a second |
 #![forbid(unsafe_code)]
 
 pub mod chip;
@@ -56,6 +57,7 @@ mod pace;
 pub mod probe;
 pub mod serial;
 pub mod servo;
+mod traffic;
 
 pub use claim::DeviceOwner;
 pub use fcc_device::{

@@ -12,6 +12,7 @@ use fcc_device::{NO_FIX, REPEATED_FIX};
 use nix::errno::Errno;
 
 use super::{Lines, Report};
+use crate::traffic::Traffic;
 use crate::{DeviceError, Sample, Source, WAIT};
 
 const CONNECTED_WITHIN: Duration = Duration::from_secs(1);
@@ -19,6 +20,9 @@ const CONNECTED_WITHIN: Duration = Duration::from_secs(1);
 /// that is cut without a word is noticed by this, too.
 const SILENT: Duration = Duration::from_secs(10);
 const PROTOCOL: u32 = 3;
+/// What to do about what cannot be gpsd.
+const NO_GPSD: &str = "this is no gpsd: check `address`, `ss -tlnp` on its machine shows what \
+                       listens at which port";
 /// Of its receivers, and characters of its words, in a message.
 const MOST_LISTED: usize = 4;
 const MOST_QUOTED: usize = 200;
@@ -41,6 +45,7 @@ pub struct Gpsd {
     settings: GpsdSettings,
     clock: Box<dyn Fn() -> Time + Send>,
     lines: Lines,
+    traffic: Traffic,
     heard: Instant,
     /// The time of the last fix.
     fixed: Option<String>,
@@ -82,6 +87,7 @@ impl Gpsd {
             settings: settings.clone(),
             clock: Box::new(clock),
             lines: Lines::default(),
+            traffic: Traffic::begin(),
             heard: Instant::now(),
             fixed: None,
             waits_for: None,
@@ -139,11 +145,28 @@ impl Gpsd {
                 });
             }
         };
-        self.lines.push(bytes, |line| {
+        let mut reports = 0;
+        let pushed = self.lines.push(bytes, |line| {
+            reports += 1;
             heard = Instant::now();
             take(line);
         });
         (self.heard, self.waits_for) = (heard, waits_for);
+        if pushed.is_err() {
+            return Err(refused(format!(
+                "it sends more than {} bytes without the end of a line, the most of gpsd: \
+                 {NO_GPSD}",
+                Lines::LONGEST
+            )));
+        }
+        if self.traffic.is_flood(bytes.len(), reports) {
+            return Err(refused(format!(
+                "it sends more than {} reports or {} bytes in a second, and gpsd does not: \
+                 {NO_GPSD}",
+                Traffic::MOST_MESSAGES,
+                Traffic::MOST_BYTES
+            )));
+        }
         match (newest, trouble) {
             (None, Some(trouble)) => Err(trouble),
             (newest, _) => Ok(newest),

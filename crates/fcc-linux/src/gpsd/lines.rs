@@ -1,48 +1,59 @@
 //! Lines in a stream of bytes.
 
-/// Longer than any line of gpsd: a list of satellites takes 15 kB.
-const LONGEST: usize = 64 * 1024;
+/// More bytes without the end of a line than gpsd writes.
+#[derive(thiserror::Error, Clone, Copy, PartialEq, Eq, Debug)]
+#[error("a line is longer than {} bytes", Lines::LONGEST)]
+pub struct LineTooLong;
 
 /// Finds lines in bytes that arrive in pieces of any size. Never holds more than
-/// one line; of one that is longer than 64 KiB nothing is passed on.
+/// one line.
 ///
 /// ```
 /// use fcc_linux::gpsd::Lines;
 ///
 /// let (mut lines, mut found) = (Lines::default(), Vec::new());
 /// for piece in [b"{}\r".as_slice(), b"\n{\"a\"", b":1}\n"] {
-///     lines.push(piece, |line| found.push(line.to_vec()));
+///     lines.push(piece, |line| found.push(line.to_vec()))?;
 /// }
 /// assert_eq!(found, [b"{}".to_vec(), b"{\"a\":1}".to_vec()]);
+/// # Ok::<(), fcc_linux::gpsd::LineTooLong>(())
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Lines {
     begun: Vec<u8>,
-    is_too_long: bool,
 }
 
 impl Lines {
+    /// The longest line, bytes with its end: gpsd (`gpsd.c`) writes the reports of an
+    /// epoch, each a line, into a buffer of four times `GPS_JSON_RESPONSE_MAX`, which
+    /// is 10,240 (`gps_json.h`).
+    pub const LONGEST: usize = 40_960;
+
     /// Takes bytes, and passes on each line that they complete, without its end;
     /// not empty ones.
-    pub fn push(&mut self, received: &[u8], mut each: impl FnMut(&[u8])) {
+    ///
+    /// # Errors
+    /// When a line is too long: there is no use in what follows.
+    pub fn push(
+        &mut self,
+        received: &[u8],
+        mut each: impl FnMut(&[u8]),
+    ) -> Result<(), LineTooLong> {
         for piece in received.split_inclusive(|byte| *byte == b'\n') {
-            let is_complete = piece.last() == Some(&b'\n');
-            if self.begun.len() + piece.len() > LONGEST {
+            if self.begun.len() + piece.len() > Self::LONGEST {
                 self.begun.clear();
-                self.is_too_long = true;
+                return Err(LineTooLong);
             }
-            if !self.is_too_long {
-                self.begun.extend(piece);
-            }
-            if is_complete {
+            self.begun.extend(piece);
+            if piece.last() == Some(&b'\n') {
                 let line = self.begun.trim_ascii_end();
                 if !line.is_empty() {
                     each(line);
                 }
                 self.begun.clear();
-                self.is_too_long = false;
             }
         }
+        Ok(())
     }
 }
 
@@ -50,16 +61,20 @@ impl Lines {
 mod tests {
     use super::*;
 
+    /// 40 pieces of 1,000 bytes and 960 with the end of the line are 40,960.
     #[test]
-    fn of_a_line_that_is_too_long_nothing_is_passed_on() {
-        let mut lines = Lines::default();
-        let mut found = Vec::new();
-        let long = [b'x'; 1_000];
-        for _ in 0..100 {
-            lines.push(&long, |line| found.push(line.to_vec()));
-            assert!(lines.begun.len() <= LONGEST);
+    fn the_longest_line_is_passed_on_and_a_longer_one_an_error() {
+        for (last, expected) in [(959, Ok(())), (960, Err(LineTooLong))] {
+            let mut lines = Lines::default();
+            let mut found = Vec::new();
+            for _ in 0..40 {
+                lines.push(&[b'x'; 1_000], |_| {}).unwrap();
+            }
+            let mut end = vec![b'x'; last];
+            end.push(b'\n');
+            let pushed = lines.push(&end, |line| found.push(line.len()));
+            assert_eq!(pushed, expected);
+            assert_eq!(found, pushed.map_or(vec![], |()| vec![40_959]));
         }
-        lines.push(b"end\nnext\n", |line| found.push(line.to_vec()));
-        assert_eq!(found, [b"next".to_vec()]);
     }
 }

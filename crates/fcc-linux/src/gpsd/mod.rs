@@ -7,7 +7,7 @@
 //! | module | contents |
 //! |---|---|
 //! | `report` | [`Report`]: what a line says |
-//! | `lines` | [`Lines`]: lines in a stream of bytes |
+//! | `lines` | [`Lines`]: lines in a stream of bytes, of at most [`Lines::LONGEST`] |
 //! | `client` | [`Gpsd`]: the service as a source of fixes |
 
 mod client;
@@ -15,5 +15,5 @@ mod lines;
 mod report;
 
 pub use client::{Gpsd, GpsdSettings};
-pub use lines::Lines;
+pub use lines::{LineTooLong, Lines};
 pub use report::{NotGpsd, Report};

@@ -14,6 +14,7 @@ use rustix::termios::{
 };
 
 use crate::claim::claim_file;
+use crate::traffic::Traffic;
 use crate::{DeviceError, WAIT};
 
 /// A driver that cannot divide its clock down to a rate comes close to it; a
@@ -37,6 +38,7 @@ pub struct LineSettings {
 pub struct SerialLine {
     file: File,
     path: PathBuf,
+    traffic: Traffic,
 }
 
 impl SerialLine {
@@ -56,7 +58,12 @@ impl SerialLine {
             device: path.display().to_string(),
             source,
         })?;
-        let line = Self { file, path };
+        let traffic = Traffic::begin();
+        let line = Self {
+            file,
+            path,
+            traffic,
+        };
         line.set(settings)?;
         Ok(line)
     }
@@ -90,7 +97,8 @@ impl SerialLine {
     /// Waits for bytes at most [`WAIT`]; how many there are, 0 if there are none.
     ///
     /// # Errors
-    /// When the line is gone, such as an unplugged adapter's.
+    /// When the line is gone, such as an unplugged adapter's, and when more than
+    /// 1,000,000 bytes arrive in a second.
     pub fn read(&mut self, into: &mut [u8]) -> Result<usize, DeviceError> {
         let wait = Timespec {
             tv_sec: WAIT.as_secs().cast_signed(),
@@ -105,6 +113,15 @@ impl SerialLine {
         match self.file.read(into) {
             // A line that was hung up is at its end.
             Ok(0) => Err(self.error("reading", Errno::ENODEV.into())),
+            // A device at USB keeps no rate of a line.
+            Ok(length) if self.traffic.is_flood(length, 0) => Err(DeviceError::Refused {
+                device: self.path.display().to_string(),
+                what: format!(
+                    "it sends more than {} bytes in a second, and no receiver does: check which \
+                     device has this path (`ls -l /dev/serial/by-id`)",
+                    Traffic::MOST_BYTES
+                ),
+            }),
             Ok(length) => Ok(length),
             Err(error) if is_nothing(&error) => Ok(0),
             Err(error) => Err(self.error("reading", error)),

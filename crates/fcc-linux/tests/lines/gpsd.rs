@@ -234,6 +234,54 @@ fn what_is_wrong_is_said_with_what_to_do() {
     );
 }
 
+/// gpsd's buffer for the reports of an epoch is four times 10,240 bytes.
+#[test]
+fn what_sends_more_than_gpsd_can_is_none() {
+    let no_gpsd = "this is no gpsd: check `address`, `ss -tlnp` on its machine shows what \
+                   listens at which port";
+    assert_eq!(
+        error_of(&"x".repeat(40_961), None),
+        format!(
+            "it sends more than 40960 bytes without the end of a line, the most of gpsd: {no_gpsd}"
+        )
+    );
+    assert_eq!(
+        error_of(&"{\"class\":\"SKY\"}\n".repeat(1_001), None),
+        format!(
+            "it sends more than 1000 reports or 1000000 bytes in a second, and gpsd does not: \
+             {no_gpsd}"
+        )
+    );
+}
+
+/// It is not read at once again, although it gave a fix: the pauses become longer.
+#[test]
+fn a_server_that_sends_without_end_is_left_alone_for_longer_and_longer() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let of = settings(listener.local_addr().unwrap().port());
+    let pause = Duration::from_millis(10);
+    let thread = DeviceThread::new("gpsd").pauses(pause, Duration::from_secs(20));
+    let status = thread.status();
+    let _sensor = thread.start(move || Gpsd::open(&of, monotonic)).unwrap();
+    let flood = "{\"class\":\"SKY\"}\n".repeat(1_000);
+    let accepted = [(); 5].map(|()| {
+        let (mut stream, _) = listener.accept().unwrap();
+        let accepted = Instant::now();
+        // Until it is closed.
+        let _ = stream.write_all(format!("{}\n", later_tpv()).as_bytes());
+        while stream.write_all(flood.as_bytes()).is_ok() {}
+        accepted
+    });
+    let passed = accepted[4].duration_since(accepted[0]);
+    assert!(passed >= pause * (1 + 2 + 4 + 8), "{passed:?}");
+    let begun = Instant::now();
+    let said = || status.trouble().unwrap_or_default();
+    while !said().contains("this is no gpsd") && begun.elapsed() < AT_MOST {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(said().contains("this is no gpsd"), "{status:?}");
+}
+
 #[test]
 fn a_long_text_of_another_program_is_cut() {
     let says = format!(

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{Read, Write};
 use std::os::fd::OwnedFd;
 use std::path::PathBuf;
+use std::time::Instant;
 
 use fcc_core::framework::Time;
 use fcc_linux::serial::{
@@ -14,6 +15,7 @@ use nix::pty::openpty;
 use nix::unistd::ttyname;
 
 use super::NAV_PVT;
+use crate::watched::AT_MOST;
 
 /// The device's end of a line, and its name; the third keeps it open.
 fn line() -> (File, PathBuf, OwnedFd) {
@@ -100,6 +102,32 @@ fn bytes_that_are_not_understood_are_reported() {
             assert!(piece > 40, "10,000 bytes");
             assert!(error.to_string().contains("check `baud`"), "{error}");
             return;
+        }
+    }
+    panic!("not reported");
+}
+
+/// A device at USB, which keeps no rate: 4,000,000 baud, the most of a configuration, are 400,000
+/// bytes in a second.
+#[test]
+fn a_line_on_which_bytes_never_end_is_closed() {
+    let (mut device, path, _open) = line();
+    let mut line = SerialLine::open(&RcProtocol::Crsf.line(path)).unwrap();
+    let begun = Instant::now();
+    let mut received = 0;
+    while begun.elapsed() < AT_MOST {
+        device.write_all(&[b'x'; 2_000]).unwrap();
+        match line.read(&mut [0; 4_096]) {
+            Ok(length) => received += length,
+            Err(error) => {
+                assert!(received > 400_000, "{received}");
+                let said = error.to_string();
+                assert!(
+                    said.contains("more than 1000000 bytes in a second"),
+                    "{said}"
+                );
+                return;
+            }
         }
     }
     panic!("not reported");
