@@ -8,9 +8,10 @@
 //! the age of the oldest (`values`).
 //!
 //! A datagram with an earlier flight time than the last one was overtaken and
-//! is dropped as a whole. For one without a flight time (RPOS; rows sent one by
-//! one) this cannot be detected: a late one gives a state some milliseconds old
-//! for one tick.
+//! is dropped as a whole; so is one that arrived before (`copies`), also a
+//! position, which has no time. For others without a flight time (rows sent one by
+//! one), and a position that arrives late but once, this cannot be detected: it
+//! gives a state some milliseconds old for one tick.
 
 use core::time::Duration;
 
@@ -20,6 +21,7 @@ use fcc_core::framework::{Reading, Switch, Time};
 use crate::aircraft_state;
 use crate::config::DataRows;
 use crate::consistency::ConsistencyCheck;
+use crate::copies::Copies;
 use crate::counters::count;
 use crate::engage_switch::NONEXISTENT_INDEX;
 use crate::link::{Control, SharedState};
@@ -48,6 +50,9 @@ pub(crate) struct Inbox {
     rows: Option<DataRows>,
     clock: SimulatorClock,
     sending: SendingClock,
+    /// Of datagrams with a flight time, and of positions.
+    timed: Copies,
+    positions: Copies,
     values: Values,
     position: Reading<Position>,
     motion: Motion,
@@ -67,6 +72,8 @@ impl Inbox {
             rows,
             clock: SimulatorClock::new(silent_after),
             sending: SendingClock::default(),
+            timed: Copies::default(),
+            positions: Copies::default(),
             values: Values::default(),
             position: Reading::default(),
             motion: Motion::new(rows),
@@ -109,7 +116,7 @@ impl Inbox {
     ) -> Result<bool, Malformed> {
         match Kind::of(datagram) {
             Some(Kind::Rref) => self.accept_values(datagram, now, link),
-            Some(Kind::Rpos) => self.accept_position(datagram, now),
+            Some(Kind::Rpos) => self.accept_position(datagram, now, link),
             Some(Kind::Data) => match self.rows {
                 Some(rows) => self.accept_rows(rows, datagram, now, link),
                 // Data Output that the user sends for another program.
@@ -144,7 +151,7 @@ impl Inbox {
             found.and_then(|(quantity, value)| quantity.validate(value))
         };
         let time_s = find(Quantity::FlightTime);
-        if self.is_late(now, time_s, link) {
+        if self.is_late(now, datagram, time_s, link) {
             return Ok(false);
         }
         if let (Some(network_s), Some(flight_s)) = (find(Quantity::NetworkTime), time_s) {
@@ -176,7 +183,7 @@ impl Inbox {
     ) -> Result<bool, Malformed> {
         let rows = data::parse(datagram)?;
         let time_s = rows.clone().find_map(|row| rows::flight_time(&row));
-        if self.is_late(now, time_s, link) {
+        if self.is_late(now, datagram, time_s, link) {
             return Ok(false);
         }
         let mut report = SimulatorReport {
@@ -197,8 +204,18 @@ impl Inbox {
         Ok(true)
     }
 
-    fn accept_position(&mut self, datagram: &[u8], now: Time) -> Result<bool, Malformed> {
+    fn accept_position(
+        &mut self,
+        datagram: &[u8],
+        now: Time,
+        link: &SharedState,
+    ) -> Result<bool, Malformed> {
         let reply = rpos::parse(datagram)?;
+        // A replay may show a place again.
+        if self.positions.is_old(datagram, now) && !self.clock.is_replaying() {
+            count(&link.counters.late);
+            return Ok(false);
+        }
         if self.rows.is_none() {
             let position = Position {
                 latitude_rad: reply.latitude_deg.to_radians(),
@@ -211,8 +228,19 @@ impl Inbox {
         Ok(self.rows.is_none())
     }
 
-    fn is_late(&mut self, now: Time, time_s: Option<f64>, link: &SharedState) -> bool {
-        let late = time_s.is_some_and(|time_s| self.clock.is_late(now, time_s));
+    fn is_late(
+        &mut self,
+        now: Time,
+        datagram: &[u8],
+        time_s: Option<f64>,
+        link: &SharedState,
+    ) -> bool {
+        let late = time_s.is_some_and(|time_s| {
+            // In a pause a value may go back to what it was.
+            let is_of_now = self.clock.time_s() == Some(time_s) || self.clock.is_replaying();
+            let is_old = self.timed.is_old(datagram, now) && !is_of_now;
+            is_old || self.clock.is_late(now, time_s)
+        });
         if late {
             count(&link.counters.late);
         }
@@ -374,6 +402,8 @@ impl Inbox {
         let state = self.clock.state(now);
         if state == SimulatorState::Jumped {
             count(&link.counters.jumps);
+            // The flight may begin where it did before.
+            self.positions = Copies::default();
         }
         if self.clock.time_seen() == now
             && let (Some(time_s), Some(state)) = (self.clock.time_s(), state.plant_state())

@@ -26,7 +26,7 @@
 //! | [`protocol`] | messages as bytes; no I/O |
 //! | `quantity`, `rows`, `units` | which dataref or column is what, and in which unit |
 //! | `simulator` | the simulator's clock compared with ours: [`SimulatorState`] |
-//! | `inbox`, `values` | from datagrams to measurements |
+//! | `inbox`, `values`, `copies` | from datagrams to measurements; without those that arrive again |
 //! | `motion`, `specific_force` | attitude, specific force and velocity from the local axes |
 //! | `other_control` | what acts on the controls besides this program |
 //! | `consistency`, `axial_load` | values compared with each other |
@@ -36,7 +36,7 @@
 //! | `engage_switch` | the dataref that engages |
 //! | `controls`, `deflections`, `readbacks`, `confirmation`, `release_monitor`, `release` | writing, confirmation that it takes effect, release |
 //! | `link`, `shared_address`, `counters` | what the sensor, the actuator and readers of the status share |
-//! | `authority`, `status`, `reported` | who has control, and the state of the connection, seen from outside the loop |
+//! | `authority`, `status`, `reported`, `old_datagrams` | who has control, and the state of the connection, seen from outside the loop |
 //! | `silence`, `no_answer` | why X-Plane does not answer |
 //! | `address`, `port`, `discovery` | where it is, sockets, the beacon |
 //!
@@ -64,6 +64,7 @@ mod config;
 mod confirmation;
 mod consistency;
 mod controls;
+mod copies;
 mod counters;
 mod deflections;
 mod discovery;
@@ -74,6 +75,7 @@ mod link;
 mod missing;
 mod motion;
 mod no_answer;
+mod old_datagrams;
 mod open;
 mod other_control;
 mod port;

@@ -7,6 +7,7 @@ use crate::config::XPlaneConfig;
 use crate::link::Control;
 use crate::missing::Missing;
 use crate::no_answer::{InWords, Why};
+use crate::old_datagrams::OldDatagrams;
 use crate::program::Program;
 use crate::silence::Silence;
 use crate::simulator::SimulatorState;
@@ -33,6 +34,7 @@ pub(crate) struct Reported {
     pace: SimulatorState,
     missing: Vec<Missing>,
     control: Control,
+    old: OldDatagrams,
     loads_differ: bool,
     axial_backwards: bool,
     left_overridden: bool,
@@ -58,6 +60,7 @@ impl Default for Reported {
             pace: SimulatorState::Running,
             missing: Vec::new(),
             control: Control::Free,
+            old: OldDatagrams::default(),
             loads_differ: false,
             axial_backwards: false,
             left_overridden: false,
@@ -102,6 +105,7 @@ impl Reported {
                 .or_else(|| self.change_of_control(status))
                 .or_else(|| self.change_of_overrides(status))
                 .or_else(|| self.change_of_pace(status))
+                .or_else(|| self.change_of_old(status))
                 .or_else(|| self.change_of_loads(status))
                 .or_else(|| self.change_of_missing(status)),
         }
@@ -251,6 +255,18 @@ impl Reported {
              override_joystick and override_throttles there"
                 .to_owned()
         })
+    }
+
+    /// That many datagrams are old ones; once.
+    fn change_of_old(&mut self, status: &XPlaneStatus) -> Option<String> {
+        let rate = self.old.step(Instant::now(), status.counts().late)?;
+        let simulator = status.simulator()?;
+        Some(format!(
+            "{rate:.0} datagrams a second from X-Plane at {simulator} are older than others that \
+             arrived before, and are not used: the network delivers them late or twice, as over \
+             cable and Wi-Fi at once, or another program repeats them: connect both machines by \
+             one cable, and end that program"
+        ))
     }
 
     /// That X-Plane's loads contradict each other, and which are used; each

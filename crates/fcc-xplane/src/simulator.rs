@@ -233,6 +233,11 @@ impl SimulatorClock {
         (!self.latest.seen.is_never()).then_some(self.latest.time_s)
     }
 
+    /// Whether it shows a recorded flight.
+    pub(crate) const fn is_replaying(&self) -> bool {
+        self.replaying
+    }
+
     /// When its time was last read.
     pub(crate) const fn time_seen(&self) -> Time {
         self.latest.seen

@@ -39,7 +39,7 @@ pub struct Counts {
     pub malformed: u64,
     /// Datagrams that are no known message, dropped.
     pub unknown: u64,
-    /// Datagrams overtaken by newer ones, dropped.
+    /// Datagrams overtaken by newer ones, or older ones that arrived again, dropped.
     pub late: u64,
     /// Single implausible values, left out.
     pub implausible: u64,

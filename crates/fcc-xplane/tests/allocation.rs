@@ -6,7 +6,7 @@ use fcc_conformance::allocator_calls;
 use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Actuator, Sensor};
 use fcc_xplane::{Output, XPlane};
-use support::{FakeXPlane, Ticks};
+use support::{FakeXPlane, Ticks, position_reply};
 
 #[test]
 fn ten_thousand_ticks_allocate_nothing() {
@@ -20,6 +20,7 @@ fn ten_thousand_ticks_allocate_nothing() {
         let mut measurements = Measurements::default();
         let mut counted = 0;
         let mut faults = 0;
+        let mut old = Vec::new();
         for number in 0..10_000_u32 {
             let surfaces = Surfaces {
                 elevator: (f64::from(number) * 0.01).sin(),
@@ -30,6 +31,14 @@ fn ten_thousand_ticks_allocate_nothing() {
             let silent = (3_000..3_400).contains(&number);
             if !silent {
                 simulator.live(0.025);
+                // Two that arrive again.
+                if number == 100 {
+                    simulator.position[0] += 0.1;
+                    old = vec![simulator.frame(), position_reply(simulator.position)];
+                }
+                for datagram in &old {
+                    simulator.send(datagram);
+                }
                 if number % 100 == 0 {
                     simulator.send(b"RREF,cut");
                     simulator.send(b"what is this");
