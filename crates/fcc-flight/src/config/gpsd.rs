@@ -1,5 +1,7 @@
 //! `[[sensor]]` of the kind `gpsd`.
 
+use std::net::IpAddr;
+
 use fcc_linux::gpsd::GpsdSettings;
 use serde::{Deserialize, Serialize};
 
@@ -43,6 +45,19 @@ impl GpsdSection {
             address: self.address.clone(),
             device: self.device.clone(),
         }
+    }
+
+    /// Whose fixes it reads, the same for each spelling of this machine; other names
+    /// are not looked up.
+    pub(super) fn source(&self) -> String {
+        let (host, port) = self.address.rsplit_once(':').unwrap_or_default();
+        let number = host.trim_matches(['[', ']']).parse::<IpAddr>();
+        let host = match number {
+            Ok(number) if number.is_loopback() => "localhost".to_owned(),
+            _ => host.to_ascii_lowercase(),
+        };
+        let device = self.device.as_deref().unwrap_or("all its receivers");
+        format!("gpsd at {host}:{port}, {device}")
     }
 
     /// Why the address is none, if it is not.

@@ -42,8 +42,8 @@ fn devices(config: &Config) -> Vec<(String, String)> {
             LineSensor::Gnss(section) => Some(section.path.display().to_string()),
             LineSensor::Rc(section) => Some(section.path.display().to_string()),
             LineSensor::Switch(section) => section.line.map(|_| shown(&section.pin())),
-            // It serves many.
-            LineSensor::Gpsd(_) => None,
+            // It serves many, but the same fixes.
+            LineSensor::Gpsd(section) => Some(section.source()),
         });
         // What is missing is said of its own.
         let device = board.or(line).filter(|device| !device.is_empty());
@@ -116,6 +116,18 @@ mod tests {
                 "f:4: sensor[1]: uses /dev/ttyS1, as sensor[0] does: give each its own",
             ),
             (
+                sensor("kind = \"gpsd\"")
+                    + &sensor("kind = \"gpsd\"\naddress = \"127.0.0.1:2947\""),
+                "f:3: sensor[1]: uses gpsd at localhost:2947, all its receivers, as sensor[0] \
+                 does: give each its own",
+            ),
+            (
+                sensor("kind = \"gpsd\"\naddress = \"[::1]:2947\"\ndevice = \"/dev/ttyACM0\"")
+                    + &sensor("kind = \"gpsd\"\ndevice = \"/dev/ttyACM0\""),
+                "f:5: sensor[1]: uses gpsd at localhost:2947, /dev/ttyACM0, as sensor[0] does: \
+                 give each its own",
+            ),
+            (
                 sensor("kind = \"gpio-switch\"\nline = 17")
                     + simulator
                     + &servos("pwm = \"/p\"\nheartbeat = { line = 17 }"),
@@ -132,11 +144,13 @@ mod tests {
     }
 
     #[test]
-    fn devices_of_their_own_and_one_gpsd_are_accepted() {
+    fn devices_of_their_own_and_receivers_of_one_gpsd_are_accepted() {
         let text = "[built-in]\n[[sensor]]\nkind = \"bmp388\"\n\
                     [[sensor]]\nkind = \"bmp388\"\naddress = 0x77\n\
                     [[sensor]]\nkind = \"bmp388\"\ni2c = \"/dev/i2c-2\"\n\
-                    [[sensor]]\nkind = \"gpsd\"\n[[sensor]]\nkind = \"gpsd\"\n";
+                    [[sensor]]\nkind = \"gpsd\"\ndevice = \"/dev/ttyACM0\"\n\
+                    [[sensor]]\nkind = \"gpsd\"\ndevice = \"/dev/ttyACM1\"\n\
+                    [[sensor]]\nkind = \"gpsd\"\naddress = \"board.local:2947\"\n";
         Config::parse(text, "f").unwrap();
     }
 }

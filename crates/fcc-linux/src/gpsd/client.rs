@@ -119,6 +119,13 @@ impl Gpsd {
                     (newest, *fixed) = (fix, time);
                 }
             }
+            Ok(Report::Impossible { device: of }) if wanted.is_none() || of.as_ref() == wanted => {
+                trouble = Some(DeviceError::Malformed {
+                    device: device.clone(),
+                    what: "the position of its fix is impossible, with a latitude beyond 90° or a \
+                           longitude beyond 180°: check what its receiver sends (`gpsmon`)",
+                });
+            }
             Ok(Report::Devices(all)) => {
                 trouble = wanted.filter(|path| !all.contains(path)).map(|path| {
                     refused(format!(

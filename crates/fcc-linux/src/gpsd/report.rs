@@ -16,6 +16,12 @@ pub enum Report {
         /// Its fix; none if it has no three-dimensional one that it measured.
         fix: Option<GnssFix>,
     },
+    /// A measured fix that is nowhere on the earth: a latitude beyond 90°, or a
+    /// longitude beyond 180°.
+    Impossible {
+        /// The receiver's path.
+        device: Option<String>,
+    },
     /// What gpsd says it is (`VERSION`).
     Version {
         /// The protocol's, 3.
@@ -100,6 +106,7 @@ impl Report {
     /// When it is not JSON, has no class, or a member of another type.
     pub fn read(line: &[u8]) -> Result<Self, NotGpsd> {
         Ok(match serde_json::from_slice(line).map_err(|_| NotGpsd)? {
+            Object::Tpv(tpv) if tpv.is_impossible() => Self::Impossible { device: tpv.device },
             Object::Tpv(tpv) => Self::Fix {
                 fix: tpv.fix(),
                 device: tpv.device,
@@ -118,19 +125,27 @@ impl Report {
 }
 
 impl Tpv {
+    fn is_measured(&self) -> bool {
+        self.mode == THREE_DIMENSIONAL && !matches!(self.status, Some(DEAD_RECKONING | SIMULATED))
+    }
+
+    fn is_impossible(&self) -> bool {
+        let beyond = |angle: Option<f64>, most: f64| angle.is_some_and(|angle| angle.abs() > most);
+        self.is_measured() && (beyond(self.lat, 90.0) || beyond(self.lon, 180.0))
+    }
+
+    /// Of a report that is not impossible.
     fn fix(&self) -> Option<GnssFix> {
-        let is_measured = self.mode == THREE_DIMENSIONAL
-            && !matches!(self.status, Some(DEAD_RECKONING | SIMULATED));
-        let within = |angle: Option<f64>, most: f64| angle.filter(|angle| angle.abs() <= most);
         let position = Position {
-            latitude_rad: within(self.lat, 90.0)?.to_radians(),
-            longitude_rad: within(self.lon, 180.0)?.to_radians(),
+            latitude_rad: self.lat?.to_radians(),
+            longitude_rad: self.lon?.to_radians(),
             altitude_m: self.alt_msl.or(self.alt)?,
         };
         let across = self.epx.zip(self.epy).map(|(x, y)| x.max(y));
-        is_measured.then_some(GnssFix {
+        let velocity = self.velocity()?;
+        self.is_measured().then_some(GnssFix {
             position,
-            velocity: self.velocity()?,
+            velocity,
             horizontal_accuracy_m: error(self.eph.or(across)),
             vertical_accuracy_m: error(self.epv),
             speed_accuracy_mps: error(self.eps),

@@ -69,7 +69,6 @@ fn only_a_measured_three_dimensional_fix_is_one() {
         (r#""mode":3"#, r#""mode":1"#, "none"),
         (r#""mode":3"#, r#""mode":3,"status":5"#, "dead reckoning"),
         (r#""mode":3"#, r#""mode":3,"status":8"#, "simulated"),
-        (r#""lat":42.95"#, r#""lat":90.01"#, "beyond the pole"),
         (r#""climb":0.000,"#, "", "no vertical speed"),
         (r#""track":166.5000,"#, "", "52.9 m/s, and no direction"),
     ] {
@@ -77,6 +76,26 @@ fn only_a_measured_three_dimensional_fix_is_one() {
         assert_eq!(fix(&TPV.replacen(change, to, 1)), None, "{why}");
     }
     assert!(fix(&TPV.replace(r#""mode":3"#, r#""mode":3,"status":3"#)).is_some());
+}
+
+#[test]
+fn a_position_that_is_not_on_the_earth_is_said_to_be_impossible() {
+    let said = "the position of its fix is impossible, with a latitude beyond 90°";
+    for (change, to) in [
+        (r#""lat":42.95"#, r#""lat":90.01"#),
+        (r#""lat":42.950000000"#, r#""lat":1e308"#),
+        (r#""lon":-87.88"#, r#""lon":-180.01"#),
+    ] {
+        assert!(TPV.contains(change), "{change}");
+        let line = format!("{}\n", TPV.replacen(change, to, 1));
+        let found = error_of(&line, None);
+        assert!(found.starts_with(said), "{found}");
+        // Another receiver's.
+        let found = error_of(&line, Some("/dev/ttyACM0"));
+        assert!(found.starts_with("reading: "), "{found}");
+    }
+    let searching = TPV.replace(r#""mode":3"#, r#""mode":1"#);
+    assert_eq!(fix(&searching.replace("42.95", "90.01")), None, "no fix");
 }
 
 #[test]
