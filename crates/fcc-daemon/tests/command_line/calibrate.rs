@@ -179,10 +179,21 @@ fn a_damaged_file_and_another_sensors_are_not_used() {
     let good = fs::read_to_string(&path).unwrap();
     fs::write(&path, good.replace("unix_s = 1", "unix_s = 2")).unwrap();
     for refused in [fly(&[]), calibrate(folder.path(), &["airspeed"])] {
-        assert_eq!(refused.status.code(), Some(1), "{}", said(&refused));
+        assert_eq!(refused.status.code(), Some(2), "{}", said(&refused));
         // There is no copy of a first one.
         let expected = "is damaged, or was edited: remove it and calibrate again";
         assert!(said(&refused).contains(expected), "{}", said(&refused));
+    }
+    // A folder in its place cannot be read.
+    fs::remove_file(&path).unwrap();
+    fs::create_dir(&path).unwrap();
+    for refused in [fly(&[]), calibrate(folder.path(), &["airspeed"])] {
+        assert_eq!(refused.status.code(), Some(2), "{}", said(&refused));
+        assert!(
+            said(&refused).contains("cannot be read"),
+            "{}",
+            said(&refused)
+        );
     }
     with_config(folder.path(), "[calibration]\nenabled = false\n");
     let without = fly(&[]);

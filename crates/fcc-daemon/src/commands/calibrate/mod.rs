@@ -3,6 +3,7 @@
 
 mod picture;
 
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
@@ -11,8 +12,8 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use fcc_core::flight::calibration::{GuidedCalibration, Next};
 use fcc_core::framework::{Tick, Time};
 use fcc_flight::calibrate::{
-    CalibrationKind, CalibrationSession, Entry, Extent, LockedCalibrationFile, SessionError, apply,
-    beforehand, not_calibrated, words,
+    CalibrationFileError, CalibrationKind, CalibrationSession, Entry, Extent,
+    LockedCalibrationFile, SessionError, apply, beforehand, not_calibrated, words,
 };
 use fcc_flight::config::Config;
 use fcc_linux::monotonic;
@@ -30,8 +31,7 @@ const REDRAW_EVERY: Duration = Duration::from_millis(100);
 
 /// Puts what was found over the configuration of a flight, and says so.
 pub(super) fn apply_calibration(config: &mut Config) -> Result<(), Failure> {
-    let applied = apply(config, unix_s())
-        .map_err(|(file, error)| Failure::new(format_args!("{}: {error}", file.display())))?;
+    let applied = apply(config, unix_s()).map_err(|(file, error)| wrong_file(&file, &error))?;
     say(&applied.remarks);
     say(not_calibrated(config).as_slice());
     Ok(())
@@ -58,7 +58,6 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<Exit, Failure> {
     let (config, _) = Config::load_with_text(&args.config)?;
     let extent = extent(args)?;
     let path = config.calibration_file();
-    let wrong = |error| Failure::new(format_args!("{}: {error}", path.display()));
     let place = args.sensor.clone();
     let session = CalibrationSession::open(&config, args.kind, extent, place, args.fault, unix_s());
     let mut session = session.map_err(failure)?;
@@ -71,7 +70,8 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<Exit, Failure> {
     }
     // Before the first step: what cannot be stored need not be measured.
     let file = (!args.dry_run).then(|| LockedCalibrationFile::open(path.clone()));
-    let file = file.transpose().map_err(wrong)?;
+    let file = file.transpose();
+    let file = file.map_err(|error| wrong_file(&path, &error))?;
     output::message(beforehand(args.kind, extent));
     guide(args, &config, &mut session)?;
     let found = session.finish().map_err(|refusal| {
@@ -198,13 +198,21 @@ fn guide(
 
 fn failure(error: SessionError) -> Failure {
     let exit = match error {
-        SessionError::Silent(_) | SessionError::NoAccelerometer | SessionError::File { .. } => {
-            Exit::Failure
-        }
+        SessionError::File { path, error } => return wrong_file(&path, &error),
+        SessionError::Silent(_) | SessionError::NoAccelerometer => Exit::Failure,
         SessionError::Order { .. } => Exit::CalibrationRefused,
         _ => Exit::Usage,
     };
     Failure::of(exit, error)
+}
+
+/// A file that is none of a calibration is wrong as a configuration is.
+fn wrong_file(path: &Path, error: &CalibrationFileError) -> Failure {
+    let exit = match error {
+        CalibrationFileError::Unwritable(_) | CalibrationFileError::Locked => Exit::Failure,
+        _ => Exit::Usage,
+    };
+    Failure::of(exit, format_args!("{}: {error}", path.display()))
 }
 
 fn stopped_by_signals() -> Result<Arc<AtomicBool>, Failure> {
