@@ -118,13 +118,13 @@ impl Monitor {
     }
 
     /// Seconds since the loop's first message; an event before the first tick
-    /// is at 0.
+    /// is at 0, and so is a tick that was due before the event that told of it.
     fn seconds(&mut self, nanos: i64) -> f64 {
         if nanos == i64::MIN {
             return 0.0;
         }
         let start = *self.start_ns.get_or_insert(nanos);
-        (nanos - start) as f64 * 1e-9
+        (nanos - start).max(0) as f64 * 1e-9
     }
 }
 
@@ -133,6 +133,17 @@ mod tests {
     use fcc_core::framework::{Record, Tick, Time};
 
     use super::*;
+
+    /// -0.1 ms would be written as "-0.00 s".
+    #[test]
+    fn no_time_of_a_flight_is_negative() {
+        let mut monitor = Monitor::default();
+        let times = [1_000_000, 900_000, 26_000_000].map(|nanos| monitor.seconds(nanos));
+        assert_eq!(
+            times.map(|time_s| format!("{time_s:.3}")),
+            ["0.000", "0.000", "0.025"]
+        );
+    }
 
     #[test]
     fn a_flight_is_over_its_length_after_the_first_engagement() {
