@@ -76,7 +76,10 @@ pub fn connected(root: &Path, request: ProbeRequest) -> Vec<Connected> {
         let mut described = described(found);
         match values {
             Some(Ok(values)) => described.values = Some(shown(&values)),
-            Some(Err(error)) => described.remark = format!("{}; {error}", described.remark),
+            Some(Err(error)) => {
+                described.remark = format!("{}; {error}", described.remark);
+                described.entry = None;
+            }
             None => {}
         }
         described

@@ -57,6 +57,24 @@ fn what_is_connected_is_listed_with_its_configuration() {
     assert_eq!(found[0]["values"]["rates_radps"], serde_json::Value::Null);
 }
 
+/// A configuration with it would not fly.
+#[test]
+fn what_cannot_be_read_is_listed_with_the_reason_and_not_proposed() {
+    let root = root();
+    let pressure = "sys/bus/iio/devices/iio:device0/in_pressure_input";
+    let pressure = root.path().join(pressure);
+    fs::remove_file(&pressure).unwrap();
+    nix::unistd::mkfifo(&pressure, nix::sys::stat::Mode::S_IRWXU).unwrap();
+    let words = ["probe", "--root", root.path().to_str().unwrap()];
+    let listed = fccd(root.path(), &words).output().unwrap();
+    let text = String::from_utf8(listed.stdout).unwrap();
+    assert!(
+        text.contains("in_pressure_input: reading: it is no regular file"),
+        "{text}"
+    );
+    assert!(!text.contains("[[sensor]]"), "{text}");
+}
+
 #[test]
 fn a_machine_without_sensors_is_told_what_to_do() {
     let root = TempDir::new().unwrap();

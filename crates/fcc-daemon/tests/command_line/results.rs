@@ -24,6 +24,11 @@ fn a_flight_that_is_not_engaged_says_why_at_its_end() {
         ending,
         "not engaged: airspeed is below the floor: fly faster than envelope.min_airspeed_kt"
     );
+    // No command ended its pattern.
+    assert_eq!(
+        found["not_scored"],
+        "the flight was never engaged, and the timed pattern begins with that"
+    );
 }
 
 /// A flight that touches the ground ends there, with a code of its own; its

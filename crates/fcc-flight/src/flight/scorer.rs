@@ -15,6 +15,7 @@ use super::truth_recorder::TruthReceiver;
 pub(super) struct Scorer {
     pattern: Option<PatternScorer>,
     truth: Option<TruthReceiver>,
+    was_engaged: bool,
 }
 
 impl Scorer {
@@ -23,12 +24,17 @@ impl Scorer {
             GuidanceConfig::TimedPattern(pattern) => Some(PatternScorer::new(*pattern)),
             GuidanceConfig::Hold | GuidanceConfig::Plan => None,
         };
-        Self { pattern, truth }
+        Self {
+            pattern,
+            truth,
+            was_engaged: false,
+        }
     }
 }
 
 impl Observer<Autopilot> for Scorer {
     fn record(&mut self, record: &FlightRecord, at: &FlightTime) {
+        self.was_engaged |= at.engaged_at_s.is_some();
         // A tick without its truth has no sample: measurements and truth are not
         // mixed in one score.
         let sample = match &mut self.truth {
@@ -53,6 +59,9 @@ impl Observer<Autopilot> for Scorer {
         };
         outcome.not_scored = match &failed {
             Some(error) => Some(error.to_string()),
+            None if !self.was_engaged => Some(
+                "the flight was never engaged, and the timed pattern begins with that".to_owned(),
+            ),
             None if score.legs.is_empty() => Some(
                 "no leg of the timed pattern was flown to its end; commanded set points end it"
                     .to_owned(),

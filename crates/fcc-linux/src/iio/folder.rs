@@ -35,16 +35,20 @@ impl Folder {
     /// Reads a file, without the end of its line.
     ///
     /// # Errors
-    /// When it cannot be read, or is no text.
+    /// When it cannot be read, is no regular file, or no text.
     pub fn text(&self, name: &str) -> io::Result<String> {
         let mut text = String::new();
         // A named pipe in the file's place is not waited for.
-        OpenOptions::new()
+        let file = OpenOptions::new()
             .read(true)
             .custom_flags(OFlag::O_NONBLOCK.bits())
-            .open(self.0.join(name))?
-            .take(MOST_BYTES)
-            .read_to_string(&mut text)?;
+            .open(self.0.join(name))?;
+        if !file.metadata()?.is_file() {
+            return Err(io::Error::other(
+                "it is no regular file, as those of the kernel are: check the folder (`ls -l`)",
+            ));
+        }
+        file.take(MOST_BYTES).read_to_string(&mut text)?;
         Ok(text.trim_end().to_owned())
     }
 
