@@ -3,7 +3,11 @@
 
 mod support;
 
+use std::time::{Duration, Instant};
+
 use fcc_core::flight::PlantState;
+use fcc_core::framework::ControlAuthority;
+use fcc_xplane::XPlaneAuthority;
 use support::bench::Bench;
 use support::{FLIGHT_TIME, position_reply};
 
@@ -82,6 +86,44 @@ fn what_arrives_again_moves_neither_the_clock_nor_the_aircraft() {
     let counts = network.bench.status.counts();
     assert!(network.repeated > 1_900, "{}", network.repeated);
     assert_eq!((counts.late, counts.jumps), (network.repeated, 0));
+}
+
+/// In real time, since it is said by the clock: after five seconds with two or more in each.
+#[test]
+fn what_arrives_again_is_said_once_with_how_much_it_is() {
+    let mut network = Network::new();
+    let bench = &network.bench;
+    let authority = XPlaneAuthority::of(bench.status.clone(), &bench.simulator.config());
+    let mut said = Vec::new();
+    let begun = Instant::now();
+    let mut seconds_after = 0;
+    while begun.elapsed() < Duration::from_secs(60) && seconds_after < 2 {
+        std::thread::sleep(Duration::from_millis(25));
+        network.tick();
+        authority.report(&mut |text| {
+            let text = text.to_string();
+            said.extend(
+                text.contains("are older than")
+                    .then_some((begun.elapsed(), text)),
+            );
+        });
+        let after = said
+            .first()
+            .map(|(at, _)| begun.elapsed().saturating_sub(*at));
+        seconds_after = after.map_or(0, |after| after.as_secs());
+    }
+    let [(at, text)] = &said[..] else {
+        panic!("once: {said:?}")
+    };
+    assert!(*at >= Duration::from_secs(5), "{at:?}");
+    assert!(
+        text.contains("datagrams a second from X-Plane at 127.0.0.1:"),
+        "{text}"
+    );
+    assert!(
+        text.contains("connect both machines by one cable"),
+        "{text}"
+    );
 }
 
 /// Two new datagrams, of two ticks: with 20 frames a second 100 ms, four ticks.
