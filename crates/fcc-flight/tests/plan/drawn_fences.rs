@@ -253,7 +253,10 @@ fn it_returns_from_a_fence_in_strong_wind() {
                     (seed, nearest_m, home_s)
                 })
                 .collect();
-            let away: Vec<_> = flown.iter().filter(|row| row.2.is_none() || row.1 < 0.0).collect();
+            let away: Vec<_> = flown
+                .iter()
+                .filter(|row| row.2.is_none() || row.1 < 0.0)
+                .collect();
             let nearest_m = flown.iter().map(|row| row.1).fold(f64::INFINITY, f64::min);
             let slowest_s = flown.iter().filter_map(|row| row.2).fold(0.0, f64::max);
             println!(
