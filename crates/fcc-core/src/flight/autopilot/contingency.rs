@@ -72,8 +72,17 @@ enum Stage {
     Acting,
     /// On the circle that stays inside of the fence, until it can return.
     TurningAway,
+    /// It has left that, and there was no room for another one yet.
+    Leaving,
     /// On it for good.
     Staying,
+}
+
+impl Stage {
+    /// Whether the aircraft is on the circle that it has turned onto.
+    const fn is_on_circle(self) -> bool {
+        matches!(self, Self::TurningAway | Self::Staying)
+    }
 }
 
 /// The contingencies of a flight.
@@ -88,8 +97,6 @@ pub(super) struct Contingencies {
     is_loss_met: bool,
     /// The indicated airspeed without gusts, m/s.
     airspeed_mps: Option<f64>,
-    /// Whether the circle at the fence was left, and there was no room for another one yet.
-    waits_for_room: bool,
     /// How often it was turned away from the fence since it was met.
     turns: u8,
     /// Whether this low battery was acted on.
@@ -139,7 +146,6 @@ impl Contingencies {
             before: Mode::None,
             is_loss_met: false,
             airspeed_mps: None,
-            waits_for_room: false,
             turns: 0,
             is_battery_met: false,
             side: Side::Inside,

@@ -3,7 +3,7 @@
 use core::time::Duration;
 
 use super::super::{Autopilot, flags};
-use super::{Contingency, Stage};
+use super::Contingency;
 use crate::flight::Battery;
 use crate::framework::{Flags, Time};
 
@@ -60,7 +60,7 @@ impl Autopilot {
             contingencies.is_battery_met = false;
         }
         let turns_away =
-            is_at_fence && (contingencies.stage != Stage::Acting || contingencies.kept.is_some());
+            is_at_fence && (contingencies.stage.is_on_circle() || contingencies.kept.is_some());
         if self.battery.is_on && !contingencies.is_battery_met && !turns_away {
             let action = self.config.contingency.battery;
             self.contingencies.is_battery_met = self.meet(Contingency::BatteryLow, action);

@@ -129,8 +129,7 @@ impl Autopilot {
             let has_room = ahead_m >= margin_m
                 || escape.clearance_m >= LEFT_SHARE * margin_m && ahead_m > escape.clearance_m;
             if returns && has_room {
-                self.contingencies.waits_for_room = true;
-                self.contingencies.stage = Stage::Acting;
+                self.contingencies.stage = Stage::Leaving;
                 self.return_from_fence(&here);
             }
             return;
@@ -146,7 +145,9 @@ impl Autopilot {
             margin_m
         };
         if escape.clearance_m >= needed_m {
-            self.contingencies.waits_for_room = false;
+            if stage == Stage::Leaving {
+                self.contingencies.stage = Stage::Acting;
+            }
             return;
         }
         // The fence is left behind. Until there is room for a turn at once for the first time,
@@ -155,7 +156,7 @@ impl Autopilot {
         let has_least = escape.clearance_m >= least_m;
         let sure_m = escape.clearance_m.max(least_m);
         if is_met
-            && (has_least || self.contingencies.waits_for_room)
+            && (has_least || stage == Stage::Leaving)
             && self.room_ahead_m(&fence, &here) > sure_m
         {
             return;
@@ -198,7 +199,7 @@ impl Autopilot {
     /// turns for before there is room for another turn would take some of what is left.
     pub(super) fn may_leave_fence(&self) -> bool {
         let turns = self.contingencies.active == Contingency::Fence
-            && self.contingencies.stage != Stage::Acting;
+            && self.contingencies.stage.is_on_circle();
         let Some(here) = self.ground.here().filter(|_| turns) else {
             return true;
         };

@@ -206,7 +206,7 @@ impl Autopilot {
             }
             return;
         }
-        if is_met && stage != Stage::Acting {
+        if is_met && stage.is_on_circle() {
             return;
         }
         let first_s = with_bank.first_s.min(straight.first_s);
@@ -218,7 +218,7 @@ impl Autopilot {
     pub(super) fn may_leave_terrain(&self) -> bool {
         let contingencies = &self.contingencies;
         contingencies.active != Contingency::Terrain
-            || contingencies.stage == Stage::Acting
+            || !contingencies.stage.is_on_circle()
             || !contingencies.terrain.is_in_the_way
     }
 
