@@ -78,8 +78,11 @@ pub struct VerticalChannel {
     /// Consecutive samples that are this far above or below, see [`STEPPED_M`].
     beyond: i8,
     has_stepped: bool,
-    /// By how much those of the second before them differed, m.
-    error_m: f64,
+    /// By how much those of the second before them differed, m; none after a gap, in which
+    /// a climb may not have been known.
+    before_m: Option<f64>,
+    /// For how long none has jumped, s.
+    quiet_s: f64,
 }
 
 /// An altimeter that differs by more than this, m, in so many consecutive samples,
@@ -97,6 +100,8 @@ const STEPPED_SDS: f64 = 4.0;
 const JUMPED_M: f64 = 2.5;
 const JUMPED_SDS: f64 = 3.0;
 const BEFORE_S: f64 = 1.0;
+/// One that jumps again within this time, s, is slow or noisy, and its jumps are climbs.
+const QUIET_S: f64 = 10.0;
 
 /// The largest bias of an intact accelerometer, m/s².
 const MAX_BIAS_MPS2: f64 = 2.0;
@@ -123,7 +128,8 @@ impl VerticalChannel {
             felt_mps2: 0.0,
             beyond: 0,
             has_stepped: false,
-            error_m: 0.0,
+            before_m: None,
+            quiet_s: QUIET_S,
         }
     }
 
@@ -182,7 +188,7 @@ impl VerticalChannel {
                 if !self.may_have_stepped(error_m, &gains, since_s) {
                     self.correct(error_m, &gains);
                 } else if self.beyond.abs() >= STEPPED_SAMPLES {
-                    (self.beyond, self.error_m) = (0, 0.0);
+                    (self.beyond, self.before_m) = (0, None);
                     self.has_stepped = true;
                     self.state.altitude_m = measured.value;
                     if let Some(mark) = &mut self.mark {
@@ -196,21 +202,28 @@ impl VerticalChannel {
 
     /// Whether the altimeter differs as after a step; counts such samples.
     fn may_have_stepped(&mut self, error_m: f64, gains: &Gains, since_s: f64) -> bool {
-        let jump_m = error_m - self.error_m;
-        let side = if jump_m > 0.0 { 1 } else { -1 };
+        let before_m = self.before_m.unwrap_or(error_m);
+        let jump_m = error_m - before_m;
         let is_beyond = |off_m: f64, most_m: f64, sds: f64| {
             off_m * off_m > most_m * most_m + sds * sds * gains.variance_m2()
         };
         let is_off = is_beyond(error_m, STEPPED_M, STEPPED_SDS);
-        self.beyond = if !is_off && !is_beyond(jump_m, JUMPED_M, JUMPED_SDS) {
-            self.error_m += jump_m * (since_s / BEFORE_S).min(1.0);
-            0
-        } else if self.beyond.signum() == side {
+        let jumps = is_beyond(jump_m, JUMPED_M, JUMPED_SDS);
+        let has_jumped = jumps && (self.quiet_s >= QUIET_S || self.beyond != 0);
+        self.quiet_s = if jumps { 0.0 } else { self.quiet_s + since_s };
+        if !is_off && !has_jumped {
+            self.before_m = Some(before_m + jump_m * (since_s / BEFORE_S).min(1.0));
+            self.beyond = 0;
+            return false;
+        }
+        let off_m = if has_jumped { jump_m } else { error_m };
+        let side = if off_m > 0.0 { 1 } else { -1 };
+        self.beyond = if self.beyond.signum() == side {
             self.beyond + side
         } else {
             side
         };
-        self.beyond != 0
+        true
     }
 
     /// The same without an altimeter: climb rate or altitude follow another one,
@@ -273,12 +286,14 @@ impl VerticalChannel {
     /// Replaces the state and the bias.
     pub(super) const fn adopt(&mut self, state: VerticalState, bias_mps2: f64) {
         (self.state, self.bias_mps2) = (state, bias_mps2);
+        self.before_m = None;
     }
 
     /// Adopts an altitude, m; climb rate and bias are kept.
     pub(super) const fn adopt_altitude(&mut self, altitude_m: f64) {
         self.state.altitude_m = altitude_m;
         self.covariance.restart();
+        self.before_m = None;
     }
 
     pub(super) fn postpone(&mut self, by: Duration, latest: Time) {
@@ -287,6 +302,7 @@ impl VerticalChannel {
 
     /// Predicts over a time in which nothing was measured.
     pub(super) fn coast(&mut self, passed_s: f64) {
+        self.before_m = None;
         self.state.altitude_m += self.state.climb_rate_mps * passed_s;
         self.covariance.coast(passed_s);
         if let Some(mark) = &mut self.mark {
@@ -317,6 +333,7 @@ impl VerticalChannel {
     /// Adopts an altitude. A mark is kept unchanged: later measurements carry
     /// no more information about it.
     fn begin(&mut self, altitude_m: f64) {
+        self.before_m = None;
         self.state = VerticalState {
             altitude_m,
             climb_rate_mps: 0.0,

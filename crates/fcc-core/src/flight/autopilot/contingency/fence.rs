@@ -126,7 +126,9 @@ impl Autopilot {
             let ahead_m = self.room_ahead_m(&fence, &here);
             // The circle of this moment may need more room than the one that was turned
             // onto: in strong wind, or a faster one.
-            let has_room = ahead_m >= margin_m
+            let kept = self.contingencies.kept;
+            let is_on_it = kept.is_some_and(|kept| kept.is_flown(&here, bank.now_rad));
+            let has_room = is_on_it && ahead_m >= margin_m
                 || escape.clearance_m >= LEFT_SHARE * margin_m && ahead_m > escape.clearance_m;
             if returns && has_room {
                 self.contingencies.stage = Stage::Leaving;
@@ -151,14 +153,9 @@ impl Autopilot {
             return;
         }
         // The fence is left behind. Until there is room for a turn at once for the first time,
-        // it is enough that there soon is.
-        let least_m = LEAST_SHARE * margin_m;
-        let has_least = escape.clearance_m >= least_m;
-        let sure_m = escape.clearance_m.max(least_m);
-        if is_met
-            && (has_least || stage == Stage::Leaving)
-            && self.room_ahead_m(&fence, &here) > sure_m
-        {
+        // one that begins later stays nearer to it, or inside.
+        let waits = escape.clearance_m >= LEAST_SHARE * margin_m || stage == Stage::Leaving;
+        if is_met && waits && self.room_ahead_m(&fence, &here) > escape.clearance_m {
             return;
         }
         // A command does not make the circle another one while the aircraft is on it.
