@@ -144,28 +144,3 @@ fn shift_by(shift_m: f64) {
         );
     }
 }
-
-/// One that gives a value in a second, and holds it, climbs in steps of 5 m: they are the
-/// climb, 5 m/s.
-#[test]
-fn the_steps_of_a_slow_altimeter_are_its_climb() {
-    let mut channel = VerticalChannel::new(0.7);
-    let mut climbs_mps = 0.0;
-    for sample in 1..=2_400_u32 {
-        let now = Time::from_nanos(i64::from(sample) * 25_000_000);
-        let force = SpecificForce {
-            z_mps2: -GRAVITY_MPS2,
-            ..SpecificForce::default()
-        };
-        let measurements = Measurements {
-            specific_force: Reading::new(force, now),
-            altitude_m: Reading::new(900.0 + f64::from(5 * (sample / 40)), now),
-            ..Measurements::default()
-        };
-        let state = channel.step(now, &measurements, &Orientation::default(), DT_S);
-        if sample > 1_200 {
-            climbs_mps += state.climb_rate_mps / 1_200.0;
-        }
-    }
-    assert!((climbs_mps - 5.0).abs() < 0.5, "{climbs_mps}");
-}
