@@ -344,7 +344,8 @@ impl Autopilot {
     pub(super) fn enter(&mut self, mode: &OverGroundMode) {
         self.leave();
         if self.guidance.over_ground().is_none() {
-            self.bank.reset(self.setpoints.roll_rad);
+            // The others command a bank at once: the aircraft has not reached it yet.
+            self.bank.reset(self.navigation.estimate().roll_rad);
         }
         self.reference = AltitudeReference::SeaLevel;
         self.capture = None;

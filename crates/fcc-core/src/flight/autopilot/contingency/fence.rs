@@ -287,12 +287,16 @@ impl Autopilot {
         let (route, envelope) = (&self.config.route, &self.config.envelope);
         let most_rad = route.bank_rad.min(envelope.max_bank_rad);
         let estimate = self.navigation.estimate();
+        let commanded_rad = match self.guidance.over_ground() {
+            Some(_) => self.setpoints.roll_rad,
+            None => estimate.roll_rad,
+        };
         let allowed = 1.0 - self.contingencies.bank_missing;
         let share = allowed.clamp(LEAST_BANK_SHARE, PLANNED_SHARE);
         Bank {
             // It rolls on for the lag.
             now_rad: estimate.roll_rad + 2.0 * ROLL_LAG_S * estimate.body_rates.roll_radps,
-            commanded_rad: self.setpoints.roll_rad,
+            commanded_rad,
             turn_rad: atan(share * tan(most_rad)),
             rate_radps: route.bank_rate_radps,
             lag_s: ROLL_LAG_S,
