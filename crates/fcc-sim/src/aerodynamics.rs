@@ -107,7 +107,7 @@ pub fn loads(
         flow.sin_cos_alpha,
     );
     // Flow along the wing presses nothing: of separated flow only the part across it counts
-    // (the independence principle, Schlichting 1979, section XI).
+    // (the independence principle, Schlichting 1979, chapter XI).
     let across = flow.symmetric_mps / speed;
     let pressed = 1.0 - whole.separated * (1.0 - across * across);
     let drag = pressed * whole.drag;

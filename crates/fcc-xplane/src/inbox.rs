@@ -24,12 +24,13 @@ use crate::consistency::ConsistencyCheck;
 use crate::copies::Copies;
 use crate::counters::count;
 use crate::engage_switch::NONEXISTENT_INDEX;
-use crate::link::{Control, SharedState};
+use crate::link::SharedState;
 use crate::motion::Motion;
 use crate::other_control::OtherControlWatch;
 use crate::pressure_altitude::PressureAltitude;
 use crate::protocol::{Kind, Malformed, data, rpos, rref};
 use crate::quantity::Quantity;
+use crate::reload_watch::ReloadWatch;
 use crate::rows;
 use crate::sending_clock::SendingClock;
 use crate::simulator::{SimulatorClock, SimulatorReport, SimulatorState};
@@ -39,9 +40,6 @@ use crate::values::{Group, Values};
 /// between it stays as it was, at first off. So noise on it does not switch.
 const SWITCH_ON: f64 = 0.75;
 const SWITCH_OFF: f64 = 0.25;
-
-/// How long a second reading of both overrides is waited for: some frames.
-const RELOADS_WITHIN: Duration = Duration::from_millis(250);
 
 /// Converts datagrams to measurements.
 #[derive(Clone, Debug)]
@@ -60,10 +58,7 @@ pub(crate) struct Inbox {
     altitude: PressureAltitude,
     other_control: OtherControlWatch,
     consistency: ConsistencyCheck,
-    /// Whether both overrides were seen set since control was taken.
-    overridden: bool,
-    /// When both were first read as cleared after that; never while they are not.
-    cleared: Time,
+    reload: ReloadWatch,
 }
 
 impl Inbox {
@@ -81,8 +76,7 @@ impl Inbox {
             altitude: PressureAltitude::new(),
             other_control: OtherControlWatch::default(),
             consistency: ConsistencyCheck::default(),
-            overridden: false,
-            cleared: Time::NEVER,
+            reload: ReloadWatch::default(),
         }
     }
 
@@ -363,33 +357,6 @@ impl Inbox {
         }
     }
 
-    /// Notices that both overrides, which were set, are cleared although control
-    /// is held, in two ticks: X-Plane clears them when it loads an aircraft. One of
-    /// them alone may be another program's doing; it is set again.
-    fn notice_reload(&mut self, now: Time, link: &SharedState) {
-        let overrides = [Quantity::OverrideJoystick, Quantity::OverrideThrottles];
-        let shown = overrides.map(|of| link.read_back.shown(of));
-        let [first, second] = shown.map(|shown| shown.map(|(value, _)| value >= 0.5));
-        let is_cleared = first == Some(false) && second == Some(false);
-        if link.control() != Control::Held {
-            self.overridden = false;
-        } else if first == Some(true) && second == Some(true) {
-            self.overridden = true;
-        }
-        if !is_cleared || !self.overridden {
-            self.cleared = Time::NEVER;
-        } else if self.cleared.is_never() {
-            self.cleared = now;
-        } else if shown.iter().flatten().all(|(_, at)| *at > self.cleared) {
-            self.overridden = false;
-            self.clock.reload();
-        }
-        // They must not be set again before the second reading.
-        link.set_maybe_reloaded(
-            !self.cleared.is_never() && now.since(self.cleared) < RELOADS_WITHIN,
-        );
-    }
-
     /// The simulator's clock and state: written in every tick in which it sent its
     /// time. If that value alone is missing, the reading grows old.
     fn publish_plant(
@@ -398,7 +365,9 @@ impl Inbox {
         into: &mut Measurements,
         link: &SharedState,
     ) -> SimulatorState {
-        self.notice_reload(now, link);
+        if self.reload.step(now, link) {
+            self.clock.reload();
+        }
         let state = self.clock.state(now);
         if state == SimulatorState::Jumped {
             count(&link.counters.jumps);

@@ -88,6 +88,7 @@ mod quantity;
 mod readbacks;
 mod release;
 mod release_monitor;
+mod reload_watch;
 mod reply_port;
 mod reported;
 mod rows;

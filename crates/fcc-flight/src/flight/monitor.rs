@@ -118,7 +118,7 @@ impl Monitor {
     }
 
     /// Seconds since the loop's first message; an event before the first tick
-    /// is at 0, and so is a tick that was due before the event that told of it.
+    /// is at 0, and so is a tick that was due before that event.
     fn seconds(&mut self, nanos: i64) -> f64 {
         if nanos == i64::MIN {
             return 0.0;

@@ -85,6 +85,13 @@ fn plane() -> LocalPlane {
     )
 }
 
+/// An engaged flight with the keys of `[built-in]`.
+fn engaged(plan: &str, keys: &str) -> Flight {
+    let mut flight = Flight::new(plan, &format!("[built-in]\n{keys}"));
+    flight.fly_until(60.0, |flight| flight.record.state.state() == State::Engaged);
+    flight
+}
+
 /// How near a flight of ten minutes came to its fence, m.
 fn fly(seed: u64, wind_kt: f64, insists: bool) -> f64 {
     let mut drawn = Drawn(seed);
@@ -93,9 +100,8 @@ fn fly(seed: u64, wind_kt: f64, insists: bool) -> f64 {
     let wind_from_deg = drawn.between(0.0, 359.0).round();
     let course_deg = drawn.between(0.0, 360.0);
     let every_ticks = (40.0 * drawn.between(0.2, 5.0)) as usize;
-    let keys = format!("[built-in]\nwind_from_deg = {wind_from_deg}\nwind_kt = {wind_kt}\n");
-    let mut flight = Flight::new(&fenced(&drawing.places, 0.0), &keys);
-    flight.fly_until(60.0, |flight| flight.record.state.state() == State::Engaged);
+    let keys = format!("wind_from_deg = {wind_from_deg}\nwind_kt = {wind_kt}\n");
+    let mut flight = engaged(&fenced(&drawing.places, 0.0), &keys);
     let command = if insists {
         AutopilotCommand::Heading(course_deg.to_radians())
     } else {
@@ -162,11 +168,10 @@ fn fly_in_gusts(seed: u64, wind_kt: f64, down: bool) -> f64 {
         drawn_deg
     };
     let keys = format!(
-        "[built-in]\nwind_from_deg = {wind_from_deg}\nwind_kt = {wind_kt}\ngusts = \
+        "wind_from_deg = {wind_from_deg}\nwind_kt = {wind_kt}\ngusts = \
          \"severe\"\nseed = {seed}\n"
     );
-    let mut flight = Flight::new(&fenced(&[], 4_000.0), &keys);
-    flight.fly_until(60.0, |flight| flight.record.state.state() == State::Engaged);
+    let mut flight = engaged(&fenced(&[], 4_000.0), &keys);
     flight.command(AutopilotCommand::Heading(course_deg.to_radians()));
     let mut nearest_m = f64::INFINITY;
     for _ in 0..16_000 {
@@ -205,11 +210,9 @@ fn fly_and_return(seed: u64, wind_kt: f64, gusts: &str) -> (f64, Option<f64>) {
     let drawing = Drawing::of(&mut drawn, 2_500.0);
     let wind_from_deg = drawn.between(0.0, 359.0).round();
     let course_deg = drawn.between(0.0, 360.0);
-    let keys = format!(
-        "[built-in]\nseed = {seed}\nwind_from_deg = {wind_from_deg}\nwind_kt = {wind_kt}\n{gusts}"
-    );
-    let mut flight = Flight::new(&fenced(&drawing.places, 0.0), &keys);
-    flight.fly_until(60.0, |flight| flight.record.state.state() == State::Engaged);
+    let keys =
+        format!("seed = {seed}\nwind_from_deg = {wind_from_deg}\nwind_kt = {wind_kt}\n{gusts}");
+    let mut flight = engaged(&fenced(&drawing.places, 0.0), &keys);
     flight.command(AutopilotCommand::Heading(course_deg.to_radians()));
     let (mut nearest_m, mut turned_s) = (f64::INFINITY, None);
     for tick in 1..48_000 {
@@ -277,10 +280,8 @@ fn fly_drawn_headings(seed: u64) -> f64 {
     let course_deg = drawn.between(0.0, 360.0);
     let wind_kt = if seed.is_multiple_of(2) { 0.0 } else { 20.0 };
     let from_deg = drawn.between(0.0, 359.0).round();
-    let keys =
-        format!("[built-in]\nseed = {seed}\nwind_from_deg = {from_deg}\nwind_kt = {wind_kt}\n");
-    let mut flight = Flight::new(&fenced(&[], 4_000.0), &keys);
-    flight.fly_until(60.0, |flight| flight.record.state.state() == State::Engaged);
+    let keys = format!("seed = {seed}\nwind_from_deg = {from_deg}\nwind_kt = {wind_kt}\n");
+    let mut flight = engaged(&fenced(&[], 4_000.0), &keys);
     flight.command(AutopilotCommand::Heading(course_deg.to_radians()));
     let begins_m = drawn.between(600.0, 1_500.0);
     let (mut left, mut next, mut nearest_m) = (3, 0, f64::INFINITY);

@@ -22,8 +22,8 @@ const BANKED_WITHIN_RAD: f64 = 0.122;
 /// circle, m/s.
 const FASTER_MPS: f64 = 3.0;
 /// The bank that gusts and airspeed allow, and the airspeed, are followed with this time
-/// constant, s: a third of a turn. A circle is planned with this share of the largest bank's tangent at least:
-/// twice the radius.
+/// constant, s: a third of a turn. A circle is planned with this share of the largest
+/// bank's tangent at least: twice the radius.
 const BANK_FOLLOWS_S: f64 = 8.0;
 const LEAST_BANK_SHARE: f64 = 0.4;
 /// The airspeed of a circle is so much above the one that its bank needs, m/s.
@@ -122,7 +122,9 @@ impl Autopilot {
         };
         let margin_m = self.fence_margin_m();
         if is_met && stage == Stage::TurningAway {
-            let returns = action == ContingencyAction::Return && self.points_home(&here);
+            if action != ContingencyAction::Return || !self.points_home(&here) {
+                return;
+            }
             let ahead_m = self.room_ahead_m(&fence, &here);
             // The circle of this moment may need more room than the one that was turned
             // onto: in strong wind, or a faster one.
@@ -130,7 +132,7 @@ impl Autopilot {
             let is_on_it = kept.is_some_and(|kept| kept.is_flown(&here, bank.now_rad));
             let has_room = is_on_it && ahead_m >= margin_m
                 || escape.clearance_m >= LEFT_SHARE * margin_m && ahead_m > escape.clearance_m;
-            if returns && has_room {
+            if has_room {
                 self.contingencies.stage = Stage::Leaving;
                 self.return_from_fence(&here);
             }
