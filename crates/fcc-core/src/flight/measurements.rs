@@ -1,9 +1,12 @@
 //! The measurements of an aircraft's sensors.
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
+use core::time::Duration;
+
+use libm::cos;
 
 use super::{Battery, GnssFix, MagneticField, OtherControl, Plant, Surfaces};
-use crate::framework::{Reading, Switch};
+use crate::framework::{Reading, Switch, Time};
 use crate::{readings, schema};
 
 schema! {
@@ -145,6 +148,23 @@ readings!(Measurements {
     engine_speed_radps: "engine speed",
     battery: "battery",
 });
+
+/// A range is used for so long.
+const RANGE_AGE: Duration = Duration::from_millis(250);
+
+impl Measurements {
+    /// The height above the ground by a range that is current, m, at an attitude in rad: the
+    /// range is measured along the body's z axis.
+    pub(crate) fn height_by_range_m(
+        &self,
+        now: Time,
+        roll_rad: f64,
+        pitch_rad: f64,
+    ) -> Option<f64> {
+        let range_m = self.range_m.fresh(now, RANGE_AGE)?;
+        Some(range_m * cos(roll_rad) * cos(pitch_rad))
+    }
+}
 
 schema! {
     /// Pitch and roll, rad.

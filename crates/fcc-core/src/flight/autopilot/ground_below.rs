@@ -59,6 +59,14 @@ impl GroundBelow {
         self.is_wrong && !was_wrong
     }
 
+    /// The altitude, m, is another one from now on, because the altimeter was wrong: not
+    /// the ground has left the one that ranges have shown.
+    pub(super) fn adopt(&mut self, altitude_m: f64, height_m: Option<f64>) {
+        if let Some(height_m) = height_m {
+            self.elevation_m = altitude_m - height_m;
+        }
+    }
+
     /// `dt_s` seconds pass, at an altitude, m, that has `stepped_m` in them, with a height
     /// by the range finder, m. The height above ground, m, if there is one.
     pub(super) fn step(

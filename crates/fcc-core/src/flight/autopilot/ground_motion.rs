@@ -22,8 +22,8 @@ use crate::framework::{Reading, Time};
 
 /// A reading is taken on by its velocity for so long at most.
 const LONGEST_AGE: Duration = Duration::from_secs(1);
-/// A range is used for so long.
-const RANGE_AGE: Duration = Duration::from_millis(250);
+/// A force is used for so long.
+const FORCE_AGE: Duration = Duration::from_millis(250);
 /// Faster than this on its wheels the aircraft moves where it points, m/s.
 const ROLLS_MPS: f64 = 5.0;
 /// The receiver's altitude has noise: what the altimeter is off it is followed with this
@@ -66,6 +66,7 @@ pub(super) struct GroundMotion {
     ground: GroundBelow,
     /// Of the last tick, m.
     pressure_altitude_m: Option<f64>,
+    altimeter_is_doubted: bool,
     /// What the range finder shows, m, upright.
     below_m: Option<f64>,
 }
@@ -177,6 +178,7 @@ impl GroundMotion {
         estimate: &Estimate,
         wind: Option<([f64; 2], f64)>,
         sea_level_m: f64,
+        altimeter_is_doubted: bool,
         dt_s: f64,
     ) {
         let taken_heading_rad = self.here.heading_rad;
@@ -184,14 +186,15 @@ impl GroundMotion {
         self.here.airspeed_mps = estimate.airspeed_mps;
         self.here.altitude_m = estimate.altitude_m - sea_level_m;
         self.here.roll_rad = estimate.roll_rad;
-        let force = measured.specific_force.fresh(now, RANGE_AGE);
+        let force = measured.specific_force.fresh(now, FORCE_AGE);
         self.here.forward_mps2 = force.map_or(0.0, |force| force.x_mps2);
-        let below_m = measured
-            .range_m
-            .fresh(now, RANGE_AGE)
-            .map(|range_m| range_m * cos(estimate.roll_rad) * cos(estimate.pitch_rad));
+        let below_m = measured.height_by_range_m(now, estimate.roll_rad, estimate.pitch_rad);
         let stepped_m = self.altimeter_step_m(estimate, dt_s);
         self.here.stepped_m = stepped_m;
+        let was_doubted = core::mem::replace(&mut self.altimeter_is_doubted, altimeter_is_doubted);
+        if altimeter_is_doubted && !was_doubted {
+            self.ground.adopt(estimate.altitude_m, below_m);
+        }
         self.here.height_m = self
             .ground
             .step(estimate.altitude_m, stepped_m, below_m, dt_s);

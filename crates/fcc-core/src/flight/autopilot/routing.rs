@@ -136,6 +136,7 @@ impl Autopilot {
             self.navigation.estimate(),
             self.navigation.wind(),
             sea_level_m,
+            self.navigation.altitude_doubt().is_some(),
             dt_s,
         );
         if let Some(raw) = &self.raw {

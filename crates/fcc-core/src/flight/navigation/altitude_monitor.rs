@@ -31,6 +31,12 @@ const TEMPERATURE_SHARE: f64 = 0.12;
 const PATH_SHARE: f64 = 0.4;
 const GROUND_SHARE: f64 = 0.5;
 const TRAPPED: core::ops::RangeInclusive<f64> = 0.5..=2.0;
+/// A range finder over ground that is about level tells sooner: the altimeter is doubted
+/// if it differs from it by more than this, m, for this time, s, and if copy and ground
+/// velocity agree with it to this share of that.
+const RANGE_DIFFERS_M: f64 = 3.0;
+const DOUBTED_BY_RANGE_AFTER_S: f64 = 0.3;
+const RANGE_SHARE: f64 = 0.35;
 /// Without the altimeter the climb rate follows the path with this bandwidth,
 /// the ground velocity with that one, and the altitude that by the total pressure,
 /// rad/s: gusts have correlation times of up to 10 s (MIL-F-8785C, 3.7.3).
@@ -65,6 +71,8 @@ pub(super) struct AltitudeInput {
     /// Climb rates by pitch and lift, and over the ground, m/s.
     pub(super) path_mps: Option<f64>,
     pub(super) ground_mps: Option<f64>,
+    /// The range finder's height above the ground, m.
+    pub(super) range_m: Option<f64>,
     pub(super) tan_bank: f64,
     pub(super) gusts_mps: f64,
     /// Indicated airspeed by the sensor and as estimated, m/s, and the felt
@@ -93,9 +101,20 @@ pub(super) struct Coasting {
     /// Climbed by the path, and by the ground velocity, m.
     path_m: Option<f64>,
     ground_m: Option<f64>,
+    /// As they were with the first range.
+    first: Option<Heights>,
     error_mps: f64,
     error_m: f64,
     lasted_s: f64,
+}
+
+/// Four measures of a climb, m, each above a height of its own.
+#[derive(Clone, Copy, Debug)]
+struct Heights {
+    range_m: f64,
+    altimeter_m: f64,
+    copy_m: f64,
+    ground_m: f64,
 }
 
 impl Coasting {
@@ -107,6 +126,7 @@ impl Coasting {
             began_m: input.followed.altitude_m,
             path_m: Some(0.0),
             ground_m: Some(0.0),
+            first: None,
             error_mps: COPIED_MPS,
             error_m: 0.0,
             lasted_s: 0.0,
@@ -123,6 +143,33 @@ impl Coasting {
         self.error_mps += (FELT_MPS2 + FELT_BANKED_MPS2 * input.tan_bank.abs()) * dt_s;
         self.error_m += self.error_mps * dt_s;
         self.lasted_s += dt_s;
+        if self.first.is_none() {
+            self.first = self.heights(input.followed.altitude_m, input);
+        }
+    }
+
+    /// None without a range or a ground velocity.
+    fn heights(&self, altimeter_m: f64, input: &AltitudeInput) -> Option<Heights> {
+        Some(Heights {
+            range_m: input.range_m?,
+            altimeter_m,
+            copy_m: self.state.altitude_m,
+            ground_m: self.ground_m?,
+        })
+    }
+
+    /// Whether the range finder contradicts the altimeter, and copy and ground velocity
+    /// agree with it.
+    fn contradicts_by_range(&self, altitude_m: f64, input: &AltitudeInput) -> bool {
+        let (Some(was), Some(is)) = (self.first, self.heights(altitude_m, input)) else {
+            return false;
+        };
+        let climbed_m = is.range_m - was.range_m;
+        let off_m = (is.altimeter_m - was.altimeter_m - climbed_m).abs();
+        let agrees = |by_m: f64| (by_m - climbed_m).abs() < RANGE_SHARE * off_m;
+        off_m > RANGE_DIFFERS_M + input.step_m
+            && agrees(is.copy_m - was.copy_m)
+            && agrees(is.ground_m - was.ground_m)
     }
 
     /// Whether the altimeter stands although the aircraft climbs or sinks, or
@@ -198,6 +245,7 @@ pub(super) struct AltitudeMonitor {
     /// Time with an altimeter, s.
     followed_s: f64,
     beyond_s: f64,
+    beyond_range_s: f64,
     doubted: Option<Doubted>,
 }
 
@@ -225,6 +273,7 @@ impl AltitudeMonitor {
             younger: None,
             followed_s: 0.0,
             beyond_s: 0.0,
+            beyond_range_s: 0.0,
             doubted: None,
         }
     }
@@ -290,14 +339,13 @@ impl AltitudeMonitor {
         };
         older.step(input, dt_s);
         younger.step(input, dt_s);
+        let lasts = |beyond_s: f64, is_beyond: bool| if is_beyond { beyond_s + dt_s } else { 0.0 };
         let contradicts = older.lasted_s > ALONE_S && older.contradicts(altitude_m, input);
-        self.beyond_s = if contradicts {
-            self.beyond_s + dt_s
-        } else {
-            0.0
-        };
-        if self.beyond_s > DOUBTED_AFTER_S {
-            self.beyond_s = 0.0;
+        self.beyond_s = lasts(self.beyond_s, contradicts);
+        let contradicts = older.contradicts_by_range(altitude_m, input);
+        self.beyond_range_s = lasts(self.beyond_range_s, contradicts);
+        if self.beyond_s > DOUBTED_AFTER_S || self.beyond_range_s > DOUBTED_BY_RANGE_AFTER_S {
+            (self.beyond_s, self.beyond_range_s) = (0.0, 0.0);
             if input.may_doubt {
                 if let Some(ground_m) = older.ground_m {
                     older.state.altitude_m = older.began_m + ground_m;

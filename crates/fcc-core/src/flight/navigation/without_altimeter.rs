@@ -67,6 +67,7 @@ impl Navigation {
             felt_mps2: self.vertical.felt_mps2() + bias_mps2,
             path_mps,
             ground_mps,
+            range_m: measurements.height_by_range_m(now, attitude.roll_rad, attitude.pitch_rad),
             tan_bank: limit_abs(tan(attitude.roll_rad), 3.0),
             gusts_mps: self.monitor.gusts_mps(),
             sensor_mps,
