@@ -92,8 +92,9 @@ impl Autopilot {
             None => None,
         };
         // On the wheels forces and motion say nothing of the air.
-        let is_flying = is_engaged && !self.is_on_runway();
-        self.navigation.flown_with(throttle, is_flying);
+        let is_flying = is_engaged && !self.is_on_wheels();
+        self.navigation
+            .flown_with(throttle, is_flying, self.is_on_runway());
     }
 
     /// Prepares the notice of a doubt that has begun, or whose reason is another.

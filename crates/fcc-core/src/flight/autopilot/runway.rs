@@ -91,10 +91,14 @@ impl Autopilot {
 
     /// Whether the wheels carry the aircraft, or it is about to touch down.
     pub(super) fn is_on_runway(&self) -> bool {
-        self.ground.stands_on_wheels()
-            || self.runway().is_some_and(|demand| {
-                demand.phase.is_on_wheels() || demand.phase == RunwayPhase::Flare
-            })
+        let flares = |demand: RunwayDemand| demand.phase == RunwayPhase::Flare;
+        self.is_on_wheels() || self.runway().is_some_and(flares)
+    }
+
+    /// Whether it stands or rolls.
+    pub(super) fn is_on_wheels(&self) -> bool {
+        let rolls = |demand: RunwayDemand| demand.phase.is_on_wheels();
+        self.ground.stands_on_wheels() || self.runway().is_some_and(rolls)
     }
 
     /// Whether it may engage standing on a runway: the plan begins with a take-off.

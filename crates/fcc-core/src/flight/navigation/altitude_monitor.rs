@@ -32,9 +32,9 @@ const PATH_SHARE: f64 = 0.4;
 const GROUND_SHARE: f64 = 0.5;
 const TRAPPED: core::ops::RangeInclusive<f64> = 0.5..=2.0;
 /// A range finder over ground that is about level tells sooner: the altimeter is doubted
-/// if it differs from it by more than this, m, for this time, s, and if copy and ground
-/// velocity agree with it to this share of that.
-const RANGE_DIFFERS_M: f64 = 3.0;
+/// if it differs from it by more than this, m, for this time, s, if the ground velocity
+/// agrees with the range to this share of that, and the copy to the share above.
+const RANGE_DIFFERS_M: f64 = 2.0;
 const DOUBTED_BY_RANGE_AFTER_S: f64 = 0.3;
 const RANGE_SHARE: f64 = 0.35;
 /// Without the altimeter the climb rate follows the path with this bandwidth,
@@ -166,10 +166,10 @@ impl Coasting {
         };
         let climbed_m = is.range_m - was.range_m;
         let off_m = (is.altimeter_m - was.altimeter_m - climbed_m).abs();
-        let agrees = |by_m: f64| (by_m - climbed_m).abs() < RANGE_SHARE * off_m;
+        let agrees = |by_m: f64, share: f64| (by_m - climbed_m).abs() < share * off_m;
         off_m > RANGE_DIFFERS_M + input.step_m
-            && agrees(is.copy_m - was.copy_m)
-            && agrees(is.ground_m - was.ground_m)
+            && agrees(is.copy_m - was.copy_m, GROUND_SHARE)
+            && agrees(is.ground_m - was.ground_m, RANGE_SHARE)
     }
 
     /// Whether the altimeter stands although the aircraft climbs or sinks, or

@@ -103,6 +103,7 @@ pub struct Navigation {
     velocity: SampleTracker,
     throttle: Option<f64>,
     is_engaged: bool,
+    is_flaring: bool,
     /// Whether what the air data monitors compare with is measured.
     motion_is_known: bool,
     side_force: LowPass,
@@ -126,6 +127,7 @@ impl Navigation {
             velocity: SampleTracker::new(),
             throttle: None,
             is_engaged: false,
+            is_flaring: false,
             motion_is_known: true,
             side_force: LowPass::new(config.side_force_tau_s),
             density: Density::AT_SEA_LEVEL,
@@ -147,10 +149,17 @@ impl Navigation {
     }
 
     /// The throttle from now on, 0..=1, if it is known, and whether the
-    /// autopilot is engaged: only then is a sensor doubted.
-    pub(crate) const fn flown_with(&mut self, throttle: Option<f64>, is_engaged: bool) {
+    /// autopilot flies: only then is a sensor doubted; in a flare, where lift and drag
+    /// are other ones, only the altimeter.
+    pub(crate) const fn flown_with(
+        &mut self,
+        throttle: Option<f64>,
+        is_engaged: bool,
+        is_flaring: bool,
+    ) {
         self.throttle = throttle;
         self.is_engaged = is_engaged;
+        self.is_flaring = is_flaring;
     }
 
     /// Whether attitude, body rates and forces are measured from now on, and the
@@ -308,8 +317,8 @@ impl Navigation {
             sensor_mps: is_current(&airspeed, now).then_some((airspeed.value, airspeed.source)),
             over_ground: None,
             altimeter_is_doubted: self.altitude_monitor.is_doubted(),
-            motion_is_known: self.motion_is_known,
-            may_doubt: self.is_engaged,
+            motion_is_known: self.motion_is_known && !self.is_flaring,
+            may_doubt: self.is_engaged && !self.is_flaring,
         }
     }
 

@@ -48,7 +48,7 @@ impl Navigation {
                 angle_of_attack_rad: estimate.angle_of_attack_rad,
                 gusts_mps: self.monitor.gusts_mps(),
             },
-            may_doubt: self.is_engaged,
+            may_doubt: self.is_engaged && !self.is_flaring,
         };
         if let Some(rotation) = self.motion.step(&input, dt_s) {
             self.attitude.adopt_gravity(rotation);
