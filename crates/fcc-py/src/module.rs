@@ -17,6 +17,7 @@ use crate::{
 #[pymodule]
 fn fcc(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
+    structured::check_numpy(py)?;
     errors::register(module)?;
 
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;

@@ -8,9 +8,28 @@ use std::sync::{Mutex, PoisonError};
 
 use fcc_core::framework::schema::Schema;
 use fcc_telemetry::schema::{RecordDescription, words, write_words};
-use numpy::{PyArray1, PyArrayDescr};
+use numpy::{PyArray1, PyArrayDescr, get_array_module};
+use pyo3::exceptions::PyImportError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+
+/// Whether there is a numpy whose arrays can be made; to be asked before the first one,
+/// which would panic without it.
+///
+/// # Errors
+/// An `ImportError` with what to do, whose cause is Python's own.
+pub(crate) fn check_numpy(py: Python<'_>) -> PyResult<()> {
+    let found = get_array_module(py).and_then(|module| module.getattr("_ARRAY_API"));
+    found.map(drop).map_err(|cause| {
+        let error = PyImportError::new_err(format!(
+            "numpy, 1.23 or newer, cannot be imported ({}): install it for this Python (`python \
+             -m pip install numpy`); a file numpy.py of your own needs another name",
+            cause.value(py)
+        ));
+        error.set_cause(py, Some(cause));
+        error
+    })
+}
 
 /// Structs, as the words of the rows of an array.
 pub struct Rows<T> {
