@@ -140,6 +140,12 @@ def moving(velocity: list[float]) -> dict[str, Any]:
     }
 
 
+def with_impossible(flight: dict[str, Any]) -> dict[str, Any]:
+    fixes_s, velocities = flight["gnss_velocity"]
+    velocities[150] = 1e5
+    return flight | {"gnss_velocity": (fixes_s, velocities)}
+
+
 FLIGHT = moving([30.0, -10.0, 1.0])
 FIXES_S, PLACES = FLIGHT["gnss_position"]
 
@@ -153,6 +159,7 @@ UNLIKELY: list[tuple[dict[str, Any], str]] = [
     (moving([-10.0, 30.0, -1.0]), "as east, north, up"),
     (moving([-10.0, 30.0, 1.0]), "north and east swapped"),
     (moving([30.0, -10.0, -1.0]), "down for up"),
+    (with_impossible(moving([-10.0, 30.0, 1.0])), "north and east swapped"),
     (FLIGHT | {"gnss_position": (FIXES_S, PLACES[:, [1, 0, 2]])}, "latitude before longitude"),
     ({"gyroscope": (TIMES_S, GYROSCOPE[1] + [40.0, 0.0, 0.0])}, "are they in °/s"),
     ({"gyroscope": (TIMES_S * 12.5, GYROSCOPE[1])}, "0.25 s apart.*milliseconds"),
@@ -183,6 +190,10 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     (later(-1000.0), r"magnetometer: 0 of its 400 .* one clock"),
     ({"gyroscope": (np.ma.array(TIMES_S, mask=True), GYROSCOPE[1])}, "all its samples are masked"),
     ({"gyroscope": (TIMES_S[::-1], GYROSCOPE[1])}, "must not decrease"),
+    (
+        {"gyroscope": (np.append(TIMES_S, 1e300), np.vstack([GYROSCOPE[1], [np.nan] * 3]))},
+        "gyroscope: times are from 100 s to 1e300 s",
+    ),
     ({"gyroscope": (TIMES_S, GYROSCOPE[1] + 400.0)}, "in rad/s"),
     ({"gyroscope": GYROSCOPE, "gnss_position": still([47.0, 8.0, 1.0])}, "degrees"),
     ({"gyroscope": GYROSCOPE, "static_pressure": (TIMES_S, TIMES_S)}, "in Pa"),

@@ -29,7 +29,10 @@ pub(crate) fn read(text: &str) -> Result<Plan, Vec<Problem>> {
         .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
     let first = lines.next().map_or("", |(_, line)| line);
     if first.split_whitespace().ne(HEADER.split_whitespace()) {
-        let what = format!("\"{}\": the first line has to be {HEADER}", quoted(first));
+        let what = format!(
+            "\"{}\": the first line has to be {HEADER}, or that of a QGroundControl plan {{",
+            quoted(first)
+        );
         return Err(vec![Problem::of("line 1", what)]);
     }
     let mut reader = Reader::default();

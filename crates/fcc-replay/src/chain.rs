@@ -136,14 +136,17 @@ pub struct Replayed {
 }
 
 impl Replayed {
-    /// Whether every tick of the recording was replayed.
+    /// Whether every tick of the recording was replayed, and there was one.
     pub const fn is_complete(&self) -> bool {
-        self.run.unflown.is_none() && self.cuts.is_empty()
+        self.run.ticks > 0 && self.run.unflown.is_none() && self.cuts.is_empty()
     }
 
     /// Text on the part that was not replayed; empty if there is none.
     pub fn missing(&self) -> String {
         let mut text = String::new();
+        if self.run.ticks == 0 && self.run.unflown.is_none() {
+            text.push_str("\n\nnothing was compared: no tick was replayed");
+        }
         if let Some(unflown) = &self.run.unflown {
             let which = match (unflown.first, unflown.last) {
                 (Some(first), Some(last)) => format!("{} ticks, {first} to {last}", unflown.ticks),

@@ -259,8 +259,8 @@ impl Reported {
 
     /// That many datagrams are old ones; once.
     fn change_of_old(&mut self, status: &XPlaneStatus) -> Option<String> {
-        let rate = self.old.step(Instant::now(), status.counts().late)?;
         let simulator = status.simulator()?;
+        let rate = self.old.step(Instant::now(), status.counts().late)?;
         Some(format!(
             "{rate:.0} datagrams a second from X-Plane at {simulator} are older than others that \
              arrived before, and are not used: the network delivers them late or twice, as over \

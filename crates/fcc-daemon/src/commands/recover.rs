@@ -20,7 +20,8 @@ pub(super) fn recover(args: &RecoverArgs) -> Result<Exit, Failure> {
         RecoverError::Open(error) => error.into(),
         error => Failure::new(error),
     })?;
-    let exit = if recovered.damages.is_empty() {
+    let is_lost = !recovered.was_whole && recovered.ticks == 0;
+    let exit = if recovered.damages.is_empty() && !is_lost {
         Exit::Success
     } else {
         Exit::Incomplete

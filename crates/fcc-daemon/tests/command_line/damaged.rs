@@ -62,6 +62,23 @@ fn records(bytes: &[u8], opcode: u8) -> Vec<(usize, usize)> {
 }
 
 #[test]
+fn a_recording_without_a_tick_is_no_success() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = recorded(folder.path());
+    let bytes = fs::read(&file).unwrap();
+    // In the first chunk that has a tick.
+    let (first, length) = records(&bytes, CHUNK)[1];
+    fs::write(&file, &bytes[..first + length / 2]).unwrap();
+    let output = fccd(&["recover", text(&file), "--json"]);
+    assert_eq!(json(&output)["ticks"], 0);
+    assert_eq!(output.status.code(), INCOMPLETE);
+    let output = fccd(&["replay", text(&file)]);
+    assert_eq!(output.status.code(), NOT_REPLAYED);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(said.contains("nothing was compared"), "{said}");
+}
+
+#[test]
 fn every_command_reports_damage_and_continues_after_it() {
     let folder = tempfile::tempdir().unwrap();
     let file = recorded(folder.path());

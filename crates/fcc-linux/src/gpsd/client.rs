@@ -127,13 +127,13 @@ impl Gpsd {
                 });
             }
             Ok(Report::Devices(all)) => {
-                trouble = wanted.filter(|path| !all.contains(path)).map(|path| {
-                    refused(format!(
+                if let Some(path) = wanted.filter(|path| !all.contains(path)) {
+                    trouble = Some(refused(format!(
                         "it has no receiver {path}, but {}: choose `device` of these, or start it \
                          with that one",
                         listed(&all)
-                    ))
-                });
+                    )));
+                }
             }
             Ok(Report::Version { protocol }) if protocol != PROTOCOL => {
                 trouble = Some(refused(format!(

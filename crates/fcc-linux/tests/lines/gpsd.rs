@@ -238,6 +238,11 @@ fn what_is_wrong_is_said_with_what_to_do() {
             "it speaks version 4 of its protocol, not 3",
         ),
         (
+            "{\"class\":\"VERSION\",\"proto_major\":4}\n\
+             {\"class\":\"DEVICES\",\"devices\":[]}\n",
+            "it speaks version 4 of its protocol, not 3",
+        ),
+        (
             "{\"class\":\"ERROR\",\"message\":\"no\\u001b\"}\n",
             "it reports: no\\u{1b}",
         ),

@@ -46,10 +46,8 @@ pub(super) fn check(py: Python<'_>, series: &[Option<Series>]) -> PyResult<()> {
         unlikely.extend(clock(driving, other)?);
     }
     unlikely.extend(of("gyroscope").and_then(|(_, gyroscope)| rates(gyroscope)));
-    if let (Some((kind, position)), Some((_, velocity))) =
-        (of("gnss_position"), of("gnss_velocity"))
-    {
-        unlikely.extend(axes(kind, position, velocity));
+    if let (Some(position), Some(velocity)) = (of("gnss_position"), of("gnss_velocity")) {
+        unlikely.extend(axes(*position, *velocity));
     }
     for words in unlikely {
         PyErr::warn(
@@ -125,7 +123,7 @@ fn rates(gyroscope: &Series) -> Option<String> {
 }
 
 /// Whether how the position moves is the velocity with other axes.
-fn axes(kind: &Kind, position: &Series, velocity: &Series) -> Option<String> {
+fn axes((kind, position): (&Kind, &Series), velocity: (&Kind, &Series)) -> Option<String> {
     let path = path(velocity);
     let mut begin: Option<(f64, [f64; 3], [f64; 3])> = None;
     let (mut windows, mut far, mut high) = (0.0, 0.0, 0.0);
@@ -175,11 +173,11 @@ fn axes(kind: &Kind, position: &Series, velocity: &Series) -> Option<String> {
 }
 
 /// The integral of the velocity, m, at the times of its samples.
-fn path(velocity: &Series) -> Vec<(f64, [f64; 3])> {
+fn path((kind, velocity): (&Kind, &Series)) -> Vec<(f64, [f64; 3])> {
     let mut path: Vec<(f64, [f64; 3])> = Vec::new();
     let mut before = [0.0; 3];
     for (time_s, now) in velocity.times_s.iter().zip(&velocity.rows) {
-        if !now.iter().all(|along| along.is_finite()) {
+        if !kind.is_possible(now) {
             continue;
         }
         let (last_s, at) = path.last().copied().unwrap_or((*time_s, [0.0; 3]));

@@ -96,6 +96,16 @@ impl Sources {
             .flatten()
             .filter_map(|series| series.times_s.first().copied())
             .fold(f64::INFINITY, f64::min);
+        for (kind, series) in KINDS.iter().zip(&series) {
+            let last_s = series.as_ref().and_then(|series| series.times_s.last());
+            if let Some(last_s) = last_s.filter(|last_s| **last_s - begin_s > LONGEST_S) {
+                return Err(PyValueError::new_err(format!(
+                    "{}: times are from {begin_s} s to {last_s:?} s, {LONGEST_S} s at most: are \
+                     they in s?",
+                    kind.name
+                )));
+            }
+        }
         let mut sources = Self {
             events: Vec::new(),
             steps: driving.times_s.iter().map(|t| time(t - begin_s)).collect(),
@@ -132,12 +142,6 @@ impl Sources {
             }
             kept += 1;
             let since_s = time_s - self.begin_s;
-            if since_s > LONGEST_S {
-                return Err(PyValueError::new_err(format!(
-                    "{}: times are from {} s to {time_s} s, {LONGEST_S} s at most: are they in s?",
-                    kind.name, self.begin_s
-                )));
-            }
             let observation = observation(kind.name, mounting.body(kind.name, *row));
             if let (Observation::Position(place), None) = (observation, self.first_place) {
                 self.first_place = Some(place);
