@@ -100,7 +100,8 @@ const STEPPED_SDS: f64 = 4.0;
 const JUMPED_M: f64 = 2.5;
 const JUMPED_SDS: f64 = 3.0;
 const BEFORE_S: f64 = 1.0;
-/// One that jumps again within this time, s, is slow or noisy, and its jumps are climbs.
+/// One that jumps again within this time, s, is slow or noisy, and what it differs by is a
+/// climb.
 const QUIET_S: f64 = 10.0;
 
 /// The largest bias of an intact accelerometer, m/s².
@@ -207,7 +208,8 @@ impl VerticalChannel {
         let is_beyond = |off_m: f64, most_m: f64, sds: f64| {
             off_m * off_m > most_m * most_m + sds * sds * gains.variance_m2()
         };
-        let is_off = is_beyond(error_m, STEPPED_M, STEPPED_SDS);
+        let is_off = is_beyond(error_m, STEPPED_M, STEPPED_SDS)
+            && (self.quiet_s >= QUIET_S || self.beyond != 0);
         let jumps = is_beyond(jump_m, JUMPED_M, JUMPED_SDS);
         let has_jumped = jumps && (self.quiet_s >= QUIET_S || self.beyond != 0);
         self.quiet_s = if jumps { 0.0 } else { self.quiet_s + since_s };

@@ -144,3 +144,39 @@ fn shift_by(shift_m: f64) {
         );
     }
 }
+
+/// An altimeter with a new value every two seconds, in a descent of 7 m/s: what differs by
+/// 14 m each time is the descent, and no step. Before, it descended with 0.3 m/s.
+#[test]
+fn the_changes_of_a_slow_altimeter_are_a_descent() {
+    let mut channel = VerticalChannel::new(0.7);
+    let (mut down_mps, mut shown_m, mut altitude_m) = (0.0_f64, 900.0, 900.0);
+    for sample in 1..=4_800_i64 {
+        let now = Time::from_nanos(sample * 25_000_000);
+        let faster_mps2 = if (2_400..2_680).contains(&sample) {
+            1.0
+        } else {
+            0.0
+        };
+        down_mps += faster_mps2 * DT_S;
+        altitude_m -= down_mps * DT_S;
+        if sample % 80 == 0 {
+            shown_m = altitude_m;
+        }
+        let force = SpecificForce {
+            z_mps2: faster_mps2 - GRAVITY_MPS2,
+            ..SpecificForce::default()
+        };
+        let measurements = Measurements {
+            specific_force: Reading::new(force, now),
+            altitude_m: Reading::new(shown_m, now),
+            ..Measurements::default()
+        };
+        let state = channel.step(now, &measurements, &Orientation::default(), DT_S);
+        // Its values are up to 2 s old.
+        let late_m = state.altitude_m - altitude_m;
+        assert!((-7.0..21.0).contains(&late_m), "{sample}: {late_m}");
+        let off_mps = state.climb_rate_mps + down_mps;
+        assert!(sample < 2_900 || off_mps.abs() < 2.5, "{sample}: {off_mps}");
+    }
+}
