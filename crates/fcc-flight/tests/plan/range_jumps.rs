@@ -97,6 +97,10 @@ impl Sensor<Measurements> for Faulty {
 
 /// How a flight has ended.
 #[derive(Clone, Copy, Debug)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "four things, each of which may be"
+)]
 struct Landed {
     /// Of the touch-down, m/s.
     sink_mps: f64,

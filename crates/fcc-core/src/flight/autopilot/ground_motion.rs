@@ -67,6 +67,8 @@ pub(super) struct GroundMotion {
     /// Of the last tick, m.
     pressure_altitude_m: Option<f64>,
     altimeter_is_doubted: bool,
+    /// It has just begun to be.
+    adopts_altitude: bool,
     /// What the range finder shows, m, upright.
     below_m: Option<f64>,
 }
@@ -168,6 +170,12 @@ impl GroundMotion {
         self.here().is_some() && !self.is_reckoned()
     }
 
+    /// Whether the altimeter is doubted from now on.
+    pub(super) const fn doubt_altimeter(&mut self, is_doubted: bool) {
+        self.adopts_altitude = is_doubted && !self.altimeter_is_doubted;
+        self.altimeter_is_doubted = is_doubted;
+    }
+
     /// `dt_s` seconds of the plant's time pass. `wind` is navigation's, m/s towards
     /// north and east, with what true north is off the compass, rad; mean sea level is
     /// at a pressure altitude, m.
@@ -178,7 +186,6 @@ impl GroundMotion {
         estimate: &Estimate,
         wind: Option<([f64; 2], f64)>,
         sea_level_m: f64,
-        altimeter_is_doubted: bool,
         dt_s: f64,
     ) {
         let taken_heading_rad = self.here.heading_rad;
@@ -191,8 +198,7 @@ impl GroundMotion {
         let below_m = measured.height_by_range_m(now, estimate.roll_rad, estimate.pitch_rad);
         let stepped_m = self.altimeter_step_m(estimate, dt_s);
         self.here.stepped_m = stepped_m;
-        let was_doubted = core::mem::replace(&mut self.altimeter_is_doubted, altimeter_is_doubted);
-        if altimeter_is_doubted && !was_doubted {
+        if self.adopts_altitude {
             self.ground.adopt(estimate.altitude_m, below_m);
         }
         self.here.height_m = self

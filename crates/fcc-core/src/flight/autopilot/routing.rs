@@ -130,13 +130,14 @@ impl Autopilot {
     /// Follows where the aircraft is.
     pub(super) fn follow_ground(&mut self, now: crate::framework::Time, dt_s: f64) {
         let sea_level_m = self.sea_level_m();
+        self.ground
+            .doubt_altimeter(self.navigation.altitude_doubt().is_some());
         self.ground.step(
             now,
             &self.accepted,
             self.navigation.estimate(),
             self.navigation.wind(),
             sea_level_m,
-            self.navigation.altitude_doubt().is_some(),
             dt_s,
         );
         if let Some(raw) = &self.raw {
