@@ -63,12 +63,12 @@ impl Lost {
         })
     }
 
-    /// For users.
-    pub(super) fn description(&self) -> String {
+    /// For users; after an earlier gap, or not.
+    pub(super) fn description(&self, is_after_another: bool) -> String {
         if self.is_none() {
             "nothing is lost".to_owned()
         } else {
-            let earlier = if self.first > 1 {
+            let earlier = if self.first > 1 && !is_after_another {
                 ", all earlier ones are recorded"
             } else {
                 ""

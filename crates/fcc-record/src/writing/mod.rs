@@ -49,6 +49,8 @@ pub(super) struct Writing<C: Recorded> {
     part: Option<Part<C>>,
     /// What is lost and not reported in a file yet.
     lost: Lost,
+    /// Whether messages before those are lost, too.
+    has_gaps: bool,
     /// Why nothing is recorded; none once a file has been committed again.
     trouble: Option<String>,
     /// Remarks for the next file.
@@ -78,6 +80,7 @@ impl<C: Recorded> Writing<C> {
             notices,
             part: None,
             lost: Lost::default(),
+            has_gaps: false,
             trouble: None,
             remarks: Vec::new(),
             acted: Instant::now(),
@@ -184,6 +187,7 @@ impl<C: Recorded> Writing<C> {
         if committed {
             self.post();
             self.end_trouble(gaps);
+            self.has_gaps |= !gaps.is_none();
             self.keep_below_total();
         }
         // Counted from its end: on a slow disk the next must not follow at

@@ -47,7 +47,10 @@ impl<C: Recorded> Writing<C> {
         });
         let what = format!("{}: {error}", path.display());
         if is_full(error) && self.make_room() {
-            self.report(format!("{what}; {}", self.lost.description()), true);
+            self.report(
+                format!("{what}; {}", self.lost.description(self.has_gaps)),
+                true,
+            );
             self.begin();
         } else {
             self.stop(what);
@@ -65,7 +68,8 @@ impl<C: Recorded> Writing<C> {
             status.not_recorded += lost.count;
             status.files.retain(|file| file != part.path());
         });
-        let lost = self.lost.description();
+        let lost = self.lost.description(self.has_gaps);
+        self.has_gaps = true;
         let text = format!("{}: {what} in flight; {lost}", part.path().display());
         self.report(text, true);
         self.begin();
@@ -100,7 +104,7 @@ impl<C: Recorded> Writing<C> {
         if self.lost.is_none() {
             why.to_owned()
         } else {
-            format!("{why}; {}", self.lost.description())
+            format!("{why}; {}", self.lost.description(self.has_gaps))
         }
     }
 
@@ -110,7 +114,10 @@ impl<C: Recorded> Writing<C> {
             let mut lost = gaps;
             lost.join(self.lost);
             let path = part.path().display();
-            let text = format!("recording continues in {path}: {}", lost.description());
+            let text = format!(
+                "recording continues in {path}: {}",
+                lost.description(self.has_gaps)
+            );
             self.report(text, true);
             self.board.update(|status| status.stopped = None);
         }

@@ -123,6 +123,33 @@ fn a_file_deleted_or_truncated_in_flight_is_reported_and_the_next_begun() {
     }
 }
 
+/// What was lost before is not recorded.
+#[test]
+fn a_file_that_is_deleted_again_does_not_deny_the_first_gap() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut recorder = Recorder::start(about(), settings(folder.path())).unwrap();
+    let mut lost = 0;
+    for first in [1, 11] {
+        for number in first..first + 9 {
+            recorder.take(&Message::Tick(record(number)));
+        }
+        wait_for(&recorder, |status| status.ticks >= 9);
+        fs::remove_file(only_file(folder.path())).unwrap();
+        recorder.take(&Message::Tick(record(first + 9)));
+        lost += 10;
+        wait_for(&recorder, |status| status.not_recorded >= lost);
+    }
+    let (_, notices) = recorder.finish("stopped by command");
+    let told = |what: &str| {
+        notices
+            .iter()
+            .filter(|notice| notice.text.contains(what))
+            .count()
+    };
+    assert_eq!(told("in flight; "), 2, "{notices:?}");
+    assert_eq!(told("all earlier ones are recorded"), 0, "{notices:?}");
+}
+
 #[test]
 fn two_flights_of_one_millisecond_have_two_files() {
     let folder = tempfile::tempdir().unwrap();
