@@ -37,9 +37,6 @@ pub(super) const STACK_BYTES: usize = if cfg!(debug_assertions) {
 
 /// How long it sleeps unless woken.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
-/// Telemetry continues when there has been space in shared memory for so long: another
-/// program that fills and empties it makes no more messages than that.
-const ROOM_LASTS: Duration = Duration::from_secs(2);
 /// Interval of checking the files, which takes some 30 us.
 const CHECK_EVERY: Duration = Duration::from_millis(50);
 /// Records in a row that cannot be published: shared memory was damaged.
@@ -212,8 +209,6 @@ struct Publishing {
     /// Records in a row that could not be published.
     failures: u32,
     paused: bool,
-    /// When there will have been space for long enough.
-    continues_at: Instant,
 }
 
 impl Publishing {
@@ -233,7 +228,6 @@ impl Publishing {
             info: None,
             failures: 0,
             paused: false,
-            continues_at: Instant::now(),
         })
     }
 
@@ -287,16 +281,10 @@ impl Publishing {
     fn look_for_room(&mut self) -> Option<String> {
         let root = self.ports.place.root().as_path();
         let too_little = space::too_little(root, space::LEAST_BYTES);
-        let now = Instant::now();
-        if too_little.is_some() {
-            self.continues_at = now + ROOM_LASTS;
-        }
-        let was_paused = std::mem::replace(&mut self.paused, now < self.continues_at);
+        let was_paused = std::mem::replace(&mut self.paused, too_little.is_some());
         match too_little {
             Some(words) if !was_paused => Some(format!("live telemetry is paused: {words}")),
-            None if was_paused && !self.paused => {
-                Some("live telemetry continues: there is space again".to_owned())
-            }
+            None if was_paused => Some("live telemetry continues: there is space again".to_owned()),
             _ => None,
         }
     }
