@@ -21,6 +21,7 @@ mod force_sample;
 mod frozen;
 mod lift;
 mod marked_altitude;
+mod monitored;
 mod motion;
 mod motion_monitor;
 mod motion_witness;
@@ -46,7 +47,6 @@ use agreement::Agreement;
 use airframe::{AirframePrior, CESSNA_172, FULL_THRUST_SHARE};
 use airspeed_monitor::{AirspeedMonitor, MonitorInput};
 use altitude_monitor::AltitudeMonitor;
-use force_sample::{ForceSample, in_g};
 use motion_monitor::MotionMonitor;
 use path::{Density, Path};
 use sample_tracker::{SampleTracker, is_current};
@@ -287,39 +287,6 @@ impl Navigation {
     /// Which sensors contradict each other, before engaging.
     pub(crate) fn contradictions(&self) -> Contradictions {
         self.agreement.contradictions()
-    }
-
-    fn monitor_input(
-        &self,
-        now: Time,
-        measurements: &Measurements,
-        path: &Path<'_>,
-    ) -> MonitorInput {
-        let force = measurements.specific_force.value;
-        let (forward, up) = in_g(force.x_mps2, force.z_mps2);
-        let airspeed = measurements.airspeed_mps;
-        MonitorInput {
-            sample: ForceSample {
-                forward,
-                up,
-                pitch_rad: path.orientation.pitch_rad,
-                roll_rad: path.orientation.roll_rad,
-                upward: path.upward,
-                climb_rate_mps: path.vertical.climb_rate_mps,
-                climbs_by_lift: self.altitude_monitor.is_doubted()
-                    && !self.monitor.shares_static_port()
-                    && !is_current(&measurements.velocity, now),
-                sqrt_density: path.sqrt_density,
-                ..ForceSample::NONE
-            },
-            throttle: self.throttle,
-            altitude_m: path.vertical.altitude_m,
-            sensor_mps: is_current(&airspeed, now).then_some((airspeed.value, airspeed.source)),
-            over_ground: None,
-            altimeter_is_doubted: self.altitude_monitor.is_doubted(),
-            motion_is_known: self.motion_is_known && !self.is_flaring,
-            may_doubt: self.is_engaged && !self.is_flaring,
-        }
     }
 
     /// The latest estimate.
