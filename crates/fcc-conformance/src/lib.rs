@@ -71,6 +71,7 @@ mod allocations;
 pub mod authority;
 #[cfg(feature = "flight")]
 mod flight;
+mod gpsd;
 pub mod sensor;
 mod ticks;
 mod waiting;
@@ -80,6 +81,7 @@ pub use allocations::{allocator_calls, allocator_calls_so_far};
 pub use authority::AuthorityBench;
 #[cfg(feature = "flight")]
 pub use flight::flight_times;
+pub use gpsd::RealGpsd;
 pub use sensor::{SensorBench, VanishingSource};
 pub use ticks::Ticks;
 pub use waiting::waits;

@@ -10,10 +10,10 @@ use std::io::Write;
 use std::net::TcpListener;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use fcc_conformance::RealGpsd;
 use fcc_core::flight::Autopilot;
 use fcc_core::framework::{Controller, LoopCommand, RecordOf, State, Tick, Time};
 use fcc_flight::calibrate::{CalibrationKind, CalibrationSession, Extent};
@@ -21,8 +21,7 @@ use fcc_flight::config::Config;
 use fcc_flight::flight::{Access, FlightTime, Length, Observer, Pace, Plan, Report, assemble, fly};
 use fcc_linux::monotonic;
 use nix::pty::openpty;
-use nix::sys::signal::{Signal, kill};
-use nix::unistd::{Pid, ttyname};
+use nix::unistd::ttyname;
 use tempfile::TempDir;
 
 /// UBX-NAV-PVT encoded by pyubx2: latitude 42.95, longitude -87.88, 220.4 m above
@@ -63,7 +62,9 @@ fn nav_pvt(later: u32) -> [u8; 100] {
 enum Receiver {
     /// And how often it spoke.
     Line(File, u32),
-    Gpsd(Child),
+    Gpsd {
+        _gpsd: RealGpsd,
+    },
 }
 
 impl Way {
@@ -97,57 +98,32 @@ impl Way {
                 Receiver::Line(pair.master.into(), 0)
             }
             Self::Gpsd(port) => {
-                let log = folder.join("receiver.nmea");
-                let seconds: String = (0..60).map(second).collect();
-                fs::write(&log, format!("# a receiver\n{seconds}")).unwrap();
-                let gpsfake = Command::new("gpsfake")
-                    .args(["--nowait", "--quiet", "--cycle", "0.02", "--port"])
-                    .arg(port.to_string())
-                    .arg(log)
-                    .stdin(Stdio::null())
-                    .stdout(Stdio::null())
-                    .stderr(Stdio::null())
-                    .spawn()
-                    .expect("gpsd and gpsd-clients are installed: `make test-rust` does it");
-                Receiver::Gpsd(gpsfake)
+                // The same place as in [`NAV_PVT`].
+                let gpsd = RealGpsd::start(folder, port, |time| {
+                    [
+                        format!("GNRMC,{time},A,4257.00000,N,08752.80000,W,0.3,,221126,,,A"),
+                        format!(
+                            "GNGGA,{time},4257.00000,N,08752.80000,W,1,14,0.7,220.4,M,-34.4,M,,"
+                        ),
+                    ]
+                });
+                Receiver::Gpsd {
+                    _gpsd: gpsd
+                        .expect("gpsd and gpsd-clients are installed: `make test-rust` does it"),
+                }
             }
         }
     }
 }
 
 impl Receiver {
-    /// gpsfake speaks by itself.
+    /// gpsd's receiver speaks by itself.
     fn speak(&mut self) {
         if let Self::Line(line, spoken) = self {
             let _ = line.write(&nav_pvt(*spoken));
             *spoken += 1;
         }
     }
-}
-
-impl Drop for Receiver {
-    /// gpsfake ends its gpsd at SIGTERM.
-    fn drop(&mut self) {
-        if let Self::Gpsd(gpsfake) = self {
-            let pid = Pid::from_raw(gpsfake.id().cast_signed());
-            let _ = kill(pid, Signal::SIGTERM);
-            let _ = gpsfake.wait();
-        }
-    }
-}
-
-/// The same place as in [`NAV_PVT`], in a second's sentences.
-fn second(number: u32) -> String {
-    let sentence = |text: String| {
-        let sum = text.bytes().fold(0, |sum, byte| sum ^ byte);
-        format!("${text}*{sum:02X}\r\n")
-    };
-    [
-        format!("GNRMC,1011{number:02}.00,A,4257.00000,N,08752.80000,W,0.3,,221126,,,A"),
-        format!("GNGGA,1011{number:02}.00,4257.00000,N,08752.80000,W,1,14,0.7,220.4,M,-34.4,M,,"),
-    ]
-    .map(sentence)
-    .concat()
 }
 
 fn duty(folder: &Path, output: u32) -> String {
