@@ -12,7 +12,7 @@ mod state;
 use core::time::Duration;
 
 use fcc_core::framework::Time;
-use late::{Claim, LateFilter};
+use late::{Claim, LATE, LATE_S, LateFilter};
 use pace::{Pace, PaceMeter};
 pub use state::SimulatorState;
 
@@ -69,6 +69,8 @@ pub(crate) struct SimulatorClock {
     /// The latest before this tick: in one tick many may arrive that waited.
     before: ClockSample,
     late: LateFilter,
+    /// When a datagram last arrived that was overtaken by a second or more.
+    old_arrived: Time,
     /// Of a time that is far ahead.
     ahead: Claim,
     /// The latest before the last gap, and when that ended.
@@ -91,6 +93,7 @@ impl SimulatorClock {
             latest: ClockSample::default(),
             before: ClockSample::default(),
             late: LateFilter::default(),
+            old_arrived: Time::NEVER,
             ahead: Claim::default(),
             before_gap: ClockSample::default(),
             gap_ended: Time::NEVER,
@@ -127,8 +130,17 @@ impl SimulatorClock {
         if self.is_ahead(sample) {
             !self.ahead.is_continued_by(sample)
         } else {
-            self.late.is_late(sample, self.latest)
+            let is_late = self.late.is_late(sample, self.latest);
+            if is_late && self.latest.time_s - time_s >= LATE_S {
+                self.old_arrived = now;
+            }
+            is_late
         }
+    }
+
+    /// Whether what has no time may be as old as what arrives with it.
+    pub(crate) fn delivers_old(&self, now: Time) -> bool {
+        !self.old_arrived.is_never() && now.since(self.old_arrived) < LATE
     }
 
     /// The latest time before the last gap, and when that ended, if this is the
@@ -198,6 +210,7 @@ impl SimulatorClock {
         // Late datagrams were dropped, so a time that went back was set back.
         if gained_s < 0.0 || is_ahead {
             self.jumped = true;
+            self.old_arrived = Time::NEVER;
             self.begin_pace(now);
         } else if was_silent || gains {
             self.begin_pace(now);

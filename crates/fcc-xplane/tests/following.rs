@@ -198,9 +198,11 @@ fn a_jump_is_an_event_of_one_tick() {
     let mut bench = Bench::new();
     bench.settle();
     bench.simulator.set(FLIGHT_TIME, 0.5);
-    // The first datagram may be one that was overtaken.
-    bench.watch().unwrap();
-    assert_eq!(bench.measurements.plant.value.state, PlantState::Running);
+    // They may be datagrams that were overtaken, for 0.4 s.
+    for _ in 0..16 {
+        bench.watch().unwrap();
+        assert_eq!(bench.measurements.plant.value.state, PlantState::Running);
+    }
     bench.watch().unwrap();
     assert_eq!(bench.measurements.plant.value.state, PlantState::Jumped);
     bench.watch().unwrap();

@@ -29,20 +29,28 @@ fn start(port: u16) -> (RealGpsd, TempDir) {
 /// Opens it until it is there, and reads until there is a fix.
 fn fix_of(settings: &GpsdSettings) -> (Gpsd, GnssFix) {
     let begun = Instant::now();
+    let mut failed = None;
     while begun.elapsed() < AT_MOST {
-        let Ok(mut gpsd) = Gpsd::open(settings, monotonic) else {
-            std::thread::sleep(std::time::Duration::from_millis(50));
-            continue;
+        let mut gpsd = match Gpsd::open(settings, monotonic) {
+            Ok(gpsd) => gpsd,
+            Err(error) => {
+                failed = Some(error);
+                std::thread::sleep(std::time::Duration::from_millis(50));
+                continue;
+            }
         };
         while begun.elapsed() < AT_MOST {
             match gpsd.read() {
                 Ok(Some(sample)) => return (gpsd, sample.value),
                 Ok(None) => {}
-                Err(_) => break,
+                Err(error) => {
+                    failed = Some(error);
+                    break;
+                }
             }
         }
     }
-    panic!("no fix");
+    panic!("no fix: {failed:?}");
 }
 
 /// What reading it fails with.

@@ -91,13 +91,49 @@ fn an_overtaken_datagram_is_dropped_whole_and_a_doubled_one_is_harmless() {
 fn a_loaded_flight_is_reported_as_a_jump_and_followed() {
     let mut bench = Bench::new(None);
     bench.tick(&[values(&[(Quantity::FlightTime, 500.0)])]);
-    // It may be a datagram that was overtaken, until another one continues it.
-    let state = bench.tick(&[values(&[(Quantity::FlightTime, 3.0)])]);
-    assert_eq!(state, SimulatorState::Running);
-    let state = bench.tick(&[values(&[(Quantity::FlightTime, 3.025)])]);
+    // They may be datagrams that were overtaken, for 0.4 s.
+    for tick in 0..16_u8 {
+        let time_s = 3.0 + 0.025 * f32::from(tick);
+        let state = bench.tick(&[values(&[(Quantity::FlightTime, time_s)])]);
+        assert_eq!(state, SimulatorState::Running);
+    }
+    let state = bench.tick(&[values(&[(Quantity::FlightTime, 3.4)])]);
     assert_eq!(state, SimulatorState::Jumped);
     assert_eq!(bench.measurements.plant.value.state, PlantState::Jumped);
-    assert_close(bench.measurements.plant.value.time_s, 3.025);
+    assert_close(bench.measurements.plant.value.time_s, 3.4);
+}
+
+/// Of longitude, latitude and elevation, and nothing else.
+fn position(latitude_deg: f64) -> Vec<u8> {
+    let mut datagram = b"RPOS4".to_vec();
+    for value in [-88.0, latitude_deg, 300.0] {
+        datagram.extend(value.to_le_bytes());
+    }
+    datagram.resize(69, 0);
+    datagram
+}
+
+#[test]
+fn a_position_that_arrives_beside_old_times_is_not_used() {
+    let mut bench = Bench::new(None);
+    let time = |time_s| values(&[(Quantity::FlightTime, time_s)]);
+    let latitude_deg = |bench: &Bench| bench.measurements.position.value.latitude_rad.to_degrees();
+    bench.tick(&[time(500.0), position(43.0)]);
+    assert_close(latitude_deg(&bench), 43.0);
+    bench.tick(&[time(500.02), time(497.0), position(42.9)]);
+    assert_close(latitude_deg(&bench), 43.0);
+    // For 0.4 s.
+    for tick in 0..15_u8 {
+        bench.tick(&[time(500.1 + 0.025 * f32::from(tick)), position(42.8)]);
+        assert_close(latitude_deg(&bench), 43.0);
+    }
+    bench.tick(&[time(500.6), position(43.001)]);
+    assert_close(latitude_deg(&bench), 43.001);
+    // That of a loaded flight is used with its time.
+    for tick in 0..17_u8 {
+        bench.tick(&[time(3.0 + 0.025 * f32::from(tick)), position(10.0)]);
+    }
+    assert_close(latitude_deg(&bench), 10.0);
 }
 
 #[test]

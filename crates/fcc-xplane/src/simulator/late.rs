@@ -8,10 +8,11 @@ use super::ClockSample;
 
 /// Two datagrams of one flight are mostly less than this apart when one overtakes
 /// the other; time that goes back further and continues there was set back.
-const LATE_S: f64 = 1.0;
+pub(super) const LATE_S: f64 = 1.0;
 /// For this long, from the first one on, older times may belong to late datagrams,
-/// also after a silence: those may arrive first that were sent before it. A newer
-/// one follows within the network's jitter; without one, another flight runs.
+/// also after a silence: those may arrive first that were sent before it, or beside
+/// what is new. A newer one follows within the network's jitter; without one, another
+/// flight runs.
 pub(super) const LATE: Duration = Duration::from_millis(400);
 
 /// Tells older times of late datagrams from those of a clock that was set back.
@@ -57,12 +58,10 @@ impl LateFilter {
         if back_s <= 0.0 {
             return false;
         }
-        if back_s >= LATE_S {
-            return !self.set_back.is_continued_by(sample);
-        }
         if self.since.is_never() {
             self.since = sample.seen;
         }
-        sample.seen.since(self.since) < LATE
+        let is_doubted = back_s >= LATE_S && !self.set_back.is_continued_by(sample);
+        is_doubted || sample.seen.since(self.since) < LATE
     }
 }

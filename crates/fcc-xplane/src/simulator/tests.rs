@@ -1,4 +1,3 @@
-use super::late::LATE;
 use super::*;
 
 const SILENT_AFTER: Duration = Duration::from_millis(500);
@@ -218,9 +217,9 @@ fn an_overtaken_datagram_after_a_silence_is_late_and_no_jump() {
 }
 
 /// One that was overtaken by more than a second is dropped, too, and so are all
-/// that arrive with it.
+/// that arrive with it, and those that continue it beside newer ones.
 #[test]
-fn a_jump_back_is_believed_with_a_second_time_that_continues_it() {
+fn a_jump_back_is_believed_if_another_continues_it_and_nothing_newer_arrives() {
     for back_s in [1.2, 3.0, 100.0] {
         let mut bench = Bench::new();
         bench.fly(80, 1.0);
@@ -238,7 +237,30 @@ fn a_jump_back_is_believed_with_a_second_time_that_continues_it() {
             let later = bench.now + Bench::TICK;
             assert!(bench.clock.is_late(later, time_s - 2.0));
             let later = later + Bench::TICK;
+            assert!(bench.clock.is_late(later, time_s - 2.0 + runs_s));
+            let later = bench.now + LATE;
             assert!(!bench.clock.is_late(later, time_s - 2.0 + runs_s));
+        }
+    }
+}
+
+/// A network held all back for five seconds, and delivers each of them in a second,
+/// beside what is new.
+#[test]
+fn old_times_that_run_beside_the_present_one_are_late() {
+    let mut bench = Bench::new();
+    bench.fly(80, 1.0);
+    bench.now = bench.now + Duration::from_secs(5);
+    bench.time_s += 5.0;
+    for _ in 0..40 {
+        assert_eq!(bench.fly(1, 1.0), SimulatorState::Running);
+        // X-Plane sends 20 times a second.
+        for _ in 0..2 {
+            bench.now = bench.now + Bench::TICK;
+            bench.time_s += 0.025;
+            for behind_s in [5.0, 4.0, 3.0, 2.0, 1.0] {
+                assert!(bench.clock.is_late(bench.now, bench.time_s - behind_s));
+            }
         }
     }
 }
