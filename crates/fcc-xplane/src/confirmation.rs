@@ -18,7 +18,7 @@ use fcc_core::framework::Time;
 use crate::lasting::Lasting;
 use crate::link::SharedState;
 use crate::quantity::Quantity;
-use crate::written::Written;
+use crate::written::{ReadBack, Written};
 
 /// The longest time for which writing may be unconfirmed.
 pub(crate) const CONFIRMED_WITHIN: Duration = Duration::from_secs(1);
@@ -35,6 +35,10 @@ const TOLERANCE: f32 = 0.02;
 /// after which it processes what it had queued, is shorter.
 const CONTESTED_AFTER: Duration = Duration::from_millis(1500);
 const CONTESTED_UNTIL: Duration = Duration::from_secs(5);
+
+/// Over such a time the round trip is the longest that was seen: the same value may be
+/// written again and again.
+const ROUND_TRIP_OVER: Duration = Duration::from_secs(1);
 
 const YOKE: [Quantity; 3] = [
     Quantity::YokePitch,
@@ -91,6 +95,25 @@ pub(crate) struct Confirmation {
     /// When the yoke was last read where it was not put.
     moved_by_another: Time,
     contested: Lasting,
+    round_trip: RoundTrip,
+}
+
+/// From writing a value to reading it back.
+#[derive(Clone, Copy, Debug)]
+struct RoundTrip {
+    since: Time,
+    longest: Duration,
+    shown: Duration,
+}
+
+impl RoundTrip {
+    fn add(&mut self, now: Time, took: Duration) {
+        if now.since(self.since) >= ROUND_TRIP_OVER {
+            (self.since, self.shown) = (now, self.longest);
+            self.longest = Duration::ZERO;
+        }
+        self.longest = self.longest.max(took);
+    }
 }
 
 impl Confirmation {
@@ -106,6 +129,11 @@ impl Confirmation {
             cut: Lasting::new(CONTESTED_AFTER, LATELY),
             moved_by_another: Time::NEVER,
             contested: Lasting::new(CONTESTED_AFTER, CONTESTED_UNTIL),
+            round_trip: RoundTrip {
+                since: now,
+                longest: Duration::ZERO,
+                shown: Duration::ZERO,
+            },
         }
     }
 
@@ -147,17 +175,25 @@ impl Confirmation {
             let Some((value, at)) = self.recent(axis, now, link) else {
                 continue;
             };
-            let is_foreign = self.written.is_foreign(index, value, at);
+            let read_back = self.written.recognise(index, value, at);
+            if let ReadBack::WrittenBefore(age) = read_back {
+                self.round_trip.add(now, age);
+            }
             let Some(ours) = self.ours.get_mut(index) else {
                 continue;
             };
             let is_there = ours.is_some_and(|ours| (value - ours).abs() <= STILL);
             moved |= !is_there;
-            if Extent::of(put).holds(value) && !is_foreign {
+            let is_recent = match read_back {
+                ReadBack::Unknown => true,
+                ReadBack::WrittenBefore(age) => age <= CONFIRMED_WITHIN,
+                ReadBack::Foreign => false,
+            };
+            if is_recent && Extent::of(put).holds(value) {
                 *ours = Some(value);
             } else if is_there {
                 stands = true;
-            } else {
+            } else if is_recent || read_back == ReadBack::Foreign {
                 elsewhere = true;
             }
         }
@@ -169,6 +205,12 @@ impl Confirmation {
         }
         let lately = !self.moved_by_another.is_never() && now.since(self.moved_by_another) < LATELY;
         self.contested.step(now, lately)
+    }
+
+    /// From writing to reading back, in the last second that has passed; zero while
+    /// nothing is recognised.
+    pub(crate) const fn round_trip(&self) -> Duration {
+        self.round_trip.shown
     }
 
     /// Whether the yoke stands still where it was put before: what is written does
@@ -312,13 +354,14 @@ mod tests {
         }));
     }
 
-    /// 0.4 s each way, and a network that lets through a readback every 0.4 s.
+    /// Up to 1 s each way, and a network that lets through a readback every 0.4 s.
     #[test]
     fn a_slow_or_lossy_network_is_not_another_program() {
         let written = |tick: u32| (f64::from(tick) * 0.1).sin() as f32 * 0.2;
         let delayed = |ticks: u32| move |tick: u32, _| written(tick.saturating_sub(ticks));
         assert!(!contested(400, 1.0, delayed(32)));
         assert!(!contested(400, 1.0, delayed(38)));
+        assert!(!contested(400, 1.0, delayed(80)));
         let link = SharedState::new(None);
         let mut now = Time::from_nanos(1_000_000_000);
         let mut confirmation = Confirmation::begin(now);

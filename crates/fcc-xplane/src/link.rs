@@ -69,6 +69,8 @@ pub(crate) struct SharedState {
     unconfirmed: AtomicBool,
     /// What is written arrived before, and does not any more.
     cut: AtomicBool,
+    /// From writing to reading back; an f32, s.
+    round_trip: AtomicU32,
     /// Another program writes the held controls, too.
     other_writer: AtomicBool,
     /// An override is set, not by this program, and nothing moves the yoke.
@@ -112,6 +114,7 @@ impl SharedState {
             maybe_reloaded: AtomicBool::new(false),
             unconfirmed: AtomicBool::new(false),
             cut: AtomicBool::new(false),
+            round_trip: AtomicU32::new(0),
             other_writer: AtomicBool::new(false),
             left_overridden: AtomicBool::new(false),
             loads_differ: AtomicBool::new(false),
@@ -256,6 +259,16 @@ impl SharedState {
 
     pub(crate) fn set_cut(&self, cut: bool) {
         self.cut.store(cut, Ordering::Relaxed);
+    }
+
+    /// From writing the controls to reading them back, s; 0 until it is known.
+    pub(crate) fn round_trip_s(&self) -> f32 {
+        f32::from_bits(self.round_trip.load(Ordering::Relaxed))
+    }
+
+    pub(crate) fn set_round_trip_s(&self, round_trip_s: f32) {
+        self.round_trip
+            .store(round_trip_s.to_bits(), Ordering::Relaxed);
     }
 
     /// Whether another program writes the held controls, too.

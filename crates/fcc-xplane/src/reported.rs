@@ -20,6 +20,12 @@ const REPORT_AFTER: Duration = Duration::from_secs(1);
 /// every second.
 const REPORT_NOTHING_AFTER: Duration = Duration::from_millis(2_500);
 
+/// The loops are tuned for a latency of 0.12 s. Above this round trip, s, for so long,
+/// a flight is not what it should be; a simulator that stops for a moment is over
+/// sooner.
+const SLOW_S: f32 = 0.25;
+const SLOW_FOR: Duration = Duration::from_secs(3);
+
 /// What was reported last.
 #[derive(Debug)]
 pub(crate) struct Reported {
@@ -35,6 +41,8 @@ pub(crate) struct Reported {
     missing: Vec<Missing>,
     control: Control,
     old: OldDatagrams,
+    slow_since: Option<Instant>,
+    is_slow_said: bool,
     loads_differ: bool,
     axial_backwards: bool,
     left_overridden: bool,
@@ -61,6 +69,8 @@ impl Default for Reported {
             missing: Vec::new(),
             control: Control::Free,
             old: OldDatagrams::default(),
+            slow_since: None,
+            is_slow_said: false,
             loads_differ: false,
             axial_backwards: false,
             left_overridden: false,
@@ -106,6 +116,7 @@ impl Reported {
                 .or_else(|| self.change_of_overrides(status))
                 .or_else(|| self.change_of_pace(status))
                 .or_else(|| self.change_of_old(status))
+                .or_else(|| self.change_of_round_trip(status))
                 .or_else(|| self.change_of_loads(status))
                 .or_else(|| self.change_of_missing(status)),
         }
@@ -266,6 +277,27 @@ impl Reported {
              arrived before, and are not used: the network delivers them late or twice, as over \
              cable and Wi-Fi at once, or another program repeats them: connect both machines by \
              one cable, and end that program"
+        ))
+    }
+
+    /// That the controls take effect too late; once.
+    fn change_of_round_trip(&mut self, status: &XPlaneStatus) -> Option<String> {
+        let simulator = status.simulator()?;
+        let took_s = status.link().round_trip_s();
+        if took_s <= SLOW_S {
+            self.slow_since = None;
+            return None;
+        }
+        let since = *self.slow_since.get_or_insert_with(Instant::now);
+        if self.is_slow_said || since.elapsed() < SLOW_FOR {
+            return None;
+        }
+        self.is_slow_said = true;
+        Some(format!(
+            "what is written to X-Plane at {simulator} is read back after {took_s:.1} s: the \
+             network is slow, and with more than {SLOW_S} s the aircraft is not flown well, with \
+             more than 0.5 s not at all. Connect both machines by a cable, or run this program on \
+             X-Plane's machine"
         ))
     }
 

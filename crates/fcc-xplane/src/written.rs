@@ -1,15 +1,14 @@
-//! The values written to the yoke in the last one and a half seconds, to recognise them when
+//! The values written to the yoke in the last three seconds, to recognise them when
 //! they are read back.
 
 use core::time::Duration;
 
 use fcc_core::framework::Time;
 
-/// One and a half seconds at 128 Hz; at a higher rate less, which is still some
-/// frames.
-const MOST: usize = 192;
-/// A value is read back at most this long after it was written.
-const READ_BACK_WITHIN: Duration = Duration::from_secs(1);
+/// Three seconds at 128 Hz; at a higher rate less, which is still some frames.
+const MOST: usize = 384;
+/// A value is read back at most this long after it was written, over a slow network.
+const READ_BACK_WITHIN: Duration = Duration::from_millis(2_500);
 /// X-Plane stores what was written as f32, as it was sent.
 const SAME: f32 = 1e-4;
 
@@ -21,6 +20,17 @@ const RECOGNISED: u8 = 40;
 struct Entry {
     yoke: [f32; 3],
     at: Time,
+}
+
+/// What a value that is read back is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum ReadBack {
+    /// The simulator shows something else than what is sent, as far as is known.
+    Unknown,
+    /// This program's, written so long before or longer: the same may have been
+    /// written again since.
+    WrittenBefore(Duration),
+    Foreign,
 }
 
 /// The last values written.
@@ -55,23 +65,26 @@ impl Written {
         self.next = (self.next + 1) % MOST;
     }
 
-    /// Whether a value read back at `at` was not written, by a simulator that
-    /// shows what is written.
-    pub(crate) fn is_foreign(&mut self, axis: usize, value: f32, at: Time) -> bool {
-        let ours = self.entries.iter().any(|entry| {
-            at.since(entry.at) <= READ_BACK_WITHIN
-                && entry
-                    .yoke
-                    .get(axis)
-                    .is_some_and(|written| (written - value).abs() <= SAME)
-        });
+    /// A value that was read back at `at`.
+    pub(crate) fn recognise(&mut self, axis: usize, value: f32, at: Time) -> ReadBack {
+        let is_same = |entry: &&Entry| {
+            let written = entry.yoke.get(axis);
+            written.is_some_and(|written| (written - value).abs() <= SAME)
+        };
+        let ages = self.entries.iter().filter(is_same);
+        let ages = ages.map(|entry| at.since(entry.at));
+        let age = ages.min().filter(|age| *age <= READ_BACK_WITHIN);
         if self.recognised < RECOGNISED && value.abs() > SAME {
-            self.recognised = if ours {
+            self.recognised = if age.is_some() {
                 self.recognised + 1
             } else {
                 self.recognised.saturating_sub(1)
             };
         }
-        self.recognised == RECOGNISED && !ours
+        match age {
+            _ if self.recognised < RECOGNISED => ReadBack::Unknown,
+            Some(age) => ReadBack::WrittenBefore(age),
+            None => ReadBack::Foreign,
+        }
     }
 }

@@ -198,8 +198,8 @@ fn a_jump_is_an_event_of_one_tick() {
     let mut bench = Bench::new();
     bench.settle();
     bench.simulator.set(FLIGHT_TIME, 0.5);
-    // They may be datagrams that were overtaken, for 0.4 s.
-    for _ in 0..16 {
+    // They may be datagrams that were overtaken, for 0.15 s.
+    for _ in 0..6 {
         bench.watch().unwrap();
         assert_eq!(bench.measurements.plant.value.state, PlantState::Running);
     }

@@ -3,15 +3,17 @@
 
 mod support;
 
-use fcc_core::framework::{Actuator, ActuatorFault};
+use std::collections::VecDeque;
 use std::net::SocketAddr;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use fcc_xplane::{Control, Output, Released, Trouble, XPlane};
+use fcc_core::flight::Surfaces;
+use fcc_core::framework::{Actuator, ActuatorFault, ControlAuthority, Sensor};
+use fcc_xplane::{Control, Output, Released, Trouble, XPlane, XPlaneAuthority};
 use support::bench::{Bench, SURFACES};
 use support::{
-    FakeXPlane, OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, THROTTLE, YOKE_HEADING, YOKE_PITCH,
-    YOKE_ROLL,
+    FLIGHT_TIME, FakeXPlane, OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, THROTTLE, YOKE_HEADING,
+    YOKE_PITCH, YOKE_ROLL,
 };
 
 #[test]
@@ -63,6 +65,51 @@ fn control_is_taken_only_where_it_is_allowed() {
     assert_eq!(bench.status.held_at(), Some(here));
     bench.simulator.listen();
     bench.simulator.assert_shows(OVERRIDE_JOYSTICK, 1.0);
+}
+
+/// In real time, since it is said by the clock: after three seconds in which the yoke
+/// is read back 0.4 s late.
+#[test]
+fn controls_that_are_read_back_late_are_said_once() {
+    let mut bench = Bench::new();
+    bench.settle();
+    let authority = XPlaneAuthority::of(bench.status.clone(), &bench.simulator.config());
+    let mut on_its_way = VecDeque::from([0.0; 16]);
+    let mut said = Vec::new();
+    let begun = Instant::now();
+    while begun.elapsed() < Duration::from_secs(6) {
+        std::thread::sleep(Duration::from_millis(10));
+        bench.simulator.listen();
+        let time_s = bench.simulator.value(FLIGHT_TIME) + 0.025;
+        bench.simulator.set(FLIGHT_TIME, time_s);
+        bench
+            .simulator
+            .set(YOKE_PITCH, on_its_way.pop_front().unwrap());
+        let frame = bench.simulator.frame();
+        bench.simulator.send(&frame);
+        let outputs = Surfaces {
+            elevator: 0.2 * f64::from(time_s).sin(),
+            ..SURFACES
+        };
+        on_its_way.push_back(outputs.elevator as f32);
+        let tick = bench.ticks.next();
+        bench.sensor.sample(&tick, &mut bench.measurements).unwrap();
+        let _ = bench.actuator.as_mut().unwrap().apply(&tick, &outputs);
+        assert!(!bench.measurements.other_control.value.writer);
+        authority.report(&mut |text| {
+            let text = text.to_string();
+            said.extend(
+                text.contains("is read back after")
+                    .then_some((begun.elapsed(), text)),
+            );
+        });
+    }
+    let [(at, text)] = &said[..] else {
+        panic!("once: {said:?}")
+    };
+    assert!(*at >= Duration::from_secs(3), "{at:?}");
+    assert!(text.contains("is read back after 0.4 s"), "{text}");
+    assert!(text.contains("Connect both machines by a cable"), "{text}");
 }
 
 #[test]

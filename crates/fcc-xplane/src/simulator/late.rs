@@ -10,10 +10,14 @@ use super::ClockSample;
 /// the other; time that goes back further and continues there was set back.
 pub(super) const LATE_S: f64 = 1.0;
 /// For this long, from the first one on, older times may belong to late datagrams,
-/// also after a silence: those may arrive first that were sent before it, or beside
-/// what is new. A newer one follows within the network's jitter; without one, another
-/// flight runs.
+/// also after a silence: those may arrive first that were sent before it. A newer
+/// one follows within the network's jitter; without one, another flight runs.
 pub(super) const LATE: Duration = Duration::from_millis(400);
+
+/// A network that held some back for seconds may deliver them beside what is new, and
+/// that comes in each of 20 frames a second: for so long, [`LATE_S`] and more is late,
+/// too.
+pub(super) const BESIDE: Duration = Duration::from_millis(150);
 
 /// Tells older times of late datagrams from those of a clock that was set back.
 /// It starts anew with each newer time.
@@ -61,7 +65,11 @@ impl LateFilter {
         if self.since.is_never() {
             self.since = sample.seen;
         }
-        let is_doubted = back_s >= LATE_S && !self.set_back.is_continued_by(sample);
-        is_doubted || sample.seen.since(self.since) < LATE
+        let passed = sample.seen.since(self.since);
+        if back_s >= LATE_S {
+            !self.set_back.is_continued_by(sample) || passed < BESIDE
+        } else {
+            passed < LATE
+        }
     }
 }

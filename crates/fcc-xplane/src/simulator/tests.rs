@@ -238,7 +238,7 @@ fn a_jump_back_is_believed_if_another_continues_it_and_nothing_newer_arrives() {
             assert!(bench.clock.is_late(later, time_s - 2.0));
             let later = later + Bench::TICK;
             assert!(bench.clock.is_late(later, time_s - 2.0 + runs_s));
-            let later = bench.now + LATE;
+            let later = bench.now + late::BESIDE;
             assert!(!bench.clock.is_late(later, time_s - 2.0 + runs_s));
         }
     }
