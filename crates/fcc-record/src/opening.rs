@@ -18,6 +18,9 @@ const ROOT: u32 = 0;
 const OF_OWNER: u32 = 0o600;
 /// The mode of a recording: whatever the umask is, only its owner may write it.
 pub(super) const RECORDING: u32 = 0o644;
+/// In a folder's mode: every user may write, and only a file's owner may delete it.
+const OTHERS_WRITE: u32 = 0o002;
+const STICKY: u32 = 0o1000;
 
 fn refused<T>(kind: ErrorKind, why: impl Into<String>) -> io::Result<T> {
     Err(io::Error::new(kind, why.into()))
@@ -184,6 +187,19 @@ pub fn create_folder(path: &Path) -> io::Result<()> {
     })
 }
 
+/// Who else can delete what is in a folder; none if only this user and root can, or it
+/// is not known.
+pub(super) fn others_in(folder: &Path) -> Option<String> {
+    let found = fs::metadata(folder).ok()?;
+    let owner = found.uid();
+    if ![geteuid().as_raw(), ROOT].contains(&owner) {
+        return Some(format!("belongs to user {owner}, who"));
+    }
+    let mode = found.permissions().mode();
+    (mode & OTHERS_WRITE != 0 && mode & STICKY == 0)
+        .then(|| "may be written by every user, and each".to_owned())
+}
+
 #[cfg(test)]
 mod tests {
     use std::os::unix::fs::{lchown, symlink};
@@ -273,5 +289,26 @@ mod tests {
         assert_eq!(read_file(&path, 11).unwrap().len(), 11);
         drop(open_lock(&path).unwrap());
         assert_eq!(fs::metadata(&path).unwrap().len(), 11);
+    }
+
+    #[test]
+    fn a_folder_in_which_others_may_delete_says_so() {
+        let folder = tempfile::tempdir().unwrap();
+        let mode = |mode| fs::set_permissions(folder.path(), Permissions::from_mode(mode));
+        for (bits, expected) in [
+            (0o755, None),
+            (0o1777, None),
+            (0o777, Some("may be written by every user, and each")),
+        ] {
+            mode(bits).unwrap();
+            assert_eq!(others_in(folder.path()).as_deref(), expected, "{bits:o}");
+        }
+        assert_eq!(others_in(&folder.path().join("missing")), None);
+        // Only root may give it away.
+        mode(0o755).unwrap();
+        if lchown(folder.path(), Some(65_534), None).is_ok() {
+            let said = others_in(folder.path());
+            assert_eq!(said.as_deref(), Some("belongs to user 65534, who"));
+        }
     }
 }

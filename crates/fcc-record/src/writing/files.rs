@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use super::super::file::RecordingFile;
 use super::super::folder;
 use super::super::name::file_name;
+use super::super::opening::others_in;
 use super::super::part::Part;
 use super::Writing;
 use crate::recorded::Recorded;
@@ -64,6 +65,16 @@ impl<C: Recorded> Writing<C> {
                 let path = file.path().to_owned();
                 if self.trouble.is_none() {
                     self.announce(format!("recording to {}", path.display()), false);
+                }
+                if self.about.part == 1
+                    && let Some(others) = others_in(&self.settings.folder)
+                {
+                    let folder = self.settings.folder.display();
+                    let text = format!(
+                        "{folder} {others} can delete what is recorded there: choose a folder of \
+                         your own, --recordings of fccd, or recording.folder"
+                    );
+                    self.announce(text, false);
                 }
                 self.board.update(|status| {
                     status.file = Some(path.clone());
