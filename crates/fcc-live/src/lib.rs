@@ -30,6 +30,7 @@
 //! The layout of `info` never changes, so that a reader of another version can
 //! report what it found. Everything else has a version: [`LAYOUT`].
 
+mod change_limit;
 mod command;
 mod connected;
 mod error;

@@ -11,6 +11,7 @@ use iceoryx2::sample_mut::SampleMut;
 use nix::time::{ClockId, clock_gettime};
 use rtrb::Consumer;
 
+use super::change_limit::ChangeLimit;
 use super::command::{CommandServer, Rings};
 use super::item::Item;
 use super::marks::Marks;
@@ -209,6 +210,7 @@ struct Publishing {
     /// Records in a row that could not be published.
     failures: u32,
     paused: bool,
+    room: ChangeLimit,
 }
 
 impl Publishing {
@@ -228,6 +230,7 @@ impl Publishing {
             info: None,
             failures: 0,
             paused: false,
+            room: ChangeLimit::default(),
         })
     }
 
@@ -277,16 +280,17 @@ impl Publishing {
     }
 
     /// Pauses while shared memory is nearly full; returns a text when that
-    /// changes.
+    /// changes. Another user's program can change it again and again.
     fn look_for_room(&mut self) -> Option<String> {
         let root = self.ports.place.root().as_path();
         let too_little = space::too_little(root, space::LEAST_BYTES);
         let was_paused = std::mem::replace(&mut self.paused, too_little.is_some());
-        match too_little {
+        let change = match too_little {
             Some(words) if !was_paused => Some(format!("live telemetry is paused: {words}")),
             None if was_paused => Some("live telemetry continues: there is space again".to_owned()),
             _ => None,
-        }
+        };
+        self.room.step(Instant::now(), change)
     }
 
     fn take<C: Telemetry>(&mut self, item: &Item<C>, progress: &Progress) {
