@@ -12,6 +12,9 @@ const SECOND: Duration = Duration::from_secs(1);
 #[derive(Debug)]
 pub(crate) struct Traffic {
     began: Instant,
+    /// Of how many seconds this one's may be: after a stop of this process all comes
+    /// at once that was sent meanwhile.
+    of_seconds: usize,
     bytes: usize,
     messages: usize,
 }
@@ -28,6 +31,7 @@ impl Traffic {
     pub(crate) fn begin() -> Self {
         Self {
             began: Instant::now(),
+            of_seconds: 1,
             bytes: 0,
             messages: 0,
         }
@@ -35,11 +39,31 @@ impl Traffic {
 
     /// Takes what has arrived; whether it is more than anything sends that belongs here.
     pub(crate) fn is_flood(&mut self, bytes: usize, messages: usize) -> bool {
-        if self.began.elapsed() >= SECOND {
-            *self = Self::begin();
+        let passed = self.began.elapsed();
+        if passed >= SECOND {
+            *self = Self {
+                of_seconds: 1 + passed.as_secs() as usize,
+                ..Self::begin()
+            };
         }
         self.bytes += bytes;
         self.messages += messages;
-        self.bytes > Self::MOST_BYTES || self.messages > Self::MOST_MESSAGES
+        self.bytes > self.of_seconds * Self::MOST_BYTES
+            || self.messages > self.of_seconds * Self::MOST_MESSAGES
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_sent_during_a_stop_is_no_flood() {
+        let mut traffic = Traffic::begin();
+        assert!(!traffic.is_flood(400_000, 500));
+        assert!(traffic.is_flood(700_000, 0));
+        traffic.began = Instant::now().checked_sub(10 * SECOND).unwrap();
+        assert!(!traffic.is_flood(5_000_000, 5_000));
+        assert!(traffic.is_flood(7_000_000, 0));
     }
 }
