@@ -3,6 +3,7 @@
 use libm::tan;
 
 use super::Navigation;
+use super::altitude_drift::Receiver;
 use super::altitude_monitor::{self, AltitudeInput, Verdict};
 use super::attitude::Orientation;
 use super::path::Path;
@@ -68,6 +69,12 @@ impl Navigation {
             path_mps,
             ground_mps,
             range_m: measurements.height_by_range_m(now, attitude.roll_rad, attitude.pitch_rad),
+            receiver: ground_mps
+                .filter(|_| is_current(&measurements.position, now))
+                .map(|climb_rate_mps| Receiver {
+                    altitude_m: measurements.position.value.altitude_m,
+                    climb_rate_mps,
+                }),
             tan_bank: limit_abs(tan(attitude.roll_rad), 3.0),
             gusts_mps: self.monitor.gusts_mps(),
             sensor_mps,

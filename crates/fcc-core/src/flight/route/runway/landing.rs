@@ -84,7 +84,10 @@ impl RunwayFlight {
             RunwayPhase::Approach => self.approach(here, motion),
             RunwayPhase::Flare => self.flare(here, on_wheels, dt_s),
             RunwayPhase::GoAround => {
-                if here.altitude_m > self.altitude_m {
+                // An altimeter may show it too high: not while there is ground below.
+                let decision_m = self.config.decision_height_m;
+                let is_clear = here.height_m.is_none_or(|above_m| above_m > decision_m);
+                if here.altitude_m > self.altitude_m && is_clear {
                     return Outcome::Again;
                 }
             }
