@@ -236,7 +236,14 @@ impl GroundMotion {
                 }
                 None => estimate.heading_rad + self.variation_rad,
             };
-            self.here.ground_velocity_mps = through_air(&self.here, heading) + self.here.wind_mps;
+            let flown_mps = through_air(&self.here, heading) + self.here.wind_mps;
+            self.here.ground_velocity_mps = if self.stands_on_wheels() {
+                // The wheels do not slip.
+                let ahead = Vector2::new(cos(heading), sin(heading));
+                ahead * ahead.dot(&flown_mps).max(0.0)
+            } else {
+                flown_mps
+            };
         }
         let here = self.here;
         self.place.advance(

@@ -101,8 +101,14 @@ impl Autopilot {
         dt_s: f64,
     ) -> Surfaces {
         let config = self.config.route.runway;
+        // Without a measured airspeed it may stay what it was.
+        let speed_mps = if self.navigation.airspeed_doubt().is_some() {
+            demand.ground_speed_mps
+        } else {
+            estimate.airspeed_mps
+        };
         let brakes = matches!(demand.phase, RunwayPhase::RollOut | RunwayPhase::Stopped)
-            && estimate.airspeed_mps < BRAKES_BELOW * config.approach_mps;
+            && speed_mps < BRAKES_BELOW * config.approach_mps;
         let to = if brakes { config.brake } else { 0.0 };
         let brake = &mut self.on_runway.brake;
         *brake += limit_abs(to - *brake, BRAKES_PER_S * dt_s);
