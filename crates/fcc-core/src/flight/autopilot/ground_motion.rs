@@ -26,6 +26,8 @@ const LONGEST_AGE: Duration = Duration::from_secs(1);
 const FORCE_AGE: Duration = Duration::from_millis(250);
 /// Faster than this on its wheels the aircraft moves where it points, m/s.
 const ROLLS_MPS: f64 = 5.0;
+/// Slower than this it stands, m/s.
+pub(super) const STANDS_MPS: f64 = 2.0;
 /// The receiver's altitude has noise: what the altimeter is off it is followed with this
 /// time constant, s.
 const ALTITUDE_FOLLOWS_S: f64 = 5.0;
@@ -144,10 +146,11 @@ impl GroundMotion {
         )
     }
 
-    /// On the wheels the range finder shows `on_wheels_m`; whether it begins to show
-    /// something else.
+    /// Standing, the range finder shows `on_wheels_m`; whether it begins to show something
+    /// else. In motion a switch that shows weight may be wrong.
     pub(super) fn check_range(&mut self, on_wheels_m: f64) -> bool {
-        self.stands_on_wheels() && self.ground.stand(self.below_m, on_wheels_m)
+        let stands = self.stands_on_wheels() && self.speed_mps() < STANDS_MPS;
+        stands && self.ground.stand(self.below_m, on_wheels_m)
     }
 
     /// The range finder does not show the ground, though it is near.

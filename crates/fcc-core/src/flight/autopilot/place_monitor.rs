@@ -7,6 +7,7 @@
 //! the velocity over the ground as well as airspeed and heading say, is not used
 //! either: what contradicts the velocity alone may be right.
 
+use super::ground_motion::STANDS_MPS;
 use libm::hypot;
 use nalgebra::Vector2;
 
@@ -174,7 +175,9 @@ impl PlaceMonitor {
         if place != self.repeated.from {
             self.repeated = Way::since(place);
         }
-        if moving.on_wheels || is_first || moving.off_m.is_none() && self.doubt.is_none() {
+        // In motion a doubt from the flight lasts.
+        let rolls = moving.on_wheels && (self.doubt.is_none() || moving.ground_mps < STANDS_MPS);
+        if rolls || is_first || moving.off_m.is_none() && self.doubt.is_none() {
             self.doubt = None;
             self.begin_window(place);
             return Verdict::Use;

@@ -118,6 +118,10 @@ pub(super) struct AirspeedMonitor {
     /// wind have contradicted the sensor, s.
     ground_s: f64,
     contradicted_s: f64,
+    /// How much faster it was over the ground than through the air in the take-off roll,
+    /// m/s, and for how long it has been more, s.
+    began_tail_mps: Option<f64>,
+    lags_s: f64,
     /// The airspeed by both and its standard deviation, while it is known, and the
     /// sensor's difference from it, m/s.
     by_ground: Option<(f64, f64)>,
@@ -158,6 +162,8 @@ impl AirspeedMonitor {
             doubt: None,
             ground_s: 0.0,
             contradicted_s: 0.0,
+            began_tail_mps: None,
+            lags_s: 0.0,
             by_ground: None,
             ground_difference: LowPass::new(VOTE_LAG_S),
             static_port: None,

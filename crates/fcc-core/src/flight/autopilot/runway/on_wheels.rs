@@ -23,6 +23,9 @@ const LEVELS_PER_S: f64 = 2.6;
 const BRAKES_PER_S: f64 = 0.5;
 /// Brakes are used below this share of the approach's airspeed.
 const BRAKES_BELOW: f64 = 0.85;
+/// After so long on the wheels it brakes at any speed, s: one whose throttle does not close
+/// does not become slow.
+const BRAKES_AFTER_S: f64 = 10.0;
 
 impl Autopilot {
     /// In a failsafe on the wheels: to a stop, straight on as far as the yaw rate is known.
@@ -108,7 +111,7 @@ impl Autopilot {
             estimate.airspeed_mps
         };
         let brakes = matches!(demand.phase, RunwayPhase::RollOut | RunwayPhase::Stopped)
-            && speed_mps < BRAKES_BELOW * config.approach_mps;
+            && (speed_mps < BRAKES_BELOW * config.approach_mps || demand.phase_s > BRAKES_AFTER_S);
         let to = if brakes { config.brake } else { 0.0 };
         let brake = &mut self.on_runway.brake;
         *brake += limit_abs(to - *brake, BRAKES_PER_S * dt_s);

@@ -1,10 +1,13 @@
 //! The airspeed sensor held against the velocity over the ground and the wind.
 
+use libm::hypot;
+
 use super::super::airspeed_filter::AirspeedFilter;
 use super::super::airspeed_reason::{Doubt, DoubtReason};
 use super::super::filter_bank::FilterBank;
 use super::super::force_sample::ForceSample;
 use super::super::scalar_update::squared;
+use super::super::wind::OverGround;
 use super::{AirspeedMonitor, CORRECTED_S, DIFFERS_RATIO, MonitorInput};
 
 /// Later than this, s, a velocity over the ground does not count any more.
@@ -13,6 +16,15 @@ const LOST_S: f64 = 1.5;
 /// airspeed at which a difference from the forces counts, must last for this time, s.
 const ERROR_SDS: f64 = 3.5;
 const DOUBTED_AFTER_S: f64 = 5.0;
+/// A sensor that is blocked in a take-off roll stays behind the speed over the ground by
+/// more than this, m/s, for this time, s: more than the wind changes in the first climb, of
+/// the time below. It was slow when it was first read, below this share of the reference
+/// airspeed, within this time, s.
+const SHEAR_MPS: f64 = 12.0;
+const LAGS_FOR_S: f64 = 1.0;
+const AT_FIRST_S: f64 = 60.0;
+const SLOW_RATIO: f64 = 0.6;
+const FIRST_READ_S: f64 = 1.5;
 /// That of the airspeed then, m/s.
 const RIGHT_SD_MPS: f64 = 1.0;
 
@@ -68,6 +80,11 @@ impl AirspeedMonitor {
             }
             return false;
         };
+        let lags = self.lags_ground(bank, read, sensor_mps, passed_s);
+        if let Some(right_mps) = lags.filter(|_| input.may_doubt) {
+            self.leave_sensor(bank, (sensor_mps, source), right_mps, sample);
+            return true;
+        }
         let Some((error, sd)) = bank.believing.wind.sensor_error() else {
             return false;
         };
@@ -82,8 +99,43 @@ impl AirspeedMonitor {
             return false;
         }
         self.contradicted_s = 0.0;
-        // What the models have learned came from that sensor.
         let right_mps = sensor_mps * (1.0 + error);
+        self.leave_sensor(bank, (sensor_mps, source), right_mps, sample);
+        true
+    }
+
+    /// The right airspeed, m/s, if the sensor has stayed behind the speed over the ground
+    /// since the take-off roll: nothing is known yet of the models and the wind but its
+    /// share along the runway.
+    fn lags_ground(
+        &mut self,
+        bank: &FilterBank,
+        read: &OverGround,
+        sensor_mps: f64,
+        passed_s: f64,
+    ) -> Option<f64> {
+        if bank.learned_s > AT_FIRST_S {
+            return None;
+        }
+        let ground_mps = hypot(read.north_mps, read.east_mps);
+        let tail_mps = ground_mps - sensor_mps / read.sqrt_density;
+        if bank.learned_s < FIRST_READ_S && sensor_mps < SLOW_RATIO * self.prior.reference_mps {
+            self.began_tail_mps = Some(tail_mps);
+        }
+        let lags_mps = tail_mps - self.began_tail_mps?;
+        let lags = lags_mps > SHEAR_MPS;
+        self.lags_s = if lags { self.lags_s + passed_s } else { 0.0 };
+        (self.lags_s > LAGS_FOR_S).then(|| sensor_mps + lags_mps * read.sqrt_density)
+    }
+
+    /// Doubts the sensor: what the models have learned came from it.
+    fn leave_sensor(
+        &mut self,
+        bank: &mut FilterBank,
+        (sensor_mps, source): (f64, u8),
+        right_mps: f64,
+        sample: &ForceSample,
+    ) {
         bank.older = AirspeedFilter::new(self.prior, (right_mps, RIGHT_SD_MPS), sample);
         bank.older.wind = bank.believing.wind;
         (bank.younger, bank.younger_s) = (bank.older, 0.0);
@@ -95,6 +147,5 @@ impl AirspeedMonitor {
         });
         self.was_doubted = true;
         self.agrees_s = 0.0;
-        true
     }
 }

@@ -3,8 +3,8 @@
 use libm::{fabs, tan};
 
 use super::{
-    ALTIMETER_OFF_M, Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase, RunwayReason,
-    WEIGHT_WRONG_M,
+    ALTIMETER_OFF_M, LONGEST_CLIMB_S, Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase,
+    RunwayReason, WEIGHT_WRONG_M,
 };
 use crate::flight::path::Motion;
 use crate::flight::route::OverGround;
@@ -69,12 +69,7 @@ impl RunwayFlight {
         (self.runway.elevation_m + above_m).min(self.level_m)
     }
 
-    pub(super) fn step_landing(
-        &mut self,
-        here: &OverGround,
-        motion: &Motion,
-        dt_s: f64,
-    ) -> Outcome {
+    pub(super) fn step_landing(&mut self, here: &OverGround, motion: &Motion) -> Outcome {
         let head_mps = -self.runway.course.dot(&motion.wind_mps);
         self.approach_mps =
             self.config.approach_mps + (WIND_SHARE * head_mps).clamp(0.0, MOST_WIND_MPS);
@@ -82,12 +77,13 @@ impl RunwayFlight {
         match self.phase {
             RunwayPhase::Approach if on_wheels => self.phase = RunwayPhase::RollOut,
             RunwayPhase::Approach => self.approach(here, motion),
-            RunwayPhase::Flare => self.flare(here, on_wheels, dt_s),
+            RunwayPhase::Flare => self.flare(here, on_wheels),
             RunwayPhase::GoAround => {
                 // An altimeter may show it too high: not while there is ground below.
                 let decision_m = self.config.decision_height_m;
                 let is_clear = here.height_m.is_none_or(|above_m| above_m > decision_m);
-                if here.altitude_m > self.altitude_m && is_clear {
+                let is_up = here.altitude_m > self.altitude_m && is_clear;
+                if is_up || self.phase_s > LONGEST_CLIMB_S {
                     return Outcome::Again;
                 }
             }
@@ -161,7 +157,6 @@ impl RunwayFlight {
             self.give_up(RunwayPhase::GoAround, RunwayReason::Receiver);
         } else if self.demand.height_m <= self.flares_m() {
             self.phase = RunwayPhase::Flare;
-            self.flared_s = 0.0;
         } else if path_m < self.level_m
             && let Some(reason) = self.must_go_around(here, off_m)
         {
@@ -187,17 +182,16 @@ impl RunwayFlight {
                 .is_some_and(|off_m| fabs(off_m) > ALTIMETER_OFF_M)
     }
 
-    pub(super) fn flare(&mut self, here: &OverGround, on_wheels: bool, dt_s: f64) {
+    pub(super) fn flare(&mut self, here: &OverGround, on_wheels: bool) {
         let config = self.config;
         let height_m = self.demand.height_m.max(0.0);
         let flared_mps = height_m / config.flare_s + config.touchdown_mps;
         let sink_mps = self.sink_mps().max(config.touchdown_mps);
         self.demand.climb_rate_mps = -flared_mps.min(sink_mps);
-        self.flared_s += dt_s;
         // With a range finder that shows nothing, the ground is far.
         let is_ranged = here.height_m.is_some() && !self.is_range_doubted;
         let is_near = is_ranged && height_m < FLOATS_M && self.may_be_down(here);
-        let is_long = self.flared_s > LONGEST_FLARES * config.flare_s
+        let is_long = self.phase_s > LONGEST_FLARES * config.flare_s
             || here.airspeed_mps < SLOWEST_SHARE * config.approach_mps;
         let balloons = height_m > (BALLOONS * self.flares_m()).max(COMMITTED_M);
         if on_wheels {

@@ -93,6 +93,8 @@ impl RunwayPhase {
 pub struct RunwayDemand {
     /// The phase.
     pub phase: RunwayPhase,
+    /// For how long it has lasted, s.
+    pub phase_s: f64,
     /// True course of the runway, rad.
     pub course_rad: f64,
     /// How far to the right of the centre line the aircraft is, m, and moves, m/s.
@@ -132,8 +134,8 @@ pub(super) struct RunwayFlight {
     approach_mps: f64,
     /// Where it began, m to the runway's point.
     began_m: f64,
-    /// For how long it has flared, s.
-    flared_s: f64,
+    /// For how long it has been in its phase, s.
+    phase_s: f64,
     /// Whether the wheels bore weight where they cannot.
     is_weight_wrong: bool,
     /// The sine of the glide's angle; none with power.
@@ -147,6 +149,11 @@ pub(super) struct RunwayFlight {
     /// Whether they show other ground now, farther from that elevation.
     is_range_doubted: bool,
 }
+
+/// A climb that has not reached its altitude after this time, s, has not the power for
+/// it, and would lead straight on for ever: the plan is flown as it is. At 1.5 m/s it is
+/// 180 m.
+const LONGEST_CLIMB_S: f64 = 120.0;
 
 /// What follows of a tick.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -173,7 +180,7 @@ impl RunwayFlight {
             level_m: altitude_m,
             approach_mps: config.approach_mps,
             began_m: 0.0,
-            flared_s: 0.0,
+            phase_s: 0.0,
             is_weight_wrong: false,
             glide_sine: None,
             thrown_s: 0.0,
@@ -182,6 +189,7 @@ impl RunwayFlight {
             is_range_doubted: false,
             demand: RunwayDemand {
                 phase,
+                phase_s: 0.0,
                 course_rad: libm::atan2(runway.course.y, runway.course.x),
                 cross_track_m: 0.0,
                 cross_track_mps: 0.0,
@@ -244,14 +252,20 @@ impl RunwayFlight {
             pitch_rad: self.pitch_rad,
             ..self.demand
         };
+        let before = self.phase;
+        self.phase_s += dt_s;
         let outcome = if self.phase.is_takeoff() {
             self.step_takeoff(here, motion, dt_s)
         } else if let Some(sine) = self.glide_sine {
-            self.step_powerless(here, sine, dt_s)
+            self.step_powerless(here, sine)
         } else {
-            self.step_landing(here, motion, dt_s)
+            self.step_landing(here, motion)
         };
+        if self.phase != before {
+            self.phase_s = 0.0;
+        }
         self.demand.phase = self.phase;
+        self.demand.phase_s = self.phase_s;
         outcome
     }
 

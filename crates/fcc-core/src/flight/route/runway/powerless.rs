@@ -36,7 +36,7 @@ impl RunwayFlight {
     }
 
     /// One tick of the approach and the flare; nothing gives it up.
-    pub(super) fn step_powerless(&mut self, here: &OverGround, sine: f64, dt_s: f64) -> Outcome {
+    pub(super) fn step_powerless(&mut self, here: &OverGround, sine: f64) -> Outcome {
         let on_wheels = self.touches(here);
         let true_of_indicated = here.true_airspeed_mps / here.airspeed_mps.max(1.0);
         let sink_mps = sine * true_of_indicated * self.config.approach_mps;
@@ -48,13 +48,12 @@ impl RunwayFlight {
                 self.demand.climb_rate_mps = -sink_mps;
                 if self.demand.height_m <= self.flares_m() {
                     self.phase = RunwayPhase::Flare;
-                    self.flared_s = 0.0;
                 }
             }
             RunwayPhase::Flare => {
                 let is_slow = here.airspeed_mps < SLOWEST_SHARE * self.config.approach_mps;
                 let is_high = here.height_m.is_some() && self.demand.height_m > FLOATS_M;
-                self.flare(here, on_wheels, dt_s);
+                self.flare(here, on_wheels);
                 if is_slow && is_high && !on_wheels {
                     self.phase = RunwayPhase::Approach;
                 }
