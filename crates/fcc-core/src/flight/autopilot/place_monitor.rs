@@ -182,6 +182,12 @@ impl PlaceMonitor {
             self.begin_window(place);
             return Verdict::Use;
         }
+        if self.doubt.is_some() && self.repeated.passed_s > REPEATS_S {
+            // Perhaps too slow to tell, but the same still.
+            self.good_windows = 0;
+            self.begin_window(place);
+            return self.verdict();
+        }
         if self.repeats_in_motion(flies_mps, moving) {
             let since = self.repeated;
             return self.leave(PlaceDoubt::Repeats, Some(since), place);

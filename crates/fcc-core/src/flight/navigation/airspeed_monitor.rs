@@ -122,6 +122,10 @@ pub(super) struct AirspeedMonitor {
     /// m/s, and for how long it has been more, s.
     began_tail_mps: Option<f64>,
     lags_s: f64,
+    /// The sensor's airspeed and that by the ground velocity, with a lag, m/s, and for how
+    /// long only the latter has changed, s.
+    slow_mps: Option<(f64, f64)>,
+    still_s: f64,
     /// The airspeed by both and its standard deviation, while it is known, and the
     /// sensor's difference from it, m/s.
     by_ground: Option<(f64, f64)>,
@@ -164,6 +168,8 @@ impl AirspeedMonitor {
             contradicted_s: 0.0,
             began_tail_mps: None,
             lags_s: 0.0,
+            slow_mps: None,
+            still_s: 0.0,
             by_ground: None,
             ground_difference: LowPass::new(VOTE_LAG_S),
             static_port: None,

@@ -1,6 +1,6 @@
 //! The airspeed sensor held against the velocity over the ground and the wind.
 
-use libm::hypot;
+use libm::{fabs, hypot};
 
 use super::super::airspeed_filter::AirspeedFilter;
 use super::super::airspeed_reason::{Doubt, DoubtReason};
@@ -9,6 +9,7 @@ use super::super::force_sample::ForceSample;
 use super::super::scalar_update::squared;
 use super::super::wind::OverGround;
 use super::{AirspeedMonitor, CORRECTED_S, DIFFERS_RATIO, MonitorInput};
+use crate::blocks::smoothing_factor;
 
 /// Later than this, s, a velocity over the ground does not count any more.
 const LOST_S: f64 = 1.5;
@@ -22,6 +23,12 @@ const DOUBTED_AFTER_S: f64 = 5.0;
 /// airspeed, within this time, s.
 const SHEAR_MPS: f64 = 12.0;
 const LAGS_FOR_S: f64 = 1.0;
+/// One that stands still while the aircraft becomes faster or slower by more than this
+/// share of the reference airspeed, over this lag, s, moves by less than this share of
+/// that.
+const STILL_RATIO: f64 = 0.14;
+const STILL_LAG_S: f64 = 10.0;
+const STILL_SHARE: f64 = 0.2;
 const AT_FIRST_S: f64 = 60.0;
 const SLOW_RATIO: f64 = 0.6;
 const FIRST_READ_S: f64 = 1.5;
@@ -80,8 +87,10 @@ impl AirspeedMonitor {
             }
             return false;
         };
-        let lags = self.lags_ground(bank, read, sensor_mps, passed_s);
-        if let Some(right_mps) = lags.filter(|_| input.may_doubt) {
+        let right_mps = self
+            .lags_ground(bank, read, sensor_mps, passed_s)
+            .or_else(|| self.stands_still(bank, sensor_mps, passed_s));
+        if let Some(right_mps) = right_mps.filter(|_| input.may_doubt) {
             self.leave_sensor(bank, (sensor_mps, source), right_mps, sample);
             return true;
         }
@@ -126,6 +135,34 @@ impl AirspeedMonitor {
         let lags = lags_mps > SHEAR_MPS;
         self.lags_s = if lags { self.lags_s + passed_s } else { 0.0 };
         (self.lags_s > LAGS_FOR_S).then(|| sensor_mps + lags_mps * read.sqrt_density)
+    }
+
+    /// The right airspeed, m/s, if the sensor shows the same while the aircraft becomes
+    /// faster or slower, by the velocity over the ground with the wind as it was, and by
+    /// the accelerometers. A gust moves the sensor, and not the others.
+    fn stands_still(&mut self, bank: &FilterBank, sensor_mps: f64, passed_s: f64) -> Option<f64> {
+        let Some((by_ground_mps, _)) = self.by_ground else {
+            self.slow_mps = None;
+            return None;
+        };
+        let (slow_sensor_mps, slow_ground_mps) =
+            self.slow_mps.get_or_insert((sensor_mps, by_ground_mps));
+        let share = smoothing_factor(passed_s, STILL_LAG_S);
+        *slow_sensor_mps += share * (sensor_mps - *slow_sensor_mps);
+        *slow_ground_mps += share * (by_ground_mps - *slow_ground_mps);
+        let moved_mps = by_ground_mps - *slow_ground_mps;
+        let shown_mps = sensor_mps - *slow_sensor_mps;
+        let (off_mps, forces_mps) = (by_ground_mps - sensor_mps, bank.older.airspeed_mps());
+        let is_still = fabs(moved_mps) > STILL_RATIO * self.prior.reference_mps
+            && fabs(shown_mps) < STILL_SHARE * fabs(moved_mps)
+            && off_mps * moved_mps > 0.5 * squared(moved_mps)
+            && (forces_mps - sensor_mps) * off_mps > 0.5 * squared(off_mps);
+        self.still_s = if is_still {
+            self.still_s + passed_s
+        } else {
+            0.0
+        };
+        (self.still_s > LAGS_FOR_S).then_some(by_ground_mps)
     }
 
     /// Doubts the sensor: what the models have learned came from it.

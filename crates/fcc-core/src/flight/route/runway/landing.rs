@@ -3,8 +3,8 @@
 use libm::{fabs, tan};
 
 use super::{
-    ALTIMETER_OFF_M, LONGEST_CLIMB_S, Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase,
-    RunwayReason, WEIGHT_WRONG_M,
+    ALTIMETER_OFF_M, Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase, RunwayReason,
+    WEIGHT_WRONG_M,
 };
 use crate::flight::path::Motion;
 use crate::flight::route::OverGround;
@@ -83,7 +83,7 @@ impl RunwayFlight {
                 let decision_m = self.config.decision_height_m;
                 let is_clear = here.height_m.is_none_or(|above_m| above_m > decision_m);
                 let is_up = here.altitude_m > self.altitude_m && is_clear;
-                if is_up || self.phase_s > LONGEST_CLIMB_S {
+                if is_up || self.climbs_no_more() {
                     return Outcome::Again;
                 }
             }

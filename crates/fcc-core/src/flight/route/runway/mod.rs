@@ -151,9 +151,10 @@ pub(super) struct RunwayFlight {
 }
 
 /// A climb that has not reached its altitude after this time, s, has not the power for
-/// it, and would lead straight on for ever: the plan is flown as it is. At 1.5 m/s it is
-/// 180 m.
+/// it, and would lead straight on for ever: from this height on, m, the plan is flown as it
+/// is. At 1.5 m/s it is 180 m.
 const LONGEST_CLIMB_S: f64 = 120.0;
+const TURNS_M: f64 = 45.0;
 
 /// What follows of a tick.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -267,6 +268,11 @@ impl RunwayFlight {
         self.demand.phase = self.phase;
         self.demand.phase_s = self.phase_s;
         outcome
+    }
+
+    /// Whether a climb is over, because it lasts too long.
+    fn climbs_no_more(&self) -> bool {
+        self.phase_s > LONGEST_CLIMB_S && self.demand.height_m > TURNS_M
     }
 
     /// Gives it up, for a reason.

@@ -4,8 +4,8 @@ use libm::{atan2, cos, sin};
 use nalgebra::Vector2;
 
 use super::{
-    ALTIMETER_OFF_M, LONGEST_CLIMB_S, Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase,
-    RunwayReason, WEIGHT_WRONG_M,
+    ALTIMETER_OFF_M, Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase, RunwayReason,
+    WEIGHT_WRONG_M,
 };
 use crate::blocks::wrap_pi;
 use crate::flight::path::{Motion, length};
@@ -146,8 +146,7 @@ impl RunwayFlight {
             }
             RunwayPhase::Rotate if lifts_off => self.phase = RunwayPhase::Climb,
             RunwayPhase::Climb
-                if here.altitude_m > self.altitude_m - REACHED_M
-                    || self.phase_s > LONGEST_CLIMB_S =>
+                if here.altitude_m > self.altitude_m - REACHED_M || self.climbs_no_more() =>
             {
                 return Outcome::Done;
             }
