@@ -6,6 +6,7 @@ mod back;
 mod battery;
 mod contingency;
 mod drawn_fences;
+mod failing_parts;
 mod flight;
 mod glide;
 mod lost_low;

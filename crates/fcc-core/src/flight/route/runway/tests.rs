@@ -263,6 +263,22 @@ fn a_take_off_goes_on_with_the_plan() {
     assert_eq!(follower.index(), 1);
 }
 
+/// One that does not reach its altitude goes on with the plan after 120 s, from 45 m on.
+#[test]
+fn a_climb_without_the_power_for_it_ends() {
+    for (height_m, ends) in [(40.0, false), (60.0, true)] {
+        let mut follower = follower(vec![takeoff(), waypoint(8_000.0, 250.0)], 0);
+        follower.advance(&at(600.0, height_m, 33.0), 0.025);
+        for (seconds, expected) in [(119, Some(RunwayPhase::Climb)), (2, None)] {
+            for _ in 0..seconds * 40 {
+                follower.advance(&at(2_500.0, height_m, 33.0), 0.025);
+            }
+            let expected = expected.or((!ends).then_some(RunwayPhase::Climb));
+            assert_eq!(phase(&follower), expected, "{height_m}");
+        }
+    }
+}
+
 /// One that leaves the centre line by 12 m brakes.
 #[test]
 fn a_take_off_beside_the_centre_line_is_given_up() {
