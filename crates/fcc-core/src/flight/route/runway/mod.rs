@@ -278,6 +278,7 @@ impl RunwayFlight {
     /// Gives it up, for a reason.
     const fn give_up(&mut self, phase: RunwayPhase, reason: RunwayReason) {
         self.phase = phase;
+        self.phase_s = 0.0;
         self.demand.phase = phase;
         self.demand.reason = reason;
     }
