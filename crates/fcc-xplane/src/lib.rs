@@ -36,7 +36,7 @@
 //! | `engage_switch` | the dataref that engages |
 //! | `controls`, `deflections`, `readbacks`, `confirmation`, `release_monitor`, `release` | writing, confirmation that it takes effect, release |
 //! | `link`, `shared_address`, `counters` | what the sensor, the actuator and readers of the status share |
-//! | `authority`, `status`, `reported`, `old_datagrams` | who has control, and the state of the connection, seen from outside the loop |
+//! | `authority`, `status`, `reported`, `old_datagrams`, `slow_network` | who has control, and the state of the connection, seen from outside the loop |
 //! | `silence`, `no_answer` | why X-Plane does not answer |
 //! | `address`, `port`, `discovery` | where it is, sockets, the beacon |
 //!
@@ -98,6 +98,7 @@ mod sent_yoke;
 mod shared_address;
 mod silence;
 mod simulator;
+mod slow_network;
 mod socket_diagnosis;
 mod source_filter;
 mod specific_force;

@@ -11,6 +11,7 @@ use crate::old_datagrams::OldDatagrams;
 use crate::program::Program;
 use crate::silence::Silence;
 use crate::simulator::SimulatorState;
+use crate::slow_network::{SLOW_S, SlowNetwork};
 use crate::status::{Trouble, XPlaneStatus};
 
 /// A problem is reported only after it has lasted this long: right after the
@@ -19,12 +20,6 @@ const REPORT_AFTER: Duration = Duration::from_secs(1);
 /// That nothing at all arrives is reported after this long: a beacon comes about
 /// every second.
 const REPORT_NOTHING_AFTER: Duration = Duration::from_millis(2_500);
-
-/// The loops are tuned for a latency of 0.12 s. Above this round trip, s, for so long,
-/// a flight is not what it should be; a simulator that stops for a moment is over
-/// sooner.
-const SLOW_S: f32 = 0.25;
-const SLOW_FOR: Duration = Duration::from_secs(3);
 
 /// What was reported last.
 #[derive(Debug)]
@@ -41,8 +36,7 @@ pub(crate) struct Reported {
     missing: Vec<Missing>,
     control: Control,
     old: OldDatagrams,
-    slow_since: Option<Instant>,
-    is_slow_said: bool,
+    slow: SlowNetwork,
     loads_differ: bool,
     axial_backwards: bool,
     left_overridden: bool,
@@ -69,8 +63,7 @@ impl Default for Reported {
             missing: Vec::new(),
             control: Control::Free,
             old: OldDatagrams::default(),
-            slow_since: None,
-            is_slow_said: false,
+            slow: SlowNetwork::default(),
             loads_differ: false,
             axial_backwards: false,
             left_overridden: false,
@@ -284,15 +277,9 @@ impl Reported {
     fn change_of_round_trip(&mut self, status: &XPlaneStatus) -> Option<String> {
         let simulator = status.simulator()?;
         let took_s = status.link().round_trip_s();
-        if took_s <= SLOW_S {
-            self.slow_since = None;
+        if !self.slow.step(Instant::now(), took_s) {
             return None;
         }
-        let since = *self.slow_since.get_or_insert_with(Instant::now);
-        if self.is_slow_said || since.elapsed() < SLOW_FOR {
-            return None;
-        }
-        self.is_slow_said = true;
         Some(format!(
             "what is written to X-Plane at {simulator} is read back after {took_s:.1} s: the \
              network is slow, and with more than {SLOW_S} s the aircraft is not flown well, with \

@@ -134,7 +134,7 @@ impl AirspeedMonitor {
         let lags_mps = tail_mps - self.began_tail_mps?;
         let lags = lags_mps > SHEAR_MPS;
         self.lags_s = if lags { self.lags_s + passed_s } else { 0.0 };
-        (self.lags_s > LAGS_FOR_S).then(|| sensor_mps + lags_mps * read.sqrt_density)
+        (self.lags_s > LAGS_FOR_S).then_some(sensor_mps + lags_mps * read.sqrt_density)
     }
 
     /// The right airspeed, m/s, if the sensor shows the same while the aircraft becomes
