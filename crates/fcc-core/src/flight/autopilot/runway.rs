@@ -75,6 +75,8 @@ pub(super) struct RunwayControl {
     /// Integrated rudder.
     rudder: f64,
     brake: f64,
+    /// It was told that the climb lasts too long.
+    lacks_power: bool,
 }
 
 impl Autopilot {
@@ -140,6 +142,10 @@ impl Autopilot {
             return None;
         };
         self.enter_phase(&demand, estimate);
+        if demand.lacks_power && !self.on_runway.lacks_power {
+            self.on_runway.announce(RunwayReason::NoClimb);
+        }
+        self.on_runway.lacks_power = demand.lacks_power;
         let lateral = match demand.phase {
             RunwayPhase::Hand => Lateral::default(),
             phase if phase.is_on_wheels() => self.steer(&demand, estimate, dt_s),

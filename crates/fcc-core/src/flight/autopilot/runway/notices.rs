@@ -31,7 +31,11 @@ pub fn touches_ground(notice: &Notice) -> bool {
 
 /// Whether a notice says why a take-off or a landing is given up.
 pub fn gives_up_runway(notice: &Notice) -> bool {
-    let others = [RunwayReason::Touched, RunwayReason::RangeFinder];
+    let others = [
+        RunwayReason::Touched,
+        RunwayReason::RangeFinder,
+        RunwayReason::NoClimb,
+    ];
     notice.kind == RUNWAY && others.iter().all(|other| notice.item != *other as u16)
 }
 

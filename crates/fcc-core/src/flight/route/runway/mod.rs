@@ -95,6 +95,8 @@ pub struct RunwayDemand {
     pub phase: RunwayPhase,
     /// For how long it has lasted, s.
     pub phase_s: f64,
+    /// Whether it is a climb that lasts too long.
+    pub lacks_power: bool,
     /// True course of the runway, rad.
     pub course_rad: f64,
     /// How far to the right of the centre line the aircraft is, m, and moves, m/s.
@@ -191,6 +193,7 @@ impl RunwayFlight {
             demand: RunwayDemand {
                 phase,
                 phase_s: 0.0,
+                lacks_power: false,
                 course_rad: libm::atan2(runway.course.y, runway.course.x),
                 cross_track_m: 0.0,
                 cross_track_mps: 0.0,
@@ -267,12 +270,13 @@ impl RunwayFlight {
         }
         self.demand.phase = self.phase;
         self.demand.phase_s = self.phase_s;
+        self.demand.lacks_power = self.phase.is_climb() && self.phase_s > LONGEST_CLIMB_S;
         outcome
     }
 
     /// Whether a climb is over, because it lasts too long.
     fn climbs_no_more(&self) -> bool {
-        self.phase_s > LONGEST_CLIMB_S && self.demand.height_m > TURNS_M
+        self.demand.lacks_power && self.demand.height_m > TURNS_M
     }
 
     /// Gives it up, for a reason.

@@ -45,6 +45,8 @@ schema! {
         RangeJump = 18,
         /// The engine is out before the wheels have left the ground.
         Engine = 19,
+        /// A climb lasts too long, and is too low to turn.
+        NoClimb = 20,
     }
 }
 
@@ -92,6 +94,10 @@ impl fmt::Display for RunwayReason {
             Self::Engine => {
                 "the take-off is given up: the engine is out; start it, or set \
                  engine_out_below_rpm below the speed at which it idles"
+            }
+            Self::NoClimb => {
+                "the climb has not reached its altitude in two minutes: there is not the power \
+                 for it; take over, and land ahead"
             }
             Self::Failsafe => "the take-off is given up",
             Self::Touched => {

@@ -275,6 +275,8 @@ fn a_climb_without_the_power_for_it_ends() {
             }
             let expected = expected.or((!ends).then_some(RunwayPhase::Climb));
             assert_eq!(phase(&follower), expected, "{height_m}");
+            let lacks_power = follower.runway().is_some_and(|demand| demand.lacks_power);
+            assert_eq!(lacks_power, seconds == 2 && !ends);
         }
     }
 }
