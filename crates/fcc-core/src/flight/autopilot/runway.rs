@@ -11,6 +11,7 @@
 //!
 //! Without power the approach is that of the [glide](super::gliding).
 
+mod climbing;
 mod gear;
 mod in_failsafe;
 mod notices;
@@ -21,7 +22,7 @@ use libm::atan;
 use super::Autopilot;
 use crate::blocks::{limit, limit_abs, wrap_pi};
 use crate::flight::Surfaces;
-use crate::flight::control::{Envelope, Lateral, ThrottleDemand};
+use crate::flight::control::{Lateral, ThrottleDemand};
 use crate::flight::guidance::OverGroundMode;
 use crate::flight::navigation::Estimate;
 use crate::flight::route::{HELD_MPS, RunwayDemand, RunwayPhase, RunwayReason, Step};
@@ -48,17 +49,12 @@ const MOST_FLARE_BANK_RAD: f64 = 0.105;
 const LOW_M: f64 = 15.0;
 /// The nose is aligned with the runway below this height, m.
 const ALIGNS_M: f64 = 2.0;
-/// A go-around begins with this pitch, rad (3°), below this share of the approach's
-/// airspeed, and with the throttle opened so fast, 1/s.
-const SLOW_PITCH_RAD: f64 = 0.052;
-const SLOW_SHARE: f64 = 0.8;
+/// The throttle is opened so fast in a go-around, 1/s.
 const OPENS_PER_S: f64 = 1.0;
 /// And after a throw: it has to fly before it is down.
 const THROWN_OPENS_PER_S: f64 = 2.0;
 /// How fast the throttle is closed in the flare, 1/s.
 pub(super) const CLOSES_PER_S: f64 = 0.35;
-/// The smallest pitch of a flare: the nose wheel does not touch first, rad.
-const LEAST_FLARE_PITCH_RAD: f64 = 0.0;
 /// The elevator is held back below this share of the approach's airspeed.
 const HELD_BACK_BELOW: f64 = 0.7;
 /// An approach speed is so many times the stalling speed.
@@ -352,53 +348,6 @@ impl Autopilot {
                     elevator,
                 )
             }
-        }
-    }
-
-    /// Whether it was thrown, and climbs.
-    fn is_thrown(&self, demand: &RunwayDemand) -> bool {
-        self.config.route.runway.is_thrown() && demand.phase.is_takeoff()
-    }
-
-    /// Whether it is low, and its climb begins with little speed.
-    fn begins_slow(&self, demand: &RunwayDemand) -> bool {
-        let slow = demand.phase == RunwayPhase::GoAround || self.is_thrown(demand);
-        slow && demand.height_m <= LOW_M
-    }
-
-    /// The pitch of a climb: low and slow, at first little more than level.
-    fn climb_pitch_rad(&self, demand: &RunwayDemand, estimate: &Estimate) -> f64 {
-        if !self.begins_slow(demand) {
-            return demand.pitch_rad;
-        }
-        let approach_mps = self.config.route.runway.approach_mps;
-        let slow_mps = SLOW_SHARE * approach_mps;
-        let share = (estimate.airspeed_mps - slow_mps) / (approach_mps - slow_mps);
-        let level_rad = SLOW_PITCH_RAD.min(demand.pitch_rad);
-        level_rad + limit(share, 0.0, 1.0) * (demand.pitch_rad - level_rad)
-    }
-
-    /// The limits of a phase: close to the ground nothing lowers the nose for speed.
-    fn runway_envelope(&self, demand: &RunwayDemand) -> Envelope {
-        let config = &self.config.route.runway;
-        let lowest_mps = match demand.phase {
-            RunwayPhase::Approach => LOWEST_SHARE * config.approach_mps,
-            _ if self.begins_slow(demand) => 1.0,
-            RunwayPhase::Climb | RunwayPhase::GoAround => LOWEST_SHARE * config.climb_mps,
-            _ => 1.0,
-        };
-        let stall_mps = (config.approach_mps / OVER_STALL).min(lowest_mps);
-        let least_pitch_rad = if demand.phase == RunwayPhase::Flare {
-            LEAST_FLARE_PITCH_RAD
-        } else {
-            self.config.envelope.min_pitch_rad
-        };
-        Envelope {
-            min_airspeed_mps: lowest_mps,
-            stall_airspeed_mps: stall_mps,
-            airspeed_margin_mps: 0.1 * lowest_mps,
-            min_pitch_rad: least_pitch_rad,
-            ..self.config.envelope
         }
     }
 }
