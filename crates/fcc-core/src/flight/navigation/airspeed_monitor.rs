@@ -16,6 +16,7 @@ mod sensorless;
 mod static_port;
 mod step;
 
+use ground::Behind;
 pub(super) use static_port::Blocked;
 use static_port::StaticPort;
 use step::StepDetector;
@@ -118,14 +119,7 @@ pub(super) struct AirspeedMonitor {
     /// wind have contradicted the sensor, s.
     ground_s: f64,
     contradicted_s: f64,
-    /// How much faster it was over the ground than through the air in the take-off roll,
-    /// m/s, and for how long it has been more, s.
-    began_tail_mps: Option<f64>,
-    lags_s: f64,
-    /// The sensor's airspeed and that by the ground velocity, with a lag, m/s, and for how
-    /// long only the latter has changed, s.
-    slow_mps: Option<(f64, f64)>,
-    still_s: f64,
+    behind: Behind,
     /// The airspeed by both and its standard deviation, while it is known, and the
     /// sensor's difference from it, m/s.
     by_ground: Option<(f64, f64)>,
@@ -166,10 +160,7 @@ impl AirspeedMonitor {
             doubt: None,
             ground_s: 0.0,
             contradicted_s: 0.0,
-            began_tail_mps: None,
-            lags_s: 0.0,
-            slow_mps: None,
-            still_s: 0.0,
+            behind: Behind::NONE,
             by_ground: None,
             ground_difference: LowPass::new(VOTE_LAG_S),
             static_port: None,

@@ -35,6 +35,28 @@ const FIRST_READ_S: f64 = 1.5;
 /// That of the airspeed then, m/s.
 const RIGHT_SD_MPS: f64 = 1.0;
 
+/// What shows that a sensor stays behind the velocity over the ground.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Behind {
+    /// How much faster it was over the ground than through the air in the take-off roll,
+    /// m/s, and for how long it has been more, s.
+    began_tail_mps: Option<f64>,
+    lags_s: f64,
+    /// The sensor's airspeed and that by the ground velocity, with a lag, m/s, and for how
+    /// long only the latter has changed, s.
+    slow_mps: Option<(f64, f64)>,
+    still_s: f64,
+}
+
+impl Behind {
+    pub(super) const NONE: Self = Self {
+        began_tail_mps: None,
+        lags_s: 0.0,
+        slow_mps: None,
+        still_s: 0.0,
+    };
+}
+
 impl AirspeedMonitor {
     /// Whether the velocity over the ground, with the wind as it was when the older copy
     /// began, agrees with the sensor within half of this, m/s: then the forces are not the
@@ -129,12 +151,16 @@ impl AirspeedMonitor {
         let ground_mps = hypot(read.north_mps, read.east_mps);
         let tail_mps = ground_mps - sensor_mps / read.sqrt_density;
         if bank.learned_s < FIRST_READ_S && sensor_mps < SLOW_RATIO * self.prior.reference_mps {
-            self.began_tail_mps = Some(tail_mps);
+            self.behind.began_tail_mps = Some(tail_mps);
         }
-        let lags_mps = tail_mps - self.began_tail_mps?;
+        let lags_mps = tail_mps - self.behind.began_tail_mps?;
         let lags = lags_mps > SHEAR_MPS;
-        self.lags_s = if lags { self.lags_s + passed_s } else { 0.0 };
-        (self.lags_s > LAGS_FOR_S).then_some(sensor_mps + lags_mps * read.sqrt_density)
+        self.behind.lags_s = if lags {
+            self.behind.lags_s + passed_s
+        } else {
+            0.0
+        };
+        (self.behind.lags_s > LAGS_FOR_S).then_some(sensor_mps + lags_mps * read.sqrt_density)
     }
 
     /// The right airspeed, m/s, if the sensor shows the same while the aircraft becomes
@@ -142,11 +168,13 @@ impl AirspeedMonitor {
     /// the accelerometers. A gust moves the sensor, and not the others.
     fn stands_still(&mut self, bank: &FilterBank, sensor_mps: f64, passed_s: f64) -> Option<f64> {
         let Some((by_ground_mps, _)) = self.by_ground else {
-            self.slow_mps = None;
+            self.behind.slow_mps = None;
             return None;
         };
-        let (slow_sensor_mps, slow_ground_mps) =
-            self.slow_mps.get_or_insert((sensor_mps, by_ground_mps));
+        let (slow_sensor_mps, slow_ground_mps) = self
+            .behind
+            .slow_mps
+            .get_or_insert((sensor_mps, by_ground_mps));
         let share = smoothing_factor(passed_s, STILL_LAG_S);
         *slow_sensor_mps += share * (sensor_mps - *slow_sensor_mps);
         *slow_ground_mps += share * (by_ground_mps - *slow_ground_mps);
@@ -157,12 +185,12 @@ impl AirspeedMonitor {
             && fabs(shown_mps) < STILL_SHARE * fabs(moved_mps)
             && off_mps * moved_mps > 0.5 * squared(moved_mps)
             && (forces_mps - sensor_mps) * off_mps > 0.5 * squared(off_mps);
-        self.still_s = if is_still {
-            self.still_s + passed_s
+        self.behind.still_s = if is_still {
+            self.behind.still_s + passed_s
         } else {
             0.0
         };
-        (self.still_s > LAGS_FOR_S).then_some(by_ground_mps)
+        (self.behind.still_s > LAGS_FOR_S).then_some(by_ground_mps)
     }
 
     /// Doubts the sensor: what the models have learned came from it.
