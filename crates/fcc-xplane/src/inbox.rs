@@ -146,7 +146,8 @@ impl Inbox {
             found.and_then(|(quantity, value)| quantity.validate(value))
         };
         let time_s = find(Quantity::FlightTime);
-        if self.is_late(now, datagram, time_s, link) {
+        let shows_replay = find(Quantity::Replay).is_some_and(|replay| replay >= 0.5);
+        if self.is_late(now, datagram, (time_s, shows_replay), link) {
             return Ok(false);
         }
         if let (Some(network_s), Some(flight_s)) = (find(Quantity::NetworkTime), time_s) {
@@ -178,7 +179,7 @@ impl Inbox {
     ) -> Result<bool, Malformed> {
         let rows = data::parse(datagram)?;
         let time_s = rows.clone().find_map(|row| rows::flight_time(&row));
-        if self.is_late(now, datagram, time_s, link) {
+        if self.is_late(now, datagram, (time_s, false), link) {
             return Ok(false);
         }
         let mut report = SimulatorReport {
@@ -231,14 +232,14 @@ impl Inbox {
         &mut self,
         now: Time,
         datagram: &[u8],
-        time_s: Option<f64>,
+        (time_s, shows_replay): (Option<f64>, bool),
         link: &SharedState,
     ) -> bool {
         let late = time_s.is_some_and(|time_s| {
             // In a pause a value may go back to what it was.
             let is_of_now = self.clock.time_s() == Some(time_s) || self.clock.is_replaying();
             let is_old = self.timed.is_old(datagram, now) && !is_of_now;
-            is_old || self.clock.is_late(now, time_s)
+            is_old || self.clock.is_late(now, time_s, shows_replay)
         });
         if late {
             count(&link.counters.late);

@@ -23,6 +23,8 @@ const AHEAD_OF: f64 = 2.0;
 /// What a network held back may arrive in several ticks: for this long after a
 /// gap of this length the clock is compared with that before the gap, too.
 const HELD_BACK: Duration = Duration::from_millis(500);
+/// And for so long after one, what was held back may arrive beside what is new.
+const BESIDE_FOR: Duration = Duration::from_secs(10);
 /// Stalled if its clock has not advanced for this long: five frames at 20 a second.
 const STALLED_AFTER: Duration = Duration::from_millis(250);
 /// What one datagram reports about the simulator itself; fields may be missing.
@@ -121,7 +123,8 @@ impl SimulatorClock {
     /// Whether a datagram of this flight time is to be dropped: it was overtaken by
     /// a newer one, or it is the first one with a time far from the latest. Not if
     /// the time is equal: the same frame, or time stands still.
-    pub(crate) fn is_late(&mut self, now: Time, time_s: f64) -> bool {
+    /// A replay, which the datagram itself shows, goes back by right.
+    pub(crate) fn is_late(&mut self, now: Time, time_s: f64, shows_replay: bool) -> bool {
         // A replay may go backwards.
         if self.replaying || self.latest.seen.is_never() {
             return false;
@@ -130,7 +133,9 @@ impl SimulatorClock {
         if self.is_ahead(sample) {
             !self.ahead.is_continued_by(sample)
         } else {
-            let is_late = self.late.is_late(sample, self.latest);
+            let gap_is_over = now.since(self.latest.seen) < HELD_BACK;
+            let held_back = gap_is_over && !shows_replay && now.since(self.gap_ended) < BESIDE_FOR;
+            let is_late = self.late.is_late(sample, self.latest, held_back);
             if is_late && self.latest.time_s - time_s >= LATE_S {
                 self.old_arrived = now;
             }

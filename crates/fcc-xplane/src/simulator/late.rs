@@ -15,8 +15,8 @@ pub(super) const LATE_S: f64 = 1.0;
 pub(super) const LATE: Duration = Duration::from_millis(400);
 
 /// A network that held some back for seconds may deliver them beside what is new, and
-/// that comes in each of 20 frames a second: for so long, [`LATE_S`] and more is late,
-/// too.
+/// that comes in each of 20 frames a second: for so long, [`LATE_S`] and more is late
+/// then, too.
 pub(super) const BESIDE: Duration = Duration::from_millis(150);
 
 /// Tells older times of late datagrams from those of a clock that was set back.
@@ -56,8 +56,14 @@ impl Default for LateFilter {
 }
 
 impl LateFilter {
-    /// Whether a time was overtaken by the latest; not if they are equal.
-    pub(super) fn is_late(&mut self, sample: ClockSample, latest: ClockSample) -> bool {
+    /// Whether a time was overtaken by the latest; not if they are equal. `held_back`:
+    /// a newer one arrived after a gap, not long ago.
+    pub(super) fn is_late(
+        &mut self,
+        sample: ClockSample,
+        latest: ClockSample,
+        held_back: bool,
+    ) -> bool {
         let back_s = latest.time_s - sample.time_s;
         if back_s <= 0.0 {
             return false;
@@ -67,7 +73,7 @@ impl LateFilter {
         }
         let passed = sample.seen.since(self.since);
         if back_s >= LATE_S {
-            !self.set_back.is_continued_by(sample) || passed < BESIDE
+            !self.set_back.is_continued_by(sample) || held_back && passed < BESIDE
         } else {
             passed < LATE
         }
