@@ -108,6 +108,8 @@ def one_of_two(fccd: Path, scratch: Path) -> Flown:
             flown.write(ENGAGE_SWITCH, 1.0)
             other.set_mode(Mode.FROZEN)
             daemon.wait_for("from X-Plane 2 instead of X-Plane")
+            # Its switch may be the last quantity that is read from the other one.
+            time.sleep(0.3)
             other.set_mode(Mode.RUNNING)
             daemon.wait_for("from X-Plane instead of X-Plane 2")
             for _ in range(2):
