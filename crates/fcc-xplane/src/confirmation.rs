@@ -18,6 +18,7 @@ use fcc_core::framework::Time;
 use crate::lasting::Lasting;
 use crate::link::SharedState;
 use crate::quantity::Quantity;
+use crate::round_trip::RoundTrip;
 use crate::written::{ReadBack, Written};
 
 /// The longest time for which writing may be unconfirmed.
@@ -35,10 +36,6 @@ const TOLERANCE: f32 = 0.02;
 /// after which it processes what it had queued, is shorter.
 const CONTESTED_AFTER: Duration = Duration::from_millis(1500);
 const CONTESTED_UNTIL: Duration = Duration::from_secs(5);
-
-/// Over such a time the round trip is the longest that was seen: the same value may be
-/// written again and again.
-const ROUND_TRIP_OVER: Duration = Duration::from_secs(1);
 
 const YOKE: [Quantity; 3] = [
     Quantity::YokePitch,
@@ -98,24 +95,6 @@ pub(crate) struct Confirmation {
     round_trip: RoundTrip,
 }
 
-/// From writing a value to reading it back.
-#[derive(Clone, Copy, Debug)]
-struct RoundTrip {
-    since: Time,
-    longest: Duration,
-    shown: Duration,
-}
-
-impl RoundTrip {
-    fn add(&mut self, now: Time, took: Duration) {
-        if now.since(self.since) >= ROUND_TRIP_OVER {
-            (self.since, self.shown) = (now, self.longest);
-            self.longest = Duration::ZERO;
-        }
-        self.longest = self.longest.max(took);
-    }
-}
-
 impl Confirmation {
     /// Starts when control is taken.
     pub(crate) const fn begin(now: Time) -> Self {
@@ -129,11 +108,7 @@ impl Confirmation {
             cut: Lasting::new(CONTESTED_AFTER, LATELY),
             moved_by_another: Time::NEVER,
             contested: Lasting::new(CONTESTED_AFTER, CONTESTED_UNTIL),
-            round_trip: RoundTrip {
-                since: now,
-                longest: Duration::ZERO,
-                shown: Duration::ZERO,
-            },
+            round_trip: RoundTrip::begin(now),
         }
     }
 
@@ -210,7 +185,7 @@ impl Confirmation {
     /// From writing to reading back, in the last second that has passed; zero while
     /// nothing is recognised.
     pub(crate) const fn round_trip(&self) -> Duration {
-        self.round_trip.shown
+        self.round_trip.shown()
     }
 
     /// Whether the yoke stands still where it was put before: what is written does

@@ -34,7 +34,7 @@
 //! | `subscriptions`, `missing` | what to request, when to repeat it, and what does not arrive |
 //! | `traffic` | how much is sent to X-Plane |
 //! | `engage_switch` | the dataref that engages |
-//! | `controls`, `deflections`, `readbacks`, `confirmation`, `release_monitor`, `release` | writing, confirmation that it takes effect, release |
+//! | `controls`, `deflections`, `readbacks`, `confirmation`, `round_trip`, `release_monitor`, `release` | writing, confirmation that it takes effect, release |
 //! | `link`, `shared_address`, `counters` | what the sensor, the actuator and readers of the status share |
 //! | `authority`, `status`, `reported`, `old_datagrams`, `slow_network` | who has control, and the state of the connection, seen from outside the loop |
 //! | `silence`, `no_answer` | why X-Plane does not answer |
@@ -91,6 +91,7 @@ mod release_monitor;
 mod reload_watch;
 mod reply_port;
 mod reported;
+mod round_trip;
 mod rows;
 mod sending_clock;
 mod sensor;
