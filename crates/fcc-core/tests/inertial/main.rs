@@ -13,6 +13,7 @@ mod flights;
 mod gaps;
 mod gyroscope;
 mod hand;
+mod jumps;
 mod matched;
 mod noise;
 mod sensors;

@@ -41,6 +41,8 @@ pub(crate) struct Fitted {
     /// By how much the biases of gyroscopes and accelerometers change from a time on, rad/s²,
     /// m/s³, s.
     pub(crate) drifts: ([f64; 3], [f64; 3], f64),
+    /// By how much the bias of the gyroscopes jumps at a time, rad/s, s.
+    pub(crate) jumps: ([f64; 3], f64),
 }
 
 impl Default for Fitted {
@@ -55,6 +57,7 @@ impl Default for Fitted {
             slow_errors: true,
             force_range: f64::INFINITY,
             drifts: ([0.0; 3], [0.0; 3], f64::INFINITY),
+            jumps: ([0.0; 3], f64::INFINITY),
         }
     }
 }
@@ -117,7 +120,10 @@ impl Run {
         let since_s = (truth.time_s - from_s).max(0.0);
         let drifted =
             |bias: [f64; 3], by: [f64; 3]| [0, 1, 2].map(|at| bias[at] + by[at] * since_s);
+        let (jump, at_s) = self.fitted.jumps;
+        let jumped = f64::from(u8::from(truth.time_s >= at_s));
         let rate_bias = drifted(self.rate_bias, rate_drift);
+        let rate_bias = [0, 1, 2].map(|axis| rate_bias[axis] + jump[axis] * jumped);
         let force_bias = drifted(self.force_bias, force_drift);
         // 0.01 °/s/√Hz, 300 µg/√Hz.
         let rates = noisy(&mut self.random, truth.rates, rate_bias, 0.0012);

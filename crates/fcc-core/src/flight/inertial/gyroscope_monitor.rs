@@ -17,6 +17,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::Solution;
 use super::field_turning::{FieldTurning, Turning};
 use super::stuck::StuckAxis;
+use crate::blocks::smoothing_factor;
 use crate::framework::Time;
 
 /// They contradict each other beyond this angle, rad (12°), of several windows, the
@@ -39,6 +40,10 @@ const FIELD_TURNS_RAD: f64 = 0.52;
 /// Of so many windows, 2.4 s, each number from the latest on is looked at: gyroscopes
 /// that are wrong by a little take longer.
 const WINDOWS: usize = 12;
+
+/// The bias of the gyroscopes is that of so many seconds, s: a filter that follows wrong rates
+/// takes what is wrong for a bias, and another one in the next turn.
+const BIAS_S: f64 = 5.0;
 
 /// The strength differs from the earth's by less than this share, and within the
 /// windows by less than this one: otherwise something disturbs it.
@@ -81,6 +86,7 @@ pub(super) struct GyroscopeMonitor {
     turning: FieldTurning,
     /// Of the gyroscopes, as it was before they were doubted, rad/s.
     bias: Vector3<f64>,
+    rates_taken: Time,
     /// The latest first.
     windows: [Turning; WINDOWS],
     known: usize,
@@ -119,6 +125,7 @@ impl GyroscopeMonitor {
         Self {
             turning: FieldTurning::new(),
             bias: Vector3::zeros(),
+            rates_taken: Time::NEVER,
             windows: [Turning::NONE; WINDOWS],
             known: 0,
             expected_since: Time::NEVER,
@@ -167,8 +174,11 @@ impl GyroscopeMonitor {
         let (is_held, is_stuck) = self.axes.step(taken, rates);
         self.is_stuck = is_stuck;
         if !self.is_doubted {
-            self.bias = Vector3::from(known.gyroscope_bias_radps.map(finite));
+            let known = Vector3::from(known.gyroscope_bias_radps.map(finite));
+            let since_s = taken.since(self.rates_taken).as_secs_f64();
+            self.bias += (known - self.bias) * smoothing_factor(since_s, BIAS_S);
         }
+        self.rates_taken = taken;
         self.turning
             .add_rates(taken, Vector3::from(rates) - self.bias);
         !is_held && !self.is_doubted

@@ -7,6 +7,7 @@ use super::innovations::Innovations;
 use super::motion::{Increment, Inertial, Motion, turn};
 use super::parameters as p;
 use super::track::Tracks;
+use super::trend::Trend;
 use crate::framework::Time;
 
 /// Number of states.
@@ -61,6 +62,9 @@ pub(super) struct Filter {
     /// Whether what is taken for rates is how the magnetic field turns.
     pub(super) turns_by_field: bool,
     pub(super) drift: Drift,
+    pub(super) trend: Trend,
+    /// Whether another filter tells which of two sensors is wrong.
+    pub(super) is_compared: bool,
     pending: Pending,
 }
 
@@ -95,6 +99,8 @@ impl Filter {
             mean_square_velocity: 0.0,
             turns_by_field: false,
             drift: Drift::default(),
+            trend: Trend::default(),
+            is_compared: false,
             pending: Pending::default(),
         }
     }

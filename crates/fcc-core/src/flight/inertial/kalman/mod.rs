@@ -36,6 +36,7 @@ mod parameters;
 mod receiver;
 mod rest;
 mod track;
+mod trend;
 mod unaided;
 mod update;
 
@@ -165,6 +166,12 @@ impl KalmanNavigation {
     /// Forgets the samples of a sensor that wait until they are used.
     pub fn forget(&mut self, kind: ObservationKind) {
         self.history.remove(kind);
+    }
+
+    /// Whether another filter tells which of two sensors is wrong: this one does not doubt
+    /// itself early then, so that what is wrong shows.
+    pub(super) const fn set_compared(&mut self, is_compared: bool) {
+        self.filter.is_compared = is_compared;
     }
 
     /// From here on the static pressure is that of another barometer.

@@ -58,6 +58,18 @@ pub(super) const DRIFT_GAIN: f64 = 3.0;
 /// How uncertain a bias becomes by that at most, rad/s, m/s².
 pub(super) const LARGEST_RATE_BIAS: f64 = 0.1;
 pub(super) const LARGEST_FORCE_BIAS: f64 = 5.0;
+/// Innovations of the velocity are summed over this time, s, and beyond the square of so many
+/// standard deviations their sum goes in one direction.
+pub(super) const TREND_S: f64 = 1.0;
+pub(super) const TREND_GATE: f64 = 9.0;
+/// If those that are refused go on in it, the filter doubts itself after this time, s, and
+/// while the heading is more certain than this, rad (10°): with a wrong one an acceleration
+/// forward is one sideways.
+pub(super) const TREND_REFUSED_S: f64 = 0.4;
+pub(super) const TREND_HEADING: f64 = 0.17;
+/// The variance of the gyroscopes' bias then, as a multiple of the tilt's, 1/s²: what has
+/// tipped the horizon did it within some 2 s.
+pub(super) const TREND_RATE: f64 = 0.3;
 /// The random walk of pressure altitude against altitude, m/√s: weather and the
 /// static port, 2 m in ten minutes.
 pub(super) const BAROMETER_WALK: f64 = 0.08;

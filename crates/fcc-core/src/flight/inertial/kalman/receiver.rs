@@ -2,7 +2,9 @@
 
 use nalgebra::{SMatrix, Vector3};
 
-use super::filter::{ATTITUDE, BAROMETER_BIAS, FORCE_BIAS, Filter, POSITION, STATES, VELOCITY};
+use super::filter::{
+    ATTITUDE, BAROMETER_BIAS, FORCE_BIAS, Filter, POSITION, RATE_BIAS, STATES, VELOCITY,
+};
 use super::noise::{Noise, variances};
 use super::parameters as p;
 use super::update::{Corrects, Measurement};
@@ -12,6 +14,8 @@ use crate::framework::Time;
 /// A velocity that was refused for seconds may mean a wrong attitude: at most so
 /// wrong, rad².
 const DOUBTED_ATTITUDE: f64 = 0.03;
+/// It took this time at least to make such a velocity, s.
+const LEAST_TILTED_S: f64 = 1.0;
 
 /// A heading less certain than this is none, rad.
 pub(super) const UNKNOWN_HEADING: f64 = 0.7;
@@ -103,13 +107,24 @@ impl Filter {
             p::GATE,
             Corrects::All,
         ) {
+            self.trend
+                .add(taken, difference.xy(), horizontal.variance());
             // What has turned without gyroscopes may point anywhere, but moves ahead.
             if !self.knows_rates && !has_heading && velocity.xy().norm() > MOVING_MPS {
                 self.take_heading_from_course();
             }
             return;
         }
-        if is_first || self.tracks.velocity.refused_s(taken) >= p::RECEIVER_REFUSED_S {
+        // What went in one direction before is an error of this filter, and not of a receiver.
+        let leads = !self.is_compared
+            && self.sigma(ATTITUDE + 2) < p::TREND_HEADING
+            && self.trend.leads_to(difference.xy());
+        let needed_s = if leads {
+            p::TREND_REFUSED_S
+        } else {
+            p::RECEIVER_REFUSED_S
+        };
+        if is_first || self.tracks.velocity.refused_s(taken) >= needed_s {
             self.motion.velocity += difference;
             self.forget(VELOCITY, &measurement);
             if !is_first {
@@ -117,8 +132,12 @@ impl Filter {
                 // is off downwards, and as much beside it, is no attitude's error: it is of
                 // an accelerometer at the end of its range, in a bank of 45° at most.
                 let sideways = (difference.xy().norm() - difference.z.abs()).max(0.0);
-                let tilt = sideways / (self.motion.gravity().z * p::RECEIVER_REFUSED_S);
-                self.add_variance(ATTITUDE, 3, (tilt * tilt).min(DOUBTED_ATTITUDE));
+                let tilt = sideways / (self.motion.gravity().z * needed_s.max(LEAST_TILTED_S));
+                let tilt = (tilt * tilt).min(DOUBTED_ATTITUDE);
+                self.add_variance(ATTITUDE, 3, tilt);
+                if leads {
+                    self.add_variance(RATE_BIAS, 3, p::TREND_RATE * tilt);
+                }
                 // Or an accelerometer is off by as much.
                 let off = sideways / p::RECEIVER_REFUSED_S;
                 self.add_variance(FORCE_BIAS, 2, off * off);

@@ -155,6 +155,11 @@ impl SensorMonitor {
         }
     }
 
+    /// Whether a second filter tells which of two sensors is wrong.
+    pub(super) const fn is_trying(&self) -> bool {
+        self.trial.is_some()
+    }
+
     /// Begins with the pair that disagrees and was not tried for the longest time.
     fn begin_to_try(&mut self, now: Time, filter: &KalmanNavigation) -> Option<Trial> {
         let each = SensorKind::ALL.into_iter().zip(&mut self.compared);

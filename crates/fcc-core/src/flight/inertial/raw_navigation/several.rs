@@ -65,6 +65,9 @@ impl RawNavigation {
         };
         self.sensors.follow(&self.used);
         self.sensors.judge(at, filter);
+        if let Method::Kalman(navigation) = &mut self.method {
+            navigation.set_compared(self.sensors.is_trying());
+        }
         self.wrong = self.sensors.take_found().or(self.wrong);
     }
 

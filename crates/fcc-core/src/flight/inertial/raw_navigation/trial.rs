@@ -48,6 +48,7 @@ impl Trial {
         began: Time,
     ) -> Option<Self> {
         let mut filter = filter.clone();
+        filter.set_compared(true);
         let mut taken = [None; 2];
         let mut sensor = None;
         for ((taken, other), used) in taken.iter_mut().zip(other).zip(used) {
