@@ -63,6 +63,8 @@ pub(super) struct Filter {
     pub(super) turns_by_field: bool,
     pub(super) drift: Drift,
     pub(super) trend: Trend,
+    /// The wind of the latest seconds.
+    pub(super) mean_wind: Vector2<f64>,
     /// Whether another filter tells which of two sensors is wrong.
     pub(super) is_compared: bool,
     pending: Pending,
@@ -100,6 +102,7 @@ impl Filter {
             turns_by_field: false,
             drift: Drift::default(),
             trend: Trend::default(),
+            mean_wind: Vector2::zeros(),
             is_compared: false,
             pending: Pending::default(),
         }
@@ -116,6 +119,8 @@ impl Filter {
         let horizontal = self.motion.velocity.xy().norm_squared();
         let share = crate::blocks::smoothing_factor(dt_s, p::VELOCITY_S);
         self.mean_square_velocity += share * (horizontal - self.mean_square_velocity);
+        let share = crate::blocks::smoothing_factor(dt_s, p::MEAN_WIND_S);
+        self.mean_wind += (self.wind - self.mean_wind) * share;
         if self.pending.dt_s >= COVARIANCE_S {
             self.settle();
         }

@@ -3,7 +3,7 @@
 use libm::{atan2, hypot};
 use nalgebra::{SMatrix, Vector3};
 
-use super::filter::{ATTITUDE, BODY_FIELD, EARTH_FIELD, Filter, STATES};
+use super::filter::{ATTITUDE, BODY_FIELD, EARTH_FIELD, Filter, RATE_BIAS, STATES};
 use super::motion::turn;
 use super::noise::variances;
 use super::parameters as p;
@@ -16,6 +16,12 @@ use crate::framework::Time;
 const CERTAIN_HEADING: f64 = 0.1;
 /// A field that is refused for long is another one: variances, µT².
 const OTHER_FIELD: f64 = 100.0;
+/// A field whose strength differs by less than this share may be that of the earth.
+const SAME_STRENGTH: f64 = 0.15;
+/// The wind shows at least this share of the angle that the field shows, and across it at
+/// most this share of that.
+const LEAST_SHOWN: f64 = 0.3;
+const MOST_ACROSS: f64 = 0.6;
 /// And the heading may be wrong, rad².
 const DOUBTED_HEADING: f64 = 0.07;
 
@@ -55,6 +61,14 @@ impl Filter {
         if self.fuse(kind, taken, &measurement, p::FIELD_GATE, corrects) {
             return;
         }
+        let turned = self.turned_about_vertical(measured);
+        if !self.is_compared
+            && self.tracks.field.refused_s(taken) >= p::TREND_REFUSED_S
+            && self.wind_shows_turned(turned)
+        {
+            self.doubt_heading(turned);
+            return;
+        }
         if self.stands() {
             // Standing still, gyroscopes keep the heading: nothing has to be done.
             self.tracks.field.refused_since = taken;
@@ -63,6 +77,45 @@ impl Filter {
             self.doubt_field();
             self.tracks.field.refused_since = taken;
         }
+    }
+
+    /// By how much a field is turned about the vertical from where it is expected, rad; nothing
+    /// if it is not as strong as the earth's.
+    fn turned_about_vertical(&self, measured: Vector3<f64>) -> f64 {
+        let (is, expected) = (
+            self.rotation() * (measured - self.body_field),
+            self.earth_field,
+        );
+        if (is.norm() - expected.norm()).abs() > SAME_STRENGTH * expected.norm() {
+            return 0.0;
+        }
+        let across = expected.x * is.y - expected.y * is.x;
+        atan2(across, expected.xy().dot(&is.xy()))
+    }
+
+    /// Whether the wind has changed as it seems to if the nose points elsewhere than is
+    /// believed, by an angle: an aircraft flies ahead, wherever it believes that to be.
+    fn wind_shows_turned(&self, angle_rad: f64) -> bool {
+        let nose = self.rotation().column(0).xy();
+        let through_air = (self.motion.velocity.xy() - self.mean_wind).norm();
+        let points = turn(Vector3::new(0.0, 0.0, -angle_rad)) * nose.push(0.0);
+        let expected = (points.xy() - nose) * through_air;
+        let changed = self.wind - self.mean_wind;
+        // A wrong horizon turns the field as well: the wind may show less of it.
+        let along = changed.dot(&expected.try_normalize(1e-6).unwrap_or_default());
+        let across = libm::sqrt((changed.norm_squared() - along * along).max(0.0));
+        self.flies()
+            && along > p::WIND_CHANGED.max(LEAST_SHOWN * expected.norm())
+            && across < MOST_ACROSS * along
+    }
+
+    /// The heading is off by an angle, which field and wind show: gyroscopes have turned it.
+    fn doubt_heading(&mut self, angle_rad: f64) {
+        let variance = angle_rad * angle_rad;
+        self.add_variance(ATTITUDE + 2, 1, variance);
+        self.add_variance(RATE_BIAS, 3, p::TREND_RATE * variance);
+        self.wind = self.mean_wind;
+        self.forget_wind();
     }
 
     /// The field has changed, or the heading is wrong: either may be corrected

@@ -132,6 +132,10 @@ pub(super) const LARGEST_WIND: f64 = 10.0;
 pub(super) const TURBULENCE: f64 = 4.0;
 pub(super) const TURBULENCE_LENGTH_M: f64 = 533.0;
 
+/// A heading that is off changes the wind within this time, s, by this speed, m/s.
+pub(super) const MEAN_WIND_S: f64 = 10.0;
+pub(super) const WIND_CHANGED: f64 = 5.0;
+
 /// The velocity of something of which only the inertial sensors are known: a
 /// hand's, m/s; the acceleration with which velocities end, m/s²: a hand turns
 /// back within a second, an aircraft after half a minute.
