@@ -8,6 +8,7 @@ use super::plant_clock::Waiting;
 use super::reading_age::taken_of_needed;
 use super::whereabouts::Whereabouts;
 use super::{Autopilot, flags};
+use crate::flight::inertial::RawNavigation;
 use crate::flight::navigation::{
     ANGLE_OF_ATTACK, FrozenDetector, GateLimits, Lost, airspeed_can_follow, plausibility_gate,
 };
@@ -74,9 +75,10 @@ impl Autopilot {
     /// Estimates the aircraft's state, in failsafe without what is lost.
     fn navigate(&mut self, now: Time, measured: &Measurements, step_s: f64) {
         let silent = by_name(self.silent_or_frozen(now));
+        let sigma_rad = self.raw.as_ref().map_or(0.0, RawNavigation::tilt_sigma_rad);
         let doubt = self.navigation.motion_doubt();
         self.navigation
-            .compare_motion(now, &self.accepted, silent, step_s);
+            .compare_motion(now, &self.accepted, silent, sigma_rad, step_s);
         if doubt != self.navigation.motion_doubt() {
             self.replacement.forget_offsets();
         }

@@ -226,6 +226,12 @@ impl RawNavigation {
         &self.solution
     }
 
+    /// The standard deviation of roll and pitch, rad; 0 if the method states none.
+    pub(crate) fn tilt_sigma_rad(&self) -> f64 {
+        let sigma = &self.solution.sigma;
+        sigma.roll_rad.max(sigma.pitch_rad).max(0.0)
+    }
+
     /// How the measurements differed from what was expected of them, since the
     /// inertial sample before that; none by the thesis' way.
     pub fn innovations(&self) -> &[Innovation] {

@@ -16,12 +16,14 @@ const COMPARED: Duration = Duration::from_millis(200);
 
 impl Navigation {
     /// Holds attitude and body rates against each other in flight, before the tick's step;
-    /// `lost` are the quantities that are lost for other reasons.
+    /// `lost` are the quantities that are lost for other reasons, `sigma_rad` is the standard
+    /// deviation of an attitude that is computed.
     pub(crate) fn compare_motion(
         &mut self,
         now: Time,
         sensed: &Measurements,
         lost: Lost,
+        sigma_rad: f64,
         dt_s: f64,
     ) {
         let estimate = &self.estimate;
@@ -48,6 +50,7 @@ impl Navigation {
                 angle_of_attack_rad: estimate.angle_of_attack_rad,
                 gusts_mps: self.monitor.gusts_mps(),
             },
+            sigma_rad,
             may_doubt: self.is_engaged && !self.is_flaring,
         };
         if let Some(rotation) = self.motion.step(&input, dt_s) {

@@ -21,6 +21,8 @@ const FOLLOWS_DOUBTED_RADPS: f64 = 1.0;
 /// than noise and an attitude that is 0.1 s late make of a fast roll.
 const DIFFERS_RAD: f64 = 0.061;
 const DIFFERENCE_LAG_S: f64 = 0.3;
+/// So many standard deviations of a computed attitude are no contradiction, either.
+const EXPECTED_SIGMAS: f64 = 3.0;
 /// The odds of one against the other at which it is decided, 20 to 1, and those that are
 /// enough beyond this angle, rad (15°), 3 to 1.
 const CERTAIN: f64 = 3.0;
@@ -56,6 +58,8 @@ pub(super) struct MotionInput {
     /// What navigation makes of them.
     pub(super) flown: EulerAngles,
     pub(super) witness: WitnessInput,
+    /// The standard deviation of the attitude, if it is computed, rad.
+    pub(super) sigma_rad: f64,
     /// Whether one may be doubted: while engaged.
     pub(super) may_doubt: bool,
 }
@@ -89,6 +93,8 @@ pub(super) struct MotionMonitor {
     /// Logarithm of the odds that a doubted attitude is right.
     odds_since_doubt: f64,
     agrees_s: f64,
+    /// The standard deviation of the attitude in the latest seconds, rad.
+    sigma_rad: f64,
     /// The time since they were compared last, s.
     passed_s: f64,
     /// Whether one might be doubted in the last tick.
@@ -106,6 +112,7 @@ impl MotionMonitor {
             doubt: None,
             odds_since_doubt: 0.0,
             agrees_s: 0.0,
+            sigma_rad: 0.0,
             passed_s: 0.0,
             might_doubt: false,
         }
@@ -138,6 +145,9 @@ impl MotionMonitor {
             return None;
         };
         self.integrate(rates, dt_s);
+        self.sigma_rad = input
+            .sigma_rad
+            .max(self.sigma_rad * (1.0 - FOLLOWS_RADPS * dt_s));
         self.passed_s += dt_s;
         if self.passed_s < COMPARED_EACH_S {
             return None;
@@ -197,12 +207,17 @@ impl MotionMonitor {
             return None;
         }
         let [x, y] = difference;
-        if hypot(x, y) < DIFFERS_RAD {
+        if hypot(x, y) < self.expected_rad() {
             self.suspicion = None;
             self.correct(off, FOLLOWS_RADPS, MOST_LEARNED_RADPS, dt_s);
             return None;
         }
         self.judge(difference, measured, input, dt_s)
+    }
+
+    /// Up to which angle a difference is none: an attitude that is uncertain is found later.
+    fn expected_rad(&self) -> f64 {
+        hypot(DIFFERS_RAD, EXPECTED_SIGMAS * self.sigma_rad)
     }
 
     /// Collects evidence for attitude or rates, and decides when it is enough.
@@ -260,7 +275,7 @@ impl MotionMonitor {
         let agrees = hypot(x, y) < ATTITUDE_AGREES_RAD;
         let odds = (self.odds_since_doubt + self.witness.odds(&input.witness, dt_s)).max(-CERTAIN);
         self.odds_since_doubt = odds;
-        if odds < CERTAIN || hypot(x, y) < DIFFERS_RAD {
+        if odds < CERTAIN || hypot(x, y) < self.expected_rad() {
             self.follow_doubted(agrees, measured, dt_s);
             return None;
         }
@@ -351,6 +366,7 @@ mod tests {
                 angle_of_attack_rad: 0.0,
                 gusts_mps: 0.5,
             },
+            sigma_rad: 0.0,
             may_doubt,
         }
     }

@@ -32,6 +32,9 @@ const STILL_SHARE: f64 = 0.2;
 const AT_FIRST_S: f64 = 60.0;
 const SLOW_RATIO: f64 = 0.6;
 const FIRST_READ_S: f64 = 1.5;
+/// What rolls neither climbs nor sinks faster than this, m/s: in a spin the way over the ground
+/// is short, too.
+const ROLLS_MPS: f64 = 2.0;
 /// That of the airspeed then, m/s.
 const RIGHT_SD_MPS: f64 = 1.0;
 
@@ -150,7 +153,9 @@ impl AirspeedMonitor {
         }
         let ground_mps = hypot(read.north_mps, read.east_mps);
         let tail_mps = ground_mps - sensor_mps / read.sqrt_density;
-        if bank.learned_s < FIRST_READ_S && sensor_mps < SLOW_RATIO * self.prior.reference_mps {
+        let rolls = fabs(read.climb_rate_mps) < ROLLS_MPS
+            && sensor_mps < SLOW_RATIO * self.prior.reference_mps;
+        if bank.learned_s < FIRST_READ_S && rolls {
             self.behind.began_tail_mps = Some(tail_mps);
         }
         let lags_mps = tail_mps - self.behind.began_tail_mps?;
