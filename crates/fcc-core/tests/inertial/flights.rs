@@ -204,3 +204,38 @@ fn it_aligns_in_flight() {
         assert!(heading <= 5.0, "{heading}° {fitted:?}");
     }
 }
+
+/// What accelerates as slowly as this from a stand looks like one that stands, to its inertial
+/// sensors; the receiver tells. An attitude beyond 8.6° of standard deviation is not flown by.
+#[test]
+fn a_slow_take_off_roll_is_no_rest() {
+    fn rolls(time_s: f64) -> (f64, f64, f64) {
+        // The throttle is opened within 4 s; 1.5 m/s² is that of a loaded trainer.
+        let since_s = (time_s - 30.0).max(0.0);
+        let opened_s = since_s.min(4.0);
+        let speed = 1.5 * (opened_s * opened_s / 8.0 + (since_s - opened_s));
+        (0.0, 0.0, speed)
+    }
+    for seed in 1..=5 {
+        for airspeed in [true, false] {
+            let fitted = Fitted {
+                airspeed,
+                ..Fitted::default()
+            };
+            let mut run = Run::new(Flight::new(rolls, 1.0, [0.0; 2]), fitted, seed);
+            run.until(29.0, |_, _| {});
+            run.until(50.0, |truth, solution| {
+                let [roll, pitch, _] = angle_errors(truth, solution);
+                let tilt_deg = roll.max(pitch);
+                let sigma_deg = solution
+                    .sigma
+                    .roll_rad
+                    .max(solution.sigma.pitch_rad)
+                    .to_degrees();
+                let at_s = truth.time_s;
+                assert!(tilt_deg <= 3.0, "seed {seed}, {at_s:.2} s: {tilt_deg}°");
+                assert!(sigma_deg <= 8.6, "seed {seed}, {at_s:.2} s: {sigma_deg}°");
+            });
+        }
+    }
+}

@@ -63,6 +63,8 @@ pub(super) struct Filter {
     pub(super) turns_by_field: bool,
     pub(super) drift: Drift,
     pub(super) trend: Trend,
+    /// How fast a receiver last said that this moves, m/s: also if that was refused.
+    pub(super) receiver_mps: f64,
     /// The wind of the latest seconds.
     pub(super) mean_wind: Vector2<f64>,
     /// Whether another filter tells which of two sensors is wrong.
@@ -102,6 +104,7 @@ impl Filter {
             turns_by_field: false,
             drift: Drift::default(),
             trend: Trend::default(),
+            receiver_mps: 0.0,
             mean_wind: Vector2::zeros(),
             is_compared: false,
             pending: Pending::default(),

@@ -86,6 +86,7 @@ impl Filter {
     /// A velocity over the ground, taken `after_s` after the time of the state.
     pub(super) fn velocity(&mut self, taken: Time, velocity: [f64; 3], after_s: f64) {
         let velocity = Vector3::from(velocity);
+        self.receiver_mps = velocity.norm();
         let (horizontal, vertical) = (p::VELOCITY_HORIZONTAL, p::VELOCITY_VERTICAL);
         let difference = velocity - self.motion.velocity - self.acceleration * after_s;
         let since_s = self.tracks.velocity.since_tried_s(taken);

@@ -97,6 +97,8 @@ impl Filter {
     pub(super) fn is_moving(&self) -> bool {
         /// Beyond the noise of a receiver at rest, m/s.
         const MOVING_MPS: f64 = 1.0;
-        self.flies() || (self.has_receiver() && self.motion.velocity.norm() > MOVING_MPS)
+        // What is taken for standing has no velocity in the filter, whatever a receiver says.
+        let speed = self.receiver_mps.max(self.motion.velocity.norm());
+        self.flies() || (self.has_receiver() && speed > MOVING_MPS)
     }
 }
