@@ -5,7 +5,7 @@ use super::super::inertial::RawNavigation;
 use super::super::navigation::{FrozenDetector, LearnedAirframe, Navigation, Replacement};
 use super::{
     ActiveMode, Actuation, AltitudeReference, Autopilot, AutopilotConfig, BankCommand,
-    Contingencies, Degraded, Delayed, Following, GroundMotion, KeptTrims, Measurements,
+    Contingencies, Degraded, Delayed, Following, GroundMotion, Jammed, KeptTrims, Measurements,
     PilotTakeover, PlantClock, ReadingAges, Recovery, RunwayControl, Setpoints, Surfaces, Targets,
     Time, ToldOnce, Whereabouts,
 };
@@ -68,6 +68,7 @@ impl Autopilot {
             kept_trims: KeptTrims::default(),
             degraded: Degraded::default(),
             following: Following::default(),
+            jammed: Jammed::new(),
             distrusted: Flags::NONE,
             doubt_notice: None,
             is_at_floor: false,

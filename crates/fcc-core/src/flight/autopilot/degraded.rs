@@ -14,7 +14,7 @@ use crate::framework::{Flags, Notice, Tick, Time};
 
 /// The kinds of notices.
 pub(super) const GOOD_AGAIN: u8 = 3;
-pub(super) const GLIDES: u8 = 4;
+pub(super) const FLOWN_OTHERWISE: u8 = 4;
 
 /// How the failsafe rolls; the weakest first.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -320,7 +320,7 @@ impl Autopilot {
         let glides = degraded.glides
             || config.end == FailsafeEnd::Glide && degraded.unsound_s > config.hold.as_secs_f64();
         if glides && !degraded.glides {
-            degraded.news = Some((GLIDES, degraded.lasted_s));
+            degraded.news = Some((FLOWN_OTHERWISE, degraded.lasted_s));
         }
         degraded.glides = glides;
     }

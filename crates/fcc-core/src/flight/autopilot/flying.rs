@@ -2,6 +2,8 @@
 
 use super::Autopilot;
 use crate::blocks::wrap_two_pi;
+use crate::flight::control::{Envelope, Schedule};
+use crate::flight::navigation::Estimate;
 use crate::flight::{Setpoints, Surfaces};
 use crate::framework::{Flags, Time};
 
@@ -14,42 +16,56 @@ impl Autopilot {
         let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
         self.follow_outputs(&estimate);
         let (schedule, envelope) = (self.schedule(), self.envelope());
-        if self.accepted.body_rates.value != self.kept_trims.found_with {
+        self.watch_surfaces(&estimate, schedule, dt_s);
+        if self.accepted.body_rates.value != self.kept_trims.found_with && !self.jammed.is_any() {
             self.keep_trims();
         }
+        let outputs = self.flown(now, &estimate, &envelope, schedule, dt_s);
+        let outputs = self.around_jammed(outputs, &estimate, dt_s);
+        self.with_trim(now, outputs, Flags::NONE)
+    }
+
+    /// The outputs of the law that flies, as if every surface moved the aircraft.
+    fn flown(
+        &mut self,
+        now: Time,
+        estimate: &Estimate,
+        envelope: &Envelope,
+        schedule: Schedule,
+        dt_s: f64,
+    ) -> Surfaces {
         let recovering = if self.is_on_runway() {
             None
         } else {
-            self.recover_from_upset(now, &estimate)
+            self.recover_from_upset(now, estimate)
         };
-        if let Some(outputs) = recovering.or_else(|| self.fly_to_release(&estimate, dt_s)) {
-            return self.with_trim(now, outputs, Flags::NONE);
+        if let Some(outputs) = recovering.or_else(|| self.fly_to_release(estimate, dt_s)) {
+            return outputs;
         }
-        let by_phase = self.control_on_runway(&estimate, dt_s);
-        if let Some(outputs) = by_phase.or_else(|| self.control_in_glide(&estimate, dt_s)) {
-            return self.with_trim(now, outputs, Flags::NONE);
+        let by_phase = self.control_on_runway(estimate, dt_s);
+        if let Some(outputs) = by_phase.or_else(|| self.control_in_glide(estimate, dt_s)) {
+            return outputs;
         }
         let to = self.targets;
         let ordered_mps = self.flyable_airspeed_mps(to.airspeed_mps);
         self.altitude.order_airspeed(ordered_mps);
-        let lateral = self.step_lateral(&estimate, &envelope, schedule, dt_s);
+        let lateral = self.step_lateral(estimate, envelope, schedule, dt_s);
         let altitude = &mut self.altitude;
-        let vertical = altitude.step(to.altitude_m, &estimate, &envelope, schedule, dt_s);
+        let vertical = altitude.step(to.altitude_m, estimate, envelope, schedule, dt_s);
         let demand = self.throttle_demand(vertical.climb_rate_mps);
-        let throttle = self.airspeed.step(&demand, &estimate, dt_s);
+        let throttle = self.airspeed.step(&demand, estimate, dt_s);
         self.show(
             lateral.roll_rad,
             vertical.climb_rate_mps,
             vertical.pitch_rad,
         );
-        let outputs = Surfaces {
+        Surfaces {
             throttle,
             elevator: self.actuation.elevator(vertical.elevator),
             aileron: lateral.aileron,
             rudder: lateral.rudder,
             ..Surfaces::IDLE
-        };
-        self.with_trim(now, outputs, Flags::NONE)
+        }
     }
 
     /// The set points of this tick: the targets, and what the loops make of them.

@@ -19,6 +19,7 @@ mod gliding;
 mod ground_below;
 mod ground_contact;
 mod ground_motion;
+mod jammed;
 mod notices;
 mod observe;
 mod other_control;
@@ -54,6 +55,7 @@ pub use failsafe::{FailsafeConfig, FailsafeEnd};
 use following::Following;
 use ground_contact::ToldOnce;
 use ground_motion::GroundMotion;
+use jammed::Jammed;
 use pilot_takeover::PilotTakeover;
 pub use pilot_takeover::StickTakeover;
 use plant_clock::PlantClock;
@@ -177,6 +179,7 @@ pub struct Autopilot {
     kept_trims: KeptTrims,
     degraded: Degraded,
     following: Following,
+    jammed: Jammed,
     /// The quantities that were rejected as implausible in this failsafe.
     distrusted: Flags,
     /// That the airspeed has just been doubted.
@@ -214,6 +217,7 @@ impl Controller for Autopilot {
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         let of_parts = self.actuation.conditions() | self.doubted() | self.trim_conditions();
         let unused = self.unused_sensors(measurements) | self.route_conditions();
+        let of_parts = of_parts | self.jammed_conditions();
         (self.external(tick.woke, self.seen(measurements)) | of_parts | unused)
             .with(flags::RECOVERING, self.recovery.is_active())
             .with(
@@ -329,6 +333,11 @@ impl Controller for Autopilot {
                 .watch(&self.last, &estimate, self.clock.step_s());
         }
         let held = self.safest(tick.woke, &seen);
+        let held = if lost.intersects(flags::BODY_RATES | flags::ATTITUDE) {
+            held
+        } else {
+            self.around_jammed(held, &estimate, self.clock.step_s())
+        };
         let stops = self.stop_on_wheels(lost);
         let outputs = Surfaces {
             gear: self.gear_in_failsafe(stops.is_some()),
@@ -348,6 +357,7 @@ impl Controller for Autopilot {
         self.is_at_floor = false;
         self.capture = None;
         self.recovery = Recovery::new();
+        self.jammed = Jammed::new();
         self.release = None;
         self.trim = ElevatorTrim::new(None);
         self.setpoints = Setpoints::default();

@@ -3,8 +3,8 @@
 use core::fmt;
 
 use super::{
-    airspeed_doubt, contingency, degraded, pilot_takeover, plant_clock, refusal, routing, runway,
-    wrong_sensors,
+    airspeed_doubt, contingency, degraded, jammed, pilot_takeover, plant_clock, refusal, routing,
+    runway, wrong_sensors,
 };
 use crate::framework::Notice;
 
@@ -24,10 +24,11 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
             f,
             "all is good again: back to what was flown {lasted_s:.1} s ago"
         ),
-        degraded::GLIDES => write!(
-            f,
-            "nothing can be held any longer: gliding in a gentle turn, with idle throttle"
-        ),
+        degraded::FLOWN_OTHERWISE => jammed::write(notice, f).unwrap_or_else(|| {
+            f.write_str(
+                "nothing can be held any longer: gliding in a gentle turn, with idle throttle",
+            )
+        }),
         routing::ITEM_REACHED if notice.item == 0 => {
             f.write_str("the plan is flown to its end: circling")
         }
@@ -77,7 +78,7 @@ mod tests {
             plant_clock::STOOD_STILL,
             plant_clock::LINK_LOST,
             degraded::GOOD_AGAIN,
-            degraded::GLIDES,
+            degraded::FLOWN_OTHERWISE,
             plant_clock::CLOCK_MISSING,
             runway::RUNWAY,
             routing::ITEM_REACHED,

@@ -263,11 +263,7 @@ impl HeadingLoop {
         schedule: Schedule,
         dt_s: f64,
     ) -> Lateral {
-        let config = &self.config;
-        let wanted = limit_abs(
-            schedule.lateral_pace * config.roll_gain_per_s * (roll_rad - estimate.roll_rad),
-            config.max_roll_rate_radps,
-        );
+        let wanted = self.roll_rate_for(roll_rad, estimate, schedule);
         let roll_rate = self.roll_command.step(wanted, dt_s);
         let rolling = self.aileron_feed_forward(roll_rate, schedule);
         let aileron = self.roll_rate.step_scheduled(
@@ -293,6 +289,20 @@ impl HeadingLoop {
             aileron,
             rudder,
         }
+    }
+
+    /// The roll rate (rad/s) towards a bank (rad).
+    pub(crate) fn roll_rate_for(
+        &self,
+        roll_rad: f64,
+        estimate: &Estimate,
+        schedule: Schedule,
+    ) -> f64 {
+        let gain_per_s = schedule.lateral_pace * self.config.roll_gain_per_s;
+        limit_abs(
+            gain_per_s * (roll_rad - estimate.roll_rad),
+            self.config.max_roll_rate_radps,
+        )
     }
 
     /// The surfaces for a roll rate (rad/s) from trims, without the integrals:

@@ -25,10 +25,12 @@ mod glide;
 mod heading;
 mod load;
 mod oscillation;
+mod other_controls;
 mod play_inverse;
 mod recovery;
 mod schedule;
 mod speed_limits;
+mod surface_response;
 mod upset;
 
 pub use airspeed::{AirspeedConfig, AirspeedLoop, ThrottleDemand};
@@ -38,10 +40,12 @@ pub use elevator_trim::{ElevatorTrim, Trimming};
 pub use envelope::Envelope;
 pub use heading::{HeadingConfig, HeadingLoop, Lateral};
 pub use oscillation::OscillationMonitor;
+pub(crate) use other_controls::{BankByRudder, ClimbByThrottle};
 pub use play_inverse::PlayInverse;
 pub(crate) use recovery::{Change, Recovery, RecoveryInputs};
 pub use schedule::Schedule;
 pub use speed_limits::{PitchLimits, SpeedLimits};
+pub(crate) use surface_response::SurfaceResponse;
 pub use upset::{Motion, UpsetDetector};
 
 /// The largest bank for which a turn's load and rate are computed, rad.

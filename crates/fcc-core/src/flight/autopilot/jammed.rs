@@ -1,0 +1,190 @@
+//! Ailerons or an elevator that do not move the aircraft: it is flown by what is left.
+
+use core::fmt;
+
+use super::{Autopilot, degraded, flags};
+use crate::blocks::LowPass;
+use crate::flight::Surfaces;
+use crate::flight::control::{BankByRudder, ClimbByThrottle, Schedule, SurfaceResponse};
+use crate::flight::navigation::Estimate;
+use crate::framework::{Flags, Notice};
+use crate::units::GRAVITY_MPS2;
+
+/// The most bank then, rad (15°): a rudder rolls slowly, and without an elevator a turn
+/// lowers the nose.
+const MOST_BANK_RAD: f64 = 0.262;
+/// Rudder and throttle of the latest seconds are those from which both begin, s.
+const USUAL_S: f64 = 20.0;
+/// Slower than this times the stalling speed nothing is judged: a wing that stalls does not
+/// answer, either.
+const LEAST_STALL_RATIO: f64 = 1.15;
+
+/// The items of their notices.
+const AILERONS: u16 = 1;
+const ELEVATOR: u16 = 2;
+
+/// What does not move the aircraft.
+#[derive(Clone, Debug)]
+pub(super) struct Jammed {
+    ailerons: SurfaceResponse,
+    elevator: SurfaceResponse,
+    rudder: LowPass,
+    throttle: LowPass,
+    /// The trims of ailerons and elevator before they were found to be jammed.
+    aileron_trim: Option<f64>,
+    elevator_trim: Option<f64>,
+    by_rudder: BankByRudder,
+    by_throttle: ClimbByThrottle,
+}
+
+impl Jammed {
+    pub(super) fn new() -> Self {
+        Self {
+            ailerons: SurfaceResponse::new(),
+            elevator: SurfaceResponse::new(),
+            rudder: LowPass::new(USUAL_S),
+            throttle: LowPass::new(USUAL_S),
+            aileron_trim: None,
+            elevator_trim: None,
+            by_rudder: BankByRudder::default(),
+            by_throttle: ClimbByThrottle::default(),
+        }
+    }
+
+    /// Whether the ailerons or the elevator do not move the aircraft.
+    pub(super) const fn is_any(&self) -> bool {
+        self.aileron_trim.is_some() || self.elevator_trim.is_some()
+    }
+
+    pub(super) const fn is_elevator(&self) -> bool {
+        self.elevator_trim.is_some()
+    }
+
+    /// The largest bank, rad, of those that are permitted.
+    pub(super) const fn most_bank_rad(&self, permitted_rad: f64) -> f64 {
+        if self.is_any() {
+            permitted_rad.min(MOST_BANK_RAD)
+        } else {
+            permitted_rad
+        }
+    }
+
+    /// What is summed up begins anew: the aircraft is not flown by its surfaces alone.
+    fn forget_responses(&mut self) {
+        self.ailerons = SurfaceResponse::new();
+        self.elevator = SurfaceResponse::new();
+    }
+}
+
+/// Writes the notice of an item; `None` if it is another one.
+pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> Option<fmt::Result> {
+    let text = match notice.item {
+        AILERONS => {
+            "the ailerons do not move the aircraft: banking by the rudder, 15° at most, until \
+             the release"
+        }
+        ELEVATOR => {
+            "the elevator does not move the aircraft: climbing and descending by the throttle, \
+             at the airspeed it is trimmed for, until the release"
+        }
+        _ => return None,
+    };
+    Some(f.write_str(text))
+}
+
+impl Autopilot {
+    /// Compares what ailerons and elevator were commanded with how the aircraft moves.
+    pub(super) fn watch_surfaces(&mut self, estimate: &Estimate, schedule: Schedule, dt_s: f64) {
+        let stall_mps = self.config.envelope.stall_airspeed_mps;
+        let says_nothing = self.is_on_runway()
+            || self.recovery.is_active()
+            || self.is_not_followed()
+            || !self.actuation.conditions().is_empty()
+            || estimate.airspeed_mps < LEAST_STALL_RATIO * stall_mps;
+        let jammed = &mut self.jammed;
+        if says_nothing {
+            jammed.forget_responses();
+            return;
+        }
+        // Flown by what is left, the other one is commanded otherwise than usual.
+        if jammed.is_any() {
+            return;
+        }
+        let (sent, rates, gusts) = (&self.last, estimate.body_rates, estimate.gust_load);
+        jammed.rudder.step(sent.rudder, dt_s);
+        jammed.throttle.step(sent.throttle, dt_s);
+        let roll = 1.0 / (schedule.rate * self.config.heading.aileron_per_roll_rate).max(1e-3);
+        // The load of a unit of elevator turns the path by g/V for each g.
+        let per_g = (schedule.moment * self.config.altitude.elevator_per_g).max(1e-3);
+        let pitch = GRAVITY_MPS2 / estimate.true_airspeed_mps.max(1.0) / per_g;
+        let ailerons = &mut jammed.ailerons;
+        let elevator = &mut jammed.elevator;
+        if ailerons.step(sent.aileron, roll, rates.roll_radps, gusts, dt_s) {
+            jammed.aileron_trim = Some(ailerons.trim());
+            self.news = Some(notice(AILERONS));
+        } else if elevator.step(sent.elevator, pitch, rates.pitch_radps, gusts, dt_s) {
+            jammed.elevator_trim = Some(elevator.trim());
+            self.news = Some(notice(ELEVATOR));
+        }
+    }
+
+    /// The outputs with what takes the place of a jammed surface. The surface is commanded as
+    /// if it worked, but without an integral: it may be free again.
+    pub(super) fn around_jammed(
+        &mut self,
+        outputs: Surfaces,
+        estimate: &Estimate,
+        dt_s: f64,
+    ) -> Surfaces {
+        if !self.jammed.is_any() || self.is_on_runway() {
+            return outputs;
+        }
+        let schedule = self.schedule();
+        let mut outputs = outputs;
+        if let Some(trim) = self.jammed.aileron_trim {
+            let bank_rad = self.jammed.most_bank_rad(self.setpoints.roll_rad.abs());
+            let bank_rad = libm::copysign(bank_rad, self.setpoints.roll_rad);
+            let rudder_trim = self.jammed.rudder.output();
+            outputs.rudder =
+                self.jammed
+                    .by_rudder
+                    .step(bank_rad, rudder_trim, estimate, schedule, dt_s);
+            let roll_radps = self.heading.roll_rate_for(bank_rad, estimate, schedule);
+            let by_ailerons =
+                self.heading
+                    .surfaces_for(roll_radps, trim, rudder_trim, estimate, schedule);
+            outputs.aileron = by_ailerons.aileron;
+        }
+        if let Some(trim) = self.jammed.elevator_trim {
+            let error_radps = -estimate.body_rates.pitch_radps;
+            let elevator = self.altitude.elevator_for(error_radps, 0.0, trim, schedule);
+            outputs.elevator = elevator.clamp(-1.0, 1.0);
+            if !self.glides && self.runway().is_none() && !self.recovery.is_active() {
+                let level = self.jammed.throttle.output();
+                let (throttle, climb_rate_mps) = self.jammed.by_throttle.step(
+                    self.targets.altitude_m,
+                    level,
+                    estimate,
+                    &self.config.airspeed,
+                    dt_s,
+                );
+                outputs.throttle = throttle;
+                self.setpoints.climb_rate_mps = climb_rate_mps;
+            }
+        }
+        outputs
+    }
+
+    /// What is reported.
+    pub(super) const fn jammed_conditions(&self) -> Flags {
+        Flags::NONE.with(flags::NOT_FOLLOWED, self.jammed.is_any())
+    }
+}
+
+fn notice(item: u16) -> Notice {
+    Notice {
+        kind: degraded::FLOWN_OTHERWISE,
+        item,
+        ..Notice::default()
+    }
+}
