@@ -22,6 +22,7 @@ import tty
 from dataclasses import dataclass
 from pathlib import Path
 
+from .rig import FlightError
 from .servo_board import Control, Decoder, Readings, ServoBoard, encode
 from .state import Controls
 
@@ -59,6 +60,11 @@ def disturbed(data: bytes, bit_errors: float, rng: random.Random) -> bytes:
         received[at // 8] ^= 1 << at % 8
 
 
+def _is_terminal_link(path: Path) -> bool:
+    """Return whether a path is a link to a pseudo-terminal, as of an earlier board."""
+    return path.is_symlink() and str(path.readlink()).startswith("/dev/pts/")
+
+
 class _Serial:
     """Frames on a pseudo-terminal, to which a symbolic link leads."""
 
@@ -71,10 +77,14 @@ class _Serial:
 
     def put_back(self) -> None:
         if self._master < 0:
+            if self._link.exists() and not _is_terminal_link(self._link):
+                raise FlightError(
+                    f"{self._link}: it is no link of a board: choose a name that is not taken"
+                )
             master, slave = pty.openpty()
             tty.setraw(slave)
             os.set_blocking(master, False)
-            fresh = self._link.with_suffix(".new")
+            fresh = self._link.with_name(f".{self._link.name}.{os.getpid()}")
             fresh.unlink(missing_ok=True)
             fresh.symlink_to(os.ttyname(slave))
             fresh.replace(self._link)
@@ -109,7 +119,8 @@ class _Serial:
 
     def close(self) -> None:
         self.pull()
-        self._link.unlink(missing_ok=True)
+        if self._link.is_symlink():
+            self._link.unlink(missing_ok=True)
 
     def _disturbed(self, data: bytes) -> bytes:
         return disturbed(data, self.bit_errors, self._rng)

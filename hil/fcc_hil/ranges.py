@@ -63,6 +63,11 @@ def names(of: tuple[str, ...]) -> Callable[[str], tuple[str, ...]]:
     return read
 
 
+_MCAP_MAGIC = b"\x89MCAP0\r\n"
+_PLAN_MAGIC = b"QGC WPL"
+"""How the files begin that are not replaced by pictures and figures."""
+
+
 def file_to_write(text: str) -> Path:
     """Read a path, before flying: a file can be written there, or argparse.ArgumentTypeError."""
     path = Path(text)
@@ -73,6 +78,14 @@ def file_to_write(text: str) -> Path:
         raise argparse.ArgumentTypeError(f"'{text}': there is no folder '{folder}': create it")
     if not os.access(path if path.exists() else folder, os.W_OK):
         raise argparse.ArgumentTypeError(f"'{text}' may not be written: give another file")
+    if path.is_file() and os.access(path, os.R_OK):
+        with path.open("rb") as file:
+            begin = file.read(len(_MCAP_MAGIC))
+        for magic, what in ((_MCAP_MAGIC, "a recording"), (_PLAN_MAGIC, "a flight plan")):
+            if begin.startswith(magic):
+                raise argparse.ArgumentTypeError(
+                    f"'{text}' is {what}, which is not replaced: give another file"
+                )
     return path
 
 

@@ -137,12 +137,17 @@ impl<C: Recorded> RecorderOf<C> {
         while !self.thread.is_finished() && began.elapsed() < PATIENCE {
             thread::sleep(POLL);
         }
-        let trouble = (!self.thread.is_finished()).then(|| Notice {
-            text: "the recording is not finished after 10 s: the disk does not respond".to_owned(),
-            is_trouble: true,
+        let mut status = self.board.read();
+        let trouble = (!self.thread.is_finished()).then(|| {
+            let text = "the recording is not finished after 10 s: the disk does not respond";
+            status.stopped.get_or_insert_with(|| text.to_owned());
+            Notice {
+                text: text.to_owned(),
+                is_trouble: true,
+            }
         });
         let notices = self.notices.try_iter().chain(trouble).collect();
-        (self.board.read(), notices)
+        (status, notices)
     }
 
     fn send(&self, feed: Feed<MessageOf<C>>) -> bool {

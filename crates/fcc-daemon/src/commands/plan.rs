@@ -148,6 +148,12 @@ fn show(args: &PlanShowArgs) -> Result<Exit, Failure> {
             .with_ground(&plan, |terrain| over_ground(&plan, terrain))
             .map_err(invalid)?;
         let page = plan_page(&title, &rows, &places(&flown), &fence(&plan), &ground);
+        if fcc_plan::read_file(out).is_ok() {
+            return Err(Failure::new(format_args!(
+                "{}: it is a flight plan, which no page replaces: choose another name",
+                out.display()
+            )));
+        }
         write(out, &args.file, &page)?;
         let _ = write!(written, "\nwritten: {}", out.display());
     }

@@ -5,7 +5,9 @@ use core::fmt;
 use super::{Autopilot, degraded, flags};
 use crate::blocks::LowPass;
 use crate::flight::Surfaces;
-use crate::flight::control::{BankByRudder, ClimbByThrottle, Schedule, SurfaceResponse};
+use crate::flight::control::{
+    BankByRudder, ClimbByThrottle, Schedule, SurfaceEffect, SurfaceResponse, is_jammed,
+};
 use crate::flight::navigation::Estimate;
 use crate::framework::{Flags, Notice};
 use crate::units::GRAVITY_MPS2;
@@ -27,7 +29,10 @@ const ELEVATOR: u16 = 2;
 #[derive(Clone, Debug)]
 pub(super) struct Jammed {
     ailerons: SurfaceResponse,
+    aileron_effect: SurfaceEffect,
     elevator: SurfaceResponse,
+    /// Where the elevator's trim stood.
+    trim: Option<f64>,
     rudder: LowPass,
     throttle: LowPass,
     /// The trims of ailerons and elevator before they were found to be jammed.
@@ -41,7 +46,9 @@ impl Jammed {
     pub(super) fn new() -> Self {
         Self {
             ailerons: SurfaceResponse::new(),
+            aileron_effect: SurfaceEffect::new(),
             elevator: SurfaceResponse::new(),
+            trim: None,
             rudder: LowPass::new(USUAL_S),
             throttle: LowPass::new(USUAL_S),
             aileron_trim: None,
@@ -96,7 +103,8 @@ impl Autopilot {
     /// Compares what ailerons and elevator were commanded with how the aircraft moves.
     pub(super) fn watch_surfaces(&mut self, estimate: &Estimate, schedule: Schedule, dt_s: f64) {
         let stall_mps = self.config.envelope.stall_airspeed_mps;
-        let says_nothing = self.is_on_runway()
+        let says_nothing = !self.config.finds_jammed_controls
+            || self.is_on_runway()
             || self.recovery.is_active()
             || self.is_not_followed()
             || !self.actuation.conditions().is_empty()
@@ -117,12 +125,21 @@ impl Autopilot {
         // The load of a unit of elevator turns the path by g/V for each g.
         let per_g = (schedule.moment * self.config.altitude.elevator_per_g).max(1e-3);
         let pitch = GRAVITY_MPS2 / estimate.true_airspeed_mps.max(1.0) / per_g;
+        // While the trim moves, it takes the place of the elevator.
+        if jammed.trim != sent.elevator_trim {
+            jammed.trim = sent.elevator_trim;
+            jammed.elevator = SurfaceResponse::new();
+        }
+        let (p_radps, q_radps) = (rates.roll_radps, rates.pitch_radps);
         let ailerons = &mut jammed.ailerons;
         let elevator = &mut jammed.elevator;
-        if ailerons.step(sent.aileron, roll, rates.roll_radps, gusts, dt_s) {
+        let unanswered = ailerons.step(sent.aileron, roll, p_radps, gusts, dt_s);
+        let effect = &mut jammed.aileron_effect;
+        let effect_per_s = effect.step(sent.aileron, roll, p_radps, dt_s);
+        if is_jammed(unanswered, effect_per_s) {
             jammed.aileron_trim = Some(ailerons.trim());
             self.news = Some(notice(AILERONS));
-        } else if elevator.step(sent.elevator, pitch, rates.pitch_radps, gusts, dt_s) {
+        } else if elevator.step(sent.elevator, pitch, q_radps, gusts, dt_s) > 1.0 {
             jammed.elevator_trim = Some(elevator.trim());
             self.news = Some(notice(ELEVATOR));
         }

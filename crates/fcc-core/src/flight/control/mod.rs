@@ -45,7 +45,7 @@ pub use play_inverse::PlayInverse;
 pub(crate) use recovery::{Change, Recovery, RecoveryInputs};
 pub use schedule::Schedule;
 pub use speed_limits::{PitchLimits, SpeedLimits};
-pub(crate) use surface_response::SurfaceResponse;
+pub(crate) use surface_response::{SurfaceEffect, SurfaceResponse, is_jammed};
 pub use upset::{Motion, UpsetDetector};
 
 /// The largest bank for which a turn's load and rate are computed, rad.

@@ -3,8 +3,8 @@
 //!
 //! An aircraft with dihedral rolls towards where its rudder yaws it, and one that is trimmed
 //! climbs by what its thrust exceeds its drag, at the airspeed that it is trimmed for. Its
-//! phugoid is damped by the thrust against changes of the airspeed. (Tucker 1999, NASA
-//! TM-1999-206578: touchdowns of two aircraft by their engines alone.)
+//! phugoid is damped by the thrust against changes of the airspeed. (Tucker 1999, Touchdown,
+//! Monographs in Aerospace History 16: two aircraft landed by their engines alone.)
 
 use libm::sin;
 
