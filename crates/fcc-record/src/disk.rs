@@ -181,3 +181,22 @@ pub(super) fn is_being_written(path: &Path) -> bool {
 pub(super) fn may_be_deleted(path: &Path) -> bool {
     open_found(path).is_ok_and(|file| !is_locked(&file))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_output_replaces_no_recording() {
+        let folder = tempfile::tempdir().unwrap();
+        let (recording, page) = (folder.path().join("a.mcap"), folder.path().join("page"));
+        fs::write(&recording, [mcap::MAGIC, &[0; 100]].concat()).unwrap();
+        fs::write(&page, "an earlier page").unwrap();
+        let inputs: [&Path; 0] = [];
+        let refused = create_output(&recording, &inputs).unwrap_err().to_string();
+        assert!(refused.contains("choose another name"), "{refused}");
+        assert_eq!(fs::metadata(&recording).unwrap().len(), 108);
+        create_output(&page, &inputs).unwrap();
+        assert_eq!(fs::metadata(&page).unwrap().len(), 0);
+    }
+}
