@@ -245,3 +245,12 @@ def test_every_exception_is_an_error_of_the_module() -> None:
     for name in ("Config", "Engage", "Flight", "Recording", "Telemetry", "Command", "Timer"):
         assert issubclass(getattr(fcc, f"{name}Error"), fcc.Error)
     assert fcc.Error.__module__ == "fcc"
+
+
+def test_a_plan_that_cannot_be_read_is_an_os_error_with_its_name(tmp_path: Path) -> None:
+    missing = tmp_path / "none.waypoints"
+    for call in (fcc.Plan.read, fcc.Machine("").replace_plan):
+        with pytest.raises(FileNotFoundError) as raised:
+            call(missing)
+        assert str(raised.value.filename) == str(missing)
+        assert "(os error" not in str(raised.value)

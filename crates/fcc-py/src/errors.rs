@@ -5,12 +5,26 @@
 //! `ValueError`, an autopilot that is not engaged a `RuntimeError`.
 
 use std::fmt::Display;
+use std::io;
+use std::path::Path;
 
 use fcc_telemetry::printable;
-use pyo3::exceptions::{PyException, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyException, PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple, PyType};
+
+/// An `OSError` of the subclass that belongs to the error's number, with the file's name.
+pub(crate) fn unreadable(path: &Path, error: &io::Error) -> PyErr {
+    let text = error.to_string();
+    match error.raw_os_error() {
+        Some(number) => {
+            let text = text.split(" (os error").next().unwrap_or_default();
+            PyOSError::new_err((number, text.to_owned(), path.to_owned()))
+        }
+        None => PyOSError::new_err(format!("{}: {text}", path.display())),
+    }
+}
 
 /// One exception of the module: made once, by `type(name, bases, ...)`, because
 /// there is no other way to a class with two bases.

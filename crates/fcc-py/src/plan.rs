@@ -49,7 +49,7 @@ impl PyPlan {
     fn read(path: PathBuf) -> PyResult<Self> {
         match fcc_plan::read_file(&path) {
             Ok(plan) => Ok(Self { plan }),
-            Err(FileError::Unreadable { source, .. }) => Err(source.into()),
+            Err(FileError::Unreadable { source, .. }) => Err(errors::unreadable(&path, &source)),
             Err(error) => Err(errors::PLAN.with(error)),
         }
     }

@@ -127,7 +127,9 @@ machine_class! {
         let uploaded_s = now.map_or(0, |since| since.as_secs());
         let plan = match self.config.prepare_plan(&file, item, uploaded_s) {
             Ok(plan) => plan,
-            Err(FileError::Unreadable { source, .. }) => return Err(source.into()),
+            Err(FileError::Unreadable { source, .. }) => {
+                return Err(errors::unreadable(&file, &source));
+            }
             Err(error) => return Err(errors::PLAN.with(error)),
         };
         let mut lockstep = self.lockstep();

@@ -28,10 +28,12 @@ pub struct OutsideLimits {
 }
 
 impl OutsideLimits {
-    /// The error if a value is out of its limits; none if it is within.
+    /// The error if a value is out of its limits, or the number of an item is no whole one;
+    /// none if it is within.
     pub fn of(name: &str, value: f64, limits: &RangeInclusive<f64>) -> Option<Self> {
         let (least, most) = (*limits.start(), *limits.end());
-        let inside = (least - ROUNDING..=most + ROUNDING).contains(&value);
+        let is_number = name != RESUMES_AT_0 || value.fract() == 0.0;
+        let inside = is_number && (least - ROUNDING..=most + ROUNDING).contains(&value);
         (!inside).then_some(Self {
             name: name.to_owned(),
             value,
@@ -124,6 +126,11 @@ mod tests {
         assert_eq!(
             heading.text_in(AVIATION),
             "heading is 401.07°: choose -360 to 360°"
+        );
+        let item = OutsideLimits::of("plan_item", 2.5, &(0.0..=9.0)).unwrap();
+        assert_eq!(
+            item.text_in(AVIATION),
+            "plan item is 2.5: the plan has items 1 to 9"
         );
         let item = OutsideLimits::of("plan_item", 99.0, &(0.0..=9.0)).unwrap();
         assert_eq!(

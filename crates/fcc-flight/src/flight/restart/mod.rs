@@ -18,6 +18,7 @@ mod state_file;
 mod state_page;
 
 use std::fs::File;
+use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -126,8 +127,8 @@ impl Restart {
     /// from here on. Returns a message, if there is one; without a usable file,
     /// only that.
     pub(super) fn begin(request: RestartRequest) -> (Option<Self>, Option<String>) {
-        let lock = match prepare(&request.path) {
-            Ok(lock) => lock,
+        let (lock, foreign) = match prepare(&request.path) {
+            Ok(prepared) => prepared,
             Err(message) => return (None, Some(message)),
         };
         let read = state_file::read(&request.path);
@@ -141,6 +142,10 @@ impl Restart {
         let now = BootInstant::now();
         let of_this_plant = matches!(&read, Ok(Some(saved)) if saved.config == request.fingerprint);
         let (recovery, message) = evaluate(&request, read, now.as_ref());
+        let message = match (foreign, message) {
+            (Some(foreign), Some(message)) => Some(format!("{foreign}; {message}")),
+            (foreign, message) => foreign.or(message),
+        };
         if recovery.is_none() {
             keeper.clear();
         }
@@ -309,8 +314,9 @@ impl Restart {
     }
 }
 
-/// Creates the folder, and ensures that no other daemon uses the same file.
-fn prepare(path: &Path) -> Result<File, String> {
+/// Creates the folder, and ensures that no other daemon uses the same file. A message beside
+/// the lock if it is another user's: that one may hold it, without any daemon.
+fn prepare(path: &Path) -> Result<(File, Option<String>), String> {
     let message = |doing: &str, error: &dyn std::fmt::Display| {
         format!(
             "{}: {doing}, so this flight cannot be recovered after a restart: {error}",
@@ -323,16 +329,32 @@ fn prepare(path: &Path) -> Result<File, String> {
         fcc_record::create_folder(folder)
             .map_err(|error| message("its folder cannot be created", &error))?;
     }
-    let lock = fcc_record::open_lock(&path.with_extension("flight.lock"))
-        .map_err(|error| message("cannot be locked", &error))?;
+    let lock_path = path.with_extension("flight.lock");
+    let lock =
+        fcc_record::open_lock(&lock_path).map_err(|error| message("cannot be locked", &error))?;
     match fcc_telemetry::file_lock::try_lock(&lock) {
-        Ok(true) => Ok(lock),
+        Ok(true) => Ok((lock, None)),
+        Ok(false) if other_user(&lock).is_some() => {
+            let user = other_user(&lock).unwrap_or_default();
+            let foreign = format!(
+                "{}: belongs to the user {user}, who holds it: it is not heeded; use a \
+                 restart.state_file in a folder of this user",
+                lock_path.display()
+            );
+            Ok((lock, Some(foreign)))
+        }
         Ok(false) => Err(message(
             "another fccd uses it",
             &"give this one another restart.state_file",
         )),
         Err(error) => Err(message("cannot be locked", &error)),
     }
+}
+
+/// The user of a file, if that is neither this process' nor root.
+fn other_user(file: &File) -> Option<u32> {
+    let user = file.metadata().ok()?.uid();
+    (user != 0 && user != nix::unistd::geteuid().as_raw()).then_some(user)
 }
 
 /// What to do with the state that was found, and the message about it.
