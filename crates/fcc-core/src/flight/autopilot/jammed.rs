@@ -21,6 +21,10 @@ const USUAL_S: f64 = 20.0;
 /// answer, either.
 const LEAST_STALL_RATIO: f64 = 1.15;
 
+/// Nothing is judged for so long after the engagement, a recovery or a stall, s: trims are found
+/// anew.
+const SETTLED_S: f64 = 20.0;
+
 /// The items of their notices.
 const AILERONS: u16 = 1;
 const ELEVATOR: u16 = 2;
@@ -31,6 +35,8 @@ pub(super) struct Jammed {
     ailerons: SurfaceResponse,
     aileron_effect: SurfaceEffect,
     elevator: SurfaceResponse,
+    /// For how long the aircraft has flown so that it may be judged, s.
+    judged_s: f64,
     /// Where the elevator's trim stood.
     trim: Option<f64>,
     rudder: LowPass,
@@ -48,6 +54,7 @@ impl Jammed {
             ailerons: SurfaceResponse::new(),
             aileron_effect: SurfaceEffect::new(),
             elevator: SurfaceResponse::new(),
+            judged_s: 0.0,
             trim: None,
             rudder: LowPass::new(USUAL_S),
             throttle: LowPass::new(USUAL_S),
@@ -112,6 +119,11 @@ impl Autopilot {
         let jammed = &mut self.jammed;
         if says_nothing {
             jammed.forget_responses();
+            jammed.judged_s = 0.0;
+            return;
+        }
+        jammed.judged_s += dt_s;
+        if jammed.judged_s < SETTLED_S {
             return;
         }
         // Flown by what is left, the other one is commanded otherwise than usual.
