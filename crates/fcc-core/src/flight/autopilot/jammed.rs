@@ -116,10 +116,13 @@ impl Autopilot {
             || self.is_not_followed()
             || !self.actuation.conditions().is_empty()
             || estimate.airspeed_mps < LEAST_STALL_RATIO * stall_mps;
+        let is_upset = self.recovery.is_active();
         let jammed = &mut self.jammed;
         if says_nothing {
             jammed.forget_responses();
-            jammed.judged_s = 0.0;
+            if is_upset {
+                jammed.judged_s = 0.0;
+            }
             return;
         }
         jammed.judged_s += dt_s;
