@@ -6,6 +6,7 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use fcc_core::flight::GnssFix;
+use fcc_core::framework::Time;
 use fcc_linux::serial::{
     Crsf, Epoch, Epochs, Frames, Nmea, Protocol, ReceiverFrame, Sbus, Ubx, UbxMessage,
 };
@@ -24,8 +25,8 @@ libfuzzer_sys::fuzz_target!(|input: &[u8]| {
             let mut epochs = Epochs::default();
             let sentences = found::<Nmea>(bytes, cut).into_iter();
             sentences.for_each(|sentence| {
-                if let Epoch::Complete(fix) = epochs.take(sentence) {
-                    check(&fix);
+                if let Epoch::Complete(fix) = epochs.take(sentence, Time::from_nanos(0)) {
+                    check(&fix.value);
                 }
             });
         }

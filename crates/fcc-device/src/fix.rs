@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use fcc_core::flight::{GnssFix, Measurements};
-use fcc_core::framework::Reading;
+use fcc_core::framework::{Reading, SourceClock, Time};
 
 use crate::{Measured, Sample};
 
@@ -35,40 +35,53 @@ pub fn velocity_over_ground(speed_mps: f64, course_deg: Option<f64>) -> Option<[
 /// receiver has set its clock, s.
 const OLDER_S: f64 = 10.0;
 
-/// Whether fixes are of later and later epochs. Of a receiver, or of what passes its
-/// messages on, that hangs, the last fix arrives again and again.
+/// When fixes were taken, by the times of their epochs. Of a receiver, or of what passes its
+/// messages on, that hangs, the last fix arrives again and again; and of one that is
+/// overloaded, fixes arrive later and later.
 ///
 /// ```
+/// use fcc_core::framework::Time;
 /// use fcc_device::EpochOrder;
 ///
+/// let at_ms = |ms: i64| Time::from_nanos(ms * 1_000_000);
 /// // By the seconds of a week.
 /// let mut order = EpochOrder::within(604_800.0);
-/// assert!(order.is_later(604_799.8) && order.is_later(0.0));
-/// assert!(!order.is_later(0.0) && !order.is_later(604_799.8));
-/// assert!(order.is_later(300_000.0));
+/// assert_eq!(order.taken(604_799.8, at_ms(5_000)), Some(at_ms(5_000)));
+/// assert_eq!(order.taken(0.0, at_ms(5_200)), Some(at_ms(5_200)));
+/// assert_eq!(order.taken(0.0, at_ms(5_400)), None, "again");
+/// assert_eq!(order.taken(604_799.8, at_ms(5_600)), None, "an older one");
+/// // One after 1 s arrives after 3 s: 2 s late, less what clocks may drift apart by.
+/// order.taken(10.0, at_ms(6_000));
+/// let taken = order.taken(11.0, at_ms(9_000)).unwrap();
+/// assert!(taken.since(at_ms(7_000)).as_micros() < 1_000);
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct EpochOrder {
     period_s: f64,
     last_s: Option<f64>,
+    clock: SourceClock,
 }
 
 impl EpochOrder {
     /// Of times that begin anew after this long, s.
-    pub const fn within(period_s: f64) -> Self {
+    pub fn within(period_s: f64) -> Self {
         Self {
             period_s,
             last_s: None,
+            clock: SourceClock::default(),
         }
     }
 
     /// Of times of day.
-    pub const fn of_day() -> Self {
+    pub fn of_day() -> Self {
         Self::within(DAY_S)
     }
 
-    /// Whether a time, s, is later than the last one that was.
-    pub fn is_later(&mut self, time_s: f64) -> bool {
+    /// When the fix of an epoch, s, was taken that has arrived at a time: earlier than that by
+    /// as much as it is later than the fastest before. `None` if its epoch is not later than
+    /// the last one. What all fixes are late by is not seen: it is the calibration's.
+    pub fn taken(&mut self, time_s: f64, arrived: Time) -> Option<Time> {
+        let age = self.clock.step(arrived, time_s);
         let is_later = self.last_s.is_none_or(|last_s| {
             let ahead_s = (time_s - last_s).rem_euclid(self.period_s);
             ahead_s > 0.0 && ahead_s < self.period_s - OLDER_S
@@ -76,7 +89,7 @@ impl EpochOrder {
         if is_later {
             self.last_s = Some(time_s);
         }
-        is_later
+        is_later.then(|| arrived - age)
     }
 }
 

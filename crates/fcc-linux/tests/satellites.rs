@@ -8,6 +8,7 @@
 )]
 
 use fcc_core::flight::{GnssFix, Position, Velocity};
+use fcc_core::framework::Time;
 use fcc_linux::serial::{Epoch, Epochs, Frames, NavPvt, Nmea, Ubx, UbxMessage, configuration};
 
 /// Captured from a receiver in 2018, and published with the tests of another
@@ -212,8 +213,8 @@ fn fixes(sentences: &[&str]) -> Vec<GnssFix> {
     for sentence in sentences {
         let line = format!("{sentence}\r\n");
         frames.push(line.as_bytes(), |sentence| {
-            if let Epoch::Complete(fix) = epochs.take(sentence) {
-                found.push(fix);
+            if let Epoch::Complete(fix) = epochs.take(sentence, Time::from_nanos(0)) {
+                found.push(fix.value);
             }
         });
     }

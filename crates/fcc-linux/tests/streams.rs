@@ -1,6 +1,7 @@
 //! Frames in streams: cut anywhere, with noise between, and bytes that are none.
 #![allow(clippy::indexing_slicing, reason = "helper functions of tests")]
 
+use fcc_core::framework::Time;
 use fcc_linux::serial::{Begin, Crsf, Epoch, Epochs, Frames, Nmea, Protocol, Sbus, Ubx};
 use proptest::prelude::*;
 
@@ -120,7 +121,8 @@ proptest! {
             let text = format!("GN{kind},101112,{}", fields.join(","));
             let sum = text.bytes().fold(0, |sum, byte| sum ^ byte);
             frames.push(format!("${text}*{sum:02x}").as_bytes(), |sentence| {
-                if let Epoch::Complete(fix) = epochs.take(sentence) {
+                if let Epoch::Complete(fix) = epochs.take(sentence, Time::from_nanos(0)) {
+                    let fix = fix.value;
                     assert!(fix.position.latitude_rad.abs() <= core::f64::consts::FRAC_PI_2);
                     assert!(fix.position.longitude_rad.abs() <= core::f64::consts::PI);
                     assert!(fix.position.altitude_m.is_finite());

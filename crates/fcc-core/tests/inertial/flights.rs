@@ -239,3 +239,44 @@ fn a_slow_take_off_roll_is_no_rest() {
         }
     }
 }
+
+/// As an outsider flew it: fixes that come late with the time of now, while the aircraft turns.
+/// The horizon stays as it is wanted by airspeed alone on a small aircraft (3°, RMS), and within
+/// three times that.
+#[test]
+fn a_receiver_that_becomes_late_does_not_cost_the_attitude() {
+    fn turns(time_s: f64) -> (f64, f64, f64) {
+        let share = (time_s / 15.0).sin();
+        (30.0_f64.to_radians() * share * share * share, 0.0, 50.0)
+    }
+    for (late_s, to_s, airspeed) in [
+        (0.3, 240.0, true),
+        (0.7, 240.0, true),
+        (1.0, 150.0, true),
+        (2.0, 240.0, false),
+        (3.0, 150.0, true),
+        (4.0, 240.0, true),
+    ] {
+        for seed in 41..=43 {
+            let fitted = Fitted {
+                receiver_late: (late_s, (60.0, to_s)),
+                airspeed,
+                ..Fitted::default()
+            };
+            let flight = Flight::new(turns, 1.0, wind_20_kt()).in_turbulence(seed);
+            let mut run = Run::new(flight, fitted, seed);
+            run.until(60.0, |_, _| {});
+            let (mut squares, mut samples, mut most) = (0.0, 0.0, 0.0_f64);
+            run.until(240.0, |truth, solution| {
+                let [roll, pitch, _] = angle_errors(truth, solution);
+                let off = roll.max(pitch);
+                squares += off * off;
+                samples += 1.0;
+                most = most.max(off);
+            });
+            let rms = f64::sqrt(squares / samples);
+            let what = format!("{late_s} s to {to_s} s, seed {seed}: {rms:.1}° RMS, {most:.1}°");
+            assert!(rms < 3.0 && most < 9.0, "{what}");
+        }
+    }
+}

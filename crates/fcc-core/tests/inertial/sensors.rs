@@ -29,6 +29,8 @@ pub(crate) struct Fitted {
     pub(crate) receiver: bool,
     /// The receiver is lost from here to there, s.
     pub(crate) receiver_lost_s: (f64, f64),
+    /// Fixes come later by this time than they say, s, from here to there, s.
+    pub(crate) receiver_late: (f64, (f64, f64)),
     /// Gyroscopes and accelerometers are both lost from here to there, s.
     pub(crate) inertial_lost_s: (f64, f64),
     /// The compass is turned by an angle from a time on, rad, s.
@@ -52,6 +54,7 @@ impl Default for Fitted {
             airspeed: true,
             receiver: true,
             receiver_lost_s: (f64::INFINITY, f64::INFINITY),
+            receiver_late: (0.0, (0.0, f64::INFINITY)),
             inertial_lost_s: (f64::INFINITY, f64::INFINITY),
             compass_turned: (0.0, f64::INFINITY),
             slow_errors: true,
@@ -176,8 +179,11 @@ impl Run {
         if self.fitted.receiver && self.steps.is_multiple_of(10) {
             let lost = self.fitted.receiver_lost_s;
             if !(lost.0..lost.1).contains(&truth.time_s) {
+                let (late_s, (from_s, to_s)) = self.fitted.receiver_late;
+                let is_late = (from_s..to_s).contains(&truth.time_s);
+                let late_s = if is_late { late_s } else { 0.0 };
                 self.late
-                    .push_back((truth.time_s + RECEIVER_DELAY_S, *truth));
+                    .push_back((truth.time_s + RECEIVER_DELAY_S + late_s, *truth));
             }
             if self.fitted.slow_errors {
                 let kept = (-0.2_f64 / 100.0).exp();
@@ -190,7 +196,7 @@ impl Run {
                 break;
             }
             self.late.pop_front();
-            let taken = time(then.time_s);
+            let taken = time(arrival_s - RECEIVER_DELAY_S);
             let noise = self.random.vector(0.5);
             let off = [0, 1, 2].map(|axis| noise[axis] + self.drift[axis]);
             let (north, east) = metres_per_radian(then.place.latitude_rad, then.place.altitude_m);

@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use fcc_core::flight::GnssFix;
 use fcc_core::framework::Time;
-use fcc_device::{NO_FIX, REPEATED_FIX};
+use fcc_device::{EpochOrder, NO_FIX, REPEATED_FIX};
 use nix::errno::Errno;
 
 use super::{Lines, Report};
@@ -39,7 +39,8 @@ pub struct GpsdSettings {
 
 /// A connection to gpsd: a [`Source`] of fixes.
 ///
-/// A fix is taken when its line was read; a known delay is the calibration's.
+/// A fix is taken when its line was read, or earlier, if by the receiver's time it is later
+/// than those before; a known delay is the calibration's.
 pub struct Gpsd {
     stream: TcpStream,
     settings: GpsdSettings,
@@ -47,8 +48,7 @@ pub struct Gpsd {
     lines: Lines,
     traffic: Traffic,
     heard: Instant,
-    /// The time of the last fix.
-    fixed: Option<String>,
+    order: EpochOrder,
     waits_for: Option<&'static str>,
 }
 
@@ -89,16 +89,16 @@ impl Gpsd {
             lines: Lines::default(),
             traffic: Traffic::begin(),
             heard: Instant::now(),
-            fixed: None,
+            order: EpochOrder::of_day(),
             waits_for: None,
         })
     }
 
     /// The newest fix of what was received.
-    fn parse(&mut self, bytes: &[u8]) -> Result<Option<GnssFix>, DeviceError> {
+    fn parse(&mut self, bytes: &[u8], now: Time) -> Result<Option<Sample<GnssFix>>, DeviceError> {
         let (mut newest, mut trouble, mut heard) = (None, None, self.heard);
         let mut waits_for = self.waits_for;
-        let fixed = &mut self.fixed;
+        let order = &mut self.order;
         let device = name(&self.settings);
         let wanted = self.settings.device.as_ref();
         let refused = |what: String| DeviceError::Refused {
@@ -106,17 +106,18 @@ impl Gpsd {
             what,
         };
         let mut take = |line: &[u8]| match Report::read(line) {
-            Ok(Report::Fix { device, time, fix })
-                if wanted.is_none() || device.as_ref() == wanted =>
-            {
-                let is_repeated = time.is_some() && time == *fixed;
-                waits_for = match fix {
-                    Some(_) if is_repeated => Some(REPEATED_FIX),
-                    Some(_) => None,
-                    None => Some(NO_FIX),
+            Ok(Report::Fix {
+                device,
+                time_s,
+                fix,
+            }) if wanted.is_none() || device.as_ref() == wanted => {
+                let Some(fix) = fix else {
+                    waits_for = Some(NO_FIX);
+                    return;
                 };
-                if fix.is_some() && !is_repeated {
-                    (newest, *fixed) = (fix, time);
+                match time_s.map_or(Some(now), |time_s| order.taken(time_s, now)) {
+                    Some(taken) => (newest, waits_for) = (Some(Sample::new(taken, fix)), None),
+                    None => waits_for = Some(REPEATED_FIX),
                 }
             }
             Ok(Report::Impossible { device: of }) if wanted.is_none() || of.as_ref() == wanted => {
@@ -231,14 +232,15 @@ impl Source for Gpsd {
             Err(error) if is_nothing(&error) => 0,
             Err(error) => return Err(failed(error)),
         };
-        let fix = self.parse(buffer.get(..length).unwrap_or_default())?;
+        let now = (self.clock)();
+        let fix = self.parse(buffer.get(..length).unwrap_or_default(), now)?;
         if self.heard.elapsed() > SILENT {
             return Err(DeviceError::Refused {
                 device: name(&self.settings),
                 what: "it reports nothing: check that it has a receiver (`gpsmon` shows it)".into(),
             });
         }
-        Ok(fix.map(|fix| Sample::new((self.clock)(), fix)))
+        Ok(fix)
     }
 
     fn waits_for(&self) -> Option<&'static str> {

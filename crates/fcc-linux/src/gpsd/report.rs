@@ -11,8 +11,8 @@ pub enum Report {
     Fix {
         /// The receiver's path, such as `/dev/ttyACM0`.
         device: Option<String>,
-        /// Its time, UTC by ISO 8601; none if the receiver has not said it.
-        time: Option<String>,
+        /// Its time of day, UTC, s; none if the receiver has not said it.
+        time_s: Option<f64>,
         /// Its fix; none if it has no three-dimensional one that it measured.
         fix: Option<GnssFix>,
     },
@@ -109,8 +109,8 @@ impl Report {
             Object::Tpv(tpv) if tpv.is_impossible() => Self::Impossible { device: tpv.device },
             Object::Tpv(tpv) => Self::Fix {
                 fix: tpv.fix(),
+                time_s: tpv.time.as_deref().and_then(time_of_day_s),
                 device: tpv.device,
-                time: tpv.time,
             },
             Object::Version { proto_major } => Self::Version {
                 protocol: proto_major,
@@ -169,6 +169,14 @@ impl Tpv {
             down_mps: -self.climb?,
         })
     }
+}
+
+/// Of a time by ISO 8601, such as 2026-11-26T10:11:11.200Z.
+fn time_of_day_s(time: &str) -> Option<f64> {
+    let (_, of_day) = time.strip_suffix('Z')?.split_once('T')?;
+    let mut parts = of_day.splitn(3, ':').map(str::parse::<f64>);
+    let [hours, minutes, seconds] = [(); 3].map(|()| parts.next().and_then(Result::ok));
+    Some(3_600.0 * hours? + 60.0 * minutes? + seconds?).filter(|time_s| time_s.is_finite())
 }
 
 /// 0 if it is not known.

@@ -1,9 +1,11 @@
 //! Fixes from the sentences of NMEA, each of which has a part of one.
 
 use fcc_core::flight::{GnssFix, Position, Velocity};
+use fcc_core::framework::Time;
 use fcc_device::{EpochOrder, VerticalSpeed};
 
 use super::Sentence;
+use crate::Sample;
 
 /// Puts the sentences of one epoch together.
 ///
@@ -24,7 +26,7 @@ pub struct Epochs {
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Epoch {
     /// Its last part.
-    Complete(GnssFix),
+    Complete(Sample<GnssFix>),
     /// The last part of one that is not later than the one before.
     Repeated,
     /// A part.
@@ -44,8 +46,8 @@ impl Default for Epochs {
 }
 
 impl Epochs {
-    /// Takes a sentence.
-    pub fn take(&mut self, sentence: Sentence) -> Epoch {
+    /// Takes a sentence that has arrived at a time.
+    pub fn take(&mut self, sentence: Sentence, arrived: Time) -> Epoch {
         match sentence {
             Sentence::Motion {
                 time_s,
@@ -71,14 +73,14 @@ impl Epochs {
             return Epoch::Incomplete;
         }
         (self.motion, self.place) = (None, None);
-        if !self.order.is_later(time_s) {
+        let Some(taken) = self.order.taken(time_s, arrived) else {
             return Epoch::Repeated;
-        }
+        };
         let Some(down_mps) = self.vertical_speed.down_mps(time_s, position.altitude_m) else {
             return Epoch::Incomplete;
         };
         let [horizontal_accuracy_m, vertical_accuracy_m] = self.accuracy_m;
-        Epoch::Complete(GnssFix {
+        let fix = GnssFix {
             position,
             velocity: Velocity {
                 north_mps,
@@ -88,6 +90,7 @@ impl Epochs {
             horizontal_accuracy_m,
             vertical_accuracy_m,
             speed_accuracy_mps: 0.0,
-        })
+        };
+        Epoch::Complete(Sample::new(taken, fix))
     }
 }

@@ -35,8 +35,9 @@ pub struct GnssSettings {
 
 /// An open receiver: a [`Source`] of fixes, by UBX and by NMEA.
 ///
-/// A fix is taken when its last byte was read; a known delay, of the receiver and
-/// of the line, is the calibration's.
+/// A fix is taken when its last byte was read, or earlier, if by the time of its epoch it is
+/// later than those before; a known delay, of the receiver and of the line, is the
+/// calibration's.
 pub struct GnssReceiver {
     line: SerialLine,
     configures: bool,
@@ -63,8 +64,8 @@ impl fmt::Debug for GnssReceiver {
 /// What a piece of the stream had in it.
 #[derive(Default)]
 struct Found {
-    by_ubx: Option<GnssFix>,
-    by_nmea: Option<GnssFix>,
+    by_ubx: Option<Sample<GnssFix>>,
+    by_nmea: Option<Sample<GnssFix>>,
     has_ubx: bool,
     is_repeated: bool,
     messages: usize,
@@ -107,18 +108,19 @@ impl GnssReceiver {
         Ok(())
     }
 
-    fn parse(&mut self, bytes: &[u8]) -> Found {
+    fn parse(&mut self, bytes: &[u8], now: Time) -> Found {
         let mut found = Found::default();
         let order = &mut self.order;
         self.ubx.push(bytes, |message| {
             found.messages += 1;
             match message {
                 UbxMessage::NavPvt(pvt) => {
-                    let mut is_later = || order.is_later(f64::from(pvt.time_of_week_ms) * 1e-3);
-                    let usable = pvt.usable();
-                    found.is_repeated = usable.is_some() && !is_later();
-                    found.by_ubx = usable.filter(|_| !found.is_repeated);
                     found.has_ubx = true;
+                    if let Some(fix) = pvt.usable() {
+                        let taken = order.taken(f64::from(pvt.time_of_week_ms) * 1e-3, now);
+                        found.is_repeated = taken.is_none();
+                        found.by_ubx = taken.map(|taken| Sample::new(taken, fix));
+                    }
                 }
                 UbxMessage::Configured(is_accepted) => found.refused |= !is_accepted,
             }
@@ -126,7 +128,7 @@ impl GnssReceiver {
         let epochs = &mut self.epochs;
         self.nmea.push(bytes, |sentence| {
             found.messages += 1;
-            match epochs.take(sentence) {
+            match epochs.take(sentence, now) {
                 Epoch::Complete(fix) => found.by_nmea = Some(fix),
                 Epoch::Repeated => found.is_repeated = true,
                 Epoch::Incomplete => {}
@@ -171,7 +173,7 @@ impl Source for GnssReceiver {
         let length = self.line.read(&mut buffer)?;
         let now = (self.clock)();
         let damaged = self.ubx.damaged() + self.nmea.damaged();
-        let found = self.parse(buffer.get(..length).unwrap_or_default());
+        let found = self.parse(buffer.get(..length).unwrap_or_default(), now);
         if found.has_ubx {
             self.last_ubx = now;
         }
@@ -179,7 +181,7 @@ impl Source for GnssReceiver {
         let fix = found.by_ubx.or(found.by_nmea.filter(|_| has_only_nmea));
         if let Some(fix) = fix {
             (self.not_understood, self.waits_for) = (0, None);
-            return Ok(Some(Sample::new(now, fix)));
+            return Ok(Some(fix));
         }
         if found.is_repeated {
             self.waits_for = Some(REPEATED_FIX);

@@ -47,6 +47,20 @@ fn a_published_report_has_its_values() {
     assert_eq!(fix.speed_accuracy_mps, 0.0, "it does not say");
 }
 
+/// 10:11:07 is 36,667 s after midnight.
+#[test]
+fn the_receivers_time_is_that_of_the_day() {
+    let time_s = |line: &str| match Report::read(line.as_bytes()).unwrap() {
+        Report::Fix { time_s, .. } => time_s,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(time_s(TPV), Some(36_667.0));
+    for unusable in ["", "2026-11-22", "T10:11Z", "2026-11-22T10:11:nanZ"] {
+        let line = TPV.replace("2026-11-22T10:11:07.000Z", unusable);
+        assert_eq!(time_s(&line), None, "{unusable}");
+    }
+}
+
 #[test]
 fn velocities_and_errors_of_a_receiver_come_before_those_that_gpsd_computes() {
     let own = TPV.replace(
@@ -145,12 +159,12 @@ impl Bench {
 /// [`TPV`] at another time, later each time.
 fn later_tpv() -> String {
     static SENT: AtomicU32 = AtomicU32::new(0);
-    let number = SENT.fetch_add(1, Ordering::Relaxed);
+    let later_ms = 200 * SENT.fetch_add(1, Ordering::Relaxed);
     let time = format!(
         "T10:{:02}:{:02}.{:03}Z",
-        number / 60_000,
-        number / 1_000 % 60,
-        number % 1_000
+        later_ms / 60_000,
+        later_ms / 1_000 % 60,
+        later_ms % 1_000
     );
     TPV.replace("T10:11:07.000Z", &time)
 }

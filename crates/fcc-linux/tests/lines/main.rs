@@ -42,7 +42,10 @@ const NAV_PVT: [u8; 100] = [
 /// The same of another epoch, later each time.
 fn later_nav_pvt() -> Vec<u8> {
     static SENT: AtomicU32 = AtomicU32::new(0);
-    let later_ms = 200 * SENT.fetch_add(1, Ordering::Relaxed);
+    nav_pvt_later_by(200 * SENT.fetch_add(1, Ordering::Relaxed))
+}
+
+fn nav_pvt_later_by(later_ms: u32) -> Vec<u8> {
     let mut message = NAV_PVT;
     let time_ms = u32::from_le_bytes(message[6..10].try_into().unwrap());
     message[6..10].copy_from_slice(&(time_ms + later_ms).to_le_bytes());

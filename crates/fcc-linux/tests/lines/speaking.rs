@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::{Read, Write};
 use std::os::fd::OwnedFd;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicI64, Ordering};
 use std::time::Instant;
 
 use fcc_core::framework::Time;
@@ -14,7 +16,7 @@ use fcc_linux::{DeviceError, Source};
 use nix::pty::openpty;
 use nix::unistd::ttyname;
 
-use super::NAV_PVT;
+use super::{NAV_PVT, nav_pvt_later_by};
 use crate::watched::AT_MOST;
 
 /// The device's end of a line, and its name; the third keeps it open.
@@ -25,6 +27,10 @@ fn line() -> (File, PathBuf, OwnedFd) {
 }
 
 fn receiver(path: PathBuf, now_s: i64) -> GnssReceiver {
+    receiver_with(path, move || Time::from_nanos(now_s * 1_000_000_000))
+}
+
+fn receiver_with(path: PathBuf, now: impl Fn() -> Time + Send + 'static) -> GnssReceiver {
     let line = LineSettings {
         path,
         baud: 38_400,
@@ -34,7 +40,7 @@ fn receiver(path: PathBuf, now_s: i64) -> GnssReceiver {
         line,
         configures: true,
     };
-    GnssReceiver::open(&settings, move || Time::from_nanos(now_s * 1_000_000_000)).unwrap()
+    GnssReceiver::open(&settings, now).unwrap()
 }
 
 /// ACK-NAK of CFG-VALSET, encoded by pyubx2.
@@ -64,6 +70,27 @@ fn a_receiver_is_configured_and_one_that_refuses_is_used_as_it_is() {
     let fix = receiver.read().unwrap().unwrap();
     assert_eq!(fix.value.position.altitude_m, 220.4);
     assert_eq!(fix.taken, Time::from_nanos(100_000_000_000));
+}
+
+/// What passes messages on is overloaded for 2 s, and then late by as much: the receiver's own
+/// time tells. Clocks may differ by 0.05 % at first.
+#[test]
+fn a_fix_that_comes_late_was_taken_at_the_time_of_its_epoch() {
+    let (mut device, path, _open) = line();
+    let now_ms = Arc::new(AtomicI64::new(0));
+    let clock = now_ms.clone();
+    let now = move || Time::from_nanos(clock.load(Ordering::Relaxed) * 1_000_000);
+    let mut receiver = receiver_with(path, now);
+    for number in 0..40_u32 {
+        let late_ms = if number < 20 { 80 } else { 2_080 };
+        let epoch_ms = 200 * number;
+        now_ms.store(i64::from(epoch_ms) + late_ms, Ordering::Relaxed);
+        device.write_all(&nav_pvt_later_by(epoch_ms)).unwrap();
+        let taken = receiver.read().unwrap().unwrap().taken;
+        let usual = Time::from_nanos((i64::from(epoch_ms) + 80) * 1_000_000);
+        let off_ms = (taken - usual).abs() / 1_000_000;
+        assert!(off_ms <= 5, "fix {number}: {off_ms} ms");
+    }
 }
 
 /// What passes messages on hangs, and sends the last one again and again.

@@ -24,11 +24,13 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
             f,
             "all is good again: back to what was flown {lasted_s:.1} s ago"
         ),
-        degraded::FLOWN_OTHERWISE => jammed::write(notice, f).unwrap_or_else(|| {
-            f.write_str(
-                "nothing can be held any longer: gliding in a gentle turn, with idle throttle",
-            )
-        }),
+        degraded::FLOWN_OTHERWISE => jammed::write(notice, f)
+            .or_else(|| wrong_sensors::write_late_fixes(notice, f))
+            .unwrap_or_else(|| {
+                f.write_str(
+                    "nothing can be held any longer: gliding in a gentle turn, with idle throttle",
+                )
+            }),
         routing::ITEM_REACHED if notice.item == 0 => {
             f.write_str("the plan is flown to its end: circling")
         }

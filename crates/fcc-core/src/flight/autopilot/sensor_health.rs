@@ -41,10 +41,12 @@ impl Autopilot {
             .with(flags::WRONG_SENSOR, is(RawNavigation::has_wrong_sensor))
     }
 
-    /// The notice of a sensor that is not used any more since this tick.
+    /// The notice of a sensor that is not used any more, or otherwise than before, since this
+    /// tick.
     pub(super) fn wrong_sensor_notice(&self) -> Option<Notice> {
-        let wrong = self.raw.as_ref()?.wrong_sensor()?;
-        Some(wrong_sensors::notice(wrong))
+        let raw = self.raw.as_ref()?;
+        let wrong = raw.wrong_sensor().map(wrong_sensors::notice);
+        wrong.or_else(|| raw.late_fixes_s().map(wrong_sensors::late_fixes))
     }
 
     /// Whether the gyroscopes are not used, because the magnetic field contradicts them.

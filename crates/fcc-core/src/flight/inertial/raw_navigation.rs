@@ -4,6 +4,7 @@
 
 mod compared;
 mod consistency;
+mod late_fixes;
 mod range_end;
 mod readings;
 mod receiver;
@@ -15,6 +16,7 @@ mod trial;
 
 use core::time::Duration;
 
+use late_fixes::LateFixes;
 use libm::atan2;
 use range_end::RangeEnd;
 use readings::{
@@ -86,7 +88,7 @@ pub struct RawNavigationConfig {
 /// | body rates, specific force | gyroscopes and accelerometers, without the biases that the method found |
 /// | altitude | static pressure, by the standard atmosphere |
 /// | airspeed | differential pressure |
-/// | position, velocity | the satellite receiver, as it gives them |
+/// | position, velocity | the satellite receiver, as it gives them; the method, if they come more than half a second late |
 ///
 /// Readings that sensors give of these themselves are not used, except airspeed
 /// and altitude where there is no raw reading of their pressure, and position
@@ -137,6 +139,7 @@ pub struct RawNavigation {
     sensors: SensorMonitor,
     /// Of several the one that is not used any more since the last step.
     wrong: Option<WrongSensor>,
+    late_fixes: LateFixes,
     /// The gyroscopes' last sample, used or not.
     rates_read: Reading<BodyRates>,
     /// The fastest of the latest rates that were used, rad/s.
@@ -185,6 +188,7 @@ impl RawNavigation {
             gyroscopes: Units::default(),
             sensors: SensorMonitor::default(),
             wrong: None,
+            late_fixes: LateFixes::default(),
             rates_read: Reading::default(),
             fastest_radps: 0.0,
             gyroscope: GyroscopeMonitor::new(),
@@ -268,7 +272,14 @@ impl RawNavigation {
             self.solution = solution;
             self.judge_sensors(at);
         }
+        self.follow_late_fixes(now);
         let fix = self.used.gnss;
+        let (position, velocity) = self.present().unwrap_or_else(|| {
+            (
+                either(fix, |fix| fix.position, measured.position),
+                either(fix, |fix| fix.velocity, measured.velocity),
+            )
+        });
         self.found = Measurements {
             attitude,
             heading_rad: heading,
@@ -284,8 +295,8 @@ impl RawNavigation {
                 |pressure_pa| calibrated_airspeed_mps(pressure_pa.max(0.0)),
                 measured.airspeed_mps,
             ),
-            position: either(fix, |fix| fix.position, measured.position),
-            velocity: either(fix, |fix| fix.velocity, measured.velocity),
+            position,
+            velocity,
             ..*measured
         };
         &self.found

@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector2, Vector3};
 
 use super::drift::Drift;
 use super::innovations::Innovations;
+use super::lateness::Lateness;
 use super::motion::{Increment, Inertial, Motion, turn};
 use super::parameters as p;
 use super::track::Tracks;
@@ -63,6 +64,7 @@ pub(super) struct Filter {
     pub(super) turns_by_field: bool,
     pub(super) drift: Drift,
     pub(super) trend: Trend,
+    pub(super) lateness: Lateness,
     /// How fast a receiver last said that this moves, m/s: also if that was refused.
     pub(super) receiver_mps: f64,
     /// The wind of the latest seconds.
@@ -104,6 +106,7 @@ impl Filter {
             turns_by_field: false,
             drift: Drift::default(),
             trend: Trend::default(),
+            lateness: Lateness::default(),
             receiver_mps: 0.0,
             mean_wind: Vector2::zeros(),
             is_compared: false,
@@ -118,6 +121,9 @@ impl Filter {
         self.knows_rates = raw.rates.is_some();
         let increment = self.motion.advance(&reading, dt_s);
         self.acceleration = increment.acceleration;
+        if self.motion.is_located {
+            self.lateness.keep(self.time, &self.motion);
+        }
         self.accumulate(&increment, raw, dt_s);
         let horizontal = self.motion.velocity.xy().norm_squared();
         let share = crate::blocks::smoothing_factor(dt_s, p::VELOCITY_S);
@@ -265,6 +271,7 @@ impl Filter {
         self.motion.attitude.renormalize_fast();
         self.motion.velocity += part(VELOCITY);
         self.motion.shift(part(POSITION));
+        self.lateness.corrected(part(POSITION), part(VELOCITY));
         self.rate_bias += part(RATE_BIAS);
         self.force_bias += part(FORCE_BIAS);
         self.barometer_bias += error[BAROMETER_BIAS];

@@ -28,6 +28,7 @@ mod filter;
 mod history;
 mod innovations;
 mod inputs;
+mod lateness;
 mod magnetic;
 mod motion;
 mod noise;
@@ -163,6 +164,11 @@ impl KalmanNavigation {
         self.filter.change_magnetometer();
     }
 
+    /// By how much the fixes of the receiver are later than they say, s; 0 if they are not.
+    pub const fn late_fixes_s(&self) -> f64 {
+        self.filter.lateness.late_s()
+    }
+
     /// Forgets the samples of a sensor that wait until they are used.
     pub fn forget(&mut self, kind: ObservationKind) {
         self.history.remove(kind);
@@ -247,11 +253,15 @@ impl KalmanNavigation {
     fn use_measurement(&mut self, sample: &Sample) {
         let filter = &mut self.filter;
         let after_s = signed_s(sample.taken, filter.time);
+        let taken = sample.taken;
+        let is_fix = matches!(
+            sample.observation,
+            Observation::Position(_) | Observation::Velocity(_)
+        );
         // Too late to be of use.
-        if after_s < -5.0 * GAP_S {
+        if after_s < -5.0 * GAP_S && !(is_fix && filter.lateness.knows(taken)) {
             return;
         }
-        let taken = sample.taken;
         let is_soon = |track: track::Track| {
             /// More often than this, s, is not looked at: errors last longer.
             const LEAST_INTERVAL_S: f64 = 0.018;

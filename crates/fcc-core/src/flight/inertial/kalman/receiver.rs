@@ -1,13 +1,15 @@
 //! Positions and velocities of a satellite receiver.
 
+use core::time::Duration;
+
 use nalgebra::{SMatrix, Vector3};
 
 use super::filter::{
     ATTITUDE, BAROMETER_BIAS, FORCE_BIAS, Filter, POSITION, RATE_BIAS, STATES, VELOCITY,
 };
 use super::noise::{Noise, variances};
-use super::parameters as p;
 use super::update::{Corrects, Measurement};
+use super::{parameters as p, signed_s};
 use crate::flight::inertial::{GeodeticPosition, ObservationKind};
 use crate::framework::Time;
 
@@ -34,7 +36,10 @@ impl Filter {
             self.tracks.position.judged(taken, true);
             return;
         }
-        let difference = self.motion.to_place(place) - self.motion.velocity * after_s;
+        let difference = self.when_late(taken, place).map_or_else(
+            || self.motion.to_place(place) - self.motion.velocity * after_s,
+            |[difference, _]| difference,
+        );
         let since_s = self.tracks.position.since_tried_s(taken);
         let measurement = on(
             POSITION,
@@ -49,10 +54,15 @@ impl Filter {
             p::GATE,
             Corrects::All,
         ) {
+            self.lateness.believed();
             return;
+        }
+        if self.distance(&measurement) > p::LATE_GATE {
+            self.lateness.refused(&self.motion, taken, place);
         }
         if self.tracks.position.refused_s(taken) >= p::RECEIVER_REFUSED_S {
             self.motion.shift(difference);
+            self.lateness.corrected(difference, Vector3::zeros());
             self.forget(POSITION, &measurement);
             self.tracks.position.judged(taken, true);
         }
@@ -88,7 +98,15 @@ impl Filter {
         let velocity = Vector3::from(velocity);
         self.receiver_mps = velocity.norm();
         let (horizontal, vertical) = (p::VELOCITY_HORIZONTAL, p::VELOCITY_VERTICAL);
-        let difference = velocity - self.motion.velocity - self.acceleration * after_s;
+        if self.lateness.is_suspected(taken) {
+            return;
+        }
+        let here = self.motion.place;
+        let difference = velocity
+            - self.when_late(taken, here).map_or_else(
+                || self.motion.velocity + self.acceleration * after_s,
+                |[_, velocity]| velocity,
+            );
         let since_s = self.tracks.velocity.since_tried_s(taken);
         let measurement = on(
             VELOCITY,
@@ -118,6 +136,7 @@ impl Filter {
         }
         // What went in one direction before is an error of this filter, and not of a receiver.
         let leads = !self.is_compared
+            && self.lateness.late_s() == 0.0
             && self.sigma(ATTITUDE + 2) < p::TREND_HEADING
             && self.trend.leads_to(difference.xy());
         let needed_s = if leads {
@@ -127,6 +146,7 @@ impl Filter {
         };
         if is_first || self.tracks.velocity.refused_s(taken) >= needed_s {
             self.motion.velocity += difference;
+            self.lateness.corrected(Vector3::zeros(), difference);
             self.forget(VELOCITY, &measurement);
             if !is_first {
                 // One that is wrong by so much has turned gravity into this velocity. What
@@ -148,6 +168,16 @@ impl Filter {
         if !has_heading && velocity.xy().norm() > MOVING_MPS {
             self.take_heading_from_course();
         }
+    }
+
+    /// What a fix that comes late differs by from where this was then, and how this moved then.
+    fn when_late(&self, taken: Time, place: GeodeticPosition) -> Option<[Vector3<f64>; 2]> {
+        /// The state of the latest moment can be moved back by this, s.
+        const MOMENT_S: f64 = 0.1;
+        let then = taken - Duration::from_secs_f64(self.lateness.late_s());
+        (signed_s(self.time, then) > MOMENT_S)
+            .then(|| self.lateness.then(&self.motion, then, place))
+            .flatten()
     }
 
     /// Without a compass: most of what moves, moves ahead.

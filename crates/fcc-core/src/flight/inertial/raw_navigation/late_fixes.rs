@@ -1,0 +1,68 @@
+//! Fixes that come late, by what they say or later than that.
+
+use core::time::Duration;
+
+use super::readings::is_new;
+use super::{Method, RawNavigation};
+use crate::flight::{GnssFix, Position, Velocity};
+use crate::framework::{Reading, Time};
+
+/// A fix that is older than this when it comes is not the present place.
+const LATE: Duration = Duration::from_millis(500);
+
+/// By how much fixes are later than they say, s, and what takes the place of a late one.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct LateFixes {
+    late_s: f64,
+    /// Whether that is new since the last step.
+    is_news: bool,
+    last: Reading<GnssFix>,
+    present: Option<(Reading<Position>, Reading<Velocity>)>,
+}
+
+impl RawNavigation {
+    /// By how much the fixes of the receiver are later than they say, s, if that was found in
+    /// the last step; 0 if they come in time again. They are used at the time that they are of.
+    pub fn late_fixes_s(&self) -> Option<f64> {
+        self.late_fixes.is_news.then_some(self.late_fixes.late_s)
+    }
+
+    /// What takes the place of a fix that came late: where this is by all sensors.
+    pub(super) const fn present(&self) -> Option<(Reading<Position>, Reading<Velocity>)> {
+        self.late_fixes.present
+    }
+
+    pub(super) fn follow_late_fixes(&mut self, now: Time) {
+        let late_s = match &self.method {
+            Method::Kalman(navigation) => navigation.late_fixes_s(),
+            Method::Thesis(_) => 0.0,
+        };
+        let late = &mut self.late_fixes;
+        late.is_news = late_s != late.late_s;
+        late.late_s = late_s;
+        let fix = self.used.gnss;
+        if is_new(&mut late.last, &fix, now) {
+            let age = fix.age(now) + Duration::from_secs_f64(late_s);
+            let [north_mps, east_mps, down_mps] = self.solution.velocity_mps;
+            let place = self.solution.position;
+            let position = Position {
+                latitude_rad: place.latitude_rad,
+                longitude_rad: place.longitude_rad,
+                altitude_m: place.altitude_m,
+            };
+            let velocity = Velocity {
+                north_mps,
+                east_mps,
+                down_mps,
+            };
+            let is_known = place.latitude_rad.is_finite() && north_mps.is_finite();
+            late.present = (age > LATE && is_known).then(|| {
+                let at = self.solution.time;
+                let (mut position, mut velocity) =
+                    (Reading::new(position, at), Reading::new(velocity, at));
+                (position.source, velocity.source) = (fix.source, fix.source);
+                (position, velocity)
+            });
+        }
+    }
+}
