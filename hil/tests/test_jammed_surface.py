@@ -1,4 +1,4 @@
-"""Ailerons or an elevator that jam, with JSBSim: what is left flies the aircraft."""
+"""Ailerons or an elevator that jam, and a rudder that is reversed, with JSBSim: what is left flies."""
 
 from __future__ import annotations
 
@@ -18,6 +18,8 @@ JAMS_S = 60.0
 END_S = 300.0
 UPSET_DEG = 45.0
 """Bank at which an upset begins (Airplane Upset Recovery Training Aid, FAA 2008, section 2.3)."""
+MOST_BANK_DEG = 60.0
+"""The most of a Cessna 172P in the normal category (handbook, section 2)."""
 STALL_KT = 47.0
 NEVER_EXCEED_KT = 158.0
 """Cessna 172P, pilot's operating handbook, sections 5 and 2."""
@@ -33,11 +35,15 @@ ALTITUDE_FT = 100.0
 SAID = {
     "aileron": "the ailerons do not move the aircraft",
     "elevator": "the elevator does not move the aircraft",
+    "rudder": "the rudder turns the aircraft the other way",
 }
 
 
 class JammingRig(LockstepRig):
-    """One control stands still from a time on; what is read back is what was commanded."""
+    """One control stands still from a time on, a rudder is reversed.
+
+    What is read back is what was commanded.
+    """
 
     jams: str | None = None
     at: float | None = None
@@ -45,7 +51,10 @@ class JammingRig(LockstepRig):
 
     def _write(self, controls: Controls) -> None:
         self.commanded = controls
-        if self.jams is not None and self.plant.time_s >= JAMS_S:
+        fails = self.jams is not None and self.plant.time_s >= JAMS_S
+        if fails and self.jams == "rudder":
+            controls = replace(controls, rudder=-controls.rudder)
+        elif fails:
             if self.at is None:
                 self.at = getattr(controls, self.jams)
             controls = replace(controls, **{self.jams: self.at})
@@ -61,11 +70,12 @@ def _fly(
     jams: str | None,
     at: float | None = None,
     headings_deg: Mapping[float, float] | None = None,
+    aircraft: str = "c172p",
 ) -> JammingRig:
     """Fly the timed pattern, or hold headings from their times on."""
     weather = Weather(wind_kt=10.0, wind_from_deg=40.0, turbulence_severity=turbulence)
-    plant = Plant("c172p", seed=seed, weather=weather)
-    settings = Settings(aircraft="c172p", seed=seed, noise=True)
+    plant = Plant(aircraft, seed=seed, weather=weather)
+    settings = Settings(aircraft=aircraft, seed=seed, noise=True)
     rig = JammingRig(settings, plant, fcc.Machine(HOLD if headings_deg else ""))
     rig.jams, rig.at = jams, at
     rig.prepare()
@@ -110,8 +120,23 @@ def test_with_a_jammed_elevator_height_is_held_by_the_throttle(seed: int) -> Non
     assert later["airspeed_kt"].max() < NEVER_EXCEED_KT
 
 
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("aircraft", ["c172p", "c182"])
+def test_a_reversed_rudder_stays_where_it_was(aircraft: str, seed: int) -> None:
+    rig = _fly(seed, 2, "rudder", headings_deg=HEADINGS_DEG, aircraft=aircraft)
+    assert 0.0 < _found_after_s(rig, "rudder") < TURNS_BACK_S - JAMS_S
+    later = rig.truth().since(JAMS_S)
+    # It rolls before it is found; then the yaw is not damped in turbulence.
+    assert abs(later["roll_deg"]).max() < MOST_BANK_DEG
+    assert later["airspeed_kt"].min() > STALL_KT
+    assert abs(later["altitude_ft"] - later["altitude_ft"][0]).max() < ALTITUDE_FT
+    end = rig.truth().since(END_S - 20.0)
+    off_deg = (end["heading_deg"] - 300.0 + 180.0) % 360.0 - 180.0
+    assert abs(off_deg.mean()) < HEADING_DEG
+
+
 @pytest.mark.parametrize("turbulence", [3, 6])
 def test_turbulence_is_no_jammed_surface(turbulence: int) -> None:
     rig = _fly(SEEDS[0], turbulence, None)
     said = " ".join(event.text for event in rig.events)
-    assert "move the aircraft" not in said
+    assert not any(text in said for text in SAID.values())

@@ -7,6 +7,7 @@ use crate::blocks::LowPass;
 use crate::flight::Surfaces;
 use crate::flight::control::{
     BankByRudder, ClimbByThrottle, Schedule, SurfaceEffect, SurfaceResponse, is_jammed,
+    yaw_excess_radps,
 };
 use crate::flight::navigation::Estimate;
 use crate::framework::{Flags, Notice};
@@ -24,10 +25,20 @@ const LEAST_STALL_RATIO: f64 = 1.15;
 /// Nothing is judged for so long after the engagement, a recovery or a stall, s: trims are found
 /// anew.
 const SETTLED_S: f64 = 20.0;
+/// With a surface that does not move the aircraft the bank is off by this, rad (6°), or the
+/// pitch, rad (4°), for this time, s: what is sluggish follows.
+const BANK_OFF_RAD: f64 = 0.105;
+const PITCH_OFF_RAD: f64 = 0.07;
+const OFF_S: f64 = 0.5;
+
+/// A reversed rudder shows within this time after the ailerons seemed to be jammed by it, s.
+/// Later it banks in their place, and its effect is not told from theirs.
+const ANOTHER_WITHIN_S: f64 = 5.0;
 
 /// The items of their notices.
 const AILERONS: u16 = 1;
 const ELEVATOR: u16 = 2;
+const RUDDER: u16 = 4;
 
 /// What does not move the aircraft.
 #[derive(Clone, Debug)]
@@ -37,6 +48,8 @@ pub(super) struct Jammed {
     elevator: SurfaceResponse,
     /// For how long the aircraft has flown so that it may be judged, s.
     judged_s: f64,
+    bank_off_s: f64,
+    pitch_off_s: f64,
     /// Where the elevator's trim stood.
     trim: Option<f64>,
     rudder: LowPass,
@@ -46,6 +59,11 @@ pub(super) struct Jammed {
     elevator_trim: Option<f64>,
     by_rudder: BankByRudder,
     by_throttle: ClimbByThrottle,
+    reversed_rudder: ReversedRudder,
+    /// Where the rudder stays.
+    rudder_stays: Option<f64>,
+    /// For how long ailerons or elevator have not been used, s.
+    left_s: f64,
 }
 
 impl Jammed {
@@ -55,6 +73,8 @@ impl Jammed {
             aileron_effect: SurfaceEffect::new(),
             elevator: SurfaceResponse::new(),
             judged_s: 0.0,
+            bank_off_s: 0.0,
+            pitch_off_s: 0.0,
             trim: None,
             rudder: LowPass::new(USUAL_S),
             throttle: LowPass::new(USUAL_S),
@@ -62,12 +82,20 @@ impl Jammed {
             elevator_trim: None,
             by_rudder: BankByRudder::default(),
             by_throttle: ClimbByThrottle::default(),
+            reversed_rudder: ReversedRudder::new(),
+            rudder_stays: None,
+            left_s: 0.0,
         }
     }
 
     /// Whether the ailerons or the elevator do not move the aircraft.
     pub(super) const fn is_any(&self) -> bool {
         self.aileron_trim.is_some() || self.elevator_trim.is_some()
+    }
+
+    /// Whether any surface is not used as usual.
+    const fn has_left_one(&self) -> bool {
+        self.is_any() || self.rudder_stays.is_some()
     }
 
     pub(super) const fn is_elevator(&self) -> bool {
@@ -87,6 +115,59 @@ impl Jammed {
     fn forget_responses(&mut self) {
         self.ailerons = SurfaceResponse::new();
         self.elevator = SurfaceResponse::new();
+        self.reversed_rudder = ReversedRudder::new();
+    }
+}
+
+/// Whether the rudder turns the aircraft the other way than it should.
+///
+/// Of a rudder for which the linkage or the servo is reversed the side force grows with what is
+/// commanded against it, so that the rudder goes to its stop. What else yaws is a sideslip, which
+/// the side force measures, and the ailerons.
+#[derive(Clone, Debug)]
+struct ReversedRudder {
+    effect: SurfaceEffect,
+    side_force: LowPass,
+    is_s: f64,
+    slips_s: f64,
+}
+
+impl ReversedRudder {
+    /// A full rudder yaws light aircraft at cruise by 1 rad/s² (JSBSim's c172p and c182 0.7 to
+    /// 2, in turbulence down to -0.05): beyond this, rad/s², and for this time, s, it is reversed.
+    const REVERSED: f64 = -0.35;
+    const AFTER_S: f64 = 1.0;
+    /// The mean square of rudders below which nothing is said: 0.015 of full deflection.
+    const LEAST_SQUARE: f64 = 2.25e-4;
+    /// The side force, m/s², that it makes, for the same time in all.
+    const SIDE_FORCE_MPS2: f64 = 0.8;
+    const SIDE_FORCE_LAG_S: f64 = 0.5;
+
+    const fn new() -> Self {
+        Self {
+            effect: SurfaceEffect::new(),
+            side_force: LowPass::new(Self::SIDE_FORCE_LAG_S),
+            is_s: 0.0,
+            slips_s: 0.0,
+        }
+    }
+
+    /// Whether it seems so: then what else does not answer may be its doing.
+    const fn seems(&self) -> bool {
+        self.is_s > 0.0 && self.slips_s > 0.0
+    }
+
+    /// Takes the rudder, the yaw rate in excess of the turn's, and the side force and the
+    /// ailerons.
+    fn step(&mut self, rudder: f64, yaw_radps: f64, causes: [f64; 2], dt_s: f64) -> bool {
+        let [side_mps2, _] = causes;
+        let slips = self.side_force.step(side_mps2, dt_s).abs() > Self::SIDE_FORCE_MPS2;
+        let passed_s = if slips { dt_s } else { -0.5 * dt_s };
+        self.slips_s = (self.slips_s + passed_s).clamp(0.0, 2.0 * Self::AFTER_S);
+        let effect = self.effect.step(rudder, yaw_radps, causes, dt_s);
+        let is_reversed = effect < Self::REVERSED && self.effect.mean_square() > Self::LEAST_SQUARE;
+        self.is_s = if is_reversed { self.is_s + dt_s } else { 0.0 };
+        self.is_s.min(self.slips_s) > Self::AFTER_S
     }
 }
 
@@ -100,6 +181,9 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> Option<fmt::
         ELEVATOR => {
             "the elevator does not move the aircraft: climbing and descending by the throttle, \
              at the airspeed it is trimmed for, until the release"
+        }
+        RUDDER => {
+            "the rudder turns the aircraft the other way: it stays where it was, until the release"
         }
         _ => return None,
     };
@@ -125,12 +209,23 @@ impl Autopilot {
             }
             return;
         }
+        let excess_radps = yaw_excess_radps(estimate);
+        let causes = [estimate.side_force_mps2, self.last.aileron];
+        let rudder = &mut jammed.reversed_rudder;
+        let is_reversed = rudder.step(self.last.rudder, excess_radps, causes, dt_s);
+        jammed.left_s += if jammed.is_any() { dt_s } else { 0.0 };
+        if is_reversed && jammed.rudder_stays.is_none() && jammed.left_s < ANOTHER_WITHIN_S {
+            jammed.rudder_stays = Some(jammed.rudder.output());
+            // Ailerons that it acted against seemed to be jammed.
+            jammed.aileron_trim = None;
+            self.news = Some(notice(RUDDER));
+        }
         jammed.judged_s += dt_s;
         if jammed.judged_s < SETTLED_S {
             return;
         }
         // Flown by what is left, the other one is commanded otherwise than usual.
-        if jammed.is_any() {
+        if jammed.has_left_one() {
             return;
         }
         let (sent, rates, gusts) = (&self.last, estimate.body_rates, estimate.gust_load);
@@ -150,11 +245,24 @@ impl Autopilot {
         let elevator = &mut jammed.elevator;
         let unanswered = ailerons.step(sent.aileron, roll, p_radps, gusts, dt_s);
         let effect = &mut jammed.aileron_effect;
-        let effect_per_s = effect.step(sent.aileron, roll, p_radps, dt_s);
-        if is_jammed(unanswered, effect_per_s) {
+        let effect_per_s = effect.step(sent.aileron * roll, p_radps, [0.0; 2], dt_s);
+        let lasts = |off_rad: f64, s: f64, most_rad| {
+            if off_rad.abs() > most_rad {
+                s + dt_s
+            } else {
+                0.0
+            }
+        };
+        let bank_rad = self.setpoints.roll_rad - estimate.roll_rad;
+        let pitch_rad = self.setpoints.pitch_rad - estimate.pitch_rad;
+        jammed.bank_off_s = lasts(bank_rad, jammed.bank_off_s, BANK_OFF_RAD);
+        jammed.pitch_off_s = lasts(pitch_rad, jammed.pitch_off_s, PITCH_OFF_RAD);
+        let unanswered_pitch = elevator.step(sent.elevator, pitch, q_radps, gusts, dt_s);
+        let is_rudder = jammed.reversed_rudder.seems();
+        if jammed.bank_off_s > OFF_S && !is_rudder && is_jammed(unanswered, effect_per_s) {
             jammed.aileron_trim = Some(ailerons.trim());
             self.news = Some(notice(AILERONS));
-        } else if elevator.step(sent.elevator, pitch, q_radps, gusts, dt_s) > 1.0 {
+        } else if jammed.pitch_off_s > OFF_S && unanswered_pitch > 1.0 {
             jammed.elevator_trim = Some(elevator.trim());
             self.news = Some(notice(ELEVATOR));
         }
@@ -168,11 +276,12 @@ impl Autopilot {
         estimate: &Estimate,
         dt_s: f64,
     ) -> Surfaces {
-        if !self.jammed.is_any() || self.is_on_runway() {
+        if !self.jammed.has_left_one() || self.is_on_runway() {
             return outputs;
         }
         let schedule = self.schedule();
         let mut outputs = outputs;
+        outputs.rudder = self.jammed.rudder_stays.unwrap_or(outputs.rudder);
         if let Some(trim) = self.jammed.aileron_trim {
             let bank_rad = self.jammed.most_bank_rad(self.setpoints.roll_rad.abs());
             let bank_rad = libm::copysign(bank_rad, self.setpoints.roll_rad);
@@ -209,7 +318,7 @@ impl Autopilot {
 
     /// What is reported.
     pub(super) const fn jammed_conditions(&self) -> Flags {
-        Flags::NONE.with(flags::NOT_FOLLOWED, self.jammed.is_any())
+        Flags::NONE.with(flags::NOT_FOLLOWED, self.jammed.has_left_one())
     }
 }
 

@@ -336,19 +336,16 @@ impl HeadingLoop {
     }
 
     /// The rudder for an aileron off its trim, plus damping of the yaw rate in
-    /// excess of the turn's: g/V sin φ cos θ in a level coordinated turn.
+    /// excess of the turn's.
     ///
     /// Adverse yaw is proportional to the lift coefficient where it comes from
     /// the wing, and does not depend on it where it comes from the profile drag
     /// of the ailerons (Etkin and Reid 1996, chapter 3): the rudder against
     /// it follows V₀/V, between the two.
     fn rudder_feed_forward(&self, aileron: f64, estimate: &Estimate, schedule: Schedule) -> f64 {
-        let turn_yaw_rate = GRAVITY_MPS2 / estimate.true_airspeed_mps.max(1.0)
-            * sin(estimate.roll_rad)
-            * cos(estimate.pitch_rad);
-        let excess = estimate.body_rates.yaw_radps - turn_yaw_rate;
+        let excess_radps = yaw_excess_radps(estimate);
         schedule.rate * self.config.rudder_per_aileron * aileron
-            - schedule.moment * schedule.lateral_pace * self.config.yaw_damping * excess
+            - schedule.moment * schedule.lateral_pace * self.config.yaw_damping * excess_radps
     }
 
     /// The aileron trim that the loop has found for wings level.
@@ -360,6 +357,14 @@ impl HeadingLoop {
     pub const fn rudder_trim(&self) -> f64 {
         self.side_force.integral()
     }
+}
+
+/// The yaw rate in excess of that of a level coordinated turn, g/V sin φ cos θ, rad/s.
+pub(crate) fn yaw_excess_radps(estimate: &Estimate) -> f64 {
+    let turn_radps = GRAVITY_MPS2 / estimate.true_airspeed_mps.max(1.0)
+        * sin(estimate.roll_rad)
+        * cos(estimate.pitch_rad);
+    estimate.body_rates.yaw_radps - turn_radps
 }
 
 #[cfg(test)]

@@ -38,6 +38,7 @@ pub use altitude::{AltitudeConfig, AltitudeLoop, PitchCommand};
 pub use elevator_response::ElevatorResponse;
 pub use elevator_trim::{ElevatorTrim, Trimming};
 pub use envelope::Envelope;
+pub(crate) use heading::yaw_excess_radps;
 pub use heading::{HeadingConfig, HeadingLoop, Lateral};
 pub use oscillation::OscillationMonitor;
 pub(crate) use other_controls::{BankByRudder, ClimbByThrottle};

@@ -1,6 +1,7 @@
 //! Whether a control surface moves the aircraft.
 
 use libm::copysign;
+use nalgebra::{Matrix4, Vector4};
 
 use crate::blocks::{LowPass, smoothing_factor};
 
@@ -108,61 +109,66 @@ pub(crate) fn is_jammed(unanswered: f64, effect_per_s: f64) -> bool {
 }
 
 /// What a surface adds to the angular acceleration: the regression of the acceleration on the
-/// rate that is expected of the surface and on the rate itself, which damps. Gusts act through
-/// the damping, so that they do not pass for the surface.
+/// rate that is expected of the surface, on the rate itself, which damps, and on two other
+/// causes. Gusts act through the damping, so that they do not pass for the surface.
 #[derive(Clone, Debug)]
 pub(crate) struct SurfaceEffect {
-    expected: Band,
-    rate: Band,
+    causes: [Band; 4],
     last_rate: Option<f64>,
-    /// Means of products: expected², expected · rate, rate², acceleration · expected,
-    /// acceleration · rate.
-    sums: [f64; 5],
+    /// Means of products: of the causes, and of the acceleration with them.
+    products: Matrix4<f64>,
+    with_acceleration: Vector4<f64>,
 }
 
 impl SurfaceEffect {
     pub(crate) const fn new() -> Self {
         Self {
-            expected: Band::NEW,
-            rate: Band::NEW,
+            causes: [Band::NEW; 4],
             last_rate: None,
-            sums: [0.0; 5],
+            products: Matrix4::new(
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+            ),
+            with_acceleration: Vector4::new(0.0, 0.0, 0.0, 0.0),
         }
     }
 
-    /// Takes the command of a surface, the rate for each unit of it (rad/s) and the rate
-    /// (rad/s). Returns its effect, 1/s; infinite if that is not known.
+    /// Takes the rate that is expected of a surface's command, the rate (rad/s) and what else
+    /// may accelerate it. Returns the surface's effect, 1/s; infinite if that is not known.
     pub(crate) fn step(
         &mut self,
-        command: f64,
-        radps_per_command: f64,
+        expected_radps: f64,
         rate_radps: f64,
+        others: [f64; 2],
         dt_s: f64,
     ) -> f64 {
-        let expected = self.expected.step(command * radps_per_command, dt_s);
-        let rate = self.rate.step(rate_radps, dt_s);
+        /// Beside the products of causes that there are, nothing; a cause that is always 0 has
+        /// no effect with it.
+        const NONE: f64 = 1e-12;
+        let mut causes = Vector4::new(expected_radps, rate_radps, others[0], others[1]);
+        for (cause, band) in causes.iter_mut().zip(&mut self.causes) {
+            *cause = band.step(*cause, dt_s);
+        }
+        let rate = causes.y;
         let Some(last) = self.last_rate.replace(rate).filter(|_| dt_s > 0.0) else {
             return f64::INFINITY;
         };
         let acceleration = (rate - last) / dt_s;
         let share = smoothing_factor(dt_s, MEMORY_S);
-        let products = [
-            expected * expected,
-            expected * rate,
-            rate * rate,
-            acceleration * expected,
-            acceleration * rate,
-        ];
-        for (sum, product) in self.sums.iter_mut().zip(products) {
-            *sum += (product - *sum) * share;
-        }
-        let [ee, er, rr, ae, ar] = self.sums;
-        let effect = (ae * rr - ar * er) / (ee * rr - er * er);
-        if effect.is_finite() {
-            effect
-        } else {
-            f64::INFINITY
-        }
+        self.products += (causes * causes.transpose() - self.products) * share;
+        self.with_acceleration += (causes * acceleration - self.with_acceleration) * share;
+        let regular = self.products + Matrix4::from_diagonal_element(NONE);
+        let effects = regular
+            .cholesky()
+            .map(|products| products.solve(&self.with_acceleration));
+        effects
+            .map(|effects| effects.x)
+            .filter(|effect| effect.is_finite())
+            .unwrap_or(f64::INFINITY)
+    }
+
+    /// The mean square of the rate that was expected in the latest seconds, rad²/s².
+    pub(crate) fn mean_square(&self) -> f64 {
+        self.products.m11
     }
 }
 
@@ -197,7 +203,7 @@ mod tests {
             rate += (steady - rate) * DT_S / ROLL_LAG_S;
             bank += rate * DT_S;
             let unanswered = response.step(command, FULL_RADPS, rate, 0.1, DT_S);
-            let effect_per_s = effect.step(command, FULL_RADPS, rate, DT_S);
+            let effect_per_s = effect.step(command * FULL_RADPS, rate, [0.0; 2], DT_S);
             if is_jammed(unanswered, effect_per_s) {
                 return Some(at_s - until_s);
             }
