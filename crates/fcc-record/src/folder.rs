@@ -5,24 +5,31 @@ use std::{fs, io};
 
 use super::{disk, name};
 
-/// The recordings in a folder, oldest first.
+/// The recordings in a folder, in any order. What is in a folder of others may be
+/// much, so no file is looked at.
 ///
 /// # Errors
 /// When the folder cannot be read.
-pub(super) fn recordings(folder: &Path) -> io::Result<Vec<PathBuf>> {
-    let mut found: Vec<PathBuf> = fs::read_dir(folder)?
-        .filter_map(|entry| entry.ok().map(|entry| entry.path()))
-        .filter(|path| name::is_recording(path) && !path.is_symlink() && path.is_file())
-        .collect();
-    found.sort();
-    Ok(found)
+pub(super) fn found(folder: &Path) -> io::Result<impl Iterator<Item = PathBuf>> {
+    Ok(fs::read_dir(folder)?
+        .filter_map(Result::ok)
+        .filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_file()))
+        .map(|entry| entry.path())
+        .filter(|path| name::is_recording(path)))
+}
+
+/// The recordings in a folder, oldest first; none if it cannot be read.
+fn recordings(folder: &Path) -> Vec<PathBuf> {
+    let mut recordings: Vec<PathBuf> = found(folder).map_or_else(|_| Vec::new(), Iterator::collect);
+    // Those of one folder differ in their ends.
+    recordings.sort_by(|one, other| one.as_os_str().cmp(other.as_os_str()));
+    recordings
 }
 
 /// Deletes the oldest recordings until the folder's recordings take at most
 /// `keep_bytes`. Recordings being written are kept. Returns the deleted ones.
 pub(super) fn keep_below(folder: &Path, keep_bytes: u64) -> Vec<PathBuf> {
     let sizes: Vec<(PathBuf, u64)> = recordings(folder)
-        .unwrap_or_default()
         .into_iter()
         .filter_map(|path| {
             let bytes = fs::metadata(&path).ok()?.len();
@@ -47,7 +54,6 @@ pub(super) fn keep_below(folder: &Path, keep_bytes: u64) -> Vec<PathBuf> {
 /// returns it, if there was one.
 pub(super) fn delete_oldest(folder: &Path, kept: &[PathBuf]) -> Option<PathBuf> {
     recordings(folder)
-        .ok()?
         .into_iter()
         .filter(|path| !kept.contains(path))
         .find(|path| disk::may_be_deleted(path) && fs::remove_file(path).is_ok())
