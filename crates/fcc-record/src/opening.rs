@@ -135,9 +135,14 @@ fn read_all(file: File, most_bytes: u64) -> io::Result<Vec<u8>> {
 /// The system's error, or that it is a link or no regular file.
 pub fn open_lock(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
-    options.read(true).write(true).create(true).truncate(false);
-    options.mode(OF_OWNER);
-    let (file, found) = regular(path, &mut options, O_NOFOLLOW)?;
+    options.read(true).write(true).mode(OF_OWNER);
+    // In a file system that is frozen, opening a file to create it waits even if it is
+    // there.
+    let opened = regular(path, &mut options, O_NOFOLLOW).or_else(|error| match error.kind() {
+        ErrorKind::NotFound => regular(path, options.create(true).truncate(false), O_NOFOLLOW),
+        _ => Err(error),
+    });
+    let (file, found) = opened?;
     if found.permissions().mode() & !OF_OWNER & 0o777 != 0 {
         // Of an earlier version. Another user's stays as it is.
         let _ = file.set_permissions(Permissions::from_mode(OF_OWNER));
@@ -177,6 +182,10 @@ fn create_with(path: &Path, mode: u32) -> io::Result<File> {
 /// # Errors
 /// The system's error.
 pub fn create_folder(path: &Path) -> io::Result<()> {
+    // In a file system that is frozen, creating waits even if it is there.
+    if path.is_dir() {
+        return Ok(());
+    }
     let created = DirBuilder::new().recursive(true).mode(0o755).create(path);
     created.map_err(|error| match error.kind() {
         ErrorKind::AlreadyExists | ErrorKind::NotADirectory => io::Error::new(
