@@ -1,5 +1,6 @@
 //! The folder of the recordings, and how its size is limited.
 
+use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
@@ -26,13 +27,18 @@ fn recordings(folder: &Path) -> Vec<PathBuf> {
     recordings
 }
 
+/// The unit of `st_blocks`, inode(7).
+const BLOCK_BYTES: u64 = 512;
+
 /// Deletes the oldest recordings until the folder's recordings take at most
 /// `keep_bytes`. Recordings being written are kept. Returns the deleted ones.
 pub(super) fn keep_below(folder: &Path, keep_bytes: u64) -> Vec<PathBuf> {
     let sizes: Vec<(PathBuf, u64)> = recordings(folder)
         .into_iter()
         .filter_map(|path| {
-            let bytes = fs::metadata(&path).ok()?.len();
+            let found = fs::metadata(&path).ok()?;
+            // A file may claim terabytes that no disk has.
+            let bytes = found.len().min(found.blocks().saturating_mul(BLOCK_BYTES));
             Some((path, bytes))
         })
         .collect();
@@ -57,4 +63,21 @@ pub(super) fn delete_oldest(folder: &Path, kept: &[PathBuf]) -> Option<PathBuf> 
         .into_iter()
         .filter(|path| !kept.contains(path))
         .find(|path| disk::may_be_deleted(path) && fs::remove_file(path).is_ok())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Another user can make one, and the recordings of this one would be deleted.
+    #[test]
+    fn a_file_without_content_takes_no_place() {
+        let folder = tempfile::tempdir().unwrap();
+        let [own, sparse] = ["2026-11-20T04-21-33.512Z", "2026-11-21T04-21-33.512Z"]
+            .map(|stamp| folder.path().join(format!("{stamp}-c172-01.mcap")));
+        fs::write(&own, vec![1; 100_000]).unwrap();
+        fs::File::create(&sparse).unwrap().set_len(2 << 40).unwrap();
+        assert!(keep_below(folder.path(), 1_000_000).is_empty());
+        assert_eq!(keep_below(folder.path(), 50_000), [own]);
+    }
 }

@@ -1,6 +1,7 @@
 //! Recordings that are cut off, damaged or invalid.
 
 use std::fs;
+use std::io::{Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 
 use fcc_core::framework::Message;
@@ -116,6 +117,25 @@ fn a_start_finds_the_last_recording_only() {
     assert_eq!(entry(&path).unwrap().file, Wholeness::Whole);
     assert_eq!(fs::read(&older).unwrap(), cut);
     assert_eq!(last_unfinished(Path::new("/nowhere"), NOW), None);
+}
+
+/// Another user can make one that claims 2 TB, in the name of a recording.
+#[test]
+fn a_hole_of_terabytes_is_not_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = whole(folder.path(), Compression::default());
+    let bytes = fs::read(&path).unwrap();
+    let began = std::time::Instant::now();
+    let mut file = fs::File::create(&path).unwrap();
+    file.write_all(&bytes[..bytes.len() / 2]).unwrap();
+    file.set_len(2 << 40).unwrap();
+    let holed = entry(&path).unwrap();
+    assert!(holed.ticks < TICKS && holed.file != Wholeness::Whole);
+    file.seek(SeekFrom::Start(2 << 40)).unwrap();
+    file.write_all(&bytes[bytes.len() - 1_000..]).unwrap();
+    let holed = entry(&path).unwrap();
+    assert!(holed.ticks < TICKS && holed.file == Wholeness::Damaged);
+    assert!(began.elapsed().as_secs() < 60);
 }
 
 #[test]
