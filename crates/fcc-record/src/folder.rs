@@ -1,27 +1,21 @@
 //! The folder of the recordings, and how its size is limited.
 
+use std::fs;
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
-use std::{fs, io};
 
 use super::{disk, name};
 
-/// The recordings in a folder, in any order. What is in a folder of others may be
-/// much, so no file is looked at.
-///
-/// # Errors
-/// When the folder cannot be read.
-pub(super) fn found(folder: &Path) -> io::Result<impl Iterator<Item = PathBuf>> {
-    Ok(fs::read_dir(folder)?
+/// The recordings in a folder, oldest first; none if it cannot be read. What is in a
+/// folder of others may be much, so no file is looked at.
+pub(super) fn recordings(folder: &Path) -> Vec<PathBuf> {
+    let found = fs::read_dir(folder).into_iter().flatten();
+    let mut recordings: Vec<PathBuf> = found
         .filter_map(Result::ok)
         .filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_file()))
         .map(|entry| entry.path())
-        .filter(|path| name::is_recording(path)))
-}
-
-/// The recordings in a folder, oldest first; none if it cannot be read.
-fn recordings(folder: &Path) -> Vec<PathBuf> {
-    let mut recordings: Vec<PathBuf> = found(folder).map_or_else(|_| Vec::new(), Iterator::collect);
+        .filter(|path| name::is_recording(path))
+        .collect();
     // Those of one folder differ in their ends.
     recordings.sort_by(|one, other| one.as_os_str().cmp(other.as_os_str()));
     recordings

@@ -22,6 +22,11 @@ pub(super) const RECORDING: u32 = 0o644;
 const OTHERS_WRITE: u32 = 0o002;
 const STICKY: u32 = 0o1000;
 
+/// Whether a file or a folder is this user's, or root's.
+pub(super) fn is_owned(found: &Metadata) -> bool {
+    [geteuid().as_raw(), ROOT].contains(&found.uid())
+}
+
 fn refused<T>(kind: ErrorKind, why: impl Into<String>) -> io::Result<T> {
     Err(io::Error::new(kind, why.into()))
 }
@@ -111,7 +116,7 @@ pub fn read_file(path: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
 pub fn read_own_file(path: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
     let (file, found) = regular(path, OpenOptions::new().read(true), O_NOFOLLOW)?;
     let owner = found.uid();
-    if ![geteuid().as_raw(), ROOT].contains(&owner) {
+    if !is_owned(&found) {
         let why = format!("it belongs to user {owner}: remove it, or choose another name");
         return refused(ErrorKind::PermissionDenied, why);
     }
@@ -201,7 +206,7 @@ pub fn create_folder(path: &Path) -> io::Result<()> {
 pub(super) fn others_in(folder: &Path) -> Option<String> {
     let found = fs::metadata(folder).ok()?;
     let owner = found.uid();
-    if ![geteuid().as_raw(), ROOT].contains(&owner) {
+    if !is_owned(&found) {
         return Some(format!("belongs to user {owner}, who"));
     }
     let mode = found.permissions().mode();

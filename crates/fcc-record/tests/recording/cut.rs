@@ -108,6 +108,15 @@ fn a_start_finds_the_last_recording_only() {
     let stopped = recover_while(&path, |_| false).unwrap_err().to_string();
     assert!(stopped.contains("run `fccd recover` on it"), "{stopped}");
     assert_eq!(fs::read(&path).unwrap(), cut);
+    // Another user's hides none; only root gives files to others.
+    let foreign = folder
+        .path()
+        .join("2089-01-01T00-00-00.000Z-built-in-01.mcap");
+    fs::write(&foreign, cut).unwrap();
+    if std::os::unix::fs::chown(&foreign, Some(65_534), None).is_ok() {
+        assert_eq!(last_unfinished(folder.path(), NOW), Some(path.clone()));
+    }
+    fs::remove_file(&foreign).unwrap();
     // A flight's own recording is none that was left, nor does it hide one.
     let own = "2090-01-01T00-00-00.000Z-built-in-01.mcap";
     fs::write(folder.path().join(own), cut).unwrap();
