@@ -57,7 +57,9 @@ impl Search {
         thread::Builder::new()
             .name("fcc-restart".to_owned())
             .stack_size(STACK_BYTES)
-            .spawn(move || tell.send(look()))?;
+            .spawn(move || {
+                let _ = tell.send(look());
+            })?;
         Ok(match found.recv_timeout(AT_ONCE) {
             Ok(looked) => Ok(looked),
             Err(RecvTimeoutError::Disconnected) => Ok(Err(ENDED.to_owned())),

@@ -100,18 +100,21 @@ fn fingerprint(config: &Config) -> u32 {
     crc32fast::hash(toml::to_string(&flown).unwrap_or_default().as_bytes())
 }
 
+/// The state file, as far as it is known.
+enum StateFile {
+    /// The disk has not answered yet.
+    Searched { search: Search, was_engaged: bool },
+    /// It is this flight's. The lock is held until the process ends in any way.
+    Ours { _lock: Option<File> },
+    /// It is another program's, or cannot be used.
+    Unusable,
+}
+
 /// Stores the state of the flight, and recovers an interrupted one.
 pub(super) struct Restart {
     request: RestartRequest,
     boot: Option<BootInstant>,
-    /// Held until the process ends in any way.
-    lock: Option<File>,
-    /// Whether the file is this flight's: locked, and no other program's.
-    is_usable: bool,
-    /// The search for what the last flight left, while the disk does not answer.
-    search: Option<Search>,
-    /// The loop was engaged during that search.
-    was_engaged: bool,
+    file: StateFile,
     keeper: Keeper,
     kept: Option<(Instant, Progress, u64)>,
     plans: NotedPlans,
@@ -151,10 +154,7 @@ impl Restart {
         };
         let mut this = Self {
             boot: BootInstant::now(),
-            lock: None,
-            is_usable: false,
-            search: None,
-            was_engaged: false,
+            file: StateFile::Unusable,
             keeper,
             kept: None,
             plans: NotedPlans::default(),
@@ -171,47 +171,66 @@ impl Restart {
         match search {
             Ok(Err(message)) => (None, Some(message)),
             Ok(Ok(found)) => {
-                let message = this.found(found);
+                let message = this.found(found, false);
                 (Some(this), message)
             }
             Err(search) => {
-                this.search = Some(search);
+                this.file = StateFile::Searched {
+                    search,
+                    was_engaged: false,
+                };
                 (Some(this), None)
             }
         }
     }
 
-    /// Takes up what the last flight left. One that was flown meanwhile has priority.
-    fn found(&mut self, found: Found) -> Option<String> {
-        self.is_usable = true;
-        self.lock = found.lock;
-        self.left = found.left && !self.was_engaged;
-        self.recovery = found.recovery.filter(|_| !self.was_engaged);
-        match &self.recovery {
-            Some(recovery) => {
-                self.plans.recovered(recovery.plan().cloned());
-                self.commanded = recovery.commands();
-                found.message
-            }
-            None => {
-                self.clear();
-                if self.was_engaged {
-                    return Some(format!(
-                        "{}: its disk answers again; the flight since then is continued after a \
-                         restart, and none before it",
-                        self.request.path.display()
-                    ));
-                }
-                found.message
-            }
+    /// Takes up what the last flight left, unless another one `was_engaged` meanwhile.
+    fn found(&mut self, found: Found, was_engaged: bool) -> Option<String> {
+        self.file = StateFile::Ours { _lock: found.lock };
+        self.left = found.left && !was_engaged;
+        self.recovery = found.recovery.filter(|_| !was_engaged);
+        if let Some(recovery) = &self.recovery {
+            self.plans.recovered(recovery.plan().cloned());
+            self.commanded = recovery.commands();
+            return found.message;
         }
+        self.clear();
+        if !was_engaged {
+            return found.message;
+        }
+        Some(format!(
+            "{}: its disk answers again; the flight since then is continued after a restart, and \
+             none before it",
+            self.request.path.display()
+        ))
+    }
+
+    const fn is_ours(&self) -> bool {
+        matches!(self.file, StateFile::Ours { .. })
     }
 
     /// Removes the stored state, unless the file is not ours, or not known to be.
     fn clear(&self) {
-        if self.is_usable {
+        if self.is_ours() {
             self.keeper.clear();
         }
+    }
+
+    /// Looks whether the disk has answered; a message, if there is one.
+    fn look_again(&mut self) -> Option<String> {
+        let StateFile::Searched {
+            search,
+            was_engaged,
+        } = &mut self.file
+        else {
+            return None;
+        };
+        let was_engaged = *was_engaged;
+        let Some(looked) = search.poll() else {
+            return search.late(&self.request.path);
+        };
+        self.file = StateFile::Unusable;
+        looked.map_or_else(Some, |found| self.found(found, was_engaged))
     }
 
     /// Whether an interrupted flight was found not to be recovered since the
@@ -225,7 +244,9 @@ impl Restart {
         if let Some(recovery) = &mut self.recovery {
             recovery.take(message);
         }
-        self.was_engaged |= matches!(message, Message::Tick(tick) if tick.state == State::Engaged);
+        if let StateFile::Searched { was_engaged, .. } = &mut self.file {
+            *was_engaged |= matches!(message, Message::Tick(tick) if tick.state == State::Engaged);
+        }
         match message {
             Message::Event(event) => self.event(event),
             Message::Tick(record) => {
@@ -289,12 +310,8 @@ impl Restart {
         if let Some(message) = self.keeper.trouble() {
             return Some(message);
         }
-        if let Some(search) = &mut self.search {
-            let Some(looked) = search.poll() else {
-                return search.late(&self.request.path);
-            };
-            self.search = None;
-            return looked.map_or_else(Some, |found| self.found(found));
+        if let Some(message) = self.look_again() {
+            return Some(message);
         }
         let recovery = self.recovery.as_mut()?;
         let next = recovery.next(
@@ -344,7 +361,7 @@ impl Restart {
         });
         // The state of the flight to recover is kept until the recovery is
         // decided.
-        if !is_due || self.recovery.is_some() || !self.is_usable {
+        if !is_due || self.recovery.is_some() || !self.is_ours() {
             return;
         }
         self.kept = Some((Instant::now(), resume.progress, plan.hash));
