@@ -23,9 +23,9 @@ use crate::tty::{self, Baud};
 const OPEN_EVERY: Duration = Duration::from_millis(100);
 /// A line that takes nothing for this long takes nothing any more.
 const STUCK_AFTER: Duration = Duration::from_secs(1);
-/// What is read in this time: 200,000 bytes a second, twice what the fastest line
+/// What is read in this time: 1,000,000 bytes a second, ten times what the fastest line
 /// carries, with ten bits a byte. A device at USB keeps no rate of a line.
-const MOST_BYTES: usize = 20_000;
+const MOST_BYTES: usize = 100_000;
 const COUNTED_IN: Duration = Duration::from_millis(100);
 /// Longer than any message.
 const MESSAGE_BYTES: usize = 1_024;

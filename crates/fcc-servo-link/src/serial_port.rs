@@ -79,7 +79,7 @@ impl LineStatus {
         self.0.corrupt.load(Ordering::Acquire)
     }
 
-    /// How often more arrived within 100 ms than any board sends, 20,000 bytes, and the
+    /// How often more arrived within 100 ms than any board sends, 100,000 bytes, and the
     /// rest was dropped.
     pub fn floods(&self) -> u64 {
         self.0.floods.load(Ordering::Acquire)

@@ -11,7 +11,7 @@ use super::observer::{Access, Observer};
 /// A flood is over when nothing was dropped for this long.
 const OVER_AFTER: Duration = Duration::from_secs(5);
 
-const FLOOD: &str = "servo board: more than 200,000 bytes arrive in a second, and no board sends \
+const FLOOD: &str = "servo board: more than 1,000,000 bytes arrive in a second, and no board sends \
                      that: the rest is dropped, and readings may be missing; check which device \
                      servo-board.serial is (`ls -l /dev/serial/by-id`), and its firmware";
 const OVER: &str = "servo board: no longer more arrives than is read";
