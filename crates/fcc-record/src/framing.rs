@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::{self, Read as _, Seek as _, SeekFrom};
 
 use mcap::records::op;
+use nix::errno::Errno;
+use nix::unistd::{Whence, lseek};
 
 use super::parse::is_chunk_of;
 
@@ -83,7 +85,10 @@ pub(super) fn is_at(file: &mut File, position: u64, file_bytes: u64) -> io::Resu
 pub(super) fn find(file: &mut File, start: u64, file_bytes: u64) -> io::Result<Option<u64>> {
     let mut bytes = Vec::new();
     let mut at = start;
-    while at < file_bytes {
+    while let Some(data) = next_data(file, at)
+        && data < file_bytes
+    {
+        at = data;
         read_at(file, at, BLOCK_BYTES + SIGNATURE_BYTES, &mut bytes)?;
         let found = (at..file_bytes)
             .take(BLOCK_BYTES)
@@ -98,6 +103,17 @@ pub(super) fn find(file: &mut File, start: u64, file_bytes: u64) -> io::Result<O
         at += BLOCK_BYTES as u64;
     }
     Ok(None)
+}
+
+/// Where the next bytes are that the file system stores: a hole, which may have any
+/// length, contains no record. None if the rest is one.
+fn next_data(file: &File, at: u64) -> Option<u64> {
+    match lseek(file, i64::try_from(at).ok()?, Whence::SeekData) {
+        Ok(data) => u64::try_from(data).ok(),
+        Err(Errno::ENXIO) => None,
+        // Not every file system tells.
+        Err(_) => Some(at),
+    }
 }
 
 /// Reads up to `length` bytes at `position`.

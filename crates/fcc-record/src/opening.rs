@@ -22,6 +22,11 @@ pub(super) const RECORDING: u32 = 0o644;
 const OTHERS_WRITE: u32 = 0o002;
 const STICKY: u32 = 0o1000;
 
+/// Whether a file or a folder is this user's, or root's.
+pub(super) fn is_owned(found: &Metadata) -> bool {
+    [geteuid().as_raw(), ROOT].contains(&found.uid())
+}
+
 fn refused<T>(kind: ErrorKind, why: impl Into<String>) -> io::Result<T> {
     Err(io::Error::new(kind, why.into()))
 }
@@ -111,7 +116,7 @@ pub fn read_file(path: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
 pub fn read_own_file(path: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
     let (file, found) = regular(path, OpenOptions::new().read(true), O_NOFOLLOW)?;
     let owner = found.uid();
-    if ![geteuid().as_raw(), ROOT].contains(&owner) {
+    if !is_owned(&found) {
         let why = format!("it belongs to user {owner}: remove it, or choose another name");
         return refused(ErrorKind::PermissionDenied, why);
     }
@@ -135,9 +140,14 @@ fn read_all(file: File, most_bytes: u64) -> io::Result<Vec<u8>> {
 /// The system's error, or that it is a link or no regular file.
 pub fn open_lock(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
-    options.read(true).write(true).create(true).truncate(false);
-    options.mode(OF_OWNER);
-    let (file, found) = regular(path, &mut options, O_NOFOLLOW)?;
+    options.read(true).write(true).mode(OF_OWNER);
+    // In a file system that is frozen, opening a file to create it waits even if it is
+    // there.
+    let opened = regular(path, &mut options, O_NOFOLLOW).or_else(|error| match error.kind() {
+        ErrorKind::NotFound => regular(path, options.create(true).truncate(false), O_NOFOLLOW),
+        _ => Err(error),
+    });
+    let (file, found) = opened?;
     if found.permissions().mode() & !OF_OWNER & 0o777 != 0 {
         // Of an earlier version. Another user's stays as it is.
         let _ = file.set_permissions(Permissions::from_mode(OF_OWNER));
@@ -177,6 +187,10 @@ fn create_with(path: &Path, mode: u32) -> io::Result<File> {
 /// # Errors
 /// The system's error.
 pub fn create_folder(path: &Path) -> io::Result<()> {
+    // In a file system that is frozen, creating waits even if it is there.
+    if path.is_dir() {
+        return Ok(());
+    }
     let created = DirBuilder::new().recursive(true).mode(0o755).create(path);
     created.map_err(|error| match error.kind() {
         ErrorKind::AlreadyExists | ErrorKind::NotADirectory => io::Error::new(
@@ -192,7 +206,7 @@ pub fn create_folder(path: &Path) -> io::Result<()> {
 pub(super) fn others_in(folder: &Path) -> Option<String> {
     let found = fs::metadata(folder).ok()?;
     let owner = found.uid();
-    if ![geteuid().as_raw(), ROOT].contains(&owner) {
+    if !is_owned(&found) {
         return Some(format!("belongs to user {owner}, who"));
     }
     let mode = found.permissions().mode();

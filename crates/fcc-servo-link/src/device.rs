@@ -50,7 +50,7 @@ fn advice(error: &io::Error) -> &'static str {
 pub struct ServoBoardSensor<P: Port> {
     messages: XPlaneSensor<P>,
     line: Option<LineStatus>,
-    /// How many frames were corrupt at the last tick.
+    /// How many frames were corrupt, and how often too much arrived, at the last tick.
     corrupt: u64,
 }
 
@@ -58,8 +58,13 @@ pub struct ServoBoardSensor<P: Port> {
 #[derive(Debug)]
 pub struct ServoBoardActuator<P: Port>(XPlaneActuator<P>);
 
-/// A board's sensor and actuator for a loop.
-pub type Devices = (Box<dyn Sensor<Measurements>>, Box<dyn Actuator<Surfaces>>);
+/// A board's sensor and actuator for a loop, and the state of its serial line, if it has
+/// one.
+pub type Devices = (
+    Box<dyn Sensor<Measurements>>,
+    Box<dyn Actuator<Surfaces>>,
+    Option<LineStatus>,
+);
 
 /// Opens the link. Nothing is sent before the first tick, and over UDP the board
 /// need not be there yet.
@@ -71,11 +76,11 @@ pub fn open(config: &ServoBoardConfig) -> Result<Devices, OpenError> {
     match &config.link {
         Link::Udp(board) => {
             let (sensor, actuator) = open_udp(config, board)?;
-            Ok((Box::new(sensor), Box::new(actuator)))
+            Ok((Box::new(sensor), Box::new(actuator), None))
         }
         Link::Serial { path, baud } => {
-            let (sensor, actuator, _) = open_serial(config, path, *baud)?;
-            Ok((Box::new(sensor), Box::new(actuator)))
+            let (sensor, actuator, line) = open_serial(config, path, *baud)?;
+            Ok((Box::new(sensor), Box::new(actuator), Some(line)))
         }
     }
 }
@@ -134,7 +139,8 @@ pub fn open_serial(
 impl<P: Port> Sensor<Measurements> for ServoBoardSensor<P> {
     fn sample(&mut self, tick: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
         self.messages.sample(tick, into)?;
-        let corrupt = self.line.as_ref().map_or(0, LineStatus::corrupt);
+        let line = self.line.as_ref();
+        let corrupt = line.map_or(0, |line| line.corrupt() + line.floods());
         if corrupt == self.corrupt {
             return Ok(());
         }

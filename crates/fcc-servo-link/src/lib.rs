@@ -17,8 +17,8 @@
 //!     },
 //!     ..ServoBoardConfig::default()
 //! };
-//! let (sensor, actuator) = open(&config)?;
-//! # drop((sensor, actuator));
+//! let (sensor, actuator, line) = open(&config)?;
+//! # drop((sensor, actuator, line));
 //! # Ok::<(), fcc_servo_link::OpenError>(())
 //! ```
 //!

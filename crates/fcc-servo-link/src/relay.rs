@@ -14,6 +14,7 @@ use fcc_servo_board::{Decoder, Encoder, MAX_FRAME};
 use nix::errno::Errno;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::socket::{MsgFlags, recv, send};
+use nix::sys::termios::{FlushArg, tcflush};
 
 use crate::serial_port::Line;
 use crate::tty::{self, Baud};
@@ -22,6 +23,10 @@ use crate::tty::{self, Baud};
 const OPEN_EVERY: Duration = Duration::from_millis(100);
 /// A line that takes nothing for this long takes nothing any more.
 const STUCK_AFTER: Duration = Duration::from_secs(1);
+/// What is read in this time: 1,000,000 bytes a second, ten times what the fastest line
+/// carries, with ten bits a byte. A device at USB keeps no rate of a line.
+const MOST_BYTES: usize = 100_000;
+const COUNTED_IN: Duration = Duration::from_millis(100);
 /// Longer than any message.
 const MESSAGE_BYTES: usize = 1_024;
 const READ_BYTES: usize = 1_024;
@@ -44,6 +49,9 @@ pub(crate) struct Relay {
     /// What is still to be written of a frame.
     pending: Vec<u8>,
     pending_since: Instant,
+    /// Since when what is read is counted, and how much it is.
+    counted_since: Instant,
+    bytes: usize,
 }
 
 impl Relay {
@@ -57,6 +65,8 @@ impl Relay {
             encoder: Encoder::new(),
             pending: Vec::with_capacity(MAX_FRAME),
             pending_since: Instant::now(),
+            counted_since: Instant::now(),
+            bytes: 0,
         }
     }
 
@@ -94,6 +104,7 @@ impl Relay {
     /// Carries messages both ways.
     fn serve(&mut self, tty: &mut File) -> End {
         loop {
+            self.count_anew(tty);
             let writes = !self.pending.is_empty();
             let (line, messages) = match self.wait(tty, writes) {
                 Ok(ready) => ready,
@@ -122,21 +133,48 @@ impl Relay {
         }
     }
 
+    /// Begins to count what is read anew, if it is time. What has arrived while a
+    /// flood was not read is old, and dropped.
+    fn count_anew(&mut self, tty: &File) {
+        if self.counted_since.elapsed() < COUNTED_IN {
+            return;
+        }
+        if self.is_flooded() {
+            let _ = tcflush(tty, FlushArg::TCIFLUSH);
+            self.decoder.reset();
+            self.line.floods.fetch_add(1, Ordering::Release);
+        }
+        self.counted_since = Instant::now();
+        self.bytes = 0;
+    }
+
+    /// More has arrived than any board sends: nothing is read until it is counted anew.
+    const fn is_flooded(&self) -> bool {
+        self.bytes > MOST_BYTES
+    }
+
     /// What is ready: the line and, unless something is pending, the loop's
-    /// messages.
+    /// messages. Of a flood none is waited for.
     fn wait(&self, tty: &File, writes: bool) -> Result<(PollFlags, PollFlags), Errno> {
         let nothing = PollFlags::empty();
         let out = if writes { PollFlags::POLLOUT } else { nothing };
+        let (input, flood_ends) = if self.is_flooded() {
+            (nothing, Some(COUNTED_IN))
+        } else {
+            (PollFlags::POLLIN, None)
+        };
         let mut fds = [
-            PollFd::new(tty.as_fd(), PollFlags::POLLIN | out),
+            PollFd::new(tty.as_fd(), input | out),
             PollFd::new(self.socket.as_fd(), PollFlags::POLLIN),
         ];
-        let (asked, timeout) = if writes {
-            let timeout = PollTimeout::try_from(STUCK_AFTER).unwrap_or(PollTimeout::MAX);
-            (fds.get_mut(..1).unwrap_or_default(), timeout)
+        let (asked, stuck) = if writes {
+            (fds.get_mut(..1).unwrap_or_default(), Some(STUCK_AFTER))
         } else {
-            (fds.as_mut_slice(), PollTimeout::NONE)
+            (fds.as_mut_slice(), None)
         };
+        let timeout = flood_ends.or(stuck).map_or(PollTimeout::NONE, |timeout| {
+            PollTimeout::try_from(timeout).unwrap_or(PollTimeout::MAX)
+        });
         match poll(asked, timeout) {
             Ok(_) => {
                 let [line, messages] = fds.map(|fd| fd.revents().unwrap_or(nothing));
@@ -155,6 +193,7 @@ impl Relay {
             Ok(length) => length,
             Err(error) => return lost(&error),
         };
+        self.bytes += length;
         for byte in bytes.get(..length).unwrap_or_default() {
             if let Some(message) = self.decoder.push(*byte) {
                 // If the loop does not read, the newest are dropped.

@@ -41,10 +41,11 @@ pub(crate) struct Line {
     pub(crate) received: AtomicU64,
     pub(crate) corrupt: AtomicU64,
     pub(crate) lost: AtomicU64,
+    pub(crate) floods: AtomicU64,
 }
 
 /// The state of a serial line, readable from any thread without a lock.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct LineStatus(pub(crate) Arc<Line>);
 
 impl LineStatus {
@@ -76,6 +77,12 @@ impl LineStatus {
     /// What arrived between two delimiters and was no frame.
     pub fn corrupt(&self) -> u64 {
         self.0.corrupt.load(Ordering::Acquire)
+    }
+
+    /// How often more arrived within 100 ms than any board sends, 100,000 bytes, and the
+    /// rest was dropped.
+    pub fn floods(&self) -> u64 {
+        self.0.floods.load(Ordering::Acquire)
     }
 
     /// Frames that did not arrive, by their numbers.

@@ -45,6 +45,36 @@ fn a_corrupt_frame_is_a_fault_once_and_changes_no_reading() {
     assert_eq!(sample(&mut bench), Ok(()));
 }
 
+/// A device at USB keeps no rate of a line: what it sends without end is not read, and
+/// what the loop sends is still written.
+#[test]
+fn of_a_flood_the_rest_is_dropped_and_surfaces_are_still_written() {
+    let (mut bench, mut ticks) = flown();
+    let flood = [b'x'; 1_000];
+    let mut master = bench.way.master.as_ref().unwrap().try_clone().unwrap();
+    let mut sent = 0;
+    let began = std::time::Instant::now();
+    while bench.way.status.floods() < 10 && began.elapsed().as_secs() < 60 {
+        match std::io::Write::write(&mut master, &flood) {
+            Ok(length) => sent += length,
+            Err(_) => std::thread::sleep(std::time::Duration::from_micros(200)),
+        }
+    }
+    assert!(bench.way.status.floods() >= 10);
+    // Ten times 100,000 bytes were read, and the kernel's buffer was emptied as often.
+    assert!(sent > 1_000_000, "{sent}");
+    let written = bench.way.status.written();
+    for _ in 0..3 {
+        bench.actuator.apply(&ticks.next_tick(), &OUTPUTS).unwrap();
+    }
+    support::wait_until("surfaces are written", || {
+        let _ = std::io::Write::write(&mut master, &flood);
+        bench.way.status.written() > written
+    });
+    let sampled = bench.sensor.sample(&ticks.next_tick(), &mut bench.measured);
+    assert_eq!(sampled, Err(SensorFault::Malformed));
+}
+
 /// The end of a program waits until the release is written.
 #[test]
 fn a_release_at_the_end_arrives() {

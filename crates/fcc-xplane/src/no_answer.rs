@@ -1,6 +1,7 @@
 //! Why X-Plane does not answer, and what to do, in words.
 
 use core::fmt;
+use std::io;
 use std::net::SocketAddr;
 
 /// Why nothing arrives, as far as it is known.
@@ -16,8 +17,9 @@ pub(crate) enum Why {
     Announced(u16),
     /// No program listens on the port.
     PortClosed,
-    /// No route leads to that machine, or it does not exist.
-    NoRoute,
+    /// Nothing can be sent there, or another machine reports that nothing arrives: the
+    /// operating system's number, as of no route.
+    Unreachable(i32),
 }
 
 /// A silence as text: what is known, and what to do.
@@ -77,10 +79,12 @@ impl fmt::Display for InWords {
                  machine. Start X-Plane; if it runs, look up the port on which it receives in \
                  Settings > Network, and set x-plane.simulator to it."
             ),
-            Why::NoRoute => write!(
+            Why::Unreachable(errno) => write!(
                 f,
-                "X-Plane at {at} does not answer: that machine cannot be reached from here. Check \
-                 the address in x-plane.simulator, and the network."
+                "X-Plane at {at} cannot be reached: {}. That is the network's, not X-Plane's: \
+                 check the cable or the Wi-Fi (`ip addr`, `ip route get {ip}`), a firewall of this \
+                 machine, and the address in x-plane.simulator.",
+                io::Error::from_raw_os_error(errno)
             ),
         }
     }
@@ -128,6 +132,12 @@ mod tests {
         // Its datagrams arrive, so no firewall of this machine is suspected.
         let unheard = text("192.168.1.20:49000", Why::DoesNotHear);
         assert!(!unheard.contains("ufw"), "{unheard}");
+        // Numbers and texts of Linux (errno(3)).
+        for (errno, says) in [(101, "Network is unreachable"), (113, "No route to host")] {
+            let cut = text("192.168.1.20:49000", Why::Unreachable(errno));
+            assert!(cut.contains(&format!("cannot be reached: {says}")), "{cut}");
+            assert!(!cut.contains("does not answer"), "{cut}");
+        }
         let moved = text("192.168.1.20:49000", Why::Announced(49_010));
         assert!(moved.contains("\"192.168.1.20:49010\""), "{moved}");
     }

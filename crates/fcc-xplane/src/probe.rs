@@ -36,8 +36,21 @@ pub(crate) struct Probe {
 pub(crate) enum Report {
     /// By the port's machine: no program has it.
     Closed,
-    /// By any machine: no route leads there.
-    NoRoute,
+    /// By any machine, with this number: no route leads there.
+    Unreachable(i32),
+}
+
+/// The number of an error that says that nothing leads to a machine: no route, no
+/// network, or what this machine forbids to send.
+pub(crate) fn unreachable(error: &std::io::Error) -> Option<i32> {
+    let is_it = matches!(
+        error.kind(),
+        ErrorKind::HostUnreachable
+            | ErrorKind::NetworkUnreachable
+            | ErrorKind::NetworkDown
+            | ErrorKind::PermissionDenied
+    );
+    error.raw_os_error().filter(|_| is_it)
 }
 
 impl Probe {
@@ -63,8 +76,9 @@ impl Probe {
 
     /// Sends the request, unless a report is there that was not read: then the
     /// kernel returns that error instead.
-    pub(crate) fn send(&self) {
-        let _ = self.socket.send(&self.request);
+    /// The number of what prevents that it is sent.
+    pub(crate) fn send(&self) -> Option<i32> {
+        unreachable(&self.socket.send(&self.request).err()?)
     }
 
     /// The last thing that was reported since the last call.
@@ -74,10 +88,10 @@ impl Probe {
             let Some((error, by)) = self.next_report() else {
                 break;
             };
-            let report = match std::io::Error::from_raw_os_error(error.cast_signed()).kind() {
+            let error = std::io::Error::from_raw_os_error(error.cast_signed());
+            let report = match error.kind() {
                 ErrorKind::ConnectionRefused if by == Some(self.to) => Some(Report::Closed),
-                ErrorKind::HostUnreachable | ErrorKind::NetworkUnreachable => Some(Report::NoRoute),
-                _ => None,
+                _ => unreachable(&error).map(Report::Unreachable),
             };
             last = report.or(last);
         }

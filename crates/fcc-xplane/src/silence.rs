@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use crate::config::XPlaneConfig;
 use crate::no_answer::Why;
-use crate::probe::{Probe, Report};
+use crate::probe::{Probe, Report, unreachable};
 use crate::protocol::beacon;
 use crate::status::XPlaneStatus;
 use crate::udp_port::{UdpPort, is_of_this_machine};
@@ -47,7 +47,7 @@ impl Silence {
             simulator,
             had_answered: status.reply_port().is_some(),
             received_before: status.counts().received,
-            probe: Probe::of(simulator).ok(),
+            probe: None,
             probed: None,
             refusal: None,
             refused_again: false,
@@ -100,7 +100,7 @@ impl Silence {
         if let Some(report) = self.probe.as_ref().and_then(Probe::reported) {
             self.refusal = Some(match report {
                 Report::Closed => Why::PortClosed,
-                Report::NoRoute => Why::NoRoute,
+                Report::Unreachable(errno) => Why::Unreachable(errno),
             });
             self.refused_again = true;
         }
@@ -111,11 +111,17 @@ impl Silence {
         if !std::mem::take(&mut self.refused_again) {
             self.refusal = None;
         }
+        let mut unsent = None;
         if self.probe.is_none() {
-            self.probe = Probe::of(self.simulator).ok();
+            match Probe::of(self.simulator) {
+                Ok(probe) => self.probe = Some(probe),
+                Err(error) => unsent = unreachable(&error),
+            }
         }
-        if let Some(probe) = &self.probe {
-            probe.send();
+        let unsent = unsent.or_else(|| self.probe.as_ref()?.send());
+        if let Some(errno) = unsent {
+            self.refusal = Some(Why::Unreachable(errno));
+            self.refused_again = true;
         }
     }
 }
@@ -157,6 +163,18 @@ mod tests {
             drop(other);
             assert_eq!(found(&mut silence, &status), Why::PortClosed, "{host}");
         }
+    }
+
+    /// To everyone nothing may be sent, unless a program asks for it: EACCES, 13 (ip(7),
+    /// errno(3)).
+    #[test]
+    fn what_the_system_says_when_nothing_can_be_sent_is_known() {
+        let (sensor, _actuator) = XPlane::open(&XPlaneConfig::default()).unwrap();
+        let status = sensor.status();
+        let everyone = "255.255.255.255:49000".parse().unwrap();
+        let mut silence = Silence::begin(&XPlaneConfig::default(), &status, everyone);
+        silence.beacons = None;
+        assert_eq!(silence.look(&status), Why::Unreachable(13));
     }
 
     #[test]

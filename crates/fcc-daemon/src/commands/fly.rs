@@ -10,6 +10,7 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 
 use super::calibrate::apply_calibration;
 use super::failure::Failure;
+use super::lookup::{LONG, looking_up};
 use super::outcome;
 use crate::cli::{FlyArgs, RecordingArgs};
 use crate::exit::Exit;
@@ -56,7 +57,9 @@ pub(super) fn conduct(
     json: bool,
 ) -> Result<Exit, Failure> {
     tolerate().map_err(|error| Failure::new(format_args!("signals cannot be caught: {error}")))?;
-    let mut assembly = assemble(config).map_err(|error| {
+    let names = config.host_names();
+    let assembled = looking_up(&names, LONG, output::message, || assemble(config));
+    let mut assembly = assembled.map_err(|error| {
         let exit = if error.is_taken() {
             Exit::Taken
         } else {

@@ -9,6 +9,7 @@ mod doctor;
 mod failure;
 mod fly;
 mod list;
+mod lookup;
 mod outcome;
 mod plan;
 mod plan_picture;

@@ -186,7 +186,7 @@ impl CalibrationSession {
                 Box::new(handled)
             } else if let (true, Some(section)) = (source.is_servo_board(), &config.servo_board) {
                 // Its actuator sends nothing unless it is driven.
-                let (sensor, _) =
+                let (sensor, ..) =
                     fcc_servo_link::open(&section.to_link(0)).map_err(AssemblyError::from)?;
                 sensor
             } else {

@@ -2,6 +2,7 @@
 //! simulator's, or instead of them.
 
 use fcc_linux::chip::ChipKind;
+use fcc_xplane::Simulator;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 use toml::de::DeTable;
@@ -78,6 +79,16 @@ impl Config {
         let is_complete =
             self.is_without_simulator() || listed.clone().any(SensorEntry::is_simulator);
         listed.chain((!is_complete).then_some(&SENSOR))
+    }
+
+    /// The names of hosts that are looked up when a flight is assembled, with the ports.
+    pub fn host_names(&self) -> Vec<String> {
+        let simulators = self.x_planes().map(|(_, section)| &section.simulator);
+        let board = self.servo_board.iter().flat_map(|board| &board.address);
+        let named = simulators
+            .chain(board)
+            .filter(|at| matches!(at, Simulator::Named(_)));
+        named.map(ToString::to_string).collect()
     }
 
     /// The connections to an X-Plane, each with its key.
@@ -185,6 +196,20 @@ mod tests {
             other => panic!("{other:?}"),
         });
         (kinds.collect(), config.actuators().len())
+    }
+
+    #[test]
+    fn names_of_hosts_are_told_from_addresses() {
+        let names = |text: &str| Config::parse(text, "test").unwrap().host_names();
+        assert!(names("[built-in]\n").is_empty());
+        assert!(names("[x-plane]\nsimulator = \"192.168.1.20\"\n").is_empty());
+        assert_eq!(
+            names(
+                "[x-plane]\nsimulator = \"sim.lan\"\n[servo-board]\naddress = \"board.lan:5000\"\n\
+                 [[sensor]]\nkind = \"servo-board\"\n"
+            ),
+            ["sim.lan:49000", "board.lan:5000"]
+        );
     }
 
     #[test]

@@ -17,6 +17,7 @@ use super::control_override::ControlOverride;
 use super::event_log::EventLog;
 #[cfg(feature = "live")]
 use super::limits::setpoint_limits;
+use super::line_watch::LineWatch;
 use super::lines::line_sensor;
 #[cfg(feature = "live")]
 use super::live::Live;
@@ -58,6 +59,8 @@ pub struct Assembly {
     pub true_now: Option<TruthHandle>,
     /// The state of the board's devices.
     pub(super) devices: Vec<WatchedDevice>,
+    /// The serial line of a servo board.
+    pub(super) line: Option<LineWatch>,
     /// Who has control of it; none for an aircraft that ends with the program.
     pub(super) authority: Option<Arc<dyn ControlAuthority>>,
     /// Starts the process that publishes live telemetry; without it, a thread of
@@ -117,6 +120,7 @@ struct Plant {
     true_now: Option<TruthHandle>,
     authority: Option<Arc<dyn ControlAuthority>>,
     x_plane: Option<XPlaneStatus>,
+    line: Option<LineWatch>,
 }
 
 /// Assembles a flight.
@@ -213,6 +217,7 @@ fn assemble_with(
         truth: plant.truth,
         true_now: plant.true_now,
         devices,
+        line: servo_board.line,
         // One plant is released after the program: a simulator's.
         authority: plant
             .authority
@@ -237,8 +242,7 @@ fn built_in(
         actuators: vec![Box::new(simulation.actuator)],
         truth: Some(truth),
         true_now: Some(simulation.truth),
-        authority: None,
-        x_plane: None,
+        ..Plant::default()
     })
 }
 
@@ -259,10 +263,9 @@ fn x_plane(section: &XPlaneSection, config: &Config) -> Result<Plant, AssemblyEr
     Ok(Plant {
         sensors: vec![Box::new(sensor)],
         actuators: vec![Box::new(actuator)],
-        truth: None,
-        true_now: None,
         authority: Some(Arc::new(authority)),
         x_plane: Some(status),
+        ..Plant::default()
     })
 }
 
@@ -271,13 +274,15 @@ fn servo_board(config: &Config) -> Result<Plant, AssemblyError> {
     let Some(section) = &config.servo_board else {
         return Ok(Plant::default());
     };
-    let (sensor, actuator) = fcc_servo_link::open(&section.to_link(config.realtime.priority))?;
+    let link = section.to_link(config.realtime.priority);
+    let (sensor, actuator, line) = fcc_servo_link::open(&link)?;
     Ok(Plant {
         sensors: vec![match section.calibration().to_core() {
             Some(calibration) => Box::new(Calibrated::new(sensor, &calibration)),
             None => sensor,
         }],
         actuators: vec![actuator],
+        line: line.map(LineWatch::new),
         ..Plant::default()
     })
 }
@@ -333,6 +338,9 @@ impl Assembly {
         if !self.devices.is_empty() {
             let devices = std::mem::take(&mut self.devices);
             observers.push(Box::new(DeviceReporter::new(devices)));
+        }
+        if let Some(line) = self.line.take() {
+            observers.push(Box::new(line));
         }
         // The last, so that it receives what the others report at their end.
         observers.push(Box::new(EventLog::default()));

@@ -21,6 +21,7 @@ mod host;
 #[cfg(feature = "fault-injection")]
 mod injection;
 mod limits;
+mod line_watch;
 mod lines;
 #[cfg(feature = "live")]
 mod live;

@@ -1,12 +1,9 @@
 //! The recording of a flight.
 
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use fcc_core::framework::{EventOf, MessageOf, RecordOf};
-use fcc_record::{
-    About, Notice, Recorded, RecorderOf, RecorderSettings, RecordingPace, last_unfinished,
-};
+use fcc_record::{About, Notice, Recorded, RecorderOf, RecorderSettings, RecordingPace};
 use fcc_telemetry::Realtime;
 use nix::sys::utsname::{UtsName, uname};
 
@@ -91,8 +88,6 @@ pub(super) struct FlightRecorder<C: Recorded> {
     settings: RecorderSettings,
     about: About,
     recorder: Option<RecorderOf<C>>,
-    /// The recording that the last flight left unfinished.
-    unfinished: Option<PathBuf>,
     repair: Option<Repair>,
     /// When its status was last reported.
     reported: Instant,
@@ -104,7 +99,6 @@ impl<C: Recorded> FlightRecorder<C> {
             settings: request.settings,
             about: request.about,
             recorder: None,
-            unfinished: None,
             repair: None,
             reported: Instant::now(),
         }
@@ -112,11 +106,6 @@ impl<C: Recorded> FlightRecorder<C> {
 }
 
 impl<C: Recorded> Observer<C> for FlightRecorder<C> {
-    /// Before its own is the newest.
-    fn prepare(&mut self, _: &mut Reports) {
-        self.unfinished = last_unfinished(&self.settings.folder);
-    }
-
     /// Begins to record; without a recorder the flight continues, and this is
     /// reported.
     fn begin(&mut self, facts: &Facts<'_>, reports: &mut Reports) {
@@ -140,8 +129,9 @@ impl<C: Recorded> Observer<C> for FlightRecorder<C> {
             Ok(recorder) => self.recorder = Some(recorder),
             Err(error) => reports.remark(format!("not recorded: no thread: {error}")),
         }
-        // An hour's takes some seconds, and must not delay the flight.
-        self.repair = self.unfinished.take().and_then(Repair::begin);
+        // Finding the one that the last flight left takes seconds in a full folder, and
+        // repairing an hour's too: neither delays the flight.
+        self.repair = Repair::begin(&self.settings.folder, facts.started_unix_ns);
     }
 
     fn record(&mut self, record: &RecordOf<C>, _: &FlightTime) {
@@ -268,7 +258,8 @@ mod tests {
             timer: "timerfd",
             sensors: &[],
             actuators: &[],
-            started_unix_ns: 0,
+            // The one that is left began in 1970.
+            started_unix_ns: 10_000_000_000,
             clock_offset_ns: 0,
             pace: Pace::RealTime,
             granted: None,

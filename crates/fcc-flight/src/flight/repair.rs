@@ -1,20 +1,20 @@
 //! Repairs the recording that a killed program left, while the flight goes on.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use fcc_record::{RecoverError, Recovered, recover_while};
+use fcc_record::{RecoverError, Recovered, last_unfinished, recover_while};
 
 use super::observer::Reports;
 
 /// A repair, in its own thread.
 pub(super) struct Repair {
-    thread: JoinHandle<Result<Recovered, RecoverError>>,
+    thread: JoinHandle<Option<Result<Recovered, RecoverError>>>,
     is_stopped: Arc<AtomicBool>,
-    path: PathBuf,
+    folder: PathBuf,
 }
 
 /// How long the end waits for it.
@@ -22,21 +22,26 @@ const PATIENCE: Duration = Duration::from_secs(5);
 const POLL: Duration = Duration::from_millis(5);
 
 impl Repair {
-    /// Begins it. Without a thread, the file is left to `fccd recover`.
-    pub(super) fn begin(path: PathBuf) -> Option<Self> {
+    /// Looks for the recording that the flight before this one left, and repairs it.
+    /// Without a thread, it is left to `fccd recover`.
+    pub(super) fn begin(folder: &Path, started_unix_ns: u64) -> Option<Self> {
         let is_stopped = Arc::new(AtomicBool::new(false));
         let stop = Arc::clone(&is_stopped);
-        let repaired = path.clone();
+        let folder = folder.to_owned();
+        let looked_in = folder.clone();
         let thread = thread::Builder::new()
             .name("fcc-repair".to_owned())
             // With locked memory, all of a stack is resident.
             .stack_size(512 << 10)
-            .spawn(move || recover_while(&repaired, |_| !stop.load(Ordering::Relaxed)))
+            .spawn(move || {
+                let path = last_unfinished(&looked_in, started_unix_ns)?;
+                Some(recover_while(&path, |_| !stop.load(Ordering::Relaxed)))
+            })
             .ok()?;
         Some(Self {
             thread,
             is_stopped,
-            path,
+            folder,
         })
     }
 
@@ -51,10 +56,10 @@ impl Repair {
         while !self.thread.is_finished() {
             // A damaged file of terabytes, or a disk that hangs, must not keep the daemon.
             if began.elapsed() > PATIENCE {
-                let path = self.path.display();
+                let folder = self.folder.display();
                 reports.remark(format!(
-                    "{path}: its repair has not ended within {} s and is left: fccd recover \
-                     repairs it",
+                    "{folder}: the repair of its last recording has not ended within {} s and is \
+                     left: fccd recover repairs it",
                     PATIENCE.as_secs()
                 ));
                 return;
@@ -62,13 +67,14 @@ impl Repair {
             thread::sleep(POLL);
         }
         match self.thread.join() {
-            Ok(Ok(done)) if done.was_whole => {}
-            Ok(Ok(done)) => reports.mention(format!(
+            Ok(None) => {}
+            Ok(Some(Ok(done))) if done.was_whole => {}
+            Ok(Some(Ok(done))) => reports.mention(format!(
                 "{}: was unfinished, repaired: {} ticks",
                 done.path.display(),
                 done.ticks
             )),
-            Ok(Err(error)) => {
+            Ok(Some(Err(error))) => {
                 reports.remark(format!("the last recording was not repaired: {error}"));
             }
             Err(_) => {

@@ -16,6 +16,10 @@ use crate::recorded::Recorded;
 /// Attempts to begin a file: names tried, and recordings deleted.
 const MAX_ATTEMPTS: usize = 100;
 
+/// After looking through the folder it is not looked through for so many times
+/// as long: others may have put any number of files there.
+const TIDY_PAUSE: u32 = 20;
+
 impl<C: Recorded> Writing<C> {
     pub(super) fn is_full(&self, part: &Part<C>) -> bool {
         let too_large = |most| part.bytes() >= most;
@@ -58,7 +62,6 @@ impl<C: Recorded> Writing<C> {
 
     /// Begins the next file.
     pub(super) fn begin(&mut self) {
-        self.keep_below_total();
         self.about.part += 1;
         match self.begin_file() {
             Ok(file) => {
@@ -84,6 +87,8 @@ impl<C: Recorded> Writing<C> {
                 for text in mem::take(&mut self.remarks) {
                     self.note(text);
                 }
+                // First what is flown is recorded.
+                self.keep_below_total();
             }
             Err((path, error)) => {
                 self.about.part -= 1;
@@ -142,6 +147,10 @@ impl<C: Recorded> Writing<C> {
         let Some(most) = self.settings.keep_total_bytes else {
             return;
         };
+        let began = Instant::now();
+        if began < self.tidy_next {
+            return;
+        }
         for path in folder::keep_below(&self.settings.folder, most) {
             let text = format!(
                 "{}: deleted, to keep recordings below {} MB",
@@ -155,6 +164,7 @@ impl<C: Recorded> Writing<C> {
                 status.files_deleted += (before - status.files.len()) as u64;
             });
         }
+        self.tidy_next = Instant::now() + began.elapsed() * TIDY_PAUSE;
     }
 }
 

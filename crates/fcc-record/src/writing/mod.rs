@@ -59,6 +59,8 @@ pub(super) struct Writing<C: Recorded> {
     acted: Instant,
     /// Whether the flight has ended; then no attempt is repeated.
     ended: bool,
+    /// Until when the folder is not looked through again.
+    tidy_next: Instant,
     /// Records and bytes in earlier parts.
     ticks_before: u64,
     bytes_before: u64,
@@ -85,6 +87,7 @@ impl<C: Recorded> Writing<C> {
             remarks: Vec::new(),
             acted: Instant::now(),
             ended: false,
+            tidy_next: Instant::now(),
             ticks_before: 0,
             bytes_before: 0,
         }

@@ -1,6 +1,7 @@
 //! Recordings that are cut off, damaged or invalid.
 
 use std::fs;
+use std::io::{Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 
 use fcc_core::framework::Message;
@@ -77,8 +78,11 @@ fn a_finished_file_is_not_changed() {
     assert!(recovered.was_whole);
     assert_eq!(recovered.ticks, TICKS);
     assert_eq!(fs::read(&path).unwrap(), before);
-    assert_eq!(last_unfinished(folder.path()), None);
+    assert_eq!(last_unfinished(folder.path(), NOW), None);
 }
+
+/// 2090-01-01T00:00:00Z, s since 1970 by `date -u -d 2090-01-01 +%s`.
+const NOW: u64 = 3_786_912_000 * 1_000_000_000;
 
 #[test]
 fn a_start_finds_the_last_recording_only() {
@@ -99,15 +103,48 @@ fn a_start_finds_the_last_recording_only() {
             .join("2099-01-01T00-00-00.000Z-built-in-01.mcap"),
     )
     .unwrap();
-    assert_eq!(last_unfinished(folder.path()), Some(path.clone()));
+    assert_eq!(last_unfinished(folder.path(), NOW), Some(path.clone()));
     // The end of the flight stops it.
     let stopped = recover_while(&path, |_| false).unwrap_err().to_string();
     assert!(stopped.contains("run `fccd recover` on it"), "{stopped}");
     assert_eq!(fs::read(&path).unwrap(), cut);
+    // Another user's hides none; only root gives files to others.
+    let foreign = folder
+        .path()
+        .join("2089-01-01T00-00-00.000Z-built-in-01.mcap");
+    fs::write(&foreign, cut).unwrap();
+    if std::os::unix::fs::chown(&foreign, Some(65_534), None).is_ok() {
+        assert_eq!(last_unfinished(folder.path(), NOW), Some(path.clone()));
+    }
+    fs::remove_file(&foreign).unwrap();
+    // A flight's own recording is none that was left, nor does it hide one.
+    let own = "2090-01-01T00-00-00.000Z-built-in-01.mcap";
+    fs::write(folder.path().join(own), cut).unwrap();
+    assert_eq!(last_unfinished(folder.path(), NOW), Some(path.clone()));
+    fs::remove_file(folder.path().join(own)).unwrap();
     recover(&path, |_| {}).unwrap();
     assert_eq!(entry(&path).unwrap().file, Wholeness::Whole);
     assert_eq!(fs::read(&older).unwrap(), cut);
-    assert_eq!(last_unfinished(Path::new("/nowhere")), None);
+    assert_eq!(last_unfinished(Path::new("/nowhere"), NOW), None);
+}
+
+/// Another user can make one that claims 2 TB, in the name of a recording.
+#[test]
+fn a_hole_of_terabytes_is_not_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = whole(folder.path(), Compression::default());
+    let bytes = fs::read(&path).unwrap();
+    let began = std::time::Instant::now();
+    let mut file = fs::File::create(&path).unwrap();
+    file.write_all(&bytes[..bytes.len() / 2]).unwrap();
+    file.set_len(2 << 40).unwrap();
+    let holed = entry(&path).unwrap();
+    assert!(holed.ticks < TICKS && holed.file != Wholeness::Whole);
+    file.seek(SeekFrom::Start(2 << 40)).unwrap();
+    file.write_all(&bytes[bytes.len() - 1_000..]).unwrap();
+    let holed = entry(&path).unwrap();
+    assert!(holed.ticks < TICKS && holed.file == Wholeness::Damaged);
+    assert!(began.elapsed().as_secs() < 60);
 }
 
 #[test]
@@ -125,7 +162,7 @@ fn what_is_being_written_is_not_recovered() {
         recover(&path, |_| {}),
         Err(RecoverError::BeingWritten(_))
     ));
-    assert_eq!(last_unfinished(folder.path()), None);
+    assert_eq!(last_unfinished(folder.path(), NOW), None);
     let seen = entry(&path).unwrap();
     assert_eq!((seen.file, seen.ticks), (Wholeness::BeingWritten, 10));
     recorder.finish("stopped by command");
@@ -147,7 +184,7 @@ fn a_file_being_recovered_is_not_recovered_twice() {
                 recover(&path, |_| {}),
                 Err(RecoverError::BeingWritten(_))
             ));
-            assert_eq!(last_unfinished(folder.path()), None);
+            assert_eq!(last_unfinished(folder.path(), NOW), None);
         }
     })
     .unwrap();

@@ -22,7 +22,12 @@ const SILENT: Duration = Duration::from_millis(1_500);
 const OLDEST_VERSION: f64 = 104_000.0;
 
 /// What the daemon says when it hears nothing.
-const NOTHING_HEARD: [&str; 3] = ["does not answer", "do not hear", "does not hear"];
+const NOTHING_HEARD: [&str; 4] = [
+    "does not answer",
+    "cannot be reached",
+    "do not hear",
+    "does not hear",
+];
 /// What it says when its writes have no effect.
 const NO_EFFECT: [&str; 1] = ["no effect"];
 

@@ -7,6 +7,7 @@
 
 mod client;
 mod connect;
+mod crowd;
 mod line;
 mod panel;
 mod server;

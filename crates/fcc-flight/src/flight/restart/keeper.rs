@@ -16,7 +16,7 @@ use crate::config::PreparedPlan;
 /// How long the end of a flight waits for the disk.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// Given explicitly, so that `RUST_MIN_STACK` does not change it.
-const STACK_BYTES: usize = 2 << 20;
+pub(super) const STACK_BYTES: usize = 2 << 20;
 
 /// Writes the state file. Of several requests while the disk is busy, only the
 /// last is executed.

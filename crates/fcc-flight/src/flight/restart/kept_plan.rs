@@ -36,13 +36,10 @@ pub(super) struct NotedPlans {
 }
 
 impl NotedPlans {
-    /// The plan of a flight to recover.
-    pub(super) const fn of(recovered: Option<Arc<PreparedPlan>>) -> Self {
-        Self {
-            flown: recovered,
-            next: None,
-            is_new: true,
-        }
+    /// A flight with this plan is to be recovered.
+    pub(super) fn recovered(&mut self, plan: Option<Arc<PreparedPlan>>) {
+        self.flown = plan;
+        self.is_new = true;
     }
 
     /// A plan was prepared, and may be flown next.

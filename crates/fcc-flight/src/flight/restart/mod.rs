@@ -8,6 +8,7 @@
 //! since boot; the time of day is not used.
 
 mod boot_clock;
+mod found;
 mod keeper;
 mod kept_plan;
 mod observer;
@@ -18,9 +19,7 @@ mod state_file;
 mod state_page;
 
 use std::fs::File;
-use std::os::unix::fs::MetadataExt as _;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use fcc_core::flight::guidance::{Progress, Targets};
@@ -31,13 +30,13 @@ use fcc_telemetry::{FlightEvent, FlightMessage};
 
 use crate::config::{Config, RestartMode};
 use boot_clock::BootInstant;
+use found::{Found, Looked, Search};
 use keeper::Keeper;
 use kept_plan::{NotedPlans, SavedPlan};
 pub(super) use observer::RestartKeeper;
 use place::SavedPlace;
 use recovery::{Next, Recovery};
 use saved::{Saved, SavedCommands, SavedSwitch};
-use state_file::StateFileError;
 #[cfg(fuzzing)]
 pub use state_file::read_state;
 
@@ -101,12 +100,21 @@ fn fingerprint(config: &Config) -> u32 {
     crc32fast::hash(toml::to_string(&flown).unwrap_or_default().as_bytes())
 }
 
+/// The state file, as far as it is known.
+enum StateFile {
+    /// The disk has not answered yet.
+    Searched { search: Search, was_engaged: bool },
+    /// It is this flight's. The lock is held until the process ends in any way.
+    Ours { _lock: Option<File> },
+    /// It is another program's, or cannot be used.
+    Unusable,
+}
+
 /// Stores the state of the flight, and recovers an interrupted one.
 pub(super) struct Restart {
     request: RestartRequest,
     boot: Option<BootInstant>,
-    /// Held until the process ends in any way.
-    _lock: File,
+    file: StateFile,
     keeper: Keeper,
     kept: Option<(Instant, Progress, u64)>,
     plans: NotedPlans,
@@ -125,49 +133,104 @@ pub(super) struct Restart {
 impl Restart {
     /// Evaluates the state left by the last flight, and stores that of this one
     /// from here on. Returns a message, if there is one; without a usable file,
-    /// only that.
+    /// only that. If the disk does not answer, that is [polled](Self::poll).
     pub(super) fn begin(request: RestartRequest) -> (Option<Self>, Option<String>) {
-        let (lock, foreign) = match prepare(&request.path) {
-            Ok(prepared) => prepared,
-            Err(message) => return (None, Some(message)),
-        };
-        let read = state_file::read(&request.path);
-        if let Err(error @ (StateFileError::Foreign | StateFileError::Unreadable(_))) = &read {
-            return (None, Some(format!("{}: {error}", request.path.display())));
-        }
+        let looked = request.clone();
+        Self::begin_by(request, move || found::look(&looked))
+    }
+
+    fn begin_by(
+        request: RestartRequest,
+        look: impl FnOnce() -> Looked + Send + 'static,
+    ) -> (Option<Self>, Option<String>) {
+        let no_thread = |error| (None, Some(format!("no thread for the state file: {error}")));
         let keeper = match Keeper::start(request.path.clone()) {
             Ok(keeper) => keeper,
-            Err(error) => return (None, Some(format!("no thread for the state file: {error}"))),
+            Err(error) => return no_thread(error),
         };
-        let now = BootInstant::now();
-        let of_this_plant = matches!(&read, Ok(Some(saved)) if saved.config == request.fingerprint);
-        let (recovery, message) = evaluate(&request, read, now.as_ref());
-        let message = match (foreign, message) {
-            (Some(foreign), Some(message)) => Some(format!("{foreign}; {message}")),
-            (foreign, message) => foreign.or(message),
+        let search = match Search::begin(look) {
+            Ok(search) => search,
+            Err(error) => return no_thread(error),
         };
-        if recovery.is_none() {
-            keeper.clear();
-        }
-        let this = Self {
-            boot: now,
-            _lock: lock,
+        let mut this = Self {
+            boot: BootInstant::now(),
+            file: StateFile::Unusable,
             keeper,
             kept: None,
-            plans: NotedPlans::of(recovery.as_ref().and_then(Recovery::plan).cloned()),
+            plans: NotedPlans::default(),
             engaged_since: None,
             recoveries: 0,
             switch_owner: SwitchOwner::default(),
             switch: SavedSwitch::default(),
-            commanded: recovery
-                .as_ref()
-                .map_or_else(SavedCommands::default, Recovery::commands),
+            commanded: SavedCommands::default(),
             is_broken: false,
-            left: of_this_plant && recovery.is_none(),
-            recovery,
+            left: false,
+            recovery: None,
             request,
         };
-        (Some(this), message)
+        match search {
+            Ok(Err(message)) => (None, Some(message)),
+            Ok(Ok(found)) => {
+                let message = this.found(found, false);
+                (Some(this), message)
+            }
+            Err(search) => {
+                this.file = StateFile::Searched {
+                    search,
+                    was_engaged: false,
+                };
+                (Some(this), None)
+            }
+        }
+    }
+
+    /// Takes up what the last flight left, unless another one `was_engaged` meanwhile.
+    fn found(&mut self, found: Found, was_engaged: bool) -> Option<String> {
+        self.file = StateFile::Ours { _lock: found.lock };
+        self.left = found.left && !was_engaged;
+        self.recovery = found.recovery.filter(|_| !was_engaged);
+        if let Some(recovery) = &self.recovery {
+            self.plans.recovered(recovery.plan().cloned());
+            self.commanded = recovery.commands();
+            return found.message;
+        }
+        self.clear();
+        if !was_engaged {
+            return found.message;
+        }
+        Some(format!(
+            "{}: its disk answers again; the flight since then is continued after a restart, and \
+             none before it",
+            self.request.path.display()
+        ))
+    }
+
+    const fn is_ours(&self) -> bool {
+        matches!(self.file, StateFile::Ours { .. })
+    }
+
+    /// Removes the stored state, unless the file is not ours, or not known to be.
+    fn clear(&self) {
+        if self.is_ours() {
+            self.keeper.clear();
+        }
+    }
+
+    /// Looks whether the disk has answered; a message, if there is one.
+    fn look_again(&mut self) -> Option<String> {
+        let StateFile::Searched {
+            search,
+            was_engaged,
+        } = &mut self.file
+        else {
+            return None;
+        };
+        let was_engaged = *was_engaged;
+        let Some(looked) = search.poll() else {
+            return search.late(&self.request.path);
+        };
+        self.file = StateFile::Unusable;
+        looked.map_or_else(Some, |found| self.found(found, was_engaged))
     }
 
     /// Whether an interrupted flight was found not to be recovered since the
@@ -180,6 +243,9 @@ impl Restart {
     pub(super) fn take(&mut self, message: &FlightMessage) {
         if let Some(recovery) = &mut self.recovery {
             recovery.take(message);
+        }
+        if let StateFile::Searched { was_engaged, .. } = &mut self.file {
+            *was_engaged |= matches!(message, Message::Tick(tick) if tick.state == State::Engaged);
         }
         match message {
             Message::Event(event) => self.event(event),
@@ -220,7 +286,7 @@ impl Restart {
                 self.kept = None;
                 self.engaged_since = None;
                 self.recoveries = 0;
-                self.keeper.clear();
+                self.clear();
             }
             EventKind::Panicked | EventKind::TimerFailed => self.is_broken = true,
             EventKind::CommandReceived(LoopCommand::Controller(command))
@@ -242,6 +308,9 @@ impl Restart {
         before_control: impl FnOnce(),
     ) -> Option<String> {
         if let Some(message) = self.keeper.trouble() {
+            return Some(message);
+        }
+        if let Some(message) = self.look_again() {
             return Some(message);
         }
         let recovery = self.recovery.as_mut()?;
@@ -266,7 +335,7 @@ impl Restart {
             Next::NotRecovered(message) => {
                 self.recovery = None;
                 self.left = true;
-                self.keeper.clear();
+                self.clear();
                 Some(message)
             }
         }
@@ -292,7 +361,7 @@ impl Restart {
         });
         // The state of the flight to recover is kept until the recovery is
         // decided.
-        if !is_due || self.recovery.is_some() {
+        if !is_due || self.recovery.is_some() || !self.is_ours() {
             return;
         }
         self.kept = Some((Instant::now(), resume.progress, plan.hash));
@@ -312,96 +381,6 @@ impl Restart {
         };
         self.keeper.keep(saved, self.plans.flown(plan.hash));
     }
-}
-
-/// Creates the folder, and ensures that no other daemon uses the same file. A message beside
-/// the lock if it is another user's: that one may hold it, without any daemon.
-fn prepare(path: &Path) -> Result<(File, Option<String>), String> {
-    let message = |doing: &str, error: &dyn std::fmt::Display| {
-        format!(
-            "{}: {doing}, so this flight cannot be recovered after a restart: {error}",
-            path.display()
-        )
-    };
-    if let Some(folder) = path.parent()
-        && !folder.as_os_str().is_empty()
-    {
-        fcc_record::create_folder(folder)
-            .map_err(|error| message("its folder cannot be created", &error))?;
-    }
-    let lock_path = path.with_extension("flight.lock");
-    let lock =
-        fcc_record::open_lock(&lock_path).map_err(|error| message("cannot be locked", &error))?;
-    match fcc_telemetry::file_lock::try_lock(&lock) {
-        Ok(true) => Ok((lock, None)),
-        Ok(false) if other_user(&lock).is_some() => {
-            let user = other_user(&lock).unwrap_or_default();
-            let foreign = format!(
-                "{}: belongs to the user {user}, who holds it: it is not heeded; use a \
-                 restart.state_file in a folder of this user",
-                lock_path.display()
-            );
-            Ok((lock, Some(foreign)))
-        }
-        Ok(false) => Err(message(
-            "another fccd uses it",
-            &"give this one another restart.state_file",
-        )),
-        Err(error) => Err(message("cannot be locked", &error)),
-    }
-}
-
-/// The user of a file, if that is neither this process' nor root.
-fn other_user(file: &File) -> Option<u32> {
-    let user = file.metadata().ok()?.uid();
-    (user != 0 && user != nix::unistd::geteuid().as_raw()).then_some(user)
-}
-
-/// What to do with the state that was found, and the message about it.
-fn evaluate(
-    request: &RestartRequest,
-    read: Result<Option<Saved>, StateFileError>,
-    now: Option<&BootInstant>,
-) -> (Option<Recovery>, Option<String>) {
-    let stands_by = |why: &str| {
-        let message = format!("{}: {why}; staying in standby", request.path.display());
-        (None, Some(message))
-    };
-    let saved = match read {
-        Ok(Some(saved)) => saved,
-        Ok(None) => return (None, None),
-        Err(error) => return stands_by(&error.to_string()),
-    };
-    let Some(age) = now.and_then(|now| now.since(&saved.at)) else {
-        return stands_by("a flight was interrupted before this machine was last started");
-    };
-    let interrupted = format!("a flight was interrupted {:.1} s ago", age.as_secs_f64());
-    if request.mode == RestartMode::Cold {
-        return stands_by(&format!("{interrupted}, and restart.mode is \"cold\""));
-    }
-    if age > request.max_age {
-        return stands_by(&format!(
-            "{interrupted}, longer than restart.max_age_s, {} s",
-            request.max_age.as_secs_f64()
-        ));
-    }
-    if saved.config != request.fingerprint {
-        return stands_by(&format!(
-            "{interrupted}, and flown with another configuration"
-        ));
-    }
-    if saved.recoveries >= MAX_RECOVERIES {
-        return stands_by(&format!(
-            "{interrupted}, and recovered {} times in a row before",
-            saved.recoveries
-        ));
-    }
-    let plan = match kept_plan::restore(&request.path, saved.plan, &request.config) {
-        Ok(plan) => plan.map(Arc::new),
-        Err(why) => return stands_by(&format!("{interrupted}, and {why}")),
-    };
-    let message = format!("{}: {interrupted}; recovering it", request.path.display());
-    (Some(Recovery::new(saved, plan)), Some(message))
 }
 
 /// Whether the mode differs, or its captured values differ by more than a small

@@ -20,6 +20,7 @@ use super::*;
 mod elsewhere;
 mod flown;
 mod foreign_files;
+mod late_disk;
 mod replaced_plan;
 
 use flown::FLOWN;

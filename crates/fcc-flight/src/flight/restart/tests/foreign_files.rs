@@ -39,3 +39,35 @@ fn who_may_only_read_the_lock_does_not_keep_it() {
     assert!(second.is_none());
     assert!(said.unwrap().contains("another fccd uses it"));
 }
+
+/// Root opens every file, so as root the other's is a pipe and a link, which are not
+/// opened either.
+#[test]
+fn another_users_file_in_place_of_the_lock_is_not_heeded() {
+    const OTHER: u32 = 65_534;
+    let folder = Folder::new(RestartMode::Warm);
+    let lock = folder.request.path.with_extension("flight.lock");
+    let places: [&dyn Fn(); 3] = [
+        &|| fs::create_dir(&lock).unwrap(),
+        &|| std::os::unix::fs::symlink("/dev/null", &lock).unwrap(),
+        &|| {
+            let made = std::process::Command::new("mkfifo").arg(&lock).status();
+            assert!(made.unwrap().success());
+        },
+    ];
+    for place in places {
+        place();
+        if std::os::unix::fs::lchown(&lock, Some(OTHER), None).is_err() {
+            eprintln!("not tested: only root gives files to others");
+            return;
+        }
+        folder.leave(2, |_| {});
+        let (recovered, said) = folder.found();
+        let _ = fs::remove_file(&lock).or_else(|_| fs::remove_dir(&lock));
+        assert!(recovered && said.contains("recovering it"), "{said}");
+        assert!(
+            said.contains("user 65534") && said.contains("not heeded"),
+            "{said}"
+        );
+    }
+}

@@ -1,5 +1,7 @@
 //! A flight whose plan was replaced.
 
+use std::path::Path;
+
 use fcc_core::flight::PlanReplacement;
 
 use super::*;
