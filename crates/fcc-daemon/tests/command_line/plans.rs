@@ -212,3 +212,38 @@ fn what_nothing_measures_is_said() {
     let (_, said) = flown(STRAIGHT_IN, &limits, &["--seconds", "1"]);
     assert!(!said.contains("no sensor here"), "{said}");
 }
+
+/// 19,120 m are 62,730 ft; from 45° north, 8° east to 8° north, 45° east it is far.
+#[test]
+fn what_is_seldom_meant_is_remarked_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let checked = |plan: &str| {
+        fs::write(folder.path().join("a.waypoints"), plan).unwrap();
+        let words = ["plan", "check", "a.waypoints", "--json"];
+        let (exit, said) = ended(folder.path(), &words);
+        assert_eq!(exit, Some(0), "{said}");
+        let printed: serde_json::Value = serde_json::from_str(&said).unwrap();
+        let remarks = printed["remarks"].as_array().unwrap().clone();
+        let texts = remarks
+            .iter()
+            .map(|remark| remark.as_str().unwrap().to_owned());
+        texts.collect::<Vec<_>>()
+    };
+    let low = "item 1: altitude: 0 m above the elevation of home, 120 m, is lower than \
+               terrain.margin_m, 60 m";
+    let on_the_ground = checked(&legs(45.0, 0.0));
+    assert!(on_the_ground[0].starts_with(low), "{on_the_ground:?}");
+    let high = checked(&legs(45.0, 19_000.0));
+    let words = "item 1: altitude: 19120 m above mean sea level (62730 ft) is above";
+    assert!(high[0].starts_with(words), "{high:?}");
+    let line = "3 0 3 16 0 0 0 0 8 45.05 300 1\n";
+    let far = checked(&(legs(45.0, 300.0) + line));
+    assert!(
+        far[0].contains("are latitude and longitude exchanged"),
+        "{far:?}"
+    );
+    assert!(checked(CIRCUIT).is_empty());
+    // And in flight.
+    let (_, said) = flown(&legs(45.0, 0.0), "", &["--seconds", "1"]);
+    assert!(said.contains(low), "{said}");
+}
