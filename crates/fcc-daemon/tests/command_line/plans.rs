@@ -247,3 +247,35 @@ fn what_is_seldom_meant_is_remarked_on() {
     let (_, said) = flown(&legs(45.0, 0.0), "", &["--seconds", "1"]);
     assert!(said.contains(low), "{said}");
 }
+
+#[test]
+fn the_plan_of_a_configuration_is_checked_with_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[built-in]\n[guidance]\nmode = \"plan\"\n[plan]\nfile = \"a.waypoints\"\n";
+    fs::write(folder.path().join("c.toml"), text).unwrap();
+    for (plan, exit, words) in [
+        (None, 2, "c.toml: plan.file: a.waypoints: cannot be read: "),
+        (
+            None,
+            2,
+            "a relative path begins in the folder where the program is started",
+        ),
+        (
+            Some(legs(45.0, -200.0)),
+            2,
+            "plan.file: a.waypoints: item 1: altitude: -80 m",
+        ),
+        (
+            Some(legs(45.0, 0.0)),
+            0,
+            "c.toml: item 1: altitude: 0 m above the elevation",
+        ),
+        (Some(legs(45.0, 300.0)), 0, "c.toml: valid: "),
+    ] {
+        if let Some(plan) = plan {
+            fs::write(folder.path().join("a.waypoints"), plan).unwrap();
+        }
+        let (code, said) = ended(folder.path(), &["check", "c.toml"]);
+        assert_eq!((code, said.contains(words)), (Some(exit), true), "{said}");
+    }
+}

@@ -22,7 +22,8 @@ const LEAST_ABOVE_GROUND_FT: f64 = 1_000.0;
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PlanSection {
-    /// A `.plan` of QGroundControl, or a `QGC WPL 110`.
+    /// A `.plan` of QGroundControl, or a `QGC WPL 110`; relative to the folder where the
+    /// program is started.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<PathBuf>,
     /// The strongest wind, from any direction, that the plan is checked for.
@@ -221,7 +222,10 @@ impl Config {
                         .iter()
                         .map(|problem| of_key(format!("{file}: {problem}")))
                         .collect(),
-                    other => vec![of_key(other.to_string())],
+                    other => vec![of_key(format!(
+                        "{other}: a relative path begins in the folder where the program is \
+                         started"
+                    ))],
                 },
             }),
         }
