@@ -279,3 +279,20 @@ fn the_plan_of_a_configuration_is_checked_with_it() {
         assert_eq!((code, said.contains(words)), (Some(exit), true), "{said}");
     }
 }
+
+/// As of a configuration (`fccd --help`).
+#[test]
+fn a_plan_that_cannot_be_read_has_the_exit_code_of_a_wrong_one() {
+    let folder = tempfile::tempdir().unwrap();
+    for command in [
+        &["check", "none.toml"][..],
+        &["plan", "check", "none.plan"],
+        &["plan", "show", "none.plan"],
+        &["plan", "convert", "none.plan", "a.waypoints"],
+        &["fly", "--plan", "none.plan"],
+    ] {
+        let (exit, said) = ended(folder.path(), command);
+        assert_eq!(exit, Some(2), "{said}");
+        assert!(said.contains("cannot be read: No such file"), "{said}");
+    }
+}
