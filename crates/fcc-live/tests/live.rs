@@ -174,6 +174,19 @@ fn without_a_daemon_the_error_says_what_to_do() {
 }
 
 #[test]
+fn without_a_daemon_of_this_name_those_that_run_are_named() {
+    let runs = instance("runs");
+    let _publisher = started(&runs);
+    Watcher::open(&runs).unwrap();
+    let words = Watcher::open(&instance("other")).unwrap_err().to_string();
+    let (_, running) = words.split_once("; running here: ").unwrap();
+    assert!(
+        running.split(", ").any(|name| name == runs.to_string()),
+        "{words}"
+    );
+}
+
+#[test]
 fn a_daemon_with_another_layout_is_refused_with_a_reason() {
     let instance = instance("layout");
     let mut publisher = Publisher::start(&instance, 2_048).unwrap();
