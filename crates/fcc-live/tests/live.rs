@@ -186,6 +186,19 @@ fn without_a_daemon_of_this_name_those_that_run_are_named() {
     );
 }
 
+/// The start of a flight can say a lot about its plan.
+#[test]
+fn a_long_event_arrives_whole() {
+    let instance = instance("long");
+    let mut publisher = started(&instance);
+    let words = "an event of 900 letters ".repeat(38)[..900].to_owned();
+    publisher.event(Event::remark(0, 0, &words));
+    publisher.flush();
+    let mut watcher = Watcher::open(&instance).unwrap();
+    let event = wait_for("the event", || watcher.next_event().unwrap());
+    assert_eq!(event.text.as_str(), words);
+}
+
 #[test]
 fn a_daemon_with_another_layout_is_refused_with_a_reason() {
     let instance = instance("layout");
