@@ -189,6 +189,9 @@ def test_completions(fccd: Path, tmp_path: Path, shell: str) -> None:
     assert ended.returncode == 0
     for command in ("fly", "run", "timing", "check"):
         assert command in ended.stdout
+    # Not in `fccd --help` either.
+    for hidden in ("publisher", "release-helper", "end-with"):
+        assert hidden not in ended.stdout
     if shell == "bash":
         script = tmp_path / "fccd.bash"
         script.write_text(ended.stdout)

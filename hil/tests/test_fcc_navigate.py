@@ -155,7 +155,41 @@ def test_of_a_flight_nothing_is_said() -> None:
     fcc.navigate(**FLIGHT)
 
 
+def turning(per_radian: float) -> dict[str, Any]:
+    """Return 30 s of a level turn by 3 °/s in a field of 20 and 40 µT, with noise of 0.5 µT.
+
+    Rates are multiplied by `per_radian`.
+    """
+    times_s = np.arange(30 * RATE_HZ) / RATE_HZ
+    headings = math.radians(3.0) * times_s
+    field = np.array([20.0 * np.cos(headings), -20.0 * np.sin(headings), 40.0 + 0.0 * headings]).T
+    field += np.random.default_rng(2026).normal(0.0, 0.5, field.shape)
+    rates = np.tile([0.0, 0.0, math.radians(3.0) * per_radian], (len(times_s), 1))
+    return {"gyroscope": (times_s, rates), "magnetometer": (times_s, field)}
+
+
+@pytest.mark.filterwarnings("error")
+def test_of_a_turn_and_of_fields_of_the_earth_nothing_is_said() -> None:
+    """The World Magnetic Model's report of 2025: 22 µT in South America, 67 µT near a pole."""
+    fcc.navigate(**turning(1.0))
+    for strength_ut in (22.0, 67.0):
+        fcc.navigate(gyroscope=GYROSCOPE, magnetometer=still([0.0, 0.0, strength_ut]))
+
+
+def with_field(per_ut: float) -> dict[str, Any]:
+    return {"gyroscope": GYROSCOPE, "magnetometer": still(FIELD_UT * per_ut)}
+
+
 UNLIKELY: list[tuple[dict[str, Any], str]] = [
+    (turning(180.0 / math.pi), "the field of the magnetometer turns .* are they in °/s"),
+    (with_field(1e-6), "middle sample is 4.5e-5, .* 22 to 67 µT: is it in tesla"),
+    (with_field(10.0), "middle sample is 447.2, .* is it in milligauss"),
+    (with_field(1e-2), "middle sample is 0.4, .* is it in gauss"),
+    ({"gyroscope": GYROSCOPE, "airspeed": (TIMES_S, 0.0 * TIMES_S - 30.0)}, "sign wrong"),
+    (
+        {"gyroscope": GYROSCOPE, "differential_pressure": (TIMES_S, 0.0 * TIMES_S - 500.0)},
+        "400 of 400 samples are below -15 Pa",
+    ),
     (moving([-10.0, 30.0, -1.0]), "as east, north, up"),
     (moving([-10.0, 30.0, 1.0]), "north and east swapped"),
     (moving([30.0, -10.0, -1.0]), "down for up"),

@@ -153,7 +153,7 @@ def test_a_file_that_is_none_does_not_hide_the_others(fccd: Path, tmp_path: Path
     os.mkfifo(pipe)
     missing = tmp_path / "missing.plan"
     done = _run(fccd, "check", "--json", pipe, CIRCUIT, missing)
-    assert done.returncode == 1
+    assert done.returncode == 2
     results = json.loads(done.stdout)
     assert [result["ok"] for result in results] == [False, True, False]
     assert "no file" in results[0]["problems"][0]["message"]

@@ -10,6 +10,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
 from daemon_under_test import engage, helpers_of, start, wait_until, write_config
 from test_release_helper import CUT_OFF
 
@@ -18,6 +19,7 @@ from fcc_hil.process import StandInProcess
 from fcc_hil.settings import Settings
 
 PATIENCE_S = 60.0
+TAKEN = 12
 
 
 @contextlib.contextmanager
@@ -77,22 +79,26 @@ def test_a_deflection_is_released_by_the_next_start_if_its_helper_is_killed_too(
             wait_until(lambda: are_set(simulator, 0.0), "the controls are released")
 
 
-def test_nothing_is_deflected_that_another_daemon_flies(fccd: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("words", [("identify", "--by-hand"), ("check", "--yes")])
+def test_nothing_is_deflected_or_checked_that_another_daemon_flies(
+    fccd: Path, tmp_path: Path, words: tuple[str, ...]
+) -> None:
+    """Exit code 12: another program uses the simulator."""
     with StandInProcess(Settings(port=0, version=121_000)) as simulator:
         config = write_config(tmp_path, simulator.port)
         with start(fccd, tmp_path, config) as daemon:
             engage(simulator, daemon)
             found = subprocess.run(
-                [fccd, "x-plane", "identify", "--by-hand", "--config", config],
+                [fccd, "x-plane", *words, "--config", config],
                 cwd=tmp_path,
                 stdin=subprocess.DEVNULL,
                 capture_output=True,
                 text=True,
-                timeout=PATIENCE_S,
+                timeout=20.0,
                 check=False,
             )
             assert "another fccd flies this X-Plane: end it first" in found.stderr
-            assert found.returncode == 1
+            assert found.returncode == TAKEN
             assert are_set(simulator, 1.0)
             assert "engaged -> " not in daemon.log
 

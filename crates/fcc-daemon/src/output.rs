@@ -97,7 +97,21 @@ pub(crate) fn message(text: impl Display) {
 /// A text with its end of line. Names of files and keys in it may contain
 /// anything.
 fn line(text: impl Display) -> String {
-    with_end(printable(&text.to_string()))
+    let words = std::env::args_os().skip(1);
+    let words = words.map(|word| word.to_string_lossy().into_owned());
+    with_end(printable(&in_one_line(text.to_string(), words)))
+}
+
+/// A text with the ends of lines in words of the command line as `\n`: they would begin a
+/// line that is no message.
+fn in_one_line(mut text: String, words: impl Iterator<Item = String>) -> String {
+    for word in words {
+        let name = word.split_once('=').map_or(&*word, |(_, name)| name);
+        if name.contains('\n') && !name.trim().is_empty() {
+            text = text.replace(name, &name.replace('\n', "\\n"));
+        }
+    }
+    text
 }
 
 fn with_end(mut text: String) -> String {
@@ -183,6 +197,15 @@ impl Drop for Background {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_name_does_not_begin_a_line() {
+        let words = ["check", "a\nb.toml", "--config=c\nd.toml", "\n"];
+        let words = words.map(str::to_owned).into_iter();
+        let text = "a\nb.toml: wrong\nc\nd.toml: wrong".to_owned();
+        let said = "a\\nb.toml: wrong\nc\\nd.toml: wrong";
+        assert_eq!(in_one_line(text, words), said);
+    }
 
     #[test]
     fn dropped_lines_are_counted_where_they_are_missing() {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::MAX_WATCHERS;
+use super::{MAX_WATCHERS, place};
 use fcc_telemetry::Instance;
 
 /// Why nothing can be published. The flight continues without.
@@ -34,7 +34,7 @@ pub enum WatchError {
     /// No daemon of this name publishes on this machine.
     #[error(
         "no fccd named '{0}' runs here: start one, for example with `fccd fly --instance {0}`, or \
-         give another's name with --instance"
+         give another's name with --instance{running}", running = place::in_words(&place::running())
     )]
     NotRunning(Instance),
     /// The daemon runs, but what it publishes did not arrive within so many
@@ -60,7 +60,8 @@ pub enum WatchError {
     #[error(
         "no fccd named '{0}' runs here for this user: start one, for example with `fccd fly \
          --instance {0}`, or give another's name with --instance. A daemon of another user can be \
-         watched by that user alone: sudo -u USER fccd top --instance {0}"
+         watched by that user alone: sudo -u USER fccd top --instance {0}{running}",
+        running = place::in_words(&place::running())
     )]
     PerhapsAnothers(Instance),
     /// The daemon publishes in another layout.

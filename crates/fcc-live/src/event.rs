@@ -20,8 +20,8 @@ pub struct Event {
     pub index: u32,
     /// Their meaning depends on the code.
     pub values: [u64; 3],
-    /// As text.
-    pub text: Text<208>,
+    /// As text; what is longer is cut off.
+    pub text: Text<976>,
 }
 
 /// The kind of event; in brackets the meaning of [`Event::values`].

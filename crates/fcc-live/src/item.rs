@@ -7,6 +7,7 @@ use super::{Event, Info, Status};
 
 /// What is published: plain data of a fixed size.
 #[derive(Clone, Copy, Debug)]
+#[expect(clippy::large_enum_variant, reason = "a flight's record is larger")]
 pub(super) enum Item<C: Telemetry> {
     /// A tick.
     Record(RecordOf<C>),

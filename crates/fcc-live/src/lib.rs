@@ -19,10 +19,10 @@
 //! | service | what | history |
 //! |---|---|---|
 //! | `fcc/INSTANCE/info` | [`Info`]: who publishes, in which layout | 1 |
-//! | `fcc/INSTANCE/columns/v4` | the columns of a record | 1 |
-//! | `fcc/INSTANCE/record/v4` | the record of each tick | 1 |
-//! | `fcc/INSTANCE/event/v4` | [`Event`]: what happened once | 64 |
-//! | `fcc/INSTANCE/status/v4` | [`Status`]: each second, how the run stands | 1 |
+//! | `fcc/INSTANCE/columns/v5` | the columns of a record | 1 |
+//! | `fcc/INSTANCE/record/v5` | the record of each tick | 1 |
+//! | `fcc/INSTANCE/event/v5` | [`Event`]: what happened once | 64 |
+//! | `fcc/INSTANCE/status/v5` | [`Status`]: each second, how the run stands | 1 |
 //!
 //! Commands are sent the other way: a [`Commander`] uses the service
 //! `fcc/INSTANCE/command/v4` and receives the result.
@@ -83,4 +83,4 @@ pub use watcher::WatcherOf;
 
 /// The version of all layouts except [`Info`]'s. Increase it with every change
 /// of one of them, or of a field's meaning.
-pub const LAYOUT: u32 = 4;
+pub const LAYOUT: u32 = 5;

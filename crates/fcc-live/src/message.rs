@@ -33,6 +33,7 @@ const OTHER: u8 = 1;
 
 /// To the process that publishes.
 #[derive(Serialize, Deserialize, Debug)]
+#[expect(clippy::large_enum_variant, reason = "there is one at a time")]
 pub(super) enum ToPublisher {
     /// The first: what it publishes.
     Begin {

@@ -22,6 +22,8 @@ use super::PublishError;
 use fcc_telemetry::file_lock::{is_locked, whole_file};
 use fcc_telemetry::{Instance, RunFolder};
 
+/// The name of an instance's folder begins so.
+const FOLDER: &str = "live-";
 const CURRENT: &str = "current";
 /// How long the process of a daemon that was killed may take to end.
 const ENDS_WITHIN: Duration = Duration::from_secs(1);
@@ -32,7 +34,7 @@ const OTHERS: u32 = 0o077;
 const NAME_BYTES: usize = 64;
 
 fn folder_of(instance: &Instance) -> String {
-    format!("live-{instance}")
+    format!("{FOLDER}{instance}")
 }
 
 /// The files of a program that publishes. Dropping it removes them.
@@ -190,6 +192,29 @@ pub(super) fn look(instance: &Instance) -> Presence {
         }
     }
     presence
+}
+
+/// The names by which this user's programs publish now, sorted.
+pub(super) fn running() -> Vec<String> {
+    let of_user = RunFolder::all_of_this_user();
+    let found = of_user.iter().flat_map(|all| entries(all.as_path()));
+    let names = found.filter_map(|path| {
+        let name = path.file_name()?.to_str()?.strip_prefix(FOLDER)?;
+        name.parse::<Instance>().ok()
+    });
+    let is_here = |name: &Instance| matches!(look(name), Presence::Here(_));
+    let mut names: Vec<_> = names.filter(is_here).map(|name| name.to_string()).collect();
+    names.sort();
+    names.dedup();
+    names
+}
+
+/// What an error says of them.
+pub(super) fn in_words(running: &[String]) -> String {
+    match running {
+        [] => String::new(),
+        names => format!("; running here: {}", names.join(", ")),
+    }
 }
 
 /// What is known of who else publishes by a name.

@@ -12,7 +12,7 @@ const DOCUMENT: &str = include_str!("../../../docs/telemetry.md");
 /// The layout that this version of the page describes: increase `LAYOUT`, and
 /// the version in the services' names, with every change of a struct or a
 /// meaning.
-const DESCRIBED: u32 = 4;
+const DESCRIBED: u32 = 5;
 
 /// A table of fields: offset in `$of`, type, meaning.
 macro_rules! table {
@@ -49,7 +49,7 @@ fn event() {
         code: "u32", "kind of event, see below";
         index: "u32", "sensor or actuator, from 0";
         values: "u64[3]", "depends on the code";
-        text: "char[208]", "as text";
+        text: "char[976]", "as text";
     ));
 }
 

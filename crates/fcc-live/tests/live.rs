@@ -174,6 +174,32 @@ fn without_a_daemon_the_error_says_what_to_do() {
 }
 
 #[test]
+fn without_a_daemon_of_this_name_those_that_run_are_named() {
+    let runs = instance("runs");
+    let _publisher = started(&runs);
+    Watcher::open(&runs).unwrap();
+    let words = Watcher::open(&instance("other")).unwrap_err().to_string();
+    let (_, running) = words.split_once("; running here: ").unwrap();
+    assert!(
+        running.split(", ").any(|name| name == runs.to_string()),
+        "{words}"
+    );
+}
+
+/// The start of a flight can say a lot about its plan.
+#[test]
+fn a_long_event_arrives_whole() {
+    let instance = instance("long");
+    let mut publisher = started(&instance);
+    let words = "an event of 900 letters ".repeat(38)[..900].to_owned();
+    publisher.event(Event::remark(0, 0, &words));
+    publisher.flush();
+    let mut watcher = Watcher::open(&instance).unwrap();
+    let event = wait_for("the event", || watcher.next_event().unwrap());
+    assert_eq!(event.text.as_str(), words);
+}
+
+#[test]
 fn a_daemon_with_another_layout_is_refused_with_a_reason() {
     let instance = instance("layout");
     let mut publisher = Publisher::start(&instance, 2_048).unwrap();

@@ -30,6 +30,7 @@ mod problem;
 mod qgc_plan;
 mod route;
 mod runway;
+mod unusual;
 mod wpl;
 
 pub use check::{Conditions, check, landing_elevation_m};
@@ -43,3 +44,4 @@ pub use plan::{
 };
 pub use problem::Problem;
 pub use route::Steps;
+pub use unusual::{Usual, unusual};

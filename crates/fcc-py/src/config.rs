@@ -72,7 +72,8 @@ impl PyConfig {
 
     /// Another configuration, with other values for some keys:
     /// `config.replace({"autopilot.heading.roll_gain_per_s": 2.0})`. A dict
-    /// replaces a whole section. All is checked as a file is.
+    /// replaces a whole section, and another `guidance.mode` drops the keys of the mode before.
+    /// All is checked as a file is.
     fn replace(&self, values: &Bound<'_, PyDict>) -> PyResult<Self> {
         let mut changes = Vec::new();
         for (key, value) in values {

@@ -2,11 +2,11 @@
 
 use std::fs;
 use std::io;
-use std::net::{SocketAddr, ToSocketAddrs};
+use std::net::{Ipv4Addr, SocketAddr, ToSocketAddrs, UdpSocket};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use fcc_xplane::{DiscoverError, XPlaneConfig, discover};
+use fcc_xplane::{DiscoverError, PlantId, XPlaneConfig, discover, plant_at};
 
 use crate::bench::{Bench, Stop};
 use crate::link::Link;
@@ -55,6 +55,9 @@ pub enum CheckError {
         /// The operating system's error.
         source: io::Error,
     },
+    /// Another `fccd` flies it, which the check would disturb.
+    #[error("another fccd flies this X-Plane: end it first: {0}")]
+    Flown(PlantId),
     /// No socket, or no folder.
     #[error("{what}: {source}")]
     Io {
@@ -66,16 +69,32 @@ pub enum CheckError {
 }
 
 impl CheckError {
-    /// Whether another program uses the port.
+    /// Whether another program uses the simulator or the port.
     pub fn is_taken(&self) -> bool {
-        matches!(self, Self::Io { source, .. } if source.kind() == io::ErrorKind::AddrInUse)
+        match self {
+            Self::Flown(_) => true,
+            Self::Io { source, .. } => source.kind() == io::ErrorKind::AddrInUse,
+            _ => false,
+        }
     }
 }
 
-/// Connects to X-Plane, and prepares to start the daemon.
-pub(crate) fn open(request: Request, screen: &mut dyn Screen) -> Result<Bench<'_>, CheckError> {
+/// Connects to X-Plane, unless it or the daemon's port is in use, and prepares to start the
+/// daemon.
+pub(crate) fn open<'a>(
+    request: Request,
+    screen: &'a mut dyn Screen,
+    is_flown: &dyn Fn(&PlantId) -> bool,
+) -> Result<Bench<'a>, CheckError> {
     let io = |what: String| move |source| CheckError::Io { what, source };
     let address = locate(&request.x_plane)?;
+    if let Some(plant) = plant_at(address).filter(|plant| is_flown(plant)) {
+        return Err(CheckError::Flown(plant));
+    }
+    let daemons = request.x_plane.local_port;
+    UdpSocket::bind((Ipv4Addr::UNSPECIFIED, daemons)).map_err(io(format!(
+        "fccd cannot receive on x-plane.local_port, {daemons}"
+    )))?;
     let port = request.local_port;
     let link = Link::open(address, &request.x_plane, port)
         .map_err(io(format!("cannot receive on UDP port {port}")))?;
@@ -91,14 +110,18 @@ pub(crate) fn open(request: Request, screen: &mut dyn Screen) -> Result<Bench<'_
 }
 
 /// Does the steps one after another, and returns the results. Waits for the
-/// network and for people.
+/// network and for people. `is_flown` tells whether another `fccd` flies this X-Plane.
 ///
 /// # Errors
 /// If it could not begin.
-pub fn check(request: Request, screen: &mut dyn Screen) -> Result<Report, CheckError> {
+pub fn check(
+    request: Request,
+    screen: &mut dyn Screen,
+    is_flown: &dyn Fn(&PlantId) -> bool,
+) -> Result<Report, CheckError> {
     let (only, config) = (request.only.clone(), request.config.clone());
     let how = (request.is_short, request.is_unattended);
-    let mut bench = open(request, screen)?;
+    let mut bench = open(request, screen, is_flown)?;
     let mut results = Vec::new();
     let mut has_quit = false;
     for step in &STEPS {

@@ -166,7 +166,7 @@ pub enum FlownBy {
 /// `held` is called with X-Plane before the measurement itself takes its
 /// controls, and with none after X-Plane has confirmed their release: a caller
 /// that is killed between the two needs another process to release them. If it returns
-/// false, they are not taken.
+/// false, they are not taken. `is_flown` is as that of [`check`](crate::check).
 ///
 /// # Errors
 /// If it could not begin, or if it was ended: by the envelope, by a control
@@ -176,8 +176,9 @@ pub fn identify(
     by: FlownBy,
     screen: &mut dyn Screen,
     held: &mut dyn FnMut(Option<PlantId>) -> bool,
+    is_flown: &dyn Fn(&PlantId) -> bool,
 ) -> Result<Identified, IdentifyError> {
-    let mut bench = open(request, screen)?;
+    let mut bench = open(request, screen, is_flown)?;
     let found = fly(&mut bench, by, held).map_err(|stop| {
         IdentifyError::Ended(match stop {
             Stop::Failed(why) | Stop::NotReady(why) | Stop::Skipped(why) => why,

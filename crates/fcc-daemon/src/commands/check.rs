@@ -44,10 +44,12 @@ pub(super) fn check(args: &CheckArgs) -> Exit {
     }
 }
 
-/// Checks a file, and describes it.
+/// Checks a file and the plan that it names, and describes it.
 fn check_file(path: &Path) -> (Checked, Result<String, ConfigError>) {
     let file = path.display().to_string();
-    match Config::load_with_text(path) {
+    let loaded = Config::load_with_text(path)
+        .and_then(|(config, text)| Ok((config.with_plan(&file)?, text)));
+    match loaded {
         Ok((config, text)) => {
             let mut remarks = config.remarks(&text);
             remarks.extend(unknown_names(&config.rights));

@@ -31,7 +31,7 @@ mod x_plane;
 use std::path::Path;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{CommandFactory, Parser};
+use clap::{Command, CommandFactory, Parser};
 use clap_complete::Shell;
 use fcc_record::create_folder;
 
@@ -107,10 +107,22 @@ fn carry_out(command: Action) -> Result<Exit, Failure> {
     })
 }
 
+/// A command as `--help` shows it: scripts for shells have hidden ones, too.
+fn shown(command: &Command) -> Command {
+    let arguments = command.get_arguments().filter(|one| !one.is_hide_set());
+    let commands = command.get_subcommands().filter(|one| !one.is_hide_set());
+    Command::new(command.get_name().to_owned())
+        .about(command.get_about().cloned().unwrap_or_default())
+        .version(command.get_version().unwrap_or_default().to_owned())
+        .disable_version_flag(command.get_version().is_none())
+        .args(arguments.cloned())
+        .subcommands(commands.map(shown))
+}
+
 fn completions(shell: Shell) -> Exit {
     // If it cannot write, `generate` panics.
     let mut script = Vec::new();
-    clap_complete::generate(shell, &mut Cli::command(), "fccd", &mut script);
+    clap_complete::generate(shell, &mut shown(&Cli::command()), "fccd", &mut script);
     output::bytes(&script, Exit::Success)
 }
 

@@ -52,9 +52,9 @@ fn check(args: &PlanCheckArgs) -> Result<Exit, Failure> {
     let mut exit = Exit::Success;
     let mut all = Vec::new();
     for path in &args.files {
-        let (checked, worst) = check_file(path, &config);
-        if worst != Exit::Success && exit != Exit::Failure {
-            exit = worst;
+        let checked = check_file(path, &config);
+        if !checked.ok {
+            exit = Exit::Usage;
         }
         if !args.json {
             exit = print(&checked, exit);
@@ -84,7 +84,7 @@ fn print(checked: &Checked, exit: Exit) -> Exit {
     exit
 }
 
-fn check_file(path: &Path, config: &Config) -> (Checked, Exit) {
+fn check_file(path: &Path, config: &Config) -> Checked {
     let file = path.display().to_string();
     let unread = |problems| Checked {
         file: file.clone(),
@@ -96,32 +96,31 @@ fn check_file(path: &Path, config: &Config) -> (Checked, Exit) {
     };
     let plan = match fcc_plan::read_file(path) {
         Ok(plan) => plan,
-        Err(FileError::Invalid { problems, .. }) => return (unread(problems), Exit::Usage),
+        Err(FileError::Invalid { problems, .. }) => return unread(problems),
         Err(error) => {
             let error = error.to_string();
             let message = error.strip_prefix(&format!("{file}: ")).unwrap_or(&error);
             let problem = Problem::of("", message);
-            return (unread(vec![problem]), Exit::Failure);
+            return unread(vec![problem]);
         }
     };
-    let (plan, problems, exit) = match config.checked_plan(&plan) {
-        Ok(flown) => (flown, Vec::new(), Exit::Success),
-        Err(problems) => (plan, problems, Exit::Usage),
+    let (plan, problems) = match config.checked_plan(&plan) {
+        Ok(flown) => (flown, Vec::new()),
+        Err(problems) => (plan, problems),
     };
     let remarks = if problems.is_empty() {
         config.plan_remarks(&plan)
     } else {
         Vec::new()
     };
-    let checked = Checked {
+    Checked {
         file,
         remarks,
         ok: problems.is_empty(),
         sha256: Some(plan.hash().to_string()),
         items: plan.items.len(),
         problems,
-    };
-    (checked, exit)
+    }
 }
 
 #[derive(Serialize)]
@@ -210,13 +209,7 @@ fn convert(args: &PlanConvertArgs) -> Result<Exit, Failure> {
 }
 
 fn read(path: &Path) -> Result<Plan, Failure> {
-    fcc_plan::read_file(path).map_err(|error| {
-        let exit = match error {
-            FileError::Invalid { .. } => Exit::Usage,
-            _ => Exit::Failure,
-        };
-        Failure::of(exit, error)
-    })
+    fcc_plan::read_file(path).map_err(|error| Failure::of(Exit::Usage, error))
 }
 
 /// Writes a file that is not the plan itself.

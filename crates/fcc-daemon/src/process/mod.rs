@@ -53,7 +53,7 @@ pub use notice::use_plant_file;
 #[cfg(feature = "live")]
 pub(crate) use own_program::own_program;
 pub(crate) use own_program::{begin_helper, outlive_signals};
-pub(crate) use plant_file::Mark;
+pub(crate) use plant_file::{Mark, is_flown};
 pub(crate) use release_helper::{ReleaseHelper, run_release_helper};
 pub(crate) use rights::{RightsError, give_up, unknown_names};
 pub(crate) use service_unit::commanders_refused;

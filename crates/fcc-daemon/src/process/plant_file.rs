@@ -123,6 +123,22 @@ impl PlantFile {
     }
 }
 
+/// Whether another daemon may control this plant of a configuration.
+pub(crate) fn is_flown(config: &Config, plant: &PlantId) -> bool {
+    let folder = RunFolder::of_this_process(&mut |why| output::message(why));
+    let Some((authority, folder)) = authority_without_connection(config).zip(folder) else {
+        return false;
+    };
+    match PlantFile::locked(&folder, &authority.unique(plant)) {
+        Ok(Some(file)) => {
+            file.remove_if_released();
+            false
+        }
+        Ok(None) => true,
+        Err(_) => false,
+    }
+}
+
 /// Marks a plant as held for the next daemon, of a program without a loop.
 pub(crate) struct Mark {
     authority: Option<Arc<dyn ControlAuthority>>,

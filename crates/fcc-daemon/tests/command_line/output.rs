@@ -168,3 +168,20 @@ fn a_flight_whose_result_cannot_be_printed_is_a_failure_and_a_reader_that_left_n
         }
     }
 }
+
+/// A name of two lines does not look like two messages.
+#[test]
+fn the_end_of_a_line_in_a_name_is_escaped() {
+    let folder = tempfile::tempdir().unwrap();
+    for words in [
+        &["check", "a\nb: valid"][..],
+        &["plan", "check", "a\nb: valid"],
+        &["fly", "--config=a\nb: valid"],
+        &["report", "a\nb: valid"],
+    ] {
+        let ended = fccd(folder.path(), words).output().unwrap();
+        let said = String::from_utf8(ended.stderr).unwrap();
+        assert!(said.contains("a\\nb: valid: cannot be read"), "{said}");
+        assert_eq!(said.lines().count(), 1, "{said}");
+    }
+}

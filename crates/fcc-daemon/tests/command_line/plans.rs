@@ -212,3 +212,87 @@ fn what_nothing_measures_is_said() {
     let (_, said) = flown(STRAIGHT_IN, &limits, &["--seconds", "1"]);
     assert!(!said.contains("no sensor here"), "{said}");
 }
+
+/// 19,120 m are 62,730 ft; from 45° north, 8° east to 8° north, 45° east it is far.
+#[test]
+fn what_is_seldom_meant_is_remarked_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let checked = |plan: &str| {
+        fs::write(folder.path().join("a.waypoints"), plan).unwrap();
+        let words = ["plan", "check", "a.waypoints", "--json"];
+        let (exit, said) = ended(folder.path(), &words);
+        assert_eq!(exit, Some(0), "{said}");
+        let printed: serde_json::Value = serde_json::from_str(&said).unwrap();
+        let remarks = printed["remarks"].as_array().unwrap().clone();
+        let texts = remarks
+            .iter()
+            .map(|remark| remark.as_str().unwrap().to_owned());
+        texts.collect::<Vec<_>>()
+    };
+    let low = "item 1: altitude: 0 m above the elevation of home, 120 m, is lower than \
+               terrain.margin_m, 60 m";
+    let on_the_ground = checked(&legs(45.0, 0.0));
+    assert!(on_the_ground[0].starts_with(low), "{on_the_ground:?}");
+    let high = checked(&legs(45.0, 19_000.0));
+    let words = "item 1: altitude: 19120 m above mean sea level (62730 ft) is above";
+    assert!(high[0].starts_with(words), "{high:?}");
+    let line = "3 0 3 16 0 0 0 0 8 45.05 300 1\n";
+    let far = checked(&(legs(45.0, 300.0) + line));
+    assert!(
+        far[0].contains("are latitude and longitude exchanged"),
+        "{far:?}"
+    );
+    assert!(checked(CIRCUIT).is_empty());
+    // And in flight.
+    let (_, said) = flown(&legs(45.0, 0.0), "", &["--seconds", "1"]);
+    assert!(said.contains(low), "{said}");
+}
+
+#[test]
+fn the_plan_of_a_configuration_is_checked_with_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[built-in]\n[guidance]\nmode = \"plan\"\n[plan]\nfile = \"a.waypoints\"\n";
+    fs::write(folder.path().join("c.toml"), text).unwrap();
+    for (plan, exit, words) in [
+        (None, 2, "c.toml: plan.file: a.waypoints: cannot be read: "),
+        (
+            None,
+            2,
+            "a relative path begins in the folder where the program is started",
+        ),
+        (
+            Some(legs(45.0, -200.0)),
+            2,
+            "plan.file: a.waypoints: item 1: altitude: -80 m",
+        ),
+        (
+            Some(legs(45.0, 0.0)),
+            0,
+            "c.toml: item 1: altitude: 0 m above the elevation",
+        ),
+        (Some(legs(45.0, 300.0)), 0, "c.toml: valid: "),
+    ] {
+        if let Some(plan) = plan {
+            fs::write(folder.path().join("a.waypoints"), plan).unwrap();
+        }
+        let (code, said) = ended(folder.path(), &["check", "c.toml"]);
+        assert_eq!((code, said.contains(words)), (Some(exit), true), "{said}");
+    }
+}
+
+/// As of a configuration (`fccd --help`).
+#[test]
+fn a_plan_that_cannot_be_read_has_the_exit_code_of_a_wrong_one() {
+    let folder = tempfile::tempdir().unwrap();
+    for command in [
+        &["check", "none.toml"][..],
+        &["plan", "check", "none.plan"],
+        &["plan", "show", "none.plan"],
+        &["plan", "convert", "none.plan", "a.waypoints"],
+        &["fly", "--plan", "none.plan"],
+    ] {
+        let (exit, said) = ended(folder.path(), command);
+        assert_eq!(exit, Some(2), "{said}");
+        assert!(said.contains("cannot be read: No such file"), "{said}");
+    }
+}

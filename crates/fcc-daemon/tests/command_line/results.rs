@@ -255,3 +255,29 @@ fn any_name_of_a_file_is_printed_as_json() {
         assert!(json.contains("f\u{fffd}.mcap"), "{json}");
     }
 }
+
+/// Exit code 12 of `fccd --help`.
+#[test]
+fn a_check_against_x_plane_does_not_begin_on_another_programs_port() {
+    let other = std::net::UdpSocket::bind(("0.0.0.0", 0)).unwrap();
+    let port = other.local_addr().unwrap().port();
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!("[x-plane]\nlocal_port = {port}\n");
+    std::fs::write(folder.path().join("x.toml"), text).unwrap();
+    let port = port.to_string();
+    for (by, words) in [
+        (
+            ["--config", "x.toml"],
+            "fccd cannot receive on x-plane.local_port, ",
+        ),
+        (["--local-port", &port], "cannot receive on UDP port "),
+    ] {
+        let check = fccd(folder.path(), &["x-plane", "check", "--yes"])
+            .args(by)
+            .output()
+            .unwrap();
+        let said = String::from_utf8(check.stderr).unwrap();
+        assert!(said.contains(&format!("{words}{port}: ")), "{said}");
+        assert_eq!(check.status.code(), Some(12), "{said}");
+    }
+}

@@ -1,7 +1,7 @@
 //! What is known of the ground below a plan without tiles of elevations.
 
 use fcc_core::units::FOOT_M;
-use fcc_plan::{Item, Level, Plan, Problem};
+use fcc_plan::{Item, Level, Plan, Problem, Usual, unusual};
 
 use super::{BuiltInSection, Config};
 
@@ -72,14 +72,23 @@ impl Config {
     }
 
     /// What is worth a look in a plan that is accepted: places below home and the landing
-    /// may be in a valley, or in the ground, which is not known without tiles.
+    /// may be in a valley, or in the ground, which is not known without tiles; and what is
+    /// seldom meant.
     pub fn plan_remarks(&self, plan: &Plan) -> Vec<String> {
-        if self.built_in.is_some() || self.terrain.folder.is_some() {
-            return Vec::new();
-        }
+        // What tiles show to be too low is refused.
+        let ground = match self.terrain.folder {
+            Some(_) => None,
+            None if self.built_in.is_some() => self.level_ground(plan),
+            None => Level::lowest_known(plan),
+        };
         let advice = "is there a valley? The tiles of terrain.folder tell";
-        let lowest = Level::lowest_known(plan);
-        let below = lowest.map_or_else(Vec::new, |lowest| lowest.items_below(plan, advice));
-        below.iter().map(ToString::to_string).collect()
+        let below = ground.filter(|_| self.built_in.is_none());
+        let mut found = below.map_or_else(Vec::new, |lowest| lowest.items_below(plan, advice));
+        let usual = Usual {
+            ground: ground.map(|ground| (ground, self.terrain.margin_m)),
+            ceiling_m: self.plan.service_ceiling_ft * FOOT_M,
+        };
+        found.extend(unusual(plan, &self.plan_conditions(), &usual));
+        found.iter().map(ToString::to_string).collect()
     }
 }

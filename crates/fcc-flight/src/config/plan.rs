@@ -22,7 +22,8 @@ const LEAST_ABOVE_GROUND_FT: f64 = 1_000.0;
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PlanSection {
-    /// A `.plan` of QGroundControl, or a `QGC WPL 110`.
+    /// A `.plan` of QGroundControl, or a `QGC WPL 110`; relative to the folder where the
+    /// program is started.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<PathBuf>,
     /// The strongest wind, from any direction, that the plan is checked for.
@@ -40,6 +41,9 @@ pub struct PlanSection {
     pub loiter_radius_m: f64,
     /// The height above home at which the aircraft returns at least.
     pub return_height_ft: f64,
+    /// The highest altitude of the aircraft above mean sea level; the plan's above it are
+    /// remarked on.
+    pub service_ceiling_ft: f64,
     /// The plan itself, as a `.plan`: fccd writes it into a recording.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub content: Option<String>,
@@ -82,6 +86,8 @@ impl Default for PlanSection {
             bank_rate_degps: 15.0,
             loiter_radius_m: route.loiter_radius_m,
             return_height_ft: 500.0,
+            // Handbook of the Cessna 172P (1981), at 2,400 lb.
+            service_ceiling_ft: 13_000.0,
             content: None,
             uploaded_unix_s: None,
             loaded: None,
@@ -216,7 +222,10 @@ impl Config {
                         .iter()
                         .map(|problem| of_key(format!("{file}: {problem}")))
                         .collect(),
-                    other => vec![of_key(other.to_string())],
+                    other => vec![of_key(format!(
+                        "{other}: a relative path begins in the folder where the program is \
+                         started"
+                    ))],
                 },
             }),
         }

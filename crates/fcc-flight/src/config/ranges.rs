@@ -60,6 +60,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("plan.bank_rate_degps", 1.0, 180.0),
     ("plan.loiter_radius_m", 10.0, 100_000.0),
     ("plan.return_height_ft", 0.0, 20_000.0),
+    ("plan.service_ceiling_ft", 100.0, 65_000.0),
     ("contingency.fence_margin_m", 0.0, 10_000.0),
     ("contingency.fence_height_margin_ft", 0.0, 1_000.0),
     ("contingency.position_lost_after_s", 0.0, 36_000.0),

@@ -29,6 +29,8 @@ pub struct PreparedPlan {
     pub which: String,
     /// Itself, as a `.plan`.
     pub content: String,
+    /// What is accepted, and worth a look.
+    pub remarks: Vec<String>,
 }
 
 impl PreparedPlan {
@@ -192,6 +194,7 @@ impl Config {
             },
             which: format!("{hash:.12}, {} items", plan.items.len()),
             content,
+            remarks: self.plan_remarks(plan),
         })
     }
 }

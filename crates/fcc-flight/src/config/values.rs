@@ -9,6 +9,8 @@ use super::{Config, ConfigError, Problem};
 
 /// The configuration's name in messages without a file.
 const NO_FILE: &str = "config";
+/// The key that says which others its section has.
+const MODE: &str = "guidance.mode";
 
 impl Config {
     /// The whole configuration, defaults included, as TOML.
@@ -42,7 +44,8 @@ impl Config {
     }
 
     /// The configuration with other values for some keys; a key with a table
-    /// changes the whole section. Everything is checked like a file.
+    /// changes the whole section, and another `guidance.mode` drops the keys of the one before.
+    /// Everything is checked like a file.
     ///
     /// # Errors
     /// When there is no such key, or a value is out of its range: the messages
@@ -52,6 +55,14 @@ impl Config {
         changes: impl IntoIterator<Item = (&'k str, Value)>,
     ) -> Result<Self, ConfigError> {
         let mut values = self.values()?;
+        let changes: Vec<_> = changes.into_iter().collect();
+        let is_other = |(key, mode): &(&str, Value)| {
+            *key == MODE && self.value(MODE).is_ok_and(|before| before != *mode)
+        };
+        if changes.iter().any(is_other) {
+            // The other keys of the section are of the mode before.
+            put(&mut values, "guidance", Value::Table(toml::Table::new()));
+        }
         for (key, value) in changes {
             put(&mut values, key, value).ok_or_else(|| unknown(key))?;
         }
@@ -134,6 +145,26 @@ mod tests {
         assert_eq!(
             plain().value("loop.rate_hz").unwrap().as_float(),
             Some(40.0)
+        );
+    }
+
+    #[test]
+    fn another_mode_has_not_the_keys_of_the_one_before() {
+        let text = |text: &str| Value::String(text.to_owned());
+        let pattern = plain();
+        let hold = pattern.with_values([(MODE, text("hold"))]).unwrap();
+        assert_eq!(hold.value("guidance").unwrap().as_table().unwrap().len(), 1);
+        let short = ("guidance.leg_s", Value::Float(30.0));
+        let back = [short.clone(), (MODE, text("timed-pattern"))];
+        let back = hold.with_values(back).unwrap();
+        assert_eq!(back.value("guidance.leg_s").unwrap().as_float(), Some(30.0));
+        let same = back.with_values([(MODE, text("timed-pattern"))]).unwrap();
+        assert_eq!(same.value("guidance.leg_s").unwrap().as_float(), Some(30.0));
+        let both = pattern.with_values([(MODE, text("hold")), short]);
+        let said = both.unwrap_err().to_string();
+        assert!(
+            said.contains("a hold and a plan have no hold_s, leg_s"),
+            "{said}"
         );
     }
 

@@ -15,7 +15,7 @@ use fcc_telemetry::Instance;
 use super::limits::FlownPlan;
 use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 use super::outcome::Outcome;
-use super::plan_reader::PlanReader;
+use super::plan_reader::{PlanReader, first_of};
 use crate::config::Config;
 
 /// How long the publishing thread may be delayed before records are left out, at
@@ -160,6 +160,10 @@ where
             let known = match read {
                 Ok(plan) => {
                     let command = plan.command();
+                    for words in first_of(&plan.remarks) {
+                        publisher.event(Event::remark(self.at.tick, self.at.woke_ns, &words));
+                        access.reports.remark(words);
+                    }
                     access.reports.plan(Arc::new(plan));
                     self.commands.send_prepared(asked, command, &mut send)
                 }

@@ -17,6 +17,8 @@ use crate::config::{Config, PreparedPlan};
 const STACK_BYTES: usize = 512 << 10;
 /// The longest list of problems in an answer, in bytes.
 const LONGEST_LIST: usize = 7_000;
+/// So many remarks on a plan are told in flight.
+const MOST_REMARKS: usize = 5;
 
 type Read = Result<PreparedPlan, String>;
 
@@ -81,6 +83,18 @@ impl PlanReader {
     }
 }
 
+/// The first remarks on a plan, as a flight has room for them.
+pub(super) fn first_of(remarks: &[String]) -> Vec<String> {
+    let mut first: Vec<_> = remarks.iter().take(MOST_REMARKS).cloned().collect();
+    if let Some(left) = remarks.len().checked_sub(MOST_REMARKS + 1) {
+        let left = left + 1;
+        first.push(format!(
+            "the plan has {left} more remarks, which fccd plan check lists"
+        ));
+    }
+    first
+}
+
 /// Why a plan is refused, as an answer has room for it.
 fn refusal(error: &FileError) -> String {
     let FileError::Invalid { file, problems } = error else {
@@ -108,6 +122,17 @@ mod tests {
 
     fn plan(north_deg: f64) -> String {
         format!("QGC WPL 110\n0 0 0 16 0 0 0 0 47 8 900 1\n1 0 0 16 0 0 0 0 {north_deg} 8 900 1\n")
+    }
+
+    #[test]
+    fn a_flight_is_told_the_first_remarks_and_how_many_are_left() {
+        let remarks: Vec<_> = (1..=7).map(|n| format!("item {n}")).collect();
+        let [.., fifth, last] = &first_of(&remarks)[..] else {
+            panic!("remarks");
+        };
+        assert_eq!(fifth, "item 5");
+        assert!(last.starts_with("the plan has 2 more remarks"), "{last}");
+        assert_eq!(first_of(&remarks[..5]), remarks[..5]);
     }
 
     #[test]

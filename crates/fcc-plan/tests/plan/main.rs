@@ -10,6 +10,7 @@ mod reading;
 mod refusals;
 mod round_trip;
 mod terrain;
+mod unusual;
 
 use fcc_plan::Place;
 

@@ -9,6 +9,8 @@ use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 
 use super::kind::{KINDS, Kind, Series};
+use super::mounting::Mounting;
+use super::units::{backward, field, turns};
 
 /// The filter connects no samples of an inertial unit further apart than this, s, and keeps
 /// none for longer than that.
@@ -21,15 +23,19 @@ const RARELY: usize = 1_000;
 const BESIDE_S: f64 = 1.0;
 /// Displacements are compared over at least this time, s, if their root mean square is more
 /// than some errors of a receiver: horizontal and vertical, m.
-const WINDOW_S: f64 = 5.0;
+pub(super) const WINDOW_S: f64 = 5.0;
 const FAR_M: f64 = 10.0;
 const HIGH_M: f64 = 2.0;
 /// Other axes explain them if so much of the squares is left by those that were given, as a
 /// multiple of what they leave.
-const CLEARLY: f64 = 4.0;
+pub(super) const CLEARLY: f64 = 4.0;
 
 /// Refuses what nothing can be computed from, and warns of what is unlikely.
-pub(super) fn check(py: Python<'_>, series: &[Option<Series>]) -> PyResult<()> {
+pub(super) fn check(
+    py: Python<'_>,
+    series: &[Option<Series>],
+    mounting: &Mounting,
+) -> PyResult<()> {
     let given: Vec<(&Kind, &Series)> = KINDS
         .iter()
         .zip(series)
@@ -45,7 +51,13 @@ pub(super) fn check(py: Python<'_>, series: &[Option<Series>]) -> PyResult<()> {
     for other in others {
         unlikely.extend(clock(driving, other)?);
     }
-    unlikely.extend(of("gyroscope").and_then(|(_, gyroscope)| rates(gyroscope)));
+    let (gyroscope, magnetometer) = (of("gyroscope"), of("magnetometer"));
+    let too_fast = gyroscope.and_then(|(_, gyroscope)| rates(gyroscope));
+    let slower = gyroscope.zip(magnetometer);
+    let slower = || slower.and_then(|(rates, field)| turns(*rates, *field, mounting));
+    unlikely.extend(too_fast.or_else(slower));
+    unlikely.extend(magnetometer.and_then(|(_, magnetometer)| field(magnetometer)));
+    unlikely.extend(given.iter().filter_map(|source| backward(*source)));
     if let (Some(position), Some(velocity)) = (of("gnss_position"), of("gnss_velocity")) {
         unlikely.extend(axes(*position, *velocity));
     }
@@ -197,6 +209,6 @@ fn along(path: &[(f64, [f64; 3])], time_s: f64) -> Option<[f64; 3]> {
     Some(plus(*before, share, plus(*after, -1.0, *before)))
 }
 
-fn plus([a, b, c]: [f64; 3], share: f64, [x, y, z]: [f64; 3]) -> [f64; 3] {
+pub(super) fn plus([a, b, c]: [f64; 3], share: f64, [x, y, z]: [f64; 3]) -> [f64; 3] {
     [a + share * x, b + share * y, c + share * z]
 }

@@ -9,6 +9,7 @@ use pyo3::types::PyDict;
 use super::kind::{KINDS, Kind, Series};
 use super::mounting::Mounting;
 use super::plausible;
+use super::units::middle_strength;
 use crate::arguments::within;
 
 /// The longest delay, s: the filter keeps half a second of samples.
@@ -122,7 +123,7 @@ impl Sources {
             }
         }
         // After the samples themselves: in a wrong unit they are not possible.
-        plausible::check(py, &series)?;
+        plausible::check(py, &series, mounting)?;
         sources.events.sort_by_key(|event| event.arrived);
         Ok(sources)
     }
@@ -218,15 +219,7 @@ fn observation(name: &str, row: [f64; 3]) -> Observation {
 
 /// Whether the middle one of the strengths is that of gravity in g, and not 9.8.
 fn is_in_g(rows: &[[f64; 3]]) -> bool {
-    let mut strengths: Vec<f64> = rows
-        .iter()
-        .map(|row| row.iter().map(|along| along * along).sum::<f64>().sqrt())
-        .filter(|strength| strength.is_finite())
-        .collect();
-    strengths.sort_by(f64::total_cmp);
-    strengths
-        .get(strengths.len() / 2)
-        .is_some_and(|middle| (0.8..1.2).contains(middle))
+    middle_strength(rows).is_some_and(|middle| (0.8..1.2).contains(&middle))
 }
 
 fn nothing() -> PyErr {

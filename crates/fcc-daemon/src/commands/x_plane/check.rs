@@ -13,11 +13,12 @@ use super::{Failure, not_begun, request};
 use crate::cli::x_plane::XPlaneCheckArgs;
 use crate::exit::Exit;
 use crate::output;
+use crate::process::is_flown;
 
 /// Checks `fccd` against a running X-Plane.
 pub(super) fn check(args: &XPlaneCheckArgs) -> Result<Exit, Failure> {
     let files = ReportFiles::of(&args.report, args.connection.config.as_deref())?;
-    let (request, _) = request(&args.connection, files.folder.clone())?;
+    let (request, config) = request(&args.connection, files.folder.clone())?;
     if !args.yes && !io::stdin().is_terminal() {
         return Err(Failure::usage(
             "fccd: a person is needed, and standard input is no terminal: run it in one, or \
@@ -32,7 +33,7 @@ pub(super) fn check(args: &XPlaneCheckArgs) -> Result<Exit, Failure> {
     };
     files.open()?;
     let mut terminal = Terminal::open(!args.yes)?;
-    let result = carry_out(request, &mut terminal);
+    let result = carry_out(request, &mut terminal, &|plant| is_flown(&config, plant));
     drop(terminal);
     let report = result.map_err(|error| not_begun(&error))?;
     Ok(finish(&report, &files, args.json))

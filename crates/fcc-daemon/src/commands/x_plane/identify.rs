@@ -10,7 +10,7 @@ use super::{Failure, not_begun, request};
 use crate::cli::x_plane::IdentifyArgs;
 use crate::exit::Exit;
 use crate::output;
-use crate::process::{Mark, Notice, start_helper};
+use crate::process::{Mark, Notice, is_flown, start_helper};
 
 /// Measures the responses, and prints gains.
 pub(super) fn identify(args: &IdentifyArgs) -> Result<Exit, Failure> {
@@ -40,7 +40,8 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<Exit, Failure> {
             true
         }
     };
-    let result = carry_out(request, by, &mut terminal, &mut held);
+    let flown = |plant: &PlantId| is_flown(&config, plant);
+    let result = carry_out(request, by, &mut terminal, &mut held, &flown);
     drop(terminal);
     let found = result.map_err(|error| match error {
         IdentifyError::NotBegun(error) => not_begun(&error),

@@ -1,0 +1,101 @@
+//! What is accepted in a plan, and seldom meant.
+
+use fcc_core::units::FOOT_M;
+
+use crate::check::{Conditions, Leg, above_sea_level, legs};
+use crate::item::{Item, Place};
+use crate::level::Level;
+use crate::plan::{Plan, limits};
+use crate::problem::Problem;
+
+/// The range of a Cessna 172 with 40 gallons at 75 % and 8,000 ft is 440 nautical miles
+/// (172P's handbook, 1981): a leg is shorter, m.
+const LONGEST_LEG_M: f64 = 815_000.0;
+/// Latitude and longitude may be exchanged where that makes a leg longer than this, m, so
+/// many times as long.
+const EXCHANGED_M: f64 = 50_000.0;
+const EXCHANGED_TIMES: f64 = 10.0;
+
+/// What an aircraft usually keeps.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Usual {
+    /// The ground, if it is known, and how far above it items are flown, m.
+    pub ground: Option<(Level, f64)>,
+    /// The highest altitude above mean sea level, m.
+    pub ceiling_m: f64,
+}
+
+/// Items that are flown low over the ground or above the ceiling, and legs that are longer
+/// than an aircraft flies, or are so if latitude and longitude are exchanged. Take-off and
+/// landing may be low.
+pub fn unusual(plan: &Plan, conditions: &Conditions, usual: &Usual) -> Vec<Problem> {
+    let altitudes = plan.items.iter().enumerate().filter_map(|(n, item)| {
+        let altitude_m = above_sea_level(item.altitude()?, plan).ok()?;
+        let message = too_low(item, altitude_m, usual).or_else(|| too_high(altitude_m, usual))?;
+        Some(Problem::of_item(n + 1, "altitude", message))
+    });
+    let legs = legs(plan, conditions, &mut Vec::new());
+    let lengths = legs.iter().filter_map(|leg| {
+        let message = too_long(leg)?;
+        Some(Problem::of_item(leg.item, "leg", message))
+    });
+    let mut found: Vec<_> = altitudes.chain(lengths).collect();
+    found.sort_by_key(|problem| problem.item);
+    found.truncate(limits::PROBLEMS);
+    found
+}
+
+fn too_low(item: &Item, altitude_m: f64, usual: &Usual) -> Option<String> {
+    let (ground, margin_m) = usual.ground?;
+    let height_m = altitude_m - ground.m;
+    let is_flown = !matches!(item, Item::Takeoff { .. } | Item::Land { .. });
+    (is_flown && (0.0..margin_m).contains(&height_m)).then(|| {
+        format!(
+            "{height_m:.0} m above {}, {:.0} m, is lower than terrain.margin_m, {margin_m:.0} m: fly \
+             higher, or choose a smaller margin",
+            ground.name, ground.m
+        )
+    })
+}
+
+fn too_high(altitude_m: f64, usual: &Usual) -> Option<String> {
+    (altitude_m > usual.ceiling_m).then(|| {
+        format!(
+            "{altitude_m:.0} m above mean sea level ({:.0} ft) is above plan.service_ceiling_ft, \
+             {:.0} ft: fly lower, or give the ceiling of your aircraft",
+            altitude_m / FOOT_M,
+            usual.ceiling_m / FOOT_M
+        )
+    })
+}
+
+fn too_long(leg: &Leg) -> Option<String> {
+    let km = |m: f64| m / 1e3;
+    let exchanged_m = exchanged(leg.to.0).map(|place| leg.from.0.to(place).0);
+    let exchanged_m = exchanged_m.filter(|exchanged_m| {
+        leg.length_m > EXCHANGED_M && leg.length_m > EXCHANGED_TIMES * exchanged_m
+    });
+    let hours = leg.length_m / leg.airspeed_mps / 3_600.0;
+    let advice = match exchanged_m {
+        Some(exchanged_m) => format!(
+            "are latitude and longitude exchanged, here or in the place before? Otherwise it \
+             would be {:.1} km",
+            km(exchanged_m)
+        ),
+        None if leg.length_m > LONGEST_LEG_M => "check both places".to_owned(),
+        None => return None,
+    };
+    Some(format!(
+        "it is {:.0} km long, {hours:.1} h at {:.1} m/s: {advice}",
+        km(leg.length_m),
+        leg.airspeed_mps
+    ))
+}
+
+/// With latitude for longitude, if that is a place.
+fn exchanged(place: Place) -> Option<Place> {
+    (place.longitude_deg.abs() <= 90.0).then_some(Place {
+        latitude_deg: place.longitude_deg,
+        longitude_deg: place.latitude_deg,
+    })
+}
