@@ -5,9 +5,9 @@ use super::super::inertial::RawNavigation;
 use super::super::navigation::{FrozenDetector, LearnedAirframe, Navigation, Replacement};
 use super::{
     ActiveMode, Actuation, AltitudeReference, Autopilot, AutopilotConfig, BankCommand,
-    Contingencies, Degraded, Delayed, Following, GroundMotion, Jammed, KeptTrims, Measurements,
-    PilotTakeover, PlantClock, ReadingAges, Recovery, RunwayControl, Setpoints, Surfaces, Targets,
-    Time, ToldOnce, Whereabouts,
+    Contingencies, Degraded, Delayed, Engine, Following, GroundMotion, Jammed, KeptTrims,
+    Measurements, PilotTakeover, PlantClock, ReadingAges, Recovery, RunwayControl, Setpoints,
+    Surfaces, Targets, Time, ToldOnce, Whereabouts,
 };
 use crate::framework::Flags;
 
@@ -39,7 +39,7 @@ impl Autopilot {
             told_once: ToldOnce::default(),
             contingencies: Contingencies::default(),
             battery: Delayed::default(),
-            engine: Delayed::default(),
+            engine: Engine::new(),
             glides: false,
             news: None,
             told: None,

@@ -36,6 +36,7 @@ use crate::framework::Notice;
 use crate::schema;
 pub use config::{ContingencyAction, ContingencyConfig};
 pub(super) use delayed::Delayed;
+pub(super) use engine_out::Engine;
 use fence::{KeptCircle, Side};
 use terrain::TerrainWatch;
 

@@ -1,5 +1,5 @@
 //! The controls without power: the pitch holds the airspeed of the best glide, the throttle
-//! is closed, and the bank follows the way.
+//! is closed but for trying the engine, and the bank follows the way.
 
 use super::Autopilot;
 use super::runway::{CLOSES_PER_S, LOWEST_SHARE, OVER_STALL};
@@ -29,8 +29,13 @@ impl Autopilot {
             vertical.climb_rate_mps,
             vertical.pitch_rad,
         );
+        let by = if self.tries_engine(dt_s) {
+            CLOSES_PER_S
+        } else {
+            -CLOSES_PER_S
+        };
         Some(Surfaces {
-            throttle: (self.last.throttle - CLOSES_PER_S * dt_s).max(0.0),
+            throttle: (self.last.throttle + by * dt_s).clamp(0.0, 1.0),
             elevator: self.actuation.elevator(vertical.elevator),
             aileron: lateral.aileron,
             rudder: lateral.rudder,

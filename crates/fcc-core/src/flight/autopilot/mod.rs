@@ -47,7 +47,7 @@ use actuation::Actuation;
 use capture::Capture;
 pub use command::AutopilotCommand;
 pub use config::AutopilotConfig;
-use contingency::{Contingencies, Delayed};
+use contingency::{Contingencies, Delayed, Engine};
 pub use contingency::{Contingency, ContingencyAction, ContingencyConfig};
 use degraded::Degraded;
 use failsafe::KeptTrims;
@@ -139,7 +139,7 @@ pub struct Autopilot {
     contingencies: Contingencies,
     /// Whether the battery is low, and the engine out.
     battery: Delayed,
-    engine: Delayed,
+    engine: Engine,
     /// Whether the controls are those of a glide.
     glides: bool,
     /// What guidance has to tell, and as it is told, a tick later.

@@ -9,6 +9,12 @@ pub(in super::super) struct Delayed {
 }
 
 impl Delayed {
+    /// It is not on.
+    pub(super) const OFF: Self = Self {
+        is_on: false,
+        otherwise_s: 0.0,
+    };
+
     /// `dt_s` seconds pass in which it is on or not.
     pub(super) fn step(&mut self, is_on: bool, after_s: f64, dt_s: f64) {
         if is_on == self.is_on {

@@ -6,7 +6,8 @@ use core::time::Duration;
 use libm::cos;
 
 use super::super::Autopilot;
-use super::{Contingency, ContingencyAction, PERMILLE};
+use super::{Contingency, ContingencyAction, Delayed, PERMILLE};
+use crate::blocks::LowPass;
 use crate::flight::guidance::{Mode, OverGroundMode};
 use crate::flight::route::{Follower, GlideConfig, RunwayPhase, RunwayReason};
 use crate::framework::{Notice, Time};
@@ -19,19 +20,63 @@ const THROTTLE: f64 = 0.5;
 /// Without thrust the path through the air, at constant airspeed, descends by at least this
 /// share of the best glide: nothing glides better.
 const SHARE: f64 = 0.6;
+/// The power is averaged over this time, s: an engine that surges still gives some.
+const POWER_S: f64 = 4.0;
+/// What is taken for the power before it was averaged: level flight, and after an engine was
+/// out a glide, sin γ.
+const LEVEL: f64 = 0.0;
+const GLIDE: f64 = -0.2;
+/// In a glide because of its thrust the engine is tried every so often, and for so long, s: the
+/// throttle opens within 3 s, thrust follows within 2 s, and `engine_back_after_s` is 5 s.
+const TRIED_EVERY_S: f64 = 45.0;
+const TRIED_FOR_S: f64 = 14.0;
 /// Lower than this an engine that runs again changes nothing, m.
 const LANDS_M: f64 = 30.0;
 
-/// Whether the path of constant airspeed, (T - D)/W = sin γ + V̇/g (Lambregts 1983), is that
-/// of an aircraft without thrust; γ is the angle of the path through the air, so that rising
-/// and sinking air is none.
-fn is_without_thrust(path_rad: f64, acceleration_mps2: f64, glide_ratio: f64) -> bool {
-    libm::sin(path_rad) + acceleration_mps2 / GRAVITY_MPS2 < -SHARE / glide_ratio
+/// What is known of the engine.
+#[derive(Clone, Debug)]
+pub(in super::super) struct Engine {
+    out: Delayed,
+    power: LowPass,
+    /// In a glide the time since it was tried, s.
+    glides_s: f64,
+}
+
+impl Engine {
+    pub(in super::super) const fn new() -> Self {
+        Self {
+            out: Delayed::OFF,
+            power: LowPass::new(POWER_S),
+            glides_s: 0.0,
+        }
+    }
+
+    /// Whether the throttle gives no thrust, by the power over weight and airspeed.
+    fn gives_no_thrust(&mut self, power: f64, glide_ratio: f64, dt_s: f64) -> bool {
+        self.power.step(power, dt_s) < -SHARE / glide_ratio
+    }
+
+    /// The throttle gives little in any case.
+    fn is_throttled(&mut self) {
+        self.power.reset(if self.out.is_on { GLIDE } else { LEVEL });
+    }
+
+    /// Whether the engine is tried in a glide, after `dt_s` more of it.
+    fn is_tried(&mut self, dt_s: f64) -> bool {
+        self.glides_s = (self.glides_s + dt_s) % TRIED_EVERY_S;
+        self.glides_s > TRIED_EVERY_S - TRIED_FOR_S
+    }
+}
+
+/// The power over weight and airspeed at constant airspeed, (T - D)/W = sin γ + V̇/g (Lambregts
+/// 1983); γ is the angle of the path through the air, so that rising and sinking air is none.
+fn specific_power(path_rad: f64, acceleration_mps2: f64) -> f64 {
+    libm::sin(path_rad) + acceleration_mps2 / GRAVITY_MPS2
 }
 
 impl Autopilot {
     /// Whether the engine is out; none if it is not known.
-    fn engine_is_out(&self, now: Time) -> Option<bool> {
+    fn engine_is_out(&mut self, now: Time, dt_s: f64) -> Option<bool> {
         let config = &self.config.contingency;
         let speed_radps = self.accepted.engine_speed_radps.fresh(now, READING_AGE);
         if let (Some(below_radps), Some(speed_radps)) = (config.engine_below_radps, speed_radps) {
@@ -39,34 +84,32 @@ impl Autopilot {
         }
         let is_flown = self.guidance.mode() != Mode::None && !self.is_on_runway();
         if !config.engine_by_thrust || !is_flown || self.last.throttle < THROTTLE {
+            self.engine.is_throttled();
             return None;
         }
         let estimate = self.navigation.estimate();
         let path_rad = estimate.pitch_rad - estimate.angle_of_attack_rad * cos(estimate.roll_rad);
-        let acceleration_mps2 = estimate.acceleration_mps2;
-        Some(is_without_thrust(
-            path_rad,
-            acceleration_mps2,
-            config.glide_ratio,
-        ))
+        let power = specific_power(path_rad, estimate.acceleration_mps2);
+        let engine = &mut self.engine;
+        Some(engine.gives_no_thrust(power, config.glide_ratio, dt_s))
     }
 
     /// Follows the engine, engaged or not. Where nothing is known it stays what it was.
     pub(in super::super) fn follow_engine(&mut self, now: Time, dt_s: f64) {
-        if let Some(is_out) = self.engine_is_out(now) {
+        if let Some(is_out) = self.engine_is_out(now, dt_s) {
             let config = &self.config.contingency;
             let after_s = if is_out {
                 config.engine_after_s
             } else {
                 config.engine_back_after_s
             };
-            self.engine.step(is_out, after_s, dt_s);
+            self.engine.out.step(is_out, after_s, dt_s);
         }
     }
 
     /// Acts on an engine that is out, once, and on one that runs again.
     pub(super) fn meet_engine_out(&mut self) {
-        if !self.engine.is_on {
+        if !self.engine.out.is_on {
             let glides = self.contingencies.active == Contingency::EngineOut;
             if glides && self.contingencies.is_engine_met {
                 self.leave_glide();
@@ -85,7 +128,14 @@ impl Autopilot {
             _ => {}
         }
         self.contingencies.is_engine_met = true;
+        self.engine.glides_s = 0.0;
         self.begin_contingency(Contingency::EngineOut, self.config.contingency.engine);
+    }
+
+    /// Whether a glide opens the throttle, because the engine may give thrust again.
+    pub(in super::super) fn tries_engine(&mut self, dt_s: f64) -> bool {
+        let is_by_thrust = self.config.contingency.engine_by_thrust && self.engine.out.is_on;
+        is_by_thrust && self.engine.is_tried(dt_s)
     }
 
     /// The engine runs again: a plan is continued; what else was flown is not known, and
@@ -135,7 +185,7 @@ impl Autopilot {
 
     /// Glides on after a restart, until the engine runs.
     pub(in super::super) fn resume_glide(&mut self) {
-        self.engine.begin();
+        self.engine.out.begin();
         self.contingencies.is_engine_met = true;
         self.begin_contingency(Contingency::EngineOut, ContingencyAction::Glide);
     }
@@ -145,16 +195,47 @@ impl Autopilot {
 mod tests {
     use super::*;
 
+    const TICK_S: f64 = 0.025;
+    const RATIO: f64 = 9.0;
+
+    /// Whether it is seen in `seconds` of a power that depends on the time, s.
+    fn is_seen(seconds: f64, power: impl Fn(f64) -> f64) -> bool {
+        let mut engine = Engine::new();
+        engine.is_throttled();
+        let ticks = (seconds / TICK_S) as u32;
+        for n in 0..ticks {
+            let is_out = engine.gives_no_thrust(power(f64::from(n) * TICK_S), RATIO, TICK_S);
+            engine.out.step(is_out, 2.0, TICK_S);
+        }
+        engine.out.is_on
+    }
+
     /// A Cessna 172 at 100 kt: level with its cruise power; without, 8 to 1 by JSBSim's
     /// model, level and slowing down by 1.2 m/s² at first.
     #[test]
     fn thrust_is_missing_in_a_glide_and_while_slowing_down() {
-        assert!(!is_without_thrust(0.0, 0.0, 9.0));
-        assert!(is_without_thrust(-0.124, 0.0, 9.0));
-        assert!(is_without_thrust(0.0, -1.2, 9.0));
+        let seen = |path_rad, mps2| is_seen(20.0, |_| specific_power(path_rad, mps2));
+        assert!(!seen(0.0, 0.0));
+        assert!(seen(-0.124, 0.0));
+        assert!(seen(0.0, -1.2));
         // A descent of 3° with power, in which the airspeed is constant.
-        assert!(!is_without_thrust(-0.052, 0.0, 9.0));
+        assert!(!seen(-0.052, 0.0));
         // A dive that gains airspeed.
-        assert!(!is_without_thrust(-0.15, 1.0, 9.0));
+        assert!(!seen(-0.15, 1.0));
+    }
+
+    /// Thrust of a tenth for 3 s and of all for 3 s: half of the time it is a glide.
+    #[test]
+    fn an_engine_that_surges_is_not_out() {
+        let power = |time_s: f64| if time_s % 6.0 < 3.0 { -0.12 } else { 0.02 };
+        assert!(!is_seen(120.0, power));
+    }
+
+    #[test]
+    fn in_a_glide_the_engine_is_tried_now_and_then() {
+        let mut engine = Engine::new();
+        let tried = (0..3_600).filter(|_| engine.is_tried(TICK_S)).count();
+        // In 90 s.
+        assert!((1_110..=1_130).contains(&tried), "{tried}");
     }
 }
