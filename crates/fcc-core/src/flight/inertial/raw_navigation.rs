@@ -2,6 +2,7 @@
 //! of attitude, heading, rates, specific force, airspeed and altitude, in the
 //! place of sensors that measure these.
 
+mod by_field;
 mod compared;
 mod consistency;
 mod late_fixes;
@@ -45,10 +46,6 @@ use crate::framework::{Reading, Time};
 
 /// A heading less certain than this is none, rad.
 const USABLE_HEADING: f64 = 0.35;
-/// By how much longer than the delay there is no attitude after gyroscopes began to be
-/// doubted: it is found by the magnetic field.
-const SETTLES: Duration = Duration::from_millis(100);
-
 /// How attitude is computed from raw readings.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum RawNavigationMethod {
@@ -350,27 +347,6 @@ impl RawNavigation {
         {
             self.take_fix(raw.gnss.taken, &raw.gnss.value);
         }
-    }
-
-    /// Takes how the field turns for rates while the gyroscopes are doubted.
-    fn turn_by_field(&mut self, taken: Time, field: [f64; 3]) {
-        let is_doubted = self.doubts_gyroscopes();
-        if is_doubted == self.by_field_since.is_never() {
-            self.by_field_since = if is_doubted { taken } else { Time::NEVER };
-            if let Method::Kalman(navigation) = &mut self.method {
-                navigation.turn_by_field(is_doubted);
-            }
-        }
-        let rates = self.field_rates.step(taken, field, &self.solution);
-        if let Some(rates) = rates.filter(|_| is_doubted) {
-            self.take(taken, Observation::Rates(rates));
-        }
-    }
-
-    /// Whether an attitude at a time is one by the field, and not of the moment in
-    /// which it is found.
-    fn settled_by_field(&self, at: Time) -> bool {
-        at.since(self.by_field_since) > self.config.delay + SETTLES
     }
 
     /// When the gyroscopes that are used, or without them the accelerometers, were last
