@@ -1,4 +1,4 @@
-"""Ailerons or an elevator that jam, and a rudder that is reversed, with JSBSim: what is left flies."""
+"""Ailerons or an elevator that jam, and a reversed rudder, with JSBSim: what is left flies."""
 
 from __future__ import annotations
 
