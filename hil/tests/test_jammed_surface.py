@@ -51,13 +51,13 @@ class JammingRig(LockstepRig):
 
     def _write(self, controls: Controls) -> None:
         self.commanded = controls
-        fails = self.jams is not None and self.plant.time_s >= JAMS_S
-        if fails and self.jams == "rudder":
+        jams = self.jams if self.plant.time_s >= JAMS_S else None
+        if jams == "rudder":
             controls = replace(controls, rudder=-controls.rudder)
-        elif fails:
+        elif jams is not None:
             if self.at is None:
-                self.at = getattr(controls, self.jams)
-            controls = replace(controls, **{self.jams: self.at})
+                self.at = getattr(controls, jams)
+            controls = replace(controls, **{jams: self.at})
         super()._write(controls)
 
     def _stand(self) -> Controls:
