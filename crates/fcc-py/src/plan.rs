@@ -98,7 +98,7 @@ impl PyPlan {
         })?;
         let text = fcc_plan::write(&self.plan, format).map_err(|problems| invalid(&problems))?;
         let others: [&Path; 0] = [];
-        let mut file = fcc_record::create_output(&path, &others)?;
+        let mut file = fcc_record::create_plan(&path, &others)?;
         Ok(file.write_all(text.as_bytes())?)
     }
 

@@ -1,7 +1,7 @@
 //! Where recordings are written: a file system, or a failing disk in a test.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Read as _, Write};
+use std::io::{self, Write};
 use std::os::unix::fs::{MetadataExt as _, OpenOptionsExt as _};
 use std::path::Path;
 
@@ -123,40 +123,6 @@ pub fn unless_left(written: io::Result<()>) -> io::Result<()> {
     }
 }
 
-/// Creates a file, or replaces its content, unless it is one of the files that
-/// are read, under whatever name, or a recording.
-///
-/// # Errors
-/// The system's error, or that it is one of `inputs`, or a recording.
-pub fn create_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> io::Result<File> {
-    let mut inputs = inputs.iter().map(AsRef::as_ref);
-    if let Some(input) = inputs.find(|input| is_same_file(path, input)) {
-        let input = input.display();
-        return Err(io::Error::new(
-            io::ErrorKind::InvalidInput,
-            format!("it is {input}, which this command uses, too: choose another name"),
-        ));
-    }
-    if is_recording(path) {
-        return Err(io::Error::new(
-            io::ErrorKind::AlreadyExists,
-            "it is a recording, which is not replaced: choose another name",
-        ));
-    }
-    File::create(path)
-}
-
-/// Whether a file begins as a recording does.
-fn is_recording(path: &Path) -> bool {
-    // Opening a pipe would wait for its other end.
-    let is_file = fs::metadata(path).is_ok_and(|found| found.is_file());
-    let mut begin = [0; mcap::MAGIC.len()];
-    is_file
-        && File::open(path)
-            .and_then(|mut file| file.read_exact(&mut begin))
-            .is_ok_and(|()| begin == mcap::MAGIC)
-}
-
 /// Whether both names lead to one file, also over a link.
 pub fn is_same_file(one: &Path, other: &Path) -> bool {
     let identity = |path| fs::metadata(path).map(|file| (file.dev(), file.ino()));
@@ -180,23 +146,4 @@ pub(super) fn is_being_written(path: &Path) -> bool {
 /// opened, such as a link, is none of this program's files.
 pub(super) fn may_be_deleted(path: &Path) -> bool {
     open_found(path).is_ok_and(|file| !is_locked(&file))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_output_replaces_no_recording() {
-        let folder = tempfile::tempdir().unwrap();
-        let (recording, page) = (folder.path().join("a.mcap"), folder.path().join("page"));
-        fs::write(&recording, [mcap::MAGIC, &[0; 100]].concat()).unwrap();
-        fs::write(&page, "an earlier page").unwrap();
-        let inputs: [&Path; 0] = [];
-        let refused = create_output(&recording, &inputs).unwrap_err().to_string();
-        assert!(refused.contains("choose another name"), "{refused}");
-        assert_eq!(fs::metadata(&recording).unwrap().len(), 108);
-        create_output(&page, &inputs).unwrap();
-        assert_eq!(fs::metadata(&page).unwrap().len(), 0);
-    }
 }

@@ -220,6 +220,6 @@ fn write(out: &Path, plan: &Path, text: &str) -> Result<(), Failure> {
             out.display()
         ))
     };
-    let mut file = fcc_record::create_output(out, &[plan]).map_err(failed)?;
+    let mut file = fcc_record::create_plan(out, &[plan]).map_err(failed)?;
     std::io::Write::write_all(&mut file, text.as_bytes()).map_err(failed)
 }

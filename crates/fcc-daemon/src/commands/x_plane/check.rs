@@ -78,10 +78,9 @@ impl ReportFiles {
     /// what is there.
     fn open(&self) -> Result<(), Failure> {
         for file in [&self.markdown, &self.json] {
-            OpenOptions::new()
-                .append(true)
-                .create(true)
-                .open(file)
+            let open = |()| OpenOptions::new().append(true).create(true).open(file);
+            fcc_record::may_be_output(file)
+                .and_then(open)
                 .map_err(|error| {
                     Failure::new(format_args!(
                         "the report cannot be written: {}: {error}",

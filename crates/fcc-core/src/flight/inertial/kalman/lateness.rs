@@ -29,6 +29,12 @@ const BESIDE_M: f64 = 6.0;
 /// Fixes of this time, s, are late by the same, s.
 const CONFIRMED_S: f64 = 0.8;
 const SAME_S: f64 = 0.15;
+/// Velocities that are rather of now than of the time of late fixes, by this log-likelihood
+/// ratio, show that it was the position alone that jumped; one fix counts by the other at most.
+/// Then no fix is late for a time, s.
+const OF_NOW: f64 = 10.0;
+const ONE_FIX: f64 = 5.0;
+const NOT_LATE_S: f64 = 60.0;
 /// What was seen longer ago, s, does not count.
 const FORGOTTEN_S: f64 = 1.5;
 
@@ -52,6 +58,9 @@ pub(super) struct Lateness {
     late_s: f64,
     /// By how much those refused seem to be, from when to when.
     seems: Option<(f64, Time, Time)>,
+    /// How much rather velocities are of now, and when that was sure.
+    of_now: f64,
+    sure: Time,
 }
 
 impl Default for Lateness {
@@ -62,6 +71,8 @@ impl Default for Lateness {
             corrected: (Vector3::zeros(), Vector3::zeros()),
             late_s: 0.0,
             seems: None,
+            of_now: 0.0,
+            sure: Time::NEVER,
         }
     }
 }
@@ -70,6 +81,12 @@ impl Lateness {
     /// By how much fixes are later than they say, s; 0 if they are not.
     pub(super) const fn late_s(&self) -> f64 {
         self.late_s
+    }
+
+    /// By how much the variance of a fix is larger: the present error is not that of its time,
+    /// and what is corrected shows only after this.
+    pub(super) fn excess(&self) -> f64 {
+        1.0 + self.late_s * self.late_s
     }
 
     /// Keeps the state of a time, unless the last one that was kept is as good.
@@ -163,7 +180,9 @@ impl Lateness {
 
     /// Takes a position that was refused because it is far off.
     pub(super) fn refused(&mut self, motion: &Motion, taken: Time, place: GeodeticPosition) {
-        let Some(late_s) = self.on_path(motion, taken, place) else {
+        let is_not_late = taken.since(self.sure).as_secs_f64() < NOT_LATE_S;
+        let late_s = self.on_path(motion, taken, place);
+        let Some(late_s) = late_s.filter(|late_s| *late_s <= LEAST_S || !is_not_late) else {
             self.seems = None;
             return;
         };
@@ -180,7 +199,20 @@ impl Lateness {
         if taken.since(since).as_secs_f64() >= CONFIRMED_S {
             self.late_s = if late_s > LEAST_S { late_s } else { 0.0 };
             self.seems = None;
+            self.of_now = 0.0;
         }
+    }
+
+    /// Takes by how much farther a velocity is from that of the time of late fixes than from
+    /// that of now, as squares of numbers of standard deviations. Whether it is of now.
+    pub(super) fn compare(&mut self, taken: Time, farther: f64) -> bool {
+        self.of_now = (self.of_now + (0.5 * farther).clamp(-ONE_FIX, ONE_FIX)).max(0.0);
+        if self.of_now > OF_NOW {
+            self.sure = taken;
+            self.late_s = 0.0;
+            self.of_now = 0.0;
+        }
+        self.late_s == 0.0
     }
 
     /// Takes a position that was believed.

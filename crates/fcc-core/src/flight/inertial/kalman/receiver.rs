@@ -41,12 +41,13 @@ impl Filter {
             |[difference, _]| difference,
         );
         let since_s = self.tracks.position.since_tried_s(taken);
-        let measurement = on(
+        let mut measurement = on(
             POSITION,
             difference,
             [horizontal, horizontal, vertical],
             since_s,
         );
+        measurement.excess *= self.lateness.excess();
         if self.fuse(
             ObservationKind::Position,
             taken,
@@ -101,19 +102,20 @@ impl Filter {
         if self.lateness.is_suspected(taken) {
             return;
         }
-        let here = self.motion.place;
-        let difference = velocity
-            - self.when_late(taken, here).map_or_else(
-                || self.motion.velocity + self.acceleration * after_s,
-                |[_, velocity]| velocity,
-            );
         let since_s = self.tracks.velocity.since_tried_s(taken);
-        let measurement = on(
-            VELOCITY,
-            difference,
-            [horizontal, horizontal, vertical],
-            since_s,
-        );
+        let noises = [horizontal, horizontal, vertical];
+        let now = velocity - self.motion.velocity - self.acceleration * after_s;
+        let mut difference = now;
+        if let Some([_, then]) = self.when_late(taken, self.motion.place) {
+            difference = velocity - then;
+            let [then, now] =
+                [difference, now].map(|one| self.distance(&on(VELOCITY, one, noises, since_s)));
+            if self.lateness.late_s() > 0.0 && self.lateness.compare(taken, then - now) {
+                difference = velocity - self.motion.velocity - self.acceleration * after_s;
+            }
+        }
+        let mut measurement = on(VELOCITY, difference, noises, since_s);
+        measurement.excess *= self.lateness.excess();
         let has_heading = self.sigma(ATTITUDE + 2) < UNKNOWN_HEADING;
         let is_first = self.tracks.velocity.used.is_never()
             && (self.tracks.airspeed.used.is_never() || !has_heading);
@@ -136,7 +138,6 @@ impl Filter {
         }
         // What went in one direction before is an error of this filter, and not of a receiver.
         let leads = !self.is_compared
-            && self.lateness.late_s() == 0.0
             && self.sigma(ATTITUDE + 2) < p::TREND_HEADING
             && self.trend.leads_to(difference.xy());
         let needed_s = if leads {

@@ -1,0 +1,130 @@
+//! Files that commands write: what a person has made, or a flight has, is not replaced by them.
+
+use std::fs::{self, File};
+use std::io::{self, Read as _};
+use std::path::Path;
+
+use super::disk::is_same_file;
+
+/// What tells a plan is in its first bytes.
+const BEGIN: u64 = 4_096;
+
+/// Creates a file, or replaces its content, unless it is one of the files that
+/// are read, under whatever name, a recording, a flight plan or a configuration.
+///
+/// # Errors
+/// The system's error, or what it is.
+pub fn create_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> io::Result<File> {
+    keeps(path, inputs, Kept::of(path))?;
+    File::create(path)
+}
+
+/// The same for a plan, which another one replaces.
+///
+/// # Errors
+/// As [`create_output`].
+pub fn create_plan<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> io::Result<File> {
+    keeps(
+        path,
+        inputs,
+        Kept::of(path).filter(|kept| *kept != Kept::Plan),
+    )?;
+    File::create(path)
+}
+
+/// Whether a file may be created or replaced as an output.
+///
+/// # Errors
+/// What it is, if it may not.
+pub fn may_be_output(path: &Path) -> io::Result<()> {
+    let inputs: [&Path; 0] = [];
+    keeps(path, &inputs, Kept::of(path))
+}
+
+fn keeps<P: AsRef<Path>>(path: &Path, inputs: &[P], kept: Option<Kept>) -> io::Result<()> {
+    let mut inputs = inputs.iter().map(AsRef::as_ref);
+    if let Some(input) = inputs.find(|input| is_same_file(path, input)) {
+        let input = input.display();
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            format!("it is {input}, which this command uses, too: choose another name"),
+        ));
+    }
+    let what = match kept {
+        None => return Ok(()),
+        Some(Kept::Recording) => "recording",
+        Some(Kept::Plan) => "flight plan",
+        Some(Kept::Configuration) => "configuration",
+    };
+    Err(io::Error::new(
+        io::ErrorKind::AlreadyExists,
+        format!("it is a {what}, which is not replaced: choose another name"),
+    ))
+}
+
+/// What is not replaced.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Kept {
+    Recording,
+    Plan,
+    Configuration,
+}
+
+impl Kept {
+    fn of(path: &Path) -> Option<Self> {
+        // Opening a pipe would wait for its other end.
+        if !fs::metadata(path).is_ok_and(|found| found.is_file()) {
+            return None;
+        }
+        if path
+            .extension()
+            .is_some_and(|extension| extension == "toml")
+        {
+            return Some(Self::Configuration);
+        }
+        let mut begin = Vec::new();
+        File::open(path)
+            .and_then(|file| file.take(BEGIN).read_to_end(&mut begin))
+            .ok()?;
+        let has = |word: &[u8]| begin.windows(word.len()).any(|here| here == word);
+        if begin.starts_with(mcap::MAGIC) {
+            Some(Self::Recording)
+        } else if begin.starts_with(b"QGC WPL") || (has(b"\"fileType\"") && has(b"\"Plan\"")) {
+            Some(Self::Plan)
+        } else {
+            None
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The first bytes of a recording (the specification of MCAP), of both formats of plans
+    /// (QGroundControl's), and a configuration.
+    #[test]
+    fn an_output_replaces_nothing_that_was_made() {
+        let folder = tempfile::tempdir().unwrap();
+        let inputs: [&Path; 0] = [];
+        let made: [(&str, &[u8], &str); 4] = [
+            ("a.mcap", b"\x89MCAP0\r\n\x01\0\0", "a recording"),
+            ("a.waypoints", b"QGC WPL 110\n", "a flight plan"),
+            ("a.json", b"{\n  \"fileType\": \"Plan\",\n", "a flight plan"),
+            ("a.toml", b"rate_hz = 40.0\n", "a configuration"),
+        ];
+        for (name, content, what) in made {
+            let path = folder.path().join(name);
+            fs::write(&path, content).unwrap();
+            let refused = create_output(&path, &inputs).unwrap_err().to_string();
+            assert!(refused.contains(what), "{name}: {refused}");
+            assert_eq!(fs::read(&path).unwrap(), content);
+            assert_eq!(create_plan(&path, &inputs).is_ok(), what == "a flight plan");
+        }
+        let page = folder.path().join("page");
+        fs::write(&page, "an earlier page").unwrap();
+        may_be_output(&page).unwrap();
+        create_output(&page, &inputs).unwrap();
+        assert_eq!(fs::metadata(&page).unwrap().len(), 0);
+    }
+}
