@@ -1,7 +1,7 @@
 //! `fccd x-plane check`: the twenty steps against a running X-Plane.
 
 use std::fmt::Write as _;
-use std::fs::{self, OpenOptions};
+use std::fs;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
@@ -26,12 +26,12 @@ pub(super) fn check(args: &XPlaneCheckArgs) -> Result<Exit, Failure> {
         ));
     }
     let request = Request {
+        report: vec![files.markdown.clone(), files.json.clone()],
         only: args.only.clone(),
         is_unattended: args.yes,
         is_short: args.quick,
         ..request
     };
-    files.open()?;
     let mut terminal = Terminal::open(!args.yes)?;
     let result = carry_out(request, &mut terminal, &|plant| is_flown(&config, plant));
     drop(terminal);
@@ -72,24 +72,6 @@ impl ReportFiles {
             return wrong("the report would overwrite the configuration");
         }
         Ok(files)
-    }
-
-    /// Whether both can be written, before the steps are done. Leaves as it is
-    /// what is there.
-    fn open(&self) -> Result<(), Failure> {
-        for file in [&self.markdown, &self.json] {
-            OpenOptions::new()
-                .append(true)
-                .create(true)
-                .open(file)
-                .map_err(|error| {
-                    Failure::new(format_args!(
-                        "the report cannot be written: {}: {error}",
-                        file.display()
-                    ))
-                })?;
-        }
-        Ok(())
     }
 }
 
