@@ -153,7 +153,11 @@ impl Config {
         if !problems.is_empty() {
             return Err(invalid(problems));
         }
-        self.prepare(&plan, item, uploaded_s).map_err(invalid)
+        let mut prepared = self.prepare(&plan, item, uploaded_s).map_err(invalid)?;
+        for remark in &mut prepared.remarks {
+            *remark = format!("{}: {remark}", file.display());
+        }
+        Ok(prepared)
     }
 
     /// A plan that was prepared before, from its content.
