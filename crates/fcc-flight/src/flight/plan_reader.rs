@@ -153,6 +153,12 @@ mod tests {
             why.ends_with("item to begin with: 2: there is no such item: give 1 to 1"),
             "{why}"
         );
+        std::fs::write(&file, "QGC WPL 110\n0 0 0 16 0 0 0 0 47 8 900 1\n").unwrap();
+        let why = refused(1);
+        assert!(
+            why.ends_with("bad.waypoints: items: there are none: give at least one"),
+            "{why}"
+        );
         let missing = Config::default().prepare_plan(&folder.path().join("no.plan"), 1, 0);
         assert!(refusal(&missing.unwrap_err()).contains("no.plan: cannot be read"));
     }
