@@ -280,6 +280,18 @@ fn the_plan_of_a_configuration_is_checked_with_it() {
     }
 }
 
+#[test]
+fn a_plan_in_the_place_of_a_configuration_is_said_once() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.waypoints"), legs(45.0, 300.0)).unwrap();
+    ended(folder.path(), &["plan", "convert", "a.waypoints", "a.plan"]);
+    for plan in ["a.waypoints", "a.plan"] {
+        let (code, said) = ended(folder.path(), &["check", plan]);
+        let words = "this is a flight plan: give it as [plan] file, or with --plan";
+        assert_eq!((code, said.trim()), (Some(2), &*format!("{plan}: {words}")));
+    }
+}
+
 /// As of a configuration (`fccd --help`).
 #[test]
 fn a_plan_that_cannot_be_read_has_the_exit_code_of_a_wrong_one() {
