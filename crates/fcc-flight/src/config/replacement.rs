@@ -154,11 +154,7 @@ impl Config {
         if !problems.is_empty() {
             return Err(invalid(problems));
         }
-        let mut prepared = self.prepare(&plan, item, uploaded_s).map_err(invalid)?;
-        for remark in &mut prepared.remarks {
-            *remark = format!("{}: {remark}", file.display());
-        }
-        Ok(prepared)
+        self.prepare(&plan, item, uploaded_s).map_err(invalid)
     }
 
     /// A plan that was prepared before, from its content.

@@ -52,7 +52,10 @@ impl PlanReader {
         let work = move || {
             let now = SystemTime::now().duration_since(UNIX_EPOCH);
             let uploaded_s = now.map_or(0, |since| since.as_secs());
-            let prepared = config.prepare_plan(&file, item, uploaded_s);
+            let mut prepared = config.prepare_plan(&file, item, uploaded_s);
+            for remark in prepared.iter_mut().flat_map(|plan| &mut plan.remarks) {
+                *remark = format!("{}: {remark}", file.display());
+            }
             let _ = done.send(prepared.map_err(|error| refusal(&error)));
         };
         let thread = thread::Builder::new()
