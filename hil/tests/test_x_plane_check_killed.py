@@ -99,6 +99,7 @@ def test_nothing_is_deflected_or_checked_that_another_daemon_flies(
             )
             assert "another fccd flies this X-Plane: end it first" in found.stderr
             assert found.returncode == TAKEN
+            assert not list(tmp_path.glob("x-plane-check.*"))
             assert are_set(simulator, 1.0)
             assert "engaged -> " not in daemon.log
 

@@ -90,6 +90,24 @@ pub fn read(text: &str) -> Result<Plan, Vec<Problem>> {
     }
 }
 
+/// Whether a text is meant as a plan: the first line of `QGC WPL` in any version, or the
+/// `fileType` of QGroundControl's.
+pub fn is_plan(text: &str) -> bool {
+    match Format::of_text(text) {
+        Format::QgcWpl => text
+            .trim_start_matches('\u{feff}')
+            .trim_start()
+            .starts_with("QGC WPL"),
+        Format::QgcPlan => {
+            let is_type = |rest: &str| {
+                rest.trim_start_matches([':', ' ', '\t'])
+                    .starts_with("\"Plan\"")
+            };
+            text.split("\"fileType\"").skip(1).any(is_type)
+        }
+    }
+}
+
 /// Reads a plan from a file of either format.
 ///
 /// # Errors

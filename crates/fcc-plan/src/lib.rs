@@ -35,7 +35,7 @@ mod wpl;
 
 pub use check::{Conditions, check, landing_elevation_m};
 pub use duration::longest_s;
-pub use file::{FileError, Format, read, read_file, write};
+pub use file::{FileError, Format, is_plan, read, read_file, write};
 pub use ground::{resolve, terrain_problems};
 pub use item::{Altitude, AltitudeDatum, Item, Loiter, LoiterEnd, Place, Speed};
 pub use level::Level;

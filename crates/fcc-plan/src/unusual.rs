@@ -15,6 +15,8 @@ const LONGEST_LEG_M: f64 = 815_000.0;
 /// many times as long.
 const EXCHANGED_M: f64 = 50_000.0;
 const EXCHANGED_TIMES: f64 = 10.0;
+/// A difference of altitudes that is no more than rounding, m.
+const SAME: f64 = 0.001;
 
 /// What an aircraft usually keeps.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -49,9 +51,11 @@ fn too_low(item: &Item, altitude_m: f64, usual: &Usual) -> Option<String> {
     let (ground, margin_m) = usual.ground?;
     let height_m = altitude_m - ground.m;
     let is_flown = !matches!(item, Item::Takeoff { .. } | Item::Land { .. });
-    (is_flown && (0.0..margin_m).contains(&height_m)).then(|| {
+    let is_low = height_m >= 0.0 && height_m < margin_m - SAME;
+    (is_flown && is_low).then(|| {
+        let [height, margin] = apart(height_m, margin_m);
         format!(
-            "{height_m:.0} m above {}, {:.0} m, is lower than terrain.margin_m, {margin_m:.0} m: fly \
+            "{height} m above {}, {:.0} m, is lower than terrain.margin_m, {margin} m: fly \
              higher, or choose a smaller margin",
             ground.name, ground.m
         )
@@ -59,14 +63,20 @@ fn too_low(item: &Item, altitude_m: f64, usual: &Usual) -> Option<String> {
 }
 
 fn too_high(altitude_m: f64, usual: &Usual) -> Option<String> {
-    (altitude_m > usual.ceiling_m).then(|| {
+    (altitude_m > usual.ceiling_m + SAME).then(|| {
+        let [altitude, ceiling] = apart(altitude_m / FOOT_M, usual.ceiling_m / FOOT_M);
         format!(
-            "{altitude_m:.0} m above mean sea level ({:.0} ft) is above plan.service_ceiling_ft, \
-             {:.0} ft: fly lower, or give the ceiling of your aircraft",
-            altitude_m / FOOT_M,
-            usual.ceiling_m / FOOT_M
+            "{altitude_m:.0} m above mean sea level ({altitude} ft) is above \
+             plan.service_ceiling_ft, {ceiling} ft: fly lower, or give the ceiling of your aircraft"
         )
     })
+}
+
+/// Two numbers that differ by more than [`SAME`], with as few digits as show that.
+fn apart(one: f64, other: f64) -> [String; 2] {
+    let texts = (0..=3).map(|digits| [one, other].map(|number| format!("{number:.digits$}")));
+    let mut texts = texts.skip_while(|[one, other]| one == other);
+    texts.next().unwrap_or_default()
 }
 
 fn too_long(leg: &Leg) -> Option<String> {
@@ -79,8 +89,12 @@ fn too_long(leg: &Leg) -> Option<String> {
     let advice = match exchanged_m {
         Some(exchanged_m) => format!(
             "are latitude and longitude exchanged, here or in the place before? Otherwise it \
-             would be {:.1} km",
-            km(exchanged_m)
+             would be {}",
+            if exchanged_m < 1e3 {
+                format!("{exchanged_m:.0} m")
+            } else {
+                format!("{:.1} km", km(exchanged_m))
+            }
         ),
         None if leg.length_m > LONGEST_LEG_M => "check both places".to_owned(),
         None => return None,

@@ -46,8 +46,11 @@ pub struct QuantityDeviation {
     /// Time of the largest difference, s after the first tick; `None` if there
     /// is none.
     pub largest_at_s: Option<f64>,
-    /// Root of the mean square of the difference over all compared ticks.
+    /// Root of the mean square of the difference over all compared ticks in which both are
+    /// numbers; NaN if there is none.
     pub rms: f64,
+    #[serde(skip)]
+    numbers: u64,
     #[serde(skip)]
     sum_of_squares: f64,
     #[serde(skip)]
@@ -64,7 +67,8 @@ impl Deviation {
             differing: 0,
             largest: 0.0,
             largest_at_s: None,
-            rms: 0.0,
+            rms: f64::NAN,
+            numbers: 0,
             sum_of_squares: 0.0,
             profile: Profile::default(),
         });
@@ -91,8 +95,9 @@ impl Deviation {
         self.only_other += u64::from(!recorded.sent && other.sent);
         for (quantity, deviation) in self.compares.iter().zip(&mut self.quantities) {
             if both {
-                let difference = quantity.difference(&self.tick);
-                deviation.take(difference, at_s, self.compared);
+                let is_in_one = quantity.is_in_one(&self.tick);
+                deviation.differing += u64::from(is_in_one);
+                deviation.take(quantity.difference(&self.tick), at_s);
             } else {
                 deviation.profile.push(0.0);
             }
@@ -118,13 +123,17 @@ impl Deviation {
             let at = quantity
                 .largest_at_s
                 .map_or(String::new(), |at_s| format!("{at_s:.2} s"));
+            let [rms, largest] = if quantity.numbers == 0 {
+                ["-".to_owned(), "-".to_owned()]
+            } else {
+                let (rms, largest) = (quantity.rms, quantity.largest);
+                [format!("{rms:.5}"), format!("{largest:+.5}")]
+            };
             let _ = write!(
                 text,
-                "\n{:width$} {:>8} {:>12.5} {:>+12.5} {:7} {at:>9}  {}",
+                "\n{:width$} {:>8} {rms:>12} {largest:>12} {:7} {at:>9}  {}",
                 quantity.name,
                 quantity.differing,
-                quantity.rms,
-                quantity.largest,
                 quantity.unit,
                 quantity.profile.line(),
             );
@@ -142,7 +151,12 @@ impl Deviation {
 }
 
 impl QuantityDeviation {
-    fn take(&mut self, difference: f64, at_s: f64, compared: u64) {
+    /// Takes the next tick's difference; NaN where one is no number.
+    fn take(&mut self, difference: f64, at_s: f64) {
+        if difference.is_nan() {
+            self.profile.push(0.0);
+            return;
+        }
         let size = difference.abs();
         if size > 0.0 {
             self.differing += 1;
@@ -152,7 +166,8 @@ impl QuantityDeviation {
             self.largest_at_s = Some(at_s);
         }
         self.sum_of_squares += difference * difference;
-        self.rms = (self.sum_of_squares / compared as f64).sqrt();
+        self.numbers += 1;
+        self.rms = (self.sum_of_squares / self.numbers as f64).sqrt();
         self.profile.push(size);
     }
 }

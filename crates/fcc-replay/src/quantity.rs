@@ -66,6 +66,11 @@ impl Quantity {
         difference * self.scale
     }
 
+    /// Whether only one of the records has a number.
+    pub(crate) fn is_in_one(&self, tick: &TickPair) -> bool {
+        self.number(&tick.recorded).is_nan() != self.number(&tick.other).is_nan()
+    }
+
     fn number(&self, record: &Leaves) -> f64 {
         match record.as_slice().get(self.index).copied() {
             Some(Value::Number(number)) => number,

@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 
 use comfy_table::Table;
-use fcc_core::framework::RecordOf;
+use fcc_core::framework::{EventOf, RecordOf};
 use fcc_telemetry::Telemetry;
 use serde::Serialize;
 
@@ -30,6 +30,9 @@ pub trait Reported: Telemetry + Sized {
 
     /// Takes a record for the additional results; times ascend.
     fn take(_addition: &mut Self::Addition, _record: &RecordOf<Self>, _time_s: f64) {}
+
+    /// Takes an event for the additional results.
+    fn take_event(_addition: &mut Self::Addition, _event: &EventOf<Self>) {}
 
     /// The plots of values over time: by default one per reading, with the
     /// estimates and set points of the same name, and one for the outputs.

@@ -212,6 +212,7 @@ impl<C: Reported> Survey<C> {
         }
         let time_s = self.seconds(event.time);
         self.events.take::<C>(time_s, event, &self.origin);
+        C::take_event(&mut self.addition, event);
     }
 
     /// The report, once the file has ended.

@@ -1,6 +1,6 @@
 //! Runs the steps.
 
-use std::fs;
+use std::fs::{self, OpenOptions};
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, ToSocketAddrs, UdpSocket};
 use std::path::PathBuf;
@@ -30,6 +30,9 @@ pub struct Request {
     pub x_plane: XPlaneConfig,
     /// A folder for the daemon's files; it is made.
     pub folder: PathBuf,
+    /// Files of the report: that they can be written is known before the steps. Their content
+    /// is left as it is.
+    pub report: Vec<PathBuf>,
     /// The numbers of the steps to do; all if there are none.
     pub only: Vec<u8>,
     /// Nobody is asked: a stand-in does what a person would.
@@ -98,6 +101,13 @@ pub(crate) fn open<'a>(
     let port = request.local_port;
     let link = Link::open(address, &request.x_plane, port)
         .map_err(io(format!("cannot receive on UDP port {port}")))?;
+    for file in &request.report {
+        let opened = OpenOptions::new().append(true).create(true).open(file);
+        opened.map_err(io(format!(
+            "the report cannot be written: {}",
+            file.display()
+        )))?;
+    }
     fs::create_dir_all(&request.folder)
         .map_err(io(format!("cannot make {}", request.folder.display())))?;
     Ok(Bench::new(

@@ -89,7 +89,7 @@ pub enum PlanOrder {
     Replace {
         /// The plan, of QGroundControl or QGC WPL 110; the daemon reads it
         #[arg(value_name = "FILE")]
-        file: String,
+        file: PathBuf,
         /// The item that is flown first
         #[arg(long, value_name = "N", default_value_t = 1,
               value_parser = clap::value_parser!(u16).range(1..=1_000))]

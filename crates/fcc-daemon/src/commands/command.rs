@@ -25,6 +25,15 @@ struct Sent {
 
 /// Sends a command and prints the result.
 pub(super) fn command(args: &CommandArgs) -> Result<Exit, Failure> {
+    if let CommandChoice::Plan { what } = &args.what
+        && let PlanOrder::Replace { file, .. } = what
+        && file.to_str().is_none()
+    {
+        return Err(Failure::usage(format_args!(
+            "fccd: {}: the name is not UTF-8, and a command is: rename the file",
+            file.display()
+        )));
+    }
     let command = Command::from(&args.what);
     let units = units(&args.what);
     // By the limits for any aircraft; the daemon knows those of its own, and reads plans.
@@ -151,7 +160,10 @@ impl From<&PlanOrder> for Command {
             PlanOrder::Replace { ref file, item } => Self::ReplacePlan {
                 // The daemon was started elsewhere.
                 file: std::path::absolute(file)
-                    .map_or_else(|_| file.clone(), |path| path.display().to_string()),
+                    .as_ref()
+                    .unwrap_or(file)
+                    .display()
+                    .to_string(),
                 item,
             },
             PlanOrder::Pause => Self::set([("pause", 1.0)]),

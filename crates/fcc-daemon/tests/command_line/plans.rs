@@ -268,7 +268,7 @@ fn the_plan_of_a_configuration_is_checked_with_it() {
         (
             Some(legs(45.0, 0.0)),
             0,
-            "c.toml: item 1: altitude: 0 m above the elevation",
+            "c.toml: plan.file: a.waypoints: item 1: altitude: 0 m above the elevation",
         ),
         (Some(legs(45.0, 300.0)), 0, "c.toml: valid: "),
     ] {
@@ -277,6 +277,18 @@ fn the_plan_of_a_configuration_is_checked_with_it() {
         }
         let (code, said) = ended(folder.path(), &["check", "c.toml"]);
         assert_eq!((code, said.contains(words)), (Some(exit), true), "{said}");
+    }
+}
+
+#[test]
+fn a_plan_in_the_place_of_a_configuration_is_said_once() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.waypoints"), legs(45.0, 300.0)).unwrap();
+    ended(folder.path(), &["plan", "convert", "a.waypoints", "a.plan"]);
+    for plan in ["a.waypoints", "a.plan"] {
+        let (code, said) = ended(folder.path(), &["check", plan]);
+        let words = "this is a flight plan: give it as [plan] file, or with --plan";
+        assert_eq!((code, said.trim()), (Some(2), &*format!("{plan}: {words}")));
     }
 }
 

@@ -165,4 +165,9 @@ fn another_pattern_deviates_by_what_the_pattern_says() {
     assert!(of("commanded aileron").differing > 600);
     let text = other.to_text();
     assert!(text.contains("did not react"), "{text}");
+    // What nobody commands is not compared.
+    assert!(
+        of("commanded flaps").rms.is_nan() && !text.contains("NaN"),
+        "{text}"
+    );
 }

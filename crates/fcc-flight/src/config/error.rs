@@ -52,6 +52,18 @@ impl ConfigError {
         }
     }
 
+    /// The file is a flight plan.
+    pub(super) fn a_plan(file: String) -> Self {
+        Self::Invalid {
+            file,
+            problems: vec![Problem {
+                line: None,
+                key: None,
+                message: "this is a flight plan: give it as [plan] file, or with --plan".to_owned(),
+            }],
+        }
+    }
+
     /// The problems, for tools to read.
     pub fn problems(&self) -> Vec<Problem> {
         match self {

@@ -234,6 +234,9 @@ impl Config {
         };
         let text = std::str::from_utf8(&bytes)
             .map_err(|error| ConfigError::not_text(&file, &bytes, error))?;
+        if fcc_plan::is_plan(text) {
+            return Err(ConfigError::a_plan(file));
+        }
         Ok((Self::parse(text, &file)?, text.to_owned()))
     }
 

@@ -84,7 +84,12 @@ impl<'a> Places<'a> {
     /// section above, and the text before the equals sign.
     pub(super) fn key_by_lines(text: &str, offset: usize) -> Option<String> {
         let line = line_of(text, &(offset..offset));
-        let (key, _) = text.lines().nth(line - 1)?.split_once('=')?;
+        let found = text.lines().nth(line - 1)?.trim();
+        if let Some(section) = found.strip_prefix('[') {
+            let (section, _) = section.trim_start_matches('[').split_once(']')?;
+            return Some(section.trim().to_owned());
+        }
+        let (key, _) = found.split_once('=')?;
         let key = key.trim();
         let section = text
             .lines()

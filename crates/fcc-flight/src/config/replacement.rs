@@ -143,7 +143,8 @@ impl Config {
             Ok(checked) => (checked, Vec::new()),
             Err(problems) => (plan, problems),
         };
-        if plan.item(usize::from(item)).is_none() {
+        // That a plan has no items is said.
+        if plan.item(usize::from(item)).is_none() && !plan.items.is_empty() {
             let message = format!(
                 "{item}: there is no such item: give 1 to {}",
                 plan.items.len()

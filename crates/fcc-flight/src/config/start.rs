@@ -32,8 +32,13 @@ impl Config {
         }
         remarks.extend(self.airspeed_remark());
         remarks.extend(self.unmeasured_limits());
-        let plan = self.plan.plan().filter(|_| self.flies_plan());
-        remarks.extend(plan.map_or_else(Vec::new, |plan| self.plan_remarks(plan)));
+        if let Some(plan) = self.plan.plan().filter(|_| self.flies_plan()) {
+            let file = self.plan.file.as_ref();
+            let of = file.map(|file| format!("plan.file: {}: ", file.display()));
+            let of = of.unwrap_or_default();
+            let found = self.plan_remarks(plan);
+            remarks.extend(found.iter().map(|remark| format!("{of}{remark}")));
+        }
         remarks
     }
 

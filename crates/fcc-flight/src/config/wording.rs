@@ -225,6 +225,21 @@ mod tests {
     }
 
     #[test]
+    fn what_is_given_twice_is_named() {
+        for (text, expected) in [
+            ("seed = 1\nseed = 2\n", "f:3: built-in.seed: is given"),
+            ("[loop]\n[built-in]\n", "f:3: built-in: is given"),
+            (
+                "[loop.early_wake]\n [ loop.early_wake ]\n",
+                "f:3: loop.early_wake: is given",
+            ),
+        ] {
+            let found = messages(text);
+            assert!(found[0].starts_with(expected), "{found:?}");
+        }
+    }
+
+    #[test]
     fn no_key_hides_a_later_error() {
         for key in [
             "\"a[0\" = 1",

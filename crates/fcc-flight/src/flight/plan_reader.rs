@@ -52,7 +52,10 @@ impl PlanReader {
         let work = move || {
             let now = SystemTime::now().duration_since(UNIX_EPOCH);
             let uploaded_s = now.map_or(0, |since| since.as_secs());
-            let prepared = config.prepare_plan(&file, item, uploaded_s);
+            let mut prepared = config.prepare_plan(&file, item, uploaded_s);
+            for remark in prepared.iter_mut().flat_map(|plan| &mut plan.remarks) {
+                *remark = format!("{}: {remark}", file.display());
+            }
             let _ = done.send(prepared.map_err(|error| refusal(&error)));
         };
         let thread = thread::Builder::new()
@@ -151,6 +154,12 @@ mod tests {
         let why = refused(2);
         assert!(
             why.ends_with("item to begin with: 2: there is no such item: give 1 to 1"),
+            "{why}"
+        );
+        std::fs::write(&file, "QGC WPL 110\n0 0 0 16 0 0 0 0 47 8 900 1\n").unwrap();
+        let why = refused(1);
+        assert!(
+            why.ends_with("bad.waypoints: items: there are none: give at least one"),
             "{why}"
         );
         let missing = Config::default().prepare_plan(&folder.path().join("no.plan"), 1, 0);

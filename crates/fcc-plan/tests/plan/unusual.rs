@@ -53,6 +53,11 @@ fn items_on_the_ground_and_above_the_ceiling_are_remarked_on() {
         "{low:?}"
     );
     assert_eq!(low.len(), 2, "{low:?}");
+    let nearly = said(&[(16, 47.2, 8.0, 59.9), (16, 47.3, 8.0, 3_962.5 - 430.0)]);
+    let words = "59.9 m above the elevation of home, 430 m, is lower than terrain.margin_m, 60.0 m";
+    assert!(nearly[0].contains(words), "{nearly:?}");
+    let words = "(13000.3 ft) is above plan.service_ceiling_ft, 13000.0 ft";
+    assert!(nearly[1].contains(words), "{nearly:?}");
     // 3,962 m are 13,000 ft.
     assert_eq!(said(&[(16, 47.1, 8.0, 3_962.0 - 430.0)]).len(), 0);
     let high = said(&[(16, 47.1, 8.0, 19_000.0)]);
@@ -76,6 +81,9 @@ fn a_leg_as_by_exchanged_coordinates_is_remarked_on() {
     assert_eq!(far.len(), 2);
     // 7° of latitude, 778 km, and 8°, 889 km.
     assert_eq!(said(&[(16, 54.0, 8.0, 300.0)]).len(), 0);
+    // Home is at 47° north, 8° east.
+    let home = said(&[(16, 8.0, 47.0, 300.0)]);
+    assert!(home[0].ends_with("Otherwise it would be 0 m"), "{home:?}");
     let long = said(&[(16, 55.0, 8.0, 300.0)]);
     let words = "item 1: leg: it is 890 km long, 4.8 h at 51.4 m/s: check both places";
     assert_eq!(long, [words]);

@@ -13,7 +13,7 @@ mod track;
 use comfy_table::Table;
 use fcc_core::flight::Autopilot;
 use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_core::framework::RecordOf;
+use fcc_core::framework::{EventKind, EventOf, RecordOf};
 use fcc_telemetry::units::{AVIATION, M_FT, MPS_KT, PA_HPA};
 use fcc_telemetry::{FlightScore, PatternScorer, Sample, ScoredBy};
 use serde::Serialize;
@@ -205,6 +205,12 @@ impl Reported for Autopilot {
             };
             let guidance = &record.setpoints.guidance;
             scorer.take(record.state.state(), guidance, Some(captured), Some(sample));
+        }
+    }
+
+    fn take_event(addition: &mut FlightAddition, event: &EventOf<Self>) {
+        if let EventKind::Noticed(notice) = &event.kind {
+            addition.flown_plan.notice(notice);
         }
     }
 

@@ -1,9 +1,9 @@
 //! The items of a flight plan as they were flown, and the landing, by what was recorded.
 
 use comfy_table::Table;
-use fcc_core::flight::Autopilot;
 use fcc_core::flight::guidance::Mode;
-use fcc_core::framework::{RecordOf, State};
+use fcc_core::flight::{Autopilot, ITEM_REACHED};
+use fcc_core::framework::{Notice, RecordOf, State};
 use fcc_telemetry::units::{M_FT, MPS_KT};
 use serde::Serialize;
 
@@ -23,6 +23,15 @@ pub struct FlownPlan {
     pub touch_down: Option<TouchDown>,
     #[serde(skip)]
     on_wheels: Option<bool>,
+    /// The last item before the last record but one, and before the last.
+    #[serde(skip)]
+    before: [Option<FlownItem>; 2],
+    /// The last item when its end was reached; a circle there may follow.
+    #[serde(skip)]
+    reached: Option<FlownItem>,
+    /// Since when the mode was flown at the plan's end, s, which is circled at; none before.
+    #[serde(skip)]
+    ended_s: Option<f64>,
 }
 
 /// An item of a plan, from the end of the one before.
@@ -62,6 +71,25 @@ pub struct TouchDown {
 }
 
 impl FlownPlan {
+    /// Follows the ends of items and of the plan, after which the aircraft circles: that is
+    /// no part of an item.
+    pub(super) fn notice(&mut self, notice: &Notice) {
+        if notice.kind != ITEM_REACHED {
+            return;
+        }
+        if notice.item > 0 {
+            // It is told a tick late: what follows is flown already.
+            let [before, _] = &mut self.before;
+            let before = before.take();
+            self.reached = before.filter(|before| before.item == u32::from(notice.item));
+            return;
+        }
+        if let Some((last, reached)) = self.items.last_mut().zip(self.reached.take()) {
+            *last = reached;
+        }
+        self.ended_s = Some(0.0);
+    }
+
     pub(super) fn take(&mut self, record: &RecordOf<Autopilot>, time_s: f64) {
         if record.state.state() != State::Engaged {
             return;
@@ -83,15 +111,23 @@ impl FlownPlan {
         if guidance.mode != Mode::Plan {
             return;
         }
-        let is_next = self
-            .items
-            .last()
-            .is_none_or(|last| last.item != guidance.item);
+        // A plan that is flown again after its end begins its time anew.
+        let is_again = self.ended_s.is_some_and(|s| guidance.elapsed_s < s);
+        let is_next = is_again
+            || self
+                .items
+                .last()
+                .is_none_or(|last| last.item != guidance.item);
         if is_next {
+            (self.reached, self.ended_s, self.before) = (None, None, [None, None]);
             if self.items.len() == MOST {
                 return;
             }
             self.items.push(FlownItem::new(guidance.item, time_s));
+        }
+        if let Some(ended_s) = &mut self.ended_s {
+            *ended_s = guidance.elapsed_s;
+            return;
         }
         let off = [
             setpoints.cross_track_m,
@@ -99,6 +135,9 @@ impl FlownPlan {
             (estimate.airspeed_mps - setpoints.airspeed_mps) * MPS_KT,
         ];
         if let Some(item) = self.items.last_mut() {
+            self.before.swap(0, 1);
+            let [_, before] = &mut self.before;
+            *before = Some(item.clone());
             item.take(time_s, off);
         }
     }
@@ -220,6 +259,37 @@ mod tests {
         record.setpoints.guidance.item = item;
         record.setpoints.cross_track_m = cross_track_m;
         record
+    }
+
+    /// The circle after the end is no part of the last item, and one that is flown again is
+    /// another one.
+    #[test]
+    fn a_circle_at_the_end_is_not_counted() {
+        let mut flown = FlownPlan::default();
+        let reached = |item| Notice {
+            kind: ITEM_REACHED,
+            item,
+            ..Notice::default()
+        };
+        let at = |flown: &mut FlownPlan, cross_m, elapsed_s| {
+            let mut record = record(2, cross_m);
+            record.setpoints.guidance.elapsed_s = elapsed_s;
+            flown.take(&record, elapsed_s);
+        };
+        at(&mut flown, 3.0, 0.0);
+        at(&mut flown, 3.0, 1.0);
+        at(&mut flown, 800.0, 2.0);
+        at(&mut flown, 700.0, 3.0);
+        flown.notice(&reached(2));
+        at(&mut flown, 600.0, 4.0);
+        flown.notice(&reached(0));
+        at(&mut flown, 400.0, 5.0);
+        assert_eq!(flown.items.len(), 1);
+        let last = &flown.items[0];
+        assert_eq!((last.cross_track_max_m, last.lasted_s), (3.0, 1.0));
+        at(&mut flown, 5.0, 0.0);
+        assert_eq!(flown.items.len(), 2);
+        assert_eq!(flown.items[1].cross_track_max_m, 5.0);
     }
 
     /// The root mean square of 3 and 4 is that of 12.5; 1 m/s is 196.85 ft/min.

@@ -1,11 +1,11 @@
 //! `fccd x-plane check`: the twenty steps against a running X-Plane.
 
 use std::fmt::Write as _;
-use std::fs::{self, OpenOptions};
+use std::fs;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
-use fcc_record::is_same_file;
+use fcc_record::{is_same_file, may_be_output};
 use fcc_xplane_check::{Report, Request, check as carry_out};
 
 use super::terminal::Terminal;
@@ -26,12 +26,12 @@ pub(super) fn check(args: &XPlaneCheckArgs) -> Result<Exit, Failure> {
         ));
     }
     let request = Request {
+        report: vec![files.markdown.clone(), files.json.clone()],
         only: args.only.clone(),
         is_unattended: args.yes,
         is_short: args.quick,
         ..request
     };
-    files.open()?;
     let mut terminal = Terminal::open(!args.yes)?;
     let result = carry_out(request, &mut terminal, &|plant| is_flown(&config, plant));
     drop(terminal);
@@ -71,24 +71,12 @@ impl ReportFiles {
         if is_config(&files.markdown) || is_config(&files.json) {
             return wrong("the report would overwrite the configuration");
         }
-        Ok(files)
-    }
-
-    /// Whether both can be written, before the steps are done. Leaves as it is
-    /// what is there.
-    fn open(&self) -> Result<(), Failure> {
-        for file in [&self.markdown, &self.json] {
-            let open = |()| OpenOptions::new().append(true).create(true).open(file);
-            fcc_record::may_be_output(file)
-                .and_then(open)
-                .map_err(|error| {
-                    Failure::new(format_args!(
-                        "the report cannot be written: {}: {error}",
-                        file.display()
-                    ))
-                })?;
+        for file in [&files.markdown, &files.json] {
+            may_be_output(file).map_err(|error| {
+                Failure::usage(format_args!("fccd: --report {}: {error}", file.display()))
+            })?;
         }
-        Ok(())
+        Ok(files)
     }
 }
 

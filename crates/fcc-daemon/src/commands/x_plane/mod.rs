@@ -43,6 +43,7 @@ fn request(connection: &ConnectionArgs, folder: PathBuf) -> Result<(Request, Con
         config: text,
         x_plane: section.into(),
         folder,
+        report: Vec::new(),
         only: Vec::new(),
         is_unattended: false,
         is_short: false,
