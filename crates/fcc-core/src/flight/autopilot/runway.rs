@@ -55,6 +55,8 @@ const OPENS_PER_S: f64 = 1.0;
 const THROWN_OPENS_PER_S: f64 = 2.0;
 /// How fast the throttle is closed in the flare, 1/s.
 pub(super) const CLOSES_PER_S: f64 = 0.35;
+/// A glide tries the engine above this height, m: below, what it would give is too late.
+const TRIES_ABOVE_M: f64 = 100.0;
 /// The elevator is held back below this share of the approach's airspeed.
 const HELD_BACK_BELOW: f64 = 0.7;
 /// An approach speed is so many times the stalling speed.
@@ -296,8 +298,9 @@ impl Autopilot {
             RunwayPhase::Approach if demand.is_powerless => {
                 let vertical = self.hold_glide(&envelope, estimate, dt_s);
                 let elevator = self.actuation.elevator(vertical.elevator);
+                let tries = demand.height_m > TRIES_ABOVE_M && self.tries_engine(dt_s);
                 (
-                    closing,
+                    if tries { opening } else { closing },
                     vertical.climb_rate_mps,
                     vertical.pitch_rad,
                     elevator,
