@@ -58,7 +58,8 @@ impl Filter {
             self.lateness.believed();
             return;
         }
-        if self.distance(&measurement) > p::LATE_GATE {
+        let is_steady = self.rates.norm() < p::LATE_RATE;
+        if is_steady && self.distance(&measurement) > p::LATE_GATE {
             self.lateness.refused(&self.motion, taken, place);
         }
         if self.tracks.position.refused_s(taken) >= p::RECEIVER_REFUSED_S {
@@ -99,7 +100,8 @@ impl Filter {
         let velocity = Vector3::from(velocity);
         self.receiver_mps = velocity.norm();
         let (horizontal, vertical) = (p::VELOCITY_HORIZONTAL, p::VELOCITY_VERTICAL);
-        if self.lateness.is_suspected(taken) {
+        let refused_s = self.tracks.position.refused_s(taken);
+        if self.lateness.is_suspected(taken) && refused_s < p::LATE_SUSPECTED_S {
             return;
         }
         let since_s = self.tracks.velocity.since_tried_s(taken);
