@@ -9,7 +9,7 @@ use crate::place;
 const KT: f64 = 1_852.0 / 3_600.0;
 
 /// A Cessna 172: flown between 78 and 120 kt.
-const CONDITIONS: Conditions = Conditions {
+pub(crate) const CONDITIONS: Conditions = Conditions {
     airspeed_mps: 100.0 * KT,
     slowest_mps: 78.0 * KT,
     fastest_mps: 120.0 * KT,

@@ -1,20 +1,8 @@
 //! Plans that are accepted, and seldom meant.
 
-use fcc_plan::{Conditions, Level, Usual, read, unusual};
+use fcc_plan::{Level, Usual, read, unusual};
 
-/// A Cessna 172 at 100 kt.
-const CONDITIONS: Conditions = Conditions {
-    airspeed_mps: 51.444,
-    slowest_mps: 40.0,
-    fastest_mps: 62.0,
-    wind_mps: 5.0,
-    bank_rad: 0.52,
-    climb_mps: 3.5,
-    descent_mps: 5.0,
-    loiter_radius_m: 1_000.0,
-    final_m: 1_000.0,
-    fence_margin_m: None,
-};
+use crate::flyable::CONDITIONS;
 
 /// From home at 47° north, 8° east and 430 m: items of command, latitude, longitude and
 /// height above home. The ceiling is 13,000 ft.

@@ -1,6 +1,6 @@
 //! Heading → turn rate → bank → roll rate → aileron, and the rudder.
 
-use libm::{atan, cos, sin, tan};
+use libm::{atan, tan};
 
 use super::{Envelope, MAX_TURN_BANK_RAD, SURFACE, Schedule};
 use crate::blocks::{HighPass, Pid, PidConfig, RateLimit, SquareRootProfile, limit_abs};
@@ -343,7 +343,7 @@ impl HeadingLoop {
     /// of the ailerons (Etkin and Reid 1996, chapter 3): the rudder against
     /// it follows V₀/V, between the two.
     fn rudder_feed_forward(&self, aileron: f64, estimate: &Estimate, schedule: Schedule) -> f64 {
-        let excess_radps = yaw_excess_radps(estimate);
+        let excess_radps = estimate.yaw_excess_radps();
         schedule.rate * self.config.rudder_per_aileron * aileron
             - schedule.moment * schedule.lateral_pace * self.config.yaw_damping * excess_radps
     }
@@ -357,14 +357,6 @@ impl HeadingLoop {
     pub const fn rudder_trim(&self) -> f64 {
         self.side_force.integral()
     }
-}
-
-/// The yaw rate in excess of that of a level coordinated turn, g/V sin φ cos θ, rad/s.
-pub(crate) fn yaw_excess_radps(estimate: &Estimate) -> f64 {
-    let turn_radps = GRAVITY_MPS2 / estimate.true_airspeed_mps.max(1.0)
-        * sin(estimate.roll_rad)
-        * cos(estimate.pitch_rad);
-    estimate.body_rates.yaw_radps - turn_radps
 }
 
 #[cfg(test)]

@@ -2,8 +2,11 @@
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
+use libm::{cos, sin};
+
 use crate::flight::BodyRates;
 use crate::schema;
+use crate::units::GRAVITY_MPS2;
 
 schema! {
     /// Where the estimate's airspeed comes from.
@@ -155,4 +158,11 @@ impl Estimate {
         reading_age_s: 0.0,
         reading_jitter_s: 0.0,
     };
+    /// The yaw rate in excess of that of a level coordinated turn, g/V sin φ cos θ, rad/s.
+    pub(crate) fn yaw_excess_radps(&self) -> f64 {
+        let turn_radps = GRAVITY_MPS2 / self.true_airspeed_mps.max(1.0)
+            * sin(self.roll_rad)
+            * cos(self.pitch_rad);
+        self.body_rates.yaw_radps - turn_radps
+    }
 }

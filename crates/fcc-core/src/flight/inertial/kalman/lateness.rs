@@ -215,8 +215,8 @@ impl Lateness {
         self.late_s == 0.0
     }
 
-    /// Takes a position that was believed.
-    pub(super) fn believed(&mut self) {
+    /// Takes a position that was accepted.
+    pub(super) fn accepted(&mut self) {
         self.seems = None;
     }
 

@@ -55,7 +55,7 @@ impl Filter {
             p::GATE,
             Corrects::All,
         ) {
-            self.lateness.believed();
+            self.lateness.accepted();
             return;
         }
         let is_steady = self.rates.norm() < p::LATE_RATE;
@@ -106,14 +106,15 @@ impl Filter {
         }
         let since_s = self.tracks.velocity.since_tried_s(taken);
         let noises = [horizontal, horizontal, vertical];
-        let now = velocity - self.motion.velocity - self.acceleration * after_s;
-        let mut difference = now;
+        let of_now = velocity - self.motion.velocity - self.acceleration * after_s;
+        let mut difference = of_now;
         if let Some([_, then]) = self.when_late(taken, self.motion.place) {
-            difference = velocity - then;
-            let [then, now] =
-                [difference, now].map(|one| self.distance(&on(VELOCITY, one, noises, since_s)));
-            if self.lateness.late_s() > 0.0 && self.lateness.compare(taken, then - now) {
-                difference = velocity - self.motion.velocity - self.acceleration * after_s;
+            let of_then = velocity - then;
+            let [far_now, far_then] =
+                [of_now, of_then].map(|one| self.distance(&on(VELOCITY, one, noises, since_s)));
+            let is_late = self.lateness.late_s() > 0.0;
+            if !is_late || !self.lateness.compare(taken, far_then - far_now) {
+                difference = of_then;
             }
         }
         let mut measurement = on(VELOCITY, difference, noises, since_s);
