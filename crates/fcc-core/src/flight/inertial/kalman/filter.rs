@@ -7,6 +7,7 @@ use super::innovations::Innovations;
 use super::lateness::Lateness;
 use super::motion::{Increment, Inertial, Motion, turn};
 use super::parameters as p;
+use super::path::Path;
 use super::track::Tracks;
 use super::trend::Trend;
 use crate::framework::Time;
@@ -64,6 +65,7 @@ pub(super) struct Filter {
     pub(super) turns_by_field: bool,
     pub(super) drift: Drift,
     pub(super) trend: Trend,
+    pub(super) path: Path,
     pub(super) lateness: Lateness,
     /// How fast a receiver last said that this moves, m/s: also if that was refused.
     pub(super) receiver_mps: f64,
@@ -106,6 +108,7 @@ impl Filter {
             turns_by_field: false,
             drift: Drift::default(),
             trend: Trend::default(),
+            path: Path::new(),
             lateness: Lateness::default(),
             receiver_mps: 0.0,
             mean_wind: Vector2::zeros(),
@@ -122,7 +125,7 @@ impl Filter {
         let increment = self.motion.advance(&reading, dt_s);
         self.acceleration = increment.acceleration;
         if self.motion.is_located {
-            self.lateness.keep(self.time, &self.motion);
+            self.path.keep(self.time, &self.motion);
         }
         self.accumulate(&increment, raw, dt_s);
         let horizontal = self.motion.velocity.xy().norm_squared();
@@ -271,7 +274,7 @@ impl Filter {
         self.motion.attitude.renormalize_fast();
         self.motion.velocity += part(VELOCITY);
         self.motion.shift(part(POSITION));
-        self.lateness.corrected(part(POSITION), part(VELOCITY));
+        self.path.corrected(part(POSITION), part(VELOCITY));
         self.rate_bias += part(RATE_BIAS);
         self.force_bias += part(FORCE_BIAS);
         self.barometer_bias += error[BAROMETER_BIAS];

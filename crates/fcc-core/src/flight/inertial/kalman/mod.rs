@@ -34,6 +34,7 @@ mod motion;
 mod noise;
 mod output;
 mod parameters;
+mod path;
 mod receiver;
 mod rest;
 mod track;
@@ -259,7 +260,7 @@ impl KalmanNavigation {
             Observation::Position(_) | Observation::Velocity(_)
         );
         // Too late to be of use.
-        if after_s < -5.0 * GAP_S && !(is_fix && filter.lateness.knows(taken)) {
+        if after_s < -5.0 * GAP_S && !(is_fix && filter.path.knows(taken)) {
             return;
         }
         let is_soon = |track: track::Track| {

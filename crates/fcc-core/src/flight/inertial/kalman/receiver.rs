@@ -60,11 +60,12 @@ impl Filter {
         }
         let is_steady = self.rates.norm() < p::LATE_RATE;
         if is_steady && self.distance(&measurement) > p::LATE_GATE {
-            self.lateness.refused(&self.motion, taken, place);
+            self.lateness
+                .refused(&self.path, &self.motion, taken, place);
         }
         if self.tracks.position.refused_s(taken) >= p::RECEIVER_REFUSED_S {
             self.motion.shift(difference);
-            self.lateness.corrected(difference, Vector3::zeros());
+            self.path.corrected(difference, Vector3::zeros());
             self.forget(POSITION, &measurement);
             self.tracks.position.judged(taken, true);
         }
@@ -150,7 +151,7 @@ impl Filter {
         };
         if is_first || self.tracks.velocity.refused_s(taken) >= needed_s {
             self.motion.velocity += difference;
-            self.lateness.corrected(Vector3::zeros(), difference);
+            self.path.corrected(Vector3::zeros(), difference);
             self.forget(VELOCITY, &measurement);
             if !is_first {
                 // One that is wrong by so much has turned gravity into this velocity. What
@@ -180,7 +181,7 @@ impl Filter {
         const MOMENT_S: f64 = 0.1;
         let then = taken - Duration::from_secs_f64(self.lateness.late_s());
         (signed_s(self.time, then) > MOMENT_S)
-            .then(|| self.lateness.then(&self.motion, then, place))
+            .then(|| self.path.then(&self.motion, then, place))
             .flatten()
     }
 
