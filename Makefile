@@ -84,7 +84,7 @@ fly-plan-jsbsim: build $(STAMPS)/python-module ## Fly a plan with JSBSim over X-
 	$(PYTHON) -m fcc_hil plan --realtime --fccd $(FCCD) --plan $(PLAN) --wind $(WIND) --wind-from $(WIND_FROM) --seed $(SEED) \
 	    $(if $(TERRAIN),--terrain $(TERRAIN)) --json $(if $(filter-out file,$(origin JSON)),$(JSON),target/fly-plan-jsbsim.json) --plot target/fly-plan-jsbsim.png
 
-test: lint test-rust check-cross test-python ## Run every check and every test
+test: lint check-cross test-rust test-python ## Run every check and every test
 
 test-rust: $(STAMPS)/rust $(STAMPS)/gpsd
 	cargo test --locked --workspace --all-features

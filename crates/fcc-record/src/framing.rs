@@ -5,7 +5,7 @@ use std::io::{self, Read as _, Seek as _, SeekFrom};
 
 use mcap::records::op;
 use nix::errno::Errno;
-use nix::unistd::{Whence, lseek};
+use nix::unistd::{Whence, lseek64};
 
 use super::parse::is_chunk_of;
 
@@ -107,8 +107,9 @@ pub(super) fn find(file: &mut File, start: u64, file_bytes: u64) -> io::Result<O
 
 /// Where the next bytes are that the file system stores: a hole, which may have any
 /// length, contains no record. None if the rest is one.
+/// (`lseek` takes 32 bits on a 32-bit board.)
 fn next_data(file: &File, at: u64) -> Option<u64> {
-    match lseek(file, i64::try_from(at).ok()?, Whence::SeekData) {
+    match lseek64(file, i64::try_from(at).ok()?, Whence::SeekData) {
         Ok(data) => u64::try_from(data).ok(),
         Err(Errno::ENXIO) => None,
         // Not every file system tells.
