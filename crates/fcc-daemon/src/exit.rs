@@ -31,7 +31,7 @@ exits! {
     NotReleased = 5, "the controls may not have been released";
     Panicked = 6, "a part of the loop panicked; the controls were released";
     Differs = 7, "a replay gave other outputs";
-    NotReplayed = 8, "a recording could not be replayed to its end; the rest does not differ";
+    NotReplayed = 8, "a recording could not be replayed to its end, and the rest does not differ; or no tick of it could be compared";
     Hung = 9, "the loop hung; the watchdog released the controls and ended the program";
     MachineLacks = 10, "the machine lacks something that a real-time loop needs (doctor)";
     Refused = 11, "the daemon refused the command";

@@ -104,6 +104,11 @@ impl Deviation {
         }
     }
 
+    /// Whether one commanded the plant, and the two never in the same tick.
+    pub const fn is_of_nothing(&self) -> bool {
+        self.compared == 0 && self.only_recorded + self.only_other > 0
+    }
+
     /// The deviation as text.
     pub fn to_text(&self) -> String {
         let names = self.quantities.iter().map(|quantity| quantity.name.len());
@@ -146,6 +151,9 @@ impl Deviation {
              configuration, so differences may accumulate.",
             self.compared, self.only_recorded, self.only_other
         );
+        if self.is_of_nothing() {
+            text.push_str("\n\nnothing was compared: in no tick both command the plant");
+        }
         text
     }
 }

@@ -73,6 +73,16 @@ fn run(
     if let Some(other) = other {
         comparison = Comparison::Deviation(Deviation::of::<Autopilot>());
         config = other;
+        let flies_plan = config.fly_plan_of(recorded).map_err(|problems| {
+            let problems: Vec<_> = problems.iter().map(ToString::to_string).collect();
+            format!(
+                "the recorded plan cannot be flown by it: {}",
+                problems.join("; ")
+            )
+        })?;
+        if flies_plan {
+            remarks.push("both fly the recorded plan".to_owned());
+        }
         if config.tick.rate_hz != recorded.tick.rate_hz {
             remarks.push(format!(
                 "replayed at the recorded {} Hz: the times of a recording cannot be changed",
@@ -159,6 +169,7 @@ impl Outcome {
         match &self.comparison {
             Comparison::Identity(identity) if !identity.is_identical() => Exit::Differs,
             _ if !self.replayed.is_complete() => Exit::NotReplayed,
+            Comparison::Deviation(deviation) if deviation.is_of_nothing() => Exit::NotReplayed,
             // All ticks are there.
             _ if !self.replayed.damages.is_empty() => Exit::Incomplete,
             _ => Exit::Success,

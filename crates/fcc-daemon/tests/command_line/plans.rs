@@ -143,6 +143,41 @@ fn plans_are_flown_to_their_end() {
     }
 }
 
+/// The other configuration has no plan of its own: it flew nothing, and 0 ticks of 27,000
+/// were compared with exit code 0.
+#[test]
+fn another_configuration_is_compared_on_the_recorded_plan() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("a.waypoints"), CIRCUIT).unwrap();
+    let other = "[built-in]\n[autopilot.heading]\nroll_rate_gain = 0.9\n";
+    fs::write(at.join("other.toml"), other).unwrap();
+    // The recording has no raw readings, so this one never engages.
+    let idle = "[built-in]\nraw_sensors = \"board\"\n[navigation]\nmethod = \"kalman\"\n";
+    fs::write(at.join("idle.toml"), idle).unwrap();
+    let fly = ["fly", "--lockstep", "--quiet", "--recordings", "flown"];
+    let (exit, said) = ended(at, &[&fly[..], &["--plan", "a.waypoints"]].concat());
+    assert_eq!(exit, Some(0), "{said}");
+    let recordings = fs::read_dir(at.join("flown")).unwrap();
+    let mut files = recordings.map(|entry| entry.unwrap().path());
+    let file = files.find(|path| path.extension().is_some_and(|ext| ext == "mcap"));
+    let file = file.unwrap();
+    let file = file.to_str().unwrap();
+
+    let words = ["replay", file, "--json", "--config"];
+    let (exit, said) = ended(at, &[&words[..], &["other.toml"]].concat());
+    assert_eq!(exit, Some(0), "{said}");
+    let result: serde_json::Value = serde_json::from_str(&said).unwrap();
+    let deviation = &result["deviation"];
+    assert_eq!(deviation["only_recorded"], 0, "{said}");
+    assert!(deviation["compared"].as_u64() > Some(20_000), "{said}");
+    assert!(said.contains("both fly the recorded plan"), "{said}");
+
+    let (exit, said) = ended(at, &["replay", file, "--config", "idle.toml"]);
+    assert_eq!(exit, Some(8), "{said}");
+    assert!(said.contains("nothing was compared"), "{said}");
+}
+
 /// The throttle is closed for the deceleration to the approach's airspeed, and opened again:
 /// with a lever that gives a share of the power that is another thrust than with one whose
 /// square does. The sensor was doubted in 20 of 20 flights.

@@ -319,6 +319,22 @@ impl Config {
         self.guidance = GuidanceSection::Plan;
     }
 
+    /// Flies the plan that a recorded configuration flew, by this one's rules; whether it
+    /// flew one.
+    ///
+    /// # Errors
+    /// What this configuration cannot fly.
+    pub fn fly_plan_of(&mut self, recorded: &Self) -> Result<bool, Vec<Problem>> {
+        let flown = recorded.plan.loaded.as_ref();
+        let Some(flown) = flown.filter(|_| recorded.flies_plan()) else {
+            return Ok(false);
+        };
+        self.plan
+            .take(flown.plan.clone(), flown.identity.uploaded_s)?;
+        self.guidance = GuidanceSection::Plan;
+        Ok(true)
+    }
+
     /// Whether a plan is flown once engaged.
     pub const fn flies_plan(&self) -> bool {
         matches!(self.guidance, GuidanceSection::Plan)

@@ -34,7 +34,13 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
         routing::ITEM_REACHED if notice.item == 0 => {
             f.write_str("the plan is flown to its end: circling")
         }
-        routing::ITEM_REACHED => write!(f, "item {} of the plan is reached", notice.item),
+        routing::ITEM_REACHED => {
+            write!(f, "item {} of the plan is reached", notice.item)?;
+            match notice.amount_permille {
+                0 => Ok(()),
+                off_m => write!(f, ", {off_m} m off its altitude"),
+            }
+        }
         contingency::CONTINGENCY => contingency::write(notice, f),
         refusal::COMMAND_ANSWER => refusal::write(notice, f),
         runway::RUNWAY => runway::write(notice, f),

@@ -17,6 +17,12 @@ use crate::framework::{Flags, Notice};
 /// land.
 pub const ITEM_REACHED: u8 = 30;
 
+/// How far from its altitude an item may be reached without a word, m: the 100 ft that
+/// the FAA's standards allow an instrument pilot (FAA-S-ACS-8C, IV.A).
+const OFF_ALTITUDE_M: f64 = 30.5;
+/// What the notice says of a distance, m, is thousandths of a kilometre.
+const LARGEST_OFF_M: f64 = u16::MAX as f64;
+
 impl Autopilot {
     /// Computes the targets.
     pub(super) fn set_targets(&mut self) {
@@ -45,18 +51,23 @@ impl Autopilot {
         let took_off = self.guidance.over_ground();
         let took_off = took_off.and_then(OverGroundMode::took_off);
         self.took_off = took_off.or(self.took_off);
-        let reached = self
-            .guidance
-            .over_ground()
-            .and_then(OverGroundMode::reached);
+        let reached = self.guidance.over_ground().and_then(|mode| {
+            let off_m = mode.reached_off_m().abs();
+            mode.reached().map(|item| (item, off_m))
+        });
         let is_plan = self
             .guidance
             .over_ground()
             .is_some_and(OverGroundMode::is_plan);
-        if let Some(item) = reached.filter(|_| is_plan) {
+        if let Some((item, off_m)) = reached.filter(|_| is_plan) {
             self.news = Some(Notice {
                 kind: ITEM_REACHED,
                 item,
+                amount_permille: if off_m > OFF_ALTITUDE_M {
+                    off_m.min(LARGEST_OFF_M) as u16
+                } else {
+                    0
+                },
                 ..Notice::default()
             });
         }

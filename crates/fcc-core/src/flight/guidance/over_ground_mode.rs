@@ -116,6 +116,11 @@ impl OverGroundMode {
         self.follower.reached().map(|index| index.saturating_add(1))
     }
 
+    /// How far from its altitude the aircraft was there, m.
+    pub const fn reached_off_m(&self) -> f64 {
+        self.follower.reached_off_m()
+    }
+
     /// Whether the plan is flown to its end, and the aircraft circles there.
     pub fn has_ended(&self) -> bool {
         self.is_plan() && self.follower.has_ended()

@@ -64,6 +64,8 @@ pub struct Follower {
     acceleration_mps2: f64,
     pub(super) track: Track,
     reached: Option<u16>,
+    /// How far from its altitude, m.
+    reached_off_m: f64,
     /// Landings that were given up, but for a command.
     pub(super) given_up: u8,
     /// Where the last take-off began.
@@ -155,6 +157,7 @@ impl Follower {
             acceleration_mps2: 0.0,
             track: Track::default(),
             reached: None,
+            reached_off_m: 0.0,
             given_up: 0,
             took_off: None,
             ground_above_m: None,
@@ -210,6 +213,12 @@ impl Follower {
     /// [`advance`](Self::advance).
     pub const fn reached(&self) -> Option<u16> {
         self.reached
+    }
+
+    /// How far from its altitude the aircraft was there, m; 0 at the end of a take-off
+    /// or a landing.
+    pub const fn reached_off_m(&self) -> f64 {
+        self.reached_off_m
     }
 
     /// `dt_s` seconds pass, with the aircraft here. With 0 nothing changes.
@@ -279,17 +288,18 @@ impl Follower {
         let at_m = motion.position_m;
         self.wait(dt_s, length(at_m));
         let ahead_m = self.ahead_m(motion);
+        let off_m = here.altitude_m - self.goal.altitude_m;
         match (self.phase, self.goal.kind) {
             (Phase::Leg(leg), GoalKind::Place(within_m)) => {
                 let to_go_m = leg.left_m(at_m);
                 let corner = self.corner(&leg, motion, within_m);
                 match corner {
                     Some(corner) if to_go_m <= corner.lead_m + ahead_m => {
-                        self.reach();
+                        self.reach(off_m);
                         self.phase = Phase::First(leg, corner);
                     }
                     None if to_go_m <= 0.0 => {
-                        self.reach();
+                        self.reach(off_m);
                         return self.go_on(&self.goal.at.clone(), here);
                     }
                     _ => {}
@@ -319,10 +329,9 @@ impl Follower {
             (Phase::Circle(mut circling), GoalKind::Circle(circle)) => {
                 circling.follow(&circle, at_m, dt_s);
                 self.phase = Phase::Circle(circling);
-                let off_m = here.altitude_m - self.goal.altitude_m;
                 let next_m = self.next.map(|next| next.place_m);
                 if circle.is_over(&circling, off_m, at_m, next_m, ahead_m) {
-                    self.reach();
+                    self.reach(off_m);
                     return self.go_on(&here.plane(), here);
                 }
             }
@@ -359,7 +368,9 @@ impl Follower {
         )
     }
 
-    pub(super) fn reach(&mut self) {
+    /// The step's end is reached, so far from its altitude, m.
+    pub(super) fn reach(&mut self, off_m: f64) {
+        self.reached_off_m = off_m;
         let (index, is_end) = self.sequence.planned(self.index);
         self.reached = u16::try_from(index).ok().filter(|_| is_end);
     }

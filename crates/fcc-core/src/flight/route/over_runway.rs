@@ -73,10 +73,10 @@ impl Follower {
         }
         match outcome {
             Outcome::Done => {
-                self.reach();
+                self.reach(0.0);
                 return self.go_on(&here.plane(), here);
             }
-            Outcome::Stands => self.reach(),
+            Outcome::Stands => self.reach(0.0),
             Outcome::Again => {
                 let commanded = flight.demand().reason == RunwayReason::Commanded;
                 self.given_up += u8::from(!commanded);
