@@ -101,9 +101,10 @@ impl<C: Controller> Loop<C> {
         if granted.is_none() {
             return self.machine.finish();
         }
+        run(&mut self.machine);
         LoopReport {
             granted,
-            ..run(self.machine)
+            ..self.machine.finish()
         }
     }
 }
@@ -130,12 +131,13 @@ impl<C: Controller> Loop<C> {
 
 type Started = Result<RealtimeGranted, SpawnError>;
 
-fn run<C: Controller>(mut machine: Machine<C>) -> LoopReport {
+/// Where it is: a copy on the stack, which may be larger than the part of it that was touched,
+/// would not be in memory at the first tick.
+fn run<C: Controller>(machine: &mut Machine<C>) {
     machine.count_page_faults();
     while machine.state() != State::Stopped {
         machine.step();
     }
-    machine.finish()
 }
 
 /// A loop that runs in a thread of its own. Dropping it stops the loop and waits
