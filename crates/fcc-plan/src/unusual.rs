@@ -1,5 +1,6 @@
 //! What is accepted in a plan, and seldom meant.
 
+use fcc_core::flight::route::LONGEST_LEG_M;
 use fcc_core::units::FOOT_M;
 
 use crate::check::{Conditions, Leg, above_sea_level, legs};
@@ -8,9 +9,6 @@ use crate::level::Level;
 use crate::plan::{Plan, limits};
 use crate::problem::Problem;
 
-/// The range of a Cessna 172 with 40 gallons at 75 % and 8,000 ft is 440 nautical miles
-/// (172P's handbook, 1981): a leg is shorter, m.
-const LONGEST_LEG_M: f64 = 815_000.0;
 /// Latitude and longitude may be exchanged where that makes a leg longer than this, m, so
 /// many times as long.
 const EXCHANGED_M: f64 = 50_000.0;

@@ -2,9 +2,11 @@
 
 use core::fmt;
 
+use libm::hypot;
+
 use super::{Autopilot, AutopilotCommand};
 use crate::flight::guidance::ModeInput;
-use crate::flight::route::{RunwayDemand, RunwayReason};
+use crate::flight::route::{LONGEST_LEG_M, RunwayDemand, RunwayReason};
 use crate::framework::Notice;
 
 /// The number of the notice that answers, below those of doubted sensors; the amount is the
@@ -37,10 +39,11 @@ pub(super) enum Refusal {
     TurningAway,
     NoLanding,
     NotBeforeItIsHigher,
+    TooFar,
 }
 
 impl Refusal {
-    const ALL: [Self; 15] = [
+    const ALL: [Self; 16] = [
         Self::NotEngaged,
         Self::NotPrepared,
         Self::NoSuchItem,
@@ -56,6 +59,7 @@ impl Refusal {
         Self::TurningAway,
         Self::NoLanding,
         Self::NotBeforeItIsHigher,
+        Self::TooFar,
     ];
 
     const fn words(self) -> &'static str {
@@ -83,6 +87,10 @@ impl Refusal {
             Self::NotBeforeItIsHigher => {
                 "the height over the runway is measured by the altimeter: set it while the aircraft \
                  stands, or 30 m over the runway and higher"
+            }
+            Self::TooFar => {
+                "the place is more than 815 km away, the range of a Cessna 172: are latitude and \
+                 longitude exchanged?"
             }
             Self::NoLanding => "the plan has no landing, and the aircraft was not seen to take off",
         }
@@ -144,9 +152,15 @@ impl Autopilot {
                 let index = usize::from(item.saturating_sub(1));
                 plan.step(index).map(drop).ok_or(Refusal::NoItem)
             }
-            AutopilotCommand::Pause | AutopilotCommand::GoTo(_) | AutopilotCommand::ReturnHome => {
+            AutopilotCommand::Pause | AutopilotCommand::ReturnHome => {
                 let here = self.ground.here();
                 here.map(drop).ok_or(Refusal::NowhereKnown)
+            }
+            AutopilotCommand::GoTo(place) => {
+                let here = self.ground.here().ok_or(Refusal::NowhereKnown)?.plane();
+                let way_m = here.position_m(place.latitude_rad, place.longitude_rad);
+                let is_near = hypot(way_m.x, way_m.y) <= LONGEST_LEG_M;
+                is_near.then_some(()).ok_or(Refusal::TooFar)
             }
             AutopilotCommand::Land => {
                 self.ground.here().ok_or(Refusal::NowhereKnown)?;

@@ -74,6 +74,10 @@ pub const RETURNS_CLOCKWISE: bool = true;
 /// From a commanded bank to the aircraft's, s.
 pub const ROLL_LAG_S: f64 = 0.4;
 
+/// The range of a Cessna 172 with 40 gallons at 75 % and 8,000 ft is 440 nautical miles
+/// (172P's handbook, 1981): a leg is shorter, m.
+pub const LONGEST_LEG_M: f64 = 815_000.0;
+
 /// How routes are flown.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct RouteConfig {
