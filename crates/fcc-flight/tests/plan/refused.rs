@@ -1,10 +1,10 @@
 //! Commands that are not carried out: their sender is told why.
 
-use fcc_core::flight::AutopilotCommand;
 use fcc_core::flight::guidance::Mode;
+use fcc_core::flight::{AutopilotCommand, Position};
 use fcc_core::framework::State;
 
-use crate::flight::{Flight, legs};
+use crate::flight::{ALTITUDE_M, Flight, HOME, legs};
 
 /// Engaged on the circuit's runway, or in the air.
 fn engaged(plan: &str, keys: &str) -> Flight {

@@ -16,7 +16,7 @@ type Column = (
     fn(&Solution) -> Vec<f64>,
 );
 
-const COLUMNS: [Column; 11] = [
+const COLUMNS: [Column; 12] = [
     (
         "roll_rad",
         |s| vec![euler_from_quaternion(s.quaternion).roll_rad],
@@ -71,6 +71,11 @@ const COLUMNS: [Column; 11] = [
         "body_field_ut",
         |s| s.body_field_ut.to_vec(),
         |s| s.sigma.body_field_ut.to_vec(),
+    ),
+    (
+        "gnss_late_s",
+        |s| vec![s.fixes_late_s],
+        |s| vec![s.sigma.fixes_late_s],
     ),
 ];
 

@@ -127,6 +127,8 @@ pub struct Solution {
     pub body_field_ut: [f64; 3],
     /// The velocity of the air over the ground, north and east.
     pub wind_mps: [f64; 2],
+    /// By how much a receiver's fixes are later than they say.
+    pub fixes_late_s: f64,
     /// Angle of attack, as the thesis approximates it: the pitch. NaN of other
     /// methods.
     pub angle_of_attack_rad: f64,
@@ -149,6 +151,7 @@ pub struct Sigma {
     pub earth_field_ut: [f64; 3],
     pub body_field_ut: [f64; 3],
     pub wind_mps: [f64; 2],
+    pub fixes_late_s: f64,
 }
 
 impl Sigma {
@@ -165,6 +168,7 @@ impl Sigma {
         earth_field_ut: [f64::NAN; 3],
         body_field_ut: [f64::NAN; 3],
         wind_mps: [f64::NAN; 2],
+        fixes_late_s: f64::NAN,
     };
 }
 
@@ -182,6 +186,7 @@ impl Solution {
         earth_field_ut: [f64::NAN; 3],
         body_field_ut: [f64::NAN; 3],
         wind_mps: [f64::NAN; 2],
+        fixes_late_s: f64::NAN,
         angle_of_attack_rad: f64::NAN,
         sigma: Sigma::UNKNOWN,
     };

@@ -3,7 +3,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::filter::{
-    ATTITUDE, FORCE_BIAS, Filter, POSITION, RATE_BIAS, UNKNOWN_ANGLE, VELOCITY, WIND,
+    ATTITUDE, FORCE_BIAS, Filter, LATENESS, POSITION, RATE_BIAS, UNKNOWN_ANGLE, VELOCITY, WIND,
 };
 use super::inputs::Step;
 use super::motion::turn;
@@ -112,6 +112,7 @@ impl Alignment {
         filter.reset_covariance(RATE_BIAS, 3, p::RATE_BIAS * p::RATE_BIAS);
         filter.reset_covariance(FORCE_BIAS, 3, p::FORCE_BIAS * p::FORCE_BIAS);
         filter.reset_covariance(WIND, 2, p::WIND * p::WIND);
+        filter.reset_covariance(LATENESS, 1, p::LATENESS * p::LATENESS);
         (self.fields > 0.0).then(|| (self.turned.inverse() * (self.field / self.fields)).into())
     }
 }

@@ -13,7 +13,7 @@ use super::trend::Trend;
 use crate::framework::Time;
 
 /// Number of states.
-pub(super) const STATES: usize = 24;
+pub(super) const STATES: usize = 25;
 pub(super) type Covariance = SMatrix<f64, STATES, STATES>;
 pub(super) type StateVector = SVector<f64, STATES>;
 
@@ -28,6 +28,7 @@ pub(super) const BAROMETER_BIAS: usize = 15;
 pub(super) const EARTH_FIELD: usize = 16;
 pub(super) const BODY_FIELD: usize = 19;
 pub(super) const WIND: usize = 22;
+pub(super) const LATENESS: usize = 24;
 
 /// The covariance moves on in steps of at least this, s.
 const COVARIANCE_S: f64 = 0.008;
@@ -50,6 +51,8 @@ pub(super) struct Filter {
     pub(super) earth_field: Vector3<f64>,
     pub(super) body_field: Vector3<f64>,
     pub(super) wind: Vector2<f64>,
+    /// By how much fixes are later than they say, s, beside a lateness that came at once.
+    pub(super) late_s: f64,
     pub(super) covariance: Covariance,
     pub(super) tracks: Tracks,
     pub(super) innovations: Innovations,
@@ -67,6 +70,9 @@ pub(super) struct Filter {
     pub(super) trend: Trend,
     pub(super) path: Path,
     pub(super) lateness: Lateness,
+    /// The mean specific force, m/s², and when it was last so large that it may be more.
+    load: f64,
+    pub(super) rough: Time,
     /// How fast a receiver last said that this moves, m/s: also if that was refused.
     pub(super) receiver_mps: f64,
     /// The wind of the latest seconds.
@@ -98,6 +104,7 @@ impl Filter {
             earth_field: Vector3::zeros(),
             body_field: Vector3::zeros(),
             wind: Vector2::zeros(),
+            late_s: 0.0,
             covariance: Covariance::zeros(),
             tracks: Tracks::default(),
             innovations: Innovations::default(),
@@ -110,6 +117,8 @@ impl Filter {
             trend: Trend::default(),
             path: Path::new(),
             lateness: Lateness::default(),
+            load: 0.0,
+            rough: Time::NEVER,
             receiver_mps: 0.0,
             mean_wind: Vector2::zeros(),
             is_compared: false,
@@ -124,9 +133,12 @@ impl Filter {
         self.knows_rates = raw.rates.is_some();
         let increment = self.motion.advance(&reading, dt_s);
         self.acceleration = increment.acceleration;
-        if self.motion.is_located {
-            self.path.keep(self.time, &self.motion);
+        let load = reading.force.map_or(0.0, |force| force.norm());
+        self.load += crate::blocks::smoothing_factor(dt_s, p::LOAD_S) * (load - self.load);
+        if self.load > p::ROUGH {
+            self.rough = self.time;
         }
+        self.path.keep(self.time, &self.motion);
         self.accumulate(&increment, raw, dt_s);
         let horizontal = self.motion.velocity.xy().norm_squared();
         let share = crate::blocks::smoothing_factor(dt_s, p::VELOCITY_S);
@@ -215,6 +227,7 @@ impl Filter {
         self.add_variance(EARTH_FIELD, 3, walk(p::EARTH_FIELD_WALK));
         self.add_variance(BODY_FIELD, 3, walk(p::BODY_FIELD_WALK));
         self.add_variance(WIND, 2, walk(self.wind_walk()));
+        self.add_variance(LATENESS, 1, walk(p::LATENESS_WALK));
         for (at, more) in (RATE_BIAS..).zip(self.drift.step(dt_s)) {
             if more > 0.0 {
                 self.add_variance(at, 1, more);
@@ -281,6 +294,8 @@ impl Filter {
         self.earth_field += part(EARTH_FIELD);
         self.body_field += part(BODY_FIELD);
         self.wind += error.fixed_rows::<2>(WIND);
+        self.late_s =
+            (self.late_s + error[LATENESS]).clamp(-p::LARGEST_LATENESS, p::LARGEST_LATENESS);
         if angle.norm() > SMALL_TURN {
             let reset = Matrix3::identity() + 0.5 * angle.cross_matrix();
             for _ in 0..2 {

@@ -46,25 +46,20 @@ impl Lateness {
         self.late_s
     }
 
-    /// By how much the variance of a fix is larger: the present error is not that of its time,
-    /// and what is corrected shows only after this.
-    pub(super) fn excess(&self) -> f64 {
-        1.0 + self.late_s * self.late_s
-    }
-
-    /// Takes a position that was refused because it is far off.
+    /// Takes a position that was refused because it is far off. Whether it is known now by how
+    /// much fixes are late.
     pub(super) fn refused(
         &mut self,
         path: &Path,
         motion: &Motion,
         taken: Time,
         place: GeodeticPosition,
-    ) {
+    ) -> bool {
         let is_not_late = taken.since(self.sure).as_secs_f64() < NOT_LATE_S;
         let late_s = path.late_s(motion, taken, place);
         let Some(late_s) = late_s.filter(|late_s| *late_s <= LEAST_S || !is_not_late) else {
             self.seems = None;
-            return;
+            return false;
         };
         let since = match self.seems {
             Some((seems_s, since, last))
@@ -76,11 +71,13 @@ impl Lateness {
             _ => taken,
         };
         self.seems = Some((late_s, since, taken));
-        if taken.since(since).as_secs_f64() >= CONFIRMED_S {
+        let is_known = taken.since(since).as_secs_f64() >= CONFIRMED_S;
+        if is_known {
             self.late_s = if late_s > LEAST_S { late_s } else { 0.0 };
             self.seems = None;
             self.of_now = 0.0;
         }
+        is_known
     }
 
     /// Takes by how much farther a velocity is from that of the time of late fixes than from

@@ -5,8 +5,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::KalmanNavigation;
 use super::filter::{
-    ATTITUDE, BAROMETER_BIAS, BODY_FIELD, EARTH_FIELD, FORCE_BIAS, Filter, POSITION, RATE_BIAS,
-    VELOCITY, WIND,
+    ATTITUDE, BAROMETER_BIAS, BODY_FIELD, EARTH_FIELD, FORCE_BIAS, Filter, LATENESS, POSITION,
+    RATE_BIAS, VELOCITY, WIND,
 };
 use super::motion::Motion;
 use crate::flight::inertial::{GeodeticPosition, Sigma, Solution};
@@ -51,6 +51,7 @@ impl KalmanNavigation {
             earth_field_ut: filter.earth_field.into(),
             body_field_ut: filter.body_field.into(),
             wind_mps: filter.wind.into(),
+            fixes_late_s: filter.lateness.late_s() + filter.late_s,
             angle_of_attack_rad: f64::NAN,
             sigma: filter.sigmas(&motion.attitude),
         }
@@ -94,6 +95,7 @@ impl Filter {
             earth_field_ut: three(EARTH_FIELD),
             body_field_ut: three(BODY_FIELD),
             wind_mps: [WIND, WIND + 1].map(|at| self.sigma(at)),
+            fixes_late_s: self.sigma(LATENESS),
         }
     }
 

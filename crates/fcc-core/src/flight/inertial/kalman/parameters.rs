@@ -107,6 +107,17 @@ pub(super) const POSITION_VERTICAL: Noise = Noise::new(3.0, 1.0);
 pub(super) const VELOCITY_HORIZONTAL: Noise = Noise::new(0.3, 0.2);
 pub(super) const VELOCITY_VERTICAL: Noise = Noise::new(0.5, 0.2);
 
+/// By how much fixes are later than they say, s, its random walk, s/√s, and the most: a
+/// receiver computes for 0.1 to 0.3 s, and a serial line takes its time.
+pub(super) const LATENESS: f64 = 0.3;
+pub(super) const LATENESS_WALK: f64 = 0.005;
+pub(super) const LARGEST_LATENESS: f64 = 2.0;
+/// It is not learned after a specific force above this, m/s², the mean of this time, s, for a
+/// time, s: an accelerometer of 2 g may be at the end of its range.
+pub(super) const LOAD_S: f64 = 0.1;
+pub(super) const ROUGH: f64 = 16.0;
+pub(super) const CALM_S: f64 = 2.0;
+
 /// Airspeed, m/s: the tube's place, and gusts that are shorter than the wind's
 /// walk; a share of the airspeed (calibration), and the sensor's own noise and
 /// offset, Pa, which at a low airspeed are most of it.

@@ -71,24 +71,36 @@ impl Path {
         self.past.get(at)?.as_ref()
     }
 
-    /// What a place differs by from where this was at a time, m, and how this moved then, m/s;
-    /// nothing if that is not known any more.
+    /// What a place differs by from where this was at a time, m, how this moved then, m/s, and
+    /// its acceleration, m/s²; nothing if that is not known any more.
     pub(super) fn then(
         &self,
         motion: &Motion,
         then: Time,
         place: GeodeticPosition,
-    ) -> Option<[Vector3<f64>; 2]> {
+    ) -> Option<[Vector3<f64>; 3]> {
         (0..STATES).find_map(|before| {
             let past = self.newest(before).filter(|past| past.time <= then)?;
             let after_s = signed_s(then, past.time);
             let [difference, velocity] = self.seen_from(past, motion, place);
             let next = before.checked_sub(1).and_then(|next| self.newest(next));
-            let gained = next.map_or(Vector3::zeros(), |next| {
+            let acceleration = next.map_or(Vector3::zeros(), |next| {
                 let next_velocity = next.velocity + self.corrected.1 - next.corrected.1;
-                (next_velocity - velocity) * (after_s / signed_s(next.time, past.time))
+                (next_velocity - velocity) / signed_s(next.time, past.time)
             });
-            Some([difference - velocity * after_s, velocity + gained])
+            Some([
+                difference - velocity * after_s,
+                velocity + acceleration * after_s,
+                acceleration,
+            ])
+        })
+    }
+
+    /// The mean acceleration of the latest moment, m/s².
+    pub(super) fn acceleration(&self, time: Time, motion: &Motion) -> Vector3<f64> {
+        self.newest(1).map_or(Vector3::zeros(), |past| {
+            let velocity = past.velocity + self.corrected.1 - past.corrected.1;
+            (motion.velocity - velocity) / signed_s(time, past.time).max(1e-3)
         })
     }
 

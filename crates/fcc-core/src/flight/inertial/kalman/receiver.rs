@@ -5,11 +5,12 @@ use core::time::Duration;
 use nalgebra::{SMatrix, Vector3};
 
 use super::filter::{
-    ATTITUDE, BAROMETER_BIAS, FORCE_BIAS, Filter, POSITION, RATE_BIAS, STATES, VELOCITY,
+    ATTITUDE, BAROMETER_BIAS, FORCE_BIAS, Filter, LATENESS, POSITION, RATE_BIAS, STATES, VELOCITY,
 };
 use super::noise::{Noise, variances};
+use super::parameters as p;
+use super::path::Path;
 use super::update::{Corrects, Measurement};
-use super::{parameters as p, signed_s};
 use crate::flight::inertial::{GeodeticPosition, ObservationKind};
 use crate::framework::Time;
 
@@ -36,10 +37,8 @@ impl Filter {
             self.tracks.position.judged(taken, true);
             return;
         }
-        let difference = self.when_late(taken, place).map_or_else(
-            || self.motion.to_place(place) - self.motion.velocity * after_s,
-            |[difference, _]| difference,
-        );
+        let seen = self.seen(taken, place, after_s, self.lateness.late_s());
+        let difference = seen.difference;
         let since_s = self.tracks.position.since_tried_s(taken);
         let mut measurement = on(
             POSITION,
@@ -47,7 +46,10 @@ impl Filter {
             [horizontal, horizontal, vertical],
             since_s,
         );
-        measurement.excess *= self.lateness.excess();
+        if self.tells_lateness(taken) {
+            measurement.come_late(-seen.velocity);
+        }
+        measurement.excess *= self.late_excess();
         if self.fuse(
             ObservationKind::Position,
             taken,
@@ -60,8 +62,13 @@ impl Filter {
         }
         let is_steady = self.rates.norm() < p::LATE_RATE;
         if is_steady && self.distance(&measurement) > p::LATE_GATE {
-            self.lateness
+            let is_known = self
+                .lateness
                 .refused(&self.path, &self.motion, taken, place);
+            if is_known {
+                self.late_s = 0.0;
+                self.reset_covariance(LATENESS, 1, p::LATENESS * p::LATENESS);
+            }
         }
         if self.tracks.position.refused_s(taken) >= p::RECEIVER_REFUSED_S {
             self.motion.shift(difference);
@@ -77,9 +84,12 @@ impl Filter {
         let climbed = place.altitude_m - self.motion.place.altitude_m;
         self.motion.place = place;
         self.motion.is_located = true;
+        self.path = Path::new();
         let (horizontal, vertical) = (p::POSITION_HORIZONTAL, p::POSITION_VERTICAL);
-        self.reset_covariance(POSITION, 2, horizontal.variance());
-        self.reset_covariance(POSITION + 2, 1, vertical.variance());
+        let noises = [horizontal, horizontal, vertical];
+        let mut measurement = on(POSITION, Vector3::zeros(), noises, 0.0);
+        measurement.come_late(-self.motion.velocity);
+        self.forget(POSITION, &measurement);
         if !self.tracks.barometer.used.is_never() {
             self.barometer_bias -= climbed;
             self.take_barometer_bias_from_altitude();
@@ -98,6 +108,16 @@ impl Filter {
 
     /// A velocity over the ground, taken `after_s` after the time of the state.
     pub(super) fn velocity(&mut self, taken: Time, velocity: [f64; 3], after_s: f64) {
+        let was_used = self.tracks.velocity.used;
+        self.take_velocity(taken, velocity, after_s);
+        if was_used.is_never() && !self.tracks.velocity.used.is_never() && self.motion.is_located {
+            // It was located before it was known how it moves.
+            self.settle();
+            self.locate(self.motion.place);
+        }
+    }
+
+    fn take_velocity(&mut self, taken: Time, velocity: [f64; 3], after_s: f64) {
         let velocity = Vector3::from(velocity);
         self.receiver_mps = velocity.norm();
         let (horizontal, vertical) = (p::VELOCITY_HORIZONTAL, p::VELOCITY_VERTICAL);
@@ -107,19 +127,22 @@ impl Filter {
         }
         let since_s = self.tracks.velocity.since_tried_s(taken);
         let noises = [horizontal, horizontal, vertical];
-        let of_now = velocity - self.motion.velocity - self.acceleration * after_s;
-        let mut difference = of_now;
-        if let Some([_, then]) = self.when_late(taken, self.motion.place) {
-            let of_then = velocity - then;
-            let [far_now, far_then] =
-                [of_now, of_then].map(|one| self.distance(&on(VELOCITY, one, noises, since_s)));
-            let is_late = self.lateness.late_s() > 0.0;
-            if !is_late || !self.lateness.compare(taken, far_then - far_now) {
-                difference = of_then;
+        let place = self.motion.place;
+        let mut seen = self.seen(taken, place, after_s, 0.0);
+        if self.lateness.late_s() > 0.0 {
+            let then = self.seen(taken, place, after_s, self.lateness.late_s());
+            let [far_now, far_then] = [seen, then]
+                .map(|one| self.distance(&on(VELOCITY, velocity - one.velocity, noises, since_s)));
+            if !self.lateness.compare(taken, far_then - far_now) {
+                seen = then;
             }
         }
+        let difference = velocity - seen.velocity;
         let mut measurement = on(VELOCITY, difference, noises, since_s);
-        measurement.excess *= self.lateness.excess();
+        if self.tells_lateness(taken) {
+            measurement.come_late(-seen.acceleration);
+        }
+        measurement.excess *= self.late_excess();
         let has_heading = self.sigma(ATTITUDE + 2) < UNKNOWN_HEADING;
         let is_first = self.tracks.velocity.used.is_never()
             && (self.tracks.airspeed.used.is_never() || !has_heading);
@@ -175,14 +198,49 @@ impl Filter {
         }
     }
 
-    /// What a fix that comes late differs by from where this was then, and how this moved then.
-    fn when_late(&self, taken: Time, place: GeodeticPosition) -> Option<[Vector3<f64>; 2]> {
+    /// What a fix is compared with, that was taken `after_s` after the time of the state and
+    /// comes `late_s` later than that, and as much more as is estimated.
+    fn seen(&self, taken: Time, place: GeodeticPosition, after_s: f64, late_s: f64) -> Seen {
         /// The state of the latest moment can be moved back by this, s.
         const MOMENT_S: f64 = 0.1;
-        let then = taken - Duration::from_secs_f64(self.lateness.late_s());
-        (signed_s(self.time, then) > MOMENT_S)
-            .then(|| self.path.then(&self.motion, then, place))
-            .flatten()
+        let late_s = late_s + self.late_s;
+        let after_s = after_s - late_s;
+        let known = if after_s < -MOMENT_S {
+            let late = Duration::from_secs_f64(late_s.abs());
+            let then = if late_s < 0.0 {
+                taken + late
+            } else {
+                taken - late
+            };
+            self.path.then(&self.motion, then, place)
+        } else {
+            None
+        };
+        known.map_or_else(
+            || Seen {
+                difference: self.motion.to_place(place) - self.motion.velocity * after_s,
+                velocity: self.motion.velocity + self.acceleration * after_s,
+                acceleration: self.path.acceleration(self.time, &self.motion),
+            },
+            |[difference, velocity, acceleration]| Seen {
+                difference,
+                velocity,
+                acceleration,
+            },
+        )
+    }
+
+    /// Whether a fix tells by how much it is late: not while an accelerometer may be at the end
+    /// of its range, which looks the same.
+    fn tells_lateness(&self, now: Time) -> bool {
+        now.since(self.rough).as_secs_f64() > p::CALM_S
+    }
+
+    /// By how much the variance of a fix is larger: the present error is not that of its time,
+    /// and what is corrected shows only after this.
+    fn late_excess(&self) -> f64 {
+        let late_s = self.lateness.late_s() + self.late_s;
+        1.0 + late_s * late_s
     }
 
     /// Without a compass: most of what moves, moves ahead.
@@ -196,9 +254,25 @@ impl Filter {
         self.forget_wind();
     }
 
+    /// Three states are as measured from here on: as uncertain as that, and wrong by as much
+    /// as it comes later than is believed.
     fn forget(&mut self, at: usize, measurement: &Measurement<3>) {
         for axis in 0..3 {
             self.reset_covariance(at + axis, 1, measurement.variance[axis]);
+        }
+        let by_lateness = measurement.jacobian.column(LATENESS).into_owned();
+        let (mut lateness, variance) = (
+            self.covariance.row(LATENESS).into_owned(),
+            self.covariance[(LATENESS, LATENESS)],
+        );
+        for axis in 0..3 {
+            lateness[at + axis] = -by_lateness[axis] * variance;
+        }
+        for axis in 0..3 {
+            let mut row = lateness * -by_lateness[axis];
+            row[at + axis] += measurement.variance[axis];
+            self.covariance.set_row(at + axis, &row);
+            self.covariance.set_column(at + axis, &row.transpose());
         }
     }
 
@@ -206,6 +280,23 @@ impl Filter {
     pub(super) fn has_receiver(&self) -> bool {
         self.tracks.velocity.since_used_s(self.time) < p::UNAIDED_S
             || self.tracks.position.since_used_s(self.time) < p::UNAIDED_S
+    }
+}
+
+/// What a fix is compared with.
+#[derive(Clone, Copy, Debug)]
+struct Seen {
+    /// How far its place is from where this was, m.
+    difference: Vector3<f64>,
+    /// How this moved then, m/s, m/s².
+    velocity: Vector3<f64>,
+    acceleration: Vector3<f64>,
+}
+
+impl Measurement<3> {
+    /// What is measured changes by so much with each second that it comes later.
+    fn come_late(&mut self, by: Vector3<f64>) {
+        self.jacobian.set_column(LATENESS, &by);
     }
 }
 
