@@ -110,7 +110,7 @@ pub(super) const VELOCITY_VERTICAL: Noise = Noise::new(0.5, 0.2);
 /// By how much fixes are later than they say, s, its random walk, s/√s, and the most: a
 /// receiver computes for 0.1 to 0.3 s, and a serial line takes its time.
 pub(super) const LATENESS: f64 = 0.3;
-pub(super) const LATENESS_WALK: f64 = 0.005;
+pub(super) const LATENESS_WALK: f64 = 0.02;
 pub(super) const LARGEST_LATENESS: f64 = 2.0;
 /// It is not learned after a specific force above this, m/s², the mean of this time, s, for a
 /// time, s: an accelerometer of 2 g may be at the end of its range.
