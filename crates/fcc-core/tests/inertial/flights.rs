@@ -245,10 +245,6 @@ fn a_slow_take_off_roll_is_no_rest() {
 /// three times that.
 #[test]
 fn a_receiver_that_becomes_late_does_not_cost_the_attitude() {
-    fn turns(time_s: f64) -> (f64, f64, f64) {
-        let share = (time_s / 15.0).sin();
-        (30.0_f64.to_radians() * share * share * share, 0.0, 50.0)
-    }
     for (late_s, to_s, airspeed) in [
         (0.3, 240.0, true),
         (0.7, 240.0, true),
@@ -257,26 +253,64 @@ fn a_receiver_that_becomes_late_does_not_cost_the_attitude() {
         (3.0, 150.0, true),
         (4.0, 240.0, true),
     ] {
-        for seed in 41..=43 {
-            let fitted = Fitted {
-                receiver_late: (late_s, (60.0, to_s)),
-                airspeed,
-                ..Fitted::default()
-            };
-            let flight = Flight::new(turns, 1.0, wind_20_kt()).in_turbulence(seed);
-            let mut run = Run::new(flight, fitted, seed);
-            run.until(60.0, |_, _| {});
-            let (mut squares, mut samples, mut most) = (0.0, 0.0, 0.0_f64);
-            run.until(240.0, |truth, solution| {
-                let [roll, pitch, _] = angle_errors(truth, solution);
-                let off = roll.max(pitch);
-                squares += off * off;
-                samples += 1.0;
-                most = most.max(off);
-            });
-            let rms = f64::sqrt(squares / samples);
-            let what = format!("{late_s} s to {to_s} s, seed {seed}: {rms:.1}° RMS, {most:.1}°");
-            assert!(rms < 3.0 && most < 9.0, "{what}");
+        let fitted = Fitted {
+            receiver_late: (late_s, (60.0, to_s)),
+            airspeed,
+            ..Fitted::default()
+        };
+        late(fitted, 60.0);
+    }
+}
+
+/// The same by and by, and from the first fix on. At last it is known by how much.
+#[test]
+fn fixes_may_be_late_from_the_start_or_become_so_slowly() {
+    for (late_s, from_s, later_by, airspeed) in [
+        (0.25, 0.0, f64::MAX, true),
+        (0.5, 0.0, f64::MAX, false),
+        (1.0, 0.0, f64::MAX, true),
+        (1.0, 60.0, 0.02, true),
+        (2.0, 60.0, 0.05, true),
+        (2.0, 60.0, 0.2, false),
+    ] {
+        let fitted = Fitted {
+            receiver_late: (late_s, (from_s, f64::INFINITY)),
+            later_by,
+            airspeed,
+            ..Fitted::default()
+        };
+        for found in late(fitted, 30.0) {
+            let off_s = (found.fixes_late_s - late_s).abs();
+            assert!(off_s < 0.15, "{late_s} s: {} s", found.fixes_late_s);
         }
     }
+}
+
+/// Turns to both sides in wind and turbulence with fixes that come late, judged from a time
+/// on; what is estimated at last.
+fn late(fitted: Fitted, judged_from_s: f64) -> Vec<Solution> {
+    fn turns(time_s: f64) -> (f64, f64, f64) {
+        let share = (time_s / 15.0).sin();
+        (30.0_f64.to_radians() * share * share * share, 0.0, 50.0)
+    }
+    let fly = |seed| {
+        let flight = Flight::new(turns, 1.0, wind_20_kt()).in_turbulence(seed);
+        let mut run = Run::new(flight, fitted, seed);
+        run.until(judged_from_s, |_, _| {});
+        let (mut squares, mut samples, mut most) = (0.0, 0.0, 0.0_f64);
+        run.until(240.0, |truth, solution| {
+            let [roll, pitch, _] = angle_errors(truth, solution);
+            let off = roll.max(pitch);
+            squares += off * off;
+            samples += 1.0;
+            most = most.max(off);
+        });
+        let rms = f64::sqrt(squares / samples);
+        let (late, by) = (fitted.receiver_late, fitted.later_by);
+        let what = format!("{late:?}, {by} s/s, seed {seed}: {rms:.2}° RMS, {most:.2}°");
+        println!("{what}, {:.2} s", run.solution.fixes_late_s);
+        assert!(rms < 3.0 && most < 9.0, "{what}");
+        run.solution
+    };
+    (41..=43).map(fly).collect()
 }

@@ -31,6 +31,8 @@ pub(crate) struct Fitted {
     pub(crate) receiver_lost_s: (f64, f64),
     /// Fixes come later by this time than they say, s, from here to there, s.
     pub(crate) receiver_late: (f64, (f64, f64)),
+    /// That time comes to it by so much in a second.
+    pub(crate) later_by: f64,
     /// Gyroscopes and accelerometers are both lost from here to there, s.
     pub(crate) inertial_lost_s: (f64, f64),
     /// The compass is turned by an angle from a time on, rad, s.
@@ -55,6 +57,7 @@ impl Default for Fitted {
             receiver: true,
             receiver_lost_s: (f64::INFINITY, f64::INFINITY),
             receiver_late: (0.0, (0.0, f64::INFINITY)),
+            later_by: f64::MAX,
             inertial_lost_s: (f64::INFINITY, f64::INFINITY),
             compass_turned: (0.0, f64::INFINITY),
             slow_errors: true,
@@ -181,7 +184,11 @@ impl Run {
             if !(lost.0..lost.1).contains(&truth.time_s) {
                 let (late_s, (from_s, to_s)) = self.fitted.receiver_late;
                 let is_late = (from_s..to_s).contains(&truth.time_s);
-                let late_s = if is_late { late_s } else { 0.0 };
+                let late_s = if is_late {
+                    late_s.min((truth.time_s - from_s) * self.fitted.later_by)
+                } else {
+                    0.0
+                };
                 self.late
                     .push_back((truth.time_s + RECEIVER_DELAY_S + late_s, *truth));
             }

@@ -1,5 +1,5 @@
 //! An error-state Kalman filter (Solà 2017, *Quaternion kinematics for the
-//! error-state Kalman filter*, arXiv 1711.02508): 24 states.
+//! error-state Kalman filter*, arXiv 1711.02508): 25 states.
 //!
 //! | states | unit | source of what is known |
 //! |---|---|---|
@@ -9,6 +9,7 @@
 //! | bias of the barometer | m | the receiver's altitude |
 //! | the earth's and the aircraft's magnetic field | µT | a model; turning |
 //! | wind, north and east | m/s | airspeed with a receiver |
+//! | lateness of a receiver's fixes | s | turns and changes of speed |
 //!
 //! A sample is used at the time at which it was taken: the filter runs behind
 //! the present by the longest delay ([`KalmanConfig::delay`]), and the estimate
@@ -165,9 +166,9 @@ impl KalmanNavigation {
         self.filter.change_magnetometer();
     }
 
-    /// By how much the fixes of the receiver are later than they say, s; 0 if they are not.
-    pub const fn late_fixes_s(&self) -> f64 {
-        self.filter.lateness.late_s()
+    /// By how much the fixes of the receiver are later than they say, s.
+    pub fn late_fixes_s(&self) -> f64 {
+        self.filter.fixes_late_s()
     }
 
     /// Forgets the samples of a sensor that wait until they are used.

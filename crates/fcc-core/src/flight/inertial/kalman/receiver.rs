@@ -230,6 +230,11 @@ impl Filter {
         )
     }
 
+    /// By how much fixes are later than they say, s.
+    pub(super) fn fixes_late_s(&self) -> f64 {
+        self.lateness.late_s() + self.late_s
+    }
+
     /// Whether a fix tells by how much it is late: not while an accelerometer may be at the end
     /// of its range, which looks the same.
     fn tells_lateness(&self, now: Time) -> bool {
@@ -239,8 +244,7 @@ impl Filter {
     /// By how much the variance of a fix is larger: the present error is not that of its time,
     /// and what is corrected shows only after this.
     fn late_excess(&self) -> f64 {
-        let late_s = self.lateness.late_s() + self.late_s;
-        1.0 + late_s * late_s
+        1.0 + self.fixes_late_s() * self.fixes_late_s()
     }
 
     /// Without a compass: most of what moves, moves ahead.

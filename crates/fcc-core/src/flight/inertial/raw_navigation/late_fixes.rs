@@ -10,7 +10,11 @@ use crate::framework::{Reading, Time};
 /// A fix that is older than this when it comes is not the present place.
 const LATE: Duration = Duration::from_millis(500);
 
-/// By how much fixes are later than they say, s, and what takes the place of a late one.
+/// A lateness that differs by this from what was told, s, is told.
+const TOLD_S: f64 = 0.3;
+
+/// By how much fixes are later than they say, s, as it was told last, and what takes the place
+/// of a late one.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LateFixes {
     late_s: f64,
@@ -38,11 +42,13 @@ impl RawNavigation {
             Method::Thesis(_) => 0.0,
         };
         let late = &mut self.late_fixes;
-        late.is_news = late_s != late.late_s;
-        late.late_s = late_s;
+        late.is_news = (late_s - late.late_s).abs() > TOLD_S;
+        if late.is_news {
+            late.late_s = if late_s > TOLD_S { late_s } else { 0.0 };
+        }
         let fix = self.used.gnss;
         if is_new(&mut late.last, &fix, now) {
-            let age = fix.age(now) + Duration::from_secs_f64(late_s);
+            let age = fix.age(now) + Duration::from_secs_f64(late_s.max(0.0));
             let [north_mps, east_mps, down_mps] = self.solution.velocity_mps;
             let place = self.solution.position;
             let position = Position {
