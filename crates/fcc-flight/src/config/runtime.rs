@@ -138,7 +138,7 @@ impl Default for RealtimeSection {
             cpu: None,
             cpu_dma_latency_us: None,
             lock_memory: true,
-            stack_prefault_kib: 512,
+            stack_prefault_kib: 384,
             timer_slack_ns: 1,
             strict: false,
         }
