@@ -27,7 +27,7 @@ fn fly(timer: ManualTimer) -> Vec<(State, String)> {
     let parts = Parts {
         timer: Box::new(timer),
         sensors: assembly.sensors,
-        controller: assembly.autopilot,
+        controller: *assembly.autopilot,
         actuators: assembly.actuators,
     };
     let (mut machine, _link) = Machine::new(parts, &assembly.loop_config).unwrap();

@@ -77,7 +77,7 @@ pub(crate) fn fly(config: &Config, happenings: &Happenings) -> Vec<FlightMessage
     let parts = Parts {
         timer: Box::new(timer),
         sensors,
-        controller: assembly.autopilot,
+        controller: *assembly.autopilot,
         actuators: assembly.actuators,
     };
     let (mut machine, mut link) = Machine::new(parts, &assembly.loop_config).unwrap();

@@ -50,7 +50,7 @@ impl Plan {
                     })
                 })
                 .collect(),
-            controller: assembly.autopilot,
+            controller: *assembly.autopilot,
             actuators: assembly.actuators,
         };
         let (mut machine, mut link) = Machine::new(parts, &assembly.loop_config).unwrap();

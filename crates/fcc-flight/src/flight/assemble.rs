@@ -39,8 +39,9 @@ use crate::config::{
 pub struct Assembly {
     /// Sampled in this order, which is that of preference.
     pub sensors: Vec<Box<dyn Sensor<Measurements>>>,
-    /// Navigation, guidance and control.
-    pub autopilot: Autopilot,
+    /// Navigation, guidance and control: not on the stack of the first thread, which stays in
+    /// memory.
+    pub autopilot: Box<Autopilot>,
     /// Replaces the autopilot's outputs; none in flight.
     pub control: Option<Box<dyn ControlOverride>>,
     /// Driven in this order.
@@ -208,7 +209,7 @@ fn assemble_with(
     }
     Ok(Assembly {
         sensors,
-        autopilot: Autopilot::new(config.autopilot_config()),
+        autopilot: Box::new(Autopilot::new(config.autopilot_config())),
         control: None,
         actuators,
         loop_config,

@@ -98,7 +98,7 @@ pub fn fly(
     let parts = Parts {
         timer,
         sensors,
-        controller: Pilot::new(assembly.autopilot, assembly.control),
+        controller: Pilot::new(*assembly.autopilot, assembly.control),
         actuators: assembly.actuators,
     };
     let mut ground = GroundWatch::new(assembly.true_now);
