@@ -182,7 +182,7 @@ def with_field(per_ut: float) -> dict[str, Any]:
 
 UNLIKELY: list[tuple[dict[str, Any], str]] = [
     (turning(180.0 / math.pi), "the field of the magnetometer turns .* are they in °/s"),
-    (with_field(1e-6), "middle sample is 4.5e-5, .* 22 to 67 µT: is it in tesla"),
+    (with_field(1e-6), "middle sample is 4.5e-5, .* 22 to 67 µT, .* left out: is it in tesla"),
     (with_field(10.0), "middle sample is 447.2, .* is it in milligauss"),
     (with_field(1e-2), "middle sample is 0.4, .* is it in gauss"),
     ({"gyroscope": GYROSCOPE, "airspeed": (TIMES_S, 0.0 * TIMES_S - 30.0)}, "sign wrong"),
@@ -202,6 +202,42 @@ UNLIKELY: list[tuple[dict[str, Any], str]] = [
         r"gnss_velocity: 102 of its 300 .* covers 0 to 179",
     ),
 ]
+
+
+def test_what_is_no_field_of_the_earth_is_left_out() -> None:
+    with pytest.warns(UserWarning, match="left out"):
+        found = fcc.navigate(**with_field(10.0))
+    assert found["heading_reference"] == "none"
+    assert "magnetometer" not in found["innovations"]
+
+
+LATE_S = 0.6
+"""More than `delays_s` may say."""
+
+
+def test_it_is_found_by_how_much_fixes_are_late() -> None:
+    """Coordinated turns at 30 m/s, in which the force points out of the floor."""
+    speed_mps, gravity_mps2 = 30.0, 9.80665
+    times_s = np.arange(0.0, 120.0, 0.02)
+    turn_rate = 0.15 * np.sin(times_s / 6.0)
+    heading = 0.15 * 6.0 * (1.0 - np.cos(times_s / 6.0))
+    roll = np.arctan(speed_mps * turn_rate / gravity_mps2)
+    rates = np.array([np.gradient(roll, 0.02), turn_rate * np.sin(roll), turn_rate * np.cos(roll)])
+    force = np.array([0.0 * roll, 0.0 * roll, -gravity_mps2 / np.cos(roll)])
+    velocity = speed_mps * np.array([np.cos(heading), np.sin(heading), 0.0 * heading])
+    metres = np.cumsum(velocity, axis=1) * 0.02
+    fixes = slice(None, None, 10)
+    position = (metres[0] / 6_367_000.0 + 0.8, metres[1] / 4_445_000.0 + 0.1, 0.0 * roll)
+    found = fcc.navigate(
+        gyroscope=(times_s, rates.T),
+        accelerometer=(times_s, force.T),
+        gnss_position=(times_s[fixes] + LATE_S, *(part[fixes] for part in position)),
+        gnss_velocity=(times_s[fixes] + LATE_S, velocity.T[fixes]),
+    )
+    assert found["gnss_late_s"][-1] == pytest.approx(LATE_S, abs=0.1)
+    assert found["gnss_late_s_sigma"][-1] < 0.1
+    error = (found["roll_rad"] - roll)[times_s > 60.0]
+    assert np.degrees(np.sqrt(np.mean(error**2))) < 1.0
 
 
 @pytest.mark.parametrize(("arguments", "words"), UNLIKELY)

@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 use super::kind::{KINDS, Kind, Series};
 use super::mounting::Mounting;
 use super::plausible;
-use super::units::middle_strength;
+use super::units::{self, middle_strength};
 use crate::arguments::within;
 
 /// The longest delay, s: the filter keeps half a second of samples.
@@ -124,8 +124,25 @@ impl Sources {
         }
         // After the samples themselves: in a wrong unit they are not possible.
         plausible::check(py, &series, mounting)?;
+        let mut fields = KINDS
+            .iter()
+            .zip(&series)
+            .filter(|(kind, _)| kind.name == "magnetometer");
+        if fields.any(|(_, field)| field.as_ref().and_then(units::field).is_some()) {
+            sources.leave_field_out();
+        }
         sources.events.sort_by_key(|event| event.arrived);
         Ok(sources)
+    }
+
+    /// What is not the earth's field gives no heading.
+    fn leave_field_out(&mut self) {
+        let is_field = |event: &Event| matches!(event.observation, Observation::MagneticField(_));
+        self.events.retain(|event| !is_field(event));
+        let names = KINDS.iter().zip(&mut self.present);
+        for (_, present) in names.filter(|(kind, _)| kind.name == "magnetometer") {
+            *present = false;
+        }
     }
 
     fn add(

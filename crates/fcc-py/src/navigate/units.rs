@@ -33,7 +33,7 @@ pub(super) fn middle_strength(rows: &[[f64; 3]]) -> Option<f64> {
     strengths.get(strengths.len() / 2).copied()
 }
 
-/// Whether a field is not that of the earth.
+/// Why a field is not that of the earth.
 pub(super) fn field(magnetometer: &Series) -> Option<String> {
     let (weakest, strongest) = FIELD_UT;
     let middle = middle_strength(&magnetometer.rows)?;
@@ -53,7 +53,7 @@ pub(super) fn field(magnetometer: &Series) -> Option<String> {
     };
     Some(format!(
         "magnetometer: the strength of its middle sample is {middle}, and the earth's field has \
-         {weakest} to {strongest} µT: {question}"
+         {weakest} to {strongest} µT, so it is left out: {question}"
     ))
 }
 
