@@ -3,7 +3,7 @@
 
 use nix::sys::resource::{Resource, getrlimit, rlim_t, setrlimit};
 
-/// Enough for every command, and a usual limit. A flight needs some 0.9 MiB to begin.
+/// Enough for every command, and a usual limit. A flight needs some 0.5 MiB to begin.
 const WANTED_BYTES: rlim_t = 8 << 20;
 /// Less than this is refused.
 const LEAST_BYTES: rlim_t = 2 << 20;
