@@ -308,7 +308,6 @@ fn late(fitted: Fitted, judged_from_s: f64) -> Vec<Solution> {
         let rms = f64::sqrt(squares / samples);
         let (late, by) = (fitted.receiver_late, fitted.later_by);
         let what = format!("{late:?}, {by} s/s, seed {seed}: {rms:.2}° RMS, {most:.2}°");
-        println!("{what}, {:.2} s", run.solution.fixes_late_s);
         assert!(rms < 3.0 && most < 9.0, "{what}");
         run.solution
     };
