@@ -43,6 +43,11 @@ pub(super) struct Series {
 }
 
 impl Kind {
+    /// Whether a satellite receiver gives it.
+    pub(super) fn is_of_receiver(&self) -> bool {
+        self.name.starts_with("gnss")
+    }
+
     /// The tuple of times and values.
     pub(super) fn read(&self, source: &Bound<'_, PyAny>) -> PyResult<Series> {
         let name = self.name;

@@ -3,6 +3,7 @@
 mod kind;
 mod magnetism;
 mod mounting;
+mod no_fix;
 mod plausible;
 mod result;
 mod sources;

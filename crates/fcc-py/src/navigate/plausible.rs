@@ -81,6 +81,12 @@ fn period((kind, series): &(&Kind, &Series)) -> PyResult<Option<String>> {
         .collect();
     periods_s.sort_by(f64::total_cmp);
     let middle_s = periods_s.get(periods_s.len() / 2).copied().unwrap_or(0.0);
+    if middle_s <= 0.0 && !periods_s.is_empty() {
+        return Err(PyValueError::new_err(format!(
+            "{}: most of its times are equal: give them as float64 (float32 has seven digits)",
+            kind.name
+        )));
+    }
     if middle_s <= CONNECTED_S {
         return Ok(None);
     }

@@ -1,5 +1,7 @@
 //! The sources: arrays of times and of values, checked, as one series.
 
+use std::collections::HashSet;
+
 use fcc_core::flight::inertial::{GeodeticPosition, Observation};
 use fcc_core::framework::Time;
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -8,6 +10,7 @@ use pyo3::types::PyDict;
 
 use super::kind::{KINDS, Kind, Series};
 use super::mounting::Mounting;
+use super::no_fix;
 use super::plausible;
 use super::units::{self, middle_strength};
 use crate::arguments::within;
@@ -117,18 +120,21 @@ impl Sources {
             first_place: None,
         };
         sources.steps.dedup();
+        let of = |name: &str| {
+            let mut named = KINDS.iter().zip(&series);
+            named
+                .find(|(kind, _)| kind.name == name)
+                .and_then(|(_, series)| series.as_ref())
+        };
+        let no_fix = no_fix::times(of("gnss_position"), of("gnss_velocity"));
         for ((kind, series), delay_s) in KINDS.iter().zip(&series).zip(delays) {
             if let Some(series) = series {
-                sources.add(kind, series, delay_s, mounting)?;
+                sources.add(kind, series, delay_s, mounting, &no_fix)?;
             }
         }
         // After the samples themselves: in a wrong unit they are not possible.
         plausible::check(py, &series, mounting)?;
-        let mut fields = KINDS
-            .iter()
-            .zip(&series)
-            .filter(|(kind, _)| kind.name == "magnetometer");
-        if fields.any(|(_, field)| field.as_ref().and_then(units::field).is_some()) {
+        if of("magnetometer").and_then(units::field).is_some() {
             sources.leave_field_out();
         }
         sources.events.sort_by_key(|event| event.arrived);
@@ -151,6 +157,7 @@ impl Sources {
         series: &Series,
         delay_s: f64,
         mounting: &Mounting,
+        no_fix: &HashSet<u64>,
     ) -> PyResult<()> {
         self.delay_s = self.delay_s.max(delay_s);
         let mut kept = 0;
@@ -159,6 +166,9 @@ impl Sources {
                 continue;
             }
             kept += 1;
+            if kind.is_of_receiver() && no_fix.contains(&time_s.to_bits()) {
+                continue;
+            }
             let since_s = time_s - self.begin_s;
             let observation = observation(kind.name, mounting.body(kind.name, *row));
             if let (Observation::Position(place), None) = (observation, self.first_place) {
