@@ -117,6 +117,9 @@ pub(super) const LARGEST_LATENESS: f64 = 2.0;
 pub(super) const LOAD_S: f64 = 0.1;
 pub(super) const ROUGH: f64 = 16.0;
 pub(super) const CALM_S: f64 = 2.0;
+/// ... nor before something has been under way for this time, s: what stood seems to stand for
+/// a moment longer.
+pub(super) const UNDER_WAY_S: f64 = 5.0;
 
 /// Airspeed, m/s: the tube's place, and gusts that are shorter than the wind's
 /// walk; a share of the airspeed (calibration), and the sensor's own noise and

@@ -46,16 +46,14 @@ impl Filter {
             [horizontal, horizontal, vertical],
             since_s,
         );
-        if self.tells_lateness(taken) {
-            measurement.come_late(-seen.velocity);
-        }
+        measurement.come_late(-seen.velocity * self.shows_lateness(taken));
         measurement.excess *= self.late_excess();
         if self.fuse(
             ObservationKind::Position,
             taken,
             &measurement,
             p::GATE,
-            Corrects::All,
+            self.corrected_by_fix(taken),
         ) {
             self.lateness.accepted();
             return;
@@ -139,9 +137,7 @@ impl Filter {
         }
         let difference = velocity - seen.velocity;
         let mut measurement = on(VELOCITY, difference, noises, since_s);
-        if self.tells_lateness(taken) {
-            measurement.come_late(-seen.acceleration);
-        }
+        measurement.come_late(-seen.acceleration * self.shows_lateness(taken));
         measurement.excess *= self.late_excess();
         let has_heading = self.sigma(ATTITUDE + 2) < UNKNOWN_HEADING;
         let is_first = self.tracks.velocity.used.is_never()
@@ -153,7 +149,7 @@ impl Filter {
             taken,
             &measurement,
             p::GATE,
-            Corrects::All,
+            self.corrected_by_fix(taken),
         ) {
             self.trend
                 .add(taken, difference.xy(), horizontal.variance());
@@ -235,10 +231,20 @@ impl Filter {
         self.lateness.late_s() + self.late_s
     }
 
-    /// Whether a fix tells by how much it is late: not while an accelerometer may be at the end
-    /// of its range, which looks the same.
-    fn tells_lateness(&self, now: Time) -> bool {
-        now.since(self.rough).as_secs_f64() > p::CALM_S
+    /// The share of what a fix shows of its lateness that is taken for that: none while an
+    /// accelerometer may be at the end of its range, which looks the same.
+    fn shows_lateness(&self, now: Time) -> f64 {
+        let is_calm = now.since(self.rough).as_secs_f64() > p::CALM_S;
+        f64::from(u8::from(is_calm))
+    }
+
+    /// What begins to move may be held for standing, which looks like fixes that come early.
+    fn corrected_by_fix(&self, now: Time) -> Corrects {
+        if now.since(self.tracks.rest.used).as_secs_f64() > p::UNDER_WAY_S {
+            Corrects::All
+        } else {
+            Corrects::AllButLateness
+        }
     }
 
     /// By how much the variance of a fix is larger: the present error is not that of its time,

@@ -2,7 +2,9 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::filter::{ATTITUDE, BODY_FIELD, EARTH_FIELD, Filter, RATE_BIAS, STATES, StateVector};
+use super::filter::{
+    ATTITUDE, BODY_FIELD, EARTH_FIELD, Filter, LATENESS, RATE_BIAS, STATES, StateVector,
+};
 use super::innovations::Innovation;
 use crate::flight::inertial::ObservationKind;
 use crate::framework::Time;
@@ -31,6 +33,8 @@ impl<const N: usize> Measurement<N> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Corrects {
     All,
+    /// By how much fixes are late is considered, and not told by them.
+    AllButLateness,
     /// A compass says nothing of the horizon: near iron it would tip it. The
     /// other states are considered with their uncertainty, and stay (Schmidt
     /// 1966).
@@ -39,7 +43,10 @@ pub(super) enum Corrects {
 
 impl Corrects {
     fn mask(self, gain: &mut StateVector) {
-        if self == Self::All {
+        if self == Self::AllButLateness {
+            gain[LATENESS] = 0.0;
+        }
+        if self != Self::Heading {
             return;
         }
         for at in 0..STATES {
@@ -97,7 +104,7 @@ impl Filter {
         corrects: Corrects,
     ) {
         let mut error = StateVector::zeros();
-        let watches = corrects == Corrects::All && self.is_moving();
+        let watches = corrects != Corrects::Heading && self.is_moving();
         for axis in 0..N {
             let row = measurement.jacobian.row(axis).transpose();
             let variance = measurement.variance[axis] * measurement.excess[axis];

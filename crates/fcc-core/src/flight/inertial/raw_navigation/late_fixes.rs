@@ -38,7 +38,8 @@ impl RawNavigation {
 
     pub(super) fn follow_late_fixes(&mut self, now: Time) {
         let late_s = match &self.method {
-            Method::Kalman(navigation) => navigation.late_fixes_s(),
+            // What comes before it is of is in time.
+            Method::Kalman(navigation) => navigation.late_fixes_s().max(0.0),
             Method::Thesis(_) => 0.0,
         };
         let late = &mut self.late_fixes;
@@ -48,7 +49,7 @@ impl RawNavigation {
         }
         let fix = self.used.gnss;
         if is_new(&mut late.last, &fix, now) {
-            let age = fix.age(now) + Duration::from_secs_f64(late_s.max(0.0));
+            let age = fix.age(now) + Duration::from_secs_f64(late_s);
             let [north_mps, east_mps, down_mps] = self.solution.velocity_mps;
             let place = self.solution.position;
             let position = Position {
