@@ -60,11 +60,11 @@ impl PortWatch {
             LOOK_EVERY
         };
         if self.looked.is_none_or(|at| at.elapsed() >= every) {
-            self.looked = Some(Instant::now());
             self.look_at_sockets(link, flown.is_held());
             if self.user.is_none() {
                 self.probe_port(link, flown.is_held());
             }
+            self.looked = Some(Instant::now());
         }
         link.adapt_filter(self.owned.as_deref());
     }

@@ -292,10 +292,11 @@ fn retry_until_released(
         }
         let is_clear = readback == [Some(false); 2] && answered.elapsed() < AGAIN_AFTER;
         if !is_clear && sent.is_none_or(|at| at.elapsed() >= AGAIN_AFTER) {
-            sent = Some(Instant::now());
             conversation.look_at_ports();
             readback = [None; 2];
             conversation.send_release(controls);
+            // Answers get the whole interval, however long it took to look.
+            sent = Some(Instant::now());
             refused = false;
         }
         if conversation.receive(&mut readback) {

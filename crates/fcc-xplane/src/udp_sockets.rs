@@ -38,7 +38,9 @@ struct Socket {
 pub(crate) struct UdpSockets {
     ip: IpAddr,
     kernel: Option<SocketDiagnosis>,
-    listed: Listed,
+    /// None before something in it is asked for: reading it can take a second, with
+    /// thousands of sockets.
+    listed: Option<Listed>,
 }
 
 impl UdpSockets {
@@ -47,17 +49,19 @@ impl UdpSockets {
         Self {
             ip,
             kernel: SocketDiagnosis::open().ok(),
-            listed: Listed::default(),
+            listed: None,
         }
     }
 
-    /// Lists them anew. Without a list a single one can still be asked for.
+    /// Makes what is asked next be looked for anew.
     pub(crate) fn look(&mut self) {
-        self.look_at(MOST_BYTES);
+        self.listed = None;
     }
 
-    fn look_at(&mut self, most_bytes: usize) {
-        self.listed = Listed::read(self.ip, most_bytes).unwrap_or_default();
+    /// Without a list a single one can still be asked for.
+    fn listed(&mut self) -> &Listed {
+        self.listed
+            .get_or_insert_with(|| Listed::read(self.ip, MOST_BYTES).unwrap_or_default())
     }
 
     /// Whose socket this port is; none if no program has it.
@@ -69,18 +73,21 @@ impl UdpSockets {
             Some(kernel) => kernel.user_of(SocketAddr::new(self.ip, port)),
             None => Err(io::ErrorKind::Unsupported.into()),
         };
-        match (asked, self.listed.user_of(port)) {
-            // One that is connected to another address is only listed.
-            (Ok(Some(user)), _) | (_, Some(user)) => Ok(Some(user)),
-            (Ok(None), None) => Ok(None),
-            (Err(_), None) if self.listed.is_whole => Ok(None),
-            (Err(error), None) => Err(error),
+        if let Ok(Some(user)) = asked {
+            return Ok(Some(user));
+        }
+        // One that is connected to another address is only listed.
+        let listed = self.listed();
+        match (asked, listed.user_of(port)) {
+            (_, Some(user)) => Ok(Some(user)),
+            (Err(error), None) if !listed.is_whole => Err(error),
+            (_, None) => Ok(None),
         }
     }
 
     /// The program that has this port, by the list; none if it cannot be found out.
-    pub(crate) fn program_at(&self, port: u16) -> Option<Program> {
-        let mut listed = self.listed.sockets.iter();
+    pub(crate) fn program_at(&mut self, port: u16) -> Option<Program> {
+        let mut listed = self.listed().sockets.iter();
         Program::with_socket(listed.find(|socket| socket.port == port)?.inode)
     }
 
@@ -88,7 +95,7 @@ impl UdpSockets {
     /// many.
     pub(crate) fn ports_of(&mut self, user: u32, likely: &[u16], most: usize) -> Vec<u16> {
         let mut ports: Vec<u16> = likely.to_vec();
-        ports.extend(self.listed.ports_of(user));
+        ports.extend(self.listed().ports_of(user));
         let mut found = Vec::new();
         for port in ports {
             let is_new = port != 0 && found.len() < most && !found.contains(&port);
@@ -252,9 +259,13 @@ mod tests {
     fn a_socket_that_is_not_listed_is_found() {
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
         let port = socket.local_addr().unwrap().port();
-        let mut sockets = UdpSockets::sending_from([127, 0, 0, 1].into());
-        sockets.look_at(HEAD.len());
-        assert_eq!(sockets.listed.sockets, []);
+        let ip = [127, 0, 0, 1].into();
+        let mut sockets = UdpSockets::sending_from(ip);
+        assert_eq!(sockets.user_of(port).unwrap(), Some(own_user()));
+        assert_eq!(sockets.listed, None);
+        let begun = Listed::read(ip, HEAD.len()).unwrap();
+        assert_eq!(begun.sockets, []);
+        sockets.listed = Some(begun);
         assert_eq!(sockets.user_of(port).unwrap(), Some(own_user()));
         assert_eq!(sockets.ports_of(own_user(), &[port], 1), [port]);
         assert_eq!(sockets.ports_of(own_user() + 1, &[port], 1), []);
