@@ -41,7 +41,11 @@ pub(crate) struct Wire {
 
 impl Wire {
     pub(crate) fn open(frames_hz: u32) -> Result<Self, Box<dyn Error>> {
-        let simulator = FakeXPlane::new();
+        let mut simulator = FakeXPlane::new();
+        // Its values are constant: rates and a bank would contradict them.
+        for name in ["phi", "Prad", "Qrad", "Rrad"] {
+            simulator.set(&format!("sim/flightmodel/position/{name}"), 0.0);
+        }
         setsockopt(&simulator.socket.as_fd(), ReceiveTimestampns, &true)?;
         Ok(Self {
             simulator,
