@@ -30,6 +30,11 @@ pub(super) const BODY_FIELD: usize = 19;
 pub(super) const WIND: usize = 22;
 pub(super) const LATENESS: usize = 24;
 
+/// The first of them: those that others change as time passes, and with those that
+/// change them.
+const MOVED: usize = RATE_BIAS;
+const MOVING: usize = BAROMETER_BIAS;
+
 /// The covariance moves on in steps of at least this, s.
 const COVARIANCE_S: f64 = 0.008;
 /// Inertial samples further apart than this are not connected, s.
@@ -91,6 +96,32 @@ struct Pending {
     attitude_variance: f64,
     velocity_variance: f64,
     rate_bias_variance: f64,
+}
+
+impl Pending {
+    /// The transpose of F times a matrix whose columns are of the states. F is the
+    /// identity but for three blocks: the biases act on attitude and velocity, attitude
+    /// on velocity, velocity on position.
+    fn move_columns<const ROWS: usize, const COLUMNS: usize>(
+        &self,
+        matrix: &mut SMatrix<f64, ROWS, COLUMNS>,
+    ) {
+        let columns = |matrix: &SMatrix<f64, ROWS, COLUMNS>, at: usize| {
+            matrix.fixed_columns::<3>(at).into_owned()
+        };
+        let from_attitude = -self.velocity.cross_matrix().transpose();
+        let from_biases = -self.turned_s.transpose();
+        let velocity = columns(matrix, VELOCITY) * self.dt_s;
+        let mut position = matrix.fixed_columns_mut::<3>(POSITION);
+        position += velocity;
+        let by_biases = columns(matrix, FORCE_BIAS) * from_biases;
+        let by_attitude = columns(matrix, ATTITUDE) * from_attitude;
+        let mut velocity = matrix.fixed_columns_mut::<3>(VELOCITY);
+        velocity += by_attitude + by_biases;
+        let by_biases = columns(matrix, RATE_BIAS) * from_biases;
+        let mut attitude = matrix.fixed_columns_mut::<3>(ATTITUDE);
+        attitude += by_biases;
+    }
 }
 
 impl Filter {
@@ -191,33 +222,14 @@ impl Filter {
     }
 
     /// Moves the covariance on to the time of the state: F P Fᵀ + Q (Solà 2017,
-    /// section 7.2 with the attitude's error in earth axes), F being the identity
-    /// but for three blocks: the biases act on attitude and velocity, attitude on
-    /// velocity, velocity on position.
+    /// section 7.2 with the attitude's error in earth axes).
     pub(super) fn settle(&mut self) {
         let pending = core::mem::take(&mut self.pending);
         let dt_s = pending.dt_s;
         if dt_s <= 0.0 {
             return;
         }
-        let from_biases = -pending.turned_s;
-        let from_attitude = -pending.velocity.cross_matrix();
-        let covariance = &mut self.covariance;
-        let rows = |covariance: &Covariance, at: usize| covariance.fixed_rows::<3>(at).into_owned();
-        for _ in 0..2 {
-            let velocity = rows(covariance, VELOCITY);
-            let attitude = rows(covariance, ATTITUDE);
-            let rate_bias = rows(covariance, RATE_BIAS);
-            let force_bias = rows(covariance, FORCE_BIAS);
-            let mut position = covariance.fixed_rows_mut::<3>(POSITION);
-            position += velocity * dt_s;
-            let mut velocity = covariance.fixed_rows_mut::<3>(VELOCITY);
-            velocity += from_attitude * attitude + from_biases * force_bias;
-            let mut attitude = covariance.fixed_rows_mut::<3>(ATTITUDE);
-            attitude += from_biases * rate_bias;
-            // The covariance is symmetric: its columns are the rows of this.
-            covariance.transpose_mut();
-        }
+        self.propagate(&pending);
         let walk = |sigma: f64| sigma * sigma * dt_s;
         self.add_variance(ATTITUDE, 3, pending.attitude_variance);
         self.add_variance(VELOCITY, 3, pending.velocity_variance);
@@ -244,6 +256,26 @@ impl Filter {
         }
         for axis in WIND..WIND + 2 {
             self.limit_variance(axis, p::LARGEST_WIND * p::LARGEST_WIND);
+        }
+    }
+
+    /// F P Fᵀ: P Fᵀ first, by columns, which are together in memory; then F times that,
+    /// of the states that F changes; the other rows are the columns.
+    fn propagate(&mut self, by: &Pending) {
+        by.move_columns(&mut self.covariance);
+        let mut moved: SMatrix<f64, MOVED, MOVING> = self
+            .covariance
+            .fixed_view::<MOVING, MOVED>(0, 0)
+            .transpose();
+        by.move_columns(&mut moved);
+        for column in 0..STATES {
+            for row in 0..MOVED {
+                self.covariance[(row, column)] = if column < MOVED {
+                    moved[(column, row)]
+                } else {
+                    self.covariance[(column, row)]
+                };
+            }
         }
     }
 
