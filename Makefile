@@ -135,11 +135,11 @@ test-glides: $(STAMPS)/python-module ## Stop the engine at 3,000 ft and glide do
 test-guidance: $(STAMPS)/python-module ## Fly 12 legs in five winds and circles with JSBSim, by both laws (15 minutes)
 	FCC_GUIDANCE=1 $(PYTHON) $(SEVERAL) hil/tests/test_guidance.py
 
-test-landings: $(STAMPS)/python-module ## Take off, fly a circuit and land 100 times with JSBSim, in five winds (25 minutes)
-	FCC_LANDINGS=20 $(PYTHON) $(SEVERAL) hil/tests/test_landing.py
+test-landings: build $(STAMPS)/python-module ## Take off, fly a circuit and land 100 times with JSBSim, in five winds (25 minutes)
+	FCC_LANDINGS=20 FCCD=$(abspath $(FCCD)) $(PYTHON) $(SEVERAL) hil/tests/test_landing.py
 
-test-landings-beside: $(STAMPS)/python-module ## The same 60 times: other aircraft, a plain receiver without a range finder (20 minutes)
-	FCC_LANDINGS_BESIDE=4 $(PYTHON) $(SEVERAL) hil/tests/test_landing.py
+test-landings-beside: build $(STAMPS)/python-module ## The same 60 times: other aircraft, a plain receiver without a range finder (20 minutes)
+	FCC_LANDINGS_BESIDE=4 FCCD=$(abspath $(FCCD)) $(PYTHON) $(SEVERAL) hil/tests/test_landing.py
 
 test-plan-real-time: build $(STAMPS)/python-module ## Fly legs by a plan with JSBSim over X-Plane's protocol, longer than in `make test` (2 minutes)
 	FCC_PLAN_REAL_TIME=1 FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil/tests/test_plan_real_time.py

@@ -125,8 +125,11 @@ def test_what_is_masked_is_left_out() -> None:
     assert found["roll_rad"][-1] == pytest.approx(ROLL, abs=math.radians(1.0))
 
 
-def moving(velocity: list[float]) -> dict[str, Any]:
-    """Return 60 s of a straight flight north-west, 30 and 10 m/s, at 1 m/s down."""
+def moving(velocity: list[float], unit: float = 1.0) -> dict[str, Any]:
+    """Return 60 s of a straight flight north-west, 30 and 10 m/s, at 1 m/s down.
+
+    The velocity is given as so many of a unit for each m/s.
+    """
     times_s = np.arange(60 * RATE_HZ) / RATE_HZ
     fixes_s = np.arange(0.0, 60.0, 0.2)
     place = [math.radians(47.0), math.radians(8.0), 1_000.0]
@@ -136,7 +139,7 @@ def moving(velocity: list[float]) -> dict[str, Any]:
         "gyroscope": (times_s, np.zeros((len(times_s), 3))),
         "accelerometer": (times_s, np.tile([0.0, 0.0, -9.81], (len(times_s), 1))),
         "gnss_position": (fixes_s, np.array(place) + np.outer(fixes_s, rates)),
-        "gnss_velocity": (fixes_s, np.tile(velocity, (len(fixes_s), 1))),
+        "gnss_velocity": (fixes_s, np.tile(np.multiply(velocity, unit), (len(fixes_s), 1))),
     }
 
 
@@ -176,6 +179,42 @@ def test_of_a_turn_and_of_fields_of_the_earth_nothing_is_said() -> None:
         fcc.navigate(gyroscope=GYROSCOPE, magnetometer=still([0.0, 0.0, strength_ut]))
 
 
+TURN_RATE_PERIODS_S = (23.0, 17.0, 31.0)
+
+
+def tumbling(
+    rates_in: tuple[int, ...] = (1, 2, 3), field_in: tuple[int, ...] = (1, 2, 3)
+) -> dict[str, Any]:
+    """Return 90 s of turns around all axes in a field, with a hard iron and noise.
+
+    Axes are given as numbers, negative where reversed: (-1, 2, 3) has x reversed.
+    """
+    times_s = np.arange(90 * RATE_HZ) / RATE_HZ
+    rates = 0.4 * np.sin(2.0 * math.pi * times_s[:, None] / np.array(TURN_RATE_PERIODS_S))
+    field = np.empty_like(rates)
+    here = np.array([20.0, 1.0, 43.0])
+    strength = np.linalg.norm(here)
+    for row, rate in zip(field, rates, strict=True):
+        here = here - np.cross(rate, here) / RATE_HZ
+        here *= strength / np.linalg.norm(here)
+        row[:] = here
+    iron = np.array([12.0, -8.0, 5.0])
+    field += iron + np.random.default_rng(2026).normal(0.0, 0.5, rates.shape)
+
+    def axes(vectors: Any, given: tuple[int, ...]) -> Any:
+        return vectors[:, np.abs(given) - 1] * np.sign(given)
+
+    return {
+        "gyroscope": (times_s, axes(rates, rates_in)),
+        "magnetometer": (times_s, axes(field, field_in)),
+    }
+
+
+@pytest.mark.filterwarnings("error")
+def test_of_turns_in_a_field_with_iron_nothing_is_said() -> None:
+    fcc.navigate(**tumbling())
+
+
 def with_field(per_ut: float) -> dict[str, Any]:
     return {"gyroscope": GYROSCOPE, "magnetometer": still(FIELD_UT * per_ut)}
 
@@ -190,6 +229,14 @@ UNLIKELY: list[tuple[dict[str, Any], str]] = [
         {"gyroscope": GYROSCOPE, "differential_pressure": (TIMES_S, 0.0 * TIMES_S - 500.0)},
         "400 of 400 samples are below -15 Pa",
     ),
+    (tumbling(field_in=(-1, 2, 3)), "magnetometer: .* if its axes are -x, y, z, and not"),
+    (tumbling(field_in=(2, 1, 3)), "magnetometer: .* if its axes are y, x, z,"),
+    (tumbling(field_in=(3, -1, 2)), "magnetometer: .* if its axes are -y, z, x,"),
+    (tumbling(rates_in=(1, 2, -3)), "gyroscope: .* if its axes are x, y, -z,"),
+    (tumbling(rates_in=(-1, -2, -3)), "gyroscope: .* if its axes are -x, -y, -z,"),
+    ({"accelerometer": (TIMES_S, -ACCELEROMETER[1])}, "is 9.2 m/s² downwards, .* sign wrong"),
+    (moving([30.0, -10.0, 1.0], 3.6), "gnss_velocity: .* if it is in km/h"),
+    (moving([30.0, -10.0, 1.0], 3600.0 / 1852.0), "gnss_velocity: .* if it is in kt"),
     (moving([-10.0, 30.0, -1.0]), "as east, north, up"),
     (moving([-10.0, 30.0, 1.0]), "north and east swapped"),
     (moving([30.0, -10.0, -1.0]), "down for up"),

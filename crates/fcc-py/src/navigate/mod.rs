@@ -7,6 +7,7 @@ mod no_fix;
 mod plausible;
 mod result;
 mod sources;
+mod turns;
 mod units;
 
 use std::time::Duration;
@@ -38,8 +39,9 @@ const LONGEST_WAIT_S: f64 = 0.05;
 ///
 /// Sources whose times do not meet those of the gyroscope (or the accelerometer), or half a
 /// second and more between its samples, are a `ValueError`; samples mostly at other times,
-/// rates beyond 35 rad/s or by which the field turns in °/s, a field that is not the earth's,
-/// a negative airspeed and a velocity that moves otherwise than the position a `UserWarning`.
+/// rates beyond 35 rad/s or by which the field turns in °/s or with other axes, a field that is
+/// not the earth's, a force that points down, a negative airspeed and a velocity that moves
+/// otherwise than the position a `UserWarning`.
 #[pyfunction]
 #[pyo3(signature = (
     *,

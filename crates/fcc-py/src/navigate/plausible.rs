@@ -10,7 +10,8 @@ use pyo3::prelude::*;
 
 use super::kind::{KINDS, Kind, Series};
 use super::mounting::Mounting;
-use super::units::{backward, field, turns};
+use super::turns::turns;
+use super::units::{backward, field, upside_down};
 
 /// The filter connects no samples of an inertial unit further apart than this, s, and keeps
 /// none for longer than that.
@@ -29,6 +30,14 @@ const HIGH_M: f64 = 2.0;
 /// Other axes explain them if so much of the squares is left by those that were given, as a
 /// multiple of what they leave.
 pub(super) const CLEARLY: f64 = 4.0;
+
+/// Other units of velocity, m/s.
+const OTHER_SPEEDS: [(&str, f64); 4] = [
+    ("km/h", 1.0 / 3.6),
+    ("kt", 1852.0 / 3600.0),
+    ("ft/s", 0.3048),
+    ("cm/s", 0.01),
+];
 
 /// Refuses what nothing can be computed from, and warns of what is unlikely.
 pub(super) fn check(
@@ -57,6 +66,7 @@ pub(super) fn check(
     let slower = || slower.and_then(|(rates, field)| turns(*rates, *field, mounting));
     unlikely.extend(too_fast.or_else(slower));
     unlikely.extend(magnetometer.and_then(|(_, magnetometer)| field(magnetometer)));
+    unlikely.extend(of("accelerometer").and_then(|source| upside_down(*source, mounting)));
     unlikely.extend(given.iter().filter_map(|source| backward(*source)));
     if let (Some(position), Some(velocity)) = (of("gnss_position"), of("gnss_velocity")) {
         unlikely.extend(axes(*position, *velocity));
@@ -140,12 +150,13 @@ fn rates(gyroscope: &Series) -> Option<String> {
     })
 }
 
-/// Whether how the position moves is the velocity with other axes.
+/// Whether how the position moves is the velocity with other axes, or in another unit.
 fn axes((kind, position): (&Kind, &Series), velocity: (&Kind, &Series)) -> Option<String> {
     let path = path(velocity);
     let mut begin: Option<(f64, [f64; 3], [f64; 3])> = None;
     let (mut windows, mut far, mut high) = (0.0, 0.0, 0.0);
     let (mut given, mut swapped, mut down, mut up) = (0.0, 0.0, 0.0, 0.0);
+    let (mut moved, mut both) = (0.0, 0.0);
     let square = |value: f64| value * value;
     for (time_s, place) in position.times_s.iter().zip(&position.rows) {
         let Some(there) = kind
@@ -171,10 +182,22 @@ fn axes((kind, position): (&Kind, &Series), velocity: (&Kind, &Series)) -> Optio
         windows += 1.0;
         far += square(north) + square(east);
         high += square(sunk);
+        moved += square(moved_north) + square(moved_east);
+        both += moved_north * north + moved_east * east;
         given += square(moved_north - north) + square(moved_east - east);
         swapped += square(moved_north - east) + square(moved_east - north);
         down += square(moved_down - sunk);
         up += square(moved_down + sunk);
+    }
+    let unit = OTHER_SPEEDS.iter().find(|(_, mps)| {
+        let scaled = moved - 2.0 * mps * both + square(*mps) * far;
+        far > windows * square(FAR_M) && given > CLEARLY * CLEARLY * scaled
+    });
+    if let Some((unit, _)) = unit {
+        return Some(format!(
+            "gnss_velocity: it agrees with how gnss_position moves if it is in {unit}: velocities \
+             are in m/s"
+        ));
     }
     let is_swapped = far > windows * square(FAR_M) && given > CLEARLY * swapped;
     let is_upward = high > windows * square(HIGH_M) && down > CLEARLY * up;
@@ -215,6 +238,6 @@ fn along(path: &[(f64, [f64; 3])], time_s: f64) -> Option<[f64; 3]> {
     Some(plus(*before, share, plus(*after, -1.0, *before)))
 }
 
-pub(super) fn plus([a, b, c]: [f64; 3], share: f64, [x, y, z]: [f64; 3]) -> [f64; 3] {
+fn plus([a, b, c]: [f64; 3], share: f64, [x, y, z]: [f64; 3]) -> [f64; 3] {
     [a + share * x, b + share * y, c + share * z]
 }

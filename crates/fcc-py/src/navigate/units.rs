@@ -2,7 +2,6 @@
 
 use super::kind::{Kind, Series};
 use super::mounting::Mounting;
-use super::plausible::{CLEARLY, WINDOW_S, plus};
 
 /// The earth's field has this strength, µT (World Magnetic Model 2025), and a sensor that is
 /// not calibrated shows so many times as much or as little.
@@ -19,8 +18,9 @@ const OTHER_UNITS_UT: [(&str, f64); 4] = [
 const BACKWARD_MPS: f64 = -5.0;
 const BACKWARD_PA: f64 = -15.0;
 const SELDOM: usize = 10;
-/// Turns of the field are compared in at least so many windows.
-const LEAST_WINDOWS: usize = 3;
+/// What is not upside down shows specific force upwards: its middle one downwards by more
+/// than this, m/s², is of another sign, or of an aircraft on its back.
+const DOWNWARD_MPS2: f64 = 5.0;
 
 /// The middle one of the strengths.
 pub(super) fn middle_strength(rows: &[[f64; 3]]) -> Option<f64> {
@@ -57,6 +57,27 @@ pub(super) fn field(magnetometer: &Series) -> Option<String> {
     ))
 }
 
+/// Whether the force of the accelerometer points the wrong way.
+pub(super) fn upside_down(
+    (kind, accelerometer): (&Kind, &Series),
+    mounting: &Mounting,
+) -> Option<String> {
+    let mut downward: Vec<f64> = accelerometer
+        .rows
+        .iter()
+        .filter(|row| kind.is_possible(row))
+        .map(|row| mounting.body(kind.name, *row)[2])
+        .collect();
+    downward.sort_by(f64::total_cmp);
+    let middle = *downward.get(downward.len() / 2)?;
+    (middle > DOWNWARD_MPS2).then(|| {
+        format!(
+            "accelerometer: its middle sample is {middle:.1} m/s² downwards, as upside down: \
+             level and at rest it shows (0, 0, -9.8); is the sign wrong, or the mounting?"
+        )
+    })
+}
+
 /// Whether an airspeed, or its pressure, is negative.
 pub(super) fn backward((kind, series): (&Kind, &Series)) -> Option<String> {
     let least = match kind.name {
@@ -75,97 +96,6 @@ pub(super) fn backward((kind, series): (&Kind, &Series)) -> Option<String> {
     })
 }
 
-/// Whether the field turns by the rates if these are in °/s, and neither by them as they are
-/// nor not at all.
-pub(super) fn turns(
-    (rates_kind, gyroscope): (&Kind, &Series),
-    (field_kind, magnetometer): (&Kind, &Series),
-    mounting: &Mounting,
-) -> Option<String> {
-    let mut rates = possible(rates_kind, gyroscope, mounting).peekable();
-    let mut window: Option<Window> = None;
-    let (mut windows, mut given, mut degrees, mut still) = (0, 0.0, 0.0, 0.0);
-    for (time_s, field) in possible(field_kind, magnetometer, mounting) {
-        if let Some(window) = &mut window {
-            while let Some((until_s, rate)) = rates.next_if(|(at_s, _)| *at_s <= time_s) {
-                window.turn(until_s, rate);
-            }
-            if time_s - window.begin_s < WINDOW_S {
-                continue;
-            }
-            windows += 1;
-            given += distance_2(field, window.by_given);
-            degrees += distance_2(field, window.by_degrees);
-            still += distance_2(field, window.still);
-        }
-        window = Some(Window {
-            begin_s: time_s,
-            until_s: time_s,
-            still: field,
-            by_given: field,
-            by_degrees: field,
-        });
-    }
-    (windows >= LEAST_WINDOWS && given.min(still) > CLEARLY * degrees).then(|| {
-        "gyroscope: the field of the magnetometer turns as if rates were in °/s: they are in \
-         rad/s; are they in °/s?"
-            .to_owned()
-    })
-}
-
-/// Samples in the body's axes.
-fn possible(
-    kind: &Kind,
-    series: &Series,
-    mounting: &Mounting,
-) -> impl Iterator<Item = (f64, [f64; 3])> {
-    let samples = series.times_s.iter().zip(&series.rows);
-    samples
-        .filter(|(_, row)| kind.is_possible(row))
-        .map(|(time_s, row)| (*time_s, mounting.body(kind.name, *row)))
-}
-
-/// The field at the begin of a window, as it would be now.
-struct Window {
-    begin_s: f64,
-    until_s: f64,
-    still: [f64; 3],
-    by_given: [f64; 3],
-    by_degrees: [f64; 3],
-}
-
-impl Window {
-    fn turn(&mut self, until_s: f64, rate: [f64; 3]) {
-        let time_s = (until_s - self.until_s).max(0.0);
-        self.until_s = self.until_s.max(until_s);
-        self.by_given = turned(self.by_given, rate.map(|along| along * time_s));
-        let degrees = rate.map(|along| (along * time_s).to_radians());
-        self.by_degrees = turned(self.by_degrees, degrees);
-    }
-}
-
-/// What stays where it is, in axes that are turned by this angle around its direction, rad
-/// (Rodrigues 1840).
-fn turned(vector: [f64; 3], angle: [f64; 3]) -> [f64; 3] {
-    let size = dot(angle, angle).sqrt();
-    if size < f64::EPSILON {
-        return vector;
-    }
-    let axis = angle.map(|along| along / size);
-    let along = dot(axis, vector) * (1.0 - size.cos());
-    let kept = plus([0.0; 3], size.cos(), vector);
-    plus(plus(kept, size.sin(), cross(vector, axis)), along, axis)
-}
-
-fn distance_2(one: [f64; 3], other: [f64; 3]) -> f64 {
-    let apart = plus(one, -1.0, other);
-    dot(apart, apart)
-}
-
 fn dot([a, b, c]: [f64; 3], [x, y, z]: [f64; 3]) -> f64 {
     a * x + b * y + c * z
-}
-
-fn cross([a, b, c]: [f64; 3], [x, y, z]: [f64; 3]) -> [f64; 3] {
-    [b * z - c * y, c * x - a * z, a * y - b * x]
 }
