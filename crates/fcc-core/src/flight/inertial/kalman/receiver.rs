@@ -56,6 +56,12 @@ impl Filter {
             self.corrected_by_fix(taken),
         ) {
             self.lateness.accepted();
+            let shows_heading = !self.has_heading()
+                && self.tracks.velocity.since_used_s(taken) > p::UNAIDED_S
+                && self.motion.velocity.xy().norm() > MOVING_MPS;
+            if shows_heading {
+                self.take_heading_from_course();
+            }
             return;
         }
         let is_steady = self.rates.norm() < p::LATE_RATE;
@@ -139,9 +145,12 @@ impl Filter {
         let mut measurement = on(VELOCITY, difference, noises, since_s);
         measurement.come_late(-seen.acceleration * self.shows_lateness(taken));
         measurement.excess *= self.late_excess();
-        let has_heading = self.sigma(ATTITUDE + 2) < UNKNOWN_HEADING;
-        let is_first = self.tracks.velocity.used.is_never()
-            && (self.tracks.airspeed.used.is_never() || !has_heading);
+        let has_heading = self.has_heading();
+        // Of a heading that is not known, what accelerated since the last fix went anywhere.
+        let shows_heading = !has_heading && velocity.xy().norm() > MOVING_MPS;
+        let is_first = shows_heading
+            || self.tracks.velocity.used.is_never()
+                && (self.tracks.airspeed.used.is_never() || !has_heading);
         if is_first {
             self.settle();
         } else if self.fuse(
@@ -153,10 +162,6 @@ impl Filter {
         ) {
             self.trend
                 .add(taken, difference.xy(), horizontal.variance());
-            // What has turned without gyroscopes may point anywhere, but moves ahead.
-            if !self.knows_rates && !has_heading && velocity.xy().norm() > MOVING_MPS {
-                self.take_heading_from_course();
-            }
             return;
         }
         // What went in one direction before is an error of this filter, and not of a receiver.
@@ -189,7 +194,7 @@ impl Filter {
             }
             self.tracks.velocity.judged(taken, true);
         }
-        if !has_heading && velocity.xy().norm() > MOVING_MPS {
+        if shows_heading {
             self.take_heading_from_course();
         }
     }
@@ -240,7 +245,9 @@ impl Filter {
 
     /// What begins to move may be held for standing, which looks like fixes that come early.
     fn corrected_by_fix(&self, now: Time) -> Corrects {
-        if now.since(self.tracks.rest.used).as_secs_f64() > p::UNDER_WAY_S {
+        if !self.has_heading() {
+            Corrects::AllButHeading
+        } else if now.since(self.tracks.rest.used).as_secs_f64() > p::UNDER_WAY_S {
             Corrects::All
         } else {
             Corrects::AllButLateness
@@ -251,6 +258,10 @@ impl Filter {
     /// and what is corrected shows only after this.
     fn late_excess(&self) -> f64 {
         1.0 + self.fixes_late_s() * self.fixes_late_s()
+    }
+
+    pub(super) fn has_heading(&self) -> bool {
+        self.sigma(ATTITUDE + 2) < UNKNOWN_HEADING
     }
 
     /// Without a compass: most of what moves, moves ahead.

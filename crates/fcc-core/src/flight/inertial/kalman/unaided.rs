@@ -35,7 +35,7 @@ impl Filter {
         self.settle();
         let since_s = self.tracks.unaided.since_tried_s(now);
         let measurement = on(VELOCITY, -self.motion.velocity, [noise; 3], since_s);
-        self.correct(&measurement, Corrects::All);
+        self.correct(&measurement, self.corrected_by_rest());
         self.tracks.unaided.judged(now, true);
     }
 
@@ -65,17 +65,27 @@ impl Filter {
         let is_plausible = self.distance(&bias) <= p::GATE
             && (self.distance(&velocity) <= p::GATE || still_s > BEYOND_DOUBT_S);
         if is_plausible {
-            self.correct(&bias, Corrects::All);
+            let corrects = self.corrected_by_rest();
+            self.correct(&bias, corrects);
             let difference = -self.motion.velocity;
             self.correct(
                 &Measurement {
                     difference,
                     ..velocity
                 },
-                Corrects::All,
+                corrects,
             );
         }
         self.tracks.rest.judged(now, is_plausible);
+    }
+
+    /// No rest tells a heading.
+    fn corrected_by_rest(&self) -> Corrects {
+        if self.has_heading() {
+            Corrects::All
+        } else {
+            Corrects::AllButHeading
+        }
     }
 
     /// Whether it stands still.

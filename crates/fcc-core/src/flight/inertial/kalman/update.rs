@@ -35,6 +35,9 @@ pub(super) enum Corrects {
     All,
     /// By how much fixes are late is considered, and not told by them.
     AllButLateness,
+    /// The same of a heading that is not known: what it changes is not linear in an error
+    /// of 90° and more. The course tells it at once as soon as this moves.
+    AllButHeading,
     /// A compass says nothing of the horizon: near iron it would tip it. The
     /// other states are considered with their uncertainty, and stay (Schmidt
     /// 1966).
@@ -43,8 +46,11 @@ pub(super) enum Corrects {
 
 impl Corrects {
     fn mask(self, gain: &mut StateVector) {
-        if self == Self::AllButLateness {
+        if matches!(self, Self::AllButLateness | Self::AllButHeading) {
             gain[LATENESS] = 0.0;
+        }
+        if self == Self::AllButHeading {
+            gain[ATTITUDE + 2] = 0.0;
         }
         if self != Self::Heading {
             return;
