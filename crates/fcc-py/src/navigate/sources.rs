@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use fcc_core::flight::inertial::{GeodeticPosition, Observation};
+use fcc_core::flight::inertial::{GeodeticPosition, Observation, Spikes};
 use fcc_core::framework::Time;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -161,11 +161,24 @@ impl Sources {
     ) -> PyResult<()> {
         self.delay_s = self.delay_s.max(delay_s);
         let mut kept = 0;
-        for (time_s, row) in series.times_s.iter().zip(&series.rows) {
+        let mut spikes = match kind.name {
+            "gyroscope" => Some(Spikes::OF_RATES),
+            "accelerometer" => Some(Spikes::OF_FORCE),
+            _ => None,
+        };
+        let mut before: Option<[f64; 3]> = None;
+        for (at, (time_s, row)) in series.times_s.iter().zip(&series.rows).enumerate() {
             if !kind.is_possible(row) {
                 continue;
             }
             kept += 1;
+            let beside = before.zip(series.rows.get(at + 1).copied());
+            let is_spike = spikes.as_mut().zip(beside);
+            if is_spike.is_some_and(|(spikes, (before, after))| spikes.is_one(before, *row, after))
+            {
+                continue;
+            }
+            before = Some(*row);
             if kind.is_of_receiver() && no_fix.contains(&time_s.to_bits()) {
                 continue;
             }

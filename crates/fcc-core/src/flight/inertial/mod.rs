@@ -26,7 +26,7 @@ mod units;
 
 pub(crate) use earth::{ECCENTRICITY_2, SEMI_MAJOR_AXIS_M};
 pub use earth::{gravity_mps2, metres_per_radian};
-pub use kalman::{Innovation, KalmanConfig, KalmanNavigation};
+pub use kalman::{Innovation, KalmanConfig, KalmanNavigation, Spikes};
 pub use magnetism::{MAGNETIC_MODEL_YEARS, earth_field_ut};
 pub use observation::{GeodeticPosition, Observation, ObservationKind, Sigma, Solution};
 pub use raw_navigation::{

@@ -38,6 +38,7 @@ mod parameters;
 mod path;
 mod receiver;
 mod rest;
+mod spikes;
 mod track;
 mod trend;
 mod unaided;
@@ -53,6 +54,7 @@ use rest::Rest;
 
 pub use innovations::Innovation;
 pub(super) use motion::turn;
+pub use spikes::Spikes;
 
 use super::{GeodeticPosition, InertialNavigation, Observation, ObservationKind, Solution};
 use crate::framework::Time;
@@ -95,6 +97,8 @@ pub struct KalmanConfig {
 pub struct KalmanNavigation {
     config: KalmanConfig,
     history: History,
+    force_spikes: Spikes,
+    rate_spikes: Spikes,
     inputs: Inputs,
     /// `None` once the filter runs.
     alignment: Option<Alignment>,
@@ -109,6 +113,8 @@ impl KalmanNavigation {
         Self {
             config,
             history: History::new(),
+            force_spikes: Spikes::OF_FORCE,
+            rate_spikes: Spikes::OF_RATES,
             inputs: Inputs::new(),
             alignment: Some(Alignment::new()),
             rest: Rest::new(),
@@ -303,6 +309,11 @@ impl InertialNavigation for KalmanNavigation {
         // A full history: more samples than it is for, so the oldest are used
         // before their time.
         let sample = Sample { taken, observation };
+        match observation {
+            Observation::SpecificForce(_) => self.force_spikes.replace(&mut self.history, &sample),
+            Observation::Rates(_) => self.rate_spikes.replace(&mut self.history, &sample),
+            _ => {}
+        }
         if !self.history.insert(sample)
             && let Some(oldest) = self.history.pop(Time::NEVER)
         {
