@@ -235,6 +235,8 @@ UNLIKELY: list[tuple[dict[str, Any], str]] = [
     (tumbling(rates_in=(1, 2, -3)), "gyroscope: .* if its axes are x, y, -z,"),
     (tumbling(rates_in=(-1, -2, -3)), "gyroscope: .* if its axes are -x, -y, -z,"),
     ({"accelerometer": (TIMES_S, -ACCELEROMETER[1])}, "is 9.2 m/s² downwards, .* sign wrong"),
+    ({"accelerometer": (TIMES_S, ACCELEROMETER[1] * 102.0)}, "is 1000.* another unit"),
+    ({"accelerometer": (TIMES_S, ACCELEROMETER[1] * 0.0)}, "is 0.0: .* without gravity"),
     (moving([30.0, -10.0, 1.0], 3.6), "gnss_velocity: .* if it is in km/h"),
     (moving([30.0, -10.0, 1.0], 3600.0 / 1852.0), "gnss_velocity: .* if it is in kt"),
     (moving([-10.0, 30.0, -1.0]), "as east, north, up"),
@@ -292,6 +294,16 @@ def test_it_is_found_by_how_much_fixes_are_late() -> None:
     assert found["gnss_late_s_sigma"][-1] < 0.1
     error = (found["roll_rad"] - TURNS_ROLL)[TURNS_S > 60.0]
     assert np.degrees(np.sqrt(np.mean(error**2))) < 1.0
+
+
+def test_a_source_that_does_not_agree_is_named() -> None:
+    sources = turns()
+    fixes_s, velocities = sources["gnss_velocity"]
+    with pytest.warns(UserWarning, match="gnss_position: .* samples that were judged agree"):
+        fcc.navigate(**sources | {"gnss_velocity": (fixes_s, velocities * [-1.0, 1.0, 1.0])})
+    kmh = (TURNS_S, np.full_like(TURNS_S, 3.6 * SPEED_MPS))
+    with pytest.warns(UserWarning, match="airspeed: .* samples that were judged agree"):
+        fcc.navigate(**sources, airspeed=kmh)
 
 
 @pytest.mark.parametrize("shown", ["the last fix", "zeros"])

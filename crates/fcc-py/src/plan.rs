@@ -1,6 +1,5 @@
 //! Flight plans: read, checked, written in either format.
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use fcc_plan::{FileError, Format, Plan, Problem};
@@ -98,8 +97,7 @@ impl PyPlan {
         })?;
         let text = fcc_plan::write(&self.plan, format).map_err(|problems| invalid(&problems))?;
         let others: [&Path; 0] = [];
-        let mut file = fcc_record::create_plan(&path, &others)?;
-        Ok(file.write_all(text.as_bytes())?)
+        Ok(fcc_record::write_plan(&path, &others, text.as_bytes())?)
     }
 
     fn __len__(&self) -> usize {

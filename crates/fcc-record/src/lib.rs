@@ -84,7 +84,7 @@ pub use items::{Item, Items, Messages, RecordedMessage};
 pub use list::{Entry, Wholeness, entry, files, glance};
 pub use listed::Listed;
 pub use opening::{create_anew, create_folder, open_lock, read_file, read_own_file};
-pub use output::{create_output, create_plan, may_be_output};
+pub use output::{create_output, may_be_output, write_output, write_plan};
 pub use reader::{OpenError, Recording, Verified};
 pub use recorded::{Recorded, Views};
 #[cfg(feature = "flight")]

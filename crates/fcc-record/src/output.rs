@@ -1,7 +1,9 @@
 //! Files that commands write: what a person has made, or a flight has, is not replaced by them.
 
-use std::fs::{self, File};
-use std::io::{self, Read as _};
+use std::ffi::OsString;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Read as _, Write as _};
+use std::os::unix::fs::MetadataExt as _;
 use std::path::Path;
 
 use super::disk::is_same_file;
@@ -19,17 +21,46 @@ pub fn create_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> io::Result<Fi
     File::create(path)
 }
 
+/// Writes a whole file as [`create_output`] does. Where that fails, what was there before is
+/// still there.
+///
+/// # Errors
+/// As [`create_output`].
+pub fn write_output<P: AsRef<Path>>(path: &Path, inputs: &[P], content: &[u8]) -> io::Result<()> {
+    keeps(path, inputs, Kept::of(path))?;
+    replace(path, content)
+}
+
 /// The same for a plan, which another one replaces.
 ///
 /// # Errors
 /// As [`create_output`].
-pub fn create_plan<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> io::Result<File> {
-    keeps(
-        path,
-        inputs,
-        Kept::of(path).filter(|kept| *kept != Kept::Plan),
-    )?;
-    File::create(path)
+pub fn write_plan<P: AsRef<Path>>(path: &Path, inputs: &[P], content: &[u8]) -> io::Result<()> {
+    let kept = Kept::of(path).filter(|kept| *kept != Kept::Plan);
+    keeps(path, inputs, kept)?;
+    replace(path, content)
+}
+
+/// Writes beside it first, unless it is a pipe or the like, or a link of this user.
+fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
+    if fs::symlink_metadata(path).is_ok_and(|there| !there.is_file()) {
+        return File::create(path)?.write_all(content);
+    }
+    let mut name = OsString::from(".");
+    name.push(path.file_name().unwrap_or_default());
+    name.push(format!(".{}.part", std::process::id()));
+    let beside = path.with_file_name(name);
+    let written = OpenOptions::new()
+        .write(true)
+        .create_new(true)
+        .open(&beside)
+        .and_then(|mut file| file.write_all(content))
+        .and_then(|()| fs::rename(&beside, path));
+    if written.is_err() {
+        // What could not be written is of no use; if this fails, too, it is left.
+        let _ = fs::remove_file(&beside);
+    }
+    written
 }
 
 /// Whether a file may be created or replaced as an output.
@@ -50,6 +81,7 @@ fn keeps<P: AsRef<Path>>(path: &Path, inputs: &[P], kept: Option<Kept>) -> io::R
             format!("it is {input}, which this command uses, too: choose another name"),
         ));
     }
+    others_of_another_user(path)?;
     let what = match kept {
         None => return Ok(()),
         Some(Kept::Recording) => "recording",
@@ -59,6 +91,29 @@ fn keeps<P: AsRef<Path>>(path: &Path, inputs: &[P], kept: Option<Kept>) -> io::R
     Err(io::Error::new(
         io::ErrorKind::AlreadyExists,
         format!("it is a {what}, which is not replaced: choose another name"),
+    ))
+}
+
+/// A link of another user would be followed to a file of this one, and a pipe waited for.
+fn others_of_another_user(path: &Path) -> io::Result<()> {
+    let Ok(there) = fs::symlink_metadata(path) else {
+        return Ok(());
+    };
+    let trusted = [0, nix::unistd::geteuid().as_raw()];
+    if there.is_file() || there.is_dir() || trusted.contains(&there.uid()) {
+        return Ok(());
+    }
+    let what = if there.is_symlink() {
+        "link"
+    } else {
+        "pipe or device"
+    };
+    Err(io::Error::new(
+        io::ErrorKind::PermissionDenied,
+        format!(
+            "it is a {what} of another user ({}), which is not followed: choose another name",
+            there.uid()
+        ),
     ))
 }
 
@@ -119,12 +174,35 @@ mod tests {
             let refused = create_output(&path, &inputs).unwrap_err().to_string();
             assert!(refused.contains(what), "{name}: {refused}");
             assert_eq!(fs::read(&path).unwrap(), content);
-            assert_eq!(create_plan(&path, &inputs).is_ok(), what == "a flight plan");
+            let plan = write_plan(&path, &inputs, b"QGC WPL 110\n");
+            assert_eq!(plan.is_ok(), what == "a flight plan");
         }
         let page = folder.path().join("page");
         fs::write(&page, "an earlier page").unwrap();
         may_be_output(&page).unwrap();
         create_output(&page, &inputs).unwrap();
         assert_eq!(fs::metadata(&page).unwrap().len(), 0);
+        write_output(&page, &inputs, b"a page").unwrap();
+        assert_eq!(fs::read(&page).unwrap(), b"a page");
+        let names = fs::read_dir(folder.path()).unwrap();
+        assert_eq!(names.count(), made.len() + 1, "nothing is left beside");
+    }
+
+    /// Only root can make what another user has.
+    #[test]
+    fn a_link_of_another_user_is_not_followed() {
+        let folder = tempfile::tempdir().unwrap();
+        let (own, link) = (folder.path().join("own"), folder.path().join("link"));
+        fs::write(&own, "mine").unwrap();
+        std::os::unix::fs::symlink(&own, &link).unwrap();
+        let inputs: [&Path; 0] = [];
+        write_output(&link, &inputs, b"a page").unwrap();
+        assert_eq!(fs::read(&own).unwrap(), b"a page");
+        if std::os::unix::fs::lchown(&link, Some(65_534), None).is_ok() {
+            let refused = write_output(&link, &inputs, b"theirs").unwrap_err();
+            assert!(refused.to_string().contains("link of another user"));
+            assert!(create_output(&link, &inputs).is_err());
+            assert_eq!(fs::read(&own).unwrap(), b"a page");
+        }
     }
 }

@@ -1,10 +1,10 @@
 //! A report as one HTML page without other files.
 
-use std::io::{self, Write as _};
+use std::io;
 use std::path::Path;
 
 use comfy_table::Table;
-use fcc_record::{create_folder, create_output, unless_left};
+use fcc_record::{create_folder, unless_left, write_output};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::plot::{Detail, Figure, Figures, figures};
@@ -107,8 +107,7 @@ impl<A: Addition> Report<A> {
     /// What could not be written.
     pub fn write_page<P: AsRef<Path>>(&self, path: &Path, others: &[P]) -> Result<(), String> {
         let page = self.to_html();
-        create_output(path, others)
-            .and_then(|mut file| unless_left(file.write_all(page.as_bytes())))
+        unless_left(write_output(path, others, page.as_bytes()))
             .map_err(|error| format!("{}: cannot be written: {error}", path.display()))
     }
 
@@ -123,9 +122,7 @@ impl<A: Addition> Report<A> {
         create_folder(folder).map_err(refused)?;
         let plots = self.to_svgs();
         for (name, svg) in &plots {
-            create_output(&folder.join(name), &[recording])
-                .and_then(|mut file| file.write_all(svg.as_bytes()))
-                .map_err(refused)?;
+            write_output(&folder.join(name), &[recording], svg.as_bytes()).map_err(refused)?;
         }
         Ok(plots.len())
     }

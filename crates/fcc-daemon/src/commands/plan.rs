@@ -220,6 +220,5 @@ fn write(out: &Path, plan: &Path, text: &str) -> Result<(), Failure> {
             out.display()
         ))
     };
-    let mut file = fcc_record::create_plan(out, &[plan]).map_err(failed)?;
-    std::io::Write::write_all(&mut file, text.as_bytes()).map_err(failed)
+    fcc_record::write_plan(out, &[plan], text.as_bytes()).map_err(failed)
 }

@@ -40,8 +40,9 @@ const LONGEST_WAIT_S: f64 = 0.05;
 /// Sources whose times do not meet those of the gyroscope (or the accelerometer), or half a
 /// second and more between its samples, are a `ValueError`; samples mostly at other times,
 /// rates beyond 35 rad/s or by which the field turns in °/s or with other axes, a field that is
-/// not the earth's, a force that points down, a negative airspeed and a velocity that moves
-/// otherwise than the position a `UserWarning`.
+/// not the earth's, a force that points down or is not about 9.8 m/s², a negative airspeed, a
+/// velocity that moves otherwise than the position and a source of which less than half agrees
+/// with the others a `UserWarning`.
 #[pyfunction]
 #[pyo3(signature = (
     *,
@@ -121,6 +122,7 @@ pub(crate) fn navigate<'py>(
         py.detach(|| run.steps(&sources.events, piece));
         py.check_signals()?;
     }
+    plausible::agree(py, &run.innovations)?;
     result::dict(
         py,
         &sources,

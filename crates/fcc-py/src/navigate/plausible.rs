@@ -4,14 +4,15 @@
 use std::ffi::CString;
 
 use fcc_core::blocks::wrap_pi;
-use fcc_core::flight::inertial::metres_per_radian;
+use fcc_core::flight::inertial::{Innovation, metres_per_radian};
 use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 
 use super::kind::{KINDS, Kind, Series};
 use super::mounting::Mounting;
+use super::result::SENSORS;
 use super::turns::turns;
-use super::units::{backward, field, upside_down};
+use super::units::{backward, field, upside_down, weight};
 
 /// The filter connects no samples of an inertial unit further apart than this, s, and keeps
 /// none for longer than that.
@@ -31,6 +32,8 @@ const HIGH_M: f64 = 2.0;
 /// multiple of what they leave.
 pub(super) const CLEARLY: f64 = 4.0;
 
+/// Fewer samples of a source say nothing of it.
+const LEAST_JUDGED: usize = 20;
 /// Other units of velocity, m/s.
 const OTHER_SPEEDS: [(&str, f64); 4] = [
     ("km/h", 1.0 / 3.6),
@@ -66,11 +69,18 @@ pub(super) fn check(
     let slower = || slower.and_then(|(rates, field)| turns(*rates, *field, mounting));
     unlikely.extend(too_fast.or_else(slower));
     unlikely.extend(magnetometer.and_then(|(_, magnetometer)| field(magnetometer)));
-    unlikely.extend(of("accelerometer").and_then(|source| upside_down(*source, mounting)));
+    let accelerometer = of("accelerometer");
+    let heavy = accelerometer.and_then(|source| weight(*source));
+    let turned = || accelerometer.and_then(|source| upside_down(*source, mounting));
+    unlikely.extend(heavy.or_else(turned));
     unlikely.extend(given.iter().filter_map(|source| backward(*source)));
     if let (Some(position), Some(velocity)) = (of("gnss_position"), of("gnss_velocity")) {
         unlikely.extend(axes(*position, *velocity));
     }
+    warn(py, unlikely)
+}
+
+fn warn(py: Python<'_>, unlikely: impl IntoIterator<Item = String>) -> PyResult<()> {
     for words in unlikely {
         PyErr::warn(
             py,
@@ -80,6 +90,23 @@ pub(super) fn check(
         )?;
     }
     Ok(())
+}
+
+/// Warns of a source most of whose samples are refused.
+pub(super) fn agree(py: Python<'_>, innovations: &[Innovation]) -> PyResult<()> {
+    warn(
+        py,
+        SENSORS.iter().filter_map(|(kind, name, _)| {
+            let of = || innovations.iter().filter(|one| one.kind == *kind);
+            let (all, accepted) = (of().count(), of().filter(|one| one.accepted).count());
+            (all >= LEAST_JUDGED && 2 * accepted < all).then(|| {
+                format!(
+                    "{name}: {accepted} of the {all} samples that were judged agree with the other \
+                     sources: are units, signs, axes and times right, of it and of the others?"
+                )
+            })
+        }),
+    )
 }
 
 fn period((kind, series): &(&Kind, &Series)) -> PyResult<Option<String>> {

@@ -90,7 +90,8 @@ const PLAIN: [Plain; 5] = [
     ("angle_of_attack_rad", |s| vec![s.angle_of_attack_rad]),
 ];
 
-const SENSORS: [(ObservationKind, &str, usize); 6] = [
+/// The sources that are compared with what is expected of them, with their columns.
+pub(super) const SENSORS: [(ObservationKind, &str, usize); 6] = [
     (ObservationKind::MagneticField, "magnetometer", 3),
     (ObservationKind::StaticPressure, "static_pressure", 1),
     (

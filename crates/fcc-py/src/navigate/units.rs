@@ -1,5 +1,7 @@
 //! Whether samples seem to be in another unit, or of the other sign.
 
+use std::ops::RangeInclusive;
+
 use super::kind::{Kind, Series};
 use super::mounting::Mounting;
 
@@ -21,6 +23,8 @@ const SELDOM: usize = 10;
 /// What is not upside down shows specific force upwards: its middle one downwards by more
 /// than this, m/s², is of another sign, or of an aircraft on its back.
 const DOWNWARD_MPS2: f64 = 5.0;
+/// The middle strength of a force, m/s²: half of gravity to that of a turn at 60° of bank.
+const WEIGHT_MPS2: RangeInclusive<f64> = 5.0..=20.0;
 
 /// The middle one of the strengths.
 pub(super) fn middle_strength(rows: &[[f64; 3]]) -> Option<f64> {
@@ -55,6 +59,23 @@ pub(super) fn field(magnetometer: &Series) -> Option<String> {
         "magnetometer: the strength of its middle sample is {middle}, and the earth's field has \
          {weakest} to {strongest} µT, so it is left out: {question}"
     ))
+}
+
+/// Whether a force is that of gravity in another unit, or without it.
+pub(super) fn weight((kind, accelerometer): (&Kind, &Series)) -> Option<String> {
+    let rows: Vec<[f64; 3]> = accelerometer
+        .rows
+        .iter()
+        .filter(|row| kind.is_possible(row))
+        .copied()
+        .collect();
+    let middle = middle_strength(&rows)?;
+    (!WEIGHT_MPS2.contains(&middle)).then(|| {
+        format!(
+            "accelerometer: the strength of its middle sample is {middle:.1}: it is in m/s², 9.8 \
+             at rest and in level flight; is it in another unit, or without gravity?"
+        )
+    })
 }
 
 /// Whether the force of the accelerometer points the wrong way.
