@@ -133,6 +133,23 @@ fn after_a_cut_the_estimate_is_that_of_the_aircraft_at_once() {
 }
 
 /// What is measured returns in several datagrams, tick by tick.
+/// As an outsider flew it: control was given back, "the aircraft was moved".
+#[test]
+fn what_a_network_held_back_may_come_in_two_parts() {
+    for held_ticks in [200, 320, 800] {
+        let mut cockpit = manoeuvring();
+        // The first part of it is of the first second.
+        silence(&mut cockpit, 40, true);
+        silence(&mut cockpit, held_ticks, false);
+        fly(&mut cockpit, 1);
+        cockpit.stood_s -= f64::from(held_ticks) * DT_S;
+        for _ in 0..held_ticks {
+            move_on(&mut cockpit);
+        }
+        fly(&mut cockpit, 200);
+    }
+}
+
 #[test]
 fn readings_that_return_one_after_the_other_are_waited_for() {
     for flies_on in [false, true] {

@@ -21,6 +21,8 @@ const STOPPED_AFTER: Duration = Duration::from_millis(250);
 /// of the loop, is noticed, s: two frames at 20 a second, and less than the
 /// shortest freeze that matters.
 const NOTICED_S: f64 = 0.095;
+/// The plant's time that arrives in so much less of ours was held back.
+const HELD_BACK: f64 = 2.0;
 /// Less is the rounding of a clock that stands still, s.
 const LEAST_STEP_S: f64 = 1e-6;
 /// Time that goes back by less is that of an overtaken report, s.
@@ -271,17 +273,18 @@ impl PlantClock {
         self.gaps_s.rotate_right(1);
         self.gaps_s[0] = ours_s;
         self.step_s = gained_s.min(MAX_STEP_S);
-        self.passed_s = self.step_s;
+        self.passed_s = gained_s;
 
         let period_s = tick.dt_s / (tick.missed.saturating_add(1)) as f64;
         let limit_s = NOTICED_S.max(2.0 * usual_s.max(period_s));
         let was_long = ours_s > limit_s;
-        let settles_anew = was_long && gained_s > MAX_STEP_S;
+        // After a part of what a network held back the rest comes at once.
+        let is_rest = gained_s > HELD_BACK * ours_s;
+        let settles_anew = gained_s > MAX_STEP_S && (was_long || is_rest);
         // Half of the gap is far from both: a frame or two, and all of it.
         let ran_on = settles_anew || was_long && gained_s > 0.5 * ours_s;
         let stood_s = (ours_s - gained_s).max(0.0);
         let excused_s = if settles_anew {
-            self.passed_s = gained_s;
             ours_s
         } else if stood_s > NOTICED_S {
             stood_s
