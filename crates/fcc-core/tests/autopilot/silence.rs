@@ -136,15 +136,21 @@ fn after_a_cut_the_estimate_is_that_of_the_aircraft_at_once() {
 /// As an outsider flew it: control was given back, "the aircraft was moved".
 #[test]
 fn what_a_network_held_back_may_come_in_two_parts() {
-    for held_ticks in [200, 320, 800] {
+    for (held_ticks, is_position_late) in [(200, false), (320, true), (800, false), (800, true)] {
         let mut cockpit = manoeuvring();
         // The first part of it is of the first second.
         silence(&mut cockpit, 40, true);
         silence(&mut cockpit, held_ticks, false);
         fly(&mut cockpit, 1);
+        let north_deg = cockpit.north_deg;
         cockpit.stood_s -= f64::from(held_ticks) * DT_S;
         for _ in 0..held_ticks {
             move_on(&mut cockpit);
+        }
+        if is_position_late {
+            let there = core::mem::replace(&mut cockpit.north_deg, north_deg);
+            fly(&mut cockpit, 1);
+            cockpit.north_deg = there;
         }
         fly(&mut cockpit, 200);
     }

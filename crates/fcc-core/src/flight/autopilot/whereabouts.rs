@@ -25,6 +25,11 @@ const STILL_RAD: f64 = 0.052; // 3°
 const STILL_ALTITUDE_M: f64 = 8.0;
 const STILL_POSITION_M: f64 = 30.0;
 
+/// More of the plant's time in a tick is a gap, s; what a network held back in it may come
+/// in several ticks, s.
+const GAP_S: f64 = 0.2;
+const HELD_BACK_S: f64 = 0.5;
+
 impl Position {
     /// Whether it is a position on the Earth; false for NaN.
     pub fn is_on_earth(&self) -> bool {
@@ -64,6 +69,10 @@ pub(super) struct Whereabouts {
     passed_s: f64,
     /// The newest readings that were examined, or skipped.
     seen: Time,
+    /// The last gap, s, and the plant's time since: a position that is older than its end
+    /// may come a little later.
+    gap_s: f64,
+    since_gap_s: f64,
     /// A position that is out of reach, until the next one confirms it.
     doubtful: Option<Position>,
     was_relocated: bool,
@@ -82,13 +91,22 @@ impl Whereabouts {
     ) {
         self.was_relocated = after_gap && self.is_another(measured, passed_s);
         self.passed_s += passed_s;
+        if passed_s > GAP_S {
+            self.gap_s += passed_s;
+            self.since_gap_s = 0.0;
+        } else {
+            self.since_gap_s += passed_s;
+            if self.since_gap_s > HELD_BACK_S {
+                self.gap_s = 0.0;
+            }
+        }
         let new = measured.position;
         if by_receiver || new.taken <= self.seen || !new.value.is_on_earth() {
             return;
         }
         self.seen = new.taken;
         let is_first = self.position.is_never() || new.source != self.position.source;
-        let is_near = |to: &Position| new.value.can_be_reached(to, self.passed_s);
+        let is_near = |to: &Position| new.value.can_be_reached(to, self.passed_s + self.gap_s);
         if is_first || is_near(&self.position.value) {
             self.doubtful = None;
         } else if self.doubtful.as_ref().is_some_and(is_near) {
