@@ -147,9 +147,9 @@ def _plan(options: argparse.Namespace) -> int:
         options.json.write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
     if options.plot is not None:
         plan_plot.plot(options.plot, options.plan, flown)
-    passed = all(waypoint.passed for waypoint in score.waypoints)
-    collides = score.terrain is not None and score.terrain.collides
-    return 0 if passed and not collides else 1
+    for words in score.missing:
+        say(f"error: {words}", to=sys.stderr)
+    return 1 if score.missing else 0
 
 
 def _show(score: PlanScore) -> None:

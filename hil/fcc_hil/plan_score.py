@@ -88,12 +88,24 @@ class PlanScore:
     circles: list[CircleScore]
     takeoff: TakeoffScore | None = None
     landing: LandingScore | None = None
+    lands: bool = False
+    """Whether the plan has a landing."""
     terrain: TerrainScore | None = None
     """Where the ground is that of tiles."""
 
     def document(self) -> dict[str, Any]:
         """Return it for JSON."""
         return asdict(self)
+
+    @property
+    def missing(self) -> list[str]:
+        """What of the plan was not flown, in words."""
+        words = [f"item {one.item} was not passed" for one in self.waypoints if not one.passed]
+        if self.lands and self.landing is None:
+            words.append("the landing was not flown: at the end the aircraft does not stand")
+        if self.terrain is not None and self.terrain.collides:
+            words.append("the ground was flown into")
+        return words
 
 
 def _plane(item: Item) -> Plane:
@@ -131,7 +143,15 @@ def score(
         before = item
     landing = score_landing(plan, flown, go_arounds)
     kept = [leg for leg in legs if leg.seconds > 0.0]
-    return PlanScore(waypoints, kept, [turn for turn in turns if turn], circles, takeoff, landing)
+    return PlanScore(
+        waypoints,
+        kept,
+        [turn for turn in turns if turn],
+        circles,
+        takeoff,
+        landing,
+        lands=any(item.command == LAND for item in flights),
+    )
 
 
 def _along(start: Item, end: Item, at: Item, flown: FlownPlan) -> tuple[float, Array, Array]:

@@ -13,6 +13,8 @@ import pytest
 from pymavlink import mavwp
 
 from fcc_hil import plan_file, plan_flight
+from fcc_hil.__main__ import main
+from fcc_hil.plan_score import PlanScore
 from fcc_hil.plant import Weather
 
 PLANS = Path(__file__).parents[2] / "config/plans"
@@ -52,6 +54,16 @@ def _read_by_pymavlink(path: Path) -> list[tuple[float, ...]]:
 
 def _hash(fccd: Path, path: Path) -> str:
     return str(json.loads(_plan(fccd, "show", "--json", path))["sha256"])
+
+
+def test_a_landing_that_is_not_flown_ends_the_command_with_an_error(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As of an outsider's plan, with three landings that were given up, and exit code 0."""
+    circling = PlanScore([], [], [], [], lands=True)
+    monkeypatch.setattr(plan_flight, "fly", lambda *_: (circling, None))
+    assert main(["plan", "--plan", str(CIRCUIT)]) == 1
+    assert "the landing was not flown" in capsys.readouterr().err
 
 
 def test_a_plan_goes_through_pymavlinks_reader(fccd: Path, tmp_path: Path) -> None:
