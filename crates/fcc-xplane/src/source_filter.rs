@@ -10,7 +10,7 @@
 //! The filter is attached when a connection is opened, and adapted by the thread
 //! that reports on the connection: never in a tick.
 
-use std::io;
+use std::io::{self, Read as _};
 use std::net::IpAddr;
 use std::os::fd::AsFd;
 use std::sync::{Mutex, PoisonError};
@@ -59,6 +59,9 @@ pub(crate) struct SourceFilter {
     attached: Mutex<Option<Source>>,
 }
 
+/// More than wait in a socket at Linux's default size; of a larger one some are left.
+const MOST_QUEUED: usize = 2_000;
+
 impl SourceFilter {
     /// For the socket with this descriptor, which is duplicated.
     pub(crate) fn of(socket: &impl AsFd) -> io::Result<Self> {
@@ -84,7 +87,20 @@ impl SourceFilter {
         if attached.as_ref() != Some(&wanted)
             && attach(&self.socket, wanted.ip, wanted.ports.as_deref()).is_ok()
         {
+            if attached.is_none() && wanted.ports.is_some() {
+                self.drop_queued();
+            }
             *attached = Some(wanted);
+        }
+    }
+
+    /// What came before there was a filter came from anybody.
+    fn drop_queued(&self) {
+        let mut datagram = [0; 1];
+        for _ in 0..MOST_QUEUED {
+            if (&self.socket).read(&mut datagram).is_err() {
+                break;
+            }
         }
     }
 }
@@ -200,6 +216,29 @@ mod tests {
         assert_eq!(permitted([5, 0, 0, 7], Some(&[7, 8])), Some(vec![7]));
         // The one that was known is another user's now.
         assert_eq!(permitted([5; 4], Some(&[7, 8])), Some(vec![7, 8]));
+    }
+
+    /// As an outsider did: a program that sends before the daemon starts was taken for the
+    /// simulator.
+    #[test]
+    fn what_came_before_the_simulators_user_was_known_is_dropped() {
+        let [receiver, simulator, other] =
+            [(); 3].map(|()| UdpSocket::bind("127.0.0.1:0").unwrap());
+        receiver.set_nonblocking(true).unwrap();
+        let filter = SourceFilter::of(&receiver).unwrap();
+        let link = SharedState::new(Some(simulator.local_addr().unwrap()));
+        let to = receiver.local_addr().unwrap();
+        for _ in 0..100 {
+            other.send_to(&[9], to).unwrap();
+        }
+        let owned = [simulator.local_addr().unwrap().port()];
+        filter.follow(&link, Some(&owned));
+        assert_eq!(received(&receiver, &[&other, &simulator]), [1]);
+        // Later only what is not permitted is dropped.
+        simulator.send_to(&[7], to).unwrap();
+        filter.follow(&link, None);
+        filter.follow(&link, Some(&owned));
+        assert_eq!(received(&receiver, &[]), [7]);
     }
 
     #[test]

@@ -194,6 +194,11 @@ impl RealTime<'_> {
             (None, None)
         };
         let mut run_statistics = RunStatistics::<Pilot>::new(self.period)?;
+        // Before the first tick: of a simulator on this machine only what is its user's
+        // is received.
+        if let Some(authority) = self.authority {
+            authority.report(&mut |words| observers.remark(words.to_string()));
+        }
         let handle = self.flight_loop.spawn()?;
         let granted = handle.granted().clone();
         // Reported at once, not only at the end of a flight that may take days.
