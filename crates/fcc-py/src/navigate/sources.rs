@@ -166,19 +166,20 @@ impl Sources {
             "accelerometer" => Some(Spikes::OF_FORCE),
             _ => None,
         };
-        let mut before: Option<[f64; 3]> = None;
-        for (at, (time_s, row)) in series.times_s.iter().zip(&series.rows).enumerate() {
+        let samples: Vec<_> = series.times_s.iter().zip(&series.rows).collect();
+        let mut before: Option<(f64, [f64; 3])> = None;
+        for (at, &(time_s, row)) in samples.iter().enumerate() {
             if !kind.is_possible(row) {
                 continue;
             }
             kept += 1;
-            let beside = before.zip(series.rows.get(at + 1).copied());
-            let is_spike = spikes.as_mut().zip(beside);
-            if is_spike.is_some_and(|(spikes, (before, after))| spikes.is_one(before, *row, after))
+            let beside = before.zip(samples.get(at + 1));
+            if let (Some(spikes), Some(((from_s, before), (to_s, after)))) = (&mut spikes, beside)
+                && spikes.is_one(before, *row, **after, *to_s - from_s)
             {
                 continue;
             }
-            before = Some(*row);
+            before = Some((*time_s, *row));
             if kind.is_of_receiver() && no_fix.contains(&time_s.to_bits()) {
                 continue;
             }
