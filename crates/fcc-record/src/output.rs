@@ -81,7 +81,7 @@ fn keeps<P: AsRef<Path>>(path: &Path, inputs: &[P], kept: Option<Kept>) -> io::R
             format!("it is {input}, which this command uses, too: choose another name"),
         ));
     }
-    others_of_another_user(path)?;
+    refuse_link_of_another(path)?;
     let what = match kept {
         None => return Ok(()),
         Some(Kept::Recording) => "recording",
@@ -95,7 +95,7 @@ fn keeps<P: AsRef<Path>>(path: &Path, inputs: &[P], kept: Option<Kept>) -> io::R
 }
 
 /// A link of another user would be followed to a file of this one, and a pipe waited for.
-fn others_of_another_user(path: &Path) -> io::Result<()> {
+fn refuse_link_of_another(path: &Path) -> io::Result<()> {
     let Ok(there) = fs::symlink_metadata(path) else {
         return Ok(());
     };

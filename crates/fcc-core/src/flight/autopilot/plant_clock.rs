@@ -13,7 +13,7 @@ use crate::framework::{Notice, Reading, Tick, Time};
 
 /// The longest single step of the plant's time, s: after a gap the loops
 /// continue from the present state, not from an extrapolation.
-const MAX_STEP_S: f64 = 0.2;
+pub(super) const MAX_STEP_S: f64 = 0.2;
 /// A plant whose time does not advance for longer than this while it sends has
 /// stopped: five frames at 20 a second.
 const STOPPED_AFTER: Duration = Duration::from_millis(250);

@@ -5,6 +5,7 @@
 
 use libm::{cos, sqrt};
 
+use super::plant_clock::MAX_STEP_S;
 use crate::blocks::wrap_pi;
 use crate::flight::navigation::{ATTITUDE_RAD, HEADING_RAD, HEIGHT_M, PlausibilityLimit};
 use crate::flight::{Attitude, Measurements, Position};
@@ -25,9 +26,7 @@ const STILL_RAD: f64 = 0.052; // 3°
 const STILL_ALTITUDE_M: f64 = 8.0;
 const STILL_POSITION_M: f64 = 30.0;
 
-/// More of the plant's time in a tick is a gap, s; what a network held back in it may come
-/// in several ticks, s.
-const GAP_S: f64 = 0.2;
+/// What a network held back in a gap may come in several ticks, s.
 const HELD_BACK_S: f64 = 0.5;
 
 impl Position {
@@ -91,7 +90,7 @@ impl Whereabouts {
     ) {
         self.was_relocated = after_gap && self.is_another(measured, passed_s);
         self.passed_s += passed_s;
-        if passed_s > GAP_S {
+        if passed_s > MAX_STEP_S {
             self.gap_s += passed_s;
             self.since_gap_s = 0.0;
         } else {
