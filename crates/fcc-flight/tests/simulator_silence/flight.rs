@@ -7,6 +7,7 @@ use fcc_core::flight::{Autopilot, AutopilotConfig, StickTakeover};
 use fcc_core::framework::{Event, EventKind, LoopCommand, Message, State};
 use fcc_flight::flight::true_sample;
 use fcc_runtime::{Link, LoopConfig, Machine, Parts};
+use fcc_sim::{Severity, SimConfig};
 use fcc_telemetry::{LegScore, PatternScorer};
 use fcc_timer::{Expiry, ManualTimer};
 use fcc_xplane::{XPlane, XPlaneConfig};
@@ -37,7 +38,21 @@ pub(crate) struct Flight {
 impl Flight {
     /// Engaged at frames of a rate, with jitter unless its seed is 0.
     pub(crate) fn engaged(frame_hz: f64, jitter: u64) -> Self {
-        let wire = Wire::new(frame_hz, jitter);
+        let wire = Wire::new(frame_hz, jitter, &SimConfig::default());
+        Self::engaged_over(wire, AutopilotConfig::default().guidance)
+    }
+
+    /// Straight and level in moderate turbulence.
+    pub(crate) fn in_turbulence(seed: u64) -> Self {
+        let config = SimConfig {
+            gusts: Some(Severity::Moderate),
+            seed,
+            ..SimConfig::default()
+        };
+        Self::engaged_over(Wire::new(60.0, 0, &config), GuidanceConfig::Hold)
+    }
+
+    fn engaged_over(wire: Wire, guidance: GuidanceConfig) -> Self {
         let config = XPlaneConfig {
             pilot_controls: true,
             ..XPlaneConfig::default()
@@ -47,6 +62,7 @@ impl Flight {
             timer: Box::new(ManualTimer::new(Duration::from_nanos(PERIOD_NS as u64)).unwrap()),
             sensors: vec![Box::new(sensor)],
             controller: Autopilot::new(AutopilotConfig {
+                guidance,
                 stick_takeover: Some(StickTakeover {
                     threshold: 0.3,
                     after: Duration::from_millis(200),
@@ -214,6 +230,10 @@ impl Flight {
     pub(crate) fn true_bank_deg(&self) -> f64 {
         let roll_rad = self.wire.world().aircraft.truth().roll_rad;
         roll_rad.to_degrees()
+    }
+
+    pub(crate) fn rudder(&self) -> f64 {
+        self.machine.record().outputs.rudder
     }
 
     pub(crate) fn largest_bank_step_deg(&self) -> f64 {

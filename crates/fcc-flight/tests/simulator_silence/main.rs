@@ -103,6 +103,29 @@ fn thirty_cuts_are_distinguished_from_freezes_and_the_bank_command_never_steps()
     }
 }
 
+/// Turbulence rolls and yaws the aircraft in the moment in which it is heard again: that
+/// is none of its trims. With hands off it flies straight, its rudder at 0.
+#[test]
+fn what_a_cut_ends_with_is_not_taken_for_trim() {
+    for seed in [5, 6, 7, 8] {
+        let mut flight = Flight::in_turbulence(seed);
+        flight.fly(5.0);
+        let mut rudder = Vec::new();
+        for _ in 0..10 {
+            flight.cut(false);
+            flight.fly(3.0);
+            flight.restore();
+            flight.fly(1.5);
+            for _ in 0..20 {
+                flight.fly(0.1);
+                rudder.push(flight.rudder());
+            }
+        }
+        let mean = rudder.iter().sum::<f64>() / rudder.len() as f64;
+        assert!(mean.abs() < 0.1, "seed {seed}: {mean}");
+    }
+}
+
 #[test]
 fn maps_pauses_and_replays_at_any_moment_are_waited_out() {
     let manners = [

@@ -104,7 +104,7 @@ impl Port for Wire {
 }
 
 impl Wire {
-    pub(crate) fn new(frame_hz: f64, jitter: u64) -> Self {
+    pub(crate) fn new(frame_hz: f64, jitter: u64, config: &SimConfig) -> Self {
         let values = [
             ("sim/time/paused", 0.0),
             ("sim/time/is_in_replay", 0.0),
@@ -118,7 +118,11 @@ impl Wire {
         let zeros = OVERRIDES.into_iter().chain(YOKE).map(|path| (path, 0.0));
         let values = values.into_iter().chain(zeros);
         let frame_ns = (1e9 / frame_hz) as i64;
-        let aircraft = Aircraft::new(&config()).unwrap();
+        let config = SimConfig {
+            substep_s: 0.01,
+            ..config.clone()
+        };
+        let aircraft = Aircraft::new(&config).unwrap();
         let throttle = (THROTTLE, aircraft.hands_off().throttle);
         Self(Arc::new(Mutex::new(World {
             aircraft,

@@ -103,6 +103,17 @@ impl Autopilot {
         self.keep_trims();
     }
 
+    /// Starts the loops at the present state with the trims that they have found, after
+    /// a time in which nobody else flew: the surfaces stood at these trims, so what is
+    /// off now is none of them.
+    pub(super) fn rejoin(&mut self) {
+        let estimate = *self.navigation.estimate();
+        self.bank.reset(estimate.roll_rad);
+        self.heading.restart(&estimate);
+        self.altitude.restart(&estimate);
+        self.airspeed.restart(&estimate);
+    }
+
     /// Enters the mode given by the transition table, with the present targets.
     pub(super) fn change_mode(&mut self, input: ModeInput) {
         let (config, plan) = (self.config.guidance, self.config.plan);

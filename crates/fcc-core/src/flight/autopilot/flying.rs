@@ -13,6 +13,10 @@ impl Autopilot {
         if self.is_silent(now) {
             return self.trims();
         }
+        if !self.renewed_since.is_never() {
+            // Some of the estimate is from before the loss.
+            return self.last;
+        }
         let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
         self.follow_outputs(&estimate);
         let (schedule, envelope) = (self.schedule(), self.envelope());

@@ -206,14 +206,13 @@ impl Autopilot {
         self.renewed_since = tick.woke;
     }
 
-    /// Takes the loops over, tick by tick, until all that control needs has been
+    /// Starts the loops anew, tick by tick, until all that control needs has been
     /// measured anew: it may arrive in several datagrams.
     fn take_over_after_loss(&mut self, now: Time) {
         if self.renewed_since.is_never() {
             return;
         }
-        let last = self.last;
-        self.take_over(&last);
+        self.rejoin();
         self.heading.lead_from(self.setpoints.roll_rad);
         let renewed = taken_of_needed(&self.accepted)
             .into_iter()

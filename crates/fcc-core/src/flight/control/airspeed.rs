@@ -138,7 +138,7 @@ impl AirspeedLoop {
 
     /// Engages with the present throttle.
     pub fn engage(&mut self, throttle: f64, demand: &ThrottleDemand, estimate: &Estimate) {
-        self.acceleration.reset(estimate.acceleration_mps2);
+        self.restart(estimate);
         let feed_forward = self.feed_forward(demand, estimate, 0.0);
         self.throttle.engage(
             throttle,
@@ -147,6 +147,12 @@ impl AirspeedLoop {
             feed_forward,
             1.0,
         );
+    }
+
+    /// Continues with the present motion of the aircraft, and with the throttle found
+    /// before.
+    pub(crate) const fn restart(&mut self, estimate: &Estimate) {
+        self.acceleration.reset(estimate.acceleration_mps2);
     }
 
     /// Performs one step; returns the throttle, 0..=1.

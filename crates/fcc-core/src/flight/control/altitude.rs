@@ -144,9 +144,6 @@ impl AltitudeLoop {
     /// Engages with the present elevator and motion of the aircraft.
     pub fn engage(&mut self, elevator: f64, estimate: &Estimate, schedule: Schedule) {
         let path = flight_path(estimate.climb_rate_mps, estimate);
-        self.climb_rate.reset(estimate.climb_rate_mps);
-        self.expected_path.reset(path);
-        self.speed = SpeedLimits::new();
         self.pitch.engage(
             estimate.pitch_rad,
             path,
@@ -159,6 +156,15 @@ impl AltitudeLoop {
         let gain = schedule.moment * schedule.pitch_pace;
         self.pitch_rate
             .engage(elevator, rate, rate, feed_forward, gain);
+        self.restart(estimate);
+    }
+
+    /// Continues with the present motion of the aircraft, and with the trims found before.
+    pub(crate) fn restart(&mut self, estimate: &Estimate) {
+        self.climb_rate.reset(estimate.climb_rate_mps);
+        let path = flight_path(estimate.climb_rate_mps, estimate);
+        self.expected_path.reset(path);
+        self.speed = SpeedLimits::new();
     }
 
     /// Changes the climb rate as fast as this at least (m/s²): 0 for as fast as

@@ -175,9 +175,6 @@ impl HeadingLoop {
     pub fn engage(&mut self, aileron: f64, rudder: f64, estimate: &Estimate, schedule: Schedule) {
         let roll_rate = estimate.body_rates.roll_radps;
         let rolling = self.aileron_feed_forward(roll_rate, schedule);
-        self.lead = None;
-        self.needed_rad = 0.0;
-        self.roll_command.reset(roll_rate);
         self.roll_rate.engage(
             aileron,
             roll_rate,
@@ -185,7 +182,6 @@ impl HeadingLoop {
             rolling,
             schedule.moment * schedule.lateral_pace,
         );
-        self.correction.reset(aileron - rolling);
         self.side_force.engage(
             rudder,
             0.0,
@@ -193,6 +189,15 @@ impl HeadingLoop {
             self.rudder_feed_forward(rolling, estimate, schedule),
             schedule.moment * schedule.lateral_pace,
         );
+        self.restart(estimate);
+    }
+
+    /// Continues with the present motion of the aircraft, and with the trims found before.
+    pub(crate) fn restart(&mut self, estimate: &Estimate) {
+        self.lead = None;
+        self.needed_rad = 0.0;
+        self.roll_command.reset(estimate.body_rates.roll_radps);
+        self.correction.reset(self.aileron_trim());
     }
 
     /// One step towards a heading (rad, continuous through full turns).
