@@ -15,7 +15,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import actions, simulator_options, watcher_load
+from . import actions, documents, simulator_options, watcher_load
 from . import commands as flights
 from .daemon import DaemonError, command
 from .fly import (
@@ -25,7 +25,6 @@ from .fly import (
     fly,
     peer_row,
     print_progress,
-    write_document,
 )
 from .pattern import TimedPattern
 from .peer import fly_peer
@@ -75,7 +74,7 @@ def _fly(options: argparse.Namespace) -> int:
         f"work {frames['work_us']['p99']:.0f} us at p99"
     )
     if options.json:
-        write_document(options.json, flight.document(peer))
+        documents.write(options.json, flight.document(peer))
     if options.plot:
         plot_flight(
             options.plot,

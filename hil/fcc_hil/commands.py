@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import argparse
 import fnmatch
-import json
 import sys
 from pathlib import Path
 from typing import Any
 
-from . import app_timing_command, flood, plan_command, ranges, raw_command
+from . import app_timing_command, documents, flood, plan_command, ranges, raw_command
 from .aircraft import AIRCRAFT
 from .campaign import command as campaign
 from .printable import say
@@ -216,7 +215,7 @@ def _suite(options: argparse.Namespace) -> int:
     say(report.text(outcomes, speed))
     if options.json:
         document = report.document(outcomes, speed)
-        options.json.write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
+        documents.write(options.json, document)
     if options.picture:
         from .suite.picture import draw  # noqa: PLC0415 - matplotlib takes a second
 
@@ -244,7 +243,7 @@ def _margins(options: argparse.Namespace) -> int:
     say(report.text(measured))
     if options.json:
         document = [found.document() for found in measured]
-        options.json.write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
+        documents.write(options.json, document)
     if options.picture:
         report.draw(options.picture, measured)
     return 0 if all(found.holds for found in measured) else 1
@@ -324,7 +323,7 @@ def _soak(options: argparse.Namespace) -> int:
     for failure in failures:
         say(f"failed: {failure}", to=sys.stderr)
     if options.json:
-        options.json.write_text(json.dumps(result.document(), indent=2) + "\n", encoding="utf-8")
+        documents.write(options.json, result.document())
     return 1 if failures else 0
 
 

@@ -7,12 +7,10 @@ from JSBSim's true state and never from the daemon's report.
 
 from __future__ import annotations
 
-import json
 import sys
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field
-from pathlib import Path
 from typing import Any
 
 from .cockpit import ENGAGE_SWITCH as ENGAGE_SWITCH  # noqa: PLC0414 - as others know it
@@ -263,11 +261,6 @@ def peer_row(plan: Plan) -> Score:
     """Return the score of JSBSim's own autopilot on the same pattern, in calm air."""
     figures, _ = fly_peer(plan.legs, plan.settings.seed, plan.pattern)
     return figures
-
-
-def write_document(path: Path, document: dict[str, Any]) -> None:
-    """Write a flight's document as JSON."""
-    path.write_text(json.dumps(document, indent=2) + "\n")
 
 
 def print_progress(line: str) -> None:

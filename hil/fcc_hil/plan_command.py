@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import signal
 import sys
 import tempfile
@@ -11,7 +10,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import ranges
+from . import documents, ranges
 from .aircraft import AIRCRAFT
 from .fly import print_progress
 from .printable import say
@@ -144,7 +143,7 @@ def _plan(options: argparse.Namespace) -> int:
     _show(score)
     if options.json is not None:
         document = {"law": options.law, **score.document()}
-        options.json.write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
+        documents.write(options.json, document)
     if options.plot is not None:
         plan_plot.plot(options.plot, options.plan, flown)
     for words in score.missing:

@@ -72,6 +72,8 @@ def file_to_write(text: str) -> Path:
     """Read a path, before flying: a file can be written there, or argparse.ArgumentTypeError."""
     path = Path(text)
     folder = path.parent
+    if text == "-":
+        raise argparse.ArgumentTypeError("'-' is a file here: give another name, or ./-")
     if path.is_dir():
         raise argparse.ArgumentTypeError(f"'{text}' is a folder: give a file")
     if not folder.is_dir():

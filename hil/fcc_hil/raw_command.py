@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from pathlib import Path
 from typing import Any
 
-from . import ranges
+from . import documents, ranges
 from .aircraft import AIRCRAFT
 from .printable import say
 from .rig import FlightError
@@ -106,7 +105,7 @@ def _raw(options: argparse.Namespace) -> int:
         say(f"{name:22} {value:6.2f}" if isinstance(value, float) else f"{name:22}  never")
     if options.json is not None:
         figures = {"navigation": options.navigation, "errors": errors, **flight.score}
-        options.json.write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
+        documents.write(options.json, figures)
     if options.learned is not None and flight.learned is not None:
         raw_flight.write_learned(options.learned, flight.learned)
         say(f"written to {options.learned}")

@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 from typing import Any, cast
 
-from . import actions
+from . import actions, ranges
 from .aircraft import AIRCRAFT
 from .faults import Address, Faults
 from .misbehaviour import MISBEHAVIOURS
@@ -161,8 +161,16 @@ def add(parser: argparse.ArgumentParser) -> None:
         default="past",
         help="what the flight time does in a replay (default %(default)s)",
     )
-    parser.add_argument("--latitude", type=float, default=0.0, metavar="DEG", help="initial")
-    parser.add_argument("--longitude", type=float, default=0.0, metavar="DEG", help="initial")
+    parser.add_argument(
+        "--latitude", type=ranges.number(-90.0, 90.0), default=0.0, metavar="DEG", help="initial"
+    )
+    parser.add_argument(
+        "--longitude",
+        type=ranges.number(-180.0, 180.0),
+        default=0.0,
+        metavar="DEG",
+        help="initial",
+    )
     parser.add_argument(
         "--terrain",
         type=_tiles,

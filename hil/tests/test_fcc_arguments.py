@@ -241,6 +241,13 @@ def test_a_file_that_cannot_be_read_is_refused(tmp_path: Path) -> None:
         fcc.list_recordings(tmp_path / "none")
 
 
+def test_a_name_given_for_a_text_is_told() -> None:
+    with pytest.raises(fcc.ConfigError, match=r"'config/a\.toml' is the name of a file"):
+        fcc.fly("config/a.toml")
+    with pytest.raises(fcc.PlanError, match=r"'a\.plan' is the name of a file"):
+        fcc.Plan("a.plan")
+
+
 def test_every_exception_is_an_error_of_the_module() -> None:
     for name in ("Config", "Engage", "Flight", "Recording", "Telemetry", "Command", "Timer"):
         assert issubclass(getattr(fcc, f"{name}Error"), fcc.Error)

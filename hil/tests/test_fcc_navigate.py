@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from typing import Any
 
 import fcc
@@ -267,14 +268,15 @@ LATE_S = 0.6
 SPEED_MPS, GRAVITY_MPS2 = 30.0, 9.80665
 TURNS_S = np.arange(0.0, 120.0, 0.02)
 TURN_RATE = 0.15 * np.sin(TURNS_S / 6.0)
-TURNS_ROLL = np.arctan(SPEED_MPS * TURN_RATE / GRAVITY_MPS2)
 """Coordinated turns at 30 m/s, in which the force points out of the floor."""
+OTHER_RATE = 0.1 * np.sin(TURNS_S / 6.0) + 0.08 * np.sin(TURNS_S / 2.3)
+"""Turns that do not repeat."""
 
 
-def turns(late_s: float = 0.0) -> dict[str, Any]:
-    heading = 0.15 * 6.0 * (1.0 - np.cos(TURNS_S / 6.0))
-    roll = TURNS_ROLL
-    rates = np.array([np.gradient(roll, 0.02), TURN_RATE * np.sin(roll), TURN_RATE * np.cos(roll)])
+def turns(late_s: float = 0.0, rate: Any = TURN_RATE) -> dict[str, Any]:
+    heading = np.cumsum(rate) * 0.02
+    roll = np.arctan(SPEED_MPS * rate / GRAVITY_MPS2)
+    rates = np.array([np.gradient(roll, 0.02), rate * np.sin(roll), rate * np.cos(roll)])
     force = np.array([0.0 * roll, 0.0 * roll, -GRAVITY_MPS2 / np.cos(roll)])
     velocity = SPEED_MPS * np.array([np.cos(heading), np.sin(heading), 0.0 * heading])
     metres = np.cumsum(velocity, axis=1) * 0.02
@@ -289,11 +291,33 @@ def turns(late_s: float = 0.0) -> dict[str, Any]:
 
 
 def test_it_is_found_by_how_much_fixes_are_late() -> None:
-    found = fcc.navigate(**turns(LATE_S))
+    with pytest.warns(UserWarning, match=f"it turns {LATE_S} s later"):
+        found = fcc.navigate(**turns(LATE_S))
     assert found["gnss_late_s"][-1] == pytest.approx(LATE_S, abs=0.1)
     assert found["gnss_late_s_sigma"][-1] < 0.1
-    error = (found["roll_rad"] - TURNS_ROLL)[TURNS_S > 60.0]
+    roll = np.arctan(SPEED_MPS * TURN_RATE / GRAVITY_MPS2)
+    error = (found["roll_rad"] - roll)[TURNS_S > 60.0]
     assert np.degrees(np.sqrt(np.mean(error**2))) < 1.0
+
+
+GPS_LESS_UTC_S = 18.0
+"""Since 2017."""
+
+
+@pytest.mark.parametrize("source", ["gnss_position", "gnss_velocity"])
+@pytest.mark.parametrize(
+    ("late_s", "words"),
+    [(GPS_LESS_UTC_S, "18.0 s later"), (-GPS_LESS_UTC_S, "18.0 s earlier"), (1.0, "1.0 s later")],
+)
+def test_of_another_clock_it_warns(source: str, late_s: float, words: str) -> None:
+    sources = turns(0.0, OTHER_RATE)
+    fcc.navigate(**sources)
+    times_s, values = sources[source]
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        fcc.navigate(**sources | {source: (times_s + late_s, values)})
+    (turned,) = [str(one.message) for one in told if "turns" in str(one.message)]
+    assert turned.startswith(f"{source}: it turns {words} than the gyroscope")
 
 
 def test_a_source_that_does_not_agree_is_named() -> None:

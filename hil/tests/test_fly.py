@@ -11,10 +11,11 @@ from pathlib import Path
 
 import pytest
 
+from fcc_hil import documents
 from fcc_hil.__main__ import main
 from fcc_hil.cockpit import OVERRIDE_JOYSTICK
 from fcc_hil.daemon import Daemon, DaemonError, command
-from fcc_hil.fly import FlightError, Plan, altitudes_note, fly, peer_row, write_document
+from fcc_hil.fly import FlightError, Plan, altitudes_note, fly, peer_row
 from fcc_hil.pattern import TimedPattern
 from fcc_hil.plot import plot_flight
 from fcc_hil.process import StandInError, StandInProcess
@@ -43,7 +44,7 @@ def test_a_flight_from_switch_to_score(tmp_path: Path) -> None:
     assert len([line for line in lines if "heading" in line]) == pytest.approx(4, abs=1)
 
     document_path = tmp_path / "flight.json"
-    write_document(document_path, flight.document(peer_row(flight.plan)))
+    documents.write(document_path, flight.document(peer_row(flight.plan)))
     document = json.loads(document_path.read_text())
     assert document["timing"]["rate_hz"] == 40.0
     assert document["aircraft"] == "c172p"

@@ -1,6 +1,7 @@
 //! Configuration: files, texts, values by their keys, with the daemon's messages.
 
-use std::path::PathBuf;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
 
 use fcc_core::flight::AutopilotConfig;
 use fcc_flight::config::{Config, ConfigError, keyed};
@@ -35,6 +36,11 @@ impl PyConfig {
     #[new]
     #[pyo3(signature = (text = ""))]
     fn new(text: &str) -> PyResult<Self> {
+        if names_a_file(text, &["toml"]) {
+            return Err(errors::CONFIG.with(format!(
+                "{NAME}: '{text}' is the name of a file: read it by Config.load(path)"
+            )));
+        }
         Config::parse_without_aircraft(text, NAME)
             .and_then(|config| config.with_plan(NAME))
             .map(|config| Self { config })
@@ -110,6 +116,12 @@ impl PyConfig {
     fn __repr__(&self) -> PyResult<String> {
         Ok(format!("Config({:?})", self.to_toml()?))
     }
+}
+
+/// Whether what is given for the text of a file is the name of one.
+pub(crate) fn names_a_file(text: &str, endings: &[&str]) -> bool {
+    let ending = Path::new(text).extension().and_then(OsStr::to_str);
+    !text.contains('\n') && ending.is_some_and(|ending| endings.contains(&ending))
 }
 
 /// A configuration given as a `Config`, as a text or not at all.

@@ -6,7 +6,7 @@ use fcc_plan::{FileError, Format, Plan, Problem};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::config::configuration;
+use crate::config::{configuration, names_a_file};
 use crate::errors;
 use crate::json::to_python;
 
@@ -38,6 +38,11 @@ fn format_of(name: &str) -> PyResult<Format> {
 impl PyPlan {
     #[new]
     fn new(text: &str) -> PyResult<Self> {
+        if names_a_file(text, &["plan", "waypoints", "txt"]) {
+            return Err(errors::PLAN.with(format!(
+                "'{text}' is the name of a file: read it by Plan.read(path)"
+            )));
+        }
         let plan = fcc_plan::read(text).map_err(|problems| invalid(&problems))?;
         Ok(Self { plan })
     }

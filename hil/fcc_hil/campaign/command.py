@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 import time
 from functools import partial
 from typing import Any
 
-from .. import ranges
+from .. import documents, ranges
 from ..printable import say
 from ..progress import bar
 from ..workers import local_workers, on_dask
@@ -112,7 +111,7 @@ def _campaign(parser: argparse.ArgumentParser, options: argparse.Namespace) -> i
     say(f"took {time.monotonic() - began_s:.0f} s")
     if options.json:
         document = report.document(outcomes, options.seed, bounds)
-        options.json.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
+        documents.write(options.json, document)
     if options.picture:
         from .picture import draw as draw_picture  # noqa: PLC0415 - matplotlib takes a second
 
@@ -139,7 +138,7 @@ def _one(options: argparse.Namespace, bounds: Bounds) -> int:
         say(f"    {name:30} {value:8.2f}")
     say(f"digest {outcome.digest}")
     if options.json:
-        options.json.write_text(json.dumps(outcome.document(), indent=1) + "\n", encoding="utf-8")
+        documents.write(options.json, outcome.document())
     if options.picture:
         from .flight_picture import draw as draw_picture  # noqa: PLC0415
 

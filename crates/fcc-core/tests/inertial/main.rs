@@ -13,6 +13,7 @@ mod flights;
 mod gaps;
 mod gyroscope;
 mod hand;
+mod in_flight;
 mod jumps;
 mod matched;
 mod noise;

@@ -5,10 +5,12 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use super::calibrate::unix_s;
 use crate::cli::CheckArgs;
 use crate::exit::Exit;
 use crate::output;
 use crate::process::{commanders_refused, unknown_names};
+use fcc_flight::calibrate::{CalibrationFileError, apply};
 use fcc_flight::config::{Aircraft, Config, ConfigError, Problem};
 
 #[derive(Serialize)]
@@ -44,14 +46,21 @@ pub(super) fn check(args: &CheckArgs) -> Exit {
     }
 }
 
-/// Checks a file and the plan that it names, and describes it.
+/// Checks a file, and the plan and the calibration that a flight by it uses, and describes
+/// it.
 fn check_file(path: &Path) -> (Checked, Result<String, ConfigError>) {
     let file = path.display().to_string();
     let loaded = Config::load_with_text(path)
-        .and_then(|(config, text)| Ok((config.with_plan(&file)?, text)));
+        .and_then(|(config, text)| Ok((config.with_plan(&file)?, text)))
+        .and_then(|(mut config, text)| {
+            let applied = apply(&mut config, unix_s())
+                .map_err(|(of, error)| unusable_calibration(&file, &of, &error))?;
+            Ok((config, text, applied.remarks))
+        });
     match loaded {
-        Ok((config, text)) => {
+        Ok((config, text, calibrated)) => {
             let mut remarks = config.remarks(&text);
+            remarks.extend(calibrated);
             remarks.extend(unknown_names(&config.rights));
             remarks.extend(commanders_refused(&config.rights, Path::new("/")));
             let aircraft = match config.aircraft() {
@@ -83,5 +92,16 @@ fn check_file(path: &Path) -> (Checked, Result<String, ConfigError>) {
             };
             (checked, Err(error))
         }
+    }
+}
+
+fn unusable_calibration(file: &str, of: &Path, error: &CalibrationFileError) -> ConfigError {
+    ConfigError::Invalid {
+        file: file.to_owned(),
+        problems: vec![Problem {
+            line: None,
+            key: Some("calibration.file".to_owned()),
+            message: format!("{}: {error}", of.display()),
+        }],
     }
 }

@@ -178,7 +178,11 @@ fn a_damaged_file_and_another_sensors_are_not_used() {
     let path = folder.path().join(FILE);
     let good = fs::read_to_string(&path).unwrap();
     fs::write(&path, good.replace("unix_s = 1", "unix_s = 2")).unwrap();
-    for refused in [fly(&[]), calibrate(folder.path(), &["airspeed"])] {
+    let check = || {
+        let words = ["check", "raw.toml"];
+        fccd(folder.path(), &words).output().unwrap()
+    };
+    for refused in [fly(&[]), calibrate(folder.path(), &["airspeed"]), check()] {
         assert_eq!(refused.status.code(), Some(2), "{}", said(&refused));
         // There is no copy of a first one.
         let expected = "is damaged, or was edited: remove it and calibrate again";

@@ -1,5 +1,6 @@
 //! Navigation from arrays of raw samples.
 
+mod clocks;
 mod kind;
 mod magnetism;
 mod mounting;

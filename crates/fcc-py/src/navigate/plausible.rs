@@ -8,6 +8,7 @@ use fcc_core::flight::inertial::{Innovation, metres_per_radian};
 use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 
+use super::clocks::{Heading, late};
 use super::kind::{KINDS, Kind, Series};
 use super::mounting::Mounting;
 use super::result::SENSORS;
@@ -46,6 +47,7 @@ const OTHER_SPEEDS: [(&str, f64); 4] = [
 pub(super) fn check(
     py: Python<'_>,
     series: &[Option<Series>],
+    delays_s: &[f64],
     mounting: &Mounting,
 ) -> PyResult<()> {
     let given: Vec<(&Kind, &Series)> = KINDS
@@ -76,6 +78,16 @@ pub(super) fn check(
     unlikely.extend(given.iter().filter_map(|source| backward(*source)));
     if let (Some(position), Some(velocity)) = (of("gnss_position"), of("gnss_velocity")) {
         unlikely.extend(axes(*position, *velocity));
+    }
+    let heading = gyroscope
+        .zip(accelerometer)
+        .and_then(|(rates, forces)| Heading::of(*rates, *forces, mounting));
+    if let Some(heading) = heading {
+        let all = KINDS.iter().zip(series).zip(delays_s);
+        let receivers = all.filter(|((kind, _), _)| kind.is_of_receiver());
+        unlikely.extend(receivers.filter_map(|((kind, series), delay_s)| {
+            late((kind, series.as_ref()?), *delay_s, &heading)
+        }));
     }
     warn(py, unlikely)
 }

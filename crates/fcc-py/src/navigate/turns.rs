@@ -13,13 +13,10 @@ const LEAST_FOR_AXES: usize = 10;
 /// Axes are wrong if the field is then that far from where it should be, as a share of it.
 const WRONG: f64 = 0.1;
 
-/// The samples of a source, and what it is.
-type Source<'a> = (&'a Kind, &'a Series);
-
 /// What is wrong with rates or axes, if the field says so.
 pub(super) fn turns(
-    gyroscope: Source<'_>,
-    magnetometer: Source<'_>,
+    gyroscope: (&Kind, &Series),
+    magnetometer: (&Kind, &Series),
     mounting: &Mounting,
 ) -> Option<String> {
     let turns = windows(gyroscope, magnetometer, mounting);
@@ -36,11 +33,15 @@ struct Turn {
     degrees: Rotation3<f64>,
 }
 
-fn windows(gyroscope: Source<'_>, magnetometer: Source<'_>, mounting: &Mounting) -> Vec<Turn> {
-    let mut rates = possible(gyroscope, mounting).peekable();
+fn windows(
+    gyroscope: (&Kind, &Series),
+    magnetometer: (&Kind, &Series),
+    mounting: &Mounting,
+) -> Vec<Turn> {
+    let mut rates = mounting.possible(gyroscope).peekable();
     let mut turns: Vec<Turn> = Vec::new();
     let mut open: Option<(f64, f64, Turn)> = None;
-    for (time_s, field) in possible(magnetometer, mounting) {
+    for (time_s, field) in mounting.possible(magnetometer) {
         if let Some((begin_s, until_s, turn)) = &mut open {
             while let Some((at_s, rate)) = rates.next_if(|(at_s, _)| *at_s <= time_s) {
                 let by = rate * (at_s - *until_s).max(0.0);
@@ -65,17 +66,6 @@ fn windows(gyroscope: Source<'_>, magnetometer: Source<'_>, mounting: &Mounting)
         }
     }
     turns
-}
-
-/// Samples in the body's axes.
-fn possible(
-    (kind, series): Source<'_>,
-    mounting: &Mounting,
-) -> impl Iterator<Item = (f64, Vector3<f64>)> {
-    let samples = series.times_s.iter().zip(&series.rows);
-    samples
-        .filter(|(_, row)| kind.is_possible(row))
-        .map(|(time_s, row)| (*time_s, mounting.body(kind.name, *row).into()))
 }
 
 /// Whether the field turns by the rates if these are in °/s, and neither by them as they are

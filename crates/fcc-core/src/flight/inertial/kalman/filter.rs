@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, SMatrix, SVector, Vector2, Vector3};
 
 use super::drift::Drift;
+use super::in_flight::InFlight;
 use super::innovations::Innovations;
 use super::lateness::Lateness;
 use super::motion::{Increment, Inertial, Motion, turn};
@@ -74,9 +75,12 @@ pub(super) struct Filter {
     pub(super) drift: Drift,
     pub(super) trend: Trend,
     pub(super) path: Path,
+    pub(super) in_flight: InFlight,
     pub(super) lateness: Lateness,
     /// The mean specific force, m/s², and when it was last so large that it may be more.
     load: f64,
+    /// The rates of the last step that had some, less the longer that is ago, rad/s.
+    turning: f64,
     pub(super) rough: Time,
     /// How fast a receiver last said that this moves, m/s: also if that was refused.
     pub(super) receiver_mps: f64,
@@ -147,8 +151,10 @@ impl Filter {
             drift: Drift::default(),
             trend: Trend::default(),
             path: Path::new(),
+            in_flight: InFlight::new(),
             lateness: Lateness::default(),
             load: 0.0,
+            turning: 0.0,
             rough: Time::NEVER,
             receiver_mps: 0.0,
             mean_wind: Vector2::zeros(),
@@ -162,6 +168,13 @@ impl Filter {
         let reading = self.without_bias(raw);
         self.rates = reading.rates;
         self.knows_rates = raw.rates.is_some();
+        self.turning = if self.knows_rates {
+            self.rates.norm()
+        } else {
+            self.turning * (1.0 - crate::blocks::smoothing_factor(dt_s, p::TURNING_S))
+        };
+        let biases = [self.rate_bias, self.force_bias];
+        self.in_flight.advance(self.time, raw, biases, dt_s);
         let increment = self.motion.advance(&reading, dt_s);
         self.acceleration = increment.acceleration;
         let load = reading.force.map_or(0.0, |force| force.norm());
@@ -202,7 +215,8 @@ impl Filter {
             let per_radian = 2.0 * p::RATE_SCALE * p::RATE_SCALE * p::ONE_WAY_RAD;
             p::RATE_NOISE * p::RATE_NOISE + per_radian * self.rates.norm()
         } else {
-            2.0 * p::UNKNOWN_RATE * p::UNKNOWN_RATE * p::UNKNOWN_RATE_S
+            let square = p::UNKNOWN_RATE * p::UNKNOWN_RATE + self.turning * self.turning;
+            2.0 * square * p::UNKNOWN_RATE_S
         };
         let force_density = if raw.force.is_some() {
             let scale = p::FORCE_SCALE * by.acceleration.norm();

@@ -27,6 +27,7 @@ mod by_field;
 mod drift;
 mod filter;
 mod history;
+mod in_flight;
 mod innovations;
 mod inputs;
 mod lateness;

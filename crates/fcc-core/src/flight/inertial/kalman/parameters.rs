@@ -20,6 +20,8 @@ pub(super) const ONE_WAY_RAD: f64 = 1.0;
 /// Rates without gyroscopes, rad/s, and their correlation time, s.
 pub(super) const UNKNOWN_RATE: f64 = 0.5;
 pub(super) const UNKNOWN_RATE_S: f64 = 0.3;
+/// What turned before may turn on for this time, s.
+pub(super) const TURNING_S: f64 = 3.0;
 /// Rates by the magnetic field and a coordinated turn, rad/s, and the correlation time
 /// of their errors, s: sideslip and rolling, about the direction of the field.
 pub(super) const FIELD_RATE: f64 = 0.1;

@@ -124,6 +124,10 @@ impl Filter {
     fn take_velocity(&mut self, taken: Time, velocity: [f64; 3], after_s: f64) {
         let velocity = Vector3::from(velocity);
         self.receiver_mps = velocity.norm();
+        if self.align_in_flight(taken, velocity) {
+            self.tracks.velocity.judged(taken, true);
+            return;
+        }
         let (horizontal, vertical) = (p::VELOCITY_HORIZONTAL, p::VELOCITY_VERTICAL);
         let refused_s = self.tracks.position.refused_s(taken);
         if self.lateness.is_suspected(taken) && refused_s < p::LATE_SUSPECTED_S {
@@ -207,13 +211,7 @@ impl Filter {
         let late_s = late_s + self.late_s;
         let after_s = after_s - late_s;
         let known = if after_s < -MOMENT_S {
-            let late = Duration::from_secs_f64(late_s.abs());
-            let then = if late_s < 0.0 {
-                taken + late
-            } else {
-                taken - late
-            };
-            self.path.then(&self.motion, then, place)
+            self.path.then(&self.motion, earlier(taken, late_s), place)
         } else {
             None
         };
@@ -302,6 +300,12 @@ impl Filter {
         self.tracks.velocity.since_used_s(self.time) < p::UNAIDED_S
             || self.tracks.position.since_used_s(self.time) < p::UNAIDED_S
     }
+}
+
+/// A time that is by so much earlier.
+pub(super) fn earlier(time: Time, by_s: f64) -> Time {
+    let by = Duration::from_secs_f64(by_s.abs());
+    if by_s < 0.0 { time + by } else { time - by }
 }
 
 /// What a fix is compared with.
