@@ -29,6 +29,8 @@ pub(crate) struct Fitted {
     pub(crate) receiver: bool,
     /// The receiver is lost from here to there, s.
     pub(crate) receiver_lost_s: (f64, f64),
+    /// The receiver shows the place of its begin and no motion from here to there, s.
+    pub(crate) receiver_stands_s: (f64, f64),
     /// Fixes come later by this time than they say, s, from here to there, s.
     pub(crate) receiver_late: (f64, (f64, f64)),
     /// That time comes to it by so much in a second.
@@ -56,6 +58,7 @@ impl Default for Fitted {
             airspeed: true,
             receiver: true,
             receiver_lost_s: (f64::INFINITY, f64::INFINITY),
+            receiver_stands_s: (f64::INFINITY, f64::INFINITY),
             receiver_late: (0.0, (0.0, f64::INFINITY)),
             later_by: f64::MAX,
             inertial_lost_s: (f64::INFINITY, f64::INFINITY),
@@ -80,12 +83,15 @@ pub(crate) struct Run {
     hard_iron: [f64; 3],
     drift: [f64; 3],
     late: VecDeque<(f64, Truth)>,
+    /// What the receiver shows where it stands.
+    stands: Truth,
     steps: u64,
 }
 
 impl Run {
     pub(crate) fn new(flight: Flight, fitted: Fitted, seed: u64) -> Self {
         let mut random = Random::new(seed);
+        let stands = flight.now;
         let slow = f64::from(u8::from(fitted.slow_errors));
         Self {
             flight,
@@ -101,6 +107,7 @@ impl Run {
             drift: random.vector(1.5 * slow),
             random,
             late: VecDeque::new(),
+            stands,
             steps: 0,
         }
     }
@@ -189,8 +196,20 @@ impl Run {
                 } else {
                     0.0
                 };
+                let (from_s, to_s) = self.fitted.receiver_stands_s;
+                if truth.time_s < from_s {
+                    self.stands = *truth;
+                }
+                let shown = if (from_s..to_s).contains(&truth.time_s) {
+                    Truth {
+                        velocity: [0.0; 3],
+                        ..self.stands
+                    }
+                } else {
+                    *truth
+                };
                 self.late
-                    .push_back((truth.time_s + RECEIVER_DELAY_S + late_s, *truth));
+                    .push_back((truth.time_s + RECEIVER_DELAY_S + late_s, shown));
             }
             if self.fitted.slow_errors {
                 let kept = (-0.2_f64 / 100.0).exp();

@@ -82,8 +82,10 @@ pub(super) struct Filter {
     /// The rates of the last step that had some, less the longer that is ago, rad/s.
     turning: f64,
     pub(super) rough: Time,
-    /// How fast a receiver last said that this moves, m/s: also if that was refused.
-    pub(super) receiver_mps: f64,
+    /// How a receiver last said that this moves, and when, m/s: also if that was refused.
+    pub(super) receiver: (Time, Vector3<f64>),
+    /// When a receiver last contradicted the air.
+    pub(super) contradicted: Time,
     /// The wind of the latest seconds.
     pub(super) mean_wind: Vector2<f64>,
     /// Whether another filter tells which of two sensors is wrong.
@@ -156,7 +158,8 @@ impl Filter {
             load: 0.0,
             turning: 0.0,
             rough: Time::NEVER,
-            receiver_mps: 0.0,
+            receiver: (Time::NEVER, Vector3::zeros()),
+            contradicted: Time::NEVER,
             mean_wind: Vector2::zeros(),
             is_compared: false,
             pending: Pending::default(),

@@ -152,6 +152,16 @@ pub(super) const TURBULENCE_LENGTH_M: f64 = 533.0;
 pub(super) const MEAN_WIND_S: f64 = 10.0;
 pub(super) const WIND_CHANGED: f64 = 5.0;
 
+/// A velocity over the ground that is off by more than this, m/s (40 kt), and by as many
+/// standard deviations of the wind, is the receiver's error where airspeed and compass agreed
+/// within this time, s, if it changed by more than that at once, and faster than this, m/s². It
+/// is for as long as that lasts, with its position, which is not used for this time after it, s.
+pub(super) const OTHER_WIND: f64 = 20.0;
+pub(super) const OTHER_WINDS: f64 = 5.0;
+pub(super) const AGREE_S: f64 = 1.0;
+pub(super) const JUMP: f64 = 40.0;
+pub(super) const CONTRADICTED_S: f64 = 1.5;
+
 /// The velocity of something of which only the inertial sensors are known: a
 /// hand's, m/s; the acceleration with which velocities end, m/s²: a hand turns
 /// back within a second, an aircraft after half a minute.

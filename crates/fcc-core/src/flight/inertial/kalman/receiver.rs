@@ -6,6 +6,7 @@ use nalgebra::{SMatrix, Vector3};
 
 use super::filter::{
     ATTITUDE, BAROMETER_BIAS, FORCE_BIAS, Filter, LATENESS, POSITION, RATE_BIAS, STATES, VELOCITY,
+    WIND,
 };
 use super::noise::{Noise, variances};
 use super::parameters as p;
@@ -31,6 +32,9 @@ impl Filter {
     /// A position, taken `after_s` after the time of the state.
     pub(super) fn position(&mut self, taken: Time, place: GeodeticPosition, after_s: f64) {
         let (horizontal, vertical) = (p::POSITION_HORIZONTAL, p::POSITION_VERTICAL);
+        if self.is_contradicted(taken) {
+            return;
+        }
         if !self.motion.is_located {
             self.settle();
             self.locate(place);
@@ -123,7 +127,12 @@ impl Filter {
 
     fn take_velocity(&mut self, taken: Time, velocity: [f64; 3], after_s: f64) {
         let velocity = Vector3::from(velocity);
-        self.receiver_mps = velocity.norm();
+        let before = core::mem::replace(&mut self.receiver, (taken, velocity));
+        if self.contradicts_air(before) {
+            self.contradicted = taken;
+            self.tracks.velocity.judged(taken, false);
+            return;
+        }
         if self.align_in_flight(taken, velocity) {
             self.tracks.velocity.judged(taken, true);
             return;
@@ -201,6 +210,27 @@ impl Filter {
         if shows_heading {
             self.take_heading_from_course();
         }
+    }
+
+    /// Whether the receiver's velocity is another one than airspeed, compass and the wind so far
+    /// make, by more than a wind can have changed, and became that in no time.
+    fn contradicts_air(&self, (before, was): (Time, Vector3<f64>)) -> bool {
+        let (taken, velocity) = self.receiver;
+        let passed_s = taken.since(before).as_secs_f64();
+        let jumped = (velocity - was).norm() > p::OTHER_WIND.max(p::JUMP * passed_s);
+        let agree = [self.tracks.airspeed, self.tracks.field]
+            .iter()
+            .all(|track| track.since_used_s(taken) < p::AGREE_S);
+        let wind = self.sigma(WIND).max(self.sigma(WIND + 1));
+        let off = (velocity - self.motion.velocity).xy().norm();
+        (jumped || self.is_contradicted(taken))
+            && agree
+            && off > p::OTHER_WIND.max(p::OTHER_WINDS * wind)
+    }
+
+    /// Whether a receiver contradicted the air lately.
+    fn is_contradicted(&self, now: Time) -> bool {
+        now.since(self.contradicted).as_secs_f64() < p::CONTRADICTED_S
     }
 
     /// What a fix is compared with, that was taken `after_s` after the time of the state and

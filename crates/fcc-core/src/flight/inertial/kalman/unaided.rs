@@ -108,7 +108,7 @@ impl Filter {
         /// Beyond the noise of a receiver at rest, m/s.
         const MOVING_MPS: f64 = 1.0;
         // What is taken for standing has no velocity in the filter, whatever a receiver says.
-        let speed = self.receiver_mps.max(self.motion.velocity.norm());
+        let speed = self.receiver.1.norm().max(self.motion.velocity.norm());
         self.flies() || (self.has_receiver() && speed > MOVING_MPS)
     }
 }
