@@ -213,7 +213,7 @@ impl Heading {
         }
         let (xx, xy, yy) = (n * xx - x * x, n * xy - x * y, n * yy - y * y);
         // Most of them have to be known at both times.
-        (2.0 * n > turns.len() as f64 && xx > 0.0 && yy > 0.0 && xy > 0.0)
-            .then(|| 1.0 - xy * xy / (xx * yy))
+        (2.0 * n > turns.len() as f64 && xx > 0.0 && yy > 0.0)
+            .then(|| 1.0 - xy.max(0.0) * xy / (xx * yy))
     }
 }

@@ -124,6 +124,7 @@ pub(crate) fn navigate<'py>(
         py.check_signals()?;
     }
     plausible::agree(py, &run.innovations)?;
+    plausible::biases(py, &run.solutions)?;
     result::dict(
         py,
         &sources,

@@ -4,7 +4,7 @@
 use std::ffi::CString;
 
 use fcc_core::blocks::wrap_pi;
-use fcc_core::flight::inertial::{Innovation, metres_per_radian};
+use fcc_core::flight::inertial::{Innovation, Solution, metres_per_radian};
 use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 
@@ -33,6 +33,11 @@ const HIGH_M: f64 = 2.0;
 /// multiple of what they leave.
 pub(super) const CLEARLY: f64 = 4.0;
 
+/// The zero-rate output of an MPU-6050 is within 20 °/s (product specification, revision 3.4,
+/// section 6.1), and its zero-g output within 80 mg (section 6.2), rad/s, m/s²: an accelerometer
+/// with twice as much is turned, or another one.
+const LARGEST_RATE_BIAS: f64 = 0.349;
+const LARGEST_FORCE_BIAS: f64 = 1.6;
 /// Fewer samples of a source say nothing of it.
 const LEAST_JUDGED: usize = 20;
 /// Other units of velocity, m/s.
@@ -102,6 +107,32 @@ fn warn(py: Python<'_>, unlikely: impl IntoIterator<Item = String>) -> PyResult<
         )?;
     }
     Ok(())
+}
+
+/// Warns of a bias that no sensor has: another source contradicts it.
+pub(super) fn biases(py: Python<'_>, solutions: &[Solution]) -> PyResult<()> {
+    let largest = |of: fn(&Solution) -> [f64; 3]| {
+        let all = solutions.iter().flat_map(of).filter(|one| one.is_finite());
+        all.fold(0.0, |most: f64, one| most.max(one.abs()))
+    };
+    let rate = largest(|solution| solution.gyroscope_bias_radps);
+    let force = largest(|solution| solution.accelerometer_bias_mps2);
+    let of_rate = (rate > LARGEST_RATE_BIAS).then(|| {
+        format!(
+            "gyroscope: a bias of {:.0} °/s is found, and most have less than {:.0}",
+            rate.to_degrees(),
+            LARGEST_RATE_BIAS.to_degrees()
+        )
+    });
+    let of_force = (force > LARGEST_FORCE_BIAS).then(|| {
+        format!(
+            "accelerometer: a bias of {force:.1} m/s² is found, and most have less than \
+             {LARGEST_FORCE_BIAS}"
+        )
+    });
+    let question = "are units, signs, axes and times right, of it and of the other sources?";
+    let found = of_rate.into_iter().chain(of_force);
+    warn(py, found.map(|found| format!("{found}: {question}")))
 }
 
 /// Warns of a source most of whose samples are refused.
@@ -213,6 +244,10 @@ fn axes((kind, position): (&Kind, &Series), velocity: (&Kind, &Series)) -> Optio
             continue;
         }
         begin = Some((*time_s, *place, there));
+        // Across a gap the velocity is not known.
+        if time_s - since_s > 2.0 * WINDOW_S {
+            continue;
+        }
         let (per_latitude, per_longitude) = metres_per_radian(from[0], from[2]);
         let moved_north = (place[0] - from[0]) * per_latitude;
         let moved_east = wrap_pi(place[1] - from[1]) * per_longitude;
