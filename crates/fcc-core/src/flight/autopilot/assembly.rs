@@ -2,7 +2,9 @@
 
 use super::super::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop};
 use super::super::inertial::RawNavigation;
-use super::super::navigation::{FrozenDetector, LearnedAirframe, Navigation, Replacement};
+use super::super::navigation::{
+    FrozenDetector, LearnedAirframe, Navigation, Replacement, ReturningAltitude,
+};
 use super::{
     ActiveMode, Actuation, AltitudeReference, Autopilot, AutopilotConfig, BankCommand,
     Contingencies, Degraded, Delayed, Engine, Following, GroundMotion, Jammed, KeptTrims,
@@ -70,6 +72,7 @@ impl Autopilot {
             following: Following::default(),
             jammed: Jammed::new(),
             distrusted: Flags::NONE,
+            returning_altitude: ReturningAltitude::default(),
             doubt_notice: None,
             is_at_floor: false,
             config,

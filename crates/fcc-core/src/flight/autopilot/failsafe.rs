@@ -7,7 +7,7 @@ use super::{Autopilot, flags};
 use crate::blocks::{limit_abs, wrap_two_pi};
 use crate::flight::atmosphere::true_airspeed_mps;
 use crate::flight::control::Envelope;
-use crate::flight::navigation::Estimate;
+use crate::flight::navigation::{Estimate, Receiver, ReturningAltitude};
 use crate::flight::{Attitude, BodyRates, Measurements, Surfaces};
 use crate::framework::{Flags, Time};
 
@@ -106,12 +106,17 @@ impl Autopilot {
     /// lost quantities; idle throttle while thrust is reversed. A silent plant
     /// keeps its throttle: it may return with another aircraft. What was
     /// rejected as implausible is not believed again while the failsafe lasts,
-    /// unless it agrees with the estimate.
+    /// unless it agrees with the estimate, or is an altitude that
+    /// [returns](ReturningAltitude).
     pub(super) fn safest(&mut self, now: Time, measured: &Measurements) -> Surfaces {
         // One that was frozen stood still: what comes after it is no jump.
         self.degraded.frozen |= flags::unusable(Flags::NONE, self.frozen());
         let jumped = self.rejected(measured).bits() & !self.degraded.frozen.bits();
-        self.distrusted |= Flags::from_bits(jumped);
+        let distrusted = self.distrusted | Flags::from_bits(jumped);
+        if distrusted.contains(flags::ALTITUDE) && !self.distrusted.contains(flags::ALTITUDE) {
+            self.returning_altitude = ReturningAltitude::after(self.accepted.altitude_m);
+        }
+        self.distrusted = distrusted;
         if !self.degraded.is_failsafe {
             self.degraded.begin(self.navigation.estimate().altitude_m);
             self.begin_low();
@@ -262,8 +267,9 @@ impl Autopilot {
     }
 
     /// A value that was rejected is believed again when it agrees with what the
-    /// others tell about it: the last good one is moved with the estimate.
-    pub(super) fn move_distrusted(&mut self) {
+    /// others tell about it: the last good one is moved with the estimate. An altitude is
+    /// also when it is that of an aircraft again: the estimate without it drifts.
+    pub(super) fn move_distrusted(&mut self, now: Time, measured: &Measurements) {
         if self.distrusted.is_empty() {
             return;
         }
@@ -282,7 +288,13 @@ impl Autopilot {
             last.body_rates.value = estimate.body_rates;
         }
         if distrusted.contains(flags::ALTITUDE) {
-            last.altitude_m.value = estimate.altitude_m;
+            let (new, receiver) = (measured.altitude_m, Receiver::of(measured, now));
+            if self.returning_altitude.step(&new, receiver) {
+                last.altitude_m = new;
+                self.distrusted = distrusted.keeping(flags::ALTITUDE, false);
+            } else {
+                last.altitude_m.value = estimate.altitude_m;
+            }
         }
     }
 

@@ -73,7 +73,9 @@ use whereabouts::Whereabouts;
 use super::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop, Recovery};
 use super::guidance::{ActiveMode, Mode, ModeInput, OverGroundMode, Targets};
 use super::inertial::RawNavigation;
-use super::navigation::{Estimate, FrozenDetector, Navigation, Replacement, plausibility_gate};
+use super::navigation::{
+    Estimate, FrozenDetector, Navigation, Replacement, ReturningAltitude, plausibility_gate,
+};
 use super::path::BankCommand;
 use super::route::TookOff;
 use super::{Altimeter, AltitudeReference, Measurements, Setpoints, Surfaces};
@@ -182,6 +184,7 @@ pub struct Autopilot {
     jammed: Jammed,
     /// The quantities that were rejected as implausible in this failsafe.
     distrusted: Flags,
+    returning_altitude: ReturningAltitude,
     /// That the airspeed has just been doubted.
     doubt_notice: Option<Notice>,
     /// Whether the target altitude is limited by the floor.

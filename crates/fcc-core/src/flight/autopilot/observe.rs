@@ -133,7 +133,7 @@ impl Autopilot {
         if !self.knows_attitude() {
             self.forget_attitude();
         }
-        self.move_distrusted();
+        self.move_distrusted(tick.woke, measured);
         let Some(gap) = self.clock.gap() else {
             self.pass_gate(measured);
             return;

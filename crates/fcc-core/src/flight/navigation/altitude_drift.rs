@@ -3,6 +3,10 @@
 
 use libm::fabs;
 
+use super::sample_tracker::is_current;
+use crate::flight::Measurements;
+use crate::framework::Time;
+
 /// What is compared is as old as this at least, and twice as old at most, s.
 const WINDOW_S: f64 = 60.0;
 /// The altimeter drifts if it differs for this time, s, from the climb by the ground
@@ -18,9 +22,20 @@ const AVERAGED_OVER_S: f64 = 10.0;
 
 /// What a receiver measures.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Receiver {
+pub(crate) struct Receiver {
     pub(super) altitude_m: f64,
     pub(super) climb_rate_mps: f64,
+}
+
+impl Receiver {
+    /// What it measures at `now`, if it does.
+    pub(crate) fn of(measured: &Measurements, now: Time) -> Option<Self> {
+        let (position, velocity) = (&measured.position, &measured.velocity);
+        (is_current(position, now) && is_current(velocity, now)).then_some(Self {
+            altitude_m: position.value.altitude_m,
+            climb_rate_mps: -velocity.value.down_mps,
+        })
+    }
 }
 
 /// Since the beginning of a window.

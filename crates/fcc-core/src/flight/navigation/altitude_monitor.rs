@@ -101,6 +101,10 @@ pub(super) struct AltitudeMonitor {
     doubted: Option<Doubted>,
 }
 
+/// What is followed with a silent altimeter and without a receiver: level flight, which is
+/// flown then. The path by pitch and lift is none: it learns from the climb rate.
+pub(super) const LEVEL: Reference = Reference::ClimbRate(0.0, PATH_RADPS);
+
 /// What the filter has to do.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Verdict {

@@ -31,6 +31,7 @@ mod path;
 mod plausibility;
 mod replacement;
 mod resolution;
+mod returning_altitude;
 mod sample_tracker;
 mod scalar_update;
 mod upward;
@@ -57,6 +58,7 @@ pub(crate) use agreement::Contradictions;
 pub use air_data::AirspeedChannel;
 pub use airframe::LearnedAirframe;
 pub(crate) use airspeed_reason::{Doubt, DoubtReason};
+pub(crate) use altitude_drift::Receiver;
 pub use attitude::AttitudeChannel;
 pub use config::NavigationConfig;
 pub use estimate::{AirspeedSource, Estimate};
@@ -69,6 +71,7 @@ pub(crate) use plausibility::{
 };
 pub(crate) use replacement::{DERIVED_RATES_LATE_S, Lost, Replacement};
 pub(crate) use resolution::Resolutions;
+pub(crate) use returning_altitude::ReturningAltitude;
 use upward::Upward;
 pub use vertical::VerticalChannel;
 
@@ -224,7 +227,7 @@ impl Navigation {
         let force = measurements.specific_force;
         let upward = Upward::of(attitude.roll_rad, attitude.pitch_rad);
         let vertical = self.step_vertical(now, measurements, (&attitude, upward), dt_s);
-        let sqrt_density = self.density.sqrt_ratio(vertical.altitude_m);
+        let sqrt_density = self.sqrt_density(now, measurements, vertical.altitude_m);
         let path = Path {
             orientation: &attitude,
             upward,

@@ -31,6 +31,11 @@ impl Density {
         sqrt_ratio: 1.0,
     };
 
+    /// That of the last altitude.
+    pub(super) const fn last_sqrt_ratio(&self) -> f64 {
+        self.sqrt_ratio
+    }
+
     /// √(density over its value at sea level).
     pub(super) fn sqrt_ratio(&mut self, altitude_m: f64) -> f64 {
         if altitude_m != self.altitude_m {

@@ -198,7 +198,7 @@ pub(crate) fn plausibility_gate(
         &mut good.altitude_m,
         &new.altitude_m,
         convinced(5),
-        |m| ALTITUDE_M.contains(m),
+        |m| is_possible_altitude(*m),
         |a, b, gap_s| {
             let beyond_m = ((b - a).abs() - altitude_step_m).max(0.0);
             HEIGHT_M.holds(beyond_m, gap_s)
@@ -269,9 +269,14 @@ fn take_others(good: &mut Measurements, new: &Measurements) -> [bool; 6] {
     [angle, position, velocity, surfaces, plant, pilot]
 }
 
+/// Whether an aircraft can be so high.
+pub(super) fn is_possible_altitude(altitude_m: f64) -> bool {
+    ALTITUDE_M.contains(&altitude_m)
+}
+
 /// Whether an aircraft can be there.
 fn is_possible_position(at: &Position) -> bool {
-    at.is_on_earth() && ALTITUDE_M.contains(&at.altitude_m)
+    at.is_on_earth() && is_possible_altitude(at.altitude_m)
 }
 
 /// Whether an aircraft can move over the ground like this.

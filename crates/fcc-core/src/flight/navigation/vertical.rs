@@ -240,6 +240,7 @@ impl VerticalChannel {
     ) {
         self.integrate(now, measurements, orientation, dt_s);
         self.news.of(&measurements.altitude_m, dt_s);
+        self.has_stepped = false;
         let state = &mut self.state;
         let towards = match reference {
             Some(Reference::ClimbRate(climb_rate_mps, pole)) => {

@@ -16,7 +16,24 @@ use crate::flight::Measurements;
 use crate::framework::Time;
 
 impl Navigation {
-    /// Altitude and climb rate, without the altimeter while it is doubted.
+    /// √(density over its value at sea level) at an altitude, or, while neither altimeter
+    /// nor receiver measures one, where it was measured last.
+    pub(super) fn sqrt_density(
+        &mut self,
+        now: Time,
+        measurements: &Measurements,
+        altitude_m: f64,
+    ) -> f64 {
+        let is_measured =
+            is_current(&measurements.altitude_m, now) || is_current(&measurements.velocity, now);
+        if is_measured {
+            self.density.sqrt_ratio(altitude_m)
+        } else {
+            self.density.last_sqrt_ratio()
+        }
+    }
+
+    /// Altitude and climb rate, without the altimeter while it is doubted or silent.
     pub(super) fn step_vertical(
         &mut self,
         now: Time,
@@ -29,7 +46,7 @@ impl Navigation {
             orientation: attitude,
             upward,
             vertical: before,
-            sqrt_density: self.density.sqrt_ratio(before.altitude_m),
+            sqrt_density: self.sqrt_density(now, measurements, before.altitude_m),
         };
         let sample = self.monitor_input(now, measurements, &before).sample;
         let path = self.monitor.path(&sample);
@@ -49,8 +66,12 @@ impl Navigation {
             altitude.value
                 + altitude_monitor::height_by_total_pressure_m(sensor_mps, forces_mps, density)
         });
-        if self.altitude_monitor.is_doubted() {
-            let reference = altitude_monitor::reference(ground_mps, by_total_m, path_mps);
+        let is_doubted = self.altitude_monitor.is_doubted();
+        if is_doubted || !is_current(&altitude, now) {
+            let by_path_mps = path_mps.filter(|_| is_doubted);
+            let level = (!is_doubted).then_some(altitude_monitor::LEVEL);
+            let reference = altitude_monitor::reference(ground_mps, by_total_m, by_path_mps);
+            let reference = reference.or(level);
             self.vertical
                 .step_without_altimeter(now, measurements, attitude, reference, dt_s);
         } else {
@@ -69,12 +90,7 @@ impl Navigation {
             path_mps,
             ground_mps,
             range_m: measurements.height_by_range_m(now, attitude.roll_rad, attitude.pitch_rad),
-            receiver: ground_mps
-                .filter(|_| is_current(&measurements.position, now))
-                .map(|climb_rate_mps| Receiver {
-                    altitude_m: measurements.position.value.altitude_m,
-                    climb_rate_mps,
-                }),
+            receiver: Receiver::of(measurements, now),
             tan_bank: limit_abs(tan(attitude.roll_rad), 3.0),
             gusts_mps: self.monitor.gusts_mps(),
             sensor_mps,
