@@ -95,6 +95,9 @@ impl Autopilot {
         let is_flying = is_engaged && !self.is_on_wheels();
         self.navigation
             .flown_with(throttle, is_flying, self.is_on_runway());
+        if let Some(airspeed_mps) = self.on_runway.flies_at_mps.take() {
+            self.navigation.leave_airspeed(airspeed_mps);
+        }
     }
 
     /// Prepares the notice of a doubt that has begun, or whose reason is another.

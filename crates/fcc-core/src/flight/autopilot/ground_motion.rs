@@ -196,6 +196,7 @@ impl GroundMotion {
         self.here.airspeed_mps = estimate.airspeed_mps;
         self.here.altitude_m = estimate.altitude_m - sea_level_m;
         self.here.roll_rad = estimate.roll_rad;
+        self.here.climb_rate_mps = estimate.climb_rate_mps;
         let force = measured.specific_force.fresh(now, FORCE_AGE);
         self.here.forward_mps2 = force.map_or(0.0, |force| force.x_mps2);
         let below_m = measured.height_by_range_m(now, estimate.roll_rad, estimate.pitch_rad);

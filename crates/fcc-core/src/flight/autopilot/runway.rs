@@ -73,6 +73,8 @@ pub(super) struct RunwayControl {
     /// Integrated rudder.
     rudder: f64,
     brake: f64,
+    /// The airspeed with which it flies, m/s, as the measured one is wrong.
+    pub(super) flies_at_mps: Option<f64>,
     /// It was told that the climb lasts too long.
     lacks_power: bool,
 }
@@ -184,6 +186,13 @@ impl Autopilot {
             RunwayPhase::Climb | RunwayPhase::Approach
                 if before.is_some_and(RunwayPhase::is_on_wheels) =>
             {
+                if demand.phase == RunwayPhase::Climb && before != Some(RunwayPhase::Rotate) {
+                    // No pitch was held on the wheels.
+                    self.altitude.engage(last.elevator, estimate, schedule);
+                }
+                if demand.airspeed_is_wrong {
+                    self.leave_airspeed(demand, estimate);
+                }
                 self.heading
                     .engage(last.aileron, last.rudder, estimate, schedule);
                 self.bank.reset(estimate.roll_rad);
@@ -202,6 +211,14 @@ impl Autopilot {
             }
             _ => {}
         }
+    }
+
+    /// It flies with an airspeed with which it cannot: in calm air it would have that over
+    /// the ground, and at least that of the rotation.
+    fn leave_airspeed(&mut self, demand: &RunwayDemand, estimate: &Estimate) {
+        let sqrt_density = estimate.airspeed_mps / estimate.true_airspeed_mps.max(1e-3);
+        let calm_mps = demand.ground_speed_mps * limit(sqrt_density, 0.5, 1.1);
+        self.on_runway.flies_at_mps = Some(calm_mps.max(self.config.route.runway.rotate_mps));
     }
 
     /// How far the heading is to the left of that of the runway, rad.

@@ -120,6 +120,8 @@ pub(super) struct AirspeedMonitor {
     ground_s: f64,
     contradicted_s: f64,
     behind: Behind,
+    /// The airspeed for which the sensor is to be left, m/s.
+    left_for_mps: Option<f64>,
     /// The airspeed by both and its standard deviation, while it is known, and the
     /// sensor's difference from it, m/s.
     by_ground: Option<(f64, f64)>,
@@ -161,6 +163,7 @@ impl AirspeedMonitor {
             ground_s: 0.0,
             contradicted_s: 0.0,
             behind: Behind::NONE,
+            left_for_mps: None,
             by_ground: None,
             ground_difference: LowPass::new(VOTE_LAG_S),
             static_port: None,
@@ -253,7 +256,8 @@ impl AirspeedMonitor {
         }
         let least_mps = LEAST_RATIO * self.prior.reference_mps;
         let followed = self.bank.as_ref().map(|bank| bank.older.airspeed_mps());
-        if self.doubt.is_none() && followed.is_some_and(|mps| mps < least_mps) {
+        let is_used = self.doubt.is_none() && self.left_for_mps.is_none();
+        if is_used && followed.is_some_and(|mps| mps < least_mps) {
             *self = Self::new(self.prior);
             return;
         }
@@ -262,6 +266,9 @@ impl AirspeedMonitor {
             gusts_mps: libm::sqrt(self.gusts_mps2),
             ..input.sample
         };
+        if self.doubts_as_told(input, &sample) {
+            return;
+        }
         let Some(mut bank) = self.bank else {
             self.bank = match input.sensor_mps {
                 Some((mps, _)) if mps > 1.2 * least_mps => {

@@ -174,6 +174,12 @@ impl Navigation {
         self.motion_is_known = motion_is_known;
     }
 
+    /// The aircraft flies at about this airspeed, m/s, and its sensor shows one with which it
+    /// cannot: that is doubted from the next tick on.
+    pub(crate) const fn leave_airspeed(&mut self, airspeed_mps: f64) {
+        self.monitor.leave_for(airspeed_mps);
+    }
+
     /// The doubt of the airspeed sensor, while it lasts.
     pub(crate) const fn airspeed_doubt(&self) -> Option<Doubt> {
         self.monitor.doubt()

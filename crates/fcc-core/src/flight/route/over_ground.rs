@@ -41,6 +41,8 @@ pub struct OverGround {
     pub heading_rad: f64,
     /// Right wing down, rad.
     pub roll_rad: f64,
+    /// Upwards, m/s.
+    pub climb_rate_mps: f64,
     /// What an accelerometer shows along the aircraft, m/s², forwards.
     pub forward_mps2: f64,
     /// The range finder's height above the ground, m; none where it gives none.

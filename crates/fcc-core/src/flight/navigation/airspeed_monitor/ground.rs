@@ -8,6 +8,7 @@ use super::super::filter_bank::FilterBank;
 use super::super::force_sample::ForceSample;
 use super::super::scalar_update::squared;
 use super::super::wind::OverGround;
+use super::sensorless::UNKNOWN_WIND_MPS;
 use super::{AirspeedMonitor, CORRECTED_S, DIFFERS_RATIO, MonitorInput};
 use crate::blocks::smoothing_factor;
 
@@ -116,7 +117,12 @@ impl AirspeedMonitor {
             .lags_ground(bank, read, sensor_mps, passed_s)
             .or_else(|| self.stands_still(bank, sensor_mps, passed_s));
         if let Some(right_mps) = right_mps.filter(|_| input.may_doubt) {
-            self.leave_sensor(bank, (sensor_mps, source), right_mps, sample);
+            self.leave_sensor(
+                bank,
+                (sensor_mps, source),
+                (right_mps, RIGHT_SD_MPS),
+                sample,
+            );
             return true;
         }
         let Some((error, sd)) = bank.believing.wind.sensor_error() else {
@@ -134,7 +140,12 @@ impl AirspeedMonitor {
         }
         self.contradicted_s = 0.0;
         let right_mps = sensor_mps * (1.0 + error);
-        self.leave_sensor(bank, (sensor_mps, source), right_mps, sample);
+        self.leave_sensor(
+            bank,
+            (sensor_mps, source),
+            (right_mps, RIGHT_SD_MPS),
+            sample,
+        );
         true
     }
 
@@ -198,15 +209,38 @@ impl AirspeedMonitor {
         (self.behind.still_s > LAGS_FOR_S).then_some(by_ground_mps)
     }
 
-    /// Doubts the sensor: what the models have learned came from it.
+    /// The sensor is to be left for an airspeed, m/s.
+    pub(in super::super) const fn leave_for(&mut self, airspeed_mps: f64) {
+        self.left_for_mps = Some(airspeed_mps);
+    }
+
+    /// Doubts the sensor if it is to be left: of a tube that was blocked before the take-off
+    /// nothing was learned, and of the wind nothing is known.
+    pub(super) fn doubts_as_told(&mut self, input: &MonitorInput, sample: &ForceSample) -> bool {
+        let (Some(right_mps), Some(sensor)) = (self.left_for_mps.take(), input.sensor_mps) else {
+            return false;
+        };
+        if self.doubt.is_some() {
+            return false;
+        }
+        let found = (right_mps, UNKNOWN_WIND_MPS);
+        let mut bank = FilterBank::new(self.prior, right_mps, sample);
+        self.leave_sensor(&mut bank, sensor, found, sample);
+        bank.believing = bank.older;
+        self.bank = Some(bank);
+        true
+    }
+
+    /// Doubts the sensor: what the models have learned came from it. The right airspeed is
+    /// this one, with its standard deviation, m/s.
     fn leave_sensor(
         &mut self,
         bank: &mut FilterBank,
         (sensor_mps, source): (f64, u8),
-        right_mps: f64,
+        (right_mps, sd_mps): (f64, f64),
         sample: &ForceSample,
     ) {
-        bank.older = AirspeedFilter::new(self.prior, (right_mps, RIGHT_SD_MPS), sample);
+        bank.older = AirspeedFilter::new(self.prior, (right_mps, sd_mps), sample);
         bank.older.wind = bank.believing.wind;
         (bank.younger, bank.younger_s) = (bank.older, 0.0);
         self.difference.reset(sensor_mps - right_mps);

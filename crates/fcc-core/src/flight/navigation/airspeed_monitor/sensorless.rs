@@ -6,7 +6,7 @@ use super::super::force_sample::ForceSample;
 use super::{AirspeedMonitor, LEAST_RATIO, MonitorInput};
 
 /// Wind of which nothing is known, along the path, m/s.
-const UNKNOWN_WIND_MPS: f64 = 7.0;
+pub(super) const UNKNOWN_WIND_MPS: f64 = 7.0;
 /// The models count as learned after so long beside a sensor, s.
 const LEARNED_S: f64 = 60.0;
 

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! take-off   Roll ─► Rotate ─► Climb ─► the next step
-//!              └─► RollOut ─► Stopped                 (too far off the centre line)
+//!              ├─► RollOut ─► Stopped                 (too far off the centre line)
+//!              └───────┴────► Climb                   (off the ground without a rotation)
 //!            Hand ─► Rotate ─► Climb                  (thrown)
 //! landing    Approach ─► Flare ─► RollOut ─► Stopped
 //!              └───────────┴─► GoAround ─► the landing sequence again
@@ -115,6 +116,8 @@ pub struct RunwayDemand {
     pub reason: RunwayReason,
     /// Whether it is a take-off, or was one until it was given up.
     pub takes_off: bool,
+    /// Whether a take-off flies with an airspeed with which it cannot.
+    pub airspeed_is_wrong: bool,
     /// Whether there is no power: the pitch holds the airspeed, and nothing gives it up.
     pub is_powerless: bool,
 }
@@ -144,6 +147,10 @@ pub(super) struct RunwayFlight {
     glide_sine: Option<f64>,
     /// For how long it has been accelerated in the hand, s.
     thrown_s: f64,
+    /// For how long a take-off that was to roll has been off the ground, s, and its airspeed
+    /// has been farther below the speed over the ground than a tail wind makes it, s.
+    off_ground_s: f64,
+    behind_s: f64,
     /// Where a take-off has begun.
     took_off: Option<TookOff>,
     /// How far above the runway's elevation the ground is that ranges show, m.
@@ -187,6 +194,8 @@ impl RunwayFlight {
             is_weight_wrong: false,
             glide_sine: None,
             thrown_s: 0.0,
+            off_ground_s: 0.0,
+            behind_s: 0.0,
             took_off: None,
             ground_above_m: None,
             is_range_doubted: false,
@@ -203,6 +212,7 @@ impl RunwayFlight {
                 pitch_rad: config.climb_pitch_rad,
                 reason: RunwayReason::None,
                 takes_off: phase.is_takeoff(),
+                airspeed_is_wrong: false,
                 is_powerless: false,
             },
         }
@@ -258,7 +268,10 @@ impl RunwayFlight {
         };
         let before = self.phase;
         self.phase_s += dt_s;
-        let outcome = if self.phase.is_takeoff() {
+        let outcome = if self.has_left_the_ground(here, dt_s) {
+            self.fly_off(here);
+            Outcome::Flown
+        } else if self.phase.is_takeoff() {
             self.step_takeoff(here, motion, dt_s)
         } else if let Some(sine) = self.glide_sine {
             self.step_powerless(here, sine)

@@ -84,7 +84,7 @@ impl fmt::Display for RunwayReason {
                  item of the plan, the landing for three more"
             }
             Self::NoAirspeed => {
-                "the take-off is given up: the airspeed stays below rotate_kt at 15 kt more over \
+                "the take-off is given up: the airspeed stays more than 15 kt below the speed over \
                  the ground; look at the pitot tube, its cover, and the wind"
             }
             Self::RangeJump => {

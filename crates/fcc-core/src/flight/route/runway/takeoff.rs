@@ -16,6 +16,18 @@ const CLIMBS_M: f64 = 3.0;
 /// Of a tail wind with which none takes off, m/s (15 kt): an airspeed that is farther below
 /// the speed over the ground is wrong.
 const MOST_TAIL_WIND_MPS: f64 = 7.716_667;
+/// So much slower in the air, for this time, s, it is wrong, from this share of the speed of
+/// the rotation over the ground on: the sensor is late, and a gust is short.
+const BEHIND_FOR_S: f64 = 1.0;
+const BEHIND_FROM: f64 = 0.6;
+/// Off the ground for this time, s, it flies: by its switch and so high, m, or without it by
+/// the height above and the climb rate, m/s: a steep runway rises by less.
+const OFF_GROUND_S: f64 = 0.5;
+const OFF_GROUND_M: f64 = 1.0;
+const OFF_GROUND_MPS: f64 = 1.0;
+/// Of the speed of the rotation: slower over the ground it does not fly, and with a lower
+/// airspeed none does.
+const FLIES_FROM: f64 = 0.85;
 /// Farther off the centre line a take-off is given up, m.
 const MOST_CROSS_TRACK_M: f64 = 12.0;
 /// The nose is so near to the runway's direction as a take-off begins, rad: 20°.
@@ -129,9 +141,11 @@ impl RunwayFlight {
         }
         let weighs = on_wheels && !self.is_weight_wrong;
         let lifts_off = flies && !weighs && self.demand.height_m > CLIMBS_M;
-        let by_ground_mps = self.demand.ground_speed_mps - MOST_TAIL_WIND_MPS;
+        let stays_behind = self.stays_behind(here, dt_s);
         match self.phase {
             RunwayPhase::Hand => self.wait_for_throw(here, dt_s),
+            // Not any more once it may fly.
+            RunwayPhase::Roll if self.off_ground_s > 0.0 => {}
             RunwayPhase::Roll if self.demand.cross_track_m.abs() > MOST_CROSS_TRACK_M => {
                 self.give_up(RunwayPhase::RollOut, RunwayReason::CentreLine);
             }
@@ -141,7 +155,7 @@ impl RunwayFlight {
             RunwayPhase::Roll if here.airspeed_mps >= self.config.rotate_mps => {
                 self.phase = RunwayPhase::Rotate;
             }
-            RunwayPhase::Roll if by_ground_mps > self.config.rotate_mps => {
+            RunwayPhase::Roll if stays_behind => {
                 self.give_up(RunwayPhase::RollOut, RunwayReason::NoAirspeed);
             }
             RunwayPhase::Rotate if lifts_off => self.phase = RunwayPhase::Climb,
@@ -153,6 +167,65 @@ impl RunwayFlight {
             _ => {}
         }
         Outcome::Flown
+    }
+
+    /// Whether the airspeed has stayed farther below the speed over the ground than a tail
+    /// wind makes it: the pitot tube is covered or blocked.
+    fn stays_behind(&mut self, here: &OverGround, dt_s: f64) -> bool {
+        let over_ground_mps = self.demand.ground_speed_mps;
+        let is_behind = over_ground_mps > BEHIND_FROM * self.config.rotate_mps
+            && over_ground_mps - here.true_airspeed_mps > MOST_TAIL_WIND_MPS;
+        self.behind_s = if is_behind { self.behind_s + dt_s } else { 0.0 };
+        self.behind_s > BEHIND_FOR_S
+    }
+
+    /// Whether an aircraft that is to roll, or to brake after its take-off was given up,
+    /// flies: one with enough speed lifts off by itself.
+    pub(super) fn has_left_the_ground(&mut self, here: &OverGround, dt_s: f64) -> bool {
+        let rolls = match self.phase {
+            RunwayPhase::Roll => true,
+            // With an engine that is out, or in a failsafe, it does not climb.
+            RunwayPhase::RollOut => {
+                self.demand.takes_off
+                    && matches!(
+                        self.demand.reason,
+                        RunwayReason::NoAirspeed
+                            | RunwayReason::LongRoll
+                            | RunwayReason::CentreLine
+                    )
+            }
+            _ => false,
+        };
+        let is_off = match here.on_wheels {
+            // A range finder may show nothing else than on the wheels.
+            Some(false) => self.demand.height_m.max(self.by_altitude_m(here)) > OFF_GROUND_M,
+            _ => {
+                self.demand.height_m > CLIMBS_M
+                    && here.climb_rate_mps > OFF_GROUND_MPS
+                    && here.airspeed_mps < self.flies_mps()
+            }
+        };
+        let flies = rolls && is_off && self.demand.ground_speed_mps > self.flies_mps();
+        self.off_ground_s = if flies { self.off_ground_s + dt_s } else { 0.0 };
+        self.off_ground_s > OFF_GROUND_S
+    }
+
+    fn flies_mps(&self) -> f64 {
+        FLIES_FROM * self.config.rotate_mps
+    }
+
+    /// It flies: nothing is braked any more. The nose is raised, or held if it flies with an
+    /// airspeed with which none does, and so with an unknown one.
+    pub(super) fn fly_off(&mut self, here: &OverGround) {
+        let is_wrong = here.airspeed_mps < self.flies_mps();
+        self.demand.airspeed_is_wrong = is_wrong;
+        self.phase = if is_wrong || self.phase == RunwayPhase::RollOut {
+            RunwayPhase::Climb
+        } else {
+            RunwayPhase::Rotate
+        };
+        self.demand.reason = RunwayReason::None;
+        self.off_ground_s = 0.0;
     }
 }
 

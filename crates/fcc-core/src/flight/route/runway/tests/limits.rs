@@ -131,3 +131,103 @@ fn in_the_flare_the_lower_one_of_range_and_altitude_counts() {
         assert!((demand.height_m - expected_m).abs() < 1e-6, "{demand:?}");
     }
 }
+
+/// On the wheels, with speeds over the ground and through the air, m/s.
+fn rolling(over_ground_mps: f64, airspeed_mps: f64) -> OverGround {
+    OverGround {
+        ground_velocity_mps: Vector2::new(over_ground_mps, 0.0),
+        on_wheels: Some(true),
+        ..at(100.0, 0.0, airspeed_mps)
+    }
+}
+
+/// A take-off after so many ticks of 25 ms with this.
+fn takes_off(here: &OverGround, ticks: usize) -> Follower {
+    let mut follower = follower(vec![takeoff(), waypoint(8_000.0, 250.0)], 0);
+    follower.advance(&rolling(0.0, 0.0), 0.025);
+    for _ in 0..ticks {
+        follower.advance(here, 0.025);
+    }
+    follower
+}
+
+/// 35 kt over the ground with 5 kt through the air are more than a tail wind of 15 kt; with
+/// 22 kt, or for a second only, they are not.
+#[test]
+fn an_airspeed_that_stays_behind_gives_a_take_off_up_early() {
+    let given_up = (Some(RunwayPhase::RollOut), Some(RunwayReason::NoAirspeed));
+    let rolls = (Some(RunwayPhase::Roll), Some(RunwayReason::None));
+    for (over_ground_mps, airspeed_mps, ticks, expected) in [
+        (18.0, 2.6, 42, given_up),
+        (18.0, 2.6, 36, rolls),
+        (18.0, 11.3, 400, rolls),
+        (28.0, 20.4, 400, rolls),
+        (28.0, 20.2, 42, given_up),
+        // Too slow for the tube to show much.
+        (16.0, 0.0, 400, rolls),
+    ] {
+        let follower = takes_off(&rolling(over_ground_mps, airspeed_mps), ticks);
+        let what = (phase(&follower), reason(&follower));
+        assert_eq!(what, expected, "{over_ground_mps} {airspeed_mps} {ticks}");
+    }
+}
+
+/// Off the ground it is a climb, whatever the airspeed; by the switch, or by height and climb
+/// rate. A steep runway, and an aircraft that is slow over the ground, are none.
+#[test]
+fn a_take_off_that_flies_is_not_braked() {
+    let off = |on_wheels, height_m: f64, climb_rate_mps, airspeed_mps| OverGround {
+        on_wheels,
+        climb_rate_mps,
+        ground_velocity_mps: Vector2::new(31.0, 0.0),
+        ..at(300.0, height_m, airspeed_mps)
+    };
+    use RunwayPhase::{Climb, Roll, Rotate};
+    for (here, expected, is_wrong) in [
+        (off(Some(false), 1.5, 0.5, 4.0), Climb, true),
+        (off(Some(false), 1.5, 0.5, 26.0), Rotate, false),
+        (off(None, 4.0, 2.0, 4.0), Climb, true),
+        // The switch is stuck.
+        (off(Some(true), 4.0, 2.0, 4.0), Climb, true),
+        (off(Some(true), 4.0, 2.0, 26.0), Roll, false),
+        (off(Some(true), 4.0, 0.6, 26.0), Roll, false),
+        (off(Some(false), 0.5, 0.6, 26.0), Roll, false),
+        (
+            OverGround {
+                ground_velocity_mps: Vector2::new(20.0, 0.0),
+                ..off(Some(false), 1.5, 0.5, 15.0)
+            },
+            Roll,
+            false,
+        ),
+    ] {
+        let demand = takes_off(&here, 22).runway().unwrap();
+        let shown = (demand.phase, demand.airspeed_is_wrong);
+        assert_eq!(shown, (expected, is_wrong), "{here:?}");
+        assert_eq!(demand.reason, RunwayReason::None);
+    }
+}
+
+/// It was given up at the moment at which it lifts off: it flies on, unless its engine is out.
+#[test]
+fn a_take_off_that_is_given_up_too_late_flies_on() {
+    for (given_up_for, expected) in [
+        (None, RunwayPhase::Climb),
+        (Some(RunwayReason::Engine), RunwayPhase::RollOut),
+    ] {
+        let mut follower = takes_off(&rolling(28.0, 5.0), 20);
+        match given_up_for {
+            Some(reason) => follower.go_around(reason),
+            None => (0..22).for_each(|_| follower.advance(&rolling(28.0, 5.0), 0.025)),
+        }
+        assert_eq!(phase(&follower), Some(RunwayPhase::RollOut));
+        for _ in 0..22 {
+            let here = OverGround {
+                ground_velocity_mps: Vector2::new(31.0, 0.0),
+                ..at(300.0, 1.5, 5.0)
+            };
+            follower.advance(&here, 0.025);
+        }
+        assert_eq!(phase(&follower), Some(expected));
+    }
+}
