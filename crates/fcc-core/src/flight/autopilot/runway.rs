@@ -59,6 +59,9 @@ pub(super) const CLOSES_PER_S: f64 = 0.35;
 const TRIES_ABOVE_M: f64 = 100.0;
 /// The elevator is held back below this share of the approach's airspeed.
 const HELD_BACK_BELOW: f64 = 0.7;
+/// Without an airspeed it may have so much more through the air than over the ground, m/s
+/// (25 kt): an elevator held back in a head wind lifted it off.
+const UNKNOWN_HEAD_WIND_MPS: f64 = 12.861;
 /// An approach speed is so many times the stalling speed.
 pub(super) const OVER_STALL: f64 = 1.3;
 /// The lowest airspeed of approach and climb, of the commanded one.
@@ -309,7 +312,12 @@ impl Autopilot {
                 let fast_mps = HELD_BACK_BELOW * self.config.route.runway.approach_mps;
                 // Whichever is more: an airspeed that is wrong raises no nose.
                 let speed_mps = estimate.airspeed_mps.max(demand.ground_speed_mps);
-                let slow = 1.0 - speed_mps / fast_mps;
+                let head_mps = if demand.reason == RunwayReason::NoAirspeed {
+                    UNKNOWN_HEAD_WIND_MPS
+                } else {
+                    0.0
+                };
+                let slow = 1.0 - (speed_mps + head_mps) / fast_mps;
                 (closing, 0.0, 0.0, limit(slow, 0.0, 1.0))
             }
             RunwayPhase::Approach if demand.is_powerless => {
