@@ -90,6 +90,7 @@ impl RunwayPhase {
 }
 
 /// What the controls need to know of a take-off or a landing.
+#[expect(clippy::struct_excessive_bools, reason = "independent of each other")]
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct RunwayDemand {
     /// The phase.

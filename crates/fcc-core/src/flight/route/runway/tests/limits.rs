@@ -176,13 +176,13 @@ fn an_airspeed_that_stays_behind_gives_a_take_off_up_early() {
 /// rate. A steep runway, and an aircraft that is slow over the ground, are none.
 #[test]
 fn a_take_off_that_flies_is_not_braked() {
+    use RunwayPhase::{Climb, Roll, Rotate};
     let off = |on_wheels, height_m: f64, climb_rate_mps, airspeed_mps| OverGround {
         on_wheels,
         climb_rate_mps,
         ground_velocity_mps: Vector2::new(31.0, 0.0),
         ..at(300.0, height_m, airspeed_mps)
     };
-    use RunwayPhase::{Climb, Roll, Rotate};
     for (here, expected, is_wrong) in [
         (off(Some(false), 1.5, 0.5, 4.0), Climb, true),
         (off(Some(false), 1.5, 0.5, 26.0), Rotate, false),
