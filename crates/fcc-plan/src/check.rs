@@ -222,7 +222,7 @@ pub(crate) fn legs(plan: &Plan, conditions: &Conditions, problems: &mut Vec<Prob
 
 /// The elevation of the plan's runway, m above mean sea level; none without a landing, or
 /// where it is not known.
-pub(crate) fn landing_elevation_m(plan: &Plan) -> Option<f64> {
+pub fn landing_elevation_m(plan: &Plan) -> Option<f64> {
     let altitude = plan.items.iter().find_map(|item| match item {
         Item::Land {
             place: Some(_),

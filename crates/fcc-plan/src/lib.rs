@@ -33,7 +33,7 @@ mod runway;
 mod unusual;
 mod wpl;
 
-pub use check::{Conditions, check};
+pub use check::{Conditions, check, landing_elevation_m};
 pub use duration::longest_s;
 pub use file::{FileError, Format, is_plan, read, read_file, write};
 pub use ground::{resolve, terrain_problems};

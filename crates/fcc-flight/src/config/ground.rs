@@ -11,7 +11,7 @@ const MOST_LATITUDE_DEG: f64 = 80.0;
 impl Config {
     /// The level ground of the built-in aircraft; none of another one, whose ground is not
     /// level.
-    pub(super) fn level_ground(&self, plan: &Plan) -> Option<Level> {
+    fn level_ground(&self, plan: &Plan) -> Option<Level> {
         let built_in = self.built_in.as_ref()?;
         let takes_off = matches!(plan.items.first(), Some(Item::Takeoff { .. }));
         let is_given = built_in.ground_ft != BuiltInSection::default().ground_ft;

@@ -281,14 +281,13 @@ impl Config {
     }
 
     /// The built-in aircraft begins at the plan's home, or at its first place; on the
-    /// runway there, if the plan begins with a take-off. Its ground is that by which the plan
-    /// was checked.
+    /// runway there, if the plan begins with a take-off. Its ground is as high as the
+    /// runway, unless the configuration has another one.
     fn begin_at(&mut self, plan: &fcc_plan::Plan) {
         let first = plan.items.iter().find_map(Item::place);
         let Some(place) = plan.home.map(|home| home.place).or(first) else {
             return;
         };
-        let ground = self.level_ground(plan);
         if let Some(built_in) = &mut self.built_in {
             built_in.latitude_deg.get_or_insert(place.latitude_deg);
             built_in.longitude_deg.get_or_insert(place.longitude_deg);
@@ -304,10 +303,10 @@ impl Config {
                     let (_, course_deg, _) = home.place.to(to);
                     built_in.heading_deg = course_deg.rem_euclid(360.0);
                 }
-            } else if let Some(ground) = ground
+            } else if let Some(elevation_m) = fcc_plan::landing_elevation_m(plan)
                 && built_in.ground_ft == BuiltInSection::default().ground_ft
             {
-                built_in.ground_ft = ground.m / FOOT_M;
+                built_in.ground_ft = elevation_m / FOOT_M;
                 let least_ft = built_in.ground_ft + LEAST_ABOVE_GROUND_FT;
                 built_in.altitude_ft = built_in.altitude_ft.max(least_ft);
             }
