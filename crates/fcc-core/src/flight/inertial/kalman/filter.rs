@@ -176,9 +176,10 @@ impl Filter {
         } else {
             self.turning * (1.0 - crate::blocks::smoothing_factor(dt_s, p::TURNING_S))
         };
-        let biases = [self.rate_bias, self.force_bias];
-        self.in_flight.advance(self.time, raw, biases, dt_s);
         let increment = self.motion.advance(&reading, dt_s);
+        let biases = [self.rate_bias, self.force_bias];
+        self.in_flight
+            .advance(self.time, raw, increment.half, biases, dt_s);
         self.acceleration = increment.acceleration;
         let load = reading.force.map_or(0.0, |force| force.norm());
         self.load += crate::blocks::smoothing_factor(dt_s, p::LOAD_S) * (load - self.load);

@@ -18,6 +18,7 @@ use sums::Sums;
 
 use super::filter::{ATTITUDE, Filter, LATENESS, Raw, UNKNOWN_ANGLE, VELOCITY};
 use super::lateness::Lateness;
+use super::motion::turn;
 use super::parameters as p;
 use super::receiver::earlier;
 use super::signed_s;
@@ -41,8 +42,8 @@ const LARGEST_FORCE_BIAS: f64 = 0.5;
 /// A velocity is not better than this, m/s.
 const RECEIVER_MPS: f64 = 0.5;
 /// The attitude that is believed is wrong if it leaves so many times what the best one leaves,
-/// and as many times this, m/s, if that leaves no more than this, m/s, and no more than this share of the changes, and if
-/// the horizon of that is as sure as this, rad².
+/// and as many times this, m/s; and if the best one leaves no more than this, m/s, and no more
+/// than this share of the changes, and its horizon is as sure as this, rad².
 const CLEARLY: f64 = 5.0;
 const LEAST_MPS: f64 = 0.5;
 const LEFT_MPS: f64 = 0.6;
@@ -100,12 +101,13 @@ impl InFlight {
         }
     }
 
-    /// Moves on to a time with the readings of the last `dt_s`; what is not measured cuts it
-    /// off.
+    /// Moves on to a time with the readings of the last `dt_s`, in each half of which the body
+    /// turns by `half` as is believed; what is not measured cuts it off.
     pub(super) fn advance(
         &mut self,
         now: Time,
         raw: &Raw,
+        half: UnitQuaternion<f64>,
         [rate_bias, force_bias]: [Vector3<f64>; 2],
         dt_s: f64,
     ) {
@@ -115,11 +117,15 @@ impl InFlight {
             }
             return;
         };
-        self.believed
-            .advance(now, rates - rate_bias, force - force_bias, dt_s);
-        let rates = rates - credible(rate_bias, LARGEST_RATE_BIAS);
+        self.believed.advance(now, half, force - force_bias, dt_s);
+        let other_bias = credible(rate_bias, LARGEST_RATE_BIAS);
+        let half = if other_bias == rate_bias {
+            half
+        } else {
+            turn((rates - other_bias) * (0.5 * dt_s))
+        };
         let force = force - credible(force_bias, LARGEST_FORCE_BIAS);
-        self.credible.advance(now, rates, force, dt_s);
+        self.credible.advance(now, half, force, dt_s);
     }
 
     /// Takes a velocity of a time; whether it is to be compared with those before.

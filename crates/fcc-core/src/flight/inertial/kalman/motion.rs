@@ -36,6 +36,8 @@ pub(super) struct Increment {
     pub(super) velocity: Vector3<f64>,
     /// The acceleration over the ground, m/s².
     pub(super) acceleration: Vector3<f64>,
+    /// The rotation in each half of the step.
+    pub(super) half: UnitQuaternion<f64>,
 }
 
 impl Motion {
@@ -69,6 +71,7 @@ impl Motion {
         Increment {
             velocity: measured.unwrap_or_default() * dt_s,
             acceleration,
+            half,
         }
     }
 

@@ -2,7 +2,6 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::flight::inertial::kalman::motion::turn;
 use crate::flight::inertial::kalman::signed_s;
 use crate::framework::Time;
 
@@ -31,14 +30,14 @@ impl Sums {
         }
     }
 
+    /// Moves on by `dt_s`, in each half of which the body turns by `half`.
     pub(super) fn advance(
         &mut self,
         now: Time,
-        rates: Vector3<f64>,
+        half: UnitQuaternion<f64>,
         force: Vector3<f64>,
         dt_s: f64,
     ) {
-        let half = turn(rates * (0.5 * dt_s));
         let midway = self.turned * half;
         self.turned = midway * half;
         self.turned.renormalize_fast();
