@@ -57,7 +57,7 @@ impl Line {
     /// Whether a sample can follow the last one.
     fn goes_on_with(&self, new: &Reading<f64>) -> bool {
         let gap_s = new.taken.since(self.last.taken).as_secs_f64();
-        self.samples == 0.0 || HEIGHT_M.holds_over(new.value - self.last.value, gap_s)
+        HEIGHT_M.holds_over(new.value - self.last.value, gap_s)
     }
 
     fn add(&mut self, new: &Reading<f64>, receiver: Option<Receiver>) {
@@ -121,13 +121,11 @@ impl ReturningAltitude {
         if new.taken <= self.line.last.taken {
             return false;
         }
-        if !is_possible_altitude(new.value) || !self.line.goes_on_with(new) {
-            self.line = Line::default();
-        }
         if !is_possible_altitude(new.value) {
+            self.line = Line::default();
             return false;
         }
-        if self.line.samples == 0.0 {
+        if self.line.samples == 0.0 || !self.line.goes_on_with(new) {
             self.line = Line::beginning(new);
         }
         self.line.add(new, receiver);
@@ -161,7 +159,7 @@ mod tests {
     const HZ: u32 = 25;
 
     /// When an altitude of the time, s, is believed, that was 900 m before.
-    fn believed_s(
+    fn returns_after_s(
         altitude_m: impl Fn(f64, u32) -> f64,
         receiver: impl Fn(f64) -> Option<Receiver>,
     ) -> Option<f64> {
@@ -189,14 +187,14 @@ mod tests {
     fn what_was_noisy_is_believed_within_seconds_of_its_end() {
         let noise_m = |sample: u32| 25.0 * f64::from(sample * 7 % 5) - 50.0;
         let noisy = |_, sample| 900.0 + noise_m(sample);
-        assert_eq!(believed_s(noisy, |_| None), None);
-        assert_eq!(believed_s(noisy, climbing(0.0)), None);
+        assert_eq!(returns_after_s(noisy, |_| None), None);
+        assert_eq!(returns_after_s(noisy, climbing(0.0)), None);
         let until = |at_s: f64, sample| {
             900.0 - 2.0 * at_s + if at_s < 15.0 { noise_m(sample) } else { 0.0 }
         };
         for at_s in [
-            believed_s(until, |_| None),
-            believed_s(until, climbing(-2.0)),
+            returns_after_s(until, |_| None),
+            returns_after_s(until, climbing(-2.0)),
         ] {
             assert!(
                 at_s.is_some_and(|at_s| (15.0..24.0).contains(&at_s)),
@@ -209,21 +207,21 @@ mod tests {
     #[test]
     fn a_climb_that_a_receiver_contradicts_is_not_believed() {
         let sinks = |at_s: f64, _| 900.0 - 10.0 * at_s;
-        assert_eq!(believed_s(sinks, climbing(0.0)), None);
-        assert!(believed_s(sinks, climbing(-10.0)).is_some());
+        assert_eq!(returns_after_s(sinks, climbing(0.0)), None);
+        assert!(returns_after_s(sinks, climbing(-10.0)).is_some());
     }
 
     /// 300 m in a moment is no flight, however steady it is then.
     #[test]
     fn a_step_is_not_believed_while_the_aircraft_cannot_have_flown_it() {
         let stepped = |_, _| 1_200.0;
-        assert_eq!(believed_s(stepped, climbing(0.0)), None);
-        let at_s = believed_s(stepped, |_| None);
+        assert_eq!(returns_after_s(stepped, climbing(0.0)), None);
+        let at_s = returns_after_s(stepped, |_| None);
         assert!(at_s.is_some_and(|at_s| at_s > 50.0), "{at_s:?}");
     }
 
     #[test]
     fn what_is_no_number_is_not_believed() {
-        assert_eq!(believed_s(|_, _| f64::NAN, |_| None), None);
+        assert_eq!(returns_after_s(|_, _| f64::NAN, |_| None), None);
     }
 }
