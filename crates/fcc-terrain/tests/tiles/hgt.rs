@@ -132,9 +132,10 @@ fn tiles_on_both_sides_of_the_date_line_are_one_ground() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(16))]
 
-    /// A plane stays one: bilinear interpolation is exact on it.
+    /// A plane stays one: bilinear interpolation is exact on it. The places are more than
+    /// 1 km inside the tile: a thousandth of a degree of longitude is 76 m there.
     #[test]
-    fn a_plane_is_kept(latitude in 46.51..46.99_f64, longitude in 8.01..8.99_f64, slope in -1..=1_i16) {
+    fn a_plane_is_kept(latitude in 46.52..46.98_f64, longitude in 8.02..8.98_f64, slope in -1..=1_i16) {
         let tile = hgt(|row, column| 1_500 + slope * (row as i16) / 2 * 2 + column as i16 / 2 * 2);
         let elevations = read("N46E008.hgt", &tile).unwrap();
         let (row, column) = ((47.0 - latitude) * 1_200.0, (longitude - 8.0) * 1_200.0);
