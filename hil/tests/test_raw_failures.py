@@ -17,6 +17,7 @@ from fcc_hil.raw_sensors import FIELD_UT, READINGS
 from fcc_hil.standin import Settings
 
 SEED = 33
+TICK_S = 0.025
 ENGAGED_S = 20.0
 FAILS_S = 60.0
 END_S = 150.0
@@ -40,6 +41,19 @@ def compass_turned(by_deg: float) -> Fault:
 def place_off(north_m: float) -> Fault:
     def fault(values: fcc.Measurements) -> None:
         values.gnss_latitude_rad += north_m / EARTH_M
+
+    return fault
+
+
+def climbs_more(mps: float) -> Fault:
+    """Return a receiver whose altitude and vertical velocity drift together."""
+    drifted_m = 0.0
+
+    def fault(values: fcc.Measurements) -> None:
+        nonlocal drifted_m
+        drifted_m += mps * TICK_S
+        values.gnss_position_altitude_m += drifted_m
+        values.gnss_down_mps -= mps
 
     return fault
 
@@ -81,7 +95,8 @@ def fly(
 ) -> tuple[fcc.Machine, LockstepRig, dict[str, float]]:
     """Fly by the sensors of a board; return the largest errors, in deg, and the extremes.
 
-    `held` is the largest bank while control is held.
+    `held` is the largest bank while control is held, `altitude` by how much more its error, in
+    m, is than before the fault.
     """
     weather = Weather(wind_from_deg=230.0, wind_kt=20.0, turbulence_severity=3)
     plant = Plant("c172p", seed=seed, weather=weather, latitude_deg=45.0)
@@ -114,7 +129,8 @@ def fly(
         wrapped = (abs(math.degrees(math.remainder(error, math.tau))) for error in errors)
         bank_deg = abs(math.degrees(state.roll_rad))
         held_deg = bank_deg if machine.holds_control else 0.0
-        rows.append((plant.time_s, *wrapped, bank_deg, held_deg, state.height_m))
+        shown_m = found.altitude_m - state.altitude_m
+        rows.append((plant.time_s, *wrapped, bank_deg, held_deg, shown_m, state.height_m))
         return False
 
     rig.fly_to(ENGAGED_S)
@@ -124,7 +140,9 @@ def fly(
     failing = table[table[:, 0] >= FAILS_S]
     names = ("roll", "pitch", "heading", "bank", "held")
     most = dict(zip(names, failing[:, 1:6].max(axis=0), strict=True))
-    return machine, rig, {**most, "height": float(failing[:, 6].min())}
+    shown_m = failing[:, 6] - failing[0, 6]
+    off_m = float(np.abs(shown_m).max())
+    return machine, rig, {**most, "altitude": off_m, "height": float(failing[:, 7].min())}
 
 
 @pytest.mark.parametrize(
@@ -163,6 +181,17 @@ def test_a_compass_that_is_turned_is_no_evidence_against_gyroscopes(seed: int) -
     assert not any("gyroscope" in event.text for event in rig.events)
     assert most["heading"] <= 5.0
     assert most["bank"] <= 45.0
+
+
+@pytest.mark.parametrize("mps", [3.0, 1.0, -2.0])
+def test_a_receiver_that_drifts_in_height_does_not_count(mps: float) -> None:
+    """And the altimeter does: one that was doubted would be flown 90 m off at least."""
+    machine, rig, most = fly(climbs_more(mps), 90.0)
+    texts = [event.text for event in rig.events]
+    assert machine.state == "engaged"
+    assert sum("its altitude and vertical velocity do not count" in text for text in texts) == 1
+    assert not any("altitude contradicts the other sensors" in text for text in texts)
+    assert most["altitude"] <= 10.0
 
 
 @pytest.mark.parametrize(

@@ -179,6 +179,11 @@ impl GroundMotion {
         self.altimeter_is_doubted = is_doubted;
     }
 
+    /// The receiver's altitude is wrong, and says nothing of the altimeter.
+    pub(super) const fn forget_receivers_height(&mut self) {
+        self.here.above_receiver_m = None;
+    }
+
     /// `dt_s` seconds of the plant's time pass. `wind` is navigation's, m/s towards
     /// north and east, with what true north is off the compass, rad; mean sea level is
     /// at a pressure altitude, m.

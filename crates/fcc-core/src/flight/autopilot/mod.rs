@@ -27,6 +27,7 @@ mod pilot_takeover;
 mod place_monitor;
 mod plant_clock;
 mod reading_age;
+mod receiver;
 mod refusal;
 mod release;
 mod replacing;
@@ -187,6 +188,7 @@ pub struct Autopilot {
     returning_altitude: ReturningAltitude,
     /// That the airspeed has just been doubted.
     doubt_notice: Option<Notice>,
+    receiver_notice: Option<Notice>,
     /// Whether the target altitude is limited by the floor.
     is_at_floor: bool,
 }
@@ -273,6 +275,7 @@ impl Controller for Autopilot {
             .or_else(|| self.degraded_notice())
             .or_else(|| self.wrong_sensor_notice())
             .or(self.doubt_notice)
+            .or(self.receiver_notice)
             .or(self.told)
     }
 

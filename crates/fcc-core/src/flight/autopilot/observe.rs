@@ -54,12 +54,14 @@ impl Autopilot {
         self.note_throttle(now);
         self.follow_intermittent(step_s);
         let doubted = self.doubts();
+        let receiver_was_doubted = self.navigation.doubts_receivers_height();
         self.told = self.news.take();
         self.navigate(now, measured, step_s);
         self.follow_ground(now, step_s);
         self.follow_battery(now, step_s);
         self.follow_engine(now, step_s);
         self.note_doubt(doubted);
+        self.note_receiver(receiver_was_doubted);
         let known = self.navigation.known();
         self.frozen.step(now, &self.accepted, &known, step_s);
         self.take_over_after_loss(now);

@@ -154,6 +154,9 @@ impl Autopilot {
         if let Some(raw) = &self.raw {
             self.ground.take(raw.solution(), dt_s);
         }
+        if self.navigation.doubts_receivers_height() {
+            self.ground.forget_receivers_height();
+        }
         let on_wheels_m = self.config.route.runway.height_on_wheels_m;
         if self.ground.check_range(on_wheels_m) {
             self.on_runway.announce(RunwayReason::RangeFinder);

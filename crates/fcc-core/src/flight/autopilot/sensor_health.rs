@@ -5,7 +5,7 @@ use core::time::Duration;
 use super::future::is_from_the_future;
 use super::plant_clock::Waiting;
 use super::reading_age::taken_of_needed;
-use super::{Autopilot, flags, wrong_sensors};
+use super::{Autopilot, flags, receiver, wrong_sensors};
 use crate::flight::inertial::RawNavigation;
 use crate::flight::navigation::is_possible_fix;
 use crate::flight::{Measurements, PlantState};
@@ -46,7 +46,7 @@ impl Autopilot {
     pub(super) fn wrong_sensor_notice(&self) -> Option<Notice> {
         let raw = self.raw.as_ref()?;
         let wrong = raw.wrong_sensor().map(wrong_sensors::notice);
-        wrong.or_else(|| raw.late_fixes_s().map(wrong_sensors::late_fixes))
+        wrong.or_else(|| raw.late_fixes_s().map(receiver::late_fixes))
     }
 
     /// Whether the gyroscopes are not used, because the magnetic field contradicts them.

@@ -2,7 +2,6 @@
 
 use core::fmt;
 
-use super::degraded;
 use crate::flight::inertial::{FoundBy, SensorKind, WrongSensor};
 use crate::framework::Notice;
 
@@ -29,32 +28,6 @@ const REASONS: [(FoundBy, &str); 5] = [
 ];
 /// The sensor's number, counted from 1, is the amount.
 const PERMILLE: u16 = 1_000;
-
-/// The item of the notice of fixes that come late, among those of what is flown otherwise.
-const LATE_FIXES: u16 = 3;
-
-/// The notice that fixes are later by this, s, than they say.
-pub(super) fn late_fixes(late_s: f64) -> Notice {
-    Notice {
-        kind: degraded::FLOWN_OTHERWISE,
-        item: LATE_FIXES,
-        amount_permille: (late_s * f64::from(PERMILLE)) as u16,
-        ..Notice::default()
-    }
-}
-
-/// Writes that notice; `None` if it is another one.
-pub(super) fn write_late_fixes(notice: &Notice, f: &mut fmt::Formatter<'_>) -> Option<fmt::Result> {
-    let late_s = f64::from(notice.amount_permille) / f64::from(PERMILLE);
-    (notice.item == LATE_FIXES).then(|| match notice.amount_permille {
-        0 => f.write_str("the satellite receiver's fixes come in time again"),
-        _ => write!(
-            f,
-            "the satellite receiver's fixes come {late_s:.1} s later than they say: they are \
-             used at the time that they are of"
-        ),
-    })
-}
 
 /// The notice of a sensor that is not used any more.
 pub(super) fn notice(wrong: WrongSensor) -> Notice {
@@ -94,13 +67,6 @@ mod tests {
         fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
             Autopilot::write_notice(&self.0, f)
         }
-    }
-
-    #[test]
-    fn late_fixes_are_said_with_their_time() {
-        let text = |late_s| Text(late_fixes(late_s)).to_string();
-        assert!(text(1.04).contains("come 1.0 s later than they say"));
-        assert!(text(0.0).contains("come in time again"));
     }
 
     #[test]

@@ -12,6 +12,7 @@ use libm::hypot;
 
 mod compare;
 mod ground;
+mod path;
 mod sensorless;
 mod static_port;
 mod step;
@@ -216,14 +217,6 @@ impl AirspeedMonitor {
             (None, Some(_)) => return None,
         };
         Some((filter.airspeed_mps(), filter.sd_mps()))
-    }
-
-    /// The climb rate by pitch and lift, m/s, and the airspeed by forces and
-    /// motion, indicated, m/s.
-    pub(super) fn path(&self, sample: &ForceSample) -> Option<(f64, f64)> {
-        let holds = sample.models_hold();
-        let filter = self.bank.filter(|_| holds)?.older;
-        Some((filter.climb_rate_mps(sample), filter.airspeed_mps()))
     }
 
     /// The altimeter has just been doubted; this is the airspeed without it, and

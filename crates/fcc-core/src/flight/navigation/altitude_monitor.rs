@@ -1,8 +1,9 @@
 //! Whether the altimeter is believed, and altitude and climb rate without it.
 
 use super::airspeed_monitor::Blocked;
-use super::altitude_drift::{AltitudeDrift, Receiver};
+use super::altitude_drift::{AltitudeDrift, Drifted, Receiver};
 use super::coasting::{Coasting, DIFFERS_M};
+use super::drift_judge::ClimbRates;
 use super::scalar_update::squared;
 use super::vertical::{Reference, VerticalState};
 use crate::units::GRAVITY_MPS2;
@@ -51,6 +52,8 @@ pub(super) struct AltitudeInput {
     pub(super) felt_mps2: f64,
     /// Climb rates by pitch and lift, and over the ground, m/s.
     pub(super) path_mps: Option<f64>,
+    /// The same by pitch and lift as they belonged together 20 to 40 s ago.
+    pub(super) kept_path_mps: Option<f64>,
     pub(super) ground_mps: Option<f64>,
     /// The range finder's height above the ground, m.
     pub(super) range_m: Option<f64>,
@@ -139,9 +142,19 @@ impl AltitudeMonitor {
         self.doubted.is_some()
     }
 
+    /// Whether the receiver's altitude and vertical velocity are not believed.
+    pub(super) const fn doubts_receiver(&self) -> bool {
+        self.drift.doubts_receiver()
+    }
+
     /// Whether the altitude without the altimeter is still known.
     pub(super) fn is_sound(&self) -> bool {
         self.doubted.is_none_or(|doubted| doubted.error_m < SOUND_M)
+    }
+
+    /// A copy that runs without the altimeter from now on.
+    fn copy(&self, input: &AltitudeInput) -> Coasting {
+        Coasting::of(input, self.drift.receiver_more_mps())
     }
 
     /// Begins anew with a copy, without the altimeter.
@@ -196,15 +209,22 @@ impl AltitudeMonitor {
         }
         if input.has_stepped {
             (self.older, self.younger) = (None, None);
-            self.drift = AltitudeDrift::new();
+            self.drift.restart();
         }
         let altimeter = input
             .altitude_m
             .map(|altitude_m| (altitude_m, input.step_m));
-        if let Some(right_m) = self.drift.step(altimeter, input.receiver, dt_s)
-            && input.may_doubt
-        {
-            let mut copy = Coasting::of(input);
+        let rates = ClimbRates {
+            altimeter_mps: input.followed.climb_rate_mps,
+            path_mps: input.kept_path_mps,
+            alone: input
+                .altitude_m
+                .zip(self.older)
+                .and_then(|(altitude_m, older)| older.alone(altitude_m)),
+        };
+        let drifted = self.drift.step(altimeter, input.receiver, rates, dt_s);
+        if let (true, Some(Drifted::Altimeter(right_m))) = (input.may_doubt, drifted) {
+            let mut copy = self.copy(input);
             copy.state.altitude_m = right_m;
             return self.doubt(copy, input);
         }
@@ -213,7 +233,7 @@ impl AltitudeMonitor {
         else {
             let followed_s = self.followed_s + dt_s;
             self.followed_s = input.altitude_m.map_or(0.0, |_| followed_s);
-            let copy = (self.followed_s > SETTLED_S).then(|| Coasting::of(input));
+            let copy = (self.followed_s > SETTLED_S).then(|| self.copy(input));
             (self.older, self.younger) = (copy, copy);
             return Verdict::Believed;
         };
@@ -235,7 +255,7 @@ impl AltitudeMonitor {
         let by_m = (older.state.altitude_m - altitude_m).abs();
         if younger.lasted_s > ALONE_S && by_m < 0.5 * (DIFFERS_M + input.step_m) + older.error_m {
             older = younger;
-            younger = Coasting::of(input);
+            younger = self.copy(input);
         }
         (self.older, self.younger) = (Some(older), Some(younger));
         Verdict::Believed

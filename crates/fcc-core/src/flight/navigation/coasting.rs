@@ -1,6 +1,7 @@
 //! A copy of the vertical filter that has run without the altimeter.
 
 use super::altitude_monitor::{AltitudeInput, height_by_total_pressure_m};
+use super::drift_judge::Alone;
 use super::scalar_update::squared;
 use super::vertical::VerticalState;
 use crate::units::GRAVITY_MPS2;
@@ -14,6 +15,10 @@ pub(super) const DIFFERS_M: f64 = 12.0;
 const COPIED_MPS: f64 = 0.3;
 const FELT_MPS2: f64 = 0.04;
 const FELT_BANKED_MPS2: f64 = 0.17;
+/// The standard deviation of what it climbs: a barometer's noise, m, and this share of the
+/// error above, which is a limit.
+const LEAST_SD_M: f64 = 1.0;
+const SD_SHARE: f64 = 0.25;
 /// The share of a climb by which geometric and pressure altitude differ: the
 /// air's temperature, 30 K off the standard (ISO 2533).
 const TEMPERATURE_SHARE: f64 = 0.12;
@@ -40,6 +45,8 @@ pub(super) struct Coasting {
     /// Climbed by the path, and by the ground velocity, m.
     path_m: Option<f64>,
     ground_m: Option<f64>,
+    /// The ground's climb rate less the filter's when it was copied, m/s.
+    ground_more_mps: f64,
     /// As they were with the first range.
     first: Option<Heights>,
     error_mps: f64,
@@ -57,7 +64,7 @@ struct Heights {
 }
 
 impl Coasting {
-    pub(super) const fn of(input: &AltitudeInput) -> Self {
+    pub(super) const fn of(input: &AltitudeInput, ground_more_mps: f64) -> Self {
         Self {
             state: input.followed,
             bias_mps2: input.bias_mps2,
@@ -65,6 +72,7 @@ impl Coasting {
             began_m: input.followed.altitude_m,
             path_m: Some(0.0),
             ground_m: Some(0.0),
+            ground_more_mps,
             first: None,
             error_mps: COPIED_MPS,
             error_m: 0.0,
@@ -85,6 +93,16 @@ impl Coasting {
         if self.first.is_none() {
             self.first = self.heights(input.followed.altitude_m, input);
         }
+    }
+
+    /// What altimeter and ground velocity have climbed more than the accelerometers say.
+    pub(super) fn alone(&self, altitude_m: f64) -> Option<Alone> {
+        let climbed_m = self.state.altitude_m - self.began_m;
+        Some(Alone {
+            altimeter_m: altitude_m - self.state.altitude_m,
+            receiver_m: self.ground_m? - climbed_m - self.ground_more_mps * self.lasted_s,
+            sd_m: LEAST_SD_M + SD_SHARE * self.error_m,
+        })
     }
 
     /// None without a range or a ground velocity.

@@ -17,6 +17,7 @@ mod angle_monitor;
 mod attitude;
 mod coasting;
 mod config;
+mod drift_judge;
 mod estimate;
 mod filter_bank;
 mod force_sample;
@@ -210,6 +211,11 @@ impl Navigation {
     pub(crate) fn altitude_doubt(&self) -> Option<bool> {
         let monitor = &self.altitude_monitor;
         monitor.is_doubted().then(|| monitor.is_sound())
+    }
+
+    /// Whether the receiver's altitude and vertical velocity are not believed.
+    pub(crate) const fn doubts_receivers_height(&self) -> bool {
+        self.altitude_monitor.doubts_receiver()
     }
 
     /// Whether an airspeed may be used beside those of other sensors.

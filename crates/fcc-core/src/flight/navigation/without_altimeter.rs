@@ -51,7 +51,8 @@ impl Navigation {
         let sample = self.monitor_input(now, measurements, &before).sample;
         let path = self.monitor.path(&sample);
         let path_mps = path.map(|(climb_rate_mps, _)| climb_rate_mps);
-        let ground_mps = is_current(&measurements.velocity, now)
+        let is_believed = !self.altitude_monitor.doubts_receiver();
+        let ground_mps = (is_believed && is_current(&measurements.velocity, now))
             .then_some(-measurements.velocity.value.down_mps);
         let airspeed = measurements.airspeed_mps;
         let altitude = measurements.altitude_m;
@@ -88,6 +89,7 @@ impl Navigation {
             bias_mps2,
             felt_mps2: self.vertical.felt_mps2() + bias_mps2,
             path_mps,
+            kept_path_mps: self.monitor.kept_path_mps(&sample),
             ground_mps,
             range_m: measurements.height_by_range_m(now, attitude.roll_rad, attitude.pitch_rad),
             receiver: Receiver::of(measurements, now),

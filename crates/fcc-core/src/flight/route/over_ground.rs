@@ -25,7 +25,7 @@ pub struct OverGround {
     /// Altitude above mean sea level by the altimeter setting, m.
     pub altitude_m: f64,
     /// How much higher that is than the satellite receiver's altitude, m, over some
-    /// seconds; none where there is no receiver.
+    /// seconds; none where there is no receiver, or its altitude is found to be wrong.
     pub above_receiver_m: Option<f64>,
     /// By how much the altitude has stepped in this tick, m, where the aircraft has not.
     pub stepped_m: f64,

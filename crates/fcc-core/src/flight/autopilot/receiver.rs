@@ -1,0 +1,88 @@
+//! What is said of a satellite receiver that is flown by otherwise than it says.
+
+use core::fmt;
+
+use super::{Autopilot, degraded};
+use crate::framework::Notice;
+
+/// The items of the notices, among those of what is flown otherwise.
+const LATE_FIXES: u16 = 3;
+const HEIGHT_DOUBTED: u16 = 5;
+const HEIGHT_BELIEVED: u16 = 6;
+const PERMILLE: f64 = 1_000.0;
+
+fn notice(item: u16) -> Notice {
+    Notice {
+        kind: degraded::FLOWN_OTHERWISE,
+        item,
+        ..Notice::default()
+    }
+}
+
+/// The notice that fixes are later by this, s, than they say.
+pub(super) fn late_fixes(late_s: f64) -> Notice {
+    Notice {
+        amount_permille: (late_s * PERMILLE) as u16,
+        ..notice(LATE_FIXES)
+    }
+}
+
+/// Writes a notice of the receiver; `None` if it is another one.
+pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> Option<fmt::Result> {
+    let late_s = f64::from(notice.amount_permille) / PERMILLE;
+    let text = match (notice.item, notice.amount_permille) {
+        (LATE_FIXES, 0) => "the satellite receiver's fixes come in time again",
+        (LATE_FIXES, _) => {
+            return Some(write!(
+                f,
+                "the satellite receiver's fixes come {late_s:.1} s later than they say: they \
+                 are used at the time that they are of"
+            ));
+        }
+        (HEIGHT_DOUBTED, _) => {
+            "the satellite receiver climbs or sinks otherwise than altimeter, pitch and lift: \
+             its altitude and vertical velocity do not count"
+        }
+        (HEIGHT_BELIEVED, _) => {
+            "the satellite receiver climbs and sinks as the altimeter does again"
+        }
+        _ => return None,
+    };
+    Some(f.write_str(text))
+}
+
+impl Autopilot {
+    /// Prepares the notice that the receiver's height counts no longer, or again.
+    pub(super) fn note_receiver(&mut self, was_doubted: bool) {
+        let is_doubted = self.navigation.doubts_receivers_height();
+        self.receiver_notice = (is_doubted != was_doubted).then(|| {
+            notice(if is_doubted {
+                HEIGHT_DOUBTED
+            } else {
+                HEIGHT_BELIEVED
+            })
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::string::ToString;
+
+    use super::*;
+    use crate::framework::EventKind;
+
+    fn text(notice: Notice) -> std::string::String {
+        EventKind::Noticed(notice)
+            .description::<Autopilot>()
+            .to_string()
+    }
+
+    #[test]
+    fn each_says_what_is_flown() {
+        assert!(text(late_fixes(1.04)).contains("come 1.0 s later than they say"));
+        assert!(text(late_fixes(0.0)).contains("come in time again"));
+        assert!(text(notice(HEIGHT_DOUBTED)).contains("vertical velocity do not count"));
+        assert!(text(notice(HEIGHT_BELIEVED)).contains("as the altimeter does again"));
+    }
+}
