@@ -304,7 +304,7 @@ fn a_coarse_gyroscope_is_believed_in_a_steady_turn() {
     assert!(doubted(steady, coarse, 60.0, 60.0).is_empty());
 }
 
-const MAGNETOMETER: [(&str, Fault); 9] = [
+const MAGNETOMETER: [(&str, Fault); 12] = [
     ("none", |_, _, _, _| {}),
     ("frozen", |_, field, _, _| *field = [20.0, -10.0, 43.0]),
     ("frozen, with noise", |_, field, _, random| {
@@ -335,7 +335,28 @@ const MAGNETOMETER: [(&str, Fault); 9] = [
             (field[1], field[2]) = (cos * y - sin * z, sin * y + cos * z);
         }
     }),
+    ("turns to the right by 4°/s", |_, field, since_s, _| {
+        turn_about_down(field, 4.0 * since_s);
+    }),
+    ("turns to the left by 4°/s", |_, field, since_s, _| {
+        turn_about_down(field, -4.0 * since_s);
+    }),
+    (
+        "the field of a current that follows the ailerons",
+        |rates, field, _, _| {
+            // Half of the ailerons, for 10 °/s of roll, are 12 µT.
+            field[1] += 70.0 * rates[0];
+            field[2] += 21.0 * rates[0];
+        },
+    ),
 ];
+
+/// In its mount.
+fn turn_about_down(field: &mut [f64; 3], angle_deg: f64) {
+    let (sin, cos) = angle_deg.to_radians().sin_cos();
+    let [x, y, _] = *field;
+    (field[0], field[1]) = (cos * x + sin * y, cos * y - sin * x);
+}
 
 #[test]
 fn a_wrong_magnetometer_does_not_make_gyroscopes_doubted() {

@@ -2,11 +2,12 @@
 //! and which of the two is wrong if they do not.
 //!
 //! A field that turns, keeps its strength, and turns otherwise than the
-//! gyroscopes say for longer than a jump lasts: no usual failure of a magnetometer
-//! does that, so the gyroscopes are wrong. A field that does not turn while the
-//! gyroscopes do may be that of a frozen magnetometer as well: nothing is decided.
-//! With gyroscopes that are really wrong that does not last, because an autopilot
-//! that follows them turns the aircraft.
+//! gyroscopes say for longer than a jump lasts: few failures of a magnetometer
+//! do that (one that turns in its mount, a current that follows the ailerons), so
+//! the gyroscopes are wrong unless a satellite receiver agrees with them. A field
+//! that does not turn while the gyroscopes do may be that of a frozen magnetometer
+//! as well: nothing is decided. With gyroscopes that are really wrong that does not
+//! last, because an autopilot that follows them turns the aircraft.
 //!
 //! An axis that gives one rate to the last bit while the others change is wrong without
 //! the field.
@@ -16,6 +17,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::Solution;
 use super::field_turning::{FieldTurning, Turning};
+use super::receiver_witness::ReceiverWitness;
 use super::stuck::StuckAxis;
 use crate::blocks::smoothing_factor;
 use crate::framework::Time;
@@ -77,6 +79,10 @@ const AGREES_SHARE: f64 = 0.4;
 const AWAITED_FOR_S: f64 = 20.0;
 const SILENT_S: f64 = 1.0;
 
+/// Gyroscopes that the field contradicts are doubted as soon as a receiver does, too; if it
+/// has not after this time, s, it is the field that is wrong.
+const HEARD_FOR_S: f64 = 2.0;
+
 /// Slower nothing flies, m/s: on the ground there is iron nearby.
 const FLIES_MPS: f64 = 15.0;
 
@@ -96,6 +102,9 @@ pub(super) struct GyroscopeMonitor {
     is_field_sound: bool,
     awaited: Awaited,
     is_doubted: bool,
+    /// Since when a receiver is asked who is wrong.
+    accused_since: Time,
+    pub(super) witness: ReceiverWitness,
     axes: StuckAxis,
     is_stuck: bool,
     agreeing: Agreeing,
@@ -133,6 +142,8 @@ impl GyroscopeMonitor {
             is_field_sound: false,
             awaited: Awaited::default(),
             is_doubted: false,
+            accused_since: Time::NEVER,
+            witness: ReceiverWitness::new(),
             axes: StuckAxis::default(),
             is_stuck: false,
             agreeing: Agreeing::default(),
@@ -160,6 +171,7 @@ impl GyroscopeMonitor {
     /// From here on the samples are those of other gyroscopes.
     pub(super) fn change(&mut self) {
         self.is_doubted = false;
+        self.accused_since = Time::NEVER;
         self.bias = Vector3::zeros();
         self.turning = FieldTurning::new();
         self.known = 0;
@@ -174,13 +186,14 @@ impl GyroscopeMonitor {
         let (is_held, is_stuck) = self.axes.step(taken, rates);
         self.is_stuck = is_stuck;
         if !self.is_doubted {
-            let known = Vector3::from(known.gyroscope_bias_radps.map(finite));
+            let bias = Vector3::from(known.gyroscope_bias_radps.map(finite));
             let since_s = taken.since(self.rates_taken).as_secs_f64();
-            self.bias += (known - self.bias) * smoothing_factor(since_s, BIAS_S);
+            self.bias += (bias - self.bias) * smoothing_factor(since_s, BIAS_S);
         }
         self.rates_taken = taken;
-        self.turning
-            .add_rates(taken, Vector3::from(rates) - self.bias);
+        let rates = Vector3::from(rates) - self.bias;
+        self.turning.add_rates(taken, rates);
+        self.witness.add_rates(taken, rates, known);
         !is_held && !self.is_doubted
     }
 
@@ -196,6 +209,7 @@ impl GyroscopeMonitor {
         self.awaited.latest = taken;
         // Attitude is found by a field that is sound; without one there is none.
         self.is_doubted |= self.is_stuck && self.is_field_sound && flies;
+        self.judge(taken);
         let Some(turning) = self.turning.add_field(taken, field, own) else {
             return;
         };
@@ -219,13 +233,34 @@ impl GyroscopeMonitor {
         }
         self.known = (self.known + 1).min(WINDOWS);
         if self.contradicts(earth_ut) {
-            self.is_doubted |= flies;
+            if flies && !self.is_doubted && self.accused_since.is_never() {
+                self.accused_since = taken;
+                self.judge(taken);
+            }
             self.agreeing = Agreeing::default();
         } else if self.is_stuck {
             self.agreeing = Agreeing::default();
         } else if self.is_doubted {
             self.agree(taken, &turning);
         }
+    }
+
+    /// Decides who is wrong where the field contradicts the gyroscopes.
+    fn judge(&mut self, now: Time) {
+        if self.accused_since.is_never() {
+            return;
+        }
+        let for_s = now.since(self.accused_since).as_secs_f64();
+        if self.witness.agrees(now) != Some(true) {
+            self.is_doubted = true;
+        } else if for_s >= HEARD_FOR_S {
+            self.is_field_sound = false;
+            self.expected_since = Time::NEVER;
+            self.known = 0;
+        } else {
+            return;
+        }
+        self.accused_since = Time::NEVER;
     }
 
     /// Follows whether the field is where it is expected to be.

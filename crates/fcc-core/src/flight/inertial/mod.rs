@@ -20,6 +20,7 @@ mod kalman;
 mod magnetism;
 mod observation;
 mod raw_navigation;
+mod receiver_witness;
 mod stuck;
 mod thesis;
 mod units;

@@ -267,6 +267,10 @@ impl RawNavigation {
             rates = rates_of(&self.used.raw_body_rates, &solution);
             force = force_of(&self.used.raw_specific_force, &solution);
             self.solution = solution;
+            if let Method::Kalman(navigation) = &self.method {
+                let witness = &mut self.gyroscope.witness;
+                witness.add_innovations(navigation.innovations());
+            }
             self.judge_sensors(at);
         }
         self.follow_late_fixes(now);

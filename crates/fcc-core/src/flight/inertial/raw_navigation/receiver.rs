@@ -21,7 +21,10 @@ impl RawNavigation {
             // Where else it flies, the filter follows the field by itself.
             self.knows_field = true;
         }
+        let velocity = velocity_in(fix);
+        let witness = &mut self.gyroscope.witness;
+        witness.add_velocity(taken, velocity, &self.solution);
         self.take(taken, Observation::Position(place));
-        self.take(taken, Observation::Velocity(velocity_in(fix)));
+        self.take(taken, Observation::Velocity(velocity));
     }
 }
