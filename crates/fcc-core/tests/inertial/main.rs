@@ -21,3 +21,4 @@ mod sensors;
 mod several;
 mod thesis;
 mod units;
+mod velocities;

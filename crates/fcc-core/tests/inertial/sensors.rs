@@ -20,6 +20,9 @@ const RECEIVER_DELAY_S: f64 = 0.12;
 /// The field at 47° N, 8° E (WMM 2025, to a microtesla): north, east, down.
 pub(crate) const FIELD_UT: [f64; 3] = [21.5, 1.3, 43.0];
 
+/// What is made of a receiver's velocity, m/s, so many seconds after it failed.
+pub(crate) type VelocityFault = fn([f64; 3], f64, &mut Random) -> [f64; 3];
+
 /// Which sensors there are, and what is wrong with them.
 #[derive(Clone, Copy, Debug)]
 #[allow(clippy::struct_excessive_bools, reason = "each sensor is there or not")]
@@ -35,6 +38,8 @@ pub(crate) struct Fitted {
     pub(crate) receiver_late: (f64, (f64, f64)),
     /// That time comes to it by so much in a second.
     pub(crate) later_by: f64,
+    /// What is made of the receiver's velocity from here to there, s.
+    pub(crate) velocity_fault: (VelocityFault, (f64, f64)),
     /// Gyroscopes and accelerometers are both lost from here to there, s.
     pub(crate) inertial_lost_s: (f64, f64),
     /// The compass is turned by an angle from a time on, rad, s.
@@ -61,6 +66,7 @@ impl Default for Fitted {
             receiver_stands_s: (f64::INFINITY, f64::INFINITY),
             receiver_late: (0.0, (0.0, f64::INFINITY)),
             later_by: f64::MAX,
+            velocity_fault: (|velocity, _, _| velocity, (f64::INFINITY, f64::INFINITY)),
             inertial_lost_s: (f64::INFINITY, f64::INFINITY),
             compass_turned: (0.0, f64::INFINITY),
             slow_errors: true,
@@ -233,7 +239,11 @@ impl Run {
             };
             self.navigation.observe(taken, Observation::Position(place));
             let noise = self.random.vector(0.1);
-            let velocity = [0, 1, 2].map(|axis| then.velocity[axis] + noise[axis]);
+            let mut velocity = [0, 1, 2].map(|axis| then.velocity[axis] + noise[axis]);
+            let (fault, (from_s, to_s)) = self.fitted.velocity_fault;
+            if (from_s..to_s).contains(&then.time_s) {
+                velocity = fault(velocity, then.time_s - from_s, &mut self.random);
+            }
             self.navigation
                 .observe(taken, Observation::Velocity(velocity));
         }

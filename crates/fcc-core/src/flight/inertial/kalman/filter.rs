@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector2, Vector3};
 
+use super::displacement::Displacement;
 use super::drift::Drift;
 use super::in_flight::InFlight;
 use super::innovations::Innovations;
@@ -9,6 +10,7 @@ use super::lateness::Lateness;
 use super::motion::{Increment, Inertial, Motion, turn};
 use super::parameters as p;
 use super::path::Path;
+use super::scatter::Scatter;
 use super::track::Tracks;
 use super::trend::Trend;
 use crate::framework::Time;
@@ -77,6 +79,10 @@ pub(super) struct Filter {
     pub(super) path: Path,
     pub(super) in_flight: InFlight,
     pub(super) lateness: Lateness,
+    pub(super) displacement: Displacement,
+    pub(super) scatter: Scatter,
+    /// When this filter last took a velocity for its own that it had refused.
+    pub(super) taken_over: Time,
     /// The mean specific force, m/s², and when it was last so large that it may be more.
     load: f64,
     /// The rates of the last step that had some, less the longer that is ago, rad/s.
@@ -155,6 +161,9 @@ impl Filter {
             path: Path::new(),
             in_flight: InFlight::new(),
             lateness: Lateness::default(),
+            displacement: Displacement::default(),
+            scatter: Scatter::default(),
+            taken_over: Time::NEVER,
             load: 0.0,
             turning: 0.0,
             rough: Time::NEVER,

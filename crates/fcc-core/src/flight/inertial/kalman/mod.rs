@@ -24,6 +24,7 @@
 mod air;
 mod align;
 mod by_field;
+mod displacement;
 mod drift;
 mod filter;
 mod history;
@@ -39,6 +40,7 @@ mod parameters;
 mod path;
 mod receiver;
 mod rest;
+mod scatter;
 mod spikes;
 mod track;
 mod trend;

@@ -108,6 +108,9 @@ pub(super) const POSITION_VERTICAL: Noise = Noise::new(3.0, 1.0);
 /// A receiver's velocity, m/s.
 pub(super) const VELOCITY_HORIZONTAL: Noise = Noise::new(0.3, 0.2);
 pub(super) const VELOCITY_VERTICAL: Noise = Noise::new(0.5, 0.2);
+/// That it scatters by more is learned while the horizon is more certain than this, rad (3°),
+/// and nothing is rough.
+pub(super) const SCATTER_TILT: f64 = 0.05;
 
 /// By how much fixes are later than they say, s, its random walk, s/√s, and the most: a
 /// receiver computes for 0.1 to 0.3 s, and a serial line takes its time.

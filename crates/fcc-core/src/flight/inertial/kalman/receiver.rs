@@ -17,7 +17,7 @@ use crate::framework::Time;
 
 /// A velocity that was refused for seconds may mean a wrong attitude: at most so
 /// wrong, rad².
-const DOUBTED_ATTITUDE: f64 = 0.03;
+pub(super) const DOUBTED_ATTITUDE: f64 = 0.03;
 /// It took this time at least to make such a velocity, s.
 const LEAST_TILTED_S: f64 = 1.0;
 
@@ -32,6 +32,7 @@ impl Filter {
     /// A position, taken `after_s` after the time of the state.
     pub(super) fn position(&mut self, taken: Time, place: GeodeticPosition, after_s: f64) {
         let (horizontal, vertical) = (p::POSITION_HORIZONTAL, p::POSITION_VERTICAL);
+        self.displacement.take_place(taken, place);
         if self.is_contradicted(taken) {
             return;
         }
@@ -128,12 +129,14 @@ impl Filter {
     fn take_velocity(&mut self, taken: Time, velocity: [f64; 3], after_s: f64) {
         let velocity = Vector3::from(velocity);
         let before = core::mem::replace(&mut self.receiver, (taken, velocity));
-        if self.contradicts_air(before) {
+        let contradicts_air = self.contradicts_air(before);
+        self.follow_displacement(taken, velocity, contradicts_air);
+        if contradicts_air && !self.displacement.is_velocity_wrong {
             self.contradicted = taken;
             self.tracks.velocity.judged(taken, false);
             return;
         }
-        if self.align_in_flight(taken, velocity) {
+        if !self.displacement.is_velocity_wrong && self.align_in_flight(taken, velocity) {
             self.tracks.velocity.judged(taken, true);
             return;
         }
@@ -156,6 +159,14 @@ impl Filter {
         }
         let difference = velocity - seen.velocity;
         let mut measurement = on(VELOCITY, difference, noises, since_s);
+        let variance = horizontal.variance();
+        let tilt = self.sigma(ATTITUDE).max(self.sigma(ATTITUDE + 1));
+        let scatter = if tilt < p::SCATTER_TILT && self.is_calm(taken) {
+            self.scatter.variance(taken, difference, variance)
+        } else {
+            variance
+        };
+        measurement.variance *= scatter / variance;
         measurement.come_late(-seen.acceleration * self.shows_lateness(taken));
         measurement.excess *= self.late_excess();
         let has_heading = self.has_heading();
@@ -170,11 +181,14 @@ impl Filter {
             ObservationKind::Velocity,
             taken,
             &measurement,
-            p::GATE,
+            if self.displacement.is_velocity_wrong {
+                0.0
+            } else {
+                p::GATE
+            },
             self.corrected_by_fix(taken),
         ) {
-            self.trend
-                .add(taken, difference.xy(), horizontal.variance());
+            self.trend.add(taken, difference.xy(), scatter);
             return;
         }
         // What went in one direction before is an error of this filter, and not of a receiver.
@@ -186,11 +200,15 @@ impl Filter {
         } else {
             p::RECEIVER_REFUSED_S
         };
-        if is_first || self.tracks.velocity.refused_s(taken) >= needed_s {
+        let is_against = self.displacement.is_velocity_wrong
+            || self.tracks.position.refused_since.is_never()
+                && self.displacement.is_against(difference.xy());
+        if is_first || !is_against && self.tracks.velocity.refused_s(taken) >= needed_s {
             self.motion.velocity += difference;
             self.path.corrected(Vector3::zeros(), difference);
             self.forget(VELOCITY, &measurement);
             if !is_first {
+                self.taken_over = taken;
                 // One that is wrong by so much has turned gravity into this velocity. What
                 // is off downwards, and as much beside it, is no attitude's error: it is of
                 // an accelerometer at the end of its range, in a bank of 45° at most.
@@ -267,8 +285,11 @@ impl Filter {
     /// The share of what a fix shows of its lateness that is taken for that: none while an
     /// accelerometer may be at the end of its range, which looks the same.
     fn shows_lateness(&self, now: Time) -> f64 {
-        let is_calm = now.since(self.rough).as_secs_f64() > p::CALM_S;
-        f64::from(u8::from(is_calm))
+        f64::from(u8::from(self.is_calm(now)))
+    }
+
+    fn is_calm(&self, now: Time) -> bool {
+        now.since(self.rough).as_secs_f64() > p::CALM_S
     }
 
     /// What begins to move may be held for standing, which looks like fixes that come early.
