@@ -124,6 +124,7 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
         link.set_other_writer(held.confirmation.is_contested(now, link));
         link.set_cut(held.confirmation.is_cut());
         link.set_round_trip_s(held.confirmation.round_trip().as_secs_f32());
+        link.set_too_late(held.confirmation.too_late());
         let unconfirmed = held.confirmation.is_overdue(now, link) || link.is_cut();
         link.set_unconfirmed(unconfirmed);
         match sent {
@@ -168,6 +169,7 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
         link.set_other_writer(false);
         link.set_cut(false);
         link.set_round_trip_s(0.0);
+        link.set_too_late(Duration::ZERO);
         link.set_control(Control::ReleaseMonitor);
         if released {
             self.held = None;

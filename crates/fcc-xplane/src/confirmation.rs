@@ -151,7 +151,7 @@ impl Confirmation {
                 continue;
             };
             let read_back = self.written.recognise(index, value, at);
-            if let ReadBack::WrittenBefore(age) = read_back {
+            if let ReadBack::Own(age) = read_back {
                 self.round_trip.add(now, age);
             }
             let Some(ours) = self.ours.get_mut(index) else {
@@ -161,7 +161,7 @@ impl Confirmation {
             moved |= !is_there;
             let is_recent = match read_back {
                 ReadBack::Unknown => true,
-                ReadBack::WrittenBefore(age) => age <= CONFIRMED_WITHIN,
+                ReadBack::Own(age) => age.least <= CONFIRMED_WITHIN,
                 ReadBack::Foreign => false,
             };
             if is_recent && Extent::of(put).holds(value) {
@@ -186,6 +186,11 @@ impl Confirmation {
     /// nothing is recognised.
     pub(crate) const fn round_trip(&self) -> Duration {
         self.round_trip.shown()
+    }
+
+    /// By how much what is read is too old to fly by; zero if it is not.
+    pub(crate) fn too_late(&self) -> Duration {
+        self.round_trip.too_late()
     }
 
     /// Whether the yoke stands still where it was put before: what is written does

@@ -81,9 +81,11 @@ impl Inbox {
         }
     }
 
-    /// Begins a tick.
-    pub(crate) fn begin(&mut self) {
+    /// Begins a tick. What is read by `writing`, over which this program writes, may be too
+    /// old.
+    pub(crate) fn begin(&mut self, writing: &SharedState) {
         self.clock.begin();
+        self.sending.is_old_by_round_trip(writing.too_late());
     }
 
     /// When a value of this quantity last arrived.

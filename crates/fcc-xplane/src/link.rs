@@ -8,6 +8,7 @@
 mod ports;
 
 use core::sync::atomic::{AtomicBool, AtomicU8, AtomicU16, AtomicU32, AtomicU64, Ordering};
+use core::time::Duration;
 use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -71,6 +72,8 @@ pub(crate) struct SharedState {
     cut: AtomicBool,
     /// From writing to reading back; an f32, s.
     round_trip: AtomicU32,
+    /// By how much what is read is too old to fly by; ns.
+    too_late: AtomicU64,
     /// Another program writes the held controls, too.
     other_writer: AtomicBool,
     /// An override is set, not by this program, and nothing moves the yoke.
@@ -115,6 +118,7 @@ impl SharedState {
             unconfirmed: AtomicBool::new(false),
             cut: AtomicBool::new(false),
             round_trip: AtomicU32::new(0),
+            too_late: AtomicU64::new(0),
             other_writer: AtomicBool::new(false),
             left_overridden: AtomicBool::new(false),
             loads_differ: AtomicBool::new(false),
@@ -269,6 +273,16 @@ impl SharedState {
     pub(crate) fn set_round_trip_s(&self, round_trip_s: f32) {
         self.round_trip
             .store(round_trip_s.to_bits(), Ordering::Relaxed);
+    }
+
+    /// By how much what is read is too old to fly by, because it took too long from writing
+    /// to reading back; zero if it did not.
+    pub(crate) fn too_late(&self) -> Duration {
+        Duration::from_nanos(self.too_late.load(Ordering::Relaxed))
+    }
+
+    pub(crate) fn set_too_late(&self, by: Duration) {
+        self.too_late.store(by.as_nanos() as u64, Ordering::Relaxed);
     }
 
     /// Whether another program writes the held controls, too.

@@ -7,33 +7,102 @@ use fcc_core::framework::Time;
 /// Over such a time it is the longest that was seen: the same value may be written again
 /// and again.
 const OVER: Duration = Duration::from_secs(1);
+/// No aircraft is flown over a longer round trip, if it was longer in so many of those times
+/// in succession.
+const TOO_LONG: Duration = Duration::from_millis(500);
+const TIMES: u8 = 2;
+
+/// When a value that is read back was written: so long ago at least, and at most, where the
+/// same one was written several times in succession.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) struct WrittenAgo {
+    pub(crate) least: Duration,
+    pub(crate) most: Duration,
+}
+
+impl WrittenAgo {
+    const JUST_NOW: Self = Self {
+        least: Duration::ZERO,
+        most: Duration::ZERO,
+    };
+}
 
 /// The round trip of the last second that has passed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RoundTrip {
     since: Time,
-    longest: Duration,
+    longest: WrittenAgo,
     shown: Duration,
+    /// How many times it was too long; kept while the values that are written do not change.
+    too_long: u8,
 }
 
 impl RoundTrip {
     pub(crate) const fn begin(now: Time) -> Self {
         Self {
             since: now,
-            longest: Duration::ZERO,
+            longest: WrittenAgo::JUST_NOW,
             shown: Duration::ZERO,
+            too_long: 0,
         }
     }
 
-    pub(crate) fn add(&mut self, now: Time, took: Duration) {
+    pub(crate) fn add(&mut self, now: Time, took: WrittenAgo) {
         if now.since(self.since) >= OVER {
-            (self.since, self.shown) = (now, self.longest);
-            self.longest = Duration::ZERO;
+            let WrittenAgo { least, most } = self.longest;
+            (self.since, self.shown) = (now, least);
+            if least > TOO_LONG {
+                self.too_long = self.too_long.saturating_add(1);
+            } else if most <= TOO_LONG {
+                self.too_long = 0;
+            }
+            self.longest = WrittenAgo::JUST_NOW;
         }
-        self.longest = self.longest.max(took);
+        self.longest.least = self.longest.least.max(took.least);
+        self.longest.most = self.longest.most.max(took.most);
     }
 
     pub(crate) const fn shown(&self) -> Duration {
         self.shown
+    }
+
+    /// By how much what is read is too old to fly by; zero if it is not.
+    pub(crate) fn too_late(&self) -> Duration {
+        if self.too_long >= TIMES {
+            self.shown.max(TOO_LONG)
+        } else {
+            Duration::ZERO
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Reads back 40 times a second for some seconds.
+    fn read(trip: &mut RoundTrip, from_s: u64, seconds: u64, least_ms: u64, most_ms: u64) {
+        for tick in 0..40 * seconds {
+            let now = Time::from_nanos(((from_s * 40 + tick) * 25_000_000) as i64);
+            let took = WrittenAgo {
+                least: Duration::from_millis(least_ms),
+                most: Duration::from_millis(most_ms),
+            };
+            trip.add(now, took);
+        }
+    }
+
+    #[test]
+    fn a_long_round_trip_stays_too_long_until_a_changing_value_comes_back_in_time() {
+        let mut trip = RoundTrip::begin(Time::from_nanos(0));
+        read(&mut trip, 0, 2, 60, 80);
+        assert_eq!(trip.too_late(), Duration::ZERO);
+        read(&mut trip, 2, 4, 900, 920);
+        assert_eq!(trip.too_late(), Duration::from_millis(900));
+        // A value that is written unchanged may be the first or the last of them.
+        read(&mut trip, 6, 4, 30, 2_000);
+        assert_eq!(trip.too_late(), TOO_LONG);
+        read(&mut trip, 10, 3, 60, 80);
+        assert_eq!(trip.too_late(), Duration::ZERO);
     }
 }

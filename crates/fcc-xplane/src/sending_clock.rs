@@ -6,6 +6,9 @@
 //! calls it the elapsed time synchronised across the network and does not say that
 //! it runs on, so it is used only once it has been seen to, and no longer when it
 //! stands still.
+//!
+//! A network whose delay grows slowly looks like an X-Plane that computes slowly; what is
+//! written and read back tells how old it is at least.
 
 use core::time::Duration;
 
@@ -39,6 +42,7 @@ pub(crate) struct SendingClock {
     network_s: f64,
     network_advanced: Time,
     stamp: Time,
+    by_round_trip: Duration,
 }
 
 impl SendingClock {
@@ -53,6 +57,7 @@ impl SendingClock {
         if was.arrived.is_never() || network_s < self.network_s || flight_s < was.flight_s {
             *self = Self {
                 stamp: self.stamp,
+                by_round_trip: self.by_round_trip,
                 flight_advanced: now,
                 network_advanced: arrived,
                 network_s,
@@ -82,14 +87,20 @@ impl SendingClock {
         self.map.step(arrived, network_s);
     }
 
+    /// From now on what arrives is so old by what was written and read back.
+    pub(crate) const fn is_old_by_round_trip(&mut self, by: Duration) {
+        self.by_round_trip = by;
+    }
+
     /// The age of what arrived last, relative to the fastest datagram; zero while
     /// it is not known.
     pub(crate) fn age(&self) -> Duration {
-        if self.runs_on {
+        let by_its_clock = if self.runs_on {
             self.map.age()
         } else {
             Duration::ZERO
-        }
+        };
+        by_its_clock.max(self.by_round_trip)
     }
 
     /// The time at which was sent what arrives now, as old as what arrived last.

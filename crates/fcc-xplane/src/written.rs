@@ -5,6 +5,8 @@ use core::time::Duration;
 
 use fcc_core::framework::Time;
 
+use crate::round_trip::WrittenAgo;
+
 /// Three seconds at 128 Hz; at a higher rate less, which is still some frames.
 const MOST: usize = 384;
 /// A value is read back at most this long after it was written, over a slow network.
@@ -27,9 +29,8 @@ struct Entry {
 pub(crate) enum ReadBack {
     /// The simulator shows something else than what is sent, as far as is known.
     Unknown,
-    /// This program's, written so long before or longer: the same may have been
-    /// written again since.
-    WrittenBefore(Duration),
+    /// This program's, the same of which may have been written again since.
+    Own(WrittenAgo),
     Foreign,
 }
 
@@ -58,7 +59,7 @@ impl Written {
     }
 
     pub(crate) fn add(&mut self, at: Time, yoke: [Option<f32>; 3]) {
-        if let Some(entry) = self.entries.get_mut(self.next % MOST) {
+        if let Some(entry) = self.entries.get_mut(self.next) {
             let yoke = yoke.map(|value| value.unwrap_or(f32::NAN));
             *entry = Entry { yoke, at };
         }
@@ -71,9 +72,17 @@ impl Written {
             let written = entry.yoke.get(axis);
             written.is_some_and(|written| (written - value).abs() <= SAME)
         };
-        let ages = self.entries.iter().filter(is_same);
-        let ages = ages.map(|entry| at.since(entry.at));
-        let age = ages.min().filter(|age| *age <= READ_BACK_WITHIN);
+        let (later, earlier) = self.entries.split_at(self.next);
+        let newest_first = later.iter().rev().chain(earlier.iter().rev());
+        let mut same = newest_first
+            .skip_while(|entry| !is_same(entry))
+            .take_while(is_same)
+            .map(|entry| at.since(entry.at));
+        let age = same.next().filter(|age| *age <= READ_BACK_WITHIN);
+        let age = age.map(|least| WrittenAgo {
+            least,
+            most: same.last().unwrap_or(least),
+        });
         if self.recognised < RECOGNISED && value.abs() > SAME {
             self.recognised = if age.is_some() {
                 self.recognised + 1
@@ -83,7 +92,7 @@ impl Written {
         }
         match age {
             _ if self.recognised < RECOGNISED => ReadBack::Unknown,
-            Some(age) => ReadBack::WrittenBefore(age),
+            Some(age) => ReadBack::Own(age),
             None => ReadBack::Foreign,
         }
     }

@@ -112,6 +112,40 @@ fn controls_that_are_read_back_late_are_said_once() {
     assert!(text.contains("Connect both machines by a cable"), "{text}");
 }
 
+/// A network whose delay grows slowly looks like an X-Plane that computes slowly: only the
+/// round trip tells it, from 0.5 s on.
+#[test]
+fn what_is_read_is_too_old_while_the_controls_come_back_too_late() {
+    for (late_ticks, is_too_old) in [(16, false), (32, true)] {
+        let mut bench = Bench::new();
+        bench.settle();
+        let mut on_its_way = VecDeque::from(vec![0.0; late_ticks]);
+        for _ in 0..240 {
+            bench.simulator.listen();
+            let time_s = bench.simulator.value(FLIGHT_TIME) + 0.025;
+            bench.simulator.set(FLIGHT_TIME, time_s);
+            let shown = on_its_way.pop_front().unwrap();
+            bench.simulator.set(YOKE_PITCH, shown);
+            let frame = bench.simulator.frame();
+            bench.simulator.send(&frame);
+            let outputs = Surfaces {
+                elevator: 0.2 * f64::from(time_s).sin(),
+                ..SURFACES
+            };
+            on_its_way.push_back(outputs.elevator as f32);
+            let tick = bench.ticks.next();
+            bench.sensor.sample(&tick, &mut bench.measurements).unwrap();
+            let _ = bench.actuator.as_mut().unwrap().apply(&tick, &outputs);
+        }
+        let age = bench
+            .ticks
+            .next()
+            .woke
+            .since(bench.measurements.attitude.taken);
+        assert_eq!(age > Duration::from_millis(500), is_too_old, "{age:?}");
+    }
+}
+
 #[test]
 fn an_override_that_got_lost_is_set_again_within_a_second() {
     let mut bench = Bench::new();

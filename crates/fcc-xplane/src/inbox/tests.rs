@@ -26,7 +26,7 @@ impl Bench {
     /// A tick in which these datagrams arrive.
     fn tick(&mut self, datagrams: &[Vec<u8>]) -> SimulatorState {
         self.now = self.now + TICK;
-        self.inbox.begin();
+        self.inbox.begin(&self.link);
         for datagram in datagrams {
             self.inbox.accept(datagram, self.now, &self.link).unwrap();
         }
