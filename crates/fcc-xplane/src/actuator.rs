@@ -121,6 +121,7 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
             held.confirmation.wrote(now, yoke_ratios(outputs));
             link.sent_yoke.add(yoke_ratios(outputs));
         }
+        held.confirmation.await_overrides(now, link);
         link.set_other_writer(held.confirmation.is_contested(now, link));
         link.set_cut(held.confirmation.is_cut());
         link.set_round_trip_s(held.confirmation.round_trip().as_secs_f32());

@@ -19,6 +19,7 @@ use crate::lasting::Lasting;
 use crate::link::SharedState;
 use crate::quantity::Quantity;
 use crate::round_trip::RoundTrip;
+use crate::simulator::SimulatorState;
 use crate::written::{ReadBack, Written};
 
 /// The longest time for which writing may be unconfirmed.
@@ -93,6 +94,9 @@ pub(crate) struct Confirmation {
     moved_by_another: Time,
     contested: Lasting,
     round_trip: RoundTrip,
+    /// How long the overrides have been waited for while data arrived, and until when; none
+    /// once they were read back.
+    awaited: Option<(Duration, Time)>,
 }
 
 impl Confirmation {
@@ -109,7 +113,29 @@ impl Confirmation {
             moved_by_another: Time::NEVER,
             contested: Lasting::new(CONTESTED_AFTER, CONTESTED_UNTIL),
             round_trip: RoundTrip::begin(now),
+            awaited: Some((Duration::ZERO, now)),
         }
+    }
+
+    /// Waits until the overrides are read back for the first time: the first round trip. A
+    /// simulator that stops meanwhile says nothing of the network.
+    pub(crate) fn await_overrides(&mut self, now: Time, link: &SharedState) {
+        let Some((mut waited, before)) = self.awaited else {
+            return;
+        };
+        if matches!(link.state(), SimulatorState::Running | SimulatorState::Slow) {
+            waited += now.since(before);
+        }
+        let is_there = |quantity| {
+            self.recent(quantity, now, link)
+                .is_some_and(|(value, _)| value >= 0.5)
+        };
+        self.awaited = if OVERRIDES.into_iter().all(is_there) {
+            self.round_trip.is_at_first(waited);
+            None
+        } else {
+            Some((waited, now))
+        };
     }
 
     /// Records what was written to elevator, aileron and rudder.

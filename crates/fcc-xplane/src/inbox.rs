@@ -385,7 +385,7 @@ impl Inbox {
         if self.clock.time_seen() == now
             && let (Some(time_s), Some(state)) = (self.clock.time_s(), state.plant_state())
         {
-            into.plant = Reading::new(Plant { time_s, state }, self.sending.stamp(now));
+            into.plant = Reading::new(Plant { time_s, state }, self.sending.sent(now));
         }
         state
     }

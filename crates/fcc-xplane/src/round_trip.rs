@@ -20,18 +20,11 @@ pub(crate) struct WrittenAgo {
     pub(crate) most: Duration,
 }
 
-impl WrittenAgo {
-    const JUST_NOW: Self = Self {
-        least: Duration::ZERO,
-        most: Duration::ZERO,
-    };
-}
-
 /// The round trip of the last second that has passed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RoundTrip {
     since: Time,
-    longest: WrittenAgo,
+    longest: Option<WrittenAgo>,
     shown: Duration,
     /// How many times it was too long; kept while the values that are written do not change.
     too_long: u8,
@@ -41,25 +34,35 @@ impl RoundTrip {
     pub(crate) const fn begin(now: Time) -> Self {
         Self {
             since: now,
-            longest: WrittenAgo::JUST_NOW,
+            longest: None,
             shown: Duration::ZERO,
             too_long: 0,
         }
     }
 
+    /// The first round trip, of which is known when it began.
+    pub(crate) fn is_at_first(&mut self, took: Duration) {
+        if took > TOO_LONG {
+            (self.shown, self.too_long) = (took, TIMES);
+        }
+    }
+
     pub(crate) fn add(&mut self, now: Time, took: WrittenAgo) {
-        if now.since(self.since) >= OVER {
-            let WrittenAgo { least, most } = self.longest;
-            (self.since, self.shown) = (now, least);
+        let longest = self.longest.take_if(|_| now.since(self.since) >= OVER);
+        if let Some(WrittenAgo { least, most }) = longest {
+            self.shown = least;
             if least > TOO_LONG {
                 self.too_long = self.too_long.saturating_add(1);
             } else if most <= TOO_LONG {
                 self.too_long = 0;
             }
-            self.longest = WrittenAgo::JUST_NOW;
         }
-        self.longest.least = self.longest.least.max(took.least);
-        self.longest.most = self.longest.most.max(took.most);
+        if self.longest.is_none() {
+            self.since = now;
+        }
+        let longest = self.longest.get_or_insert(took);
+        longest.least = longest.least.max(took.least);
+        longest.most = longest.most.max(took.most);
     }
 
     pub(crate) const fn shown(&self) -> Duration {

@@ -42,6 +42,7 @@ pub(crate) struct SendingClock {
     network_s: f64,
     network_advanced: Time,
     stamp: Time,
+    sent: Time,
     by_round_trip: Duration,
 }
 
@@ -57,6 +58,7 @@ impl SendingClock {
         if was.arrived.is_never() || network_s < self.network_s || flight_s < was.flight_s {
             *self = Self {
                 stamp: self.stamp,
+                sent: self.sent,
                 by_round_trip: self.by_round_trip,
                 flight_advanced: now,
                 network_advanced: arrived,
@@ -95,18 +97,20 @@ impl SendingClock {
     /// The age of what arrived last, relative to the fastest datagram; zero while
     /// it is not known.
     pub(crate) fn age(&self) -> Duration {
-        let by_its_clock = if self.runs_on {
+        self.age_by_its_clock().max(self.by_round_trip)
+    }
+
+    fn age_by_its_clock(&self) -> Duration {
+        if self.runs_on {
             self.map.age()
         } else {
             Duration::ZERO
-        };
-        by_its_clock.max(self.by_round_trip)
+        }
     }
 
     /// The time at which was sent what arrives now, as old as what arrived last.
     pub(crate) fn there(&self, now: Time) -> Time {
-        let age_ns = i64::try_from(self.age().as_nanos()).unwrap_or(i64::MAX);
-        Time::from_nanos(now.as_nanos().saturating_sub(age_ns))
+        before(now, self.age())
     }
 
     /// The same for what did arrive now: not before what arrived earlier.
@@ -114,6 +118,19 @@ impl SendingClock {
         self.stamp = self.there(now).max(self.stamp).min(now);
         self.stamp
     }
+
+    /// The same by X-Plane's clock alone. That a time arrives shows that X-Plane runs, however
+    /// old it is by the round trip.
+    pub(crate) fn sent(&mut self, now: Time) -> Time {
+        let sent = before(now, self.age_by_its_clock());
+        self.sent = sent.max(self.sent).min(now);
+        self.sent
+    }
+}
+
+fn before(now: Time, age: Duration) -> Time {
+    let age_ns = i64::try_from(age.as_nanos()).unwrap_or(i64::MAX);
+    Time::from_nanos(now.as_nanos().saturating_sub(age_ns))
 }
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! The values written to the yoke in the last three seconds, to recognise them when
-//! they are read back.
+//! The values written to the yoke in the last seconds, to recognise them when they are read
+//! back.
 
 use core::time::Duration;
 
@@ -7,10 +7,10 @@ use fcc_core::framework::Time;
 
 use crate::round_trip::WrittenAgo;
 
-/// Three seconds at 128 Hz; at a higher rate less, which is still some frames.
-const MOST: usize = 384;
+/// Four and a half seconds at 128 Hz; at a higher rate less, which is still some frames.
+const MOST: usize = 576;
 /// A value is read back at most this long after it was written, over a slow network.
-const READ_BACK_WITHIN: Duration = Duration::from_millis(2_500);
+const READ_BACK_WITHIN: Duration = Duration::from_millis(4_500);
 /// X-Plane stores what was written as f32, as it was sent.
 const SAME: f32 = 1e-4;
 
