@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from . import app_timing, ranges
+from . import app_timing, ranges, replacement
 from .printable import say
 
 
@@ -52,5 +52,5 @@ def _compare(options: argparse.Namespace) -> int:
         ratio = app_timing.ratio(flights, fifo=fifo)
         say(f"median p99 of the app over the best daemon's, {what}: {ratio:.2f}")
     if options.json:
-        options.json.write_text(app_timing.as_json(comparison, flights) + "\n", "utf-8")
+        replacement.write(options.json, app_timing.as_json(comparison, flights) + "\n")
     return 0

@@ -13,6 +13,7 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 
+from . import replacement
 from .flight import Flight
 from .rig import FlightError
 from .truth import COLUMNS, Truth
@@ -45,7 +46,8 @@ def leave(flight: Flight, folder: Path) -> list[Path]:
     left = [folder / "flight.png", folder / "truth.csv"]
     plot(left[0], flight, truth)
     table = np.column_stack([truth[name] for name in COLUMNS])
-    np.savetxt(left[1], table, fmt="%.6g", delimiter=",", header=",".join(COLUMNS), comments="")
+    with replacement.replacing(left[1]) as file:
+        np.savetxt(file, table, fmt="%.6g", delimiter=",", header=",".join(COLUMNS), comments="")
     return left + flight.rig.save_recording(folder / "recording.mcap")
 
 
@@ -73,7 +75,7 @@ def plot(path: Path, flight: Flight, truth: Truth) -> None:
         axes.set_axisbelow(True)
     rows[0].legend(loc="upper left", frameon=False)
     figure.suptitle(flight.rig.name, fontsize=13)
-    figure.savefig(path, dpi=110)
+    replacement.draw(path, figure, dpi=110)
     plt.close(figure)
 
 

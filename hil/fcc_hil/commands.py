@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from . import app_timing_command, documents, flood, plan_command, ranges, raw_command
+from . import app_timing_command, documents, flood, plan_command, ranges, raw_command, replacement
 from .aircraft import AIRCRAFT
 from .campaign import command as campaign
 from .printable import say
@@ -121,7 +121,7 @@ def add(commands: Any) -> None:
         metavar="NAME",
         help=f"one of {', '.join(AIRCRAFT)}",
     )
-    tune.add_argument("-o", "--output", type=Path, required=True, metavar="FILE")
+    tune.add_argument("-o", "--output", type=ranges.file_to_write, required=True, metavar="FILE")
     tune.add_argument(
         "--from",
         dest="given",
@@ -262,9 +262,6 @@ def _tune(options: argparse.Namespace) -> int:
         legs=options.legs,
         turbulence=options.turbulence,
     )
-    # A search of hours must not fail because of a missing folder.
-    if not options.output.parent.is_dir():
-        raise ValueError(f"{options.output}: there is no folder {options.output.parent}")
     workers = (
         tuning.on_dask(options.dask) if options.dask else tuning.local_workers(options.workers)
     )
@@ -279,7 +276,7 @@ def _tune(options: argparse.Namespace) -> int:
         f"{found.before:.3f};\n# {found.evaluations} candidates on seeds "
         f"{', '.join(map(str, task.seeds))}.\n\n"
     )
-    options.output.write_text(head + found.config, encoding="utf-8")
+    replacement.write(options.output, head + found.config)
     say(
         f"cost {found.before:.3f} as given, {found.guessed:.3f} by measured responses, "
         f"{found.after:.3f} found in {found.evaluations} candidates",

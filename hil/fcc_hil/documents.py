@@ -8,11 +8,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from . import replacement
+
 
 def write(path: Path, document: object) -> None:
     """Write a document; what is not finite, as the figure of what never was, is null."""
     text = json.dumps(_finite(document), indent=2, allow_nan=False)
-    path.write_text(text + "\n", encoding="utf-8")
+    replacement.write(path, text + "\n")
 
 
 def _finite(value: Any) -> Any:

@@ -7,7 +7,7 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 
-from . import plan_file
+from . import plan_file, replacement
 from .flown_plan import FlownPlan
 from .units import FT_TO_M
 
@@ -44,5 +44,5 @@ def plot(path: Path, plan: Path, flown: FlownPlan) -> None:
     height.set_ylabel("ft above sea level")
     height.legend()
     path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=120)
+    replacement.draw(path, figure, dpi=120)
     plt.close(figure)

@@ -12,6 +12,7 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 
+from . import replacement
 from .pattern import SetPoints, TimedPattern
 from .score import Samples
 from .truth import Truth
@@ -96,5 +97,5 @@ def plot_flight(
         for leg in range(legs):
             axes.axvline(pattern.hold_s + leg * pattern.leg_s, color=_GRID, linewidth=1.0, zorder=0)
     figure.suptitle(title, fontsize=13)
-    figure.savefig(path, dpi=130)
+    replacement.draw(path, figure, dpi=130)
     plt.close(figure)

@@ -7,6 +7,8 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
+from . import replacement
+
 LARGEST_SEED = 2**32 - 1
 _MOST_PROCESSES = 1_024
 
@@ -74,8 +76,8 @@ def file_to_write(text: str) -> Path:
     folder = path.parent
     if text == "-":
         raise argparse.ArgumentTypeError("'-' is a file here: give another name, or ./-")
-    if path.is_dir():
-        raise argparse.ArgumentTypeError(f"'{text}' is a folder: give a file")
+    if why := replacement.refusal(path):
+        raise argparse.ArgumentTypeError(f"'{text}' {why}")
     if not folder.is_dir():
         raise argparse.ArgumentTypeError(f"'{text}': there is no folder '{folder}': create it")
     if not os.access(path if path.exists() else folder, os.W_OK):

@@ -18,6 +18,7 @@ import fcc
 import numpy as np
 import numpy.typing as npt
 
+from . import replacement
 from .configurations import value_of, with_values
 from .lockstep_board import BoardedLockstepRig, BoardLine
 from .lockstep_rig import Conditions, LockstepRig
@@ -224,7 +225,7 @@ def fly(
 
 def write_learned(path: Path, learned: Mapping[str, float]) -> None:
     """Write what was learned, as it stands in a configuration file."""
-    path.write_text(with_values("", _learned_keys(learned)), encoding="utf-8")
+    replacement.write(path, with_values("", _learned_keys(learned)))
 
 
 def read_learned(path: Path) -> dict[str, float]:
@@ -248,5 +249,5 @@ def _learned_keys(learned: Mapping[str, float]) -> dict[str, float]:
 def save(path: Path, arrays: Arrays) -> None:
     """Write the arrays as `.npz`."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("wb") as file:
+    with replacement.replacing(path) as file:
         np.savez_compressed(file, **arrays)  # type: ignore[arg-type]

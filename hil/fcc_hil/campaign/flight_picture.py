@@ -10,6 +10,7 @@ mpl.use("Agg")
 
 import matplotlib.pyplot as plt
 
+from .. import replacement
 from ..truth import Truth
 from .flying import Outcome
 from .report import conditions
@@ -53,7 +54,7 @@ def draw(path: Path, truth: Truth, outcome: Outcome) -> None:
     rows[-1].set_xlabel("time since the first tick, s")
     broken = "; ".join(outcome.verdict.broken) or "clean"
     figure.suptitle(f"{conditions(flight)}: {broken}", fontsize=9, wrap=True)
-    figure.savefig(path, dpi=90)
+    replacement.draw(path, figure, dpi=90)
     plt.close(figure)
 
 

@@ -12,6 +12,7 @@ mpl.use("Agg")
 
 import matplotlib.pyplot as plt
 
+from .. import replacement
 from .flying import Outcome
 from .verdict import KINDS, LARGEST_BANK_DEG, LOADS_G
 
@@ -65,7 +66,7 @@ def draw(path: Path, outcomes: Sequence[Outcome], title: str) -> None:
     rows[1][1].axhline(LARGEST_BANK_DEG, color="black", linewidth=0.6)
     rows[0][0].legend(frameon=False, fontsize=8)
     figure.suptitle(title, fontsize=12)
-    figure.savefig(path, dpi=90)
+    replacement.draw(path, figure, dpi=90)
     plt.close(figure)
 
 

@@ -12,6 +12,7 @@ mpl.use("Agg")
 
 import matplotlib.pyplot as plt
 
+from .. import replacement
 from .measure import AXES, WANTED_DB, WANTED_DEG, Margins
 
 _SHOWN_DB, _SHOWN_DEG = 30.0, 120.0
@@ -80,5 +81,5 @@ def draw(path: Path, measured: Sequence[Margins]) -> None:
     plots[0][0].set_ylabel("gain margin, dB", fontsize=8)
     plots[1][0].set_ylabel("phase margin, °", fontsize=8)
     plots[0][0].legend(fontsize=6)
-    figure.savefig(path, dpi=120)
+    replacement.draw(path, figure, dpi=120)
     plt.close(figure)

@@ -12,6 +12,7 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.ticker import NullFormatter
 
+from .. import replacement
 from .flying import Outcome
 
 _COLUMNS = (
@@ -62,5 +63,5 @@ def draw(path: Path, outcomes: Sequence[Outcome]) -> None:
         "Worst leg of each flight (dot), its limit (red line), JSBSim's own autopilot (dashed)",
         fontsize=10,
     )
-    figure.savefig(path, dpi=60)
+    replacement.draw(path, figure, dpi=60)
     plt.close(figure)

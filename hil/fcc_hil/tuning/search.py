@@ -77,7 +77,7 @@ def tune(task: Task, fly_all: FlyAll, notify: Notify = lambda _flown, _least: No
     given = task.config if task.config is not None else configuration(task.aircraft)
     is_scaled = any(value_of(given, key, 0.0) for key in SCALE_KEYS)
     begun = given if is_scaled else first_guess(task.aircraft, given)
-    begun = with_values(begun, {key: _start(begun, key) for key in task.keys})
+    begun = with_values(begun, {key: _value(begun, key) for key in task.keys})
     start = np.log([value_of(begun, key, 1.0) for key in task.keys])
 
     before, guessed = _costs(task, [given, begun], fly_all)
@@ -99,7 +99,7 @@ def tune(task: Task, fly_all: FlyAll, notify: Notify = lambda _flown, _least: No
         before=before,
         guessed=guessed,
         after=least,
-        values={key: value_of(best, key, math.nan) for key in task.keys},
+        values={key: _value(best, key) for key in task.keys},
         evaluations=flown,
     )
 
@@ -131,7 +131,7 @@ def _check(task: Task) -> None:
         raise ValueError("the optimiser is not installed: pip install 'fcc-hil[tune]'") from None
 
 
-def _start(config: str, key: str) -> float:
+def _value(config: str, key: str) -> float:
     value = value_of(config, key, 1.0 if key in SCALE_KEYS else 0.0)
     if value <= 0.0:
         raise ValueError(
