@@ -11,11 +11,12 @@ from pathlib import Path
 
 import pytest
 from daemon_under_test import DaemonUnderTest, engage, wait_until, write_config
-from other_user import NOBODY, needs_two_users
+from other_user import NOBODY, as_user, needs_two_users
 
 from fcc_hil.process import StandInProcess
 from fcc_hil.standin import Settings
 
+ROOT = Path(__file__).parents[2]
 SUCCESS = 0
 USAGE = 2
 OLD = "2020-01-01T00-00-00.000Z-built-in-01.mcap"
@@ -46,6 +47,29 @@ def test_what_another_user_places_is_neither_followed_nor_deleted(
     assert victim.stat().st_size == 2_000_000
     assert link.is_symlink()
     assert pipe.is_fifo()
+
+
+@needs_two_users
+def test_what_is_written_is_no_file_of_another_user(fccd: Path, tmp_path: Path) -> None:
+    """Who could change it afterwards."""
+    for folder in (tmp_path, *tmp_path.parents[:2]):
+        folder.chmod(0o755)
+    shared = tmp_path / "shared"
+    shared.mkdir()
+    shared.chmod(0o777)
+    theirs = shared / "theirs.plan"
+    theirs.write_text("")
+    theirs.chmod(0o666)
+    program = shared / "fccd"
+    program.write_bytes(fccd.read_bytes())
+    program.chmod(0o755)
+    plan = shared / "circuit.waypoints"
+    plan.write_bytes((ROOT / "config/plans/circuit.waypoints").read_bytes())
+    words = [*as_user(NOBODY), program, "plan", "convert", plan, theirs]
+    ended = subprocess.run(words, capture_output=True, text=True, timeout=30, check=False)
+    assert ended.returncode != SUCCESS
+    assert "a file of another user (0)" in ended.stderr
+    assert theirs.read_text() == ""
 
 
 def test_without_a_umask_others_may_write_nothing(fccd: Path, tmp_path: Path) -> None:

@@ -150,5 +150,7 @@ def test_wrong_arguments_of_a_plan(tmp_path: Path) -> None:
         plan.to_text("csv")
     with pytest.raises(ValueError, match="the format is not known by its name"):
         plan.write(tmp_path / "a.csv")
-    with pytest.raises(FileNotFoundError):
+    with pytest.raises(FileNotFoundError, match=r"no\.plan"):
         fcc.Plan.read(tmp_path / "no.plan")
+    with pytest.raises(FileNotFoundError, match=r"none/a\.plan"):
+        plan.write(tmp_path / "none" / "a.plan")

@@ -58,6 +58,10 @@ def climbs_more(mps: float) -> Fault:
     return fault
 
 
+def velocity_swapped(values: fcc.Measurements) -> None:
+    values.gnss_north_mps, values.gnss_east_mps = values.gnss_east_mps, values.gnss_north_mps
+
+
 Axes = list[float]
 
 
@@ -192,6 +196,18 @@ def test_a_receiver_that_drifts_in_height_does_not_count(mps: float) -> None:
     assert sum("its altitude and vertical velocity do not count" in text for text in texts) == 1
     assert not any("altitude contradicts the other sensors" in text for text in texts)
     assert most["altitude"] <= 10.0
+
+
+def test_a_velocity_that_is_not_that_of_its_positions_is_not_used() -> None:
+    machine, rig, most = fly(velocity_swapped, 60.0)
+    said = [event for event in rig.events if "satellite receiver's velocity" in event.text]
+    assert machine.state == "engaged"
+    assert [event.text.endswith("is not used") for event in said] == [True, False]
+    assert FAILS_S < said[0].time_s <= FAILS_S + 10.0
+    assert most["roll"] <= 3.0
+    assert most["pitch"] <= 3.0
+    assert most["heading"] <= 5.0
+    assert most["bank"] <= 45.0
 
 
 @pytest.mark.parametrize(

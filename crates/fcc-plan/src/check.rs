@@ -155,7 +155,7 @@ pub(crate) fn legs(plan: &Plan, conditions: &Conditions, problems: &mut Vec<Prob
                     note("jump", message);
                 }
             }
-            Item::Takeoff { .. } | Item::Land { .. } => {
+            Item::Takeoff { .. } | Item::Land { .. } | Item::Return => {
                 if let Some((field, message)) = runway_problem(plan, number, item) {
                     note(field, message);
                 }

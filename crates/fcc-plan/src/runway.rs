@@ -41,7 +41,18 @@ pub(crate) fn last_leg(
     })
 }
 
-/// What is behind a landing is not flown, a take-off climbs before it turns, and a runway
+/// The problem of an item to fly to behind this one, at which the flight ends.
+fn flown_behind(plan: &Plan, number: usize, what: &str) -> Option<(&'static str, String)> {
+    let behind = plan.items.get(number..)?;
+    let flown = behind.iter().position(|item| item.place().is_some())?;
+    let item = number + 1 + flown;
+    Some((
+        "command",
+        format!("item {item} is behind {what}: remove it"),
+    ))
+}
+
+/// What is behind a landing or a return is not flown, a take-off climbs before it turns, and a runway
 /// has a direction.
 pub(crate) fn runway_problem(
     plan: &Plan,
@@ -72,14 +83,9 @@ pub(crate) fn runway_problem(
                                before it: give a place";
                 return Some(("place", message.to_owned()));
             }
-            let behind = plan.items.get(number..)?;
-            let flown = behind.iter().position(|item| item.place().is_some())?;
-            let message = format!(
-                "item {} is behind a landing, where the flight ends: remove it",
-                number + 1 + flown
-            );
-            Some(("command", message))
+            flown_behind(plan, number, "a landing, where the flight ends")
         }
+        Item::Return => flown_behind(plan, number, "a return, which ends over home"),
         _ => None,
     }
 }

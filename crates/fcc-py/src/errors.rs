@@ -15,7 +15,7 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple, PyType};
 
 /// An `OSError` of the subclass that belongs to the error's number, with the file's name.
-pub(crate) fn unreadable(path: &Path, error: &io::Error) -> PyErr {
+pub(crate) fn of_file(path: &Path, error: &io::Error) -> PyErr {
     let text = error.to_string();
     match error.raw_os_error() {
         Some(number) => {

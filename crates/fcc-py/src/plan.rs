@@ -53,7 +53,7 @@ impl PyPlan {
     fn read(path: PathBuf) -> PyResult<Self> {
         match fcc_plan::read_file(&path) {
             Ok(plan) => Ok(Self { plan }),
-            Err(FileError::Unreadable { source, .. }) => Err(errors::unreadable(&path, &source)),
+            Err(FileError::Unreadable { source, .. }) => Err(errors::of_file(&path, &source)),
             Err(error) => Err(errors::PLAN.with(error)),
         }
     }
@@ -102,7 +102,8 @@ impl PyPlan {
         })?;
         let text = fcc_plan::write(&self.plan, format).map_err(|problems| invalid(&problems))?;
         let others: [&Path; 0] = [];
-        Ok(fcc_record::write_plan(&path, &others, text.as_bytes())?)
+        fcc_record::write_plan(&path, &others, text.as_bytes())
+            .map_err(|error| errors::of_file(&path, &error))
     }
 
     fn __len__(&self) -> usize {

@@ -81,7 +81,7 @@ fn keeps<P: AsRef<Path>>(path: &Path, inputs: &[P], kept: Option<Kept>) -> io::R
             format!("it is {input}, which this command uses, too: choose another name"),
         ));
     }
-    refuse_link_of_another(path)?;
+    refuse_what_is_of_another(path)?;
     let what = match kept {
         None => return Ok(()),
         Some(Kept::Recording) => "recording",
@@ -94,24 +94,29 @@ fn keeps<P: AsRef<Path>>(path: &Path, inputs: &[P], kept: Option<Kept>) -> io::R
     ))
 }
 
-/// A link of another user would be followed to a file of this one, and a pipe waited for.
-fn refuse_link_of_another(path: &Path) -> io::Result<()> {
+/// A link of another user would be followed to a file of this one, a pipe waited for, and a
+/// file could be changed afterwards; but whoever administers the machine may write anybody's.
+fn refuse_what_is_of_another(path: &Path) -> io::Result<()> {
     let Ok(there) = fs::symlink_metadata(path) else {
         return Ok(());
     };
-    let trusted = [0, nix::unistd::geteuid().as_raw()];
-    if there.is_file() || there.is_dir() || trusted.contains(&there.uid()) {
+    let own = nix::unistd::geteuid();
+    if there.is_dir() || [0, own.as_raw()].contains(&there.uid()) {
         return Ok(());
     }
     let what = if there.is_symlink() {
         "link"
-    } else {
+    } else if !there.is_file() {
         "pipe or device"
+    } else if own.is_root() {
+        return Ok(());
+    } else {
+        "file"
     };
     Err(io::Error::new(
         io::ErrorKind::PermissionDenied,
         format!(
-            "it is a {what} of another user ({}), which is not followed: choose another name",
+            "it is a {what} of another user ({}), which is not used: choose another name",
             there.uid()
         ),
     ))

@@ -12,6 +12,18 @@ const OVER: Duration = Duration::from_secs(1);
 const TOO_LONG: Duration = Duration::from_millis(500);
 const TIMES: u8 = 2;
 
+/// While it is too long the rudder is put aside by this much more in each such time, s, up to
+/// so often: a value that does not change says nothing of when it was written.
+const MARK: f64 = 2.5e-4;
+const MARKED_FOR: Duration = Duration::from_millis(250);
+const MARKS: u64 = 20;
+
+/// By how much the rudder is put aside at a time, of its range 0..1.
+pub(crate) fn mark(now: Time) -> f64 {
+    let number = now.as_nanos().unsigned_abs() / MARKED_FOR.as_nanos() as u64;
+    (number % MARKS) as f64 * MARK
+}
+
 /// When a value that is read back was written: so long ago at least, and at most, where the
 /// same one was written several times in succession.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -20,13 +32,23 @@ pub(crate) struct WrittenAgo {
     pub(crate) most: Duration,
 }
 
+impl WrittenAgo {
+    /// What two axes say together: both were written at the same time.
+    pub(crate) fn with(self, other: Self) -> Self {
+        Self {
+            least: self.least.max(other.least),
+            most: self.most.min(other.most),
+        }
+    }
+}
+
 /// The round trip of the last second that has passed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RoundTrip {
     since: Time,
     longest: Option<WrittenAgo>,
     shown: Duration,
-    /// How many times it was too long; kept while the values that are written do not change.
+    /// How many times it was too long.
     too_long: u8,
 }
 

@@ -296,6 +296,12 @@ fn a_landing_needs_its_last_leg_and_is_the_end() {
         problems.contains("item 5 is behind a landing"),
         "{problems}"
     );
+    let mut returning = plan(8.0);
+    returning.items.push(Item::Return);
+    assert_eq!(check(&returning, &conditions(0.0)), Ok(()));
+    returning.items.push(waypoint(60.0, 8.2, 1_000.0));
+    let problems = said(&returning, 0.0);
+    assert!(problems.contains("item 5 is behind a return"), "{problems}");
 }
 
 #[test]

@@ -128,7 +128,7 @@ machine_class! {
         let plan = match self.config.prepare_plan(&file, item, uploaded_s) {
             Ok(plan) => plan,
             Err(FileError::Unreadable { source, .. }) => {
-                return Err(errors::unreadable(&file, &source));
+                return Err(errors::of_file(&file, &source));
             }
             Err(error) => return Err(errors::PLAN.with(error)),
         };

@@ -9,6 +9,8 @@ use crate::framework::Notice;
 const LATE_FIXES: u16 = 3;
 const HEIGHT_DOUBTED: u16 = 5;
 const HEIGHT_BELIEVED: u16 = 6;
+const VELOCITY_REFUSED: u16 = 7;
+const VELOCITY_USED: u16 = 8;
 const PERMILLE: f64 = 1_000.0;
 
 fn notice(item: u16) -> Notice {
@@ -25,6 +27,15 @@ pub(super) fn late_fixes(late_s: f64) -> Notice {
         amount_permille: (late_s * PERMILLE) as u16,
         ..notice(LATE_FIXES)
     }
+}
+
+/// The notice that the receiver's velocity is refused, or used again.
+pub(super) fn velocity(is_refused: bool) -> Notice {
+    notice(if is_refused {
+        VELOCITY_REFUSED
+    } else {
+        VELOCITY_USED
+    })
 }
 
 /// Writes a notice of the receiver; `None` if it is another one.
@@ -46,6 +57,11 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> Option<fmt::
         (HEIGHT_BELIEVED, _) => {
             "the satellite receiver climbs and sinks as the altimeter does again"
         }
+        (VELOCITY_REFUSED, _) => {
+            "the satellite receiver's velocity contradicts its own positions, or airspeed and \
+             compass: it is not used"
+        }
+        (VELOCITY_USED, _) => "the satellite receiver's velocity is used again",
         _ => return None,
     };
     Some(f.write_str(text))
@@ -83,6 +99,8 @@ mod tests {
         assert!(text(late_fixes(1.04)).contains("come 1.0 s later than they say"));
         assert!(text(late_fixes(0.0)).contains("come in time again"));
         assert!(text(notice(HEIGHT_DOUBTED)).contains("vertical velocity do not count"));
+        assert!(text(velocity(true)).contains("contradicts its own positions"));
+        assert!(text(velocity(false)).contains("is used again"));
         assert!(text(notice(HEIGHT_BELIEVED)).contains("as the altimeter does again"));
     }
 }

@@ -180,6 +180,12 @@ impl KalmanNavigation {
         self.filter.fixes_late_s()
     }
 
+    /// Whether the receiver's velocities are not used because its own places, or air and
+    /// compass, contradict them.
+    pub fn refuses_velocity(&self) -> bool {
+        self.filter.refuses_velocity()
+    }
+
     /// Forgets the samples of a sensor that wait until they are used.
     pub fn forget(&mut self, kind: ObservationKind) {
         self.history.remove(kind);

@@ -277,6 +277,12 @@ impl Filter {
         )
     }
 
+    /// Whether the receiver's velocities are not used because its own places, or air and
+    /// compass, contradict them.
+    pub(super) fn refuses_velocity(&self) -> bool {
+        self.displacement.is_velocity_wrong || self.is_contradicted(self.time)
+    }
+
     /// By how much fixes are later than they say, s.
     pub(super) fn fixes_late_s(&self) -> f64 {
         self.lateness.late_s() + self.late_s

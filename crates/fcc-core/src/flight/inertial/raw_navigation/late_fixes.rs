@@ -1,4 +1,5 @@
-//! Fixes that come late, by what they say or later than that.
+//! Fixes that come late, by what they say or later than that, and those whose velocity is
+//! wrong.
 
 use core::time::Duration;
 
@@ -13,6 +14,9 @@ const LATE: Duration = Duration::from_millis(500);
 /// A lateness that differs by this from what was told, s, is told.
 const TOLD_S: f64 = 0.3;
 
+/// A velocity counts as used again after this time, s, without a contradiction.
+const USED_AGAIN_S: f64 = 10.0;
+
 /// By how much fixes are later than they say, s, as it was told last, and what takes the place
 /// of a late one.
 #[derive(Clone, Copy, Debug, Default)]
@@ -20,6 +24,10 @@ pub(super) struct LateFixes {
     late_s: f64,
     /// Whether that is new since the last step.
     is_news: bool,
+    /// When the velocity was last refused, whether that counts, and whether that is new.
+    refused: Time,
+    is_refused: bool,
+    is_refusal_news: bool,
     last: Reading<GnssFix>,
     present: Option<(Reading<Position>, Reading<Velocity>)>,
 }
@@ -31,18 +39,36 @@ impl RawNavigation {
         self.late_fixes.is_news.then_some(self.late_fixes.late_s)
     }
 
-    /// What takes the place of a fix that came late: where this is by all sensors.
+    /// Whether the receiver's velocity is refused, or used again, if that began in the last
+    /// step.
+    pub fn refuses_velocity(&self) -> Option<bool> {
+        let late = &self.late_fixes;
+        late.is_refusal_news.then_some(late.is_refused)
+    }
+
+    /// What takes the place of a fix that came late, or whose velocity is wrong: where this is
+    /// by all sensors.
     pub(super) const fn present(&self) -> Option<(Reading<Position>, Reading<Velocity>)> {
         self.late_fixes.present
     }
 
     pub(super) fn follow_late_fixes(&mut self, now: Time) {
-        let late_s = match &self.method {
+        let (late_s, is_refused) = match &self.method {
             // What comes before it is of is in time.
-            Method::Kalman(navigation) => navigation.late_fixes_s().max(0.0),
-            Method::Thesis(_) => 0.0,
+            Method::Kalman(navigation) => (
+                navigation.late_fixes_s().max(0.0),
+                navigation.refuses_velocity(),
+            ),
+            Method::Thesis(_) => (0.0, false),
         };
         let late = &mut self.late_fixes;
+        if is_refused {
+            late.refused = now;
+        }
+        let was_refused = late.is_refused;
+        late.is_refused =
+            is_refused || was_refused && now.since(late.refused).as_secs_f64() < USED_AGAIN_S;
+        late.is_refusal_news = late.is_refused != was_refused;
         late.is_news = (late_s - late.late_s).abs() > TOLD_S;
         if late.is_news {
             late.late_s = if late_s > TOLD_S { late_s } else { 0.0 };
@@ -63,7 +89,7 @@ impl RawNavigation {
                 down_mps,
             };
             let is_known = place.latitude_rad.is_finite() && north_mps.is_finite();
-            late.present = (age > LATE && is_known).then(|| {
+            late.present = ((age > LATE || is_refused) && is_known).then(|| {
                 let at = self.solution.time;
                 let (mut position, mut velocity) =
                     (Reading::new(position, at), Reading::new(velocity, at));
