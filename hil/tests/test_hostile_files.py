@@ -65,7 +65,7 @@ def test_what_is_written_is_no_file_of_another_user(fccd: Path, tmp_path: Path) 
     program.chmod(0o755)
     plan = shared / "circuit.waypoints"
     plan.write_bytes((ROOT / "config/plans/circuit.waypoints").read_bytes())
-    words = [*as_user(NOBODY), program, "plan", "convert", plan, theirs]
+    words: list[str | Path] = [*as_user(NOBODY), program, "plan", "convert", plan, theirs]
     ended = subprocess.run(words, capture_output=True, text=True, timeout=30, check=False)
     assert ended.returncode != SUCCESS
     assert "a file of another user (0)" in ended.stderr
