@@ -18,7 +18,7 @@ use fcc_core::framework::Time;
 use crate::lasting::Lasting;
 use crate::link::SharedState;
 use crate::quantity::Quantity;
-use crate::round_trip::{RoundTrip, WrittenAgo};
+use crate::round_trip::RoundTrip;
 use crate::simulator::SimulatorState;
 use crate::written::{ReadBack, Written};
 
@@ -86,6 +86,8 @@ pub(crate) struct Confirmation {
     extents: [[Extent; 3]; 3],
     turned: Time,
     written: Written,
+    /// What was last read of each axis.
+    shown: [Option<f32>; 3],
     /// Where each axis was last read as it was put.
     ours: [Option<f32>; 3],
     /// The yoke stands there although something else was put.
@@ -108,6 +110,7 @@ impl Confirmation {
             extents: [[Extent::EMPTY; 3]; 3],
             turned: now,
             written: Written::new(),
+            shown: [None; 3],
             ours: [None; 3],
             cut: Lasting::new(CONTESTED_AFTER, LATELY),
             moved_by_another: Time::NEVER,
@@ -171,15 +174,16 @@ impl Confirmation {
             .recent(Quantity::OverrideJoystick, now, link)
             .is_some_and(|(value, _)| value >= 0.5);
         let (mut elsewhere, mut stands, mut moved) = (false, false, false);
-        let mut all = None;
         let extents = self.extents;
         for ((index, axis), put) in YOKE.into_iter().enumerate().zip(extents) {
             let Some((value, at)) = self.recent(axis, now, link) else {
                 continue;
             };
             let read_back = self.written.recognise(index, value, at);
-            if let ReadBack::Own(ago) = read_back {
-                all = Some(all.map_or(ago, |all: WrittenAgo| all.with(ago)));
+            if let (ReadBack::Own(ago), Some(shown)) = (read_back, self.shown.get_mut(index)) {
+                let changes = shown.is_some_and(|shown| (value - shown).abs() > STILL);
+                *shown = Some(value);
+                self.round_trip.add(now, ago, changes);
             }
             let Some(ours) = self.ours.get_mut(index) else {
                 continue;
@@ -198,9 +202,6 @@ impl Confirmation {
             } else if is_recent || read_back == ReadBack::Foreign {
                 elsewhere = true;
             }
-        }
-        if let Some(ago) = all {
-            self.round_trip.add(now, ago);
         }
         // What is written may pass where the yoke stands.
         stands |= self.cut.holds() && !moved;

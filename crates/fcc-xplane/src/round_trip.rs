@@ -11,6 +11,9 @@ const OVER: Duration = Duration::from_secs(1);
 /// in succession.
 const TOO_LONG: Duration = Duration::from_millis(500);
 const TIMES: u8 = 2;
+/// ... by so many values at least, of three axes in 20 frames a second or more: after a freeze
+/// of the simulator each shows once what was written before.
+const LEAST: u16 = 15;
 
 /// While it is too long the rudder is put aside by this much more in each such time, s, up to
 /// so often: a value that does not change says nothing of when it was written.
@@ -32,23 +35,16 @@ pub(crate) struct WrittenAgo {
     pub(crate) most: Duration,
 }
 
-impl WrittenAgo {
-    /// What two axes say together: both were written at the same time.
-    pub(crate) fn with(self, other: Self) -> Self {
-        Self {
-            least: self.least.max(other.least),
-            most: self.most.min(other.most),
-        }
-    }
-}
-
 /// The round trip of the last second that has passed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RoundTrip {
     since: Time,
-    longest: Option<WrittenAgo>,
+    longest: Duration,
     shown: Duration,
-    /// How many times it was too long.
+    /// How many values of this time came back too late, and how many in time.
+    late: u16,
+    in_time: u16,
+    /// In how many times in succession more came too late.
     too_long: u8,
 }
 
@@ -56,8 +52,10 @@ impl RoundTrip {
     pub(crate) const fn begin(now: Time) -> Self {
         Self {
             since: now,
-            longest: None,
+            longest: Duration::ZERO,
             shown: Duration::ZERO,
+            late: 0,
+            in_time: 0,
             too_long: 0,
         }
     }
@@ -69,22 +67,25 @@ impl RoundTrip {
         }
     }
 
-    pub(crate) fn add(&mut self, now: Time, took: WrittenAgo) {
-        let longest = self.longest.take_if(|_| now.since(self.since) >= OVER);
-        if let Some(WrittenAgo { least, most }) = longest {
-            self.shown = least;
-            if least > TOO_LONG {
+    /// Takes when what is read back was written. `changes` if it was read back otherwise before:
+    /// what stands still may have done so for long.
+    pub(crate) fn add(&mut self, now: Time, took: WrittenAgo, changes: bool) {
+        if now.since(self.since) >= OVER {
+            self.shown = self.longest;
+            if self.late > self.in_time.max(LEAST) {
                 self.too_long = self.too_long.saturating_add(1);
-            } else if most <= TOO_LONG {
+            } else if self.in_time > 0 {
                 self.too_long = 0;
             }
+            (self.since, self.longest) = (now, Duration::ZERO);
+            (self.late, self.in_time) = (0, 0);
         }
-        if self.longest.is_none() {
-            self.since = now;
+        self.longest = self.longest.max(took.least);
+        if changes && took.least > TOO_LONG {
+            self.late = self.late.saturating_add(1);
+        } else if changes && took.most <= TOO_LONG {
+            self.in_time = self.in_time.saturating_add(1);
         }
-        let longest = self.longest.get_or_insert(took);
-        longest.least = longest.least.max(took.least);
-        longest.most = longest.most.max(took.most);
     }
 
     pub(crate) const fn shown(&self) -> Duration {
@@ -106,28 +107,37 @@ mod tests {
     use super::*;
 
     /// Reads back 40 times a second for some seconds.
-    fn read(trip: &mut RoundTrip, from_s: u64, seconds: u64, least_ms: u64, most_ms: u64) {
+    fn read(
+        trip: &mut RoundTrip,
+        (from_s, seconds): (u64, u64),
+        (least_ms, most_ms): (u64, u64),
+        changes: bool,
+    ) {
         for tick in 0..40 * seconds {
             let now = Time::from_nanos(((from_s * 40 + tick) * 25_000_000) as i64);
             let took = WrittenAgo {
                 least: Duration::from_millis(least_ms),
                 most: Duration::from_millis(most_ms),
             };
-            trip.add(now, took);
+            trip.add(now, took, changes);
         }
     }
 
     #[test]
     fn a_long_round_trip_stays_too_long_until_a_changing_value_comes_back_in_time() {
         let mut trip = RoundTrip::begin(Time::from_nanos(0));
-        read(&mut trip, 0, 2, 60, 80);
+        read(&mut trip, (0, 2), (60, 80), true);
         assert_eq!(trip.too_late(), Duration::ZERO);
-        read(&mut trip, 2, 4, 900, 920);
+        read(&mut trip, (2, 4), (900, 920), true);
         assert_eq!(trip.too_late(), Duration::from_millis(900));
         // A value that is written unchanged may be the first or the last of them.
-        read(&mut trip, 6, 4, 30, 2_000);
+        read(&mut trip, (6, 4), (30, 2_000), false);
         assert_eq!(trip.too_late(), TOO_LONG);
-        read(&mut trip, 10, 3, 60, 80);
+        // Nor is one that stands still older than it was.
+        let mut still = RoundTrip::begin(Time::from_nanos(0));
+        read(&mut still, (0, 6), (900, 920), false);
+        assert_eq!(still.too_late(), Duration::ZERO);
+        read(&mut trip, (10, 3), (60, 80), true);
         assert_eq!(trip.too_late(), Duration::ZERO);
     }
 }
