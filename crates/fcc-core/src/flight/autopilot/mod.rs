@@ -268,15 +268,7 @@ impl Controller for Autopilot {
     }
 
     fn notice(&self) -> Option<Notice> {
-        // The sender of a command waits for it.
-        self.answered
-            .or_else(|| self.pilot.notice())
-            .or_else(|| self.clock.notice())
-            .or_else(|| self.degraded_notice())
-            .or_else(|| self.wrong_sensor_notice())
-            .or(self.doubt_notice)
-            .or(self.receiver_notice)
-            .or(self.told)
+        self.urgent_notice().or(self.told)
     }
 
     fn write_notice(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {

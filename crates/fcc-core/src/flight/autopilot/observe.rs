@@ -55,7 +55,6 @@ impl Autopilot {
         self.follow_intermittent(step_s);
         let doubted = self.doubts();
         let receiver_was_doubted = self.navigation.doubts_receivers_height();
-        self.told = self.news.take();
         self.navigate(now, measured, step_s);
         self.follow_ground(now, step_s);
         self.follow_battery(now, step_s);
@@ -67,6 +66,9 @@ impl Autopilot {
         self.take_over_after_loss(now);
         self.take_over_unless_followed(now, self.config.max_age);
         self.follow_failsafe(tick, measured);
+        // One thing is told in a tick: what can wait does.
+        let is_waiting = self.urgent_notice().is_some();
+        self.told = self.news.take_if(|_| !is_waiting);
         // After an outage everything settles anew before it may engage.
         let unusable = flags::unusable(self.stale(now), self.frozen());
         let settled_s = self.settled_s.map_or(0.0, |settled_s| settled_s + step_s);

@@ -51,6 +51,18 @@ impl Autopilot {
             .or_else(|| raw.refuses_velocity().map(receiver::velocity))
     }
 
+    /// What is told in this tick and in no other.
+    pub(super) fn urgent_notice(&self) -> Option<Notice> {
+        // The sender of a command waits for it.
+        self.answered
+            .or_else(|| self.pilot.notice())
+            .or_else(|| self.clock.notice())
+            .or_else(|| self.degraded_notice())
+            .or_else(|| self.wrong_sensor_notice())
+            .or(self.doubt_notice)
+            .or(self.receiver_notice)
+    }
+
     /// Whether the gyroscopes are not used, because the magnetic field contradicts them.
     pub(super) fn doubts_gyroscopes(&self) -> bool {
         self.raw
