@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import stat
 import subprocess
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -50,26 +52,23 @@ def test_what_another_user_places_is_neither_followed_nor_deleted(
 
 
 @needs_two_users
-def test_what_is_written_is_no_file_of_another_user(fccd: Path, tmp_path: Path) -> None:
+def test_what_is_written_is_no_file_of_another_user(fccd: Path) -> None:
     """Who could change it afterwards."""
-    for folder in (tmp_path, *tmp_path.parents[:2]):
-        folder.chmod(0o755)
-    shared = tmp_path / "shared"
-    shared.mkdir()
-    shared.chmod(0o777)
-    theirs = shared / "theirs.plan"
-    theirs.write_text("")
-    theirs.chmod(0o666)
-    program = shared / "fccd"
-    program.write_bytes(fccd.read_bytes())
-    program.chmod(0o755)
-    plan = shared / "circuit.waypoints"
-    plan.write_bytes((ROOT / "config/plans/circuit.waypoints").read_bytes())
-    words: list[str | Path] = [*as_user(NOBODY), program, "plan", "convert", plan, theirs]
-    ended = subprocess.run(words, capture_output=True, text=True, timeout=30, check=False)
-    assert ended.returncode != SUCCESS
-    assert "a file of another user (0)" in ended.stderr
-    assert theirs.read_text() == ""
+    # Others reach no folder of pytest.
+    with tempfile.TemporaryDirectory() as name:
+        shared = Path(name)
+        shared.chmod(0o777)
+        theirs = shared / "theirs.plan"
+        theirs.write_text("")
+        theirs.chmod(0o666)
+        os.chown(theirs, NOBODY - 1, NOBODY - 1)
+        program = shutil.copy(fccd, shared / "fccd")
+        plan = shutil.copy(ROOT / "config/plans/circuit.waypoints", shared)
+        words: list[str | Path] = [*as_user(NOBODY), program, "plan", "convert", plan, theirs]
+        ended = subprocess.run(words, capture_output=True, text=True, timeout=30, check=False)
+        assert ended.returncode != SUCCESS
+        assert f"a file of another user ({NOBODY - 1})" in ended.stderr
+        assert theirs.read_text() == ""
 
 
 def test_without_a_umask_others_may_write_nothing(fccd: Path, tmp_path: Path) -> None:

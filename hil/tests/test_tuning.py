@@ -195,5 +195,6 @@ def test_the_command_writes_a_configuration(
     assert commands.main([*arguments, "-o", str(output)]) == 0
     assert "as given" in capsys.readouterr().out
     fcc.Autopilot(output.read_text(encoding="utf-8"))
-    assert commands.main([*arguments, "-o", str(tmp_path / "none" / "x.toml")]) == 1
+    with pytest.raises(SystemExit, match="2"):
+        commands.main([*arguments, "-o", str(tmp_path / "none" / "x.toml")])
     assert "there is no folder" in capsys.readouterr().err

@@ -63,16 +63,20 @@ impl Autopilot {
             .or(self.receiver_notice)
     }
 
-    /// Whether the gyroscopes are not used, because the magnetic field contradicts them.
+    /// Whether the gyroscopes are not flown by, because the magnetic field contradicts them;
+    /// not by the attitude either until it is known which of the two is wrong: an aircraft
+    /// that follows wrong gyroscopes rolls over meanwhile.
     pub(super) fn doubts_gyroscopes(&self) -> bool {
         self.raw
             .as_ref()
-            .is_some_and(RawNavigation::doubts_gyroscopes)
+            .is_some_and(|raw| raw.doubts_gyroscopes() || raw.questions_gyroscopes())
     }
 
     /// Whether what comes from raw sensors has an attitude, if it is flown by them.
     pub(super) fn knows_attitude(&self) -> bool {
-        self.raw.as_ref().is_none_or(RawNavigation::knows_attitude)
+        self.raw
+            .as_ref()
+            .is_none_or(|raw| raw.knows_attitude() && !raw.questions_gyroscopes())
     }
 
     /// The needed quantities whose readings are too old to be used; all of them

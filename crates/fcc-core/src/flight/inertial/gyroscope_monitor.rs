@@ -79,8 +79,10 @@ const AGREES_SHARE: f64 = 0.4;
 const AWAITED_FOR_S: f64 = 20.0;
 const SILENT_S: f64 = 1.0;
 
-/// Gyroscopes that the field contradicts are doubted as soon as a receiver does, too; if it
-/// has not after this time, s, it is the field that is wrong.
+/// Gyroscopes that the field contradicts within so many windows (0.6 s, 20 °/s) are doubted at
+/// once. Others are as soon as a receiver contradicts them, too; if it has not after this time,
+/// s, it is the field that is wrong.
+const FAST_WINDOWS: usize = 3;
 const HEARD_FOR_S: f64 = 2.0;
 
 /// Slower nothing flies, m/s: on the ground there is iron nearby.
@@ -153,6 +155,11 @@ impl GyroscopeMonitor {
     /// Whether the gyroscopes are not to be used.
     pub(super) const fn is_doubted(&self) -> bool {
         self.is_doubted
+    }
+
+    /// Whether the field contradicts them, and a receiver is asked who is wrong.
+    pub(super) const fn is_questioned(&self) -> bool {
+        !self.accused_since.is_never()
     }
 
     /// Whether the gyroscopes cannot be held against the field yet, and soon will be.
@@ -232,8 +239,10 @@ impl GyroscopeMonitor {
             *latest = turning;
         }
         self.known = (self.known + 1).min(WINDOWS);
-        if self.contradicts(earth_ut) {
-            if flies && !self.is_doubted && self.accused_since.is_never() {
+        if let Some(windows) = self.contradicts(earth_ut) {
+            if windows <= FAST_WINDOWS {
+                self.is_doubted |= flies;
+            } else if flies && !self.is_doubted && self.accused_since.is_never() {
                 self.accused_since = taken;
                 self.judge(taken);
             }
@@ -286,14 +295,14 @@ impl GyroscopeMonitor {
         self.awaited.has_counted |= self.is_field_sound;
     }
 
-    /// Whether gyroscopes and field contradict each other over the latest windows,
-    /// however many of them.
-    fn contradicts(&self, earth_ut: f64) -> bool {
+    /// Over how many of the latest windows gyroscopes and field contradict each other.
+    fn contradicts(&self, earth_ut: f64) -> Option<usize> {
         let (mut error, mut shown) = (Vector3::zeros(), Vector3::zeros());
         let (mut by_field, mut by_rates, mut variance) = (0.0, 0.0, 0.0);
         let (mut largest, mut most_shown) = (Vector3::zeros(), Vector3::zeros());
         let (mut weakest_ut, mut strongest_ut) = (f64::INFINITY, 0.0_f64);
-        self.windows.iter().take(self.known).any(|window| {
+        let mut windows = self.windows.iter().take(self.known);
+        let last = windows.position(|window| {
             error += window.error;
             // Where they agreed the field may have turned before it was frozen.
             let (turned, wrong) = (window.shown.norm(), window.error.norm());
@@ -319,7 +328,8 @@ impl GyroscopeMonitor {
                     || (shown - most_shown).norm() > FIELD_TURNS_RAD)
                 && shown.norm() > NOISE_SIGMAS * sqrt(variance)
                 && strongest_ut - weakest_ut < STEADY_STRENGTH_SHARE * earth_ut
-        })
+        });
+        last.map(|last| last + 1)
     }
 
     /// Believes doubted gyroscopes again when they have agreed for long enough while

@@ -209,6 +209,12 @@ impl RawNavigation {
         self.gyroscope.is_doubted()
     }
 
+    /// Whether the magnetic field contradicts the gyroscopes, and it is not known yet which of
+    /// them is wrong.
+    pub const fn questions_gyroscopes(&self) -> bool {
+        self.gyroscope.is_questioned()
+    }
+
     /// Whether there is an attitude: not for a moment after gyroscopes began to be
     /// doubted, and then by the magnetic field.
     pub fn knows_attitude(&self) -> bool {
