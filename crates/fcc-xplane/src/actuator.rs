@@ -19,7 +19,7 @@ use crate::link::{Control, SharedState};
 use crate::port::{Errno, Port};
 use crate::protocol::PathError;
 use crate::protocol::dref::WRITE_BYTES;
-use crate::round_trip::mark;
+use crate::round_trip::marked;
 use crate::sensor::send;
 use crate::traffic::WritePace;
 use crate::udp_port::UdpPort;
@@ -116,14 +116,12 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
             held.asserted = now;
             sent = self.controls.take(write);
         }
-        let outputs = &Surfaces {
-            rudder: if link.too_late().is_zero() {
-                outputs.rudder
-            } else {
-                (outputs.rudder + mark(now)).min(1.0)
-            },
-            ..*outputs
+        let outputs = if link.too_late().is_zero() {
+            *outputs
+        } else {
+            marked(outputs, now)
         };
+        let outputs = &outputs;
         let messages = self.controls.messages(outputs);
         if held.pace.take(now, messages, link.frame_period_s()) {
             sent = sent.and(self.controls.set(outputs, write));

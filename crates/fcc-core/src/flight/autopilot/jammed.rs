@@ -2,7 +2,9 @@
 
 use core::fmt;
 
-use super::{Autopilot, degraded, flags};
+use super::degraded::flown_otherwise;
+use super::degraded::otherwise::{AILERONS, ELEVATOR, RUDDER};
+use super::{Autopilot, flags};
 use crate::blocks::LowPass;
 use crate::flight::Surfaces;
 use crate::flight::control::{
@@ -34,11 +36,6 @@ const OFF_S: f64 = 0.5;
 /// A reversed rudder shows within this time after the ailerons seemed to be jammed by it, s.
 /// Later it banks in their place, and its effect is not told from theirs.
 const ANOTHER_WITHIN_S: f64 = 5.0;
-
-/// The items of their notices.
-const AILERONS: u16 = 1;
-const ELEVATOR: u16 = 2;
-const RUDDER: u16 = 4;
 
 /// What does not move the aircraft.
 #[derive(Clone, Debug)]
@@ -166,7 +163,7 @@ impl Autopilot {
             jammed.rudder_stays = Some(jammed.rudder.output());
             // Ailerons that it acted against seemed to be jammed.
             jammed.aileron_trim = None;
-            self.news = Some(notice(RUDDER));
+            self.news = Some(flown_otherwise(RUDDER));
         }
         jammed.judged_s += dt_s;
         if jammed.judged_s < SETTLED_S {
@@ -209,10 +206,10 @@ impl Autopilot {
         let is_rudder = jammed.reversed_rudder.seems();
         if jammed.bank_off_s > OFF_S && !is_rudder && is_jammed(unanswered, effect_per_s) {
             jammed.aileron_trim = Some(ailerons.trim());
-            self.news = Some(notice(AILERONS));
+            self.news = Some(flown_otherwise(AILERONS));
         } else if jammed.pitch_off_s > OFF_S && unanswered_pitch > 1.0 {
             jammed.elevator_trim = Some(elevator.trim());
-            self.news = Some(notice(ELEVATOR));
+            self.news = Some(flown_otherwise(ELEVATOR));
         }
     }
 
@@ -267,13 +264,5 @@ impl Autopilot {
     /// What is reported.
     pub(super) const fn jammed_conditions(&self) -> Flags {
         Flags::NONE.with(flags::NOT_FOLLOWED, self.jammed.has_left_one())
-    }
-}
-
-fn notice(item: u16) -> Notice {
-    Notice {
-        kind: degraded::FLOWN_OTHERWISE,
-        item,
-        ..Notice::default()
     }
 }

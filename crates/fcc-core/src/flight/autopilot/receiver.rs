@@ -2,36 +2,26 @@
 
 use core::fmt;
 
-use super::{Autopilot, degraded};
+use super::Autopilot;
+use super::degraded::flown_otherwise;
+use super::degraded::otherwise::{
+    HEIGHT_BELIEVED, HEIGHT_DOUBTED, LATE_FIXES, VELOCITY_REFUSED, VELOCITY_USED,
+};
 use crate::framework::Notice;
 
-/// The items of the notices, among those of what is flown otherwise.
-const LATE_FIXES: u16 = 3;
-const HEIGHT_DOUBTED: u16 = 5;
-const HEIGHT_BELIEVED: u16 = 6;
-const VELOCITY_REFUSED: u16 = 7;
-const VELOCITY_USED: u16 = 8;
 const PERMILLE: f64 = 1_000.0;
-
-fn notice(item: u16) -> Notice {
-    Notice {
-        kind: degraded::FLOWN_OTHERWISE,
-        item,
-        ..Notice::default()
-    }
-}
 
 /// The notice that fixes are later by this, s, than they say.
 pub(super) fn late_fixes(late_s: f64) -> Notice {
     Notice {
         amount_permille: (late_s * PERMILLE) as u16,
-        ..notice(LATE_FIXES)
+        ..flown_otherwise(LATE_FIXES)
     }
 }
 
 /// The notice that the receiver's velocity is refused, or used again.
 pub(super) fn velocity(is_refused: bool) -> Notice {
-    notice(if is_refused {
+    flown_otherwise(if is_refused {
         VELOCITY_REFUSED
     } else {
         VELOCITY_USED
@@ -72,7 +62,7 @@ impl Autopilot {
     pub(super) fn note_receiver(&mut self, was_doubted: bool) {
         let is_doubted = self.navigation.doubts_receivers_height();
         self.receiver_notice = (is_doubted != was_doubted).then(|| {
-            notice(if is_doubted {
+            flown_otherwise(if is_doubted {
                 HEIGHT_DOUBTED
             } else {
                 HEIGHT_BELIEVED
@@ -98,9 +88,9 @@ mod tests {
     fn each_says_what_is_flown() {
         assert!(text(late_fixes(1.04)).contains("come 1.0 s later than they say"));
         assert!(text(late_fixes(0.0)).contains("come in time again"));
-        assert!(text(notice(HEIGHT_DOUBTED)).contains("vertical velocity do not count"));
+        assert!(text(flown_otherwise(HEIGHT_DOUBTED)).contains("vertical velocity do not count"));
         assert!(text(velocity(true)).contains("contradicts its own positions"));
         assert!(text(velocity(false)).contains("is used again"));
-        assert!(text(notice(HEIGHT_BELIEVED)).contains("as the altimeter does again"));
+        assert!(text(flown_otherwise(HEIGHT_BELIEVED)).contains("as the altimeter does again"));
     }
 }

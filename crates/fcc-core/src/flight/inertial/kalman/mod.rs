@@ -39,6 +39,7 @@ mod output;
 mod parameters;
 mod path;
 mod receiver;
+mod refused_velocity;
 mod rest;
 mod scatter;
 mod spikes;
