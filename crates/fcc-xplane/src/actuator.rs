@@ -24,6 +24,10 @@ use crate::sensor::send;
 use crate::traffic::WritePace;
 use crate::udp_port::UdpPort;
 
+/// The overrides are set again in such intervals until they are read back for the first
+/// time: one datagram that is lost is no long round trip.
+const AWAITED_AGAIN: Duration = Duration::from_millis(100);
+
 /// X-Plane as an actuator: takes control of the yoke and the throttles, writes
 /// them, and releases them.
 ///
@@ -112,7 +116,12 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
             return Ok(());
         }
         let mut sent = Ok(());
-        if now.since(held.asserted) >= self.assert_every {
+        let assert_every = if held.confirmation.awaits_overrides() {
+            AWAITED_AGAIN
+        } else {
+            self.assert_every
+        };
+        if now.since(held.asserted) >= assert_every {
             held.asserted = now;
             sent = self.controls.take(write);
         }

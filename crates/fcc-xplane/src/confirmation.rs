@@ -120,8 +120,14 @@ impl Confirmation {
         }
     }
 
-    /// Waits until the overrides are read back for the first time: the first round trip. A
-    /// simulator that stops meanwhile says nothing of the network.
+    /// Whether the overrides were never read back.
+    pub(crate) const fn awaits_overrides(&self) -> bool {
+        self.awaited.is_some()
+    }
+
+    /// Waits until the overrides are read back for the first time: the first round trip. It
+    /// is too long before they are, as soon as they are waited for too long. A simulator
+    /// that stops meanwhile says nothing of the network.
     pub(crate) fn await_overrides(&mut self, now: Time, link: &SharedState) {
         let Some((mut waited, before)) = self.awaited else {
             return;
@@ -129,16 +135,12 @@ impl Confirmation {
         if matches!(link.state(), SimulatorState::Running | SimulatorState::Slow) {
             waited += now.since(before);
         }
-        let is_there = |quantity| {
+        self.round_trip.is_at_first(waited);
+        let are_there = OVERRIDES.into_iter().all(|quantity| {
             self.recent(quantity, now, link)
                 .is_some_and(|(value, _)| value >= 0.5)
-        };
-        self.awaited = if OVERRIDES.into_iter().all(is_there) {
-            self.round_trip.is_at_first(waited);
-            None
-        } else {
-            Some((waited, now))
-        };
+        });
+        self.awaited = (!are_there).then_some((waited, now));
     }
 
     /// Records what was written to elevator, aileron and rudder.

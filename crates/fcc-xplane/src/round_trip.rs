@@ -65,7 +65,7 @@ impl RoundTrip {
         }
     }
 
-    /// The first round trip, of which is known when it began.
+    /// The first round trip, of which is known when it began, or what of it has passed.
     pub(crate) fn is_at_first(&mut self, took: Duration) {
         if took > TOO_LONG {
             (self.shown, self.too_long) = (took, TIMES);
