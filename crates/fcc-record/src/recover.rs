@@ -64,6 +64,14 @@ pub enum RecoverError {
         /// The system's error.
         source: io::Error,
     },
+    /// It is a link, which would be replaced instead of the recording.
+    #[error("{path}: is a link: recover the recording itself, {target}")]
+    Link {
+        /// The link.
+        path: PathBuf,
+        /// The recording.
+        target: PathBuf,
+    },
     /// It was told to stop.
     #[error("{0}: the flight ended before it was recovered: run `fccd recover` on it")]
     Stopped(PathBuf),
@@ -133,6 +141,12 @@ pub fn recover_while(
     }
     if lock.is_none() {
         return Err(RecoverError::BeingWritten(path.to_owned()));
+    }
+    if path.is_symlink() {
+        return Err(RecoverError::Link {
+            path: path.to_owned(),
+            target: fs::canonicalize(path).map_err(unread)?,
+        });
     }
     let beside = unfinished(path);
     let failed = |source| RecoverError::Write {

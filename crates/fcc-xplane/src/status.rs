@@ -282,8 +282,9 @@ impl fmt::Display for Trouble {
                 f,
                 "X-Plane at {at} sends its data, but the controls written to it have no effect. \
                  In X-Plane 12 switch on Settings > Network > Accept incoming connections; check \
-                 that a firewall on its machine lets UDP port {} in; and that no other program \
-                 or plugin holds the controls.",
+                 that a firewall on its machine lets UDP port {} in; that the network takes less \
+                 than half a second there and back; and that no other program or plugin holds the \
+                 controls.",
                 at.port()
             ),
         }

@@ -148,6 +148,20 @@ fn a_hole_of_terabytes_is_not_read() {
 }
 
 #[test]
+fn through_a_link_nothing_is_recovered() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = whole(folder.path(), Compression::default());
+    let bytes = fs::read(&path).unwrap();
+    fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
+    let link = folder.path().join("latest.mcap");
+    std::os::unix::fs::symlink(&path, &link).unwrap();
+    let refused = recover(&link, |_| {}).unwrap_err().to_string();
+    assert!(refused.contains(path.to_str().unwrap()), "{refused}");
+    assert!(link.is_symlink());
+    assert_eq!(fs::read(&path).unwrap(), bytes[..bytes.len() / 2]);
+}
+
+#[test]
 fn what_is_being_written_is_not_recovered() {
     let folder = tempfile::tempdir().unwrap();
     let mut recorder = Recorder::start(about(), settings(folder.path())).unwrap();
