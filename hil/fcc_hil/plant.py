@@ -64,6 +64,8 @@ class Weather:
     """0 calm; else the index of probability of exceedance of MIL-F-8785C, 3 light, 4 moderate."""
     turbulence_wind_fps: float | None = None
     """Wind at 20 ft that sets the gusts' strength; by default 25 for severity 3, 50 for 4."""
+    off_standard_k: float = 0.0
+    """By how much the air is warmer than the standard atmosphere, at every altitude."""
 
 
 class TrimError(RuntimeError):
@@ -107,9 +109,7 @@ class Plant:
         fdm["ic/terrain-elevation-ft"] = runway_elevation_ft or 0.0
         fdm["ic/lat-geod-deg"] = latitude_deg
         fdm["ic/long-gc-deg"] = longitude_deg
-        if qnh_pa != SEA_LEVEL_PRESSURE_PA:
-            # Even setting what it is changes JSBSim's turbulence.
-            self.set_qnh(qnh_pa)
+        self._set_air(qnh_pa, weather.off_standard_k)
         flies = runway_elevation_ft is None
         if flies:
             fdm["ic/h-sl-ft"] = self.aircraft.altitude_ft
@@ -153,6 +153,13 @@ class Plant:
     def controls(self) -> Controls:
         """The controls last written."""
         return self._controls
+
+    def _set_air(self, qnh_pa: float, off_standard_k: float) -> None:
+        """Set what differs from the standard: even setting what it is changes the turbulence."""
+        if qnh_pa != SEA_LEVEL_PRESSURE_PA:
+            self.set_qnh(qnh_pa)
+        if off_standard_k != 0.0:
+            self.fdm["atmosphere/delta-T"] = off_standard_k / RANKINE_TO_KELVIN
 
     def set_qnh(self, pressure_pa: float) -> None:
         """Set the pressure at sea level."""

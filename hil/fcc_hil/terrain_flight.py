@@ -56,8 +56,13 @@ def _write_tiles(folder: Path, ridge_m: float) -> None:
             (folder / f"N{south}E00{west}.hgt").write_bytes(posts.astype(">i2").tobytes())
 
 
-def fly(seed: int, ridge_m: float, wind_from_deg: float, wind_kt: float) -> TerrainScore:
-    """Command a place behind a ridge of this height over the ground, at 3,000 ft."""
+def fly(
+    seed: int, ridge_m: float, wind_from_deg: float, wind_kt: float, off_standard_k: float = 0.0
+) -> TerrainScore:
+    """Command a place behind a ridge of this height over the ground, at 3,000 ft.
+
+    In air that is colder than the standard atmosphere the aircraft is lower than that.
+    """
     altitude_m = 3_000.0 * FT_TO_M
     far_deg = drawn_plan.place((_FAR_M, 0.0))
     plan = drawn_plan.text(
@@ -91,7 +96,12 @@ def fly(seed: int, ridge_m: float, wind_from_deg: float, wind_kt: float) -> Terr
         _write_tiles(Path(folder), ridge_m)
         file = Path(folder, "ridge.waypoints")
         file.write_text(plan, encoding="utf-8")
-        weather = Weather(wind_from_deg=wind_from_deg, wind_kt=wind_kt, turbulence_severity=2)
+        weather = Weather(
+            wind_from_deg=wind_from_deg,
+            wind_kt=wind_kt,
+            turbulence_severity=2,
+            off_standard_k=off_standard_k,
+        )
         config = f'[terrain]\nfolder = "{folder}"\n'
         conditions = PlanConditions(weather=weather, seed=seed, config=config)
         plan_flight.fly(file, conditions, watch=watch)

@@ -130,8 +130,8 @@ class DaemonUnderTest:
 
     @property
     def log(self) -> str:
-        """Return its messages so far."""
-        return self._err.read_text()
+        """Return its messages so far; the last character may be there in part."""
+        return self._err.read_text(errors="replace")
 
     def wait_for(self, text: str, within_s: float = PATIENCE_S) -> str:
         """Wait for a line with `text`, after the last one waited for, and return it."""

@@ -90,3 +90,15 @@ def test_no_ridge_is_flown_into(seed: int) -> None:
     print(f"\nseed {seed}, ridge {ridge_m:.0f} m, wind from {wind_from_deg:.0f}: {score}")
     assert score.nearest_m > 0.0
     assert score.arrives != ("terrain is ahead: turning away: returning" in score.told)
+
+
+def test_in_cold_air_the_ridge_is_cleared_by_the_height_that_a_receiver_shows() -> None:
+    """At 3,000 ft, 54 m over the ridge in standard air.
+
+    514 m above home, where the altimeter was set, it is some 70 m lower at 35 K less: 4 % for
+    each 10 K (ICAO Doc 8168, III-1-4-1).
+    """
+    score = terrain_flight.fly(FIRST, 460.0, 270.0, 0.0, off_standard_k=-35.0)
+    assert score.nearest_m > 15.0
+    assert "terrain is ahead: climbing" in score.told
+    assert score.arrives

@@ -69,6 +69,9 @@ pub(super) struct GroundMotion {
     /// Of the last tick, m.
     pressure_altitude_m: Option<f64>,
     altimeter_is_doubted: bool,
+    /// By how much a receiver showed the aircraft lower than the altimeter, m: it stays when
+    /// the receiver is lost, as the air and the altimeter's setting do.
+    below_altimeter_m: f64,
     /// It has just begun to be.
     adopts_altitude: bool,
     /// What the range finder shows, m, upright.
@@ -182,6 +185,13 @@ impl GroundMotion {
     /// The receiver's altitude is wrong, and says nothing of the altimeter.
     pub(super) const fn forget_receivers_height(&mut self) {
         self.here.above_receiver_m = None;
+        self.below_altimeter_m = 0.0;
+    }
+
+    /// By how much the aircraft is lower than the altimeter shows, m, as far as a receiver
+    /// said so: in cold air, or with the setting of another pressure.
+    pub(super) const fn below_altimeter_m(&self) -> f64 {
+        self.below_altimeter_m
     }
 
     /// `dt_s` seconds of the plant's time pass. `wind` is navigation's, m/s towards
@@ -306,6 +316,7 @@ impl GroundMotion {
             let was_m = self.here.above_receiver_m.unwrap_or(above_m);
             let followed_m = was_m + (above_m - was_m) * (1.0 - exp(-since_s / ALTITUDE_FOLLOWS_S));
             self.here.above_receiver_m = Some(followed_m).filter(|off_m| off_m.is_finite());
+            self.below_altimeter_m = self.here.above_receiver_m.unwrap_or(0.0).max(0.0);
             self.position_taken = position.taken;
             self.lost_s = 0.0;
             let is_far = is_first || hypot(off_m.x, off_m.y) > FAR_M;

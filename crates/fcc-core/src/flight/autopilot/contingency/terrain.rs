@@ -51,8 +51,8 @@ pub(super) const PASSED: u16 = 101;
 /// The watch over the ground ahead.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in super::super) struct TerrainWatch {
-    /// The lowest altitude above mean sea level from which what is ahead can be climbed
-    /// over, m.
+    /// The lowest altitude above mean sea level, as the altimeter shows it, from which what is
+    /// ahead can be climbed over, m.
     lowest_m: Option<f64>,
     /// For how long it has been climbed over that, or not, s; none while it is not told.
     climbs_s: Option<f64>,
@@ -161,10 +161,14 @@ impl Autopilot {
             && config.terrain != ContingencyAction::Continue
             && self.runway().is_none()
             && !self.is_on_runway();
-        let Some(here) = self.ground.here().copied().filter(|_| is_watched) else {
+        let Some(mut here) = self.ground.here().copied().filter(|_| is_watched) else {
             self.contingencies.terrain = TerrainWatch::default();
             return;
         };
+        // The ground does not rise with the pressure: its height is compared with the lower
+        // of what altimeter and receiver show.
+        let below_m = self.ground.below_altimeter_m();
+        here.altitude_m -= below_m;
         let speed_mps = length(here.ground_velocity_mps).max(1.0);
         let bank_rad = self.navigation.estimate().roll_rad;
         let is_level = bank_rad.abs() < LEVEL_RAD;
@@ -184,7 +188,8 @@ impl Autopilot {
         };
         let climb_mps = self.config.envelope.max_climb_mps;
         let needed = ahead.needs(CLIMB_SHARE * climb_mps);
-        self.contingencies.terrain.lowest_m = Some(needed.now_m).filter(|m| m.is_finite());
+        let lowest_m = needed.now_m + below_m;
+        self.contingencies.terrain.lowest_m = Some(lowest_m).filter(|m| m.is_finite());
         self.tell_of_climb(dt_s);
         // A climb that is flown lags behind a little.
         ahead.margin_m *= LAG_SHARE;
@@ -211,7 +216,7 @@ impl Autopilot {
         }
         let first_s = with_bank.first_s.min(straight.first_s);
         let highest_m = with_bank.highest_m.max(straight.highest_m);
-        self.turn_from_terrain(&surface, first_s, highest_m);
+        self.turn_from_terrain(&surface, first_s, highest_m + below_m);
     }
 
     /// Whether a command may end the turn away from the ground: when it is not ahead any more.
@@ -235,7 +240,8 @@ impl Autopilot {
         })
     }
 
-    /// Turns onto the better circle, when no other one is left or the ground is near.
+    /// Turns onto the better circle, when no other one is left or the ground is near, whose
+    /// highest the altimeter shows at an altitude, m.
     fn turn_from_terrain(&mut self, surface: &Surface<'_>, first_s: f64, highest_m: f64) {
         let config = self.config.contingency;
         let here = self.at_its_speed(surface.here());
