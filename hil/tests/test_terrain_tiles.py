@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+import fcc
 import numpy as np
 import pytest
 
 from fcc_hil import clearance, plan_flight
 from fcc_hil.clearance import TerrainScore
 from fcc_hil.flown_plan import of_truth
-from fcc_hil.plant import Plant
+from fcc_hil.lockstep_rig import LockstepRig
+from fcc_hil.plant import Plant, Weather
+from fcc_hil.standin import Settings
 from fcc_hil.state import Controls, State
 from fcc_hil.terrain_tiles import Tiles
 from fcc_hil.truth import Truth, row
@@ -91,3 +94,31 @@ def test_a_plan_is_flown_over_the_tiles_and_scored(tmp_path: Path) -> None:
     assert score.terrain.lowest_m == pytest.approx(200.0, abs=10.0)
     assert score.terrain.latitude_deg == pytest.approx(47.03, abs=0.001)
     assert math.isclose(score.waypoints[0].altitude_error_ft, 0.0, abs_tol=30.0)
+
+
+class _Rising(Tiles):
+    """Ground that rises under an aircraft for 45 s, to 12 m above where it was, and ends."""
+
+    def __init__(self, plant: Plant) -> None:
+        self._plant, self._from_m = plant, plant.state().elevation_m
+
+    def elevation_m(self, latitude_deg: float, longitude_deg: float) -> float | None:  # noqa: ARG002
+        since_s = self._plant.time_s - 40.0
+        return self._from_m - 2.0 + min(14.0, 0.6 * since_s) if 0.0 < since_s < 45.0 else 0.0
+
+
+@pytest.mark.parametrize("seed", [33, 34])
+def test_who_touches_the_ground_climbs_off_it_and_does_not_dive_behind_it(seed: int) -> None:
+    """It keeps the 100 ft of an instrument pilot (FAA-S-ACS-8) around 3,000 ft."""
+    plant = Plant("c172p", seed=seed, weather=Weather(turbulence_severity=1))
+    plant.fly_over(_Rising(plant))
+    settings = Settings(aircraft="c172p", seed=seed, noise=True)
+    rig = LockstepRig(settings, plant, fcc.Machine('[guidance]\nmode = "hold"\n'))
+    rig.prepare()
+    rig.set_switch(on=True)
+    rig.fly_to(130.0)
+    assert any("the wheels touch the ground" in event.text for event in rig.events)
+    assert not any("recovering" in event.text for event in rig.events)
+    altitude_ft = rig.truth().since(40.0)["altitude_ft"]
+    assert altitude_ft.min() > 2_900.0
+    assert altitude_ft.max() < 3_100.0

@@ -24,8 +24,8 @@ const USUAL_S: f64 = 20.0;
 /// answer, either.
 const LEAST_STALL_RATIO: f64 = 1.15;
 
-/// Nothing is judged for so long after the engagement, a recovery or a stall, s: trims are found
-/// anew.
+/// Nothing is judged for so long after the engagement, a recovery, a stall or a contact with the
+/// ground, s: trims are found anew, and wheels that bounce hold the pitch.
 const SETTLED_S: f64 = 20.0;
 /// With a surface that does not move the aircraft the bank is off by this, rad (6°), or the
 /// pitch, rad (4°), for this time, s: what is sluggish follows.
@@ -145,11 +145,11 @@ impl Autopilot {
             || self.is_not_followed()
             || !self.actuation.conditions().is_empty()
             || estimate.airspeed_mps < LEAST_STALL_RATIO * stall_mps;
-        let is_upset = self.recovery.is_active();
+        let is_unsettled = self.recovery.is_active() || self.is_on_runway();
         let jammed = &mut self.jammed;
         if says_nothing {
             jammed.forget_responses();
-            if is_upset {
+            if is_unsettled {
                 jammed.judged_s = 0.0;
             }
             return;
