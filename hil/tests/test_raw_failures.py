@@ -94,6 +94,25 @@ def frozen_with_noise(**sigmas: float) -> Fault:
     return fault
 
 
+def hit(name: str, value: float) -> Fault:
+    """Return one value as a bus under interference gives it."""
+    return lambda values: setattr(values, name, value)
+
+
+def bits_flipped(share: float) -> Fault:
+    """Return random values of the sensors' ranges in the place of some, as of flipped bits."""
+    noise = np.random.default_rng(SEED)
+    ranges = {"raw_body_rates": math.radians(2000.0), "raw_specific_force": 16.0 * 9.81}
+
+    def fault(values: fcc.Measurements) -> None:
+        for reading, most in ranges.items():
+            for name in READINGS[reading]:
+                if noise.random() < share:
+                    setattr(values, name, noise.uniform(-most, most))
+
+    return fault
+
+
 def fly(
     fault: Fault, for_s: float, seed: int = SEED
 ) -> tuple[fcc.Machine, LockstepRig, dict[str, float]]:
@@ -172,6 +191,25 @@ def test_it_is_flown_on(fault: Fault, for_s: float) -> None:
     machine, _, most = fly(fault, for_s)
     assert machine.state == "engaged"
     assert most["heading"] <= 5.0
+    assert most["roll"] <= 3.0
+    assert most["pitch"] <= 3.0
+    assert most["bank"] <= 45.0
+
+
+@pytest.mark.parametrize(
+    ("fault", "for_s"),
+    [
+        (hit("raw_roll_rate_radps", 10.0), TICK_S),
+        (hit("raw_pitch_rate_radps", 10.0), TICK_S),
+        (hit("raw_specific_force_y_mps2", 156.0), TICK_S),
+        (bits_flipped(0.003), 60.0),
+    ],
+    ids=["roll", "pitch", "lateral force", "0.3 %"],
+)
+def test_readings_that_no_aircraft_makes_are_flown_through(fault: Fault, for_s: float) -> None:
+    machine, rig, most = fly(fault, for_s)
+    assert machine.state == "engaged"
+    assert not [event.text for event in rig.events if event.time_s > FAILS_S]
     assert most["roll"] <= 3.0
     assert most["pitch"] <= 3.0
     assert most["bank"] <= 45.0

@@ -6,6 +6,7 @@ mod by_field;
 mod compared;
 mod consistency;
 mod late_fixes;
+mod outliers;
 mod range_end;
 mod readings;
 mod receiver;
@@ -19,6 +20,7 @@ use core::time::Duration;
 
 use late_fixes::LateFixes;
 use libm::atan2;
+use outliers::Outliers;
 use range_end::RangeEnd;
 use readings::{
     attitude_of, either, field_in, force_in, force_of, is_certain, is_elsewhere, is_new, rates_in,
@@ -39,7 +41,7 @@ use super::{
 };
 use crate::blocks::wrap_two_pi;
 use crate::flight::atmosphere::{calibrated_airspeed_mps, pressure_altitude_m};
-use crate::flight::navigation::is_possible_fix;
+use crate::flight::navigation::{RATES_RADPS, SPECIFIC_FORCE_MPS2, is_possible_fix};
 use crate::flight::orientation::euler_from_quaternion;
 use crate::flight::{BodyRates, Measurements};
 use crate::framework::{Reading, Time};
@@ -130,6 +132,8 @@ pub struct RawNavigation {
     /// Those that were used last.
     used: Measurements,
     repeats: Repeats,
+    force_outliers: Outliers,
+    rate_outliers: Outliers,
     range_end: RangeEnd,
     accelerometers: Units,
     gyroscopes: Units,
@@ -180,6 +184,8 @@ impl RawNavigation {
             },
             used: Measurements::default(),
             repeats: Repeats::default(),
+            force_outliers: Outliers::beyond(&SPECIFIC_FORCE_MPS2),
+            rate_outliers: Outliers::beyond(&RATES_RADPS),
             range_end: RangeEnd::default(),
             accelerometers: Units::default(),
             gyroscopes: Units::default(),
@@ -323,11 +329,15 @@ impl RawNavigation {
             .repeats
             .step(raw, [force, rates, field], &self.used.gnss);
         self.follow_units(raw, repeats.force, repeats.rates);
-        if !repeats.force && is_new(&mut self.used.raw_specific_force, &f, now) {
+        if !self.force_outliers.is_one(f.taken, force)
+            && !repeats.force
+            && is_new(&mut self.used.raw_specific_force, &f, now)
+        {
             let force = self.restored_force(&r);
             self.take(f.taken, Observation::SpecificForce(force));
         }
-        if !repeats.rates
+        if !self.rate_outliers.is_one(r.taken, rates)
+            && !repeats.rates
             && is_new(&mut self.rates_read, &r, now)
             && self.gyroscope.add_rates(r.taken, rates, &self.solution)
         {

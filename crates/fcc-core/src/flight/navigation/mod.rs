@@ -68,7 +68,8 @@ pub use lift::{Lift, LiftChannel};
 pub(crate) use motion_monitor::MotionDoubt;
 pub(crate) use plausibility::{
     ANGLE_OF_ATTACK, ATTITUDE_RAD, GateLimits, HEADING_RAD, HEIGHT_M, PlausibilityLimit,
-    airspeed_can_follow, airspeed_is_suspect, is_possible_fix, plausibility_gate,
+    RATES_RADPS, SPECIFIC_FORCE_MPS2, airspeed_can_follow, airspeed_is_suspect, is_possible_fix,
+    plausibility_gate,
 };
 pub(crate) use replacement::{DERIVED_RATES_LATE_S, Lost, Replacement};
 pub(crate) use resolution::Resolutions;

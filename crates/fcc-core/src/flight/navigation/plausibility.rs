@@ -41,6 +41,7 @@ const MAX_ANGLE_RAD: f64 = 12.6;
 /// The limits are wider than the motion of a light aircraft, so that only
 /// impossible values are rejected: a smaller step passes through the filters
 /// like noise.
+#[derive(Debug)]
 pub(crate) struct PlausibilityLimit {
     pub(crate) at_once: f64,
     pub(crate) per_s: f64,
@@ -58,12 +59,12 @@ pub(crate) const HEADING_RAD: PlausibilityLimit = PlausibilityLimit {
     per_s: PI,
 };
 /// A gust, and twice the roll acceleration of full aileron.
-const RATES_RADPS: PlausibilityLimit = PlausibilityLimit {
+pub(crate) const RATES_RADPS: PlausibilityLimit = PlausibilityLimit {
     at_once: 1.0,
     per_s: 8.0,
 };
 /// 3 g at once, as in a hard landing, and the build-up of a gust.
-const SPECIFIC_FORCE_MPS2: PlausibilityLimit = PlausibilityLimit {
+pub(crate) const SPECIFIC_FORCE_MPS2: PlausibilityLimit = PlausibilityLimit {
     at_once: 30.0,
     per_s: 200.0,
 };
@@ -102,6 +103,12 @@ const ACCEPTED_AFTER: u32 = 4;
 impl PlausibilityLimit {
     fn holds(&self, difference: f64, gap_s: f64) -> bool {
         self.holds_over(difference, gap_s.min(GROWS_FOR_S))
+    }
+
+    /// Whether each axis of a vector can have changed so within a gap, s.
+    pub(crate) fn holds_each(&self, from: [f64; 3], to: [f64; 3], gap_s: f64) -> bool {
+        let mut axes = from.iter().zip(to);
+        axes.all(|(from, to)| self.holds(to - from, gap_s))
     }
 
     /// Whether a value can have changed by this much in any length of time, s.
@@ -172,7 +179,7 @@ pub(crate) fn plausibility_gate(
         &new.body_rates,
         convinced(2),
         |r| turning(r).iter().all(|rate| within(*rate, MAX_RATE_RADPS)),
-        |a, b, gap_s| near(turning(a), turning(b), &RATES_RADPS, gap_s),
+        |a, b, gap_s| RATES_RADPS.holds_each(turning(a), turning(b), gap_s),
     );
     let force = take(
         &mut good.specific_force,
@@ -182,7 +189,7 @@ pub(crate) fn plausibility_gate(
             let within = |force: &f64| within(*force, MAX_SPECIFIC_FORCE_MPS2);
             forces(f).iter().all(within)
         },
-        |a, b, gap_s| near(forces(a), forces(b), &SPECIFIC_FORCE_MPS2, gap_s),
+        |a, b, gap_s| SPECIFIC_FORCE_MPS2.holds_each(forces(a), forces(b), gap_s),
     );
     let airspeed = take(
         &mut good.airspeed_mps,
@@ -370,10 +377,6 @@ fn turning(r: &BodyRates) -> [f64; 3] {
 
 fn forces(f: &SpecificForce) -> [f64; 3] {
     [f.x_mps2, f.y_mps2, f.z_mps2]
-}
-
-fn near(a: [f64; 3], b: [f64; 3], limit: &PlausibilityLimit, gap_s: f64) -> bool {
-    a.iter().zip(b).all(|(a, b)| limit.holds(b - a, gap_s))
 }
 
 /// How far the direction of gravity turned in body axes, rad: continuous through
