@@ -54,6 +54,8 @@ pub(crate) struct Fitted {
     pub(crate) drifts: ([f64; 3], [f64; 3], f64),
     /// By how much the bias of the gyroscopes jumps at a time, rad/s, s.
     pub(crate) jumps: ([f64; 3], f64),
+    /// By how much that of the accelerometers does, m/s², s.
+    pub(crate) force_jumps: ([f64; 3], f64),
 }
 
 impl Default for Fitted {
@@ -73,6 +75,7 @@ impl Default for Fitted {
             force_range: f64::INFINITY,
             drifts: ([0.0; 3], [0.0; 3], f64::INFINITY),
             jumps: ([0.0; 3], f64::INFINITY),
+            force_jumps: ([0.0; 3], f64::INFINITY),
         }
     }
 }
@@ -139,11 +142,13 @@ impl Run {
         let since_s = (truth.time_s - from_s).max(0.0);
         let drifted =
             |bias: [f64; 3], by: [f64; 3]| [0, 1, 2].map(|at| bias[at] + by[at] * since_s);
-        let (jump, at_s) = self.fitted.jumps;
-        let jumped = f64::from(u8::from(truth.time_s >= at_s));
-        let rate_bias = drifted(self.rate_bias, rate_drift);
-        let rate_bias = [0, 1, 2].map(|axis| rate_bias[axis] + jump[axis] * jumped);
+        let jumped = |bias: [f64; 3], (jump, at_s): ([f64; 3], f64)| {
+            let has_jumped = f64::from(u8::from(truth.time_s >= at_s));
+            [0, 1, 2].map(|axis| bias[axis] + jump[axis] * has_jumped)
+        };
+        let rate_bias = jumped(drifted(self.rate_bias, rate_drift), self.fitted.jumps);
         let force_bias = drifted(self.force_bias, force_drift);
+        let force_bias = jumped(force_bias, self.fitted.force_jumps);
         // 0.01 °/s/√Hz, 300 µg/√Hz.
         let rates = noisy(&mut self.random, truth.rates, rate_bias, 0.0012);
         let range = self.fitted.force_range;

@@ -88,6 +88,8 @@ pub(super) struct Filter {
     /// The rates of the last step that had some, less the longer that is ago, rad/s.
     turning: f64,
     pub(super) rough: Time,
+    /// When it was last slower than anything flies.
+    pub(super) slow: Time,
     /// How a receiver last said that this moves, and when, m/s: also if that was refused.
     pub(super) receiver: (Time, Vector3<f64>),
     /// When a receiver last contradicted the air.
@@ -167,6 +169,7 @@ impl Filter {
             load: 0.0,
             turning: 0.0,
             rough: Time::NEVER,
+            slow: Time::NEVER,
             receiver: (Time::NEVER, Vector3::zeros()),
             contradicted: Time::NEVER,
             mean_wind: Vector2::zeros(),
@@ -262,6 +265,9 @@ impl Filter {
         self.add_variance(VELOCITY, 3, pending.velocity_variance);
         self.add_variance(RATE_BIAS, 3, pending.rate_bias_variance);
         self.add_variance(FORCE_BIAS, 3, walk(p::FORCE_BIAS_WALK));
+        if self.begins_to_fly() {
+            self.add_variance(FORCE_BIAS + 2, 1, walk(p::SHAKEN_BIAS_WALK));
+        }
         self.add_variance(BAROMETER_BIAS, 1, walk(p::BAROMETER_WALK));
         self.add_variance(EARTH_FIELD, 3, walk(p::EARTH_FIELD_WALK));
         self.add_variance(BODY_FIELD, 3, walk(p::BODY_FIELD_WALK));

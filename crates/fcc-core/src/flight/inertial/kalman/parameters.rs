@@ -50,6 +50,15 @@ pub(super) const RATE_BIAS_WALK_BY_ACCELERATION: f64 = 5.6e-5;
 /// Bias of accelerometers, m/s² (5 mg, calibrated), and its random walk, m/s²/√s.
 pub(super) const FORCE_BIAS: f64 = 0.05;
 pub(super) const FORCE_BIAS_WALK: f64 = 5e-4;
+/// What adds to that walk downwards while something begins to fly, m/s²/√s: an engine that
+/// shakes an accelerometer moves its mean (vibration rectification, in the data sheets of the
+/// ADXL355 and others), so what was learned with an idle engine does not hold in a take-off.
+/// While it accelerates forward, what the bias is off by would be taken for pitch. With this
+/// 1 m/s² is learned within 3 s; in all of a flight it would cost attitude in turbulence.
+pub(super) const SHAKEN_BIAS_WALK: f64 = 0.1;
+/// For so long after it was slow, s: the take-off run of a light aircraft, some 20 s, and its
+/// acceleration to the speed of climb.
+pub(super) const BEGINS_S: f64 = 60.0;
 /// Corrections of a bias are summed over this time, s, and beyond the square of so many
 /// standard deviations their sum is a drift. Chosen on flights of JSBSim: without a fault,
 /// in turbulence 5, the square is at most 2 (two of them).

@@ -103,12 +103,24 @@ impl Filter {
         self.tracks.airspeed.since_used_s(self.time) < p::UNAIDED_S
     }
 
+    /// Whether it moves, and a moment ago was slower than anything flies.
+    pub(super) fn begins_to_fly(&mut self) -> bool {
+        let is_measured = self.tracks.velocity.since_used_s(self.time) < p::UNAIDED_S;
+        if self.stands() || is_measured && self.speed() < p::LEAST_AIRSPEED {
+            self.slow = self.time;
+        }
+        self.is_moving() && self.time.since(self.slow).as_secs_f64() < p::BEGINS_S
+    }
+
+    /// What is taken for standing has no velocity in the filter, whatever a receiver says.
+    fn speed(&self) -> f64 {
+        self.receiver.1.norm().max(self.motion.velocity.norm())
+    }
+
     /// Whether a receiver or an airspeed sensor says that this moves.
     pub(super) fn is_moving(&self) -> bool {
         /// Beyond the noise of a receiver at rest, m/s.
         const MOVING_MPS: f64 = 1.0;
-        // What is taken for standing has no velocity in the filter, whatever a receiver says.
-        let speed = self.receiver.1.norm().max(self.motion.velocity.norm());
-        self.flies() || (self.has_receiver() && speed > MOVING_MPS)
+        self.flies() || (self.has_receiver() && self.speed() > MOVING_MPS)
     }
 }
