@@ -7,7 +7,7 @@
 //! | Climb, `GoAround` | bank onto the centre line | pitch, less below the climb's airspeed | full |
 //! | Approach | bank onto the centre line | climb rate of the glide path | airspeed |
 //! | Flare | rudder to the runway's heading, bank against the drift | sink rate by height | closing |
-//! | `RollOut`, Stopped | as in the roll | elevator back | idle, brakes |
+//! | `RollOut`, Stopped | as in the roll | elevator back, but not in a tail wind | idle, brakes |
 //!
 //! Without power the approach is that of the [glide](super::gliding).
 
@@ -317,8 +317,9 @@ impl Autopilot {
                 } else {
                     0.0
                 };
-                let slow = 1.0 - (speed_mps + head_mps) / fast_mps;
-                (closing, 0.0, 0.0, limit(slow, 0.0, 1.0))
+                let slow = limit(1.0 - (speed_mps + head_mps) / fast_mps, 0.0, 1.0);
+                let along_mps = demand.ground_speed_mps + demand.head_wind_mps;
+                (closing, 0.0, 0.0, on_wheels::elevator(slow, along_mps))
             }
             RunwayPhase::Approach if demand.is_powerless => {
                 let vertical = self.hold_glide(&envelope, estimate, dt_s);

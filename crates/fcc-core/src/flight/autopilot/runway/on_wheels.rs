@@ -2,7 +2,7 @@
 
 use super::super::{Autopilot, flags};
 use super::{CLOSES_PER_S, RUDDER_PER_RADPS};
-use crate::blocks::limit_abs;
+use crate::blocks::{limit, limit_abs};
 use crate::flight::Surfaces;
 use crate::flight::control::Lateral;
 use crate::flight::navigation::Estimate;
@@ -26,6 +26,17 @@ const BRAKES_BELOW: f64 = 0.85;
 /// After so long on the wheels it brakes at any speed, s: one whose throttle does not close
 /// does not become slow.
 const BRAKES_AFTER_S: f64 = 10.0;
+
+/// The elevator is held back in full from this speed on of the air along the aircraft, m/s.
+const AIR_ALONG_MPS: f64 = 5.0;
+
+/// The elevator, held back so far while the air comes from ahead, at a speed along the
+/// aircraft, m/s, and neutral where it comes from behind: held back it would lift the tail
+/// (FAA-H-8083-3C, chapter 2, taxiing in a quartering tail wind: elevator down). It is not
+/// pushed forward: the moment of an elevator in air from behind is not known here.
+pub(super) fn elevator(back: f64, along_mps: f64) -> f64 {
+    back * limit(along_mps / AIR_ALONG_MPS, 0.0, 1.0)
+}
 
 impl Autopilot {
     /// In a failsafe on the wheels: to a stop, straight on as far as the yaw rate is known.
@@ -147,5 +158,29 @@ impl Autopilot {
             YAW_GAIN_PER_S * off_rad * config.steering_radius_m / speed_mps,
             1.0,
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::elevator;
+    use crate::units::KNOT_MPS;
+
+    /// FAA-H-8083-3C, chapter 2: up in a head wind, and not in a tail wind. At 20 kt over
+    /// the ground air that moves with 25 kt comes from behind.
+    #[test]
+    fn the_elevator_is_not_held_back_in_a_tail_wind() {
+        for (ground_kt, head_kt, expected) in [
+            (20.0, 0.0, 0.6),
+            (20.0, 25.0, 0.6),
+            (60.0, -25.0, 0.6),
+            (25.0, -25.0, 0.0),
+            (15.0, -25.0, 0.0),
+            (0.0, -25.0, 0.0),
+            (0.0, 0.0, 0.0),
+        ] {
+            let held = elevator(0.6, (ground_kt + head_kt) * KNOT_MPS);
+            assert!((held - expected).abs() < 1e-9, "{ground_kt} {head_kt} {held}");
+        }
     }
 }

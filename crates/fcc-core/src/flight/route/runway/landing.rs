@@ -70,7 +70,7 @@ impl RunwayFlight {
     }
 
     pub(super) fn step_landing(&mut self, here: &OverGround, motion: &Motion) -> Outcome {
-        let head_mps = -self.runway.course.dot(&motion.wind_mps);
+        let head_mps = self.demand.head_wind_mps;
         self.approach_mps =
             self.config.approach_mps + (WIND_SHARE * head_mps).clamp(0.0, MOST_WIND_MPS);
         let on_wheels = self.touches(here);

@@ -109,6 +109,10 @@ pub struct RunwayDemand {
     pub height_m: f64,
     /// Speed over the ground along the runway, m/s.
     pub ground_speed_mps: f64,
+    /// The head wind along it, m/s, as it was before the wheels touched: on them the
+    /// airspeed, of which it is computed, ends at 0 also where the air comes from behind.
+    /// 0 before a take-off.
+    pub head_wind_mps: f64,
     /// The climb rate that leads along the glide path, m/s, up.
     pub climb_rate_mps: f64,
     /// The pitch of the climb, rad.
@@ -209,6 +213,7 @@ impl RunwayFlight {
                 cross_track_mps: 0.0,
                 height_m: 0.0,
                 ground_speed_mps: 0.0,
+                head_wind_mps: 0.0,
                 climb_rate_mps: 0.0,
                 pitch_rad: config.climb_pitch_rad,
                 reason: RunwayReason::None,
@@ -263,6 +268,11 @@ impl RunwayFlight {
             cross_track_m: cross(course, motion.position_m),
             cross_track_mps: cross(course, motion.ground_velocity_mps),
             ground_speed_mps: course.dot(&motion.ground_velocity_mps),
+            head_wind_mps: if self.phase.is_on_wheels() {
+                self.demand.head_wind_mps
+            } else {
+                -course.dot(&motion.wind_mps)
+            },
             height_m: self.height_m(here, motion),
             pitch_rad: self.pitch_rad,
             ..self.demand

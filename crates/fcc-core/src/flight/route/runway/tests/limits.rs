@@ -28,6 +28,25 @@ fn wheels_that_bear_weight_in_the_air_do_not() {
     assert_eq!(phase(&open), Some(RunwayPhase::RollOut));
 }
 
+/// The airspeed shows 0 on the wheels where the wind of 25 kt overtakes the aircraft.
+#[test]
+fn on_the_wheels_the_wind_is_the_one_of_the_flare() {
+    let tail = |on_wheels: bool, wind_mps: f64| OverGround {
+        height_m: Some(1.3),
+        on_wheels: Some(on_wheels),
+        ground_velocity_mps: Vector2::new(40.0, 0.0),
+        wind_mps: Vector2::new(wind_mps, 0.0),
+        ..at(-50.0, 0.0, 27.0)
+    };
+    let mut follower = landing();
+    follower.advance(&tail(false, 12.9), 0.025);
+    follower.advance(&tail(true, 12.9), 0.025);
+    follower.advance(&tail(true, 2.0), 0.025);
+    let demand = follower.runway().unwrap();
+    assert_eq!(demand.phase, RunwayPhase::RollOut);
+    assert!((demand.head_wind_mps + 12.9).abs() < 1e-3, "{demand:?}");
+}
+
 /// An altimeter that reads 50 m too low flares at 50 m, where the range finder shows
 /// nothing. Without a range finder nobody knows.
 #[test]
