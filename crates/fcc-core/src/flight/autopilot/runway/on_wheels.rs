@@ -180,7 +180,10 @@ mod tests {
             (0.0, 0.0, 0.0),
         ] {
             let held = elevator(0.6, (ground_kt + head_kt) * KNOT_MPS);
-            assert!((held - expected).abs() < 1e-9, "{ground_kt} {head_kt} {held}");
+            assert!(
+                (held - expected).abs() < 1e-9,
+                "{ground_kt} {head_kt} {held}"
+            );
         }
     }
 }

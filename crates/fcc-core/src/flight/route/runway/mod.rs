@@ -35,6 +35,9 @@ const ALTIMETER_OFF_M: f64 = 20.0;
 /// Wheels that bear weight above this height do not, m.
 const WEIGHT_WRONG_M: f64 = 15.0;
 
+/// Wheels that bear weight for so long are on the ground, and have not bounced, s.
+const CONTACT_S: f64 = 1.0;
+
 /// A runway: a point of its centre line and its direction.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Runway {
@@ -148,6 +151,8 @@ pub(super) struct RunwayFlight {
     phase_s: f64,
     /// Whether the wheels bore weight where they cannot.
     is_weight_wrong: bool,
+    /// For how long the wheels have borne weight without a climb or a sink, s.
+    contact_s: f64,
     /// The sine of the glide's angle; none with power.
     glide_sine: Option<f64>,
     /// For how long it has been accelerated in the hand, s.
@@ -197,6 +202,7 @@ impl RunwayFlight {
             began_m: 0.0,
             phase_s: 0.0,
             is_weight_wrong: false,
+            contact_s: 0.0,
             glide_sine: None,
             thrown_s: 0.0,
             off_ground_s: 0.0,
@@ -277,6 +283,9 @@ impl RunwayFlight {
             pitch_rad: self.pitch_rad,
             ..self.demand
         };
+        let rests =
+            here.on_wheels == Some(true) && here.climb_rate_mps.abs() < takeoff::OFF_GROUND_MPS;
+        self.contact_s = if rests { self.contact_s + dt_s } else { 0.0 };
         let before = self.phase;
         self.phase_s += dt_s;
         let outcome = if self.has_left_the_ground(here, dt_s) {

@@ -47,6 +47,8 @@ schema! {
         Engine = 19,
         /// A climb lasts too long, and is too low to turn.
         NoClimb = 20,
+        /// The nose is raised, and the wheels stay on the ground.
+        NoLiftOff = 21,
     }
 }
 
@@ -98,6 +100,10 @@ impl fmt::Display for RunwayReason {
             Self::NoClimb => {
                 "the climb has not reached its altitude in two minutes: there is not the power \
                  for it; take over, and land ahead"
+            }
+            Self::NoLiftOff => {
+                "the take-off is given up: the wheels stay on the ground for 10 s at rotate_kt; \
+                 look at the engine, the load and rotate_kt"
             }
             Self::Failsafe => "the take-off is given up",
             Self::Touched => {

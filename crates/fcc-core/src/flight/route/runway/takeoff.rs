@@ -4,8 +4,8 @@ use libm::{atan2, cos, sin};
 use nalgebra::Vector2;
 
 use super::{
-    ALTIMETER_OFF_M, Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase, RunwayReason,
-    WEIGHT_WRONG_M,
+    ALTIMETER_OFF_M, CONTACT_S, Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase,
+    RunwayReason, WEIGHT_WRONG_M,
 };
 use crate::blocks::wrap_pi;
 use crate::flight::path::{Motion, length};
@@ -24,7 +24,10 @@ const BEHIND_FROM: f64 = 0.6;
 /// the height above and the climb rate, m/s: a steep runway rises by less.
 const OFF_GROUND_S: f64 = 0.5;
 const OFF_GROUND_M: f64 = 1.0;
-const OFF_GROUND_MPS: f64 = 1.0;
+pub(super) const OFF_GROUND_MPS: f64 = 1.0;
+/// After so long on the wheels with its nose raised, or on them again, it has not the power
+/// to fly, s.
+const LIFTS_OFF_WITHIN_S: f64 = 10.0;
 /// Of the speed of the rotation: slower over the ground it does not fly, and with a lower
 /// airspeed none does.
 const FLIES_FROM: f64 = 0.85;
@@ -142,11 +145,12 @@ impl RunwayFlight {
         let weighs = on_wheels && !self.is_weight_wrong;
         let lifts_off = flies && !weighs && self.demand.height_m > CLIMBS_M;
         let stays_behind = self.stays_behind(here, dt_s);
+        let is_aside = self.demand.cross_track_m.abs() > MOST_CROSS_TRACK_M;
         match self.phase {
             RunwayPhase::Hand => self.wait_for_throw(here, dt_s),
             // Not any more once it may fly.
             RunwayPhase::Roll if self.off_ground_s > 0.0 => {}
-            RunwayPhase::Roll if self.demand.cross_track_m.abs() > MOST_CROSS_TRACK_M => {
+            RunwayPhase::Roll if is_aside => {
                 self.give_up(RunwayPhase::RollOut, RunwayReason::CentreLine);
             }
             RunwayPhase::Roll if rolled_m > self.config.longest_roll_m => {
@@ -158,6 +162,12 @@ impl RunwayFlight {
             RunwayPhase::Roll if stays_behind => {
                 self.give_up(RunwayPhase::RollOut, RunwayReason::NoAirspeed);
             }
+            RunwayPhase::Rotate | RunwayPhase::Climb if self.has_rolled(LIFTS_OFF_WITHIN_S) => {
+                self.give_up(RunwayPhase::RollOut, RunwayReason::NoLiftOff);
+            }
+            RunwayPhase::Rotate | RunwayPhase::Climb if is_aside && self.has_rolled(CONTACT_S) => {
+                self.give_up(RunwayPhase::RollOut, RunwayReason::CentreLine);
+            }
             RunwayPhase::Rotate if lifts_off => self.phase = RunwayPhase::Climb,
             RunwayPhase::Climb
                 if here.altitude_m > self.altitude_m - REACHED_M || self.climbs_no_more() =>
@@ -167,6 +177,12 @@ impl RunwayFlight {
             _ => {}
         }
         Outcome::Flown
+    }
+
+    /// Whether its wheels are on the ground for so long, s, since the nose was raised, or
+    /// again. Nothing is known without their switch.
+    fn has_rolled(&self, for_s: f64) -> bool {
+        self.phase_s.min(self.contact_s) > for_s && self.demand.height_m < CLIMBS_M
     }
 
     /// Whether the airspeed has stayed farther below the speed over the ground than a tail
@@ -191,6 +207,7 @@ impl RunwayFlight {
                         self.demand.reason,
                         RunwayReason::NoAirspeed
                             | RunwayReason::LongRoll
+                            | RunwayReason::NoLiftOff
                             | RunwayReason::CentreLine
                     )
             }

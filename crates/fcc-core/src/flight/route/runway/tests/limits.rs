@@ -250,3 +250,37 @@ fn a_take_off_that_is_given_up_too_late_flies_on() {
         assert_eq!(phase(&follower), Some(expected));
     }
 }
+
+/// Rotates at 29 m/s and 300 m, so far off the line, m, and rolls on, climbs for 12 s over a
+/// switch that is stuck, or has lifted off and is down again.
+#[test]
+fn a_take_off_that_stays_on_its_wheels_is_given_up() {
+    use RunwayPhase::{Climb, RollOut, Rotate};
+    use RunwayReason::{CentreLine, NoLiftOff, None};
+    let rolls = |east_m: f64, climb_rate_mps: f64| OverGround {
+        longitude_rad: 0.1 + east_m / (NORTH_M * core::f64::consts::FRAC_1_SQRT_2),
+        climb_rate_mps,
+        ..rolling(29.0, 29.0)
+    };
+    for (east_m, climb_rate_mps, seconds, expected) in [
+        (0.0, 0.0, 9, (Rotate, None)),
+        (0.0, 0.0, 11, (RollOut, NoLiftOff)),
+        (0.0, 1.5, 12, (Rotate, None)),
+        (13.0, 1.5, 2, (Rotate, None)),
+        (13.0, 0.0, 2, (RollOut, CentreLine)),
+    ] {
+        let mut follower = takes_off(&rolls(0.0, 0.0), 1);
+        for _ in 0..seconds * 40 {
+            follower.advance(&rolls(east_m, climb_rate_mps), 0.025);
+        }
+        let what = (phase(&follower).unwrap(), reason(&follower).unwrap());
+        assert_eq!(what, expected, "{east_m} {climb_rate_mps} {seconds}");
+    }
+    let mut follower = takes_off(&rolls(0.0, 0.0), 1);
+    follower.advance(&at(300.0, 4.0, 29.0), 0.025);
+    assert_eq!(phase(&follower), Some(Climb));
+    for _ in 0..11 * 40 {
+        follower.advance(&rolls(0.0, 0.0), 0.025);
+    }
+    assert_eq!(reason(&follower), Some(NoLiftOff));
+}
