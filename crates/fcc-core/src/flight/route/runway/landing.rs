@@ -3,8 +3,8 @@
 use libm::{fabs, tan};
 
 use super::{
-    ALTIMETER_OFF_M, Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase, RunwayReason,
-    WEIGHT_WRONG_M,
+    ALTIMETER_OFF_M, CONTACT_S, Outcome, Runway, RunwayConfig, RunwayFlight, RunwayPhase,
+    RunwayReason, WEIGHT_WRONG_M,
 };
 use crate::flight::path::Motion;
 use crate::flight::route::OverGround;
@@ -109,7 +109,10 @@ impl RunwayFlight {
         }
         let is_slow = here.airspeed_mps < TOUCHES_SHARE * self.config.approach_mps;
         match here.on_wheels {
-            Some(true) if !self.is_weight_wrong => !ranged || height_m < BOUNCES_M,
+            // A range finder that shows too much does not overrule wheels that roll.
+            Some(true) if !self.is_weight_wrong => {
+                !ranged || height_m < BOUNCES_M || is_slow && self.contact_s > CONTACT_S
+            }
             Some(false) if !ranged => false,
             Some(_) => height_m < TOUCHES_M && is_slow && self.may_be_down(here),
             // One without wheels may lie where its altimeter shows more.

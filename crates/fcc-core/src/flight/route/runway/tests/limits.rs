@@ -47,6 +47,35 @@ fn on_the_wheels_the_wind_is_the_one_of_the_flare() {
     assert!((demand.head_wind_mps + 12.9).abs() < 1e-3, "{demand:?}");
 }
 
+/// A range finder that reads 1.2 m too much is overruled by wheels that bear weight for a
+/// second at less than flying speed, and not in a sink: there the switch is stuck.
+#[test]
+fn wheels_that_roll_overrule_a_range_finder() {
+    for (airspeed_mps, climb_rate_mps, expected) in [
+        (27.0, 0.0, RunwayPhase::RollOut),
+        (30.0, 0.0, RunwayPhase::Flare),
+        (27.0, -1.1, RunwayPhase::Flare),
+    ] {
+        let mut follower = landing();
+        let rolls = OverGround {
+            height_m: Some(2.5),
+            on_wheels: Some(true),
+            climb_rate_mps,
+            ..at(-50.0, 0.0, airspeed_mps)
+        };
+        follower.advance(&rolls, 0.025);
+        for tick in 0..44 {
+            follower.advance(&rolls, 0.025);
+            assert!(tick > 36 || phase(&follower) == Some(RunwayPhase::Flare));
+        }
+        assert_eq!(
+            phase(&follower),
+            Some(expected),
+            "{airspeed_mps} {climb_rate_mps}"
+        );
+    }
+}
+
 /// An altimeter that reads 50 m too low flares at 50 m, where the range finder shows
 /// nothing. Without a range finder nobody knows.
 #[test]
