@@ -158,7 +158,9 @@ impl Autopilot {
             self.ground.forget_receivers_height();
         }
         let on_wheels_m = self.config.route.runway.height_on_wheels_m;
-        if self.ground.check_range(on_wheels_m) {
+        self.told_once.touch.pass(dt_s);
+        self.told_once.range.pass(dt_s);
+        if self.ground.check_range(on_wheels_m) && self.told_once.range.is_due() {
             self.on_runway.announce(RunwayReason::RangeFinder);
         }
     }
