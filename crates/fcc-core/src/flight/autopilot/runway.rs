@@ -80,6 +80,8 @@ pub(super) struct RunwayControl {
     pub(super) flies_at_mps: Option<f64>,
     /// It was told that the climb lasts too long.
     lacks_power: bool,
+    /// It was told that the landing has much tail wind.
+    told_wind: bool,
 }
 
 impl Autopilot {
@@ -149,6 +151,9 @@ impl Autopilot {
             self.on_runway.announce(RunwayReason::NoClimb);
         }
         self.on_runway.lacks_power = demand.lacks_power;
+        let approaches = demand.phase == RunwayPhase::Approach && !demand.is_powerless;
+        self.on_runway
+            .watch_tail_wind(approaches, demand.head_wind_mps);
         let lateral = match demand.phase {
             RunwayPhase::Hand => Lateral::default(),
             phase if phase.is_on_wheels() => self.steer(&demand, estimate, dt_s),

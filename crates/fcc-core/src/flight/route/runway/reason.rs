@@ -49,6 +49,8 @@ schema! {
         NoClimb = 20,
         /// The nose is raised, and the wheels stay on the ground.
         NoLiftOff = 21,
+        /// A landing with more tail wind than a handbook has figures for.
+        TailWind = 22,
     }
 }
 
@@ -104,6 +106,10 @@ impl fmt::Display for RunwayReason {
             Self::NoLiftOff => {
                 "the take-off is given up: the wheels stay on the ground for 10 s at rotate_kt; \
                  look at the engine, the load and rotate_kt"
+            }
+            Self::TailWind => {
+                "the landing needs more than half as much way again; go around, and land the \
+                 other way"
             }
             Self::Failsafe => "the take-off is given up",
             Self::Touched => {
