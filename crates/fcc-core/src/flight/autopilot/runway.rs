@@ -82,6 +82,8 @@ pub(super) struct RunwayControl {
     lacks_power: bool,
     /// It was told that the landing has much tail wind.
     told_wind: bool,
+    /// The roll-out has left the centre line with its brakes set.
+    strayed: bool,
 }
 
 impl Autopilot {

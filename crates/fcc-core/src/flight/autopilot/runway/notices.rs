@@ -56,6 +56,7 @@ pub fn gives_up_runway(notice: &Notice) -> bool {
         RunwayReason::RangeFinder,
         RunwayReason::NoClimb,
         RunwayReason::TailWind,
+        RunwayReason::Strays,
     ];
     notice.kind == RUNWAY && others.iter().all(|other| notice.item != *other as u16)
 }

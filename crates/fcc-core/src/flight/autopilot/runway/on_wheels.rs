@@ -27,6 +27,16 @@ const BRAKES_BELOW: f64 = 0.85;
 /// does not become slow.
 const BRAKES_AFTER_S: f64 = 10.0;
 
+/// So far off the centre line, m, after this time, s, as it moves away from it, it rolls
+/// without brakes, and with this share of them after that: where one fails, the other turns
+/// the aircraft by more than nose wheel and rudder do. Farther off than a runway is wide it
+/// stops.
+const STRAYS_M: f64 = 6.0;
+const STRAYS_IN_S: f64 = 2.0;
+const STRAYED_SHARE: f64 = 0.5;
+const BESIDE_M: f64 = 15.0;
+/// How fast the brakes are released then, 1/s.
+const RELEASES_PER_S: f64 = 2.0;
 /// The elevator is held back in full from this speed on of the air along the aircraft, m/s.
 const AIR_ALONG_MPS: f64 = 5.0;
 
@@ -36,6 +46,13 @@ const AIR_ALONG_MPS: f64 = 5.0;
 /// pushed forward: the moment of an elevator in air from behind is not known here.
 pub(super) fn elevator(back: f64, along_mps: f64) -> f64 {
     back * limit(along_mps / AIR_ALONG_MPS, 0.0, 1.0)
+}
+
+/// Whether it rolls away from the centre line, towards the edge of the runway.
+fn strays(cross_track_m: f64, cross_track_mps: f64) -> bool {
+    let off_m = cross_track_m.abs();
+    let away_mps = cross_track_mps * cross_track_m.signum();
+    away_mps > 0.0 && off_m + STRAYS_IN_S * away_mps > STRAYS_M && off_m < BESIDE_M
 }
 
 impl Autopilot {
@@ -123,9 +140,25 @@ impl Autopilot {
         };
         let brakes = matches!(demand.phase, RunwayPhase::RollOut | RunwayPhase::Stopped)
             && (speed_mps < BRAKES_BELOW * config.approach_mps || demand.phase_s > BRAKES_AFTER_S);
-        let to = if brakes { config.brake } else { 0.0 };
-        let brake = &mut self.on_runway.brake;
-        *brake += limit_abs(to - *brake, BRAKES_PER_S * dt_s);
+        let rolls = demand.phase == RunwayPhase::RollOut && !demand.takes_off;
+        let strays = brakes && rolls && strays(demand.cross_track_m, demand.cross_track_mps);
+        let control = &mut self.on_runway;
+        if strays && !control.strayed {
+            control.strayed = true;
+            control.announce(RunwayReason::Strays);
+        }
+        let share = if control.strayed && rolls {
+            STRAYED_SHARE
+        } else {
+            1.0
+        };
+        let to = if brakes && !strays {
+            share * config.brake
+        } else {
+            0.0
+        };
+        let brake = &mut control.brake;
+        *brake += limit(to - *brake, -RELEASES_PER_S * dt_s, BRAKES_PER_S * dt_s);
         let flaps = if demand.phase.is_takeoff() || demand.phase == RunwayPhase::GoAround {
             config.takeoff_flaps
         } else {
@@ -163,8 +196,24 @@ impl Autopilot {
 
 #[cfg(test)]
 mod tests {
-    use super::elevator;
+    use super::{elevator, strays};
     use crate::units::KNOT_MPS;
+
+    /// On a runway of 100 ft, whose edge is 15.24 m from its middle: not where it wanders
+    /// along the line or returns to it, and not where it has left.
+    #[test]
+    fn what_rolls_towards_the_edge_of_a_runway_strays() {
+        for (off_m, away_mps, expected) in [
+            (8.0, 1.0, true),
+            (-8.0, -1.0, true),
+            (2.0, 2.5, true),
+            (8.0, -1.0, false),
+            (2.5, 0.5, false),
+            (15.24, 1.0, false),
+        ] {
+            assert_eq!(strays(off_m, away_mps), expected, "{off_m} {away_mps}");
+        }
+    }
 
     /// FAA-H-8083-3C, chapter 2: up in a head wind, and not in a tail wind. At 20 kt over
     /// the ground air that moves with 25 kt comes from behind.

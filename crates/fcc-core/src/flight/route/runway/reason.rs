@@ -51,6 +51,8 @@ schema! {
         NoLiftOff = 21,
         /// A landing with more tail wind than a handbook has figures for.
         TailWind = 22,
+        /// The roll-out leaves the centre line with its brakes set.
+        Strays = 23,
     }
 }
 
@@ -110,6 +112,10 @@ impl fmt::Display for RunwayReason {
             Self::TailWind => {
                 "the landing needs more than half as much way again; go around, and land the \
                  other way"
+            }
+            Self::Strays => {
+                "the roll-out leaves the centre line: brakes released, and half of them from \
+                 now on; look at brakes and nose wheel"
             }
             Self::Failsafe => "the take-off is given up",
             Self::Touched => {
