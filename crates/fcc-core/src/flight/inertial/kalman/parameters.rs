@@ -54,8 +54,9 @@ pub(super) const FORCE_BIAS_WALK: f64 = 5e-4;
 /// shakes an accelerometer moves its mean (vibration rectification, in the data sheets of the
 /// ADXL355 and others), so what was learned with an idle engine does not hold in a take-off.
 /// While it accelerates forward, what the bias is off by would be taken for pitch. With this
-/// 1 m/s² is learned within 3 s; in all of a flight it would cost attitude in turbulence.
-pub(super) const SHAKEN_BIAS_WALK: f64 = 0.1;
+/// a bias of 1 m/s² leaves less than 1° of pitch; with more, or in all of a flight, one
+/// forward would tip it further.
+pub(super) const SHAKEN_BIAS_WALK: f64 = 0.03;
 /// For so long after it was slow, s: the take-off run of a light aircraft, some 20 s, and its
 /// acceleration to the speed of climb.
 pub(super) const BEGINS_S: f64 = 60.0;
