@@ -51,6 +51,8 @@ struct HeldControl {
     /// Where it is held. It is released there, even if a beacon has since named
     /// another address.
     simulator: SocketAddr,
+    /// What was put first: where the controls were.
+    first: Surfaces,
     /// When the overrides were last set.
     asserted: Time,
     pace: WritePace,
@@ -97,6 +99,7 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
                 }
                 none.insert(HeldControl {
                     simulator,
+                    first: *outputs,
                     asserted: Time::NEVER,
                     pace: WritePace::begin(),
                     confirmation: Confirmation::begin(now),
@@ -125,7 +128,10 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
             held.asserted = now;
             sent = self.controls.take(write);
         }
-        let outputs = if link.too_late().is_zero() {
+        let outputs = if held.confirmation.awaits_too_long() {
+            // No loop is closed yet: what would be put answers nothing.
+            held.first
+        } else if link.too_late().is_zero() {
             *outputs
         } else {
             marked(outputs, now)

@@ -18,7 +18,7 @@ use fcc_core::framework::Time;
 use crate::lasting::Lasting;
 use crate::link::SharedState;
 use crate::quantity::Quantity;
-use crate::round_trip::RoundTrip;
+use crate::round_trip::{RoundTrip, TOO_LONG};
 use crate::simulator::SimulatorState;
 use crate::written::{ReadBack, Written};
 
@@ -125,9 +125,14 @@ impl Confirmation {
         self.awaited.is_some()
     }
 
-    /// Waits until the overrides are read back for the first time: the first round trip. It
-    /// is too long before they are, as soon as they are waited for too long. A simulator
-    /// that stops meanwhile says nothing of the network.
+    /// Whether they have been awaited for longer than a round trip over which an aircraft is
+    /// flown: what is written does not arrive, or too late to answer what is read.
+    pub(crate) fn awaits_too_long(&self) -> bool {
+        self.awaited.is_some_and(|(waited, _)| waited > TOO_LONG)
+    }
+
+    /// Waits until the overrides are read back for the first time: the first round trip. A
+    /// simulator that stops meanwhile says nothing of the network.
     pub(crate) fn await_overrides(&mut self, now: Time, link: &SharedState) {
         let Some((mut waited, before)) = self.awaited else {
             return;
@@ -135,12 +140,16 @@ impl Confirmation {
         if matches!(link.state(), SimulatorState::Running | SimulatorState::Slow) {
             waited += now.since(before);
         }
-        self.round_trip.is_at_first(waited);
         let are_there = OVERRIDES.into_iter().all(|quantity| {
             self.recent(quantity, now, link)
                 .is_some_and(|(value, _)| value >= 0.5)
         });
-        self.awaited = (!are_there).then_some((waited, now));
+        self.awaited = if are_there {
+            self.round_trip.is_at_first(waited);
+            None
+        } else {
+            Some((waited, now))
+        };
     }
 
     /// Records what was written to elevator, aileron and rudder.

@@ -10,7 +10,7 @@ use fcc_core::framework::Time;
 const OVER: Duration = Duration::from_secs(1);
 /// No aircraft is flown over a longer round trip, if it was longer in so many of those times
 /// in succession.
-const TOO_LONG: Duration = Duration::from_millis(500);
+pub(crate) const TOO_LONG: Duration = Duration::from_millis(500);
 const TIMES: u8 = 2;
 /// ... by so many values at least, of three axes in 20 frames a second or more: after a freeze
 /// of the simulator each shows once what was written before.
@@ -65,7 +65,7 @@ impl RoundTrip {
         }
     }
 
-    /// The first round trip, of which is known when it began, or what of it has passed.
+    /// The first round trip, of which is known when it began.
     pub(crate) fn is_at_first(&mut self, took: Duration) {
         if took > TOO_LONG {
             (self.shown, self.too_long) = (took, TIMES);
