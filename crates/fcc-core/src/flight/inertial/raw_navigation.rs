@@ -4,6 +4,7 @@
 
 mod by_field;
 mod compared;
+mod config;
 mod consistency;
 mod late_fixes;
 mod outliers;
@@ -16,8 +17,7 @@ mod sensor_monitor;
 mod several;
 mod trial;
 
-use core::time::Duration;
-
+pub use config::{MagneticNorth, RawNavigationConfig, RawNavigationMethod};
 use late_fixes::LateFixes;
 use libm::atan2;
 use outliers::Outliers;
@@ -48,36 +48,6 @@ use crate::framework::{Reading, Time};
 
 /// A heading less certain than this is none, rad.
 const USABLE_HEADING: f64 = 0.35;
-/// How attitude is computed from raw readings.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum RawNavigationMethod {
-    /// By [`KalmanNavigation`].
-    Kalman,
-    /// By [`ThesisNavigation`].
-    Thesis,
-}
-
-/// What is known of the earth's magnetic field: headings are magnetic, and
-/// velocities of a satellite receiver refer to true north.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub enum MagneticNorth {
-    /// The field here: north, east, down, µT.
-    Field([f64; 3]),
-    /// The World Magnetic Model of this year, at the first fix of a satellite
-    /// receiver.
-    ModelOf(f64),
-}
-
-/// The configuration of [`RawNavigation`].
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct RawNavigationConfig {
-    /// The method.
-    pub method: RawNavigationMethod,
-    /// As [`KalmanConfig::delay`].
-    pub delay: Duration,
-    /// The magnetic field.
-    pub north: MagneticNorth,
-}
 
 /// Computes from the raw readings of each tick what control needs.
 ///

@@ -10,9 +10,8 @@ use crate::units::KNOT_MPS;
 /// The number of their notices: the item is the reason's.
 pub(in super::super) const RUNWAY: u8 = 29;
 
-/// More tail wind than this is told on the approach, kt: the handbook's landing distance is
-/// given for no more (Cessna 172P, 1981, section 5: "tailwinds up to 10 knots", 10 % for
-/// each 2 kt).
+/// More tail wind than this is announced on the approach, kt: the handbooks of the Cessna 172
+/// add 10 % of the landing distance for each 2 kt, with this half as much again.
 const MOST_TAIL_WIND_KT: f64 = 10.0;
 
 impl RunwayControl {
@@ -77,7 +76,7 @@ mod tests {
 
     use super::*;
 
-    /// A handbook's 10 kt are told of from there on, once in a landing, and give nothing up.
+    /// Beyond 10 kt the event comes once in a landing, and gives nothing up.
     #[test]
     fn tail_wind_is_told_once_with_its_figure() {
         let mut control = RunwayControl::default();

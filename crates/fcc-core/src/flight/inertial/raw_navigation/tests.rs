@@ -1,6 +1,8 @@
 use libm::hypot;
 
 use super::super::{GeodeticPosition, earth_field_ut};
+use core::time::Duration;
+
 use super::*;
 use crate::flight::{BodyRates, GnssFix, MagneticField, PlantState, Position, SpecificForce};
 

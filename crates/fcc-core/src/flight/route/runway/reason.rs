@@ -49,7 +49,7 @@ schema! {
         NoClimb = 20,
         /// The nose is raised, and the wheels stay on the ground.
         NoLiftOff = 21,
-        /// A landing with more tail wind than a handbook has figures for.
+        /// A landing with more than 10 kt of tail wind.
         TailWind = 22,
         /// The roll-out leaves the centre line with its brakes set.
         Strays = 23,
