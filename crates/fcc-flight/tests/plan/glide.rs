@@ -16,9 +16,13 @@ use crate::flight::{Flight, HOME, Without};
 /// Ticks of a second.
 const RATE: u64 = 40;
 const FT: f64 = 0.304_8;
+/// Of a propeller that the air turns, below the limit of these flights.
+const WINDMILLS_RPM: f64 = 200.0;
+const DOUBTED: &str =
+    "the engine's speed fell to nothing at once: not believed, the thrust decides";
 
-/// A sensor with an engine of 2,400 revolutions per minute, until it stops.
-struct Engine(Box<dyn Sensor<Measurements>>, Arc<AtomicBool>);
+/// A sensor with an engine of 2,400 revolutions per minute, and what it shows once stopped.
+struct Engine(Box<dyn Sensor<Measurements>>, Arc<AtomicBool>, f64);
 
 impl Sensor<Measurements> for Engine {
     fn name(&self) -> &str {
@@ -28,7 +32,7 @@ impl Sensor<Measurements> for Engine {
     fn sample(&mut self, tick: &Tick, measurements: &mut Measurements) -> Result<(), SensorFault> {
         self.0.sample(tick, measurements)?;
         let rpm = if self.1.load(Ordering::Relaxed) {
-            0.0
+            self.2
         } else {
             2_400.0
         };
@@ -76,7 +80,7 @@ engine_out_below_rpm = 300
 {RETRACTABLE}{keys}"
     );
     let flight = Flight::warmed_up(plan, &keys, |sensor| {
-        Box::new(Engine(sensor, Arc::clone(&stopped)))
+        Box::new(Engine(sensor, Arc::clone(&stopped), WINDMILLS_RPM))
     });
     (flight, stops)
 }
@@ -309,6 +313,38 @@ fn an_engine_that_is_not_measured_is_missed_by_its_thrust() {
     stops.store(true, Ordering::Relaxed);
     flight.fly_until(20.0, |flight| flight.happened("the engine is out: gliding"));
     assert_eq!(flight.mode(), Mode::Glide);
+}
+
+/// In flight no engine stops from one tick to the next: the speed of a sensor whose wire has
+/// broken is not believed. Then the thrust tells of the engine, as where it is not measured.
+#[test]
+fn a_speed_that_is_nothing_at_once_does_not_stop_a_healthy_engine() {
+    let breaks = Arc::new(AtomicBool::new(false));
+    let stops = Arc::new(AtomicBool::new(false));
+    let (broken, stopped) = (Arc::clone(&breaks), Arc::clone(&stops));
+    let mut flight = Flight::between(
+        &away_from_runway(0.0),
+        "[contingency]\nengine_out_below_rpm = 300\n[built-in]\ngusts = \"moderate\"\n",
+        |sensor| Box::new(Engine(sensor, Arc::clone(&broken), 0.0)),
+        |actuator| Box::new(Throttle(actuator, Arc::clone(&stopped))),
+    );
+    for _ in 0..40 * RATE {
+        flight.tick();
+    }
+    breaks.store(true, Ordering::Relaxed);
+    flight.fly_until(0.5, |flight| flight.happened(DOUBTED));
+    for _ in 0..120 * RATE {
+        flight.tick();
+        assert_eq!(flight.mode(), Mode::Plan);
+    }
+    stops.store(true, Ordering::Relaxed);
+    flight.fly_until(20.0, |flight| flight.happened("the engine is out: gliding"));
+    assert_eq!(flight.mode(), Mode::Glide);
+    // Once tried, the engine gives thrust again.
+    stops.store(false, Ordering::Relaxed);
+    flight.fly_until(120.0, |flight| {
+        flight.happened("the engine runs again: flying on")
+    });
 }
 
 /// Resumed after a restart it glides, and acts on no other engine failure than this.

@@ -311,10 +311,13 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
         }
         Contingency::Fence => "the fence is near: turning away",
         Contingency::BatteryLow => "the battery is low",
-        Contingency::EngineOut if notice.amount_permille.is_multiple_of(PERMILLE) => {
-            "the engine is out"
+        Contingency::EngineOut if notice.amount_permille == engine_out::ENGINE_RUNS => {
+            "the engine runs again"
         }
-        Contingency::EngineOut => "the engine runs again",
+        Contingency::EngineOut if notice.amount_permille == engine_out::SPEED_DOUBTED => {
+            "the engine's speed fell to nothing at once: not believed, the thrust decides"
+        }
+        Contingency::EngineOut => "the engine is out",
         Contingency::Terrain if notice.item == terrain::CLIMBS => {
             return f.write_str("terrain is ahead: climbing");
         }

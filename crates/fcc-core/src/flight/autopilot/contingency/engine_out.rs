@@ -1,12 +1,14 @@
 //! The engine: out below a speed of its shaft, or, where that is not measured, if the
-//! throttle gives no thrust.
+//! throttle gives no thrust. In flight the air turns a propeller, and no shaft stops from one
+//! reading to the next: a speed that falls to nothing at once is that of a sensor that has
+//! failed, and the thrust decides.
 
 use core::time::Duration;
 
 use libm::cos;
 
 use super::super::Autopilot;
-use super::{Contingency, ContingencyAction, Delayed, PERMILLE};
+use super::{CONTINGENCY, Contingencies, Contingency, ContingencyAction, Delayed, PERMILLE};
 use crate::blocks::LowPass;
 use crate::flight::guidance::{Mode, OverGroundMode};
 use crate::flight::route::{Follower, GlideConfig, RunwayPhase, RunwayReason};
@@ -26,10 +28,15 @@ const POWER_S: f64 = 4.0;
 /// out a glide, sin γ.
 const LEVEL: f64 = 0.0;
 const GLIDE: f64 = -0.2;
+/// A speed below this share of the one at which the engine is out is none.
+const NO_SPEED: f64 = 0.1;
 /// In a glide because of its thrust the engine is tried every so often, and for so long, s: the
 /// throttle opens within 3 s, thrust follows within 2 s, and `engine_back_after_s` is 5 s.
 const TRIED_EVERY_S: f64 = 45.0;
 const TRIED_FOR_S: f64 = 14.0;
+/// The amounts of the notices that it is over, and that its speed is not believed.
+pub(super) const ENGINE_RUNS: u16 = Contingency::EngineOut as u16 * PERMILLE + 1;
+pub(super) const SPEED_DOUBTED: u16 = ENGINE_RUNS + 1;
 /// Lower than this an engine that runs again changes nothing, m.
 const LANDS_M: f64 = 30.0;
 
@@ -38,6 +45,10 @@ const LANDS_M: f64 = 30.0;
 pub(in super::super) struct Engine {
     out: Delayed,
     power: LowPass,
+    /// Whether its speed is not believed.
+    doubt: Delayed,
+    /// The last measured speed, rad/s.
+    before_radps: f64,
     /// In a glide the time since it was tried, s.
     glides_s: f64,
 }
@@ -47,8 +58,17 @@ impl Engine {
         Self {
             out: Delayed::OFF,
             power: LowPass::new(POWER_S),
+            doubt: Delayed::OFF,
+            before_radps: 0.0,
             glides_s: 0.0,
         }
+    }
+
+    /// Whether the speed is not believed from now on: it fell to nothing at once.
+    fn falls_to_nothing(&mut self, speed_radps: f64, below_radps: f64) -> bool {
+        let ran = self.before_radps >= below_radps;
+        self.before_radps = speed_radps;
+        ran && speed_radps < NO_SPEED * below_radps && !self.out.is_on
     }
 
     /// Whether the throttle gives no thrust, by the power over weight and airspeed.
@@ -74,16 +94,50 @@ fn specific_power(path_rad: f64, acceleration_mps2: f64) -> f64 {
     libm::sin(path_rad) + acceleration_mps2 / GRAVITY_MPS2
 }
 
+impl Contingencies {
+    fn doubt_engine_speed(&mut self) {
+        self.news = Some(Notice {
+            kind: CONTINGENCY,
+            amount_permille: SPEED_DOUBTED,
+            ..Notice::default()
+        });
+    }
+}
+
 impl Autopilot {
+    /// Whether the engine is out by the speed of its shaft; none if it is not known.
+    fn engine_stands(&mut self, now: Time, dt_s: f64) -> Option<bool> {
+        let config = &self.config.contingency;
+        let below_radps = config.engine_below_radps?;
+        let speed_radps = self.accepted.engine_speed_radps.fresh(now, READING_AGE)?;
+        let airspeed_mps = self.navigation.estimate().airspeed_mps;
+        let flies = airspeed_mps > self.config.envelope.stall_airspeed_mps && !self.is_on_wheels();
+        if self.engine.falls_to_nothing(speed_radps, below_radps) && flies {
+            if !self.engine.doubt.is_on {
+                self.contingencies.doubt_engine_speed();
+            }
+            self.engine.doubt.begin();
+        }
+        let stands = speed_radps < below_radps;
+        let doubt = &mut self.engine.doubt;
+        if doubt.is_on {
+            doubt.step(stands, config.engine_back_after_s, dt_s);
+        }
+        (!doubt.is_on).then_some(stands)
+    }
+
+    /// Whether the thrust tells of the engine.
+    const fn watches_thrust(&self) -> bool {
+        self.config.contingency.engine_by_thrust || self.engine.doubt.is_on
+    }
+
     /// Whether the engine is out; none if it is not known.
     fn engine_is_out(&mut self, now: Time, dt_s: f64) -> Option<bool> {
-        let config = &self.config.contingency;
-        let speed_radps = self.accepted.engine_speed_radps.fresh(now, READING_AGE);
-        if let (Some(below_radps), Some(speed_radps)) = (config.engine_below_radps, speed_radps) {
-            return Some(speed_radps < below_radps);
+        if let Some(stands) = self.engine_stands(now, dt_s) {
+            return Some(stands);
         }
         let is_flown = self.guidance.mode() != Mode::None && !self.is_on_runway();
-        if !config.engine_by_thrust || !is_flown || self.last.throttle < THROTTLE {
+        if !self.watches_thrust() || !is_flown || self.last.throttle < THROTTLE {
             self.engine.is_throttled();
             return None;
         }
@@ -91,7 +145,7 @@ impl Autopilot {
         let path_rad = estimate.pitch_rad - estimate.angle_of_attack_rad * cos(estimate.roll_rad);
         let power = specific_power(path_rad, estimate.acceleration_mps2);
         let engine = &mut self.engine;
-        Some(engine.gives_no_thrust(power, config.glide_ratio, dt_s))
+        Some(engine.gives_no_thrust(power, self.config.contingency.glide_ratio, dt_s))
     }
 
     /// Follows the engine, engaged or not. Where nothing is known it stays what it was.
@@ -134,8 +188,7 @@ impl Autopilot {
 
     /// Whether a glide opens the throttle, because the engine may give thrust again.
     pub(in super::super) fn tries_engine(&mut self, dt_s: f64) -> bool {
-        let is_by_thrust = self.config.contingency.engine_by_thrust && self.engine.out.is_on;
-        is_by_thrust && self.engine.is_tried(dt_s)
+        self.watches_thrust() && self.engine.out.is_on && self.engine.is_tried(dt_s)
     }
 
     /// The engine runs again: a plan is continued; what else was flown is not known, and
@@ -164,9 +217,8 @@ impl Autopilot {
             }
         }
         self.contingencies.announce(Contingency::EngineOut, action);
-        // That it is over.
         self.contingencies.news = self.contingencies.news.map(|notice| Notice {
-            amount_permille: Contingency::EngineOut as u16 * PERMILLE + 1,
+            amount_permille: ENGINE_RUNS,
             ..notice
         });
     }
