@@ -58,6 +58,20 @@ def climbs_more(mps: float) -> Fault:
     return fault
 
 
+def velocity_repeated() -> Fault:
+    """Return a receiver that repeats its velocity, and not its position."""
+    names = ("gnss_north_mps", "gnss_east_mps", "gnss_down_mps")
+    kept: dict[str, float] = {}
+
+    def fault(values: fcc.Measurements) -> None:
+        for name in names:
+            value = getattr(values, name)
+            if not math.isnan(value):
+                setattr(values, name, kept.setdefault(name, value))
+
+    return fault
+
+
 def velocity_swapped(values: fcc.Measurements) -> None:
     values.gnss_north_mps, values.gnss_east_mps = values.gnss_east_mps, values.gnss_north_mps
 
@@ -173,6 +187,7 @@ def fly(
     [
         (lost("gnss"), 60.0),
         (repeated("gnss"), 60.0),
+        (velocity_repeated(), 90.0),
         (place_off(600.0), 0.5),
         (lost("magnetic_field"), 90.0),
         (repeated("magnetic_field"), 60.0),
@@ -181,6 +196,7 @@ def fly(
     ids=[
         "no receiver",
         "receiver repeats",
+        "receiver repeats its velocity",
         "receiver 600 m off",
         "no compass",
         "compass repeats",

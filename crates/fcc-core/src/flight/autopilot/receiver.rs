@@ -49,7 +49,7 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> Option<fmt::
         }
         (VELOCITY_REFUSED, _) => {
             "the satellite receiver's velocity contradicts its own positions, or airspeed and \
-             compass: it is not used"
+             compass, or is only repeated: it is not used"
         }
         (VELOCITY_USED, _) => "the satellite receiver's velocity is used again",
         _ => return None,

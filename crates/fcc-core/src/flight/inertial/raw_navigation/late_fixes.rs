@@ -53,7 +53,7 @@ impl RawNavigation {
     }
 
     pub(super) fn follow_late_fixes(&mut self, now: Time) {
-        let (late_s, is_refused) = match &self.method {
+        let (late_s, is_contradicted) = match &self.method {
             // What comes before it is of is in time.
             Method::Kalman(navigation) => (
                 navigation.late_fixes_s().max(0.0),
@@ -61,6 +61,7 @@ impl RawNavigation {
             ),
             Method::Thesis(_) => (0.0, false),
         };
+        let is_refused = is_contradicted || self.repeats.is_velocity_old;
         let late = &mut self.late_fixes;
         if is_refused {
             late.refused = now;

@@ -7,7 +7,8 @@ use crate::flight::GnssFix;
 use crate::framework::Time;
 
 impl RawNavigation {
-    /// Takes a fix; at the first one, the magnetic field of the place.
+    /// Takes a fix, without a velocity that is only repeated; at the first one, the magnetic
+    /// field of the place.
     pub(super) fn take_fix(&mut self, taken: Time, fix: &GnssFix) {
         let place = place_in(fix);
         if let (MagneticNorth::ModelOf(year), Method::Kalman(navigation)) =
@@ -21,10 +22,12 @@ impl RawNavigation {
             // Where else it flies, the filter follows the field by itself.
             self.knows_field = true;
         }
-        let velocity = velocity_in(fix);
-        let witness = &mut self.gyroscope.witness;
-        witness.add_velocity(taken, velocity, &self.solution);
         self.take(taken, Observation::Position(place));
-        self.take(taken, Observation::Velocity(velocity));
+        if !self.repeats.is_same_velocity {
+            let velocity = velocity_in(fix);
+            let witness = &mut self.gyroscope.witness;
+            witness.add_velocity(taken, velocity, &self.solution);
+            self.take(taken, Observation::Velocity(velocity));
+        }
     }
 }

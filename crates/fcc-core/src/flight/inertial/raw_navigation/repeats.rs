@@ -7,11 +7,14 @@ use libm::hypot;
 use super::super::stuck::{MOVED_FIELD, MOVED_FORCE, MOVED_MPS, MOVED_RATE, StuckSensor};
 use super::RawNavigation;
 use crate::flight::{GnssFix, Measurements, Velocity};
-use crate::framework::Reading;
+use crate::framework::{Reading, Time};
 
 /// For so long a place may be repeated: that of a receiver that gives one fix a second
 /// is read several times.
 const PLACE_LASTS: Duration = Duration::from_secs(2);
+/// For so long a velocity may be: one of a coarse resolution is the same for some fixes of
+/// steady flight.
+const VELOCITY_LASTS: Duration = Duration::from_secs(2);
 
 /// Of the latest readings, which are only repeated.
 #[derive(Clone, Copy, Debug, Default)]
@@ -32,6 +35,12 @@ pub(super) struct Repeats {
     pub(super) is_same_place: bool,
     /// Whether the receiver has repeated its place for longer than it may.
     is_place_old: bool,
+    /// Whether the latest fix has the velocity of the one before at another place, and since
+    /// which fix that is the velocity.
+    pub(super) is_same_velocity: bool,
+    velocity_since: Time,
+    /// Whether the receiver has repeated its velocity for longer than it may.
+    pub(super) is_velocity_old: bool,
 }
 
 impl RawNavigation {
@@ -80,17 +89,28 @@ impl Repeats {
         };
         self.is_same_place = is_same_place(&used.value, &raw.gnss.value);
         self.is_place_old = self.is_same_place && raw.gnss.taken.since(used.taken) > PLACE_LASTS;
+        if raw.gnss.taken > used.taken && !self.is_same_place {
+            self.follow_velocity(&raw.gnss, &used.value.velocity);
+        }
         self.now
+    }
+
+    fn follow_velocity(&mut self, fix: &Reading<GnssFix>, last: &Velocity) {
+        let velocity = fix.value.velocity;
+        self.is_same_velocity = velocity == *last && moves(&velocity);
+        if !self.is_same_velocity {
+            self.velocity_since = fix.taken;
+        }
+        self.is_velocity_old = fix.taken.since(self.velocity_since) > VELOCITY_LASTS;
     }
 }
 
 /// Whether a receiver gives the place again that it gave before, although it says that
 /// it moves.
 fn is_same_place(last: &GnssFix, fix: &GnssFix) -> bool {
-    let Velocity {
-        north_mps,
-        east_mps,
-        ..
-    } = fix.velocity;
-    fix.position == last.position && hypot(north_mps, east_mps) > MOVED_MPS
+    fix.position == last.position && moves(&fix.velocity)
+}
+
+fn moves(velocity: &Velocity) -> bool {
+    hypot(velocity.north_mps, velocity.east_mps) > MOVED_MPS
 }

@@ -192,6 +192,29 @@ fn a_receiver_that_repeats_its_place_for_seconds_is_named() {
     }
 }
 
+/// Five fixes a second of an aircraft at 50 m/s. One of a coarse resolution may have the same
+/// velocity for two seconds.
+#[test]
+fn a_receiver_that_repeats_its_velocity_for_seconds_is_named() {
+    let mut navigation = RawNavigation::new(config());
+    let mut told = std::vec::Vec::new();
+    for n in 0..800 {
+        let at = n / 8;
+        let mut fix = GnssFix::default();
+        let velocities = if n < 320 { at / 10 } else { 40 };
+        fix.velocity.north_mps = 50.0 + 0.05 * velocities as f64;
+        fix.position.latitude_rad = 0.5 + 1.6e-6 * at as f64;
+        let mut measured = raw(tick(n), [20.0, 40.0]);
+        measured.gnss = Reading::new(fix, tick(at * 8));
+        navigation.step(tick(n), &measured);
+        if let Some(is_refused) = navigation.refuses_velocity() {
+            told.push((n, is_refused));
+        }
+    }
+    // The last new velocity was that of tick 320.
+    assert_eq!(told, [(408, true)]);
+}
+
 /// A driver that repeats its last sample while the aircraft begins to turn, and then
 /// measures again.
 #[test]
