@@ -77,12 +77,42 @@ fn the_altimeter_is_not_set_in_the_roll() {
     let mut flight = engaged(circuit, "[built-in]\n");
     let rolls = |flight: &Flight| flight.record.measurements.airspeed_mps.value > 20.0;
     flight.fly_until(30.0, rolls);
-    let setting = AutopilotCommand::AltimeterSetting(104_000.0);
+    let setting = AutopilotCommand::AltimeterSetting(101_400.0);
     let low = "not carried out: the height over the runway is measured by the altimeter: set it \
-               while the aircraft stands, or 30 m over the runway and higher";
+               while the aircraft stands, or above autopilot.runway.decision_height_ft over the \
+               runway";
     assert_eq!(told(&mut flight, setting), [low]);
     assert_eq!(flight.mode(), Mode::Takeoff);
-    flight.fly_until(60.0, |flight| flight.truth.get().altitude_m > 120.0 + 60.0);
+    flight.fly_until(60.0, |flight| flight.truth.get().altitude_m > 120.0 + 65.0);
     assert!(flight.truth.impact().is_none());
     assert!(told(&mut flight, setting).is_empty());
+    // On final, 27 m too low: it flared that much too high.
+    let is_low = |flight: &Flight| {
+        flight.mode() == Mode::Land && flight.truth.get().altitude_m < 120.0 + 40.0
+    };
+    flight.fly_until(900.0, is_low);
+    let setting = AutopilotCommand::AltimeterSetting(101_000.0);
+    assert_eq!(told(&mut flight, setting), [low]);
+}
+
+/// The true setting is 1013.25 hPa; 8.3 m a hectopascal. Set to 1060 in cruise, or to 1031
+/// before the roll, the circuit led into the ground though the receiver showed it.
+#[test]
+fn the_setting_of_another_place_is_refused_where_a_receiver_shows_the_altitude() {
+    let circuit = include_str!("../../../../config/plans/circuit.waypoints");
+    let mut flight = engaged(circuit, "[built-in]\n");
+    let off = "not carried out: the altimeter would be further off the satellite receiver's \
+               altitude, by more than cold air explains: is it the setting of this place?";
+    let set = |hpa: f64| AutopilotCommand::AltimeterSetting(hpa * 100.0);
+    assert_eq!(told(&mut flight, set(1_031.0)), [off]);
+    assert!(told(&mut flight, set(1_014.0)).is_empty());
+    flight.fly_until(300.0, |flight| {
+        flight.truth.get().altitude_m > 120.0 + 250.0
+    });
+    for hpa in [1_060.0, 1_031.0, 995.0] {
+        assert_eq!(told(&mut flight, set(hpa)), [off], "{hpa}");
+    }
+    // As far off as in air that is 20 K colder than the standard, and back.
+    assert!(told(&mut flight, set(1_016.0)).is_empty());
+    assert!(told(&mut flight, set(1_013.25)).is_empty());
 }

@@ -2,11 +2,12 @@
 
 use core::fmt;
 
-use libm::hypot;
+use libm::{fabs, hypot};
 
 use super::{Autopilot, AutopilotCommand};
+use crate::flight::atmosphere::pressure_altitude_m;
 use crate::flight::guidance::ModeInput;
-use crate::flight::route::{LONGEST_LEG_M, RunwayDemand, RunwayReason};
+use crate::flight::route::{ALTIMETER_OFF_M, LONGEST_LEG_M, RunwayDemand, RunwayReason};
 use crate::framework::Notice;
 
 /// The number of the notice that answers, below those of doubted sensors; the amount is the
@@ -16,6 +17,9 @@ pub const COMMAND_ANSWER: u8 = 0;
 const PERMILLE: u16 = 1_000;
 /// Lower than this over a runway nothing else is begun, m.
 const COMMANDED_M: f64 = 30.0;
+/// Air that is 35 K colder or warmer than the standard makes the altimeter wrong by this share
+/// of the height.
+const AIR_SHARE: f64 = 0.12;
 /// Slower than this over the ground it stands, m/s.
 const STANDS_MPS: f64 = 2.0;
 
@@ -40,10 +44,11 @@ pub(super) enum Refusal {
     NoLanding,
     NotBeforeItIsHigher,
     TooFar,
+    OffTheReceiver,
 }
 
 impl Refusal {
-    const ALL: [Self; 16] = [
+    const ALL: [Self; 17] = [
         Self::NotEngaged,
         Self::NotPrepared,
         Self::NoSuchItem,
@@ -60,6 +65,7 @@ impl Refusal {
         Self::NoLanding,
         Self::NotBeforeItIsHigher,
         Self::TooFar,
+        Self::OffTheReceiver,
     ];
 
     const fn words(self) -> &'static str {
@@ -86,11 +92,15 @@ impl Refusal {
             }
             Self::NotBeforeItIsHigher => {
                 "the height over the runway is measured by the altimeter: set it while the aircraft \
-                 stands, or 30 m over the runway and higher"
+                 stands, or above autopilot.runway.decision_height_ft over the runway"
             }
             Self::TooFar => {
                 "the place is more than 815 km away, the range of a Cessna 172: are latitude and \
                  longitude exchanged?"
+            }
+            Self::OffTheReceiver => {
+                "the altimeter would be further off the satellite receiver's altitude, by more \
+                 than cold air explains: is it the setting of this place?"
             }
             Self::NoLanding => "the plan has no landing, and the aircraft was not seen to take off",
         }
@@ -123,7 +133,7 @@ impl Autopilot {
     pub(super) fn may_carry_out(&mut self, command: &AutopilotCommand) -> Result<(), Refusal> {
         match command {
             AutopilotCommand::Resume(_) | AutopilotCommand::Heartbeat(_) => return Ok(()),
-            AutopilotCommand::AltimeterSetting(_) => return self.may_set_altimeter(),
+            AutopilotCommand::AltimeterSetting(pa) => return self.may_set_altimeter(*pa),
             AutopilotCommand::GoAround => {
                 // A landing that was commanded is not one yet on its way there.
                 let next = self
@@ -173,15 +183,36 @@ impl Autopilot {
 
 impl Autopilot {
     /// Whether the altimeter may be set: in a take-off's roll and low over a runway the
-    /// height that is flown by would jump.
-    fn may_set_altimeter(&self) -> Result<(), Refusal> {
+    /// height that is flown by would jump. Where a receiver shows the altitude, a setting that
+    /// leads far from it is that of another place, or a wrong digit.
+    fn may_set_altimeter(&self, setting_pa: f64) -> Result<(), Refusal> {
+        let decision_m = self.config.route.runway.decision_height_m;
+        let runway = self.runway();
         let moves = |demand: &RunwayDemand| {
-            demand.height_m < COMMANDED_M && demand.ground_speed_mps > STANDS_MPS
+            demand.height_m < decision_m && demand.ground_speed_mps > STANDS_MPS
         };
-        match self.runway().filter(moves) {
-            Some(_) => Err(Refusal::NotBeforeItIsHigher),
-            None => Ok(()),
+        if runway.as_ref().is_some_and(moves) {
+            return Err(Refusal::NotBeforeItIsHigher);
         }
+        let here = self.ground.here();
+        let Some((off_m, altitude_m)) = here.and_then(|here| {
+            let off_m = here.above_receiver_m?;
+            Some((off_m, here.altitude_m - off_m))
+        }) else {
+            return Ok(());
+        };
+        // Cold air makes the altimeter show more by a share of the height above the place whose
+        // setting it has.
+        let height_m = runway.map_or(altitude_m, |demand| demand.height_m - off_m);
+        let lower_m =
+            pressure_altitude_m(setting_pa) - pressure_altitude_m(self.altimeter.setting_pa);
+        let would_be_m = fabs(off_m - lower_m);
+        let allowed_m = (AIR_SHARE * height_m).max(0.0) + ALTIMETER_OFF_M;
+        let is_worse = would_be_m - fabs(off_m) > ALTIMETER_OFF_M;
+        if is_worse && would_be_m > allowed_m {
+            return Err(Refusal::OffTheReceiver);
+        }
+        Ok(())
     }
 }
 

@@ -34,6 +34,7 @@ pub use glide::{Glide, GlideConfig};
 pub use leg::course_onto_circle;
 pub use over_ground::OverGround;
 pub use prepared::{PreparedRoutes, RouteSource};
+pub(crate) use runway::ALTIMETER_OFF_M;
 pub(in crate::flight) use runway::HELD_MPS;
 pub use runway::{Runway, RunwayConfig, RunwayDemand, RunwayPhase, RunwayReason};
 pub use step::{Destination, FOR_EVER, JUMPS, Route, Step, Until};

@@ -175,14 +175,16 @@ impl RunwayFlight {
         self.level_m - self.runway.elevation_m < decision_m && path_above_m > decision_m
     }
 
-    /// Whether the altimeter is off, and no range finder shows where the ground is.
+    /// Whether the altimeter is off, and no range finder shows where the ground is. It is asked
+    /// when one of altimeter and receiver shows that the ground is near.
     fn is_altimeter_off(&self, here: &OverGround) -> bool {
         let height_m = self.demand.height_m;
-        here.height_m.is_none()
-            && (COMMITTED_M..COMPARED_BELOW * self.config.decision_height_m).contains(&height_m)
-            && here
-                .above_receiver_m
-                .is_some_and(|off_m| fabs(off_m) > ALTIMETER_OFF_M)
+        let is_ranged = here.height_m.is_some() && !self.is_range_doubted;
+        let is_off = |off_m: f64| {
+            height_m - off_m.max(0.0) < COMPARED_BELOW * self.config.decision_height_m
+                && fabs(off_m) > ALTIMETER_OFF_M
+        };
+        !is_ranged && height_m >= COMMITTED_M && here.above_receiver_m.is_some_and(is_off)
     }
 
     pub(super) fn flare(&mut self, here: &OverGround, on_wheels: bool) {

@@ -31,7 +31,7 @@ use super::{OverGround, TookOff};
 use crate::flight::path::{LocalPlane, Motion, Path, cross};
 
 /// An altimeter that is farther off is not landed or taken off by, m: 2 hPa.
-const ALTIMETER_OFF_M: f64 = 20.0;
+pub(crate) const ALTIMETER_OFF_M: f64 = 20.0;
 /// Wheels that bear weight above this height do not, m.
 const WEIGHT_WRONG_M: f64 = 15.0;
 

@@ -187,6 +187,13 @@ fn an_altimeter_that_the_receiver_contradicts_is_not_landed_by() {
     let mut follower = landing();
     follower.advance(&off(15.0, None, 100.0), 0.025);
     assert_eq!(phase(&follower), Some(RunwayPhase::Approach));
+    // 1031 hPa for 1013: by the receiver it is 50 m over the ground.
+    follower.advance(&off(150.0, None, 200.0), 0.025);
+    let demand = follower.runway().unwrap();
+    assert_eq!(
+        (demand.phase, demand.reason),
+        (RunwayPhase::GoAround, RunwayReason::Receiver)
+    );
 }
 
 /// Three landings are given up: then it circles over the runway, and a command is no
