@@ -45,6 +45,8 @@ _ENGINE_RPM = "propulsion/engine/engine-rpm"
 _SETTLING_S = 60.0
 _SETTLING_MEAN_S = 5.0
 _STANDING_S = 5.0
+_LEAST_AHEAD_MPS = 1.0
+_ROLLS_MPS = 5.0
 _MILSPEC_TURBULENCE = 3.0
 _TURBULENCE_WIND_FPS = {1: 15.0, 2: 20.0, 3: 25.0, 4: 50.0, 5: 75.0, 6: 90.0, 7: 100.0}
 
@@ -74,6 +76,9 @@ class TrimError(RuntimeError):
 
 class Plant:
     """One aircraft in flight."""
+
+    _wind_rolling: tuple[float, float] | None = None
+    """The wind once the aircraft rolls, kt and deg, while it stands."""
 
     def __init__(
         self,
@@ -225,6 +230,9 @@ class Plant:
     def step(self, steps: int = 1) -> None:
         """Advance by `steps` of 1/120 s with the present controls."""
         run = self.fdm.run
+        if self._wind_rolling is not None and self._ground_speed_mps() > _ROLLS_MPS:
+            self._blow(*self._wind_rolling)
+            self._wind_rolling = None
         for _ in range(steps):
             if self._terrain is not None:
                 self._follow_ground(self._terrain)
@@ -324,11 +332,35 @@ class Plant:
             fdm[f"fcs/{brake}-brake-cmd-norm"] = 1.0
         for path in self._throttles:
             fdm[path] = 0.0
-        to_rad = math.radians(weather.wind_from_deg) + math.pi
-        fdm["atmosphere/wind-north-fps"] = weather.wind_kt * KT_TO_MPS / FT_TO_M * math.cos(to_rad)
-        fdm["atmosphere/wind-east-fps"] = weather.wind_kt * KT_TO_MPS / FT_TO_M * math.sin(to_rad)
+        self._wind_rolling = (weather.wind_kt, weather.wind_from_deg)
+        self._blow(weather.wind_kt, self._not_abeam_deg(weather))
         for _ in range(round(_STANDING_S * STEPS_PER_SECOND)):
             fdm.run()
+
+    def _ground_speed_mps(self) -> float:
+        fdm = self.fdm
+        return math.hypot(fdm["velocities/v-north-fps"], fdm["velocities/v-east-fps"]) * FT_TO_M
+
+    def _blow(self, kt: float, from_deg: float) -> None:
+        """Set the wind."""
+        to_rad = math.radians(from_deg) + math.pi
+        fps = kt * KT_TO_MPS / FT_TO_M
+        self.fdm["atmosphere/wind-north-fps"] = fps * math.cos(to_rad)
+        self.fdm["atmosphere/wind-east-fps"] = fps * math.sin(to_rad)
+
+    def _not_abeam_deg(self, weather: Weather) -> float:
+        """Return the direction of a wind in which an aircraft stands.
+
+        With no air from ahead JSBSim's angle of attack may be any, and with it the pitching
+        moment: in 8 kt exactly from the side the c172p turns over on its wheels.
+        """
+        heading_deg = math.degrees(self.fdm["attitude/psi-rad"])
+        off_deg = math.remainder(weather.wind_from_deg - heading_deg, 360.0)
+        ahead_mps = weather.wind_kt * KT_TO_MPS * math.cos(math.radians(off_deg))
+        if abs(ahead_mps) >= _LEAST_AHEAD_MPS:
+            return weather.wind_from_deg
+        share = min(1.0, _LEAST_AHEAD_MPS / max(weather.wind_kt * KT_TO_MPS, _LEAST_AHEAD_MPS))
+        return heading_deg + math.copysign(math.degrees(math.acos(share)), off_deg)
 
     def _trim(self) -> bool:
         fdm = self.fdm
