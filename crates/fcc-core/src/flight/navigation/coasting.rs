@@ -19,6 +19,8 @@ const FELT_BANKED_MPS2: f64 = 0.17;
 /// error above, which is a limit.
 const LEAST_SD_M: f64 = 1.0;
 const SD_SHARE: f64 = 0.25;
+/// Altimeter and ground velocity contradict each other beyond this difference, m/s.
+const BEGAN_ALIKE_MPS: f64 = 1.0;
 /// The share of a climb by which geometric and pressure altitude differ: the
 /// air's temperature, 30 K off the standard (ISO 2533).
 const TEMPERATURE_SHARE: f64 = 0.12;
@@ -95,8 +97,13 @@ impl Coasting {
         }
     }
 
-    /// What altimeter and ground velocity have climbed more than the accelerometers say.
+    /// What altimeter and ground velocity have climbed more than the accelerometers say; none
+    /// of a copy that began while these two contradicted each other, at the climb rate of
+    /// the altimeter, which may be the wrong one.
     pub(super) fn alone(&self, altitude_m: f64) -> Option<Alone> {
+        if self.ground_more_mps.abs() > BEGAN_ALIKE_MPS {
+            return None;
+        }
         let climbed_m = self.state.altitude_m - self.began_m;
         Some(Alone {
             altimeter_m: altitude_m - self.state.altitude_m,
