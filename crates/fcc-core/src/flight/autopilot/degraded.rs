@@ -289,10 +289,13 @@ impl Autopilot {
 
     /// What is lost and not replaced by what counts as measured: an airspeed by
     /// forces and motion does while it is accurate, and nothing is lost that it
-    /// comes from.
-    pub(super) fn unreplaced(&self, lost: Flags) -> Flags {
+    /// comes from; so does the climb by a satellite receiver in place of an altitude.
+    pub(super) fn unreplaced(&self, now: Time, lost: Flags) -> Flags {
         let is_known = self.is_accurate(ACCURATE_RATIO) && !lost.intersects(FORCES_NEED);
+        let climb_is_known = self.accepted.velocity.is_fresh(now, self.config.max_age)
+            && !self.navigation.doubts_receivers_height();
         lost.keeping(flags::AIRSPEED, !is_known)
+            .keeping(flags::ALTITUDE, !climb_is_known)
     }
 
     fn is_accurate(&self, ratio: f64) -> bool {
@@ -320,7 +323,7 @@ impl Autopilot {
             return;
         }
         let faults = self.unsafe_now(tick.woke, measured) | self.not_flyable(tick.woke, measured);
-        let held = held_without(self.unreplaced(self.lost(tick.woke, measured)));
+        let held = held_without(self.unreplaced(tick.woke, self.lost(tick.woke, measured)));
         let config = &self.config.failsafe;
         let degraded = &mut self.degraded;
         degraded.lasted_s += tick.dt_s;

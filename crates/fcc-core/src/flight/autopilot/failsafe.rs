@@ -128,7 +128,7 @@ impl Autopilot {
                 self.take_over(&trims);
             }
         }
-        let lost = self.unreplaced(self.lost(now, measured));
+        let lost = self.unreplaced(now, self.lost(now, measured));
         let held = held_without(lost);
         let glides = self.degraded.glides;
         self.setpoints.roll_rad = 0.0;
