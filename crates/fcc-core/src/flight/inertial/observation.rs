@@ -20,7 +20,7 @@ pub enum Observation {
     /// A position of a satellite receiver.
     Position(GeodeticPosition),
     /// Velocity over the ground of a satellite receiver: north, east, down,
-    /// m/s.
+    /// m/s; a vertical one that it does not measure is NaN.
     Velocity([f64; 3]),
 }
 
@@ -80,13 +80,15 @@ impl Observation {
         }
     }
 
-    /// Whether all of its numbers are finite.
+    /// Whether all of its numbers are finite, but for a vertical velocity that is not known.
     pub fn is_finite(&self) -> bool {
         match self {
-            Self::Rates(v)
-            | Self::SpecificForce(v)
-            | Self::MagneticField(v)
-            | Self::Velocity(v) => v.iter().all(|part| part.is_finite()),
+            Self::Rates(v) | Self::SpecificForce(v) | Self::MagneticField(v) => {
+                v.iter().all(|part| part.is_finite())
+            }
+            Self::Velocity([north, east, down]) => {
+                north.is_finite() && east.is_finite() && !down.is_infinite()
+            }
             Self::StaticPressure(v) | Self::DifferentialPressure(v) | Self::Airspeed(v) => {
                 v.is_finite()
             }

@@ -257,12 +257,16 @@ impl RawNavigation {
         }
         self.follow_late_fixes(now);
         let fix = self.used.gnss;
-        let (position, velocity) = self.present().unwrap_or_else(|| {
+        let (position, mut velocity) = self.present().unwrap_or_else(|| {
             (
                 either(fix, |fix| fix.position, measured.position),
                 either(fix, |fix| fix.velocity, measured.velocity),
             )
         });
+        let down_mps = self.solution.velocity_mps[2];
+        if self.repeats.is_down_old && down_mps.is_finite() {
+            velocity.value.down_mps = down_mps;
+        }
         self.found = Measurements {
             attitude,
             heading_rad: heading,

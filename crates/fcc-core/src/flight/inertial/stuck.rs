@@ -25,6 +25,11 @@ pub(super) struct StuckSensor {
 }
 
 impl StuckSensor {
+    /// Whether this is the last sample again.
+    pub(super) fn is_last(&self, sample: [f64; 3]) -> bool {
+        sample == self.sample && !self.since.is_never()
+    }
+
     /// Takes a sample; whether it is only repeated. `others` are the samples of
     /// two other sensors, and `enough` how far each changes in one axis only if
     /// it has moved.

@@ -22,6 +22,8 @@ const LEAST_TILTED_S: f64 = 1.0;
 
 /// A heading less certain than this is none, rad.
 pub(super) const UNKNOWN_HEADING: f64 = 0.7;
+/// The variance of a vertical velocity that is not measured, (m/s)².
+const UNKNOWN_DOWN: f64 = 1e6;
 /// A course says where the nose points from this speed on, m/s, and how far that
 /// is from it, rad².
 const MOVING_MPS: f64 = 5.0;
@@ -126,7 +128,11 @@ impl Filter {
     }
 
     fn take_velocity(&mut self, taken: Time, velocity: [f64; 3], after_s: f64) {
-        let velocity = Vector3::from(velocity);
+        let mut velocity = Vector3::from(velocity);
+        let knows_down = velocity.z.is_finite();
+        if !knows_down {
+            velocity.z = self.motion.velocity.z;
+        }
         let before = core::mem::replace(&mut self.receiver, (taken, velocity));
         let contradicts_air = self.contradicts_air(before);
         self.follow_displacement(taken, velocity, contradicts_air);
@@ -166,6 +172,9 @@ impl Filter {
             variance
         };
         measurement.variance *= scatter / variance;
+        if !knows_down {
+            measurement.variance.z = UNKNOWN_DOWN;
+        }
         measurement.come_late(-seen.acceleration * self.shows_lateness(taken));
         measurement.excess *= self.late_excess();
         let has_heading = self.has_heading();

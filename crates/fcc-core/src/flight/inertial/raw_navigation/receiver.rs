@@ -24,9 +24,12 @@ impl RawNavigation {
         }
         self.take(taken, Observation::Position(place));
         if !self.repeats.is_same_velocity {
-            let velocity = velocity_in(fix);
+            let mut velocity = velocity_in(fix);
             let witness = &mut self.gyroscope.witness;
             witness.add_velocity(taken, velocity, &self.solution);
+            if self.repeats.is_down_old {
+                velocity[2] = f64::NAN;
+            }
             self.take(taken, Observation::Velocity(velocity));
         }
     }

@@ -16,6 +16,10 @@ const PLACE_LASTS: Duration = Duration::from_secs(2);
 /// steady flight.
 const VELOCITY_LASTS: Duration = Duration::from_secs(2);
 
+/// An inertial unit that repeats a specific force of less than this, m/s², and its rates: zeros
+/// of a bus that does not answer, less the biases. All other sensors may be at the same bus.
+const NO_FORCE_MPS2: f64 = 3.0;
+
 /// Of the latest readings, which are only repeated.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Repeated {
@@ -41,6 +45,10 @@ pub(super) struct Repeats {
     velocity_since: Time,
     /// Whether the receiver has repeated its velocity for longer than it may.
     pub(super) is_velocity_old: bool,
+    down_since: Time,
+    /// Whether it has repeated its vertical velocity for so long, as one that measures none
+    /// gives always 0.
+    pub(super) is_down_old: bool,
 }
 
 impl RawNavigation {
@@ -64,6 +72,9 @@ impl Repeats {
         [force, rates, field]: [[f64; 3]; 3],
         used: &Reading<GnssFix>,
     ) -> Repeated {
+        let is_silent = self.force.is_last(force)
+            && self.rates.is_last(rates)
+            && force.iter().all(|part| part.abs() < NO_FORCE_MPS2);
         let of_force = [rates, field];
         let of_rates = [force, field];
         let of_field = [force, rates];
@@ -87,6 +98,8 @@ impl Repeats {
                 [MOVED_FORCE, MOVED_RATE],
             ),
         };
+        self.now.force |= is_silent;
+        self.now.rates |= is_silent;
         self.is_same_place = is_same_place(&used.value, &raw.gnss.value);
         self.is_place_old = self.is_same_place && raw.gnss.taken.since(used.taken) > PLACE_LASTS;
         if raw.gnss.taken > used.taken && !self.is_same_place {
@@ -102,6 +115,10 @@ impl Repeats {
             self.velocity_since = fix.taken;
         }
         self.is_velocity_old = fix.taken.since(self.velocity_since) > VELOCITY_LASTS;
+        if velocity.down_mps.to_bits() != last.down_mps.to_bits() || !moves(&velocity) {
+            self.down_since = fix.taken;
+        }
+        self.is_down_old = fix.taken.since(self.down_since) > VELOCITY_LASTS;
     }
 }
 
