@@ -251,6 +251,33 @@ def test_a_receiver_that_drifts_in_height_does_not_count(mps: float) -> None:
     assert most["altitude"] <= 10.0
 
 
+def test_a_receiver_without_a_vertical_velocity_costs_no_altitude() -> None:
+    """It gave always 0; the altimeter was doubted for it, and 300 to 900 m were lost."""
+
+    def no_vertical(values: fcc.Measurements) -> None:
+        if not math.isnan(values.gnss_down_mps):
+            values.gnss_down_mps = 0.0
+
+    machine, rig, most = fly(no_vertical, 90.0)
+    assert machine.state == "engaged"
+    assert not [event.text for event in rig.events if event.time_s > FAILS_S]
+    assert most["altitude"] <= 10.0
+
+
+@pytest.mark.parametrize("seed", [33, 35])
+def test_zeros_of_a_bus_that_does_not_answer_are_no_samples(seed: int) -> None:
+    def zeros(values: fcc.Measurements) -> None:
+        for name in READINGS["raw_body_rates"] + READINGS["raw_specific_force"]:
+            setattr(values, name, 0.0)
+        for name in READINGS["magnetic_field"]:
+            setattr(values, name, 0.0)
+        values.static_pressure_pa = values.differential_pressure_pa = 0.0
+
+    machine, _, most = fly(zeros, 2.0, seed)
+    assert machine.state == "engaged"
+    assert most["bank"] <= 50.0
+
+
 def test_a_velocity_that_is_not_that_of_its_positions_is_not_used() -> None:
     machine, rig, most = fly(velocity_swapped, 60.0)
     said = [event for event in rig.events if "satellite receiver's velocity" in event.text]
