@@ -222,37 +222,3 @@ fn an_airspeed_that_stands_still_does_not_end_a_go_around() {
         assert!(slowest_mps > 24.0, "{slowest_mps}");
     }
 }
-
-/// A static port closes 60 m over the runway: the altimeter stands, but for its noise. It is the
-/// one that is wrong, though it shows the ground that it took off from: a healthy receiver was
-/// doubted, and the aircraft climbed to 2,500 m.
-#[test]
-fn an_altimeter_whose_port_closes_in_the_climb_is_flown_without() {
-    let circuit = include_str!("../../../../config/plans/circuit.waypoints");
-    let mut flight = flight(circuit, "", || {
-        let (mut closed_m, mut samples) = (None, 0_u64);
-        Box::new(move |truth, measurements| {
-            let altitude_m = &mut measurements.altitude_m.value;
-            if closed_m.is_none() && above_m(truth) > 60.0 {
-                closed_m = Some(*altitude_m);
-            }
-            if let Some(closed_m) = closed_m {
-                samples += 1;
-                *altitude_m = closed_m + 0.01 * ((samples * 7 % 11) as f64 - 5.0);
-            }
-        })
-    });
-    flight.fly_until(900.0, |flight| {
-        let height_m = above_m(&flight.truth.get());
-        // The plan's highest item, and 100 m.
-        assert!(height_m < 400.0, "{:#?}", flight.events);
-        flight.mode() == Mode::Land && height_m < 3.0
-    });
-    let doubts_receiver = |event: &String| event.contains("the satellite receiver");
-    assert!(
-        !flight.events.iter().any(doubts_receiver),
-        "{:#?}",
-        flight.events
-    );
-    assert!(flight.truth.impact().is_none());
-}

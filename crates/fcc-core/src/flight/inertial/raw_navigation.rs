@@ -264,7 +264,7 @@ impl RawNavigation {
             )
         });
         let down_mps = self.solution.velocity_mps[2];
-        if self.repeats.is_down_old && down_mps.is_finite() {
+        if self.repeats.is_down_old() && down_mps.is_finite() {
             velocity.value.down_mps = down_mps;
         }
         self.found = Measurements {

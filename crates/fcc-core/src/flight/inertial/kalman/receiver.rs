@@ -127,12 +127,21 @@ impl Filter {
         }
     }
 
-    fn take_velocity(&mut self, taken: Time, velocity: [f64; 3], after_s: f64) {
-        let mut velocity = Vector3::from(velocity);
-        let knows_down = velocity.z.is_finite();
-        if !knows_down {
-            velocity.z = self.motion.velocity.z;
+    /// A velocity with the vertical one that is believed where it is not measured, and the
+    /// variance of that.
+    fn with_down(&self, [north, east, down]: [f64; 3]) -> (Vector3<f64>, f64) {
+        if down.is_nan() {
+            (
+                Vector3::new(north, east, self.motion.velocity.z),
+                UNKNOWN_DOWN,
+            )
+        } else {
+            (Vector3::new(north, east, down), 0.0)
         }
+    }
+
+    fn take_velocity(&mut self, taken: Time, velocity: [f64; 3], after_s: f64) {
+        let (velocity, vertical_variance) = self.with_down(velocity);
         let before = core::mem::replace(&mut self.receiver, (taken, velocity));
         let contradicts_air = self.contradicts_air(before);
         self.follow_displacement(taken, velocity, contradicts_air);
@@ -172,9 +181,7 @@ impl Filter {
             variance
         };
         measurement.variance *= scatter / variance;
-        if !knows_down {
-            measurement.variance.z = UNKNOWN_DOWN;
-        }
+        measurement.variance.z += vertical_variance;
         measurement.come_late(-seen.acceleration * self.shows_lateness(taken));
         measurement.excess *= self.late_excess();
         let has_heading = self.has_heading();

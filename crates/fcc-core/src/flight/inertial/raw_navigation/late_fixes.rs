@@ -61,7 +61,7 @@ impl RawNavigation {
             ),
             Method::Thesis(_) => (0.0, false),
         };
-        let is_refused = is_contradicted || self.repeats.is_velocity_old;
+        let is_refused = is_contradicted || self.repeats.is_velocity_old();
         let late = &mut self.late_fixes;
         if is_refused {
             late.refused = now;

@@ -27,7 +27,7 @@ impl RawNavigation {
             let mut velocity = velocity_in(fix);
             let witness = &mut self.gyroscope.witness;
             witness.add_velocity(taken, velocity, &self.solution);
-            if self.repeats.is_down_old {
+            if self.repeats.is_down_old() {
                 velocity[2] = f64::NAN;
             }
             self.take(taken, Observation::Velocity(velocity));

@@ -37,18 +37,14 @@ pub(super) struct Repeats {
     now: Repeated,
     /// Whether the latest fix is at the place of the one before.
     pub(super) is_same_place: bool,
-    /// Whether the receiver has repeated its place for longer than it may.
-    is_place_old: bool,
+    /// For how long the receiver has repeated its place.
+    place_lasts: Duration,
     /// Whether the latest fix has the velocity of the one before at another place, and since
-    /// which fix that is the velocity.
+    /// which fix that is the velocity, and the vertical one.
     pub(super) is_same_velocity: bool,
     velocity_since: Time,
-    /// Whether the receiver has repeated its velocity for longer than it may.
-    pub(super) is_velocity_old: bool,
     down_since: Time,
-    /// Whether it has repeated its vertical velocity for so long, as one that measures none
-    /// gives always 0.
-    pub(super) is_down_old: bool,
+    last_fix: Time,
 }
 
 impl RawNavigation {
@@ -58,8 +54,8 @@ impl RawNavigation {
     }
 
     /// Whether a receiver has only repeated its place for seconds, although it moves.
-    pub const fn repeats_place(&self) -> bool {
-        self.repeats.is_place_old
+    pub fn repeats_place(&self) -> bool {
+        self.repeats.place_lasts > PLACE_LASTS
     }
 }
 
@@ -101,7 +97,11 @@ impl Repeats {
         self.now.force |= is_silent;
         self.now.rates |= is_silent;
         self.is_same_place = is_same_place(&used.value, &raw.gnss.value);
-        self.is_place_old = self.is_same_place && raw.gnss.taken.since(used.taken) > PLACE_LASTS;
+        self.place_lasts = if self.is_same_place {
+            raw.gnss.taken.since(used.taken)
+        } else {
+            Duration::ZERO
+        };
         if raw.gnss.taken > used.taken && !self.is_same_place {
             self.follow_velocity(&raw.gnss, &used.value.velocity);
         }
@@ -114,11 +114,21 @@ impl Repeats {
         if !self.is_same_velocity {
             self.velocity_since = fix.taken;
         }
-        self.is_velocity_old = fix.taken.since(self.velocity_since) > VELOCITY_LASTS;
         if velocity.down_mps.to_bits() != last.down_mps.to_bits() || !moves(&velocity) {
             self.down_since = fix.taken;
         }
-        self.is_down_old = fix.taken.since(self.down_since) > VELOCITY_LASTS;
+        self.last_fix = fix.taken;
+    }
+
+    /// Whether the receiver has repeated its velocity for longer than it may.
+    pub(super) fn is_velocity_old(&self) -> bool {
+        self.last_fix.since(self.velocity_since) > VELOCITY_LASTS
+    }
+
+    /// Whether it has repeated its vertical velocity for so long: one that measures none gives
+    /// always 0.
+    pub(super) fn is_down_old(&self) -> bool {
+        self.last_fix.since(self.down_since) > VELOCITY_LASTS
     }
 }
 
