@@ -193,6 +193,7 @@ def test_ranges_are_reported() -> None:
         (lambda: fcc.Pid(output_min=1.0, output_max=0.0)): "the first must be less",
         (lambda: fcc.euler_from_quaternion([0, 0, 0, 0])): "has the length 0",
         (lambda: fcc.Machine().step(None, missing=["tail"])): "there is no reading 'tail'",
+        (lambda: fcc.Machine().step(None, missing="airspeed")): r"give a list .* \['airspeed'\]",
         (lambda: setattr(LEVEL, "pitch_rad", "up")): "pitch_rad: must be real number, not str",
         (lambda: fcc.Surfaces(slats=1.0)): "has no 'slats': choose of throttle, elevator",  # type: ignore[call-arg]
     }

@@ -5,7 +5,6 @@ use std::collections::HashMap;
 use fcc_core::flight::{Autopilot, AutopilotCommand, AutopilotConfig};
 use fcc_core::framework::LoopCommand;
 use fcc_flight::flight::setpoint_limits;
-use fcc_telemetry::units::COMMANDED_HEADING_RAD;
 use fcc_telemetry::{Command, InvalidCommand};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -28,10 +27,7 @@ pub(crate) fn commands(
     for (name, value) in &given {
         finite(name, *value)?;
     }
-    let mut limits = setpoint_limits(config);
-    // The sum of two headings, too.
-    let (left, right) = (COMMANDED_HEADING_RAD.start(), COMMANDED_HEADING_RAD.end());
-    limits.push(("heading_rad", Ok(2.0 * left..=2.0 * right)));
+    let limits = setpoint_limits(config);
     let commands = Command::set(given)
         .for_the_loop::<Autopilot>(&limits)
         .map_err(|refused| match refused {

@@ -14,8 +14,8 @@ pub const M_FT: f64 = 1.0 / FOOT_M;
 /// Knots per metre per second.
 pub const MPS_KT: f64 = 3_600.0 / 1_852.0;
 
-/// Headings that may be commanded, rad.
-pub const COMMANDED_HEADING_RAD: RangeInclusive<f64> = -TAU..=TAU;
+/// Headings that may be commanded, rad: the sum of two headings, too.
+pub const COMMANDED_HEADING_RAD: RangeInclusive<f64> = -2.0 * TAU..=2.0 * TAU;
 
 /// Altitudes that may be commanded, m.
 pub const COMMANDED_ALTITUDE_M: RangeInclusive<f64> = -500.0..=20_000.0;

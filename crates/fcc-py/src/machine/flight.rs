@@ -10,7 +10,7 @@ use fcc_core::framework::{LoopCommand, Switch};
 use fcc_flight::config::{AirframeSection, Config};
 use fcc_flight::flight::about;
 use fcc_plan::FileError;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
@@ -70,7 +70,7 @@ machine_class! {
     /// contains the readback of the controls: throttle 0..1, elevator, aileron and
     /// rudder -1..1, as `Surfaces` or as four numbers, without the elevator's
     /// trim; `None` if the aircraft has none. `switch` is the engage switch; `None` if there is none.
-    #[pyo3(signature = (measurements = None, *, missing = Vec::new(), readback = None,
+    #[pyo3(signature = (measurements = None, *, missing = None, readback = None,
                         switch = None, ages_s = HashMap::new()))]
     #[allow(
         clippy::needless_pass_by_value,
@@ -79,11 +79,12 @@ machine_class! {
     fn step(
         &self,
         measurements: Option<&PyMeasurements>,
-        missing: Vec<String>,
+        missing: Option<&Bound<'_, PyAny>>,
         readback: Option<&Bound<'_, PyAny>>,
         switch: Option<bool>,
         ages_s: HashMap<String, f64>,
     ) -> PyResult<Option<PySurfaces>> {
+        let missing = missing.map_or_else(|| Ok(Vec::new()), names)?;
         known_readings("missing", missing.iter())?;
         known_readings("ages_s", ages_s.keys())?;
         for (name, age_s) in &ages_s {
@@ -150,6 +151,18 @@ machine_class! {
         }
         Ok(())
     }
+}
+
+/// Names of readings: one alone would be taken for its letters.
+fn names(missing: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
+    missing.extract().map_err(|_| {
+        let given = missing
+            .repr()
+            .map_or_else(|_| String::new(), |text| text.to_string());
+        PyTypeError::new_err(format!(
+            "missing is {given}: give a list of readings, such as ['airspeed']"
+        ))
+    })
 }
 
 /// Refuses names that no reading has.

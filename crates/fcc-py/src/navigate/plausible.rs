@@ -5,14 +5,16 @@ use std::ffi::CString;
 
 use fcc_core::blocks::wrap_pi;
 use fcc_core::flight::inertial::{Innovation, Solution, metres_per_radian};
+use fcc_core::units::FOOT_M;
 use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 
 use super::clocks::{Heading, late};
 use super::kind::{KINDS, Kind, Series};
 use super::mounting::Mounting;
+use super::pressures::{airspeed, in_feet};
+use super::repeats::repeats;
 use super::result::SENSORS;
-use super::turns::turns;
 use super::units::{backward, field, upside_down, weight};
 
 /// The filter connects no samples of an inertial unit further apart than this, s, and keeps
@@ -48,13 +50,13 @@ const OTHER_SPEEDS: [(&str, f64); 4] = [
     ("cm/s", 0.01),
 ];
 
-/// Refuses what nothing can be computed from, and warns of what is unlikely.
+/// Refuses what nothing can be computed from, and warns of what is unlikely: whether nothing is.
 pub(super) fn check(
     py: Python<'_>,
     series: &[Option<Series>],
     delays_s: &[f64],
     mounting: &Mounting,
-) -> PyResult<()> {
+) -> PyResult<bool> {
     let given: Vec<(&Kind, &Series)> = KINDS
         .iter()
         .zip(series)
@@ -62,7 +64,7 @@ pub(super) fn check(
         .collect();
     // A gyroscope, or else an accelerometer.
     let Some((driving, others)) = given.split_first() else {
-        return Ok(());
+        return Ok(true);
     };
     let of = |name: &str| given.iter().find(|(kind, _)| kind.name == name);
     let mut unlikely = Vec::new();
@@ -71,19 +73,28 @@ pub(super) fn check(
         unlikely.extend(clock(driving, other)?);
     }
     let (gyroscope, magnetometer) = (of("gyroscope"), of("magnetometer"));
-    let too_fast = gyroscope.and_then(|(_, gyroscope)| rates(gyroscope));
-    let slower = gyroscope.zip(magnetometer);
-    let slower = || slower.and_then(|(rates, field)| turns(*rates, *field, mounting));
-    unlikely.extend(too_fast.or_else(slower));
+    unlikely.extend(gyroscope.and_then(|(_, gyroscope)| rates(gyroscope)));
     unlikely.extend(magnetometer.and_then(|(_, magnetometer)| field(magnetometer)));
     let accelerometer = of("accelerometer");
     let heavy = accelerometer.and_then(|source| weight(*source));
     let turned = || accelerometer.and_then(|source| upside_down(*source, mounting));
     unlikely.extend(heavy.or_else(turned));
     unlikely.extend(given.iter().filter_map(|source| backward(*source)));
-    if let (Some(position), Some(velocity)) = (of("gnss_position"), of("gnss_velocity")) {
+    let (position, velocity) = (of("gnss_position"), of("gnss_velocity"));
+    if let (Some(position), Some(velocity)) = (position, velocity) {
         unlikely.extend(axes(*position, *velocity));
     }
+    let samples = |name| of(name).map(|(_, series)| *series);
+    let barometer = samples("static_pressure");
+    let shown = position.zip(barometer);
+    unlikely.extend(shown.and_then(|(position, barometer)| in_feet(*position, barometer)));
+    if let Some((_, velocity)) = velocity {
+        let of_air = |source: &(&Kind, &Series)| airspeed(*source, velocity, barometer);
+        unlikely.extend(given.iter().filter_map(of_air));
+    }
+    let (turning, shaken) = (samples("gyroscope"), samples("accelerometer"));
+    let repeated = |source: &(&Kind, &Series)| repeats(*source, turning, shaken);
+    unlikely.extend(given.iter().filter_map(repeated));
     let heading = gyroscope
         .zip(accelerometer)
         .and_then(|(rates, forces)| Heading::of(*rates, *forces, mounting));
@@ -94,10 +105,12 @@ pub(super) fn check(
             late((kind, series.as_ref()?), *delay_s, &heading)
         }));
     }
-    warn(py, unlikely)
+    let is_likely = unlikely.is_empty();
+    warn(py, unlikely)?;
+    Ok(is_likely)
 }
 
-fn warn(py: Python<'_>, unlikely: impl IntoIterator<Item = String>) -> PyResult<()> {
+pub(super) fn warn(py: Python<'_>, unlikely: impl IntoIterator<Item = String>) -> PyResult<()> {
     for words in unlikely {
         PyErr::warn(
             py,
@@ -226,7 +239,7 @@ fn axes((kind, position): (&Kind, &Series), velocity: (&Kind, &Series)) -> Optio
     let mut begin: Option<(f64, [f64; 3], [f64; 3])> = None;
     let (mut windows, mut far, mut high) = (0.0, 0.0, 0.0);
     let (mut given, mut swapped, mut down, mut up) = (0.0, 0.0, 0.0, 0.0);
-    let (mut moved, mut both) = (0.0, 0.0);
+    let (mut moved, mut both, mut in_ft) = (0.0, 0.0, 0.0);
     let square = |value: f64| value * value;
     for (time_s, place) in position.times_s.iter().zip(&position.rows) {
         let Some(there) = kind
@@ -262,16 +275,23 @@ fn axes((kind, position): (&Kind, &Series), velocity: (&Kind, &Series)) -> Optio
         swapped += square(moved_north - east) + square(moved_east - north);
         down += square(moved_down - sunk);
         up += square(moved_down + sunk);
+        in_ft += square(FOOT_M * moved_down - sunk);
     }
     let unit = OTHER_SPEEDS.iter().find(|(_, mps)| {
         let scaled = moved - 2.0 * mps * both + square(*mps) * far;
-        far > windows * square(FAR_M) && given > CLEARLY * CLEARLY * scaled
+        far.min(moved) > windows * square(FAR_M) && given > CLEARLY * CLEARLY * scaled
     });
     if let Some((unit, _)) = unit {
         return Some(format!(
             "gnss_velocity: it agrees with how gnss_position moves if it is in {unit}: velocities \
              are in m/s"
         ));
+    }
+    if high > windows * square(HIGH_M) && down > CLEARLY * CLEARLY * in_ft {
+        return Some(
+            "gnss_position: altitudes move as gnss_velocity says if they are in ft: they are in m"
+                .to_owned(),
+        );
     }
     let is_swapped = far > windows * square(FAR_M) && given > CLEARLY * swapped;
     let is_upward = high > windows * square(HIGH_M) && down > CLEARLY * up;

@@ -310,8 +310,8 @@ mod tests {
             ),
             (Command::set([("airspeed_mps", -1.0)]), "airspeed is -1.94"),
             (
-                Command::set([("heading_rad", 7.0)]),
-                "heading is 401.07°: choose -360 to 360°",
+                Command::set([("heading_rad", 14.0)]),
+                "heading is 802.14°: choose -720 to 720°",
             ),
             (
                 Command::set([("altimeter_setting_pa", 1_013.25), ("altitude_m", 900.0)]),
