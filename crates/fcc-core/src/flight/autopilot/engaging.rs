@@ -85,6 +85,7 @@ impl Autopilot {
         self.release = None;
         self.actuation.engage(&standing);
         self.take_over(&standing);
+        self.begin_straight_trims();
         self.begin_watching_for_upsets();
     }
 
