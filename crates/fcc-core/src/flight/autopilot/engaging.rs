@@ -45,9 +45,10 @@ impl Autopilot {
         )
         .with(
             flags::TOO_SLOW,
-            estimate.airspeed_mps < self.config.envelope.min_airspeed_mps
-                && !self.begins_on_runway()
-                && !(is_far_from_level(estimate) && self.may_engage_in_upset()),
+            self.may_not_take_off_here(now)
+                || estimate.airspeed_mps < self.config.envelope.min_airspeed_mps
+                    && !self.begins_on_runway()
+                    && !(is_far_from_level(estimate) && self.may_engage_in_upset()),
         )
         .with(
             flags::UPSET,
