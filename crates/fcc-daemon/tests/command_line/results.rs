@@ -22,7 +22,8 @@ fn a_flight_that_is_not_engaged_says_why_at_its_end() {
     let ending = found["ending"].as_str().unwrap();
     assert_eq!(
         ending,
-        "not engaged: airspeed is below the floor: fly faster than envelope.min_airspeed_kt"
+        "not engaged: airspeed is below the floor: fly faster than envelope.min_airspeed_kt; \
+         a take-off begins standing, where its runway begins"
     );
     // No command ended its pattern.
     assert_eq!(

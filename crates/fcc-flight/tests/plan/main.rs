@@ -11,6 +11,7 @@ mod flight;
 mod glide;
 mod lost_low;
 mod range_jumps;
+mod re_engaged;
 mod refused;
 mod repeated_place;
 mod replacing;

@@ -232,6 +232,10 @@ impl Flight {
         roll_rad.to_degrees()
     }
 
+    pub(crate) fn true_altitude_m(&self) -> f64 {
+        self.wire.world().aircraft.truth().altitude_m
+    }
+
     pub(crate) fn rudder(&self) -> f64 {
         self.machine.record().outputs.rudder
     }

@@ -9,7 +9,7 @@ use super::{
     ActiveMode, Actuation, AltitudeReference, Autopilot, AutopilotConfig, BankCommand,
     Contingencies, Degraded, Delayed, Engine, Following, GroundMotion, Jammed, KeptTrims,
     Measurements, PilotTakeover, PlantClock, ReadingAges, Recovery, RunwayControl, Setpoints,
-    Surfaces, Targets, Time, ToldOnce, Whereabouts,
+    StraightTrims, Surfaces, Targets, Time, ToldOnce, Whereabouts,
 };
 use crate::framework::Flags;
 
@@ -68,6 +68,7 @@ impl Autopilot {
             renewed_since: Time::NEVER,
             last: Surfaces::default(),
             kept_trims: KeptTrims::default(),
+            straight: StraightTrims::default(),
             degraded: Degraded::default(),
             following: Following::default(),
             jammed: Jammed::new(),

@@ -45,9 +45,10 @@ impl Autopilot {
         )
         .with(
             flags::TOO_SLOW,
-            estimate.airspeed_mps < self.config.envelope.min_airspeed_mps
-                && !self.begins_on_runway()
-                && !(is_far_from_level(estimate) && self.may_engage_in_upset()),
+            self.may_not_take_off_here(now)
+                || estimate.airspeed_mps < self.config.envelope.min_airspeed_mps
+                    && !self.begins_on_runway()
+                    && !(is_far_from_level(estimate) && self.may_engage_in_upset()),
         )
         .with(
             flags::UPSET,
@@ -85,6 +86,7 @@ impl Autopilot {
         self.release = None;
         self.actuation.engage(&standing);
         self.take_over(&standing);
+        self.begin_straight_trims();
         self.begin_watching_for_upsets();
     }
 

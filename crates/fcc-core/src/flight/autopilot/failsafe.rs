@@ -138,13 +138,10 @@ impl Autopilot {
         if held.lateral == Lateral::Trims {
             self.setpoints.pitch_rad = 0.0;
             self.recovery.end();
-            let throttle = if silent {
-                self.last.throttle
-            } else if idle {
-                0.0
-            } else {
-                self.airspeed.trim()
-            };
+            if silent {
+                return self.silent_trims();
+            }
+            let throttle = if idle { 0.0 } else { self.airspeed.trim() };
             return Surfaces {
                 throttle,
                 ..self.trims()

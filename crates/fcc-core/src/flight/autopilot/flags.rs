@@ -19,7 +19,7 @@ pub const ALTITUDE: Flags = Flags::bit(5);
 pub const PLANT_JUMPED: Flags = Flags::bit(6);
 /// The simulator is paused.
 pub const PLANT_PAUSED: Flags = Flags::bit(7);
-/// The airspeed is too low for flight.
+/// The airspeed is too low for flight; or it rolls, or stands where no take-off begins.
 pub const TOO_SLOW: Flags = Flags::bit(8);
 /// Bank or pitch is too large for engaging.
 pub const UPSET: Flags = Flags::bit(9);
@@ -188,7 +188,7 @@ pub(super) const NAMES: [&str; 64] = [
     "altitude is missing or too old",
     "simulator time jumped",
     "simulator is paused",
-    "airspeed is below the floor: fly faster than envelope.min_airspeed_kt",
+    "airspeed is below the floor: fly faster than envelope.min_airspeed_kt; a take-off begins standing, where its runway begins",
     "bank or pitch is beyond 60 degrees, or it spins",
     "simulator time has stopped",
     "engage switch is silent",

@@ -11,7 +11,7 @@ impl Autopilot {
     /// The outputs of a tick.
     pub(super) fn fly(&mut self, now: Time) -> Surfaces {
         if self.is_silent(now) {
-            return self.trims();
+            return self.silent_trims();
         }
         if !self.renewed_since.is_never() {
             // Some of the estimate is from before the loss.
@@ -24,6 +24,7 @@ impl Autopilot {
         if self.accepted.body_rates.value != self.kept_trims.found_with && !self.jammed.is_any() {
             self.keep_trims();
         }
+        self.learn_straight_trims(&estimate, dt_s);
         let outputs = self.flown(now, &estimate, &envelope, schedule, dt_s);
         let outputs = self.around_jammed(outputs, &estimate, dt_s);
         self.with_trim(now, outputs, Flags::NONE)

@@ -149,6 +149,12 @@ impl GroundMotion {
         )
     }
 
+    /// Whether it moves over the ground, by a velocity that is measured: without one, wind is
+    /// not told from motion.
+    pub(super) fn moves(&self, now: Time) -> bool {
+        now.since(self.velocity_taken) <= LONGEST_AGE && self.speed_mps() > STANDS_MPS
+    }
+
     /// Standing, the range finder shows `on_wheels_m`; whether it begins to show something
     /// else. In motion a switch that shows weight may be wrong.
     pub(super) fn check_range(&mut self, on_wheels_m: f64) -> bool {

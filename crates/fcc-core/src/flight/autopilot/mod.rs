@@ -36,6 +36,7 @@ mod routing;
 mod runway;
 mod scale;
 mod sensor_health;
+mod silence;
 mod throttle_demand;
 mod upset;
 mod whereabouts;
@@ -69,6 +70,7 @@ pub use routing::ITEM_REACHED;
 use runway::RunwayControl;
 pub use runway::{gives_up_runway, touches_ground};
 pub use scale::Scale;
+use silence::StraightTrims;
 use whereabouts::Whereabouts;
 
 use super::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop, Recovery};
@@ -180,6 +182,7 @@ pub struct Autopilot {
     /// The last outputs.
     last: Surfaces,
     kept_trims: KeptTrims,
+    straight: StraightTrims,
     degraded: Degraded,
     following: Following,
     jammed: Jammed,
