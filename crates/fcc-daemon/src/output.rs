@@ -3,17 +3,16 @@
 //! Everything is printed through here, because `print!` and `eprint!` panic
 //! when the output cannot be written: a pipe whose reader has left, a full
 //! disk, a closed terminal. Here a result that cannot be printed gives an exit
-//! code, and a message that cannot be printed is dropped.
+//! code, and a message that cannot be printed is dropped. While a flight is flown in real
+//! time, [`Printer`] keeps it from waiting for its output.
+
+mod printer;
 
 use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, ErrorKind, Write};
 use std::os::fd::AsFd as _;
 use std::os::unix::fs::FileTypeExt as _;
-use std::sync::mpsc::{SyncSender, sync_channel};
-use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::thread::{self, JoinHandle};
-use std::time::{Duration, Instant};
 
 use fcc_telemetry::{printable, printable_json};
 use nix::errno::Errno;
@@ -21,10 +20,11 @@ use serde::Serialize;
 
 use crate::exit::Exit;
 use crate::process::standard_output;
+pub(crate) use printer::{Printer, wait_until_printed};
 
 /// Prints a result. Returns `exit`, or a failure if that was a success and the
 /// result could not be printed. A reader that has left (`| head -1`, or a closed
-/// terminal) is no failure.
+/// terminal), or that no longer reads at the end of a flight, is no failure.
 pub(crate) fn result(text: impl Display, exit: Exit) -> Exit {
     bytes(line(text).as_bytes(), exit)
 }
@@ -39,7 +39,12 @@ pub(crate) fn json<T: Serialize>(value: &T, exit: Exit) -> Exit {
 
 /// Prints a result as bytes.
 pub(crate) fn bytes(bytes: &[u8], exit: Exit) -> Exit {
-    printed(StandardOutput.write_all(bytes), exit)
+    let bytes = bytes.to_vec();
+    match printer::in_time(move || StandardOutput.write_all(&bytes)) {
+        Some(printing) => printed(printing, exit),
+        // As a reader that has left.
+        None => exit,
+    }
 }
 
 /// Standard output without what [`io::Stdout`] does: it takes an output that is not
@@ -87,10 +92,8 @@ fn not_printed(error: &dyn Display, exit: Exit) -> Exit {
 
 /// Prints a message.
 pub(crate) fn message(text: impl Display) {
-    let line = line(text);
-    match background().as_mut() {
-        Some(lines) => lines.give(line),
-        None => write(&line),
+    if let Err(line) = printer::queued(line(text)) {
+        write(&line);
     }
 }
 
@@ -124,74 +127,10 @@ fn write(line: &str) {
     let _ = io::stderr().write_all(line.as_bytes());
 }
 
-/// Messages that may wait while the terminal is blocked: some minutes of
-/// status.
-const WAITING: usize = 256;
-/// How long the end of a flight waits for printing.
-const PATIENCE: Duration = Duration::from_secs(1);
-
-static BACKGROUND: Mutex<Option<Queue>> = Mutex::new(None);
-
-fn background() -> MutexGuard<'static, Option<Queue>> {
-    BACKGROUND.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Until the returned value is dropped, messages are printed by a separate
-/// thread, so that a blocked terminal does not delay the caller. Messages that
-/// do not fit into the queue are dropped, and their number is printed later.
-pub(crate) fn in_background() -> Option<Background> {
-    let (to, from) = sync_channel::<String>(WAITING);
-    // Without the thread, printing waits for the terminal.
-    let printer = thread::Builder::new()
-        .name("fccd-printer".to_owned())
-        // With locked memory, all of a stack is resident.
-        .stack_size(256 << 10)
-        .spawn(move || from.iter().for_each(|line| write(&line)))
-        .ok()?;
-    *background() = Some(Queue { to, dropped: 0 });
-    Some(Background { printer })
-}
-
-/// The queue of messages for the thread that prints them.
-struct Queue {
-    to: SyncSender<String>,
-    dropped: u64,
-}
-
-impl Queue {
-    fn give(&mut self, line: String) {
-        if self.dropped > 0 {
-            let gap = format!(
-                "{} lines were dropped here: the terminal was blocked\n",
-                self.dropped
-            );
-            if self.to.try_send(gap).is_err() {
-                self.dropped += 1;
-                return;
-            }
-            self.dropped = 0;
-        }
-        if self.to.try_send(line).is_err() {
-            self.dropped += 1;
-        }
-    }
-}
-
-/// The thread that prints messages.
-pub(crate) struct Background {
-    printer: JoinHandle<()>,
-}
-
-impl Drop for Background {
-    /// Waits for a limited time until all are printed.
-    fn drop(&mut self) {
-        // The thread ends with its last sender.
-        *background() = None;
-        let begun = Instant::now();
-        while !self.printer.is_finished() && begun.elapsed() < PATIENCE {
-            thread::sleep(Duration::from_millis(1));
-        }
-    }
+/// Until the returned value is dropped, nothing that is printed keeps the caller waiting,
+/// except for a limited time at the end.
+pub(crate) fn in_background() -> Option<Printer> {
+    Printer::begin(write)
 }
 
 #[cfg(test)]
@@ -205,22 +144,5 @@ mod tests {
         let text = "a\nb.toml: wrong\nc\nd.toml: wrong".to_owned();
         let said = "a\\nb.toml: wrong\nc\\nd.toml: wrong";
         assert_eq!(in_one_line(text, words), said);
-    }
-
-    #[test]
-    fn dropped_lines_are_counted_where_they_are_missing() {
-        let (to, from) = sync_channel(2);
-        let mut lines = Queue { to, dropped: 0 };
-        for line in ["a", "b", "c", "d"] {
-            lines.give(line.to_owned());
-        }
-        let printed: Vec<String> = from.try_iter().collect();
-        assert_eq!(printed, ["a", "b"]);
-        lines.give("e".to_owned());
-        let printed: Vec<String> = from.try_iter().collect();
-        assert_eq!(
-            printed,
-            ["2 lines were dropped here: the terminal was blocked\n", "e"]
-        );
     }
 }

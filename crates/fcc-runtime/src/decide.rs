@@ -67,15 +67,7 @@ impl<C: Controller> Machine<C> {
         }
         let lost_control = before.holds_control() && self.state != before;
 
-        let is_by_faults = matches!(self.state, State::Failsafe(Cause::Faults(_)));
-        if is_by_faults && self.controller.has_recovered() && !self.overruns.are_too_many() {
-            self.apply_input(Input::Recovered, tick);
-        } else if is_by_faults
-            && self.controller.failsafe_goes_on()
-            && !self.failsafe_hold.is_zero()
-        {
-            self.failsafe_since = tick.scheduled;
-        }
+        self.recover_or_go_on(tick);
         if matches!(self.state, State::Failsafe(_))
             && tick.scheduled.since(self.failsafe_since) >= self.failsafe_hold
         {
@@ -93,6 +85,30 @@ impl<C: Controller> Machine<C> {
             self.telemetry
                 .events
                 .push(tick, EventKind::SwitchedOnUnseen);
+        }
+    }
+
+    /// Ends a failsafe whose cause is over, or lets it go on longer than configured.
+    fn recover_or_go_on(&mut self, tick: &Tick) {
+        let State::Failsafe(cause) = self.state else {
+            return;
+        };
+        let (controller, overruns) = (&self.controller, &self.overruns);
+        let (is_over, goes_on) = match cause {
+            Cause::Faults(_) => (!overruns.are_too_many(), controller.failsafe_goes_on()),
+            Cause::Overrun => (
+                overruns.are_over(tick),
+                !overruns.is_long() && controller.is_unattended(),
+            ),
+            Cause::InvalidOutput => (false, false),
+        };
+        if is_over && controller.has_recovered() {
+            if cause == Cause::Overrun {
+                self.overruns.recover(tick);
+            }
+            self.apply_input(Input::Recovered, tick);
+        } else if goes_on && !self.failsafe_hold.is_zero() {
+            self.failsafe_since = tick.scheduled;
         }
     }
 

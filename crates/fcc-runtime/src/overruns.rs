@@ -56,6 +56,16 @@ impl Budget {
 /// After this long without one, further overruns are reported again.
 const OVER_AFTER: Duration = Duration::from_secs(1);
 
+/// A failsafe because of overruns is over after this long without a long row.
+const CALM_AFTER: Duration = Duration::from_secs(2);
+/// A row is long from this part of those on that lead to failsafe: a kernel without real-time
+/// patches makes shorter ones all the time.
+const LONG_PART: u64 = 4;
+/// At most [`MOST_RECOVERIES`] such failsafes end by themselves within this time: a machine
+/// that is too slow for its loop does not end and begin a failsafe again and again.
+const RECOVERIES_WITHIN: Duration = Duration::from_secs(60);
+const MOST_RECOVERIES: usize = 3;
+
 /// Overruns with less than [`OVER_AFTER`] between them: reported as one.
 struct Series {
     count: u64,
@@ -74,6 +84,10 @@ pub(crate) struct Overruns {
     row: u64,
     total: u64,
     series: Option<Series>,
+    /// The last tick with a long row.
+    long_at: Time,
+    /// When failsafes last ended by themselves, the earliest first.
+    recoveries: [Time; MOST_RECOVERIES],
 }
 
 impl Overruns {
@@ -93,6 +107,8 @@ impl Overruns {
             row: 0,
             total: 0,
             series: None,
+            long_at: Time::NEVER,
+            recoveries: [Time::NEVER; MOST_RECOVERIES],
         }
     }
 
@@ -101,7 +117,7 @@ impl Overruns {
         if tick.missed == 0 {
             return;
         }
-        self.row = self.row.saturating_add(tick.missed);
+        self.lengthen(tick.missed, tick);
         // Since the first deadline that was missed.
         let late_ns = tick.lateness().as_nanos() as u64;
         let overrun = EventKind::Overrun {
@@ -120,7 +136,7 @@ impl Overruns {
             self.perhaps_over(tick, events);
             return;
         };
-        self.row = self.row.saturating_add(1);
+        self.lengthen(1, tick);
         self.total += 1;
         let overrun = EventKind::Overrun {
             of,
@@ -129,6 +145,13 @@ impl Overruns {
             longest: stages.longest(),
         };
         self.note(tick, 1, overrun, events);
+    }
+
+    fn lengthen(&mut self, by: u64, tick: &Tick) {
+        self.row = self.row.saturating_add(by);
+        if self.is_long() {
+            self.long_at = tick.scheduled;
+        }
     }
 
     /// Which budget was exceeded and its length: a stage's before the whole
@@ -173,6 +196,24 @@ impl Overruns {
     /// failsafe.
     pub(crate) const fn are_too_many(&self) -> bool {
         self.failsafe_after > 0 && self.row >= self.failsafe_after
+    }
+
+    /// Whether so many ticks in a row overran or were missed that those which led to failsafe
+    /// go on.
+    pub(crate) const fn is_long(&self) -> bool {
+        self.failsafe_after > 0 && self.row.saturating_mul(LONG_PART) >= self.failsafe_after
+    }
+
+    /// Whether a failsafe because of them may end by itself.
+    pub(crate) fn are_over(&self, tick: &Tick) -> bool {
+        tick.scheduled.since(self.long_at) >= CALM_AFTER
+            && tick.scheduled.since(self.recoveries[0]) >= RECOVERIES_WITHIN
+    }
+
+    /// Such a failsafe ends by itself.
+    pub(crate) fn recover(&mut self, tick: &Tick) {
+        self.recoveries.rotate_left(1);
+        self.recoveries[MOST_RECOVERIES - 1] = tick.scheduled;
     }
 
     /// Ticks that overran since the start.

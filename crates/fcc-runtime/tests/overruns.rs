@@ -212,3 +212,98 @@ fn failsafe_by_overruns_ends_as_any_other() {
     let end = [change(Failsafe(Cause::Overrun), Standby), RELEASED];
     assert!(events.ends_with(&end), "{events:?}");
 }
+
+/// A standstill of 0.6 s before tick `number`, which is flown in failsafe.
+fn stand_still(bench: &mut Bench, number: u64) {
+    let late = Expiry {
+        missed: 24,
+        ..expiry(number)
+    };
+    let state = bench.machine.tick_again(late, took(1));
+    assert_eq!(state, Failsafe(Cause::Overrun));
+}
+
+/// After how many ticks on time the failsafe before tick `number` ends, and in what.
+fn ends_after(bench: &mut Bench, number: u64) -> (u64, State) {
+    let states = (number..number + 1_000).map(|number| tick(bench, number, 1));
+    let ended = states.enumerate();
+    let mut ended = ended.skip_while(|(_, state)| *state == Failsafe(Cause::Overrun));
+    let (before, state) = ended.next().expect("it ends");
+    (before as u64 + 1, state)
+}
+
+fn held_for_5_s() -> LoopConfig {
+    LoopConfig {
+        failsafe_hold: Duration::from_secs(5),
+        ..after(20)
+    }
+}
+
+#[test]
+fn a_standstill_is_flown_on_after_two_seconds_on_time() {
+    let mut bench = Bench::engaged(&held_for_5_s());
+    bench.stage.set(|s| s.has_recovered = true);
+    stand_still(&mut bench, 100);
+    // 80 periods of 25 ms.
+    assert_eq!(ends_after(&mut bench, 101), (80, Engaged));
+    assert_eq!(bench.stage.log().held, [true, true]);
+    assert!(bench.stage.log().calls.contains(&"recover"));
+}
+
+/// A machine that is too slow for its loop does not end and begin a failsafe again and again.
+#[test]
+fn the_fourth_standstill_of_a_minute_is_not_flown_on() {
+    let mut bench = Bench::engaged(&held_for_5_s());
+    bench.stage.set(|s| s.has_recovered = true);
+    for number in [100, 300, 500] {
+        stand_still(&mut bench, number);
+        assert_eq!(ends_after(&mut bench, number + 1), (80, Engaged));
+    }
+    stand_still(&mut bench, 700);
+    // 200 periods of 25 ms.
+    assert_eq!(ends_after(&mut bench, 701), (200, Standby));
+    // A minute after the first of three was flown on, another is.
+    bench.command(LoopCommand::Engage);
+    assert_eq!(tick(&mut bench, 2_500, 1), Engaged);
+    stand_still(&mut bench, 2_600);
+    assert_eq!(ends_after(&mut bench, 2_601), (80, Engaged));
+}
+
+#[test]
+fn ticks_that_go_on_overrunning_are_not_flown_on() {
+    let mut bench = Bench::engaged(&held_for_5_s());
+    bench
+        .stage
+        .set(|s| (s.has_recovered, s.unattended) = (true, true));
+    stand_still(&mut bench, 100);
+    for number in 101..300 {
+        // Five of each six: a quarter of those that lead to failsafe.
+        let total_ms = if number % 6 == 0 { 1 } else { 26 };
+        let state = tick(&mut bench, number, total_ms);
+        assert_eq!(state, Failsafe(Cause::Overrun), "{number}");
+    }
+    // One that is late by itself is not in the way.
+    for number in 300..380 {
+        let total_ms = if number % 40 == 0 { 26 } else { 1 };
+        tick(&mut bench, number, total_ms);
+    }
+    assert_eq!(bench.machine.state(), Engaged);
+}
+
+#[test]
+fn without_anybody_overruns_that_have_ended_are_no_reason_to_release() {
+    let mut bench = Bench::engaged(&held_for_5_s());
+    bench.stage.set(|s| s.unattended = true);
+    stand_still(&mut bench, 100);
+    for number in 101..2_000 {
+        assert_eq!(tick(&mut bench, number, 1), Failsafe(Cause::Overrun));
+    }
+    // Those that have not are.
+    for number in 2_000..2_200 {
+        assert_eq!(tick(&mut bench, number, 26), Failsafe(Cause::Overrun));
+    }
+    for number in 2_200..2_210 {
+        tick(&mut bench, number, 26);
+    }
+    assert_eq!(bench.machine.state(), Standby);
+}

@@ -6,11 +6,14 @@
 //! set, it sends the release again.
 //!
 //! A write from before the release may arrive after it, late or doubled, and set
-//! an override again. So the overrides are read for [`LATE_WRITES`] after the
+//! an override again. So the overrides are read for [`DOUBLED_WRITES`] after the
 //! release, and released again unless another program set them: the yoke of
-//! that one moves to where this program did not put it.
+//! that one moves to where this program did not put it. In the first
+//! [`LATE_WRITES`] of it, and while one is set again, the controls count as held:
+//! the end of the program then waits until they stay free.
 
 use core::time::Duration;
+use std::net::SocketAddr;
 
 use fcc_core::framework::Time;
 
@@ -30,6 +33,11 @@ const MOST_TIMES: u8 = 40;
 /// queue in a home router delays by up to about 2 s, and this is twice as much
 /// and a reserve.
 const LATE_WRITES: Duration = Duration::from_secs(5);
+/// A write may arrive once more this long after the release: a network that repeats old
+/// datagrams. One of 25 s was seen.
+const DOUBLED_WRITES: Duration = Duration::from_secs(60);
+/// In this time an override is released again so many times at most.
+const MOST_TIMES_AGAIN: u8 = 100;
 /// An override that is set again is released after this long, in which the yoke
 /// of another program moves, which writes it in each frame.
 const LOOKED_AT_FOR: Duration = Duration::from_millis(250);
@@ -53,8 +61,12 @@ pub(crate) struct ReleaseMonitor {
     since: Time,
     sent: Time,
     times: u8,
-    /// Until when a release of this program's may be undone by a late write.
-    undone_until: Time,
+    /// Until when a release of this program's may be undone by a late write, and by a doubled
+    /// one.
+    late_until: Time,
+    doubled_until: Time,
+    /// Where it was released.
+    simulator: Option<SocketAddr>,
     /// Since when an override is set again; never while none is.
     set_again: Time,
     /// Where the yoke was then.
@@ -68,7 +80,9 @@ impl ReleaseMonitor {
             since: Time::NEVER,
             sent: Time::NEVER,
             times: 0,
-            undone_until: Time::NEVER,
+            late_until: Time::NEVER,
+            doubled_until: Time::NEVER,
+            simulator: None,
             set_again: Time::NEVER,
             yoke: [None; 3],
         }
@@ -90,7 +104,7 @@ impl ReleaseMonitor {
             Control::ReleaseMonitor => return self.repeat(now, link, send),
             Control::Free => {
                 self.since = Time::NEVER;
-                if !self.undone_until.is_never() && self.is_undone(now, link) {
+                if !self.doubled_until.is_never() && self.is_undone(now, link) {
                     link.set_releasing_if_free();
                     return self.repeat(now, link, send);
                 }
@@ -122,10 +136,13 @@ impl ReleaseMonitor {
             self.times = 0;
             // What an earlier program left set was written by that one.
             if !link.sent_yoke.is_empty() {
-                self.undone_until = now + LATE_WRITES;
+                self.late_until = now + LATE_WRITES;
+                self.doubled_until = now + DOUBLED_WRITES;
+                self.simulator = link.address.simulator();
                 link.set_may_be_undone(true);
             }
         }
+        let most_times = if again { MOST_TIMES_AGAIN } else { MOST_TIMES };
         let settled = self.since + SETTLED_AFTER;
         // An override without a readback does not exist in this simulator.
         let readback = OVERRIDES.map(|quantity| link.read_back.shown(quantity));
@@ -141,7 +158,7 @@ impl ReleaseMonitor {
         if all_clear {
             self.set_again = Time::NEVER;
             link.set_free_if_releasing();
-        } else if still_set && now.since(self.sent) >= AGAIN_AFTER && self.times < MOST_TIMES {
+        } else if still_set && now.since(self.sent) >= AGAIN_AFTER && self.times < most_times {
             self.sent = now;
             self.times += 1;
             return self.controls.release(send);
@@ -152,21 +169,29 @@ impl ReleaseMonitor {
     /// Whether an override is set again, not by another program, after a
     /// release that was confirmed.
     fn is_undone(&mut self, now: Time, link: &SharedState) -> bool {
+        if link.address.simulator() != self.simulator {
+            self.end_watch(link);
+            return false;
+        }
         let is_set = OVERRIDES
             .iter()
             .filter_map(|quantity| link.read_back.shown(*quantity))
             .any(|(value, at)| value >= 0.5 && now.since(at) < LOOKED_AT_FOR);
         if !is_set {
             self.set_again = Time::NEVER;
-            if now >= self.undone_until {
+            if now >= self.late_until {
+                link.set_may_be_undone(false);
+            }
+            if now >= self.doubled_until {
                 self.end_watch(link);
             }
             return false;
         }
+        link.set_may_be_undone(true);
         if self.set_again.is_never() {
             self.set_again = now;
         }
-        if self.times >= MOST_TIMES || self.is_moved_by_another(now, link) {
+        if self.times >= MOST_TIMES_AGAIN || self.is_moved_by_another(now, link) {
             self.end_watch(link);
             return false;
         }
@@ -188,7 +213,7 @@ impl ReleaseMonitor {
     }
 
     fn end_watch(&mut self, link: &SharedState) {
-        self.undone_until = Time::NEVER;
+        self.doubled_until = Time::NEVER;
         self.set_again = Time::NEVER;
         link.set_may_be_undone(false);
     }

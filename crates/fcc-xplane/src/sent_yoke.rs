@@ -3,8 +3,8 @@
 
 use core::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 
-/// Five seconds at 40 Hz; at a higher rate less.
-const MOST: usize = 200;
+/// Thirty seconds at 40 Hz; at a higher rate less.
+const MOST: usize = 1_200;
 /// X-Plane stores a written ratio as f32, as it was sent: the difference is a
 /// rounding error.
 const SAME: f32 = 1e-6;

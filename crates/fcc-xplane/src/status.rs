@@ -136,7 +136,7 @@ impl XPlaneStatus {
     }
 
     /// Where the controls are held, or their release is not yet confirmed, or
-    /// may still be undone by a late write: for 5 s.
+    /// may still be undone by a late write: for 5 s, and while one has undone it.
     pub fn held_at(&self) -> Option<SocketAddr> {
         let allowed = |at: &SocketAddr| self.link.address.is_allowed(*at);
         let held = self.link.is_held();

@@ -119,9 +119,15 @@ pub trait Controller: Send {
         false
     }
 
-    /// Whether a failsafe because of [`faults`](Self::faults) is over, and what
-    /// was done before is to be continued, by [`recover`](Self::recover). By
-    /// default it is never.
+    /// Whether nobody can take over: a failsafe because of overruns that have ended does not
+    /// end in a release, however long it has lasted. By default somebody can.
+    fn is_unattended(&self) -> bool {
+        false
+    }
+
+    /// Whether a failsafe is over as far as [`faults`](Self::faults) tell, and what
+    /// was done before is to be continued, by [`recover`](Self::recover). One because
+    /// of overruns goes on until these are over, too. By default it is never.
     fn has_recovered(&self) -> bool {
         false
     }

@@ -15,7 +15,7 @@ use super::outcome;
 use crate::cli::{FlyArgs, RecordingArgs};
 use crate::exit::Exit;
 use crate::observers::{Announcer, Beginning, Service, StatusLine, aircraft};
-use crate::output;
+use crate::output::{self, Printer};
 #[cfg(feature = "live")]
 use crate::process::own_program;
 use crate::process::{Process, tolerate};
@@ -32,11 +32,7 @@ pub(super) fn fly(args: &FlyArgs) -> Result<Exit, Failure> {
     use_plan(&mut config, args.plan.as_deref())?;
     let length_s = config.plan_length_s().filter(|_| config.flies_plan());
     let plan = Plan {
-        pace: if args.lockstep {
-            Pace::Lockstep
-        } else {
-            Pace::RealTime
-        },
+        pace: pace(args),
         length: match length_s.filter(|_| args.seconds.is_none()) {
             Some(length_s) => Length::Flown(length_s),
             None => Length::Engaged(
@@ -48,6 +44,26 @@ pub(super) fn fly(args: &FlyArgs) -> Result<Exit, Failure> {
     conduct(&config, as_given, plan, args.quiet, args.json)
 }
 
+/// The pace of `fccd fly`.
+pub(super) const fn pace(args: &FlyArgs) -> Pace {
+    if args.lockstep {
+        Pace::Lockstep
+    } else {
+        Pace::RealTime
+    }
+}
+
+/// Prepares the process for a flight, before its first message and its first thread. While
+/// the returned value lives, nothing waits for the output.
+pub(super) fn prepare(pace: Pace) -> Result<Option<Printer>, Failure> {
+    tolerate().map_err(|error| Failure::new(format_args!("signals cannot be caught: {error}")))?;
+    // In lockstep printing may wait: there is no real time.
+    Ok(match pace {
+        Pace::RealTime => output::in_background(),
+        Pace::Lockstep => None,
+    })
+}
+
 /// Flies a configuration and prints the result.
 pub(super) fn conduct(
     config: &Config,
@@ -56,7 +72,6 @@ pub(super) fn conduct(
     quiet: bool,
     json: bool,
 ) -> Result<Exit, Failure> {
-    tolerate().map_err(|error| Failure::new(format_args!("signals cannot be caught: {error}")))?;
     let names = config.host_names();
     let assembled = looking_up(&names, LONG, output::message, || assemble(config));
     let mut assembly = assembled.map_err(|error| {
@@ -79,8 +94,6 @@ pub(super) fn conduct(
         observers.push(Box::new(StatusLine::new(aircraft::describe)));
     }
     observers.push(Box::new(Service::from_environment()));
-    // In lockstep printing may wait: there is no real time.
-    let printer = (plan.pace == Pace::RealTime).then(output::in_background);
     let flown = fly_assembly(
         assembly,
         &config.tick,
@@ -88,7 +101,6 @@ pub(super) fn conduct(
         observers,
         &mut Process::new(config),
     );
-    drop(printer);
     let outcome = flown.map_err(|error| {
         let exit = match error {
             FlyError::Spawn(SpawnError::Realtime(_)) => Exit::RealtimeDenied,

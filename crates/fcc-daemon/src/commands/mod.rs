@@ -33,6 +33,7 @@ use std::path::Path;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, CommandFactory, Parser};
 use clap_complete::Shell;
+use fcc_flight::flight::Pace;
 use fcc_record::create_folder;
 
 use failure::Failure;
@@ -52,7 +53,7 @@ pub fn run() -> Exit {
         output::message(format_args!("fccd: SIGXFSZ cannot be caught: {error}"));
     }
     match Cli::try_parse() {
-        Ok(cli) => carry_out(cli.command).unwrap_or_else(|failure| failure.print(json)),
+        Ok(cli) => complete(cli.command, json),
         Err(error) if error.use_stderr() => Failure::usage(plain(error).render()).print(json),
         Err(help_or_version) => output::printed(help_or_version.print(), Exit::Success),
     }
@@ -78,6 +79,20 @@ fn plain(mut error: clap::Error) -> clap::Error {
         error.remove(ContextKind::Suggested);
     }
     error
+}
+
+/// Carries out a command and prints what came of it.
+fn complete(command: Action, json: bool) -> Exit {
+    let prepared = match &command {
+        Action::Fly(args) => fly::prepare(fly::pace(args)),
+        Action::Run(_) => fly::prepare(Pace::RealTime),
+        _ => Ok(None),
+    };
+    // Until the end: a failure is printed, too.
+    match prepared {
+        Ok(_printer) => carry_out(command).unwrap_or_else(|failure| failure.print(json)),
+        Err(failure) => failure.print(json),
+    }
 }
 
 fn carry_out(command: Action) -> Result<Exit, Failure> {

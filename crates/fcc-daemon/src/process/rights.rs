@@ -101,6 +101,8 @@ pub(crate) fn give_up(config: &Config) -> Result<(), RightsError> {
     output::message(format_args!(
         "was started as root, continues as user {name} (rights.user)"
     ));
+    // The thread that prints ends with this program.
+    output::wait_until_printed();
     if let Ok(program) = env::current_exe() {
         run_anew(&program, &user, run_folders);
     }

@@ -14,6 +14,7 @@ mod results;
 mod servos;
 mod setpoints;
 mod top;
+mod unread;
 mod usage;
 
 use std::process::{Child, Command, Stdio};

@@ -78,6 +78,10 @@ impl Controller for Pilot {
         self.autopilot.failsafe_goes_on()
     }
 
+    fn is_unattended(&self) -> bool {
+        self.autopilot.is_unattended()
+    }
+
     fn has_recovered(&self) -> bool {
         self.autopilot.has_recovered()
     }

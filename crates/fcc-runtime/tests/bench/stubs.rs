@@ -60,6 +60,10 @@ impl Controller for Stub {
         self.stage.script().goes_on
     }
 
+    fn is_unattended(&self) -> bool {
+        self.stage.script().unattended
+    }
+
     fn has_recovered(&self) -> bool {
         self.stage.script().has_recovered
     }

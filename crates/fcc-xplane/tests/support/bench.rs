@@ -67,10 +67,15 @@ impl Bench {
 
     /// A tick in which the loop also writes.
     pub fn fly(&mut self) -> Result<(), ActuatorFault> {
+        self.fly_with(&SURFACES)
+    }
+
+    /// The same, with these surfaces.
+    pub fn fly_with(&mut self, surfaces: &Surfaces) -> Result<(), ActuatorFault> {
         self.simulator.live(0.025);
         let tick = self.ticks.next();
         self.sensor.sample(&tick, &mut self.measurements).unwrap();
-        self.actuator.as_mut().unwrap().apply(&tick, &SURFACES)
+        self.actuator.as_mut().unwrap().apply(&tick, surfaces)
     }
 
     /// Reads until all subscriptions are active.

@@ -358,7 +358,8 @@ impl Autopilot {
     }
 
     /// Whether what was lost has been good for long enough. Whether the failsafe
-    /// ends then is for the loop to decide: one because of overruns does not.
+    /// ends then is for the loop to decide: one because of overruns goes on until
+    /// these are over.
     pub(super) fn is_good_again(&self) -> bool {
         let after = self.config.failsafe.recovered_after * self.degraded.repeated.factor();
         let good = Duration::from_secs_f64(self.degraded.good_s);

@@ -241,6 +241,10 @@ impl Controller for Autopilot {
         self.goes_on()
     }
 
+    fn is_unattended(&self) -> bool {
+        self.config.failsafe.end == FailsafeEnd::Glide
+    }
+
     fn has_recovered(&self) -> bool {
         self.is_good_again()
     }
