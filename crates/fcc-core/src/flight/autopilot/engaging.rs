@@ -86,6 +86,7 @@ impl Autopilot {
         self.actuation.engage(&standing);
         self.take_over(&standing);
         self.begin_watching_for_upsets();
+        self.begin_watching_directions(&standing);
     }
 
     /// Engages the loops with the present throttle and surfaces.
