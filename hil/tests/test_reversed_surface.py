@@ -1,4 +1,4 @@
-"""Ailerons and elevator that act the wrong way, or are exchanged, with JSBSim and the built-in one.
+"""Ailerons and elevator that act the wrong way, or are exchanged, with JSBSim: named, left alone.
 
 As by a servo whose direction is set wrongly, or two plugs that are exchanged. None of the law's
 constants was chosen on these aircraft and seeds (c172p, c172x, J3Cub and c182, seeds 1 to 3).
