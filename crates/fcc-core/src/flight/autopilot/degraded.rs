@@ -26,6 +26,9 @@ pub(super) mod otherwise {
     pub(in super::super) const HEIGHT_BELIEVED: u16 = 6;
     pub(in super::super) const VELOCITY_REFUSED: u16 = 7;
     pub(in super::super) const VELOCITY_USED: u16 = 8;
+    pub(in super::super) const REVERSED_AILERONS: u16 = 9;
+    pub(in super::super) const REVERSED_ELEVATOR: u16 = 10;
+    pub(in super::super) const REVERSED_BOTH: u16 = 11;
 }
 
 /// The notice with one of these items.

@@ -20,6 +20,7 @@ impl Autopilot {
         let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
         self.follow_outputs(&estimate);
         let (schedule, envelope) = (self.schedule(), self.envelope());
+        self.watch_directions(now, &estimate, schedule, dt_s);
         self.watch_surfaces(&estimate, schedule, dt_s);
         if self.accepted.body_rates.value != self.kept_trims.found_with && !self.jammed.is_any() {
             self.keep_trims();

@@ -3,7 +3,10 @@
 use core::fmt;
 
 use super::degraded::flown_otherwise;
-use super::degraded::otherwise::{AILERONS, ELEVATOR, RUDDER};
+use super::degraded::otherwise::{
+    AILERONS, ELEVATOR, REVERSED_AILERONS, REVERSED_BOTH, REVERSED_ELEVATOR, RUDDER,
+};
+use super::reversed::Reversed;
 use super::{Autopilot, flags};
 use crate::blocks::LowPass;
 use crate::flight::Surfaces;
@@ -22,15 +25,15 @@ const MOST_BANK_RAD: f64 = 0.262;
 const USUAL_S: f64 = 20.0;
 /// Slower than this times the stalling speed nothing is judged: a wing that stalls does not
 /// answer, either.
-const LEAST_STALL_RATIO: f64 = 1.15;
+pub(super) const LEAST_STALL_RATIO: f64 = 1.15;
 
 /// Nothing is judged for so long after the engagement, a recovery, a stall or a contact with the
 /// ground, s: trims are found anew, and wheels that bounce hold the pitch.
 const SETTLED_S: f64 = 20.0;
 /// With a surface that does not move the aircraft the bank is off by this, rad (6°), or the
 /// pitch, rad (4°), for this time, s: what is sluggish follows.
-const BANK_OFF_RAD: f64 = 0.105;
-const PITCH_OFF_RAD: f64 = 0.07;
+pub(super) const BANK_OFF_RAD: f64 = 0.105;
+pub(super) const PITCH_OFF_RAD: f64 = 0.07;
 const OFF_S: f64 = 0.5;
 
 /// A reversed rudder shows within this time after the ailerons seemed to be jammed by it, s.
@@ -54,6 +57,8 @@ pub(super) struct Jammed {
     /// The trims of ailerons and elevator before they were found to be jammed.
     aileron_trim: Option<f64>,
     elevator_trim: Option<f64>,
+    /// What moves the aircraft the wrong way is flown without, too.
+    pub(super) reversed: Reversed,
     by_rudder: BankByRudder,
     by_throttle: ClimbByThrottle,
     reversed_rudder: ReversedRudder,
@@ -77,6 +82,7 @@ impl Jammed {
             throttle: LowPass::new(USUAL_S),
             aileron_trim: None,
             elevator_trim: None,
+            reversed: Reversed::new(),
             by_rudder: BankByRudder::default(),
             by_throttle: ClimbByThrottle::default(),
             reversed_rudder: ReversedRudder::new(),
@@ -93,6 +99,19 @@ impl Jammed {
     /// Whether any surface is not used as usual.
     const fn has_left_one(&self) -> bool {
         self.is_any() || self.rudder_stays.is_some()
+    }
+
+    /// Flies without surfaces that stay where they are given, since the aircraft was trimmed
+    /// with `standing`.
+    pub(super) const fn flies_without(
+        &mut self,
+        aileron: Option<f64>,
+        elevator: Option<f64>,
+        standing: &Surfaces,
+    ) {
+        (self.aileron_trim, self.elevator_trim) = (aileron, elevator);
+        self.rudder.reset(standing.rudder);
+        self.throttle.reset(standing.throttle);
     }
 
     pub(super) const fn is_elevator(&self) -> bool {
@@ -130,12 +149,34 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> Option<fmt::
         RUDDER => {
             "the rudder turns the aircraft the other way: it stays where it was, until the release"
         }
+        REVERSED_AILERONS => {
+            "the ailerons move the aircraft the wrong way: check the servo's direction; they stay \
+             centred, banking by the rudder, 15° at most, until the release"
+        }
+        REVERSED_ELEVATOR => {
+            "the elevator moves the aircraft the wrong way: check the servo's direction; it stays \
+             centred, climbing and descending by the throttle, until the release"
+        }
+        REVERSED_BOTH => {
+            "ailerons and elevator move the aircraft the wrong way, or are exchanged: check the \
+             servos' directions and outputs; both stay centred, flying by rudder and throttle \
+             until the release"
+        }
         _ => return None,
     };
     Some(f.write_str(text))
 }
 
 impl Autopilot {
+    /// The rates that are expected of a full aileron and elevator, rad/s.
+    pub(super) fn expected_radps(&self, estimate: &Estimate, schedule: Schedule) -> [f64; 2] {
+        let roll = 1.0 / (schedule.rate * self.config.heading.aileron_per_roll_rate).max(1e-3);
+        // The load of a unit of elevator turns the path by g/V for each g.
+        let per_g = (schedule.moment * self.config.altitude.elevator_per_g).max(1e-3);
+        let pitch = GRAVITY_MPS2 / estimate.true_airspeed_mps.max(1.0) / per_g;
+        [roll, pitch]
+    }
+
     /// Compares what ailerons and elevator were commanded with how the aircraft moves.
     pub(super) fn watch_surfaces(&mut self, estimate: &Estimate, schedule: Schedule, dt_s: f64) {
         let stall_mps = self.config.envelope.stall_airspeed_mps;
@@ -162,7 +203,9 @@ impl Autopilot {
         if is_reversed && jammed.rudder_stays.is_none() && jammed.left_s < ANOTHER_WITHIN_S {
             jammed.rudder_stays = Some(jammed.rudder.output());
             // Ailerons that it acted against seemed to be jammed.
-            jammed.aileron_trim = None;
+            if !jammed.reversed.is_aileron() {
+                jammed.aileron_trim = None;
+            }
             self.news = Some(flown_otherwise(RUDDER));
         }
         jammed.judged_s += dt_s;
@@ -173,13 +216,12 @@ impl Autopilot {
         if jammed.has_left_one() {
             return;
         }
+        let full_radps = self.expected_radps(estimate, schedule);
+        let jammed = &mut self.jammed;
         let (sent, rates, gusts) = (&self.last, estimate.body_rates, estimate.gust_load);
         jammed.rudder.step(sent.rudder, dt_s);
         jammed.throttle.step(sent.throttle, dt_s);
-        let roll = 1.0 / (schedule.rate * self.config.heading.aileron_per_roll_rate).max(1e-3);
-        // The load of a unit of elevator turns the path by g/V for each g.
-        let per_g = (schedule.moment * self.config.altitude.elevator_per_g).max(1e-3);
-        let pitch = GRAVITY_MPS2 / estimate.true_airspeed_mps.max(1.0) / per_g;
+        let [roll, pitch] = full_radps;
         // While the trim moves, it takes the place of the elevator.
         if jammed.trim != sent.elevator_trim {
             jammed.trim = sent.elevator_trim;

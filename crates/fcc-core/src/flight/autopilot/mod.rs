@@ -32,6 +32,7 @@ mod refusal;
 mod release;
 mod replacing;
 mod resume;
+mod reversed;
 mod routing;
 mod runway;
 mod scale;
@@ -322,7 +323,7 @@ impl Controller for Autopilot {
 
     fn control(&mut self, tick: &Tick, _measurements: &Measurements) -> Surfaces {
         let outputs = self.fly(tick.woke);
-        self.last = self.with_gear(outputs);
+        self.last = self.with_gear(self.around_reversed(outputs));
         self.last
     }
 
@@ -348,7 +349,8 @@ impl Controller for Autopilot {
             gear: self.gear_in_failsafe(stops.is_some()),
             ..stops.unwrap_or(held)
         };
-        self.last = self.with_trim(tick.woke, outputs, lost);
+        let outputs = self.with_trim(tick.woke, outputs, lost);
+        self.last = self.around_reversed(outputs);
         self.last
     }
 
