@@ -39,6 +39,8 @@ from .state import Controls
 from .units import KT_TO_MPS
 
 AIRSPEED = "sim/flightmodel/position/indicated_airspeed"
+TIME = "sim/network/misc/network_time_sec"
+"""s by the board's clock: by it the computer tells a message that arrives late from a new one."""
 DIFFERENTIAL_PRESSURE = "fccd/servo_board/differential_pressure_pa"
 _THROTTLE = f"{THROTTLE_USE}[0]"
 _WHEELS = (FLAPS, LEFT_BRAKE, RIGHT_BRAKE, GEAR)
@@ -217,7 +219,8 @@ class ServoBoard:
         for index, subscription in self._subscriptions.items():
             if now_s - subscription.sent_s + 0.5 * _PERIOD_S >= subscription.period_s:
                 subscription.sent_s = now_s
-                value = self._value(subscription.path, readings)
+                path = subscription.path
+                value = now_s if path == TIME else self._value(path, readings)
                 if value is not None and math.isfinite(value):
                     pairs.append(struct.pack("<if", index, value))
         return b"RREF," + b"".join(pairs) if pairs else None
@@ -245,7 +248,7 @@ class ServoBoard:
         )
 
     def _names(self) -> set[str]:
-        names = {AIRSPEED, DIFFERENTIAL_PRESSURE, self._switch, _THROTTLE}
+        names = {TIME, AIRSPEED, DIFFERENTIAL_PRESSURE, self._switch, _THROTTLE}
         return names | set(YOKE) | set(_WHEELS) | set(self._overrides)
 
     def _value(self, path: str, readings: Readings) -> float | None:

@@ -93,7 +93,9 @@ def slow(fccd: Path, scratch: Path) -> Flown:
 
 
 def one_of_two(fccd: Path, scratch: Path) -> Flown:
-    """Measure by two simulators, and end the preferred one: the other is flown.
+    """Measure by two simulators, and end the preferred one: the other is flown for a second.
+
+    Then the switch that engaged is silent, whatever the other's says.
 
     Before that the preferred one is silent for a moment, with its switch off and the other's on,
     and its altitude jumps by 30 m.
@@ -108,7 +110,7 @@ def one_of_two(fccd: Path, scratch: Path) -> Flown:
             flown.write(ENGAGE_SWITCH, 1.0)
             other.set_mode(Mode.FROZEN)
             daemon.wait_for("from X-Plane 2 instead of X-Plane")
-            # Its switch may be the last quantity that is read from the other one.
+            # Longer, in case not all quantities are read from the other one at once.
             time.sleep(0.3)
             other.set_mode(Mode.RUNNING)
             daemon.wait_for("from X-Plane instead of X-Plane 2")
@@ -124,8 +126,8 @@ def one_of_two(fccd: Path, scratch: Path) -> Flown:
             preferred.close()
             while "airspeed" not in daemon.wait_for("from X-Plane 2 instead of X-Plane"):
                 pass
-            for _ in range(3):
-                assert "engaged" in daemon.wait_for("heading")
+            assert "engage switch is silent" in daemon.wait_for("engaged -> failsafe")
+            daemon.wait_for("failsafe -> standby")
             ending = daemon.end(signal.SIGTERM)
             assert_released(flown)
     return Flown.of(ending, scratch / "recordings")
@@ -243,12 +245,23 @@ def test_a_replay_is_identical(fccd: Path, flights: dict[str, Flown], name: str)
 
 def test_one_of_two_simulators_is_lost_and_the_other_one_flown(flights: dict[str, Flown]) -> None:
     flown = flights["two"]
-    assert flown.ending.exit_code == SUCCESS
-    assert flown.ending.states == ["standby -> engaged", "engaged -> stopped"]
+    assert flown.ending.exit_code == FAILSAFE
+    assert flown.ending.states == [
+        "standby -> engaged",
+        "engaged -> failsafe",
+        "failsafe -> standby",
+        "standby -> stopped",
+    ]
     readings = [record.measurements.airspeed_mps for record in flown.records]
     engaged = next(n for n, record in enumerate(flown.records) if record.state.phase == ENGAGED)
-    switches = [record.measurements.engage_switch for record in flown.records[:engaged]]
-    assert any(switch.source == 1 and switch.value == 1 for switch in switches)
+    switches = [record.measurements.engage_switch for record in flown.records]
+    # Once the preferred one has delivered its switch, never again the other's.
+    owned = next(n for n, switch in enumerate(switches) if switch.source == 0 and switch.taken_ns)
+    assert owned < engaged
+    assert {switch.source for switch in switches[owned:]} == {0}
+    silent = flown.failsafes[0]
+    silent_s = (flown.records[silent].tick.woke_ns - switches[silent].taken_ns) * NS
+    assert 1.0 < silent_s < 1.0 + AT_ONCE_S
     changed = engaged + [reading.source for reading in readings[engaged:]].index(1)
     assert changed > engaged
     assert {reading.source for reading in readings[changed:]} == {1}

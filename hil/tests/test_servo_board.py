@@ -151,6 +151,13 @@ def test_readings_are_sent_as_they_are_requested() -> None:
     assert pairs(board.poll(1.02, Readings(engage_switch=False))) == {2: 0.0}
 
 
+def test_a_message_has_the_time_at_which_it_was_made() -> None:
+    board = ServoBoard()
+    assert board.receive(0.0, "line", rref(50, 4, "sim/network/misc/network_time_sec"))
+    assert pairs(board.poll(12.5, Readings())) == {4: 12.5}
+    assert not board.receive(12.5, "line", dref("sim/network/misc/network_time_sec", 1.0))
+
+
 def test_while_it_is_held_no_other_computer_is_heard() -> None:
     board = held()
     assert not board.receive(0.1, "another", dref(OVERRIDE_JOYSTICK, 0.0))

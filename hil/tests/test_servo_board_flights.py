@@ -5,17 +5,24 @@ Attitude, heading and altitude come from the stand-in, as from sensors of the co
 
 from __future__ import annotations
 
+import heapq
+import random
+import select
 import signal
+import socket
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 from daemon_under_test import DaemonUnderTest, start, wait_until
 
 from fcc_hil.board_link import Change
 from fcc_hil.cockpit import ENGAGE_SWITCH
+from fcc_hil.faults import Faults
 from fcc_hil.pattern import TimedPattern
 from fcc_hil.process import StandInProcess
 from fcc_hil.score import score
@@ -25,26 +32,90 @@ from fcc_hil.state import Controls
 from fcc_hil.truth import Truth
 
 CENTRED = Controls()
+LATEST_S = 4.0
+"""So late a message arrives again at most."""
 WAYS = pytest.mark.parametrize("way", ["serial", "udp"])
+
+
+class RepeatingLink:
+    """Between a daemon and the board: what the board sends may arrive again, much later."""
+
+    def __init__(self, board_port: int, faults: Faults) -> None:
+        self._sockets = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(2)]
+        for end in self._sockets:
+            end.bind(("127.0.0.1", 0))
+        self.port: int = self._sockets[0].getsockname()[1]
+        self._board = ("127.0.0.1", board_port)
+        self._share = faults.duplicate
+        self._random = random.Random(1)
+        self._is_cut = False
+        self._runs = True
+        self._thread = threading.Thread(target=self._serve, daemon=True)
+        self._thread.start()
+
+    def cut_back(self) -> None:
+        """Let nothing of the board's arrive any more."""
+        self._is_cut = True
+
+    def close(self) -> None:
+        self._runs = False
+        self._thread.join()
+        for end in self._sockets:
+            end.close()
+
+    def _serve(self) -> None:
+        near, far = self._sockets
+        daemon = None
+        late: list[tuple[float, bytes]] = []
+        while self._runs:
+            ready, _, _ = select.select(self._sockets, [], [], 0.005)
+            now_s = time.monotonic()
+            back = []
+            if near in ready:
+                message, daemon = near.recvfrom(2_048)
+                far.sendto(message, self._board)
+            if far in ready:
+                message = far.recv(2_048)
+                back.append(message)
+                if self._random.random() < self._share:
+                    heapq.heappush(late, (now_s + self._random.uniform(0.5, LATEST_S), message))
+            while late and late[0][0] <= now_s:
+                back.append(heapq.heappop(late)[1])
+            for message in back:
+                if daemon is not None and not self._is_cut:
+                    near.sendto(message, daemon)
 
 
 class Flight:
     """A daemon, a board and an aircraft."""
 
-    def __init__(self, fccd: Path, scratch: Path, way: str, guidance: str) -> None:
+    def __init__(
+        self,
+        fccd: Path,
+        scratch: Path,
+        way: str,
+        guidance: str,
+        faults: Faults | None = None,
+        other_switch: str = "no/such/switch",
+    ) -> None:
         self._fccd, self._scratch = fccd, scratch
         line = scratch / "ttyBOARD"
         board = str(line) if way == "serial" else "udp"
         self.aircraft = StandInProcess(Settings(port=0, board=board))
         port = self.aircraft.board_port()
+        self.network = None
+        if faults is not None:
+            self.network = RepeatingLink(port, faults)
+            port = self.network.port
         where = f'serial = "{line}"' if way == "serial" else f'address = "127.0.0.1:{port}"'
-        # The only switch is the board's; the simulator's airspeed replaces a lost one.
+        # The only switch is the board's, unless another is given; the simulator's airspeed
+        # replaces a lost one.
         self._config = scratch / "fccd.toml"
         self._config.write_text(
             f"[servo-board]\n{where}\n"
             '[[sensor]]\nkind = "servo-board"\n'
             f'[[sensor]]\nkind = "x-plane"\nsimulator = "127.0.0.1:{self.aircraft.port}"\n'
-            'engage_switch = "no/such/switch"\n'
+            f'engage_switch = "{other_switch}"\n'
             '[[actuator]]\nkind = "servo-board"\n'
             f"[guidance]\n{guidance}\n"
             f'[recording]\nfolder = "{scratch}/recordings"\n'
@@ -57,6 +128,8 @@ class Flight:
 
     def close(self) -> None:
         self.daemon.__exit__()
+        if self.network is not None:
+            self.network.close()
         self.aircraft.stop()
 
     def engage(self) -> None:
@@ -79,9 +152,9 @@ class Flight:
 
 @contextmanager
 def flying(
-    fccd: Path, scratch: Path, way: str, guidance: str = 'mode = "hold"'
+    fccd: Path, scratch: Path, way: str, guidance: str = 'mode = "hold"', **more: Any
 ) -> Iterator[Flight]:
-    flight = Flight(fccd, scratch, way, guidance)
+    flight = Flight(fccd, scratch, way, guidance, **more)
     try:
         yield flight
     finally:
@@ -155,6 +228,35 @@ def test_a_board_that_starts_again_in_flight_is_taken_again(
         time.sleep(2.0)
         assert flight.aircraft.board_changes()[-1].control is Control.HELD
         assert "engaged -> failsafe" not in flight.daemon.log
+
+
+def test_without_the_way_back_it_is_failsafe_whatever_another_switch_says(
+    fccd: Path, tmp_path: Path
+) -> None:
+    """The pilot's switch is not read any more; the simulator's, which is on, is not his."""
+    with flying(fccd, tmp_path, "udp", faults=Faults(), other_switch=ENGAGE_SWITCH) as flight:
+        flight.engage()
+        time.sleep(2.0)
+        assert flight.network is not None
+        flight.network.cut_back()
+        assert "engage switch is silent" in flight.daemon.wait_for("engaged -> failsafe")
+        assert "engage switch: from" not in flight.daemon.log
+
+
+def test_messages_that_arrive_again_seconds_later_neither_release_nor_engage(
+    fccd: Path, tmp_path: Path
+) -> None:
+    """30 % of what the board sends arrives again, half a second to four seconds later."""
+    with flying(fccd, tmp_path, "udp", faults=Faults(duplicate=0.3)) as flight:
+        # Those of the switch that was off arrive after it went on, and the reverse.
+        flight.engage()
+        flight.daemon.wait_for("messages a second are older than others")
+        assert flight._last() is Control.HELD
+        flight.aircraft.write(ENGAGE_SWITCH, 0.0)
+        flight.await_control(Control.FREE)
+        time.sleep(LATEST_S + 1.0)
+        states = [line for line in flight.daemon.log.splitlines() if " -> " in line]
+    assert len(states) == 2, states
 
 
 def test_the_pattern_is_flown_over_a_line_with_wrong_bits(fccd: Path, tmp_path: Path) -> None:

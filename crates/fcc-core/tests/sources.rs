@@ -43,6 +43,7 @@ const fn at_ten_seconds(sensors: &[Preferred; 3]) -> Preference<'_> {
         now: at(10_000),
         sensors,
         reading: 0,
+        of_one_sensor: Flags::NONE,
     }
 }
 
@@ -68,6 +69,28 @@ fn the_first_fresh_reading_is_taken() {
     assert_eq!(chosen([Some(101), Some(99), Some(0)]), (1, at(9_901)));
     assert_eq!(chosen([Some(101), Some(101), Some(1_999)]), (2, at(8_001)));
     assert_eq!(chosen([None, None, Some(5)]), (2, at(9_995)));
+}
+
+#[test]
+fn a_reading_of_one_sensor_is_the_first_ones_that_has_ever_delivered_it() {
+    let by = Preference {
+        of_one_sensor: Flags::bit(0),
+        ..at_ten_seconds(&SENSORS)
+    };
+    let mut boat = Boat::default();
+    let mut choose = |reading, sensor| {
+        let own = Boat {
+            depth_m: reading,
+            speed_mps: reading,
+            heading_rad: reading,
+        };
+        boat.choose(&own, sensor, &by);
+        (boat.depth_m.source, boat.speed_mps.source)
+    };
+    assert_eq!(choose(Reading::default(), 0), (0, 0));
+    // The second has it, old as it is; the third's is fresh.
+    assert_eq!(choose(taken(7_000), 1), (1, 1));
+    assert_eq!(choose(taken(10_000), 2), (1, 2));
 }
 
 #[test]

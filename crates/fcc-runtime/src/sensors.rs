@@ -86,6 +86,7 @@ impl<M: Readings + Copy + Default> Sensors<M> {
             now: tick.woke,
             sensors: &self.preferred,
             reading: 0,
+            of_one_sensor: controller.of_one_sensor(),
         };
         for (place, watched) in (0_u8..).zip(&self.all) {
             if place == 0 {

@@ -152,7 +152,12 @@ impl<P: Copy + PartialEq> Board<P> {
         let (drive, overrides) = (self.drive(), self.overrides);
         self.subscriptions
             .due(now_ms, every_ms / 2, |index, value| {
-                if let Some(value) = shown(value, readings, &drive, overrides) {
+                let value = match value {
+                    // An f32: the computer tells an old message by a time that goes back.
+                    Value::Time => Some(now_ms as f32 * 1e-3),
+                    value => shown(value, readings, &drive, overrides),
+                };
+                if let Some(value) = value {
                     reply.add(index, value);
                 }
             });
@@ -266,7 +271,7 @@ impl<P: Copy + PartialEq> Board<P> {
             | Value::RightBrake
             | Value::Gear => joystick,
             Value::Throttle => throttles,
-            Value::Airspeed | Value::DifferentialPressure | Value::EngageSwitch => {
+            Value::Airspeed | Value::DifferentialPressure | Value::EngageSwitch | Value::Time => {
                 return Err(NotForBoard::NoSuchValue);
             }
         };
@@ -334,6 +339,7 @@ fn shown(
         Value::LeftBrake => drive.brakes.map(|[left, _]| left),
         Value::RightBrake => drive.brakes.map(|[_, right]| right),
         Value::Gear => drive.gear,
+        Value::Time => None,
         Value::Airspeed | Value::DifferentialPressure | Value::EngageSwitch => readings.get(value),
     }
 }

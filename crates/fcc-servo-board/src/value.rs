@@ -33,6 +33,7 @@ pub(crate) enum Value {
     Airspeed,
     DifferentialPressure,
     EngageSwitch,
+    Time,
     OverrideJoystick,
     OverrideThrottles,
     Elevator,
@@ -46,7 +47,7 @@ pub(crate) enum Value {
 }
 
 impl Value {
-    pub(crate) const COUNT: usize = 13;
+    pub(crate) const COUNT: usize = 14;
 
     /// By its dataref; none if the board does not have it.
     pub(crate) fn of(path: &[u8], engage_switch: &str) -> Option<Self> {
@@ -55,6 +56,7 @@ impl Value {
         }
         match path {
             b"sim/flightmodel/position/indicated_airspeed" => Some(Self::Airspeed),
+            b"sim/network/misc/network_time_sec" => Some(Self::Time),
             b"sim/operation/override/override_joystick" => Some(Self::OverrideJoystick),
             b"sim/operation/override/override_throttles" => Some(Self::OverrideThrottles),
             b"sim/joystick/yoke_pitch_ratio" => Some(Self::Elevator),

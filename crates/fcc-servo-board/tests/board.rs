@@ -307,6 +307,18 @@ fn requested_values_are_sent_together_every_20_ms() {
     assert_eq!(bench.wait(1_000).len(), 10);
 }
 
+/// By it the computer tells a message that arrives late from a new one.
+#[test]
+fn a_message_has_the_time_at_which_it_was_made_in_seconds() {
+    let mut bench = Bench::new();
+    bench.subscribe(&["sim/network/misc/network_time_sec"]);
+    bench.wait(20);
+    bench.now_ms = 12_500;
+    assert_eq!(bench.wait(20), [[(100, 12.501)]]);
+    let set = bench.give(&dref("sim/network/misc/network_time_sec", 1.0));
+    assert_eq!(set, Err(NotForBoard::NoSuchValue));
+}
+
 #[test]
 fn what_the_board_does_not_have_is_refused() {
     let mut bench = Bench::new();

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Actuator, ActuatorFault, Sensor, SensorFault, Tick};
-use fcc_xplane::{Port, Simulator, UdpPort, XPlane, XPlaneActuator, XPlaneSensor};
+use fcc_xplane::{Port, Simulator, UdpPort, XPlane, XPlaneActuator, XPlaneSensor, XPlaneStatus};
 
 use crate::config::{Link, ServoBoardConfig};
 use crate::serial_port::{BOARD, LineStatus, SerialPort};
@@ -54,16 +54,33 @@ pub struct ServoBoardSensor<P: Port> {
     corrupt: u64,
 }
 
+impl<P: Port> ServoBoardSensor<P> {
+    fn status(&self) -> LinkStatus {
+        LinkStatus {
+            line: self.line.clone(),
+            messages: self.messages.status(),
+        }
+    }
+}
+
 /// The board as an actuator: elevator, aileron, rudder and throttle.
 #[derive(Debug)]
 pub struct ServoBoardActuator<P: Port>(XPlaneActuator<P>);
 
-/// A board's sensor and actuator for a loop, and the state of its serial line, if it has
-/// one.
+/// The state of the link to a board, readable from any thread.
+#[derive(Debug)]
+pub struct LinkStatus {
+    /// Of its serial line, if it has one.
+    pub line: Option<LineStatus>,
+    /// Of its messages.
+    pub messages: XPlaneStatus,
+}
+
+/// A board's sensor and actuator for a loop, and the state of the link.
 pub type Devices = (
     Box<dyn Sensor<Measurements>>,
     Box<dyn Actuator<Surfaces>>,
-    Option<LineStatus>,
+    LinkStatus,
 );
 
 /// Opens the link. Nothing is sent before the first tick, and over UDP the board
@@ -76,11 +93,13 @@ pub fn open(config: &ServoBoardConfig) -> Result<Devices, OpenError> {
     match &config.link {
         Link::Udp(board) => {
             let (sensor, actuator) = open_udp(config, board)?;
-            Ok((Box::new(sensor), Box::new(actuator), None))
+            let status = sensor.status();
+            Ok((Box::new(sensor), Box::new(actuator), status))
         }
         Link::Serial { path, baud } => {
-            let (sensor, actuator, line) = open_serial(config, path, *baud)?;
-            Ok((Box::new(sensor), Box::new(actuator), Some(line)))
+            let (sensor, actuator, _) = open_serial(config, path, *baud)?;
+            let status = sensor.status();
+            Ok((Box::new(sensor), Box::new(actuator), status))
         }
     }
 }

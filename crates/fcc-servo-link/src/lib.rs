@@ -45,7 +45,8 @@ mod tty;
 
 pub use config::{Link, ServoBoardConfig};
 pub use device::{
-    Devices, OnLine, OpenError, ServoBoardActuator, ServoBoardSensor, open, open_serial, open_udp,
+    Devices, LinkStatus, OnLine, OpenError, ServoBoardActuator, ServoBoardSensor, open,
+    open_serial, open_udp,
 };
 pub use serial_port::{LineStatus, SerialPort};
 pub use tty::{Baud, NoSuchBaud};

@@ -14,7 +14,7 @@ use support::{Bench, SerialLine, Udp, Way};
 
 impl<W: Way> SensorBench for Bench<W> {
     type Measurements = Measurements;
-    /// Nine requests in two portions, and the reply.
+    /// Ten requests in two portions, and the reply.
     const CONNECTED_AFTER: usize = 4;
 
     fn new() -> Self {

@@ -16,11 +16,13 @@
 
 use core::time::Duration;
 
-use fcc_core::flight::{BodyRates, Measurements, PilotControls, Plant, Position, Surfaces};
+use fcc_core::flight::{
+    BodyRates, Measurements, OtherControl, PilotControls, Plant, Position, Surfaces,
+};
 use fcc_core::framework::{Reading, Switch, Time};
 
 use crate::aircraft_state;
-use crate::config::DataRows;
+use crate::config::{DataRows, PlantKind};
 use crate::consistency::ConsistencyCheck;
 use crate::copies::Copies;
 use crate::counters::count;
@@ -35,6 +37,7 @@ use crate::reload_watch::ReloadWatch;
 use crate::rows;
 use crate::sending_clock::SendingClock;
 use crate::simulator::{SimulatorClock, SimulatorReport, SimulatorState};
+use crate::untimed_switch::UntimedSwitch;
 use crate::values::{Group, Values};
 
 /// The engage switch is on from here upwards, and off below [`SWITCH_OFF`]; in
@@ -45,6 +48,7 @@ const SWITCH_OFF: f64 = 0.25;
 /// Converts datagrams to measurements.
 #[derive(Clone, Debug)]
 pub(crate) struct Inbox {
+    plant: PlantKind,
     /// The rows to read, if rows are the input.
     rows: Option<DataRows>,
     clock: SimulatorClock,
@@ -56,6 +60,8 @@ pub(crate) struct Inbox {
     position: Reading<Position>,
     motion: Motion,
     switch: Switch,
+    /// Of a board, while it sends no time.
+    untimed_switch: UntimedSwitch,
     altitude: PressureAltitude,
     other_control: OtherControlWatch,
     consistency: ConsistencyCheck,
@@ -63,8 +69,9 @@ pub(crate) struct Inbox {
 }
 
 impl Inbox {
-    pub(crate) fn new(rows: Option<DataRows>, silent_after: Duration) -> Self {
+    pub(crate) fn new(plant: PlantKind, rows: Option<DataRows>, silent_after: Duration) -> Self {
         Self {
+            plant,
             rows,
             clock: SimulatorClock::new(silent_after),
             sending: SendingClock::default(),
@@ -74,6 +81,7 @@ impl Inbox {
             position: Reading::default(),
             motion: Motion::new(rows),
             switch: Switch::Off,
+            untimed_switch: UntimedSwitch::default(),
             altitude: PressureAltitude::new(),
             other_control: OtherControlWatch::default(),
             consistency: ConsistencyCheck::default(),
@@ -147,12 +155,17 @@ impl Inbox {
             let found = pairs.find(|(quantity, _)| *quantity == time);
             found.and_then(|(quantity, value)| quantity.validate(value))
         };
-        let time_s = find(Quantity::FlightTime);
+        let (flight_s, network_s) = (find(Quantity::FlightTime), find(Quantity::NetworkTime));
+        // A board has one clock, which never stands still.
+        let time_s = match self.plant {
+            PlantKind::Simulator => flight_s,
+            PlantKind::ServoBoard => network_s,
+        };
         let shows_replay = find(Quantity::Replay).is_some_and(|replay| replay >= 0.5);
         if self.is_late(now, datagram, (time_s, shows_replay), link) {
             return Ok(false);
         }
-        if let (Some(network_s), Some(flight_s)) = (find(Quantity::NetworkTime), time_s) {
+        if let (Some(network_s), Some(flight_s)) = (network_s, flight_s) {
             self.sending.receive(now, network_s, flight_s);
         }
         let mut report = SimulatorReport {
@@ -270,6 +283,11 @@ impl Inbox {
                 report.frame_period_s = Some(value);
                 link.set_frame_period_s(value);
             }
+            Quantity::EngageSwitch if self.plant == PlantKind::ServoBoard => {
+                if let Some(position) = position(value) {
+                    self.untimed_switch.take(position, now);
+                }
+            }
             Quantity::OnGround => link.set_on_ground(value >= 0.5),
             Quantity::Version => link.set_version(value as u32),
             _ => {}
@@ -313,12 +331,16 @@ impl Inbox {
             into.surfaces = Reading::new(surfaces, taken);
         }
         if let Some(([switch], taken)) = values.whole(Group::Switch) {
-            self.switch = match switch {
-                on if on >= SWITCH_ON => Switch::On,
-                off if off < SWITCH_OFF => Switch::Off,
-                _ => self.switch,
+            self.switch = position(switch).unwrap_or(self.switch);
+            let is_timed = self.plant == PlantKind::Simulator || self.clock.time_s().is_some();
+            let position = if is_timed {
+                Some(self.switch)
+            } else {
+                self.untimed_switch.position(now)
             };
-            into.engage_switch = Reading::new(self.switch, taken);
+            if let Some(position) = position {
+                into.engage_switch = Reading::new(position, taken);
+            }
         }
         if let Some(([pitch, roll, yaw], taken)) = values.whole(Group::PilotControls) {
             into.pilot_controls = Reading::new(PilotControls { pitch, roll, yaw }, taken);
@@ -338,7 +360,12 @@ impl Inbox {
         link: &SharedState,
         writing: &SharedState,
     ) {
-        let other = self.other_control.step(now, &self.values, writing);
+        // A board hears one computer, and answers it alone: what moves otherwise is a late
+        // copy of what this program wrote.
+        let other = match self.plant {
+            PlantKind::Simulator => self.other_control.step(now, &self.values, writing),
+            PlantKind::ServoBoard => OtherControl::default(),
+        };
         into.other_control = Reading::new(other, now);
         let accelerates = self.values.recent(Quantity::AccelerationUp, now);
         let computed = accelerates.map(|_| self.motion.force());
@@ -365,7 +392,7 @@ impl Inbox {
         }
     }
 
-    /// The simulator's clock and state: written in every tick in which it sent its
+    /// The simulator's clock and state, of a board none: written in every tick in which it sent its
     /// time. If that value alone is missing, the reading grows old.
     fn publish_plant(
         &mut self,
@@ -382,12 +409,22 @@ impl Inbox {
             // The flight may begin where it did before.
             self.positions = Copies::default();
         }
-        if self.clock.time_seen() == now
+        if self.plant == PlantKind::Simulator
+            && self.clock.time_seen() == now
             && let (Some(time_s), Some(state)) = (self.clock.time_s(), state.plant_state())
         {
             into.plant = Reading::new(Plant { time_s, state }, self.sending.sent(now));
         }
         state
+    }
+}
+
+/// The switch's position; none in between.
+fn position(switch: f64) -> Option<Switch> {
+    match switch {
+        on if on >= SWITCH_ON => Some(Switch::On),
+        off if off < SWITCH_OFF => Some(Switch::Off),
+        _ => None,
     }
 }
 

@@ -109,6 +109,7 @@ mod traffic;
 mod udp_port;
 mod udp_sockets;
 mod units;
+mod untimed_switch;
 mod values;
 mod written;
 
@@ -122,6 +123,7 @@ pub use discovery::{DiscoverError, Found, discover};
 pub use fcc_core::framework::{PlantId, Released};
 pub use link::Control;
 pub use missing::Missing;
+pub use old_datagrams::OldDatagrams;
 pub use open::{OpenError, XPlane};
 pub use port::{Errno, Port};
 pub use sensor::XPlaneSensor;

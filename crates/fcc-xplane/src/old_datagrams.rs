@@ -8,9 +8,20 @@ const SECOND: Duration = Duration::from_secs(1);
 const MANY: u64 = 2;
 const SECONDS: u32 = 5;
 
-/// Follows the count of those that were dropped.
+/// Follows the count of datagrams that were dropped because newer ones had arrived before.
+///
+/// ```
+/// use std::time::{Duration, Instant};
+///
+/// let (began, mut old) = (Instant::now(), fcc_xplane::OldDatagrams::default());
+/// // Seven in each second.
+/// let rates: Vec<f64> = (0..20)
+///     .filter_map(|second| old.step(began + second * Duration::from_secs(1), 7 * u64::from(second)))
+///     .collect();
+/// assert_eq!(rates, [7.0]);
+/// ```
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct OldDatagrams {
+pub struct OldDatagrams {
     /// The beginning of this second, and the count then.
     second: Option<(Instant, u64)>,
     /// Of the seconds in a row that had many.
@@ -20,14 +31,14 @@ pub(crate) struct OldDatagrams {
 }
 
 impl OldDatagrams {
-    /// How many there are in a second, once they have lasted; once.
-    pub(crate) fn step(&mut self, now: Instant, count: u64) -> Option<f64> {
+    /// How many there are in a second, 2 or more, once they have lasted for 5 s; once.
+    pub fn step(&mut self, now: Instant, count: u64) -> Option<f64> {
         let (since, before) = *self.second.get_or_insert((now, count));
         if now.duration_since(since) < SECOND {
             return None;
         }
         self.second = Some((now, count));
-        if count - before < MANY {
+        if count.saturating_sub(before) < MANY {
             (self.seconds, self.began) = (0, None);
             return None;
         }
@@ -37,7 +48,7 @@ impl OldDatagrams {
             return None;
         }
         self.is_said = true;
-        Some((count - first) as f64 / now.duration_since(began).as_secs_f64())
+        Some(count.saturating_sub(first) as f64 / now.duration_since(began).as_secs_f64())
     }
 }
 

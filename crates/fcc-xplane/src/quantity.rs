@@ -148,6 +148,7 @@ impl Quantity {
                         Self::Airspeed
                             | Self::DifferentialPressure
                             | Self::EngageSwitch
+                            | Self::NetworkTime
                             | Self::YokePitch
                             | Self::YokeRoll
                             | Self::YokeHeading

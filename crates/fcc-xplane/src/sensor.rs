@@ -98,7 +98,7 @@ impl<P: Port> XPlaneSensor<P> {
             beacons,
             writing: Arc::clone(&link),
             link,
-            inbox: Inbox::new(rows, config.silent_after),
+            inbox: Inbox::new(config.plant, rows, config.silent_after),
             reply_ports: ReplyPorts::new(config.reply_port, rows.is_some()),
             subscriptions: Subscriptions::new(config)?,
             expected_reply_port: config.reply_port,

@@ -274,6 +274,13 @@ pub trait Controller: Send {
         Flags::ALL
     }
 
+    /// The readings that belong to the first sensor, by the order of preference, that has
+    /// ever delivered them: a bit for each, in the order of the measurements. Another
+    /// sensor's is never used in its place, however old it is. None by default.
+    fn of_one_sensor(&self) -> Flags {
+        Flags::NONE
+    }
+
     /// The engage switch as measured; never taken where there is none.
     fn switch(&self, _measurements: &Self::Measurements) -> Reading<Switch> {
         Reading::new(Switch::Off, Time::NEVER)

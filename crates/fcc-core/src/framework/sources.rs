@@ -6,7 +6,7 @@
 //! none is fresh, the youngest, and of equal ones the first. So a sensor that
 //! becomes silent is replaced before its readings count as lost, one whose
 //! values are impossible is replaced at once, and each is used again when it
-//! returns.
+//! returns. A reading that belongs to one sensor, as a switch does, is never replaced.
 
 use core::time::Duration;
 
@@ -84,7 +84,12 @@ impl<T: Copy> Readings for Reading<T> {
     const NAMES: &'static [&'static str] = &["reading"];
 
     fn choose(&mut self, other: &Self, sensor: u8, by: &Preference<'_>) {
-        if by.rank(other, sensor) > by.rank(self, self.source) {
+        let is_preferred = if by.of_one_sensor.contains(Flags::bit(by.reading)) {
+            self.taken.is_never()
+        } else {
+            by.rank(other, sensor) > by.rank(self, self.source)
+        };
+        if is_preferred {
             *self = Self {
                 source: sensor,
                 ..*other
@@ -111,6 +116,9 @@ pub struct Preference<'a> {
     pub sensors: &'a [Preferred],
     /// The index of the first reading that is chosen, 0 for all measurements.
     pub reading: u32,
+    /// The readings that belong to the first sensor that has ever delivered them: a bit
+    /// for each, in the order of the measurements.
+    pub of_one_sensor: Flags,
 }
 
 /// The criteria that concern one sensor.

@@ -27,6 +27,7 @@ pub(crate) fn chosen(
         now,
         sensors: &preferred,
         reading: 0,
+        of_one_sensor: Flags::NONE,
     };
     let mut measured = given[0];
     for (set, own) in (1_u8..).zip(&given[1..]) {

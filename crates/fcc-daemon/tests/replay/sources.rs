@@ -2,6 +2,8 @@
 //! is valid, replaces it when it is silent, and a replay reproduces which was
 //! used.
 
+use std::ops::RangeInclusive;
+
 use fcc_core::flight::Autopilot;
 use fcc_core::framework::{EventKind, Flags, Message, SourceChange, State};
 use fcc_flight::config::{Config, NavigationMethod, RawSensorsChoice};
@@ -13,10 +15,16 @@ use super::assert_identical;
 use super::flights::{Happenings, fly, records, rough};
 
 fn flown(seconded: bool, silent: bool) -> Vec<FlightMessage> {
-    let two_seconds = 1_001..=1_080;
+    flown_with(seconded, silent.then_some(SILENT))
+}
+
+/// 0.9 s: less than a switch may be silent.
+const SILENT: RangeInclusive<u64> = 1_001..=1_036;
+
+fn flown_with(seconded: bool, silent: Option<RangeInclusive<u64>>) -> Vec<FlightMessage> {
     let happenings = Happenings {
         seconded,
-        silent: silent.then_some(two_seconds).into_iter().collect(),
+        silent: silent.into_iter().collect(),
         steps: 2_000,
         ..Happenings::default()
     };
@@ -44,7 +52,7 @@ fn a_second_sensor_that_is_not_needed_changes_no_bit() {
     assert_eq!(changes(&two), []);
 }
 
-/// Silent for 2 s: with one sensor that is failsafe after 250 ms, with two a
+/// Silent for 0.9 s: with one sensor that is failsafe after 250 ms, with two a
 /// change after 100 ms and another when it is back.
 #[test]
 fn a_loss_that_is_failsafe_with_one_sensor_is_flown_through_with_two() {
@@ -56,19 +64,42 @@ fn a_loss_that_is_failsafe_with_one_sensor_is_flown_through_with_two() {
     let two = flown(true, true);
     let states = assert_identical(&rough(), &two);
     assert_eq!(states, [State::Standby, State::Engaged]);
-    // The first twelve readings, weight on wheels, engine speed and battery.
-    let all = Flags::from_bits(0b1111_1111_1111 | 0b111 << 23);
+    // The first twelve readings but the switch, which is of one sensor, weight on wheels,
+    // engine speed and battery.
+    let all = Flags::from_bits(0b1011_1111_1111 | 0b111 << 23);
     let (to, back) = ((0, 1), (1, 0));
     let change = |(from, to)| SourceChange {
         readings: all,
         from,
         to,
     };
-    assert_eq!(changes(&two), [(1_005, change(to)), (1_081, change(back))]);
+    assert_eq!(changes(&two), [(1_005, change(to)), (1_037, change(back))]);
     for record in records(&two) {
-        let source = u8::from((1_005..=1_080).contains(&record.tick.number));
+        let source = u8::from((1_005..=1_036).contains(&record.tick.number));
         assert_eq!(record.measurements.airspeed_mps.source, source);
     }
+}
+
+/// Silent for 2 s: nobody can switch off any more, whatever the second's switch says.
+#[test]
+fn without_the_switch_that_engaged_for_a_second_it_is_failsafe() {
+    let messages = flown_with(true, Some(1_001..=1_080));
+    assert_identical(&rough(), &messages);
+    let records = records(&messages);
+    let is_failsafe = |tick: u64| {
+        let record = records.iter().find(|record| record.tick.number == tick);
+        record.is_some_and(|record| matches!(record.state.state(), State::Failsafe(_)))
+    };
+    // The last reading is of tick 1,000 or, with the built-in aircraft's delay, of some before.
+    assert!(!is_failsafe(1_030));
+    assert!(is_failsafe(1_042));
+    let moved = changes(&messages);
+    let switch = Flags::bit(10);
+    assert!(
+        moved
+            .iter()
+            .all(|(_, change)| !change.readings.contains(switch))
+    );
 }
 
 #[test]
@@ -83,7 +114,7 @@ fn a_replay_reproduces_which_sensor_was_used() {
             used += u32::from(again.measurements.attitude.source == 1);
         },
     );
-    assert_eq!(used, 76);
+    assert_eq!(used, 32);
 }
 
 /// By raw sensors, of which the first set's gyroscope fails: it is named, left with its

@@ -60,7 +60,7 @@ pub struct Assembly {
     pub true_now: Option<TruthHandle>,
     /// The state of the board's devices.
     pub(super) devices: Vec<WatchedDevice>,
-    /// The serial line of a servo board.
+    /// The link to a servo board.
     pub(super) line: Option<LineWatch>,
     /// Who has control of it; none for an aircraft that ends with the program.
     pub(super) authority: Option<Arc<dyn ControlAuthority>>,
@@ -276,14 +276,14 @@ fn servo_board(config: &Config) -> Result<Plant, AssemblyError> {
         return Ok(Plant::default());
     };
     let link = section.to_link(config.realtime.priority);
-    let (sensor, actuator, line) = fcc_servo_link::open(&link)?;
+    let (sensor, actuator, status) = fcc_servo_link::open(&link)?;
     Ok(Plant {
         sensors: vec![match section.calibration().to_core() {
             Some(calibration) => Box::new(Calibrated::new(sensor, &calibration)),
             None => sensor,
         }],
         actuators: vec![actuator],
-        line: line.map(LineWatch::new),
+        line: Some(LineWatch::new(status)),
         ..Plant::default()
     })
 }

@@ -1,10 +1,11 @@
-//! Reports a servo board's serial line on which too much arrives: the loop's events say
-//! that something is invalid, and not why.
+//! Reports a servo board's serial line on which too much arrives, of which the loop's
+//! events say that something is invalid, and not why; and messages that arrive late.
 
 use std::time::{Duration, Instant};
 
 use fcc_core::framework::Controller;
-use fcc_servo_link::LineStatus;
+use fcc_servo_link::{LineStatus, LinkStatus};
+use fcc_xplane::OldDatagrams;
 
 use super::observer::{Access, Observer};
 
@@ -16,38 +17,56 @@ const FLOOD: &str = "servo board: more than 1,000,000 bytes arrive in a second, 
                      servo-board.serial is (`ls -l /dev/serial/by-id`), and its firmware";
 const OVER: &str = "servo board: no longer more arrives than is read";
 
-/// Watches the line.
-pub(super) struct LineWatch {
-    line: LineStatus,
-    floods: u64,
+/// How often too much arrived.
+#[derive(Default)]
+struct Floods {
+    count: u64,
     /// When one was last seen; none once it is over.
-    flooded: Option<Instant>,
+    seen: Option<Instant>,
+}
+
+impl Floods {
+    /// What is to be reported at this time, after so many floods.
+    fn follow(&mut self, floods: u64, now: Instant) -> Option<&'static str> {
+        if floods != self.count {
+            self.count = floods;
+            return self.seen.replace(now).is_none().then_some(FLOOD);
+        }
+        let is_over = |at: &mut Instant| now.duration_since(*at) >= OVER_AFTER;
+        self.seen.take_if(is_over).map(|_| OVER)
+    }
+}
+
+/// Watches the link.
+pub(super) struct LineWatch {
+    link: LinkStatus,
+    floods: Floods,
+    old: OldDatagrams,
 }
 
 impl LineWatch {
-    pub(super) const fn new(line: LineStatus) -> Self {
+    pub(super) fn new(link: LinkStatus) -> Self {
         Self {
-            line,
-            floods: 0,
-            flooded: None,
+            link,
+            floods: Floods::default(),
+            old: OldDatagrams::default(),
         }
-    }
-
-    /// What is to be reported at this time, after so many floods.
-    fn follow(&mut self, floods: u64, now: Instant) -> Option<&'static str> {
-        if floods != self.floods {
-            self.floods = floods;
-            return self.flooded.replace(now).is_none().then_some(FLOOD);
-        }
-        let is_over = |at: &mut Instant| now.duration_since(*at) >= OVER_AFTER;
-        self.flooded.take_if(is_over).map(|_| OVER)
     }
 }
 
 impl<C: Controller> Observer<C> for LineWatch {
     fn poll(&mut self, access: &mut Access<'_, C::Command>) {
-        if let Some(words) = self.follow(self.line.floods(), Instant::now()) {
+        let now = Instant::now();
+        let floods = self.link.line.as_ref().map_or(0, LineStatus::floods);
+        if let Some(words) = self.floods.follow(floods, now) {
             access.reports.remark(words.to_owned());
+        }
+        let late = self.link.messages.counts().late;
+        if let Some(rate) = self.old.step(now, late) {
+            access.reports.remark(format!(
+                "servo board: {rate:.0} messages a second are older than others that arrived \
+                 before, and are not used: the network delivers them late or twice"
+            ));
         }
     }
 }
@@ -58,7 +77,7 @@ mod tests {
 
     #[test]
     fn a_flood_is_said_at_its_beginning_and_at_its_end() {
-        let mut watch = LineWatch::new(LineStatus::default());
+        let mut watch = Floods::default();
         let began = Instant::now();
         let mut at = |floods, s| watch.follow(floods, began + Duration::from_secs(s));
         assert_eq!(at(0, 0), None);

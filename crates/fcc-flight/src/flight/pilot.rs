@@ -169,6 +169,10 @@ impl Controller for Pilot {
         self.autopilot.plausible(sensor, measurements)
     }
 
+    fn of_one_sensor(&self) -> Flags {
+        self.autopilot.of_one_sensor()
+    }
+
     fn switch(&self, measurements: &Measurements) -> Reading<Switch> {
         self.autopilot.switch(measurements)
     }

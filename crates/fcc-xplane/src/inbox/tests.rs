@@ -1,3 +1,4 @@
+use core::slice;
 use core::time::Duration;
 
 use super::*;
@@ -15,8 +16,12 @@ struct Bench {
 
 impl Bench {
     fn new(rows: Option<DataRows>) -> Self {
+        Self::of(PlantKind::Simulator, rows)
+    }
+
+    fn of(plant: PlantKind, rows: Option<DataRows>) -> Self {
         Self {
-            inbox: Inbox::new(rows, Duration::from_millis(500)),
+            inbox: Inbox::new(plant, rows, Duration::from_millis(500)),
             link: SharedState::new(None),
             now: Time::from_nanos(1_000_000_000),
             measurements: Measurements::default(),
@@ -85,6 +90,70 @@ fn an_overtaken_datagram_is_dropped_whole_and_a_doubled_one_is_harmless() {
     bench.tick(&[frame(50.02, 101.0), frame(50.02, 101.0)]);
     // 101 kt are 51.958 888… m/s.
     assert_close(bench.measurements.airspeed_mps.value, 51.958_888_888);
+}
+
+/// A board's frame: its switch, its airspeed, who has control, and its clock if it sends it.
+fn of_board(time_s: Option<f32>, switch: f32) -> Vec<u8> {
+    let mut pairs = vec![(Quantity::EngageSwitch, switch), (Quantity::Airspeed, 60.0)];
+    pairs.extend(time_s.map(|time_s| (Quantity::NetworkTime, time_s)));
+    values(&pairs)
+}
+
+#[test]
+fn of_a_board_with_a_clock_old_frames_are_dropped_and_a_new_start_is_followed() {
+    let mut bench = Bench::of(PlantKind::ServoBoard, None);
+    let mut dropped = 0;
+    for tick in 0..400_i16 {
+        let time_s = 100.0 + 0.025 * f32::from(tick);
+        let frame = of_board(Some(time_s), f32::from(u8::from(tick >= 200)));
+        // From before the switch was moved, up to 5 s late, each third after the new one.
+        let mut frames = vec![frame];
+        if (200..399).contains(&tick) && tick % 3 == 0 {
+            frames.push(of_board(Some(time_s - 5.0), 0.0));
+            dropped += 1;
+        }
+        bench.tick(&frames);
+        let on = bench.measurements.engage_switch.value;
+        assert_eq!(on == Switch::On, tick >= 200, "{tick}");
+    }
+    let late = bench
+        .link
+        .counters
+        .late
+        .load(core::sync::atomic::Ordering::Relaxed);
+    assert_eq!(late, dropped);
+    assert!(
+        bench.measurements.plant.is_never(),
+        "a board is no simulator"
+    );
+    // It starts again, with its switch off.
+    for tick in 0..4_u8 {
+        bench.tick(&[of_board(Some(0.025 * f32::from(tick)), 0.0)]);
+    }
+    assert_eq!(bench.measurements.engage_switch.value, Switch::Off);
+}
+
+#[test]
+fn of_a_board_without_a_clock_no_single_frame_moves_the_switch() {
+    let mut bench = Bench::of(PlantKind::ServoBoard, None);
+    let (on, off) = (of_board(None, 1.0), of_board(None, 0.0));
+    // On from the start it is on, and not first off: that would be a movement.
+    for _ in 0..20 {
+        bench.tick(slice::from_ref(&on));
+        let switch = bench.measurements.engage_switch;
+        assert!(switch.is_never() || switch.value == Switch::On);
+    }
+    assert_eq!(bench.measurements.engage_switch.taken, bench.now);
+    bench.tick(slice::from_ref(&off));
+    assert_eq!(bench.measurements.engage_switch.value, Switch::On);
+    bench.tick(slice::from_ref(&off));
+    assert_eq!(bench.measurements.engage_switch.value, Switch::Off);
+    // Of every three frames two are on, and late.
+    for _ in 0..200 {
+        bench.tick(&[off.clone(), on.clone()]);
+        bench.tick(slice::from_ref(&on));
+        assert_eq!(bench.measurements.engage_switch.value, Switch::Off);
+    }
 }
 
 #[test]
@@ -220,16 +289,13 @@ fn rows_fill_every_measurement_one_datagram_each_or_all_in_one() {
         ),
         row(21, [0.0, 0.0, 0.0, 10.0, 2.0, -40.0, 0.0, 0.0]),
     ];
-    let single: Vec<_> = all
-        .iter()
-        .map(|row| rows(core::slice::from_ref(row)))
-        .collect();
+    let single: Vec<_> = all.iter().map(|row| rows(slice::from_ref(row))).collect();
     for datagrams in [vec![rows(&all)], single] {
         let mut bench = Bench::new(Some(DataRows::of(RowsVersion::XPlane10)));
         let setting = values(&[(Quantity::AltimeterSetting, 29.9)]);
         // X-Plane's own pressure altitude might come until then.
         for _ in 0..=12 {
-            bench.tick(&[&datagrams[..], core::slice::from_ref(&setting)].concat());
+            bench.tick(&[&datagrams[..], slice::from_ref(&setting)].concat());
         }
         let m = &bench.measurements;
         assert_close(m.plant.value.time_s, 60.0);

@@ -78,7 +78,8 @@ use super::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop, Reco
 use super::guidance::{ActiveMode, Mode, ModeInput, OverGroundMode, Targets};
 use super::inertial::RawNavigation;
 use super::navigation::{
-    Estimate, FrozenDetector, Navigation, Replacement, ReturningAltitude, plausibility_gate,
+    ENGAGE_SWITCH, Estimate, FrozenDetector, Navigation, Replacement, ReturningAltitude,
+    plausibility_gate,
 };
 use super::path::BankCommand;
 use super::route::TookOff;
@@ -411,6 +412,11 @@ impl Controller for Autopilot {
             Some(raw) => raw.permitted(sensor, plausible),
             None => plausible,
         }
+    }
+
+    fn of_one_sensor(&self) -> Flags {
+        // The difference between two sensors' switches is no movement of either.
+        ENGAGE_SWITCH
     }
 
     fn switch(&self, measurements: &Measurements) -> Reading<Switch> {

@@ -67,9 +67,9 @@ pub(crate) use frozen::{Frozen, FrozenDetector, Known};
 pub use lift::{Lift, LiftChannel};
 pub(crate) use motion_monitor::MotionDoubt;
 pub(crate) use plausibility::{
-    ANGLE_OF_ATTACK, ATTITUDE_RAD, GateLimits, HEADING_RAD, HEIGHT_M, PlausibilityLimit,
-    RATES_RADPS, SPECIFIC_FORCE_MPS2, airspeed_can_follow, airspeed_is_suspect, is_possible_fix,
-    plausibility_gate,
+    ANGLE_OF_ATTACK, ATTITUDE_RAD, ENGAGE_SWITCH, GateLimits, HEADING_RAD, HEIGHT_M,
+    PlausibilityLimit, RATES_RADPS, SPECIFIC_FORCE_MPS2, airspeed_can_follow, airspeed_is_suspect,
+    is_possible_fix, plausibility_gate,
 };
 pub(crate) use replacement::{DERIVED_RATES_LATE_S, Lost, Replacement};
 pub(crate) use resolution::Resolutions;

@@ -260,3 +260,14 @@ fn a_loop_through_the_vertical_is_plausible() {
         assert_eq!(good.heading_rad.taken, at, "{along_deg} deg");
     }
 }
+
+#[test]
+fn the_bit_of_the_engage_switch_is_its_place_in_the_measurements() {
+    let place = Measurements::NAMES
+        .iter()
+        .position(|name| *name == "engage switch");
+    assert_eq!(
+        place.map(|place| Flags::bit(place as u32)),
+        Some(ENGAGE_SWITCH)
+    );
+}
