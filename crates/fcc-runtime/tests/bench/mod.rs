@@ -43,6 +43,10 @@ pub(crate) fn config() -> LoopConfig {
 
 /// What the stubs do from now on.
 #[derive(Clone, Copy, Debug)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is the answer of one method"
+)]
 pub(crate) struct Script {
     /// `None`: the switch is silent, its last reading grows old.
     pub(crate) switch: Option<Switch>,
