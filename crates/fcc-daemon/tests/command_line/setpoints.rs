@@ -56,8 +56,8 @@ fn set_points_beyond_the_limits_are_refused_in_the_units_given() {
             "fccd: pressure altitude is 1000000 ft: choose -1640.42 to 65616.8 ft",
         ),
         (
-            ["--heading-deg", "400"],
-            "fccd: heading is 400°: choose -360 to 360°",
+            ["--heading-deg", "800"],
+            "fccd: heading is 800°: choose -720 to 720°",
         ),
         (
             ["--altitude-ft", "1e6"],
