@@ -96,10 +96,13 @@ test-rust: $(STAMPS)/rust $(STAMPS)/gpsd
 	    ! cargo tree --locked -p $$crate -e features,no-dev -i fcc-core | grep 'feature "flight"' || \
 	    { echo "$$crate is compiled with an aircraft: see above"; exit 1; }; done
 
+# One more than there are processors: a third of the tests wait for flights in real time.
+WORKERS := $(shell expr $$(nproc) + 1)
+
 test-python: faulty $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/systemd
 	$(BUILD_FCCD) -p thermostat --bin thermostat
 	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) \
-	    $(PYTHON) -m pytest hil --numprocesses auto --dist loadfile
+	    $(PYTHON) -m pytest hil --numprocesses $(WORKERS) --dist loadfile
 
 test-x-plane: build $(STAMPS)/python-module ## Run all steps of `fccd x-plane check` in full against the stand-in (3 minutes)
 	FCCD_FULL_CHECK=1 FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil/tests/test_x_plane_check.py

@@ -1068,7 +1068,7 @@ class Machine:
         self,
         measurements: Measurements | None = None,
         *,
-        missing: Sequence[str] = ...,
+        missing: Sequence[str] | None = ...,
         readback: Surfaces | tuple[float, float, float, float] | None = None,
         switch: bool | None = None,
         ages_s: Mapping[str, float] = ...,

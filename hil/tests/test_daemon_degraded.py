@@ -41,8 +41,8 @@ NO_SENSOR = "acceleration"
 """Goes on with half a second without any sensor."""
 NO_ATTITUDE_AND_RATES = "attitude and acceleration"
 """Goes on without these two."""
-PITCH_AND_POWER = ("airspeed and acceleration", "altitude", "attitude and acceleration")
-FLOWN = ("airspeed", "body rates", BY_ROWS, GLIDES, NO_SENSOR, *PITCH_AND_POWER)
+PITCH_AND_POWER = ("airspeed and acceleration", "attitude and acceleration")
+FLOWN = ("airspeed", "altitude", "body rates", BY_ROWS, GLIDES, NO_SENSOR, *PITCH_AND_POWER)
 
 LOST_AT_S = 4.0
 LOST_FOR_S = 10.0

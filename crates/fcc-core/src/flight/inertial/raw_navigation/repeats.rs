@@ -122,13 +122,17 @@ impl Repeats {
 
     /// Whether the receiver has repeated its velocity for longer than it may.
     pub(super) fn is_velocity_old(&self) -> bool {
-        self.last_fix.since(self.velocity_since) > VELOCITY_LASTS
+        self.lasts(self.velocity_since)
     }
 
     /// Whether it has repeated its vertical velocity for so long: one that measures none gives
     /// always 0.
     pub(super) fn is_down_old(&self) -> bool {
-        self.last_fix.since(self.down_since) > VELOCITY_LASTS
+        self.lasts(self.down_since)
+    }
+
+    fn lasts(&self, since: Time) -> bool {
+        !since.is_never() && self.last_fix.since(since) > VELOCITY_LASTS
     }
 }
 

@@ -205,7 +205,10 @@ fn a_receiver_that_repeats_its_velocity_for_seconds_is_named() {
         fix.velocity.north_mps = 50.0 + 0.05 * velocities as f64;
         fix.position.latitude_rad = 0.5 + 1.6e-6 * at as f64;
         let mut measured = raw(tick(n), [20.0, 40.0]);
-        measured.gnss = Reading::new(fix, tick(at * 8));
+        // The first fix comes after two seconds.
+        if n >= 80 {
+            measured.gnss = Reading::new(fix, tick(at * 8));
+        }
         navigation.step(tick(n), &measured);
         if let Some(is_refused) = navigation.refuses_velocity() {
             told.push((n, is_refused));
