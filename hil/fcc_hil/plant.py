@@ -77,8 +77,11 @@ class TrimError(RuntimeError):
 class Plant:
     """One aircraft in flight."""
 
-    _wind_rolling: tuple[float, float] | None = None
-    """The wind once the aircraft rolls, kt and deg, while it stands."""
+    _wind: Weather | None = None
+    """That of an aircraft that began on its wheels."""
+    _is_slow = True
+    _blown_fps: tuple[float, float] = (0.0, 0.0)
+    """The wind that was set last, towards north and east."""
 
     def __init__(
         self,
@@ -230,9 +233,8 @@ class Plant:
     def step(self, steps: int = 1) -> None:
         """Advance by `steps` of 1/120 s with the present controls."""
         run = self.fdm.run
-        if self._wind_rolling is not None and self._ground_speed_mps() > _ROLLS_MPS:
-            self._blow(*self._wind_rolling)
-            self._wind_rolling = None
+        if self._wind is not None:
+            self._follow_wind(self._wind)
         for _ in range(steps):
             if self._terrain is not None:
                 self._follow_ground(self._terrain)
@@ -332,7 +334,7 @@ class Plant:
             fdm[f"fcs/{brake}-brake-cmd-norm"] = 1.0
         for path in self._throttles:
             fdm[path] = 0.0
-        self._wind_rolling = (weather.wind_kt, weather.wind_from_deg)
+        self._wind = weather
         self._blow(weather.wind_kt, self._not_abeam_deg(weather))
         for _ in range(round(_STANDING_S * STEPS_PER_SECOND)):
             fdm.run()
@@ -341,12 +343,26 @@ class Plant:
         fdm = self.fdm
         return math.hypot(fdm["velocities/v-north-fps"], fdm["velocities/v-east-fps"]) * FT_TO_M
 
+    def _follow_wind(self, weather: Weather) -> None:
+        """Set the wind anew when the aircraft begins to roll, and when it is about to stand."""
+        is_slow = self._ground_speed_mps() < _ROLLS_MPS
+        if is_slow == self._is_slow or self._wind_fps() != self._blown_fps:
+            return
+        self._is_slow = is_slow
+        from_deg = self._not_abeam_deg(weather) if is_slow else weather.wind_from_deg
+        self._blow(weather.wind_kt, from_deg)
+
+    def _wind_fps(self) -> tuple[float, float]:
+        fdm = self.fdm
+        return fdm["atmosphere/wind-north-fps"], fdm["atmosphere/wind-east-fps"]
+
     def _blow(self, kt: float, from_deg: float) -> None:
         """Set the wind."""
         to_rad = math.radians(from_deg) + math.pi
         fps = kt * KT_TO_MPS / FT_TO_M
         self.fdm["atmosphere/wind-north-fps"] = fps * math.cos(to_rad)
         self.fdm["atmosphere/wind-east-fps"] = fps * math.sin(to_rad)
+        self._blown_fps = self._wind_fps()
 
     def _not_abeam_deg(self, weather: Weather) -> float:
         """Return the direction of a wind in which an aircraft stands.
