@@ -31,6 +31,7 @@ from .units import (
     SEA_LEVEL_PRESSURE_PA,
     wrap_heading_rad,
 )
+from .wind_on_wheels import WindOnWheels
 
 STEPS_PER_SECOND = 120
 """JSBSim's own rate, Hz: three steps to a tick of a 40 Hz loop."""
@@ -45,8 +46,6 @@ _ENGINE_RPM = "propulsion/engine/engine-rpm"
 _SETTLING_S = 60.0
 _SETTLING_MEAN_S = 5.0
 _STANDING_S = 5.0
-_LEAST_AHEAD_MPS = 1.0
-_ROLLS_MPS = 5.0
 _MILSPEC_TURBULENCE = 3.0
 _TURBULENCE_WIND_FPS = {1: 15.0, 2: 20.0, 3: 25.0, 4: 50.0, 5: 75.0, 6: 90.0, 7: 100.0}
 
@@ -77,11 +76,8 @@ class TrimError(RuntimeError):
 class Plant:
     """One aircraft in flight."""
 
-    _wind: Weather | None = None
+    _wind: WindOnWheels | None = None
     """That of an aircraft that began on its wheels."""
-    _is_slow = True
-    _blown_fps: tuple[float, float] = (0.0, 0.0)
-    """The wind that was set last, towards north and east."""
 
     def __init__(
         self,
@@ -234,7 +230,7 @@ class Plant:
         """Advance by `steps` of 1/120 s with the present controls."""
         run = self.fdm.run
         if self._wind is not None:
-            self._follow_wind(self._wind)
+            self._wind.follow()
         for _ in range(steps):
             if self._terrain is not None:
                 self._follow_ground(self._terrain)
@@ -334,49 +330,9 @@ class Plant:
             fdm[f"fcs/{brake}-brake-cmd-norm"] = 1.0
         for path in self._throttles:
             fdm[path] = 0.0
-        self._wind = weather
-        self._blow(weather.wind_kt, self._not_abeam_deg(weather))
+        self._wind = WindOnWheels(fdm, weather)
         for _ in range(round(_STANDING_S * STEPS_PER_SECOND)):
             fdm.run()
-
-    def _ground_speed_mps(self) -> float:
-        fdm = self.fdm
-        return math.hypot(fdm["velocities/v-north-fps"], fdm["velocities/v-east-fps"]) * FT_TO_M
-
-    def _follow_wind(self, weather: Weather) -> None:
-        """Set the wind anew when the aircraft begins to roll, and when it is about to stand."""
-        is_slow = self._ground_speed_mps() < _ROLLS_MPS
-        if is_slow == self._is_slow or self._wind_fps() != self._blown_fps:
-            return
-        self._is_slow = is_slow
-        from_deg = self._not_abeam_deg(weather) if is_slow else weather.wind_from_deg
-        self._blow(weather.wind_kt, from_deg)
-
-    def _wind_fps(self) -> tuple[float, float]:
-        fdm = self.fdm
-        return fdm["atmosphere/wind-north-fps"], fdm["atmosphere/wind-east-fps"]
-
-    def _blow(self, kt: float, from_deg: float) -> None:
-        """Set the wind."""
-        to_rad = math.radians(from_deg) + math.pi
-        fps = kt * KT_TO_MPS / FT_TO_M
-        self.fdm["atmosphere/wind-north-fps"] = fps * math.cos(to_rad)
-        self.fdm["atmosphere/wind-east-fps"] = fps * math.sin(to_rad)
-        self._blown_fps = self._wind_fps()
-
-    def _not_abeam_deg(self, weather: Weather) -> float:
-        """Return the direction of a wind in which an aircraft stands.
-
-        With no air from ahead JSBSim's angle of attack may be any, and with it the pitching
-        moment: in 8 kt exactly from the side the c172p turns over on its wheels.
-        """
-        heading_deg = math.degrees(self.fdm["attitude/psi-rad"])
-        off_deg = math.remainder(weather.wind_from_deg - heading_deg, 360.0)
-        ahead_mps = weather.wind_kt * KT_TO_MPS * math.cos(math.radians(off_deg))
-        if abs(ahead_mps) >= _LEAST_AHEAD_MPS:
-            return weather.wind_from_deg
-        share = min(1.0, _LEAST_AHEAD_MPS / max(weather.wind_kt * KT_TO_MPS, _LEAST_AHEAD_MPS))
-        return heading_deg + math.copysign(math.degrees(math.acos(share)), off_deg)
 
     def _trim(self) -> bool:
         fdm = self.fdm

@@ -1,5 +1,7 @@
 //! What is written to a minimal X-Plane comes back late, or not at all.
 
+#![allow(clippy::unwrap_used, reason = "helper functions of tests")]
+
 mod support;
 
 use std::collections::VecDeque;
@@ -10,6 +12,25 @@ use fcc_core::framework::{Actuator, ControlAuthority, Sensor};
 use fcc_xplane::XPlaneAuthority;
 use support::bench::{Bench, SURFACES};
 use support::{FLIGHT_TIME, OVERRIDE_JOYSTICK, YOKE_PITCH};
+
+/// Flies a tick in which the elevator is read back that was written some ticks ago.
+fn fly_late(bench: &mut Bench, on_its_way: &mut VecDeque<f32>) {
+    bench.simulator.listen();
+    let time_s = bench.simulator.value(FLIGHT_TIME) + 0.025;
+    bench.simulator.set(FLIGHT_TIME, time_s);
+    let shown = on_its_way.pop_front().unwrap();
+    bench.simulator.set(YOKE_PITCH, shown);
+    let frame = bench.simulator.frame();
+    bench.simulator.send(&frame);
+    let outputs = Surfaces {
+        elevator: 0.2 * f64::from(time_s).sin(),
+        ..SURFACES
+    };
+    on_its_way.push_back(outputs.elevator as f32);
+    let tick = bench.ticks.next();
+    bench.sensor.sample(&tick, &mut bench.measurements).unwrap();
+    let _ = bench.actuator.as_mut().unwrap().apply(&tick, &outputs);
+}
 
 /// In real time, since it is said by the clock: after three seconds in which the yoke
 /// is read back 0.4 s late.
@@ -23,22 +44,7 @@ fn controls_that_are_read_back_late_are_said_once() {
     let begun = Instant::now();
     while begun.elapsed() < Duration::from_secs(6) {
         std::thread::sleep(Duration::from_millis(10));
-        bench.simulator.listen();
-        let time_s = bench.simulator.value(FLIGHT_TIME) + 0.025;
-        bench.simulator.set(FLIGHT_TIME, time_s);
-        bench
-            .simulator
-            .set(YOKE_PITCH, on_its_way.pop_front().unwrap());
-        let frame = bench.simulator.frame();
-        bench.simulator.send(&frame);
-        let outputs = Surfaces {
-            elevator: 0.2 * f64::from(time_s).sin(),
-            ..SURFACES
-        };
-        on_its_way.push_back(outputs.elevator as f32);
-        let tick = bench.ticks.next();
-        bench.sensor.sample(&tick, &mut bench.measurements).unwrap();
-        let _ = bench.actuator.as_mut().unwrap().apply(&tick, &outputs);
+        fly_late(&mut bench, &mut on_its_way);
         assert!(!bench.measurements.other_control.value.writer);
         authority.report(&mut |text| {
             let text = text.to_string();
@@ -65,21 +71,7 @@ fn what_is_read_is_too_old_while_the_controls_come_back_too_late() {
         bench.settle();
         let mut on_its_way = VecDeque::from(vec![0.0; late_ticks]);
         for _ in 0..240 {
-            bench.simulator.listen();
-            let time_s = bench.simulator.value(FLIGHT_TIME) + 0.025;
-            bench.simulator.set(FLIGHT_TIME, time_s);
-            let shown = on_its_way.pop_front().unwrap();
-            bench.simulator.set(YOKE_PITCH, shown);
-            let frame = bench.simulator.frame();
-            bench.simulator.send(&frame);
-            let outputs = Surfaces {
-                elevator: 0.2 * f64::from(time_s).sin(),
-                ..SURFACES
-            };
-            on_its_way.push_back(outputs.elevator as f32);
-            let tick = bench.ticks.next();
-            bench.sensor.sample(&tick, &mut bench.measurements).unwrap();
-            let _ = bench.actuator.as_mut().unwrap().apply(&tick, &outputs);
+            fly_late(&mut bench, &mut on_its_way);
         }
         let age = bench
             .ticks

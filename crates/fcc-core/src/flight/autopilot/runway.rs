@@ -11,6 +11,7 @@
 //!
 //! Without power the approach is that of the [glide](super::gliding).
 
+mod begins;
 mod climbing;
 mod gear;
 mod in_failsafe;
@@ -23,11 +24,10 @@ use super::Autopilot;
 use crate::blocks::{limit, limit_abs, wrap_pi};
 use crate::flight::Surfaces;
 use crate::flight::control::{Lateral, ThrottleDemand};
-use crate::flight::guidance::{Mode, OverGroundMode};
+use crate::flight::guidance::OverGroundMode;
 use crate::flight::navigation::Estimate;
-use crate::flight::path::{LocalPlane, length};
-use crate::flight::route::{HELD_MPS, Runway, RunwayDemand, RunwayPhase, RunwayReason, Step};
-use crate::framework::{Notice, Time};
+use crate::flight::route::{HELD_MPS, RunwayDemand, RunwayPhase, RunwayReason};
+use crate::framework::Notice;
 use crate::units::GRAVITY_MPS2;
 pub(super) use in_failsafe::Low;
 pub(super) use notices::{RUNWAY, write};
@@ -65,10 +65,6 @@ const HELD_BACK_BELOW: f64 = 0.7;
 const UNKNOWN_HEAD_WIND_MPS: f64 = 12.861;
 /// An approach speed is so many times the stalling speed.
 pub(super) const OVER_STALL: f64 = 1.3;
-/// A take-off begins again within this distance of where the last one did, m.
-const AT_BEGIN_M: f64 = 100.0;
-/// Farther away is another runway, m: the longest paved one has 5.5 km.
-const LONGEST_RUNWAY_M: f64 = 6_000.0;
 /// The lowest airspeed of approach and climb, of the commanded one.
 pub(super) const LOWEST_SHARE: f64 = 0.88;
 
@@ -113,43 +109,6 @@ impl Autopilot {
     pub(super) fn is_on_wheels(&self) -> bool {
         let rolls = |demand: RunwayDemand| demand.phase.is_on_wheels();
         self.ground.stands_on_wheels() || self.runway().is_some_and(rolls)
-    }
-
-    /// Whether it may engage standing on a runway: the plan begins with a take-off.
-    pub(super) fn begins_on_runway(&self) -> bool {
-        self.first_takeoff().is_some() && self.waits_for_takeoff()
-    }
-
-    /// Whether engaging would begin a take-off in a roll, or from where a landing ended.
-    pub(super) fn may_not_take_off_here(&self, now: Time) -> bool {
-        let Some(Step::Takeoff { runway, .. }) = self.first_takeoff() else {
-            return false;
-        };
-        !self.config.route.runway.is_thrown()
-            && self.ground.stands_on_wheels()
-            && (self.ground.moves(now) || self.is_beyond_takeoff(*runway))
-    }
-
-    /// Whether it stands on the runway from which it took off, but elsewhere along it,
-    /// and not where the plan's runway begins either.
-    fn is_beyond_takeoff(&self, runway: Option<Runway>) -> bool {
-        let (Some(here), Some(took_off)) = (self.ground.here(), self.took_off) else {
-            return false;
-        };
-        let here = here.plane();
-        let off_m = |at: &LocalPlane| length(at.origin_of_m(&here));
-        let began = LocalPlane::at(took_off.latitude_rad, took_off.longitude_rad);
-        let is_at_begin = runway.is_some_and(|runway| off_m(&runway.at) < AT_BEGIN_M);
-        (AT_BEGIN_M..LONGEST_RUNWAY_M).contains(&off_m(&began)) && !is_at_begin
-    }
-
-    /// The take-off with which the plan begins that engaging flies.
-    fn first_takeoff(&self) -> Option<&'static Step> {
-        let steps = self.config.plan.map_or(&[][..], |plan| plan.steps);
-        let first = steps.iter().find(|step| step.is_flown());
-        first.filter(|step| {
-            matches!(step, Step::Takeoff { .. }) && self.config.guidance.mode() == Mode::Plan
-        })
     }
 
     /// Whether it stands on its wheels, or is held in a hand that throws it.
