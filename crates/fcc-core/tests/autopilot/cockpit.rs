@@ -77,8 +77,6 @@ impl Cockpit {
             // The readings are the same to the last bit until the test changes
             // them.
             frozen_after: Duration::ZERO,
-            // And the aircraft does not follow its surfaces.
-            finds_jammed_controls: false,
             ..AutopilotConfig::default()
         };
         let mut cockpit = Self {

@@ -24,8 +24,6 @@ pub struct AutopilotSection {
     pub assumed_latency_ms: f64,
     /// Whether the elevator's trim takes over what the elevator holds.
     pub trim: bool,
-    /// Whether ailerons or an elevator that do not move the aircraft are found, and flown without.
-    pub find_jammed_controls: bool,
     /// How the aircraft differs from the one for which the gains were tuned.
     pub scale: ScaleSection,
     /// The limits of the loops' commands.
@@ -52,7 +50,6 @@ impl Default for AutopilotSection {
             reference_airspeed_kt: rounded(core.reference_airspeed_mps / KNOT_MPS),
             assumed_latency_ms: rounded(core.assumed_latency_s * 1e3),
             trim: core.trims,
-            find_jammed_controls: core.finds_jammed_controls,
             scale: ScaleSection::default(),
             envelope: EnvelopeSection::from(&core.envelope),
             airframe: None,
@@ -78,7 +75,6 @@ impl AutopilotSection {
             reference_airspeed_mps: self.reference_airspeed_kt * KNOT_MPS,
             assumed_latency_s: self.assumed_latency_ms * 1e-3,
             trims: self.trim,
-            finds_jammed_controls: self.find_jammed_controls,
             airframe: self.airframe.map(Into::into),
             max_age,
             frozen_after,

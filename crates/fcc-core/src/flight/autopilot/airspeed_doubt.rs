@@ -172,7 +172,6 @@ impl Autopilot {
         let by_mps = (KEPT_SDS * estimate.airspeed_uncertainty_mps).min(MOST_SHARE * range_mps);
         let found_mps = self.recovery.found_stall_mps();
         let envelope = Envelope {
-            max_bank_rad: self.jammed.most_bank_rad(envelope.max_bank_rad),
             min_airspeed_mps: envelope.min_airspeed_mps + by_mps,
             max_airspeed_mps: envelope.max_airspeed_mps - by_mps,
             stall_airspeed_mps: envelope.stall_airspeed_mps.max(found_mps),

@@ -7,9 +7,9 @@ use super::super::navigation::{
 };
 use super::{
     ActiveMode, Actuation, AltitudeReference, Autopilot, AutopilotConfig, BankCommand,
-    Contingencies, Degraded, Delayed, Engine, Following, GroundMotion, Jammed, KeptTrims,
-    Measurements, PilotTakeover, PlantClock, ReadingAges, Recovery, RunwayControl, Setpoints,
-    StraightTrims, Surfaces, Targets, Time, ToldOnce, Whereabouts,
+    Contingencies, Degraded, Delayed, Engine, Following, GroundMotion, KeptTrims, Measurements,
+    PilotTakeover, PlantClock, ReadingAges, Recovery, RunwayControl, Setpoints, StraightTrims,
+    Surfaces, Targets, Time, ToldOnce, Whereabouts,
 };
 use crate::framework::Flags;
 
@@ -71,7 +71,6 @@ impl Autopilot {
             straight: StraightTrims::default(),
             degraded: Degraded::default(),
             following: Following::default(),
-            jammed: Jammed::new(),
             distrusted: Flags::NONE,
             returning_altitude: ReturningAltitude::default(),
             doubt_notice: None,

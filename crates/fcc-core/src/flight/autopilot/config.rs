@@ -57,9 +57,6 @@ pub struct AutopilotConfig {
     pub stick_takeover: Option<StickTakeover>,
     /// Whether the elevator's trim is moved, where it is measured.
     pub trims: bool,
-    /// Whether ailerons or an elevator that do not move the aircraft are found, and flown
-    /// without.
-    pub finds_jammed_controls: bool,
     /// For how long at most a release that is ours to time levels and trims the
     /// aircraft first; zero for not at all.
     pub level_and_trim: Duration,
@@ -112,7 +109,6 @@ impl Default for AutopilotConfig {
             permitted: Flags::NONE,
             stick_takeover: None,
             trims: true,
-            finds_jammed_controls: true,
             level_and_trim: Duration::from_secs(10),
             failsafe: FailsafeConfig::default(),
             raw_navigation: None,

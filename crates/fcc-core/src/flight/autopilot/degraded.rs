@@ -18,17 +18,11 @@ pub(super) const FLOWN_OTHERWISE: u8 = 4;
 
 /// The items of notices of what is flown otherwise than before; 0 is the glide.
 pub(super) mod otherwise {
-    pub(in super::super) const AILERONS: u16 = 1;
-    pub(in super::super) const ELEVATOR: u16 = 2;
-    pub(in super::super) const LATE_FIXES: u16 = 3;
-    pub(in super::super) const RUDDER: u16 = 4;
-    pub(in super::super) const HEIGHT_DOUBTED: u16 = 5;
-    pub(in super::super) const HEIGHT_BELIEVED: u16 = 6;
-    pub(in super::super) const VELOCITY_REFUSED: u16 = 7;
-    pub(in super::super) const VELOCITY_USED: u16 = 8;
-    pub(in super::super) const REVERSED_AILERONS: u16 = 9;
-    pub(in super::super) const REVERSED_ELEVATOR: u16 = 10;
-    pub(in super::super) const REVERSED_BOTH: u16 = 11;
+    pub(in super::super) const LATE_FIXES: u16 = 1;
+    pub(in super::super) const HEIGHT_DOUBTED: u16 = 2;
+    pub(in super::super) const HEIGHT_BELIEVED: u16 = 3;
+    pub(in super::super) const VELOCITY_REFUSED: u16 = 4;
+    pub(in super::super) const VELOCITY_USED: u16 = 5;
 }
 
 /// The notice with one of these items.

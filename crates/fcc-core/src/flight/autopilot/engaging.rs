@@ -88,7 +88,6 @@ impl Autopilot {
         self.take_over(&standing);
         self.begin_straight_trims();
         self.begin_watching_for_upsets();
-        self.begin_watching_directions(&standing);
     }
 
     /// Engages the loops with the present throttle and surfaces.

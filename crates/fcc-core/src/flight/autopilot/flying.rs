@@ -20,18 +20,15 @@ impl Autopilot {
         let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
         self.follow_outputs(&estimate);
         let (schedule, envelope) = (self.schedule(), self.envelope());
-        self.watch_directions(now, &estimate, schedule, dt_s);
-        self.watch_surfaces(&estimate, schedule, dt_s);
-        if self.accepted.body_rates.value != self.kept_trims.found_with && !self.jammed.is_any() {
+        if self.accepted.body_rates.value != self.kept_trims.found_with {
             self.keep_trims();
         }
         self.learn_straight_trims(&estimate, dt_s);
         let outputs = self.flown(now, &estimate, &envelope, schedule, dt_s);
-        let outputs = self.around_jammed(outputs, &estimate, dt_s);
         self.with_trim(now, outputs, Flags::NONE)
     }
 
-    /// The outputs of the law that flies, as if every surface moved the aircraft.
+    /// The outputs of the law that flies.
     fn flown(
         &mut self,
         now: Time,

@@ -19,7 +19,6 @@ mod gliding;
 mod ground_below;
 mod ground_contact;
 mod ground_motion;
-mod jammed;
 mod notices;
 mod observe;
 mod other_control;
@@ -32,7 +31,6 @@ mod refusal;
 mod release;
 mod replacing;
 mod resume;
-mod reversed;
 mod routing;
 mod runway;
 mod scale;
@@ -58,7 +56,6 @@ pub use failsafe::{FailsafeConfig, FailsafeEnd};
 use following::Following;
 use ground_contact::ToldOnce;
 use ground_motion::GroundMotion;
-use jammed::Jammed;
 use pilot_takeover::PilotTakeover;
 pub use pilot_takeover::StickTakeover;
 use plant_clock::PlantClock;
@@ -187,7 +184,6 @@ pub struct Autopilot {
     straight: StraightTrims,
     degraded: Degraded,
     following: Following,
-    jammed: Jammed,
     /// The quantities that were rejected as implausible in this failsafe.
     distrusted: Flags,
     returning_altitude: ReturningAltitude,
@@ -227,7 +223,6 @@ impl Controller for Autopilot {
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         let of_parts = self.actuation.conditions() | self.doubted() | self.trim_conditions();
         let unused = self.unused_sensors(measurements) | self.route_conditions();
-        let of_parts = of_parts | self.jammed_conditions();
         (self.external(tick.woke, self.seen(measurements)) | of_parts | unused)
             .with(flags::RECOVERING, self.recovery.is_active())
             .with(
@@ -324,7 +319,7 @@ impl Controller for Autopilot {
 
     fn control(&mut self, tick: &Tick, _measurements: &Measurements) -> Surfaces {
         let outputs = self.fly(tick.woke);
-        self.last = self.with_gear(self.around_reversed(outputs));
+        self.last = self.with_gear(outputs);
         self.last
     }
 
@@ -340,18 +335,12 @@ impl Controller for Autopilot {
                 .watch(&self.last, &estimate, self.clock.step_s());
         }
         let held = self.safest(tick.woke, &seen);
-        let held = if lost.intersects(flags::BODY_RATES | flags::ATTITUDE) {
-            held
-        } else {
-            self.around_jammed(held, &estimate, self.clock.step_s())
-        };
         let stops = self.stop_on_wheels(lost);
         let outputs = Surfaces {
             gear: self.gear_in_failsafe(stops.is_some()),
             ..stops.unwrap_or(held)
         };
-        let outputs = self.with_trim(tick.woke, outputs, lost);
-        self.last = self.around_reversed(outputs);
+        self.last = self.with_trim(tick.woke, outputs, lost);
         self.last
     }
 
@@ -365,7 +354,6 @@ impl Controller for Autopilot {
         self.is_at_floor = false;
         self.capture = None;
         self.recovery = Recovery::new();
-        self.jammed = Jammed::new();
         self.release = None;
         self.trim = ElevatorTrim::new(None);
         self.setpoints = Setpoints::default();

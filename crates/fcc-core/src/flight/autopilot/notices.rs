@@ -3,8 +3,8 @@
 use core::fmt;
 
 use super::{
-    airspeed_doubt, contingency, degraded, jammed, pilot_takeover, plant_clock, receiver, refusal,
-    routing, runway, wrong_sensors,
+    airspeed_doubt, contingency, degraded, pilot_takeover, plant_clock, receiver, refusal, routing,
+    runway, wrong_sensors,
 };
 use crate::framework::Notice;
 
@@ -24,13 +24,11 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
             f,
             "all is good again: back to what was flown {lasted_s:.1} s ago"
         ),
-        degraded::FLOWN_OTHERWISE => jammed::write(notice, f)
-            .or_else(|| receiver::write(notice, f))
-            .unwrap_or_else(|| {
-                f.write_str(
-                    "nothing can be held any longer: gliding in a gentle turn, with idle throttle",
-                )
-            }),
+        degraded::FLOWN_OTHERWISE => receiver::write(notice, f).unwrap_or_else(|| {
+            f.write_str(
+                "nothing can be held any longer: gliding in a gentle turn, with idle throttle",
+            )
+        }),
         routing::ITEM_REACHED if notice.item == 0 => {
             f.write_str("the plan is flown to its end: circling")
         }

@@ -128,7 +128,7 @@ impl Autopilot {
     pub(super) fn with_trim(&mut self, now: Time, outputs: Surfaces, lost: Flags) -> Surfaces {
         let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
         let is_known = held_without(lost).vertical == Vertical::Level;
-        let trimming = if !is_known || self.recovery.is_active() || self.jammed.is_elevator() {
+        let trimming = if !is_known || self.recovery.is_active() {
             Trimming::Held
         } else if self.release.is_some() {
             Trimming::Quick

@@ -94,10 +94,7 @@ impl Autopilot {
     pub(super) fn learn_straight_trims(&mut self, estimate: &Estimate, dt_s: f64) {
         let commanded_rad = self.setpoints.roll_rad;
         let is_level = self.straight.is_level(estimate, commanded_rad, dt_s);
-        let is_usual = self.runway().is_none()
-            && !self.glides
-            && !self.recovery.is_active()
-            && !self.jammed.is_any();
+        let is_usual = self.runway().is_none() && !self.glides && !self.recovery.is_active();
         if is_level && is_usual {
             self.take_straight_trims(dt_s);
         }
@@ -118,7 +115,7 @@ impl Autopilot {
     pub(super) fn silent_trims(&self) -> Surfaces {
         let present = self.trims();
         let straight = &self.straight;
-        if self.runway().is_some() || self.jammed.is_any() {
+        if self.runway().is_some() {
             return present;
         }
         let trims = Surfaces {

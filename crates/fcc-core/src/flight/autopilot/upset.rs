@@ -9,7 +9,7 @@ use crate::flight::{Setpoints, Surfaces};
 use crate::framework::{Flags, Time};
 
 /// The surfaces follow the outputs if they differ by no more than this.
-pub(super) const FOLLOWS: f64 = 0.15;
+const FOLLOWS: f64 = 0.15;
 
 /// Beyond this bank or pitch the autopilot does not engage, unless configured,
 /// rad.
@@ -26,7 +26,7 @@ const STEADY_PITCH_RAD: f64 = 0.436;
 const STEADY_RADPS: f64 = 0.262;
 
 /// Whether the controls' present positions are the trims of a flight.
-pub(super) fn is_steady(estimate: &Estimate) -> bool {
+fn is_steady(estimate: &Estimate) -> bool {
     let rates = estimate.body_rates;
     estimate.roll_rad.abs() < STEADY_BANK_RAD
         && estimate.pitch_rad.abs() < STEADY_PITCH_RAD

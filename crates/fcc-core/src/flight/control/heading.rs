@@ -297,12 +297,7 @@ impl HeadingLoop {
     }
 
     /// The roll rate (rad/s) towards a bank (rad).
-    pub(crate) fn roll_rate_for(
-        &self,
-        roll_rad: f64,
-        estimate: &Estimate,
-        schedule: Schedule,
-    ) -> f64 {
+    fn roll_rate_for(&self, roll_rad: f64, estimate: &Estimate, schedule: Schedule) -> f64 {
         let gain_per_s = schedule.lateral_pace * self.config.roll_gain_per_s;
         limit_abs(
             gain_per_s * (roll_rad - estimate.roll_rad),

@@ -25,14 +25,10 @@ mod glide;
 mod heading;
 mod load;
 mod oscillation;
-mod other_controls;
 mod play_inverse;
 mod recovery;
-mod reversed_rudder;
-mod reversed_surface;
 mod schedule;
 mod speed_limits;
-mod surface_response;
 mod upset;
 
 pub use airspeed::{AirspeedConfig, AirspeedLoop, ThrottleDemand};
@@ -42,14 +38,10 @@ pub use elevator_trim::{ElevatorTrim, Trimming};
 pub use envelope::Envelope;
 pub use heading::{HeadingConfig, HeadingLoop, Lateral};
 pub use oscillation::OscillationMonitor;
-pub(crate) use other_controls::{BankByRudder, ClimbByThrottle};
 pub use play_inverse::PlayInverse;
 pub(crate) use recovery::{Change, Recovery, RecoveryInputs};
-pub(crate) use reversed_rudder::ReversedRudder;
-pub(crate) use reversed_surface::ReversedSurface;
 pub use schedule::Schedule;
 pub use speed_limits::{PitchLimits, SpeedLimits};
-pub(crate) use surface_response::{SurfaceEffect, SurfaceResponse, is_jammed};
 pub use upset::{Motion, UpsetDetector};
 
 /// The largest bank for which a turn's load and rate are computed, rad.
