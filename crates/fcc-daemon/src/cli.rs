@@ -59,6 +59,8 @@ pub enum Action {
     Calibrate(CalibrateArgs),
     /// Check configuration files
     Check(CheckArgs),
+    /// Move each control of an aircraft that stands still, and check its direction
+    CheckControls(CheckControlsArgs),
     /// Check whether this machine suits a real-time loop
     Doctor(DoctorArgs),
     /// List the sensors that are connected to this board
@@ -279,6 +281,20 @@ pub struct CheckArgs {
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Print the result as JSON; of several files, as a list
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `fccd check-controls`.
+#[derive(Args, Debug)]
+pub struct CheckControlsArgs {
+    /// Configuration file
+    #[arg(value_name = "CONFIG")]
+    pub config: PathBuf,
+    /// Move the throttle, too, to full: take the propeller off first
+    #[arg(long)]
+    pub throttle: bool,
+    /// Print the result as JSON
     #[arg(long)]
     pub json: bool,
 }

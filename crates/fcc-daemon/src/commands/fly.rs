@@ -21,7 +21,8 @@ use crate::process::own_program;
 use crate::process::{Process, tolerate};
 use fcc_flight::config::{BuiltInSection, Config};
 use fcc_flight::flight::{
-    FlyError, Length, Outcome, Pace, Plan, RecordingRequest, assemble, fly as fly_assembly,
+    Assembly, FlyError, Length, Outcome, Pace, Plan, RecordingRequest, assemble,
+    fly as fly_assembly,
 };
 
 /// Flies the built-in aircraft.
@@ -64,6 +65,20 @@ pub(super) fn prepare(pace: Pace) -> Result<Option<Printer>, Failure> {
     })
 }
 
+/// The sensors and actuators of a configuration.
+pub(super) fn assembled(config: &Config) -> Result<Assembly, Failure> {
+    let names = config.host_names();
+    let assembled = looking_up(&names, LONG, output::message, || assemble(config));
+    assembled.map_err(|error| {
+        let exit = if error.is_taken() {
+            Exit::Taken
+        } else {
+            Exit::Failure
+        };
+        Failure::of(exit, error)
+    })
+}
+
 /// Flies a configuration and prints the result.
 pub(super) fn conduct(
     config: &Config,
@@ -72,16 +87,7 @@ pub(super) fn conduct(
     quiet: bool,
     json: bool,
 ) -> Result<Exit, Failure> {
-    let names = config.host_names();
-    let assembled = looking_up(&names, LONG, output::message, || assemble(config));
-    let mut assembly = assembled.map_err(|error| {
-        let exit = if error.is_taken() {
-            Exit::Taken
-        } else {
-            Exit::Failure
-        };
-        Failure::of(exit, error)
-    })?;
+    let mut assembly = assembled(config)?;
     #[cfg(feature = "live")]
     {
         assembly.publisher = Some(Box::new(|| Ok(own_program("publisher"))));

@@ -1,8 +1,10 @@
 //! The commands: each prints its result on standard output and messages on
 //! standard error, and returns an exit code.
 
+mod answers;
 mod calibrate;
 mod check;
+mod check_controls;
 #[cfg(feature = "live")]
 mod command;
 mod doctor;
@@ -85,7 +87,7 @@ fn plain(mut error: clap::Error) -> clap::Error {
 fn complete(command: Action, json: bool) -> Exit {
     let prepared = match &command {
         Action::Fly(args) => fly::prepare(fly::pace(args)),
-        Action::Run(_) => fly::prepare(Pace::RealTime),
+        Action::Run(_) | Action::CheckControls(_) => fly::prepare(Pace::RealTime),
         _ => Ok(None),
     };
     // Until the end: a failure is printed, too.
@@ -109,6 +111,7 @@ fn carry_out(command: Action) -> Result<Exit, Failure> {
         Action::Top(args) => top::top(&args)?,
         Action::Calibrate(args) => calibrate::calibrate(&args)?,
         Action::Check(args) => check::check(&args),
+        Action::CheckControls(args) => check_controls::check_controls(&args)?,
         Action::Doctor(args) => doctor::doctor(&args)?,
         Action::Probe(args) => probe::probe(&args)?,
         Action::Plan(args) => plan::plan(&args)?,

@@ -3,6 +3,7 @@
 #![cfg(test)]
 
 mod calibrate;
+mod check_controls;
 mod damaged;
 mod named_files;
 mod output;

@@ -287,12 +287,25 @@ fn await_release(
         host.end(Released::Unconfirmed);
         return report;
     }
+    let released = release_by(authority, &mut |words| observers.remark(words), host);
+    LoopReport {
+        released: report.released && released.is_over(),
+        ..report
+    }
+}
+
+/// Waits until the plant confirms the release of its controls, if they were taken.
+pub(super) fn release_by(
+    authority: Option<&Arc<dyn ControlAuthority>>,
+    say: &mut dyn FnMut(String),
+    host: &mut dyn Host,
+) -> Released {
     let held = authority.and_then(|authority| authority.held().map(|plant| (authority, plant)));
     let released = held.map_or(Released::Confirmed, |(authority, plant)| {
         let released = authority.release(&plant, GIVE_BACK_WITHIN, &mut || false);
         let is_over = released.is_ok_and(Released::is_over);
         let continues = if is_over { "" } else { host.continue_release() };
-        observers.remark(match released {
+        say(match released {
             Ok(Released::Confirmed) => format!("{plant} confirmed the release of its controls"),
             Ok(Released::Unreachable) => {
                 format!("{plant} has ended, and nothing holds its controls")
@@ -319,8 +332,5 @@ fn await_release(
         released.unwrap_or(Released::Unconfirmed)
     });
     host.end(released);
-    LoopReport {
-        released: report.released && released.is_over(),
-        ..report
-    }
+    released
 }

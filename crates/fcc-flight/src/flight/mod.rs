@@ -8,6 +8,7 @@ mod again;
 mod assemble;
 mod board;
 mod calibrated;
+mod check_controls;
 #[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
 mod control_override;
@@ -48,6 +49,9 @@ pub use assemble::{
     Assembly, AssemblyError, assemble, assemble_on_phone, authority_without_connection,
 };
 pub(crate) use board::uncalibrated;
+pub use check_controls::{
+    Checked, Movement, Onlooker, Reply, Seen, Unchecked, Verdict, check_controls,
+};
 pub use control_override::ControlOverride;
 pub use flapping::Flapping;
 pub use fly::{FlyError, fly};

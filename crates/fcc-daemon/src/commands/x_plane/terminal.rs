@@ -1,15 +1,14 @@
 //! The check on a terminal: what it says, and what the person answers.
 
-use std::io::{self, BufRead};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, Receiver};
-use std::thread;
+use std::sync::mpsc::Receiver;
 
 use fcc_xplane_check::{Answer, Outcome, Screen, Step, StepResult};
 use indicatif::ProgressBar;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP};
 
+use super::super::answers::answers;
 use super::Failure;
 use crate::output;
 use crate::process::tolerate;
@@ -46,7 +45,13 @@ impl Terminal {
         }
         let terminal = Self {
             live: ProgressBar::new_spinner(),
-            answers: has_person.then(read_answers),
+            answers: has_person.then(|| {
+                answers(|line| match line {
+                    Some("s") => Answer::Skip,
+                    Some("q") | None => Answer::Quit,
+                    _ => Answer::Done,
+                })
+            }),
             stopped,
             suspended,
         };
@@ -65,26 +70,6 @@ impl Drop for Terminal {
     fn drop(&mut self) {
         self.live.finish_and_clear();
     }
-}
-
-/// Reads lines in a thread, which ends with the program.
-fn read_answers() -> Receiver<Answer> {
-    let (to, answers) = mpsc::channel();
-    thread::spawn(move || {
-        for line in io::stdin().lock().lines().map_while(Result::ok) {
-            let answer = match line.trim() {
-                "s" => Answer::Skip,
-                "q" => Answer::Quit,
-                _ => Answer::Done,
-            };
-            if to.send(answer).is_err() {
-                return;
-            }
-        }
-        // The input has ended: nobody answers any more.
-        let _ = to.send(Answer::Quit);
-    });
-    answers
 }
 
 impl Screen for Terminal {
