@@ -158,7 +158,7 @@ pub fn fly(
     Ok(outcome)
 }
 
-fn refuse_if_taken(host: &dyn Host) -> Result<(), FlyError> {
+pub(super) fn refuse_if_taken(host: &dyn Host) -> Result<(), FlyError> {
     host.taken_by_another()
         .map_or(Ok(()), |plant| Err(FlyError::Taken(plant)))
 }

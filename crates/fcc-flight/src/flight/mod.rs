@@ -49,9 +49,7 @@ pub use assemble::{
     Assembly, AssemblyError, assemble, assemble_on_phone, authority_without_connection,
 };
 pub(crate) use board::uncalibrated;
-pub use check_controls::{
-    Checked, Movement, Onlooker, Reply, Seen, Unchecked, Verdict, check_controls,
-};
+pub use check_controls::{Checked, Movement, Unchecked, Verdict, check_controls};
 pub use control_override::ControlOverride;
 pub use flapping::Flapping;
 pub use fly::{FlyError, fly};

@@ -47,9 +47,9 @@ impl Terminal {
             live: ProgressBar::new_spinner(),
             answers: has_person.then(|| {
                 answers(|line| match line {
-                    Some("s") => Answer::Skip,
-                    Some("q") | None => Answer::Quit,
-                    _ => Answer::Done,
+                    Some("s") => Some(Answer::Skip),
+                    Some("q") | None => Some(Answer::Quit),
+                    _ => Some(Answer::Done),
                 })
             }),
             stopped,
