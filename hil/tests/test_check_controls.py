@@ -115,6 +115,6 @@ def test_a_daemon_that_flies_keeps_its_controls(fccd: Path, tmp_path: Path) -> N
             check=False,
         )
         assert refused.returncode == TAKEN, refused.stderr
-        assert "another fccd on this machine controls X-Plane" in refused.stderr
+        assert "another fccd on this machine flies X-Plane" in refused.stderr
         assert simulator.progress().overridden
-        assert daemon.is_running()
+        assert daemon.is_running
