@@ -138,8 +138,8 @@ fn what_a_person_sees_counts_as_well() {
         "elevator: did its trailing edge go DOWN? [y/o/n/q]",
         "aileron: did the RIGHT one go UP, the left one down? [y/o/n/q]",
         "aileron: did the RIGHT one go DOWN, the left one up? [y/o/n/q]",
-        "rudder: did it go to the RIGHT? [y/o/n/q]",
-        "rudder: did it go to the LEFT? [y/o/n/q]",
+        "rudder: did its trailing edge go RIGHT? [y/o/n/q]",
+        "rudder: did its trailing edge go LEFT? [y/o/n/q]",
     ];
     assert_eq!(asked, expected);
 }

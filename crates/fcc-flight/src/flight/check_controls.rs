@@ -189,7 +189,7 @@ const fn does(control: Control) -> &'static [&'static str] {
             "the RIGHT one go UP, the left one down",
             "the RIGHT one go DOWN, the left one up",
         ],
-        Control::Rudder => &["it go to the RIGHT", "it go to the LEFT"],
+        Control::Rudder => &["its trailing edge go RIGHT", "its trailing edge go LEFT"],
         Control::NoseWheel => &["it turn to the RIGHT", "it turn to the LEFT"],
         Control::Flaps | Control::Gear => &["they go DOWN"],
         Control::LeftBrake | Control::RightBrake => &["it brake"],
