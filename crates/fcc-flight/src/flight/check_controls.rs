@@ -112,7 +112,7 @@ pub struct Checked {
 /// Moves the controls that a configuration drives, the throttle only if `throttle`. Messages and
 /// questions are passed to `say`. A person's answers arrive by `answers`, `None` to end; without
 /// them only measured positions count. The controls are centred and released in any case. The
-/// built-in aircraft's time is not real.
+/// built-in aircraft's time is simulated, unless servos are moved as well.
 pub fn check_controls(
     mut assembly: Assembly,
     config: &Config,
@@ -237,7 +237,9 @@ impl<'a> Check<'a> {
     ) -> Result<Self, Unchecked> {
         host.prepare(assembly.authority.as_ref())
             .map_err(FlyError::Host)?;
-        let mut timer: Box<dyn Timer> = if config.built_in.is_some() {
+        let is_simulated = |entry: &ActuatorEntry| matches!(entry, ActuatorEntry::Simulator(_));
+        let has_no_servo = config.actuators().iter().all(is_simulated);
+        let mut timer: Box<dyn Timer> = if config.built_in.is_some() && has_no_servo {
             Box::new(ManualTimer::new(config.tick.period()).map_err(FlyError::Timer)?)
         } else {
             config.tick.build_timer().map_err(FlyError::Timer)?
