@@ -1,27 +1,28 @@
 //! Finishes a file that is unfinished or damaged.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write as _};
 use std::mem;
 use std::path::{Path, PathBuf};
 
-use mcap::records::{MessageHeader, Metadata, Record};
+use mcap::records::{Channel, MessageHeader, Metadata, Record};
 use mcap::write::NoSeek;
 use mcap::{Attachment, McapError};
 use prost::Message as _;
 use serde::Serialize;
 
 use super::any_plant::AnyMessage;
+use super::channels::Channels;
 use super::damage::Damage;
 use super::end::{END, End, RunStatistics};
 use super::file::options;
 use super::foxglove;
-use super::items::{Channels, Item};
+use super::items::Item;
 use super::name::{self, damaged, unfinished};
 use super::raw::{Cut, Next, RawReader};
 use super::reader::{OpenError, Recording, Verified};
-use super::schema::{ENCODING, encode_event, undeclared};
+use super::schema::{ENCODING, Topic, encode_event, undeclared};
 use super::settings::Compression;
 use super::wire::log::Level;
 use super::{disk, opening};
@@ -248,8 +249,6 @@ struct Copy {
     records: u64,
     /// Gaps before the next message: its channel may be declared between.
     gaps: Vec<Damage>,
-    /// The channels in it.
-    declared: BTreeSet<u16>,
     /// Why the recording ended, if known.
     ending: Option<String>,
     last: MessageHeader,
@@ -264,7 +263,6 @@ impl Copy {
             run_statistics: RunStatistics::default(),
             records: 0,
             gaps: Vec::new(),
-            declared: BTreeSet::new(),
             ending: None,
             last: MessageHeader {
                 channel_id: 0,
@@ -306,18 +304,16 @@ impl Copy {
                 .writer
                 .add_schema_with_id(header.id, &header.name, &header.encoding, data)
                 .map(drop),
-            Record::Channel(channel) => {
-                self.declared.insert(channel.id);
-                self.writer
-                    .add_channel_with_id(
-                        channel.id,
-                        channel.schema_id,
-                        &channel.topic,
-                        &channel.message_encoding,
-                        &channel.metadata,
-                    )
-                    .map(drop)
-            }
+            Record::Channel(channel) => self
+                .writer
+                .add_channel_with_id(
+                    channel.id,
+                    channel.schema_id,
+                    &channel.topic,
+                    &channel.message_encoding,
+                    &channel.metadata,
+                )
+                .map(drop),
             Record::Message { header, data } => {
                 self.last = *header;
                 self.report_gaps()?;
@@ -331,19 +327,41 @@ impl Copy {
     /// declared as the recorder does; without that it is of no use.
     fn message(&mut self, header: &MessageHeader, data: &[u8]) -> Result<(), McapError> {
         let id = header.channel_id;
-        if !self.declared.contains(&id) {
-            let Some((name, message, descriptors)) = undeclared(id, data) else {
-                return Ok(());
-            };
-            let schema = match message.as_str() {
-                "" => 0,
-                _ => self.writer.add_schema(&message, ENCODING, &descriptors)?,
-            };
-            self.writer
-                .add_channel_with_id(id, schema, name, ENCODING, &BTreeMap::new())?;
-            self.declared.insert(id);
+        if !self.channels.is_declared(id)
+            && (self.channels.are_renumbered() || !self.declare(id, data)?)
+        {
+            return Ok(());
         }
         self.writer.write_to_known_channel(header, data)
+    }
+
+    /// Declares a channel as the recorder does, by a message of it; false if
+    /// that is not known.
+    fn declare(&mut self, id: u16, data: &[u8]) -> Result<bool, McapError> {
+        let Some((name, message, descriptors)) = undeclared(id, data) else {
+            return Ok(false);
+        };
+        let schema_id = match message.as_str() {
+            "" => 0,
+            _ => self.writer.add_schema(&message, ENCODING, &descriptors)?,
+        };
+        let mut channel = Channel {
+            id,
+            schema_id,
+            topic: name.to_owned(),
+            message_encoding: ENCODING.to_owned(),
+            metadata: BTreeMap::new(),
+        };
+        if self.channels.are_renumbered() {
+            channel.id = self
+                .writer
+                .add_channel(schema_id, name, ENCODING, &channel.metadata)?;
+        } else {
+            self.writer
+                .add_channel_with_id(id, schema_id, name, ENCODING, &channel.metadata)?;
+        }
+        self.channels.declare(&channel);
+        Ok(true)
     }
 
     /// Reports each gap: as an event, and as a line of the log.
@@ -354,18 +372,21 @@ impl Copy {
                 let text = damage.event_text();
                 let mut bytes = Vec::new();
                 encode_event(&event, &text, &mut bytes);
-                self.write(self.channels.event, &bytes)?;
+                self.write(Topic::Event, &bytes)?;
             }
             let text = damage.remark().text;
             let line = foxglove::line(foxglove::REMARK, text, Level::Warning, self.last.log_time);
-            self.write(self.channels.log, &line.encode_to_vec())?;
+            self.write(Topic::Log, &line.encode_to_vec())?;
         }
         Ok(())
     }
 
-    fn write(&mut self, channel_id: u16, message: &[u8]) -> Result<(), McapError> {
+    fn write(&mut self, topic: Topic, message: &[u8]) -> Result<(), McapError> {
+        if self.channels.of_topic(topic).is_none() {
+            self.declare(topic.channel(), message)?;
+        }
         let header = MessageHeader {
-            channel_id,
+            channel_id: self.channels.of_topic(topic).unwrap_or(topic.channel()),
             ..self.last
         };
         self.message(&header, message)
