@@ -86,7 +86,8 @@ impl Order {
 impl Sorted {
     /// Reads all messages, and sorts them: by log time, and those of one time
     /// by the recorder's numbers. If a tool has not kept these, a record comes
-    /// after the events of its tick, as the recorder writes it.
+    /// after the events of its tick, as the recorder writes it. A message that is
+    /// in the file twice is read once.
     pub(super) fn read(mut raw: RawReader) -> Self {
         let mut channels = Channels::default();
         let mut messages: Vec<Stored> = Vec::new();
@@ -113,15 +114,16 @@ impl Sorted {
         };
         let mut numbers: Vec<u32> = messages.iter().filter_map(Stored::number).collect();
         numbers.sort_unstable();
-        let are_kept = numbers.is_sorted_by(|one, next| one < next);
+        let are_unique = numbers.is_sorted_by(|one, next| one < next);
         messages.sort_by_key(|message| {
             let is_record = matches!(message.content, Ok((Topic::Record, ..)));
-            (
-                message.log_time,
-                is_record && !are_kept,
-                if are_kept { message.sequence } else { 0 },
-            )
+            let is_last = is_record && !are_unique;
+            (message.log_time, is_last, message.sequence)
         });
+        if numbers.last().is_some_and(|last| *last > 0) {
+            // The same message of two files that were merged.
+            messages.dedup_by(|one, other| one.is_same(other));
+        }
         Self {
             messages: messages.into_iter(),
             cut,
@@ -130,6 +132,18 @@ impl Sorted {
 }
 
 impl Stored {
+    fn is_same(&self, other: &Self) -> bool {
+        match (&self.content, &other.content) {
+            (Ok((topic, header, data)), Ok((other_topic, other_header, other_data))) => {
+                topic == other_topic
+                    && (header.log_time, header.sequence)
+                        == (other_header.log_time, other_header.sequence)
+                    && data == other_data
+            }
+            _ => false,
+        }
+    }
+
     fn number(&self) -> Option<u32> {
         self.content.is_ok().then_some(self.sequence)
     }

@@ -99,8 +99,10 @@ impl Epochs {
             return Epoch::Repeated;
         };
         let Some(down_mps) = self.vertical_speed.down_mps(time_s, position.altitude_m) else {
+            self.since_fix.without_climb += 1;
             return Epoch::Incomplete;
         };
+        self.since_fix = Heard::default();
         let [horizontal_accuracy_m, vertical_accuracy_m] = self.accuracy_m;
         let fix = GnssFix {
             position,
