@@ -48,7 +48,7 @@ pub(super) fn describe(
     let is_foreign = summary.is_some_and(|index| index.is_foreign);
     let cut = loop {
         match raw.next(|record| search.take(&record)) {
-            Ok(Next::Record(())) | Ok(Next::Damage(_)) => {}
+            Ok(Next::Record(()) | Next::Damage(_)) => {}
             Ok(Next::End) => break None,
             Err(cut) => break Some(cut),
         }
@@ -83,6 +83,7 @@ pub(super) fn describe(
     }
 }
 
+#[expect(clippy::struct_excessive_bools, reason = "each is found by itself")]
 #[derive(Default)]
 struct Search {
     found: Description,

@@ -110,13 +110,13 @@ fn hex(digits: &[u8]) -> Option<u8> {
 /// Time, status, latitude, N or S, longitude, E or W, knots, course, date,
 /// variation and its direction, mode.
 fn motion(fields: &mut str::Split<'_, char>) -> Option<Sentence> {
-    let time_s = known(fields.next()?, time)?;
+    let time_s = known(fields.next()?, time).ok()?;
     let status = fields.next()?;
     let [knots, course] = [fields.nth(4)?, fields.next()?];
     // Before version 2.3 there is none. E estimated, M manual, S simulated, N none.
     let mode = fields.nth(3).unwrap_or_default();
     let is_fix = status == "A" && !matches!(mode, "E" | "M" | "S" | "N");
-    let (speed_kt, course_deg) = (known(knots, number)?, known(course, number)?);
+    let (speed_kt, course_deg) = (known(knots, number).ok()?, known(course, number).ok()?);
     // Without a speed the receiver has no fix yet, whatever it says.
     let velocity_mps = match speed_kt {
         Some(speed_kt) if is_fix => {
@@ -135,7 +135,7 @@ fn motion(fields: &mut str::Split<'_, char>) -> Option<Sentence> {
 /// Time, latitude, N or S, longitude, E or W, quality, satellites, dilution,
 /// altitude above mean sea level, M, and more.
 fn place(fields: &mut str::Split<'_, char>) -> Option<Sentence> {
-    let time_s = known(fields.next()?, time)?;
+    let time_s = known(fields.next()?, time).ok()?;
     let [latitude, north, longitude, east] = [
         fields.next()?,
         fields.next()?,
@@ -145,10 +145,10 @@ fn place(fields: &mut str::Split<'_, char>) -> Option<Sentence> {
     // 0 no fix, 6 estimated, 7 manual, 8 simulated.
     let is_fix = matches!(fields.next()?, "1" | "2" | "3" | "4" | "5");
     let [altitude, unit] = [fields.nth(2)?, fields.next()?];
-    let latitude_rad = known(latitude, |text| angle(text, north, ["N", "S"], 90.0))?;
-    let longitude_rad = known(longitude, |text| angle(text, east, ["E", "W"], 180.0))?;
+    let latitude_rad = known(latitude, |text| angle(text, north, ["N", "S"], 90.0)).ok()?;
+    let longitude_rad = known(longitude, |text| angle(text, east, ["E", "W"], 180.0)).ok()?;
     // A fix in two dimensions may have none.
-    let altitude_m = known(altitude, |text| number(text).filter(|_| unit == "M"))?;
+    let altitude_m = known(altitude, |text| number(text).filter(|_| unit == "M")).ok()?;
     let position = || {
         Some(Position {
             latitude_rad: latitude_rad?,
@@ -164,19 +164,22 @@ fn place(fields: &mut str::Split<'_, char>) -> Option<Sentence> {
 /// deviations of latitude, longitude and altitude.
 fn accuracy(fields: &mut str::Split<'_, char>) -> Option<Sentence> {
     let [latitude, longitude, altitude] = [fields.nth(5)?, fields.next()?, fields.next()?];
-    let deviation = |text| known(text, number).map(Option::unwrap_or_default);
+    let deviation = |text| known(text, number).ok().map(Option::unwrap_or_default);
     Some(Sentence::Accuracy {
         horizontal_m: deviation(latitude)?.max(deviation(longitude)?),
         vertical_m: deviation(altitude)?,
     })
 }
 
-/// What a field says: inside, `None` of an empty one; outside, of a damaged one.
-fn known<T>(text: &str, read: impl FnOnce(&str) -> Option<T>) -> Option<Option<T>> {
+/// A field that is not what it should be.
+struct Damaged;
+
+/// What a field says; none of an empty one.
+fn known<T>(text: &str, read: impl FnOnce(&str) -> Option<T>) -> Result<Option<T>, Damaged> {
     if text.is_empty() {
-        return Some(None);
+        return Ok(None);
     }
-    read(text).map(Some)
+    read(text).map(Some).ok_or(Damaged)
 }
 
 /// hhmmss.ss
