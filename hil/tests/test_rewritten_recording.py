@@ -22,6 +22,7 @@ from recordings import only_recording
 SUCCESS = 0
 USAGE = 2
 NOT_REPLAYED = 8
+INCOMPLETE = 13
 
 TOOL = os.environ.get("MCAP_TOOL", "")
 """MCAP's command line tool, if it is installed."""
@@ -275,6 +276,27 @@ def test_a_copy_without_its_attachments_is_reported_and_says_what_a_replay_needs
     assert done.returncode == NOT_REPLAYED
     assert "contains no configuration" in done.stderr
     assert "copy it with its attachments and metadata" in done.stderr
+
+
+def test_a_damaged_copy_loses_its_chunk_and_is_recovered(
+    fccd: Path, flight: Path, tmp_path: Path
+) -> None:
+    path = tmp_path / "copy.mcap"
+    write(path, Content.of(flight), Way(options={"chunk_size": 50_000}, shuffles_numbers=True))
+    with path.open("rb") as stream:
+        summary = make_reader(stream).get_summary()
+    assert summary
+    damaged = bytearray(path.read_bytes())
+    chunk = summary.chunk_indexes[3]
+    damaged[chunk.chunk_start_offset + chunk.chunk_length - 20] ^= 0x10
+    path.write_bytes(damaged)
+    recovered = fccd_json(fccd, "recover", path, exit_code=INCOMPLETE)
+    (damage,) = recovered["damages"]
+    report = fccd_json(fccd, "report", path)
+    assert report["damages"] == []
+    assert report["continuity"]["lost"] == damage["ticks"] > 10
+    gap = f"ticks {damage['first_tick']} to {damage['last_tick']}"
+    assert any(gap in event["text"] for event in report["events"])
 
 
 TOOLS: dict[str, list[str]] = {

@@ -327,66 +327,54 @@ impl Copy {
     /// declared as the recorder does; without that it is of no use.
     fn message(&mut self, header: &MessageHeader, data: &[u8]) -> Result<(), McapError> {
         let id = header.channel_id;
-        if !self.channels.is_declared(id)
-            && (self.channels.are_renumbered() || !self.declare(id, data)?)
-        {
-            return Ok(());
+        if !self.channels.is_declared(id) {
+            let undeclared = undeclared(id, data).filter(|_| !self.channels.are_renumbered());
+            let Some((name, message, descriptors)) = undeclared else {
+                return Ok(());
+            };
+            let schema_id = match message.as_str() {
+                "" => 0,
+                _ => self.writer.add_schema(&message, ENCODING, &descriptors)?,
+            };
+            let channel = Channel {
+                id,
+                schema_id,
+                topic: name.to_owned(),
+                message_encoding: ENCODING.to_owned(),
+                metadata: BTreeMap::new(),
+            };
+            self.channels.declare(&channel);
+            self.copy(&Record::Channel(channel))?;
         }
         self.writer.write_to_known_channel(header, data)
     }
 
-    /// Declares a channel as the recorder does, by a message of it; false if
-    /// that is not known.
-    fn declare(&mut self, id: u16, data: &[u8]) -> Result<bool, McapError> {
-        let Some((name, message, descriptors)) = undeclared(id, data) else {
-            return Ok(false);
-        };
-        let schema_id = match message.as_str() {
-            "" => 0,
-            _ => self.writer.add_schema(&message, ENCODING, &descriptors)?,
-        };
-        let mut channel = Channel {
-            id,
-            schema_id,
-            topic: name.to_owned(),
-            message_encoding: ENCODING.to_owned(),
-            metadata: BTreeMap::new(),
-        };
-        if self.channels.are_renumbered() {
-            channel.id = self
-                .writer
-                .add_channel(schema_id, name, ENCODING, &channel.metadata)?;
-        } else {
-            self.writer
-                .add_channel_with_id(id, schema_id, name, ENCODING, &channel.metadata)?;
-        }
-        self.channels.declare(&channel);
-        Ok(true)
-    }
-
-    /// Reports each gap: as an event, and as a line of the log.
+    /// Reports each gap: as an event, and as a line of the log. Another program may
+    /// declare their channels later.
     fn report_gaps(&mut self) -> Result<(), McapError> {
+        let [event_channel, log_channel] =
+            [Topic::Event, Topic::Log].map(|topic| self.channels.of_topic(topic));
+        let (Some(event_channel), Some(log_channel)) = (event_channel, log_channel) else {
+            return Ok(());
+        };
         for damage in mem::take(&mut self.gaps) {
             if let Some(event) = damage.event() {
                 self.run_statistics.take(&AnyMessage::Event(event));
                 let text = damage.event_text();
                 let mut bytes = Vec::new();
                 encode_event(&event, &text, &mut bytes);
-                self.write(Topic::Event, &bytes)?;
+                self.write(event_channel, &bytes)?;
             }
             let text = damage.remark().text;
             let line = foxglove::line(foxglove::REMARK, text, Level::Warning, self.last.log_time);
-            self.write(Topic::Log, &line.encode_to_vec())?;
+            self.write(log_channel, &line.encode_to_vec())?;
         }
         Ok(())
     }
 
-    fn write(&mut self, topic: Topic, message: &[u8]) -> Result<(), McapError> {
-        if self.channels.of_topic(topic).is_none() {
-            self.declare(topic.channel(), message)?;
-        }
+    fn write(&mut self, channel_id: u16, message: &[u8]) -> Result<(), McapError> {
         let header = MessageHeader {
-            channel_id: self.channels.of_topic(topic).unwrap_or(topic.channel()),
+            channel_id,
             ..self.last
         };
         self.message(&header, message)
