@@ -131,6 +131,8 @@ impl Epochs {
             (0, 0) if last.since(first) > SENT_WITHIN => Some(NEITHER),
             (2.., 0) => Some(NO_RMC),
             (0, 2..) => Some(NO_GGA),
+            // Those of one time would have been taken.
+            _ if self.motion.is_some() && self.place.is_some() => Some(NOT_TOGETHER),
             _ => Some(NO_FIX),
         }
     }
@@ -142,3 +144,4 @@ const NO_GGA: &str = "RMC arrives and no GGA, which has the altitude: switch GGA
                       receiver's port that is used";
 const NEITHER: &str = "sentences arrive, and neither GGA nor RMC: switch both on, at the \
                        receiver's port that is used";
+const NOT_TOGETHER: &str = "GGA and RMC never have the same time: set both to the same rate";

@@ -59,6 +59,14 @@ fn what_is_missing_in_the_sentences_is_said() {
             1,
             "sentences arrive, and neither",
         ),
+        (
+            &[
+                GGA,
+                "GNRMC,1015#.50,A,4500.0,N,00800.0,E,97.19,0.0,271126,,,R",
+            ],
+            1,
+            "GGA and RMC never have the same time",
+        ),
         (&[GGA, RMC], 2, SLOW_FIXES),
         (&[RMC, GGA], 5, SLOW_FIXES),
     ] {
