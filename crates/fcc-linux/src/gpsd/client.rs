@@ -1,6 +1,7 @@
 //! gpsd as a source of fixes.
 
 use core::fmt;
+use core::mem::replace;
 use core::time::Duration;
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
@@ -51,6 +52,8 @@ pub struct Gpsd {
     order: EpochOrder,
     /// For receivers that give none.
     vertical_speed: VerticalSpeed,
+    /// Whether the last fix has none.
+    without_climb: bool,
     waits_for: Option<&'static str>,
 }
 
@@ -93,6 +96,7 @@ impl Gpsd {
             heard: Instant::now(),
             order: EpochOrder::of_day(),
             vertical_speed: VerticalSpeed::default(),
+            without_climb: false,
             waits_for: None,
         })
     }
@@ -102,6 +106,7 @@ impl Gpsd {
         let (mut newest, mut trouble, mut heard) = (None, None, self.heard);
         let mut waits_for = self.waits_for;
         let (order, vertical_speed) = (&mut self.order, &mut self.vertical_speed);
+        let without_climb = &mut self.without_climb;
         let device = name(&self.settings);
         let wanted = self.settings.device.as_ref();
         let refused = |what: String| DeviceError::Refused {
@@ -130,8 +135,10 @@ impl Gpsd {
                 if !has_vertical_speed {
                     let time_s = time_s.unwrap_or(now.as_nanos() as f64 * 1e-9);
                     let down_mps = vertical_speed.down_mps(time_s, fix.position.altitude_m);
+                    let is_second = replace(without_climb, down_mps.is_none());
                     let Some(down_mps) = down_mps else {
-                        waits_for = Some(SLOW_FIXES);
+                        // The first has none at any rate.
+                        waits_for = is_second.then_some(SLOW_FIXES);
                         return;
                     };
                     fix.velocity.down_mps = down_mps;

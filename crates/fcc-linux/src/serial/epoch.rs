@@ -118,17 +118,20 @@ impl Epochs {
         Epoch::Complete(Sample::new(taken, fix))
     }
 
-    /// What is missing for a fix, by the sentences that come, and what to do about
-    /// that; `None` if none came since the last one.
+    /// What is missing for a fix, by the sentences since the last one, and what to do
+    /// about that. The first epoch has no vertical speed at any rate: after it, `None`.
     pub fn waits_for(&self) -> Option<&'static str> {
         let heard = self.since_fix;
-        // The first has none, whatever the rate.
-        if heard.without_climb > 1 {
-            return Some(SLOW_FIXES);
+        match heard.without_climb {
+            0 => {}
+            1 => return None,
+            _ => return Some(SLOW_FIXES),
         }
-        let (first, last) = heard.span?;
+        let span = heard
+            .span
+            .map_or(Duration::ZERO, |(first, last)| last.since(first));
         match (heard.places, heard.motions) {
-            (0, 0) if last.since(first) > SENT_WITHIN => Some(NEITHER),
+            (0, 0) if span > SENT_WITHIN => Some(NEITHER),
             (2.., 0) => Some(NO_RMC),
             (0, 2..) => Some(NO_GGA),
             // Those of one time would have been taken.

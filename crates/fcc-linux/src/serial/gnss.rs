@@ -201,7 +201,7 @@ impl Source for GnssReceiver {
         } else if found.has_ubx {
             self.waits_for = Some(NO_FIX);
         } else if found.messages > 0 && has_only_nmea && self.waits_for != Some(REPEATED_FIX) {
-            self.waits_for = self.epochs.waits_for().or(Some(NO_FIX));
+            self.waits_for = self.epochs.waits_for();
         }
         match self.trouble(&found, length, damaged, now) {
             Some(what) => Err(DeviceError::Malformed {
