@@ -17,7 +17,7 @@ import pytest
 from mcap.reader import make_reader
 from mcap.records import Attachment, Channel, Message, Metadata, Schema
 from mcap.writer import CompressionType, IndexType, Writer
-from recordings import only_recording
+from recordings import RECORD, only_recording
 
 SUCCESS = 0
 USAGE = 2
@@ -278,6 +278,21 @@ def test_a_copy_without_its_attachments_is_reported_and_says_what_a_replay_needs
     assert "copy it with its attachments and metadata" in done.stderr
 
 
+def test_of_a_copy_of_a_part_its_own_ticks_are_listed(
+    fccd: Path, flight: Path, tmp_path: Path
+) -> None:
+    content = Content.of(flight)
+    some = content.messages[len(content.messages) // 2 :]
+    path = tmp_path / "part.mcap"
+    write(path, Content(content.profile, content.attachments, content.metadata, some), Way())
+    done = subprocess.run([fccd, "list", tmp_path, "--json"], capture_output=True, check=True)
+    (listed,) = json.loads(done.stdout)
+    assert listed["ticks"] == sum(channel.topic == RECORD for _, channel, _ in some)
+    assert listed["file"] == "whole"
+    late = fccd_json(fccd, "replay", path, exit_code=NOT_REPLAYED)
+    assert "the recording begins in tick" in late["unflown"]["why"]
+
+
 def test_a_damaged_copy_loses_its_chunk_and_is_recovered(
     fccd: Path, flight: Path, tmp_path: Path
 ) -> None:
@@ -288,7 +303,8 @@ def test_a_damaged_copy_loses_its_chunk_and_is_recovered(
     assert summary
     damaged = bytearray(path.read_bytes())
     chunk = summary.chunk_indexes[3]
-    damaged[chunk.chunk_start_offset + chunk.chunk_length - 20] ^= 0x10
+    end = chunk.chunk_start_offset + chunk.chunk_length
+    damaged[end - 200 : end - 100] = bytes(100)
     path.write_bytes(damaged)
     recovered = fccd_json(fccd, "recover", path, exit_code=INCOMPLETE)
     (damage,) = recovered["damages"]

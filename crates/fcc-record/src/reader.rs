@@ -12,6 +12,7 @@ use super::end::{End, RunStatistics};
 use super::items::{Items, Messages, RecordedMessage, Source};
 use super::order::{Order, Sorted};
 use super::raw::{Cut, Next, RawReader};
+use super::schema::Topic;
 use super::{disk, opening, summary};
 use fcc_telemetry::schema::RecordDescription;
 
@@ -244,7 +245,7 @@ impl Recording {
     ) -> Result<Option<Verified>, OpenError> {
         match &self.end {
             // Without damage there is no need to decode every message.
-            Some(end) if self.is_undamaged(&mut go_on)? => Ok(Some(Verified {
+            Some(end) if self.is_undamaged(end.ticks, &mut go_on)? => Ok(Some(Verified {
                 account: end.clone(),
                 ..Verified::default()
             })),
@@ -252,17 +253,24 @@ impl Recording {
         }
     }
 
-    /// Whether every checksum matches and the file is finished.
-    fn is_undamaged(&self, go_on: &mut impl FnMut(u64) -> bool) -> Result<bool, OpenError> {
+    /// Whether every checksum matches, the file is finished, and no program has left
+    /// out a record.
+    fn is_undamaged(
+        &self,
+        ticks: u64,
+        go_on: &mut impl FnMut(u64) -> bool,
+    ) -> Result<bool, OpenError> {
         let mut raw = self.raw()?;
-        let mut records = 0_u64;
+        let mut channels = Channels::default();
+        let (mut all, mut records) = (0_u64, 0_u64);
         loop {
-            match raw.next(|_| ()) {
-                Ok(Next::Record(())) => records += 1,
-                Ok(Next::End) => return Ok(true),
+            match raw.next(|record| channels.message(&record).map(|(topic, ..)| topic)) {
+                Ok(Next::Record(topic)) => records += u64::from(topic == Some(Topic::Record)),
+                Ok(Next::End) => return Ok(records == ticks),
                 Ok(Next::Damage(_)) | Err(_) => return Ok(false),
             }
-            if records.is_multiple_of(CHECK_EVERY) && !go_on(raw.bytes_read()) {
+            all += 1;
+            if all.is_multiple_of(CHECK_EVERY) && !go_on(raw.bytes_read()) {
                 return Ok(false);
             }
         }
