@@ -44,7 +44,7 @@ endif
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: python advisories lock reproducible package-check wheels deb test-attacks test-contingencies test-fences test-glides test-guidance test-landings test-landings-beside test-plan-real-time test-raw-edges test-upsets test-android android android-check android-package test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
+.PHONY: python advisories lock reproducible package-check wheels deb test-attacks test-contingencies test-fences test-glides test-guidance test-landings test-landings-beside test-plan-real-time test-recordings test-raw-edges test-upsets test-android android android-check android-package test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -148,6 +148,10 @@ test-landings-beside: build $(STAMPS)/python-module ## The same 60 times: other 
 
 test-plan-real-time: build $(STAMPS)/python-module ## Fly legs by a plan with JSBSim over X-Plane's protocol, longer than in `make test` (2 minutes)
 	FCC_PLAN_REAL_TIME=1 FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil/tests/test_plan_real_time.py
+
+test-recordings: build $(STAMPS)/python-module ## Copy 100 recordings by each command of MCAP's tool, and replay them (MCAP_TOOL=, 10 minutes)
+	@test -x "$(MCAP_TOOL)" || { echo "MCAP_TOOL=PATH: MCAP's command line tool, https://mcap.dev/guides/cli"; exit 2; }
+	MCAP_TOOL=$(MCAP_TOOL) MCAP_FLIGHTS=100 FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil/tests/test_rewritten_recording.py
 
 # The app's classes and its native library, on this machine's Java. Its own report of
 # what native code does wrong (-Xcheck:jni) is in the output and no failure by itself.

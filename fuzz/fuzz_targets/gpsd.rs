@@ -21,7 +21,7 @@ libfuzzer_sys::fuzz_target!(|input: &[u8]| {
     // The last line has no end yet.
     let last = bytes.rsplit(|byte| *byte == b'\n').next().unwrap_or_default();
     for line in whole.iter().map(Vec::as_slice).chain([last]) {
-        if let Ok(Report::Fix { fix: Some(fix), .. }) = Report::read(line) {
+        if let Ok(Report::Fix { fix: Ok(fix), .. }) = Report::read(line) {
             assert!(fix.position.latitude_rad.abs() <= FRAC_PI_2);
             assert!(fix.position.longitude_rad.abs() <= PI);
             let velocity = fix.velocity;

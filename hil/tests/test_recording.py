@@ -116,7 +116,9 @@ def test_a_recording_deleted_in_flight_is_reported_and_continued(
         stderr=subprocess.PIPE,
         text=True,
     ) as flight:
-        wait_until(lambda: any(path.stat().st_size for path in folder.glob("*")), "it is recorded")
+        wait_until(
+            lambda: any(path.stat().st_size for path in folder.glob("*.mcap")), "it is recorded"
+        )
         time.sleep(MAX_LOST_S)
         only_recording(folder).unlink()
         out, said = flight.communicate()

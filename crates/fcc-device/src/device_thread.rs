@@ -242,22 +242,23 @@ impl<S: Source, O: FnMut() -> Result<S, DeviceError>> Reader<S, O> {
     fn read(&mut self, source: &mut S) -> Ended {
         let mut delivered = false;
         let mut malformed = 0;
-        let (mut latest, mut waits) = (Instant::now(), false);
+        let (mut latest, mut waits) = (Instant::now(), None);
         while !self.is_to_end() {
             match source.read() {
-                Ok(None) if waits || latest.elapsed() < self.silent_after => {}
+                Ok(None) if latest.elapsed() < self.silent_after => {}
                 Ok(None) => {
-                    if let Some(what) = source.waits_for() {
+                    let waits_for = source.waits_for();
+                    if let Some(what) = waits_for.filter(|_| waits_for != waits) {
                         self.status.set_waiting(what);
-                        waits = true;
+                        waits = waits_for;
                     }
                 }
                 Ok(Some(sample)) => {
-                    if !delivered || malformed > 0 || waits {
+                    if !delivered || malformed > 0 || waits.is_some() {
                         self.status.set(None);
                     }
                     (delivered, malformed) = (true, 0);
-                    (latest, waits) = (Instant::now(), false);
+                    (latest, waits) = (Instant::now(), None);
                     self.send(Message::Sample(sample));
                 }
                 Err(error @ DeviceError::Malformed { .. }) => {
@@ -266,6 +267,7 @@ impl<S: Source, O: FnMut() -> Result<S, DeviceError>> Reader<S, O> {
                         return Ended::Failed(error, delivered);
                     }
                     self.report(&error);
+                    waits = None;
                 }
                 Err(error) => return Ended::Failed(error, delivered),
             }

@@ -50,4 +50,4 @@ pub use device_sensor::DeviceSensor;
 pub use device_thread::{DeviceStatus, DeviceThread};
 pub use error::DeviceError;
 pub use fix::{EpochOrder, VerticalSpeed, velocity_over_ground};
-pub use source::{Measured, NO_FIX, REPEATED_FIX, RawValues, Sample, Source, WAIT};
+pub use source::{Measured, NO_FIX, REPEATED_FIX, RawValues, SLOW_FIXES, Sample, Source, WAIT};

@@ -35,6 +35,10 @@ pub trait Source {
 pub const NO_FIX: &str = "it has no three-dimensional fix: give its antenna a free view of \
                                  the sky, and wait; the first takes minutes";
 
+/// What is said of receivers whose altitudes are too far apart for a
+/// [`VerticalSpeed`](crate::VerticalSpeed).
+pub const SLOW_FIXES: &str = "it has less than one fix in a second: set it to at least 1 Hz";
+
 /// What is said of receivers whose fixes are all of an epoch that was there before.
 pub const REPEATED_FIX: &str = "its fixes repeat a time, or go back in time, and are not used: \
                                 start it anew, and what passes its messages on";

@@ -6,9 +6,9 @@ use mcap::records::ChunkHeader;
 
 use super::framing::MAX_RECORD_BYTES;
 
-/// Larger than any chunk of ours. It bounds the decompression memory, whatever
-/// the file claims.
-const MAX_WINDOW_LOG2: u32 = 24;
+/// The window of a chunk that was compressed at once is the whole chunk. It
+/// bounds the decompression memory, whatever the file claims.
+const MAX_WINDOW_LOG2: u32 = MAX_RECORD_BYTES.ilog2();
 
 /// Decompresses a chunk into `records` and verifies its length and checksum.
 pub(super) fn open(header: &ChunkHeader, data: &[u8], records: &mut Vec<u8>) -> Result<(), String> {

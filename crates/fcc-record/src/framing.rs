@@ -12,8 +12,9 @@ use super::parse::is_chunk_of;
 /// Opcode and length.
 pub(super) const HEAD_BYTES: usize = 1 + 8;
 
-/// No record of ours is longer: a chunk has 1 MiB, a configuration less.
-pub(super) const MAX_RECORD_BYTES: u64 = 16 << 20;
+/// No longer record is read. A chunk of ours has 1 MiB, of another program as
+/// much as it was told. A flight's computer may read it.
+pub(super) const MAX_RECORD_BYTES: u64 = 64 << 20;
 
 /// The footer: its opcode and length, two offsets and a checksum.
 pub(super) const FOOTER_BYTES: u64 = HEAD_BYTES as u64 + 8 + 8 + 4;

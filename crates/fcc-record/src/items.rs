@@ -1,21 +1,18 @@
-//! Reads a recording item by item: memory does not grow with the file.
+//! Reads a recording item by item: memory does not grow with the file, unless
+//! its messages have to be sorted.
 
 use std::collections::VecDeque;
 
 use fcc_core::framework::schema::Schema;
-use fcc_core::framework::{Message, Record, Tick, Time};
-use mcap::records::{self as mcap_records, MessageHeader};
-use prost::Message as _;
+use fcc_core::framework::{Message, Record, Tick};
 
-use super::about::document;
+use super::channels::{self, Channels};
 use super::damage::Damage;
 use super::document::Document;
 use super::end::End;
-use super::foxglove::REMARK;
+use super::order::Sorted;
 use super::raw::{DamagedBytes, Next, RawReader};
 use super::remark::Remark;
-use super::schema::{self, Topic};
-use super::wire;
 use fcc_telemetry::schema::RecordDescription;
 use fcc_telemetry::schema::protobuf::{DecodeError, decode};
 
@@ -71,7 +68,8 @@ pub enum Item<M> {
     Message(M),
     /// Text that is not an event of the loop.
     Remark(Remark),
-    /// A text that came during the flight, or did before the file was begun.
+    /// A text that came during the flight, or did before the file was begun:
+    /// these come first.
     Document(Document),
     /// Damage; the items that were here are missing.
     Damage(Damage),
@@ -81,11 +79,18 @@ pub enum Item<M> {
 /// before them.
 const MAX_HELD_BACK: usize = 1_024;
 
+/// Where items come from.
+pub(super) enum Source {
+    /// From the file, in its order.
+    File(Box<RawReader>, Channels),
+    /// From memory.
+    Sorted(Sorted),
+}
+
 /// The records, events and remarks of a recording. Damage is skipped, and
 /// reported in its place.
 pub struct Items<M> {
-    raw: RawReader,
-    channels: Channels,
+    source: Source,
     clock_offset_ns: i64,
     /// The statistics in the file.
     end: Option<End>,
@@ -101,20 +106,20 @@ pub struct Items<M> {
 
 impl<M: RecordedMessage> Items<M> {
     pub(super) fn new(
-        raw: RawReader,
+        documents: Vec<Document>,
+        source: Source,
         clock_offset_ns: i64,
         end: Option<End>,
         being_written: bool,
     ) -> Self {
         Self {
-            raw,
-            channels: Channels::default(),
+            source,
             clock_offset_ns,
             end,
             being_written,
             last_tick: None,
             damage: None,
-            held_back: VecDeque::new(),
+            held_back: documents.into_iter().map(Item::Document).collect(),
             finished: false,
             cut: None,
         }
@@ -128,30 +133,45 @@ impl<M: RecordedMessage> Items<M> {
 
     /// Bytes read so far, of [`Recording::bytes`](super::Recording::bytes).
     pub const fn bytes_read(&self) -> u64 {
-        self.raw.bytes_read()
+        match &self.source {
+            Source::File(raw, _) => raw.bytes_read(),
+            Source::Sorted(_) => 0,
+        }
     }
 
     fn read(&mut self) -> Option<Result<Item<M>, DamagedBytes>> {
-        loop {
-            let (channels, offset_ns) = (&mut self.channels, self.clock_offset_ns);
-            match self.raw.next(|record| channels.item(&record, offset_ns)) {
-                Err(cut) => {
-                    self.cut = Some(cut.of_file(self.being_written).to_string());
-                    return None;
+        let offset_ns = self.clock_offset_ns;
+        let cut = loop {
+            let item = match &mut self.source {
+                Source::File(raw, channels) => {
+                    match raw.next(|record| channels.item(&record, offset_ns)) {
+                        Err(cut) => break Some(cut),
+                        Ok(Next::End) => break None,
+                        Ok(Next::Damage(damaged)) => return Some(Err(damaged)),
+                        Ok(Next::Record(item)) => item.map(|item| (raw.last_bytes(), item)),
+                    }
                 }
-                Ok(Next::End) => return None,
-                Ok(Next::Damage(damaged)) => return Some(Err(damaged)),
-                Ok(Next::Record(Some(Ok(item)))) => return Some(Ok(item)),
-                Ok(Next::Record(Some(Err(why)))) => {
-                    return Some(Err(DamagedBytes {
-                        bytes: self.raw.last_bytes(),
-                        why,
-                        messages: true,
-                    }));
-                }
-                Ok(Next::Record(None)) => {}
+                Source::Sorted(sorted) => match sorted.messages.next() {
+                    None => break sorted.cut.take(),
+                    Some(message) => match message.content {
+                        Err(damaged) => return Some(Err(damaged)),
+                        Ok((topic, header, data)) => {
+                            channels::item(topic, &header, &data, offset_ns)
+                                .map(|item| (0..0, item))
+                        }
+                    },
+                },
+            };
+            if let Some((bytes, item)) = item {
+                return Some(item.map_err(|why| DamagedBytes {
+                    bytes,
+                    why,
+                    messages: true,
+                }));
             }
-        }
+        };
+        self.cut = cut.map(|cut| cut.of_file(self.being_written).to_string());
+        None
     }
 
     /// Takes an item; returns it if nothing has to come before it.
@@ -264,93 +284,4 @@ impl<M: RecordedMessage> Iterator for Messages<M> {
         }
         None
     }
-}
-
-/// The channels of a file, by content.
-pub(super) struct Channels {
-    record: u16,
-    pub(super) event: u16,
-    pub(super) log: u16,
-}
-
-/// As the recorder numbers them: the chunk that declares them may be damaged.
-impl Default for Channels {
-    fn default() -> Self {
-        Self {
-            record: Topic::Record.channel(),
-            event: Topic::Event.channel(),
-            log: Topic::Log.channel(),
-        }
-    }
-}
-
-impl Channels {
-    /// The item in an MCAP record, if there is one.
-    pub(super) fn item<M: RecordedMessage>(
-        &mut self,
-        record: &mcap_records::Record<'_>,
-        clock_offset_ns: i64,
-    ) -> Option<Result<Item<M>, String>> {
-        match record {
-            mcap_records::Record::Channel(channel)
-                if channel.message_encoding == schema::ENCODING =>
-            {
-                for (topic, id) in [
-                    (Topic::Record, &mut self.record),
-                    (Topic::Event, &mut self.event),
-                    (Topic::Log, &mut self.log),
-                ] {
-                    if channel.topic == topic.name() {
-                        *id = channel.id;
-                    }
-                }
-                None
-            }
-            mcap_records::Record::Message { header, data } => {
-                let id = header.channel_id;
-                if id == self.record {
-                    Some(
-                        M::record(data)
-                            .map_err(|error| decode_failure("a record", error))
-                            .map(Item::Message),
-                    )
-                } else if id == self.event {
-                    Some(
-                        M::event(data)
-                            .map_err(|error| decode_failure("an event", error))
-                            .map(Item::Message),
-                    )
-                } else if id == self.log {
-                    remark(header, data, clock_offset_ns).map(|remark| Ok(Item::Remark(remark)))
-                } else {
-                    None
-                }
-            }
-            mcap_records::Record::Attachment { header, data, .. } => {
-                document(&header.name, data).map(|found| Ok(Item::Document(found)))
-            }
-            _ => None,
-        }
-    }
-}
-
-fn decode_failure(what: &str, error: DecodeError) -> String {
-    match error {
-        DecodeError::Unknown(unknown) => format!("{what} cannot be decoded: {unknown}"),
-        damaged => format!("{what} is damaged: {damaged}"),
-    }
-}
-
-/// The remark in a log line; none if the line describes an event, which is
-/// recorded separately. Damage to a remark is ignored: it is not part of the
-/// flight.
-fn remark(header: &MessageHeader, data: &[u8], clock_offset_ns: i64) -> Option<Remark> {
-    let line = wire::Log::decode(data).ok()?;
-    (line.name == REMARK).then(|| {
-        let logged_ns = i64::try_from(header.log_time).unwrap_or(i64::MAX);
-        Remark {
-            time: Time::from_nanos(logged_ns.saturating_sub(clock_offset_ns)),
-            text: line.message,
-        }
-    })
 }

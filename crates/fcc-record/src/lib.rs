@@ -34,6 +34,7 @@
 
 mod about;
 mod any_plant;
+mod channels;
 mod chunk;
 mod crash;
 mod damage;
@@ -53,6 +54,7 @@ mod lock_tests;
 mod lost;
 mod name;
 mod opening;
+mod order;
 mod outlet;
 mod output;
 mod parse;

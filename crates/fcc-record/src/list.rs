@@ -6,8 +6,8 @@ use std::{fs, io};
 use serde::Serialize;
 
 use super::damage::Damage;
-use super::name;
 use super::reader::{OpenError, Recording, Verified};
+use super::{folder, name};
 
 /// Properties of one recording.
 #[derive(Clone, PartialEq, Debug, Serialize)]
@@ -57,12 +57,12 @@ pub enum Wholeness {
 ///
 /// # Errors
 /// When the folder cannot be read.
-pub fn files(folder: &Path) -> io::Result<Vec<PathBuf>> {
-    let mut found: Vec<PathBuf> = fs::read_dir(folder)?
+pub fn files(of: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut found: Vec<PathBuf> = fs::read_dir(of)?
         .filter_map(|entry| entry.ok().map(|entry| entry.path()))
         .filter(|path| path.extension().is_some_and(|e| e == name::EXTENSION))
         .collect();
-    found.sort();
+    folder::sort(of, &mut found);
     Ok(found)
 }
 

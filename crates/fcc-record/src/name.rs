@@ -38,11 +38,15 @@ pub(super) fn is_recording(path: &Path) -> bool {
             })
 }
 
-/// Whether a recording's name is one of the flight that began then: the stamp of
-/// that time, or one up to a second later, if that was taken.
+/// The times that a flight tries for its name, each a millisecond later: of one
+/// at which another flight began, the name is taken.
+pub(super) const MAX_NAMES: u64 = 100;
+pub(super) const NAMES_APART_NS: u64 = 1_000_000;
+
+/// Whether a recording's name is one of the flight that began then.
 pub(super) fn is_of_flight(path: &Path, started_unix_ns: u64) -> bool {
     let name = path.file_name().and_then(|name| name.to_str());
-    let last = started_unix_ns.saturating_add(utc::SECOND_NS);
+    let last = started_unix_ns.saturating_add(MAX_NAMES * NAMES_APART_NS);
     let [first, last] = [started_unix_ns, last].map(utc::file_stamp);
     name.and_then(|name| name.get(..first.len()))
         .is_some_and(|stamp| (first.as_str()..=last.as_str()).contains(&stamp))

@@ -27,9 +27,13 @@ pub(super) fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, &'static str>
 pub(super) fn parse_outside(opcode: u8, body: &[u8]) -> Result<Record<'_>, &'static str> {
     let fields = &mut Fields(body);
     let record = match opcode {
-        op::HEADER | op::CHUNK | op::METADATA | op::ATTACHMENT | op::SCHEMA | op::CHANNEL => {
-            record(opcode, fields)
-        }
+        op::HEADER
+        | op::CHUNK
+        | op::METADATA
+        | op::ATTACHMENT
+        | op::SCHEMA
+        | op::CHANNEL
+        | op::MESSAGE => record(opcode, fields),
         op::MESSAGE_INDEX => message_index(fields),
         op::DATA_END => fields
             .u32()
@@ -121,7 +125,7 @@ fn record<'a>(opcode: u8, fields: &mut Fields<'a>) -> Option<Record<'a>> {
                 log_time: fields.u64()?,
                 publish_time: fields.u64()?,
             },
-            data: Cow::Borrowed(fields.0),
+            data: Cow::Borrowed(std::mem::take(&mut fields.0)),
         },
         op::CHUNK => {
             let header = chunk_header(fields)?;

@@ -90,6 +90,8 @@ pub(super) struct RawReader {
     chunk: Vec<u8>,
     chunk_bytes: Range<u64>,
     chunk_position: usize,
+    /// Whether a message was outside of the chunks.
+    is_unchunked: bool,
     /// Of all bytes read; none after damage was skipped.
     checksum: Option<crc32fast::Hasher>,
     /// The content of the index, once it was read.
@@ -107,6 +109,7 @@ impl RawReader {
             chunk: Vec::new(),
             chunk_bytes: 0..0,
             chunk_position: 0,
+            is_unchunked: false,
             checksum: Some(crc32fast::Hasher::new()),
             summary: OnceCell::new(),
             finished: false,
@@ -184,7 +187,10 @@ impl RawReader {
                 }
                 // An index of the chunk before it.
                 Ok(Record::Unknown { .. }) => None,
-                Ok(record) => return Ok(Next::Record(take(record))),
+                Ok(record) => {
+                    self.is_unchunked |= matches!(record, Record::Message { .. });
+                    return Ok(Next::Record(take(record)));
+                }
                 Err(why) => return self.skip(start, why),
             };
             if let Some(damage) = damage {
@@ -343,19 +349,19 @@ impl RawReader {
         };
         self.finished = true;
         self.position = self.length;
-        let damaged = |bytes, why: &str| DamagedBytes {
+        let damaged = |bytes, why: &str, messages| DamagedBytes {
             bytes,
             why: why.to_owned(),
-            messages: false,
+            messages,
         };
         if let Some(why) = why {
-            return Ok(Some(damaged(index, why)));
+            return Ok(Some(damaged(index, why, false)));
         }
         let differs = checksum != 0 && computed.is_some_and(|computed| computed != checksum);
         Ok(differs.then(|| {
             let why = "something between the chunks is damaged: the checksum of the data \
                        does not match";
-            damaged(0..start, why)
+            damaged(0..start, why, self.is_unchunked)
         }))
     }
 

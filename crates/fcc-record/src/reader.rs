@@ -5,11 +5,14 @@ use std::path::{Path, PathBuf};
 
 use super::about::About;
 use super::any_plant::AnyMessage;
+use super::channels::Channels;
 use super::damage::Damage;
-use super::description::{Refusal, read_about};
+use super::description::{Refusal, describe};
 use super::end::{End, RunStatistics};
-use super::items::{Items, Messages, RecordedMessage};
+use super::items::{Items, Messages, RecordedMessage, Source};
+use super::order::{Order, Sorted};
 use super::raw::{Cut, Next, RawReader};
+use super::schema::Topic;
 use super::{disk, opening, summary};
 use fcc_telemetry::schema::RecordDescription;
 
@@ -79,6 +82,15 @@ pub enum OpenError {
         /// What is wrong with it, as text.
         why: String,
     },
+    /// Another program has written it in another order.
+    #[error(
+        "{path}: its messages are not in order of their log time, and too many to be sorted in \
+         memory: sort it first, for example by `mcap sort`"
+    )]
+    OutOfOrder {
+        /// The file.
+        path: PathBuf,
+    },
     /// It is a recording of another plant than the program's.
     #[error(
         "{path}: is a recording of another plant, {plant}, by {software}: open it with that \
@@ -127,13 +139,14 @@ impl Recording {
         let mut file = opening::open(&path).map_err(refused)?;
         let bytes = file.metadata().map_err(refused)?.len();
         let index = summary::read_footer(&mut file, bytes);
-        let end = index.as_ref().and_then(|at| {
-            let summary = summary::read(&mut file, at).ok()?;
-            summary::read_end(&mut file, &summary)
-        });
+        let summary = index
+            .as_ref()
+            .and_then(|at| summary::read(&mut file, at).ok());
+        let end = summary.as_ref();
+        let end = end.and_then(|summary| summary::read_end(&mut file, summary));
         file.seek(SeekFrom::Start(0)).map_err(refused)?;
         let raw = RawReader::new(file).map_err(refused)?;
-        let (about, columns) = read_about(raw).map_err(|refusal| {
+        let described = describe(raw, summary.as_ref(), end.is_some()).map_err(|refusal| {
             let path = path.clone();
             match refusal {
                 Refusal::Cut(cut) => match cut.of_file(being_written) {
@@ -152,11 +165,15 @@ impl Recording {
         Ok(Self {
             path,
             bytes,
-            about,
-            columns,
+            about: described.about,
+            columns: described.columns,
             whole: index.is_some(),
             being_written,
-            end,
+            end: if described.is_merged {
+                None
+            } else {
+                end.or(described.end)
+            },
         })
     }
 
@@ -228,7 +245,7 @@ impl Recording {
     ) -> Result<Option<Verified>, OpenError> {
         match &self.end {
             // Without damage there is no need to decode every message.
-            Some(end) if self.is_undamaged(&mut go_on)? => Ok(Some(Verified {
+            Some(end) if self.is_undamaged(end.ticks, &mut go_on)? => Ok(Some(Verified {
                 account: end.clone(),
                 ..Verified::default()
             })),
@@ -236,17 +253,24 @@ impl Recording {
         }
     }
 
-    /// Whether every checksum matches and the file is finished.
-    fn is_undamaged(&self, go_on: &mut impl FnMut(u64) -> bool) -> Result<bool, OpenError> {
+    /// Whether every checksum matches, the file is finished, and no program has left
+    /// out a record.
+    fn is_undamaged(
+        &self,
+        ticks: u64,
+        go_on: &mut impl FnMut(u64) -> bool,
+    ) -> Result<bool, OpenError> {
         let mut raw = self.raw()?;
-        let mut records = 0_u64;
+        let mut channels = Channels::default();
+        let (mut all, mut records) = (0_u64, 0_u64);
         loop {
-            match raw.next(|_| ()) {
-                Ok(Next::Record(())) => records += 1,
-                Ok(Next::End) => return Ok(true),
+            match raw.next(|record| channels.message(&record).map(|(topic, ..)| topic)) {
+                Ok(Next::Record(topic)) => records += u64::from(topic == Some(Topic::Record)),
+                Ok(Next::End) => return Ok(records == ticks),
                 Ok(Next::Damage(_)) | Err(_) => return Ok(false),
             }
-            if records.is_multiple_of(CHECK_EVERY) && !go_on(raw.bytes_read()) {
+            all += 1;
+            if all.is_multiple_of(CHECK_EVERY) && !go_on(raw.bytes_read()) {
                 return Ok(false);
             }
         }
@@ -298,10 +322,23 @@ impl Recording {
     /// When the file can no longer be opened, or is of another plant.
     pub fn items<M: RecordedMessage>(&self) -> Result<Items<M>, OpenError> {
         self.has_plant_of::<M>()?;
-        self.raw().map(|raw| {
-            let end = self.end.clone();
-            Items::new(raw, self.about.clock_offset_ns, end, self.being_written)
-        })
+        let order = Order::of(self.raw()?);
+        let is_of_file = order.is_of_file().map_err(|()| OpenError::OutOfOrder {
+            path: self.path.clone(),
+        })?;
+        let raw = self.raw()?;
+        let source = if is_of_file {
+            Source::File(Box::new(raw), Channels::default())
+        } else {
+            Source::Sorted(Sorted::read(raw))
+        };
+        Ok(Items::new(
+            order.documents,
+            source,
+            self.about.clock_offset_ns,
+            self.end.clone(),
+            self.being_written,
+        ))
     }
 
     fn has_plant_of<M: RecordedMessage>(&self) -> Result<(), OpenError> {

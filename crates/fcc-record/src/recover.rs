@@ -1,27 +1,28 @@
 //! Finishes a file that is unfinished or damaged.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write as _};
 use std::mem;
 use std::path::{Path, PathBuf};
 
-use mcap::records::{MessageHeader, Metadata, Record};
+use mcap::records::{Channel, MessageHeader, Metadata, Record};
 use mcap::write::NoSeek;
 use mcap::{Attachment, McapError};
 use prost::Message as _;
 use serde::Serialize;
 
 use super::any_plant::AnyMessage;
+use super::channels::Channels;
 use super::damage::Damage;
 use super::end::{END, End, RunStatistics};
 use super::file::options;
 use super::foxglove;
-use super::items::{Channels, Item};
+use super::items::Item;
 use super::name::{self, damaged, unfinished};
 use super::raw::{Cut, Next, RawReader};
 use super::reader::{OpenError, Recording, Verified};
-use super::schema::{ENCODING, encode_event, undeclared};
+use super::schema::{ENCODING, Topic, encode_event, undeclared};
 use super::settings::Compression;
 use super::wire::log::Level;
 use super::{disk, opening};
@@ -248,8 +249,6 @@ struct Copy {
     records: u64,
     /// Gaps before the next message: its channel may be declared between.
     gaps: Vec<Damage>,
-    /// The channels in it.
-    declared: BTreeSet<u16>,
     /// Why the recording ended, if known.
     ending: Option<String>,
     last: MessageHeader,
@@ -264,7 +263,6 @@ impl Copy {
             run_statistics: RunStatistics::default(),
             records: 0,
             gaps: Vec::new(),
-            declared: BTreeSet::new(),
             ending: None,
             last: MessageHeader {
                 channel_id: 0,
@@ -306,18 +304,16 @@ impl Copy {
                 .writer
                 .add_schema_with_id(header.id, &header.name, &header.encoding, data)
                 .map(drop),
-            Record::Channel(channel) => {
-                self.declared.insert(channel.id);
-                self.writer
-                    .add_channel_with_id(
-                        channel.id,
-                        channel.schema_id,
-                        &channel.topic,
-                        &channel.message_encoding,
-                        &channel.metadata,
-                    )
-                    .map(drop)
-            }
+            Record::Channel(channel) => self
+                .writer
+                .add_channel_with_id(
+                    channel.id,
+                    channel.schema_id,
+                    &channel.topic,
+                    &channel.message_encoding,
+                    &channel.metadata,
+                )
+                .map(drop),
             Record::Message { header, data } => {
                 self.last = *header;
                 self.report_gaps()?;
@@ -331,34 +327,47 @@ impl Copy {
     /// declared as the recorder does; without that it is of no use.
     fn message(&mut self, header: &MessageHeader, data: &[u8]) -> Result<(), McapError> {
         let id = header.channel_id;
-        if !self.declared.contains(&id) {
-            let Some((name, message, descriptors)) = undeclared(id, data) else {
+        if !self.channels.is_declared(id) {
+            let undeclared = undeclared(id, data).filter(|_| !self.channels.are_renumbered());
+            let Some((name, message, descriptors)) = undeclared else {
                 return Ok(());
             };
-            let schema = match message.as_str() {
+            let schema_id = match message.as_str() {
                 "" => 0,
                 _ => self.writer.add_schema(&message, ENCODING, &descriptors)?,
             };
-            self.writer
-                .add_channel_with_id(id, schema, name, ENCODING, &BTreeMap::new())?;
-            self.declared.insert(id);
+            let channel = Channel {
+                id,
+                schema_id,
+                topic: name.to_owned(),
+                message_encoding: ENCODING.to_owned(),
+                metadata: BTreeMap::new(),
+            };
+            self.channels.declare(&channel);
+            self.copy(&Record::Channel(channel))?;
         }
         self.writer.write_to_known_channel(header, data)
     }
 
-    /// Reports each gap: as an event, and as a line of the log.
+    /// Reports each gap: as an event, and as a line of the log. Another program may
+    /// declare their channels later.
     fn report_gaps(&mut self) -> Result<(), McapError> {
+        let [event_channel, log_channel] =
+            [Topic::Event, Topic::Log].map(|topic| self.channels.of_topic(topic));
+        let (Some(event_channel), Some(log_channel)) = (event_channel, log_channel) else {
+            return Ok(());
+        };
         for damage in mem::take(&mut self.gaps) {
             if let Some(event) = damage.event() {
                 self.run_statistics.take(&AnyMessage::Event(event));
                 let text = damage.event_text();
                 let mut bytes = Vec::new();
                 encode_event(&event, &text, &mut bytes);
-                self.write(self.channels.event, &bytes)?;
+                self.write(event_channel, &bytes)?;
             }
             let text = damage.remark().text;
             let line = foxglove::line(foxglove::REMARK, text, Level::Warning, self.last.log_time);
-            self.write(self.channels.log, &line.encode_to_vec())?;
+            self.write(log_channel, &line.encode_to_vec())?;
         }
         Ok(())
     }

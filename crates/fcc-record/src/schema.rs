@@ -48,6 +48,8 @@ pub(super) enum Topic {
 pub(super) const OWN_TOPICS: usize = 3;
 
 impl Topic {
+    pub(super) const ALL: [Self; OWN_TOPICS] = [Self::Record, Self::Event, Self::Log];
+
     pub(super) const fn name(self) -> &'static str {
         match self {
             Self::Record => "/fcc/record",
@@ -59,6 +61,11 @@ impl Topic {
     /// The number that the recorder gives its channel.
     pub(super) const fn channel(self) -> u16 {
         self as u16 + 1
+    }
+
+    /// The topic to whose channel the recorder gives this number.
+    pub(super) fn of_channel(id: u16) -> Option<Self> {
+        Self::ALL.into_iter().find(|topic| topic.channel() == id)
     }
 }
 
@@ -84,8 +91,7 @@ pub(super) fn topics<C: Recorded>() -> Vec<TopicOf> {
 /// The topic of a channel whose declaration is damaged, by its number and a
 /// message of it; only a flight's messages have a known type.
 pub(super) fn undeclared(channel: u16, message: &[u8]) -> Option<TopicOf> {
-    let own = [Topic::Record, Topic::Event, Topic::Log];
-    let own = own.into_iter().find(|topic| topic.channel() == channel);
+    let own = Topic::of_channel(channel);
     #[cfg(feature = "flight")]
     {
         use fcc_core::flight::Autopilot;

@@ -17,8 +17,9 @@ pub struct RecorderSettings {
     /// for no limit.
     pub max_file_age: Option<Duration>,
     /// Keep the folder's recordings below this size: the oldest are deleted
-    /// when a file is begun, while it grows, and when the disk is full. A file
-    /// takes at most a quarter of it. None never deletes.
+    /// when a file is begun, while it grows, and when the disk is full, but no
+    /// file of the flight in progress. A file takes at most a quarter of it. None
+    /// never deletes.
     pub keep_total_bytes: Option<u64>,
     /// How chunks are compressed.
     pub compression: Compression,

@@ -8,10 +8,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub struct RecorderStatus {
     /// The file being written, if any.
     pub file: Option<PathBuf>,
-    /// Every file of this recording, in order, that was not deleted since.
+    /// Every file of this recording, in order, that was not lost since.
     pub files: Vec<PathBuf>,
-    /// Files of this recording that were deleted to keep the folder small.
-    pub files_deleted: u64,
     /// Records written, whether synced or not.
     pub ticks: u64,
     /// Bytes synced to the disk, all files together.

@@ -6,9 +6,11 @@ use std::ops::Range;
 
 use mcap::records::{Record, op};
 
+use super::about::RECORDING;
 use super::end::{END, End};
 use super::framing::{FOOTER_BYTES, HEAD_BYTES, MAGIC_BYTES, head};
 use super::parse::parse;
+use super::schema::Topic;
 
 /// Longer than any index of ours: an hour's has 400 kB.
 const MAX_SUMMARY_BYTES: u64 = 64 << 20;
@@ -26,6 +28,10 @@ pub(super) struct Summary {
     pub(super) declarations: Vec<u8>,
     /// Where the statistics of the flight are.
     end: Option<Range<u64>>,
+    /// How often the metadata of a recording is in the file.
+    pub(super) recordings: usize,
+    /// Whether it declares topics, and none is ours.
+    pub(super) is_foreign: bool,
 }
 
 impl Summary {
@@ -83,6 +89,7 @@ pub(super) fn read(file: &mut File, index: &Range<u64>) -> Result<Summary, &'sta
         return Err("the index's checksum does not match");
     }
     let mut summary = Summary::default();
+    let (mut topics, mut is_ours) = (0, false);
     let mut rest = bytes.get(..length as usize).unwrap_or_default();
     while !rest.is_empty() {
         let (record, after) = split_record(rest).ok_or("a record of the index has no end")?;
@@ -91,9 +98,16 @@ pub(super) fn read(file: &mut File, index: &Range<u64>) -> Result<Summary, &'sta
                 chunk.chunk_start_offset
                     ..chunk.chunk_start_offset.saturating_add(chunk.chunk_length),
             ),
-            Some(Record::Schema { .. } | Record::Channel(_)) => {
+            Some(declaration @ (Record::Schema { .. } | Record::Channel(_))) => {
+                if let Record::Channel(channel) = &declaration {
+                    topics += 1;
+                    is_ours |= channel.topic == Topic::Record.name();
+                }
                 let length = rest.len() - after.len();
                 summary.declarations.extend(rest.iter().take(length));
+            }
+            Some(Record::MetadataIndex(index)) if index.name == RECORDING => {
+                summary.recordings += 1;
             }
             Some(Record::MetadataIndex(index)) if index.name == END => {
                 summary.end = Some(index.offset..index.offset.saturating_add(index.length));
@@ -102,6 +116,7 @@ pub(super) fn read(file: &mut File, index: &Range<u64>) -> Result<Summary, &'sta
         }
         rest = after;
     }
+    summary.is_foreign = topics > 0 && !is_ours;
     Ok(summary)
 }
 

@@ -48,7 +48,10 @@ pub enum ChainError {
         after: u32,
     },
     /// The configuration is not in the file.
-    #[error("{file}: contains no configuration, so it is not known what was run")]
+    #[error(
+        "{file}: contains no configuration, so it is not known what was run: if another program \
+         copied it, copy it with its attachments and metadata"
+    )]
     NoConfig {
         /// The file.
         file: PathBuf,

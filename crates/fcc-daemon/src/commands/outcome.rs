@@ -37,13 +37,6 @@ pub(super) fn text(outcome: &Outcome) -> String {
         for file in &recording.files {
             let _ = write!(text, "\nrecorded: {file}");
         }
-        if recording.files_deleted > 0 {
-            let files = recording.files_deleted;
-            let _ = write!(
-                text,
-                "\ndeleted: {files} earlier files of it, by keep_total_mb"
-            );
-        }
         if recording.not_recorded > 0 {
             let _ = write!(text, "\nNOT RECORDED: {} messages", recording.not_recorded);
         }

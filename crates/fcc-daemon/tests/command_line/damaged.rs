@@ -43,8 +43,7 @@ fn recorded(folder: &Path) -> PathBuf {
     ]);
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
-    let mut files = fs::read_dir(folder).unwrap();
-    files.next().unwrap().unwrap().path()
+    fcc_record::files(folder).unwrap().remove(0)
 }
 
 /// Offset and length of all records of a kind.

@@ -94,11 +94,8 @@ pub struct EventEntry {
 /// What was recorded of a flight.
 #[derive(Clone, Debug, Serialize)]
 pub struct RecordingOutcome {
-    /// Every file of the recording, in order, that was not deleted since.
+    /// Every file of the recording, in order, that was not lost since.
     pub files: Vec<String>,
-    /// Files of it that were deleted, to keep recordings below
-    /// `keep_total_mb`.
-    pub files_deleted: u64,
     /// Records written.
     pub ticks: u64,
     /// Bytes written.

@@ -202,7 +202,6 @@ impl<C: Recorded> Observer<C> for FlightRecorder<C> {
                 .iter()
                 .map(|path| path.display().to_string())
                 .collect(),
-            files_deleted: status.files_deleted,
             ticks: status.ticks,
             bytes: status.bytes,
             not_recorded: status.not_recorded,

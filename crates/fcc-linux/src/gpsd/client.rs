@@ -1,6 +1,7 @@
 //! gpsd as a source of fixes.
 
 use core::fmt;
+use core::mem::replace;
 use core::time::Duration;
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
@@ -8,7 +9,7 @@ use std::time::Instant;
 
 use fcc_core::flight::GnssFix;
 use fcc_core::framework::Time;
-use fcc_device::{EpochOrder, NO_FIX, REPEATED_FIX};
+use fcc_device::{EpochOrder, REPEATED_FIX, SLOW_FIXES, VerticalSpeed};
 use nix::errno::Errno;
 
 use super::{Lines, Report};
@@ -49,6 +50,10 @@ pub struct Gpsd {
     traffic: Traffic,
     heard: Instant,
     order: EpochOrder,
+    /// For receivers that give none.
+    vertical_speed: VerticalSpeed,
+    /// Whether the last fix has none.
+    without_climb: bool,
     waits_for: Option<&'static str>,
 }
 
@@ -90,6 +95,8 @@ impl Gpsd {
             traffic: Traffic::begin(),
             heard: Instant::now(),
             order: EpochOrder::of_day(),
+            vertical_speed: VerticalSpeed::default(),
+            without_climb: false,
             waits_for: None,
         })
     }
@@ -98,7 +105,8 @@ impl Gpsd {
     fn parse(&mut self, bytes: &[u8], now: Time) -> Result<Option<Sample<GnssFix>>, DeviceError> {
         let (mut newest, mut trouble, mut heard) = (None, None, self.heard);
         let mut waits_for = self.waits_for;
-        let order = &mut self.order;
+        let (order, vertical_speed) = (&mut self.order, &mut self.vertical_speed);
+        let without_climb = &mut self.without_climb;
         let device = name(&self.settings);
         let wanted = self.settings.device.as_ref();
         let refused = |what: String| DeviceError::Refused {
@@ -110,15 +118,32 @@ impl Gpsd {
                 device,
                 time_s,
                 fix,
+                has_vertical_speed,
             }) if wanted.is_none() || device.as_ref() == wanted => {
-                let Some(fix) = fix else {
-                    waits_for = Some(NO_FIX);
+                let mut fix = match fix {
+                    Ok(fix) => fix,
+                    Err(what) => {
+                        waits_for = Some(what);
+                        return;
+                    }
+                };
+                let Some(taken) = time_s.map_or(Some(now), |time_s| order.taken(time_s, now))
+                else {
+                    waits_for = Some(REPEATED_FIX);
                     return;
                 };
-                match time_s.map_or(Some(now), |time_s| order.taken(time_s, now)) {
-                    Some(taken) => (newest, waits_for) = (Some(Sample::new(taken, fix)), None),
-                    None => waits_for = Some(REPEATED_FIX),
+                if !has_vertical_speed {
+                    let time_s = time_s.unwrap_or(now.as_nanos() as f64 * 1e-9);
+                    let down_mps = vertical_speed.down_mps(time_s, fix.position.altitude_m);
+                    let is_second = replace(without_climb, down_mps.is_none());
+                    let Some(down_mps) = down_mps else {
+                        // The first has none at any rate.
+                        waits_for = is_second.then_some(SLOW_FIXES);
+                        return;
+                    };
+                    fix.velocity.down_mps = down_mps;
                 }
+                (newest, waits_for) = (Some(Sample::new(taken, fix)), None);
             }
             Ok(Report::Impossible { device: of }) if wanted.is_none() || of.as_ref() == wanted => {
                 trouble = Some(DeviceError::Malformed {

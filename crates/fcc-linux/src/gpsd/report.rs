@@ -1,7 +1,7 @@
 //! What a line of gpsd says.
 
 use fcc_core::flight::{GnssFix, Position, Velocity};
-use fcc_device::velocity_over_ground;
+use fcc_device::{NO_FIX, velocity_over_ground};
 use serde::Deserialize;
 
 /// What a line says, as far as it is used.
@@ -13,8 +13,11 @@ pub enum Report {
         device: Option<String>,
         /// Its time of day, UTC, s; none if the receiver has not said it.
         time_s: Option<f64>,
-        /// Its fix; none if it has no three-dimensional one that it measured.
-        fix: Option<GnssFix>,
+        /// Its fix, if it has a three-dimensional one that it measured, and gives
+        /// position and speed; otherwise what is missing, and what to do.
+        fix: Result<GnssFix, &'static str>,
+        /// Whether the fix has a vertical speed; otherwise it is 0.
+        has_vertical_speed: bool,
     },
     /// A measured fix that is nowhere on the earth: a latitude beyond 90°, or a
     /// longitude beyond 180°.
@@ -109,6 +112,7 @@ impl Report {
             Object::Tpv(tpv) if tpv.is_impossible() => Self::Impossible { device: tpv.device },
             Object::Tpv(tpv) => Self::Fix {
                 fix: tpv.fix(),
+                has_vertical_speed: tpv.has_velocity() || tpv.climb.is_some(),
                 time_s: tpv.time.as_deref().and_then(time_of_day_s),
                 device: tpv.device,
             },
@@ -135,21 +139,25 @@ impl Tpv {
     }
 
     /// Of a report that is not impossible.
-    fn fix(&self) -> Option<GnssFix> {
+    fn fix(&self) -> Result<GnssFix, &'static str> {
+        let measured = |angle: Option<f64>| angle.filter(|_| self.is_measured()).ok_or(NO_FIX);
         let position = Position {
-            latitude_rad: self.lat?.to_radians(),
-            longitude_rad: self.lon?.to_radians(),
-            altitude_m: self.alt_msl.or(self.alt)?,
+            latitude_rad: measured(self.lat)?.to_radians(),
+            longitude_rad: measured(self.lon)?.to_radians(),
+            altitude_m: self.alt_msl.or(self.alt).ok_or(NO_ALTITUDE)?,
         };
         let across = self.epx.zip(self.epy).map(|(x, y)| x.max(y));
-        let velocity = self.velocity()?;
-        self.is_measured().then_some(GnssFix {
+        Ok(GnssFix {
             position,
-            velocity,
+            velocity: self.velocity().ok_or(NO_SPEED)?,
             horizontal_accuracy_m: error(self.eph.or(across)),
             vertical_accuracy_m: error(self.epv),
             speed_accuracy_mps: error(self.eps),
         })
+    }
+
+    const fn has_velocity(&self) -> bool {
+        self.vel_n.is_some() && self.vel_e.is_some() && self.vel_d.is_some()
     }
 
     fn velocity(&self) -> Option<Velocity> {
@@ -166,10 +174,15 @@ impl Tpv {
         Some(Velocity {
             north_mps,
             east_mps,
-            down_mps: -self.climb?,
+            down_mps: -self.climb.unwrap_or_default(),
         })
     }
 }
+
+const NO_ALTITUDE: &str = "its fix has no altitude above mean sea level: switch GGA on at the \
+                           receiver, or its binary protocol";
+const NO_SPEED: &str = "its fix has no speed, or no course: switch RMC on at the receiver, or its \
+                        binary protocol";
 
 /// Of a time by ISO 8601, such as 2026-11-26T10:11:11.200Z.
 fn time_of_day_s(time: &str) -> Option<f64> {

@@ -20,9 +20,9 @@ const UBX_SILENT: Duration = Duration::from_secs(2);
 const CONFIGURED_EVERY: Duration = Duration::from_secs(5);
 /// The times of UBX are those of a GPS week, s.
 const WEEK_S: f64 = 604_800.0;
-/// With less than one message in so many bytes they are not understood: a receiver
-/// with all of its messages sends 3 kB in a second.
-const NOTHING_UNDERSTOOD: usize = 10_000;
+/// With less than one message in so many bytes, or in so long, they are not
+/// understood: a receiver with all of its messages sends 3 kB in a second.
+const NOTHING_UNDERSTOOD: (usize, Duration) = (10_000, Duration::from_secs(10));
 
 /// A receiver, and how it is used.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -50,6 +50,7 @@ pub struct GnssReceiver {
     configured: Time,
     refused: bool,
     not_understood: usize,
+    understood: Time,
     waits_for: Option<&'static str>,
 }
 
@@ -93,6 +94,7 @@ impl GnssReceiver {
             configured: Time::NEVER,
             refused: false,
             not_understood: 0,
+            understood: Time::NEVER,
             waits_for: None,
         })
     }
@@ -138,7 +140,13 @@ impl GnssReceiver {
     }
 
     /// What is to be said of bytes that gave no fix.
-    fn trouble(&mut self, found: &Found, length: usize, damaged: u64) -> Option<&'static str> {
+    fn trouble(
+        &mut self,
+        found: &Found,
+        length: usize,
+        damaged: u64,
+        now: Time,
+    ) -> Option<&'static str> {
         if found.refused && !self.refused {
             self.refused = true;
             return Some(
@@ -146,11 +154,16 @@ impl GnssReceiver {
                  another one, and a port may be missing; it is used as it is set",
             );
         }
-        self.not_understood = match found.messages {
-            0 => self.not_understood + length,
-            _ => 0,
-        };
-        if self.not_understood > NOTHING_UNDERSTOOD {
+        if found.messages > 0 || self.not_understood == 0 {
+            (self.not_understood, self.understood) = (0, now);
+        }
+        if found.messages == 0 {
+            self.not_understood += length;
+        }
+        let (most, longest) = NOTHING_UNDERSTOOD;
+        if self.not_understood > most
+            || (self.not_understood > 0 && now.since(self.understood) > longest)
+        {
             self.not_understood = 0;
             return Some(
                 "bytes arrive, but no message that is known: check `baud`, and that the receiver \
@@ -185,10 +198,12 @@ impl Source for GnssReceiver {
         }
         if found.is_repeated {
             self.waits_for = Some(REPEATED_FIX);
-        } else if found.messages > 0 {
-            self.waits_for = self.waits_for.or(Some(NO_FIX));
+        } else if found.has_ubx {
+            self.waits_for = Some(NO_FIX);
+        } else if found.messages > 0 && has_only_nmea && self.waits_for != Some(REPEATED_FIX) {
+            self.waits_for = self.epochs.waits_for();
         }
-        match self.trouble(&found, length, damaged) {
+        match self.trouble(&found, length, damaged, now) {
             Some(what) => Err(DeviceError::Malformed {
                 device: self.line.path().display().to_string(),
                 what,

@@ -1,6 +1,9 @@
 //! NMEA 0183, as every satellite receiver speaks it: position and altitude
 //! (GGA), speed and course (RMC), accuracies (GST).
 //!
+//! A field that is empty is not known, as before the first fix; one that is not
+//! what it should be is damaged.
+//!
 //! By the descriptions in the *u-blox F9 HPG 1.32 interface description*
 //! (UBX-22008968), 2.7. Of any satellite system: the two letters after `$` are
 //! not looked at.
@@ -22,30 +25,24 @@ const MPS_PER_KNOT: f64 = 1_852.0 / 3_600.0;
 #[derive(Clone, Copy, Debug)]
 pub struct Nmea;
 
-/// A sentence.
+/// A sentence. Times are the UTC time of day of the fix, s.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Sentence {
-    /// RMC: speed over the ground.
-    Motion {
-        /// UTC time of day of the fix, s.
-        time_s: f64,
-        /// To true north and east, m/s; none without a fix.
-        velocity_mps: Option<[f64; 2]>,
-    },
-    /// GGA: where the antenna is.
-    Place {
-        /// UTC time of day of the fix, s.
-        time_s: f64,
-        /// None without a fix.
-        position: Option<Position>,
-    },
-    /// GST: one standard deviation, m.
+    /// RMC: the time, and the speed over the ground to true north and east, m/s;
+    /// none without a fix.
+    Motion(Option<(f64, [f64; 2])>),
+    /// GGA: the time, and where the antenna is; none without a three-dimensional
+    /// fix.
+    Place(Option<(f64, Position)>),
+    /// GST: one standard deviation, m; 0 if it is not known.
     Accuracy {
         /// North or east, the larger.
         horizontal_m: f64,
         /// Of the altitude.
         vertical_m: f64,
     },
+    /// One that is not used.
+    Other,
 }
 
 impl Protocol for Nmea {
@@ -93,6 +90,9 @@ fn parser(head: &[u8]) -> Option<Parser> {
         b"RMC," => Some(motion),
         b"GGA," => Some(place),
         b"GST," => Some(accuracy),
+        [kind @ .., b','] if kind.iter().all(u8::is_ascii_uppercase) => {
+            Some(|_| Some(Sentence::Other))
+        }
         _ => None,
     }
 }
@@ -110,38 +110,32 @@ fn hex(digits: &[u8]) -> Option<u8> {
 /// Time, status, latitude, N or S, longitude, E or W, knots, course, date,
 /// variation and its direction, mode.
 fn motion(fields: &mut str::Split<'_, char>) -> Option<Sentence> {
-    let time_s = time(fields.next()?)?;
+    let time_s = known(fields.next()?, time).ok()?;
     let status = fields.next()?;
     let [knots, course] = [fields.nth(4)?, fields.next()?];
     // Before version 2.3 there is none. E estimated, M manual, S simulated, N none.
     let mode = fields.nth(3).unwrap_or_default();
     let is_fix = status == "A" && !matches!(mode, "E" | "M" | "S" | "N");
+    let (speed_kt, course_deg) = (known(knots, number).ok()?, known(course, number).ok()?);
     // Without a speed the receiver has no fix yet, whatever it says.
-    let velocity_mps = if is_fix && !knots.is_empty() {
-        let speed_mps = number(knots)? * MPS_PER_KNOT;
-        let course_deg = match course {
-            "" => None,
-            course => Some(number(course)?),
-        };
-        let velocity_mps = velocity_over_ground(speed_mps, course_deg);
-        // What moves may have no course; anything else without a velocity is damaged.
-        if velocity_mps.is_none() && (course_deg.is_some() || speed_mps < 0.0) {
-            return None;
+    let velocity_mps = match speed_kt {
+        Some(speed_kt) if is_fix => {
+            let velocity_mps = velocity_over_ground(speed_kt * MPS_PER_KNOT, course_deg);
+            // What moves may have no course; anything else without a velocity is damaged.
+            if velocity_mps.is_none() && (course_deg.is_some() || speed_kt < 0.0) {
+                return None;
+            }
+            velocity_mps
         }
-        velocity_mps
-    } else {
-        None
+        _ => None,
     };
-    Some(Sentence::Motion {
-        time_s,
-        velocity_mps,
-    })
+    Some(Sentence::Motion(time_s.zip(velocity_mps)))
 }
 
 /// Time, latitude, N or S, longitude, E or W, quality, satellites, dilution,
 /// altitude above mean sea level, M, and more.
 fn place(fields: &mut str::Split<'_, char>) -> Option<Sentence> {
-    let time_s = time(fields.next()?)?;
+    let time_s = known(fields.next()?, time).ok()?;
     let [latitude, north, longitude, east] = [
         fields.next()?,
         fields.next()?,
@@ -151,26 +145,41 @@ fn place(fields: &mut str::Split<'_, char>) -> Option<Sentence> {
     // 0 no fix, 6 estimated, 7 manual, 8 simulated.
     let is_fix = matches!(fields.next()?, "1" | "2" | "3" | "4" | "5");
     let [altitude, unit] = [fields.nth(2)?, fields.next()?];
+    let latitude_rad = known(latitude, |text| angle(text, north, ["N", "S"], 90.0)).ok()?;
+    let longitude_rad = known(longitude, |text| angle(text, east, ["E", "W"], 180.0)).ok()?;
+    // A fix in two dimensions may have none.
+    let altitude_m = known(altitude, |text| number(text).filter(|_| unit == "M")).ok()?;
     let position = || {
         Some(Position {
-            latitude_rad: angle(latitude, north, ["N", "S"], 90.0)?,
-            longitude_rad: angle(longitude, east, ["E", "W"], 180.0)?,
-            altitude_m: number(altitude).filter(|_| unit == "M")?,
+            latitude_rad: latitude_rad?,
+            longitude_rad: longitude_rad?,
+            altitude_m: altitude_m?,
         })
     };
-    let position = if is_fix { Some(position()?) } else { None };
-    Some(Sentence::Place { time_s, position })
+    let position = position().filter(|_| is_fix);
+    Some(Sentence::Place(time_s.zip(position)))
 }
 
 /// Time, RMS of the ranges, the ellipse's axes and direction, and the standard
 /// deviations of latitude, longitude and altitude.
 fn accuracy(fields: &mut str::Split<'_, char>) -> Option<Sentence> {
-    let latitude = number(fields.nth(5)?)?;
-    let longitude = number(fields.next()?)?;
+    let [latitude, longitude, altitude] = [fields.nth(5)?, fields.next()?, fields.next()?];
+    let deviation = |text| known(text, number).ok().map(Option::unwrap_or_default);
     Some(Sentence::Accuracy {
-        horizontal_m: latitude.max(longitude),
-        vertical_m: number(fields.next()?)?,
+        horizontal_m: deviation(latitude)?.max(deviation(longitude)?),
+        vertical_m: deviation(altitude)?,
     })
+}
+
+/// A field that is not what it should be.
+struct Damaged;
+
+/// What a field says; none of an empty one.
+fn known<T>(text: &str, read: impl FnOnce(&str) -> Option<T>) -> Result<Option<T>, Damaged> {
+    if text.is_empty() {
+        return Ok(None);
+    }
+    read(text).map(Some).ok_or(Damaged)
 }
 
 /// hhmmss.ss

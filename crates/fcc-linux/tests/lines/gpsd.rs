@@ -15,11 +15,11 @@ use super::PATIENCE;
 use crate::watched::{AT_MOST, Watched};
 
 /// Written by gpsd 3.22 for the sentences below.
-const TPV: &str = r#"{"class":"TPV","device":"/dev/pts/1","mode":3,"time":"2026-11-22T10:11:07.000Z","ept":0.005,"lat":42.950000000,"lon":-87.880000000,"altHAE":186.0000,"altMSL":220.4000,"alt":220.4000,"epv":23.000,"track":166.5000,"magtrack":162.4673,"magvar":-4.0,"speed":52.861,"climb":0.000,"epc":46.00,"geoidSep":-34.400,"eph":13.300,"sep":22.800}"#;
+pub(super) const TPV: &str = r#"{"class":"TPV","device":"/dev/pts/1","mode":3,"time":"2026-11-22T10:11:07.000Z","ept":0.005,"lat":42.950000000,"lon":-87.880000000,"altHAE":186.0000,"altMSL":220.4000,"alt":220.4000,"epv":23.000,"track":166.5000,"magtrack":162.4673,"magvar":-4.0,"speed":52.861,"climb":0.000,"epc":46.00,"geoidSep":-34.400,"eph":13.300,"sep":22.800}"#;
 
 fn fix(line: &str) -> Option<GnssFix> {
     match Report::read(line.as_bytes()).unwrap() {
-        Report::Fix { fix, .. } => fix,
+        Report::Fix { fix, .. } => fix.ok(),
         other => panic!("{other:?}"),
     }
 }
@@ -83,7 +83,6 @@ fn only_a_measured_three_dimensional_fix_is_one() {
         (r#""mode":3"#, r#""mode":1"#, "none"),
         (r#""mode":3"#, r#""mode":3,"status":5"#, "dead reckoning"),
         (r#""mode":3"#, r#""mode":3,"status":8"#, "simulated"),
-        (r#""climb":0.000,"#, "", "no vertical speed"),
         (r#""track":166.5000,"#, "", "52.9 m/s, and no direction"),
     ] {
         assert!(TPV.contains(change), "{change}");

@@ -12,6 +12,7 @@ mod gpsd;
 mod pty;
 mod real_gpsd;
 mod speaking;
+mod waiting;
 mod watched;
 
 use std::sync::atomic::{AtomicU32, Ordering};

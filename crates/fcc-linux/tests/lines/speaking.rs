@@ -20,7 +20,7 @@ use super::{NAV_PVT, nav_pvt_later_by};
 use crate::watched::AT_MOST;
 
 /// The device's end of a line, and its name; the third keeps it open.
-fn line() -> (File, PathBuf, OwnedFd) {
+pub(super) fn line() -> (File, PathBuf, OwnedFd) {
     let pair = openpty(None, None).unwrap();
     let path = ttyname(&pair.slave).unwrap();
     (pair.master.into(), path, pair.slave)
@@ -30,7 +30,10 @@ fn receiver(path: PathBuf, now_s: i64) -> GnssReceiver {
     receiver_with(path, move || Time::from_nanos(now_s * 1_000_000_000))
 }
 
-fn receiver_with(path: PathBuf, now: impl Fn() -> Time + Send + 'static) -> GnssReceiver {
+pub(super) fn receiver_with(
+    path: PathBuf,
+    now: impl Fn() -> Time + Send + 'static,
+) -> GnssReceiver {
     let line = LineSettings {
         path,
         baud: 38_400,

@@ -7,14 +7,11 @@ use std::time::{Duration, Instant};
 
 use super::super::file::RecordingFile;
 use super::super::folder;
-use super::super::name::file_name;
+use super::super::name::{MAX_NAMES, NAMES_APART_NS, file_name};
 use super::super::opening::others_in;
 use super::super::part::Part;
 use super::Writing;
 use crate::recorded::Recorded;
-
-/// Attempts to begin a file: names tried, and recordings deleted.
-const MAX_ATTEMPTS: usize = 100;
 
 /// After looking through the folder it is not looked through for so many times
 /// as long: others may have put any number of files there.
@@ -106,17 +103,22 @@ impl<C: Recorded> Writing<C> {
 
     /// Begins a file under a free name; makes room if necessary and permitted.
     fn begin_file(&mut self) -> Result<RecordingFile<C>, (PathBuf, io::Error)> {
-        for _ in 0..MAX_ATTEMPTS {
+        // Names tried, and recordings deleted.
+        for _ in 0..MAX_NAMES {
             let about = &self.about;
             let name = file_name(about.started_unix_ns, &about.plant, about.part);
             let path = self.settings.folder.join(name);
             let compression = self.settings.compression;
             match RecordingFile::begin(&mut *self.disk, &path, about, compression) {
-                Ok(file) => return Ok(file),
+                Ok(file) => {
+                    // If that fails, it counts as old once the flight has ended.
+                    let _ = folder::list_as_newest(&path);
+                    return Ok(file);
+                }
                 // Two flights in one millisecond: the second is given a later
                 // one.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-                    self.about.started_unix_ns += 1_000_000;
+                    self.about.started_unix_ns += NAMES_APART_NS;
                 }
                 Err(error) if is_full(&error) && self.make_room() => {}
                 Err(error) => return Err((path, error)),
@@ -151,18 +153,24 @@ impl<C: Recorded> Writing<C> {
         if began < self.tidy_next {
             return;
         }
-        for path in folder::keep_below(&self.settings.folder, most) {
+        let own = self.board.read().files;
+        let bytes = self.bytes_before + self.part.as_ref().map_or(0, Part::bytes);
+        if bytes > most && !self.is_above_total {
+            self.is_above_total = true;
+            let text = format!(
+                "this recording alone has more than keep_total_mb, {} MB: it goes on, and none of \
+                 its files is deleted before it ends",
+                most / 1_000_000
+            );
+            self.report(text, false);
+        }
+        for path in folder::keep_below(&self.settings.folder, most, &own) {
             let text = format!(
                 "{}: deleted, to keep recordings below {} MB",
                 path.display(),
                 most / 1_000_000
             );
             self.report(text, false);
-            self.board.update(|status| {
-                let before = status.files.len();
-                status.files.retain(|file| *file != path);
-                status.files_deleted += (before - status.files.len()) as u64;
-            });
         }
         self.tidy_next = Instant::now() + began.elapsed() * TIDY_PAUSE;
     }

@@ -61,6 +61,8 @@ pub(super) struct Writing<C: Recorded> {
     ended: bool,
     /// Until when the folder is not looked through again.
     tidy_next: Instant,
+    /// Whether it was reported that this recording alone is above the total.
+    is_above_total: bool,
     /// Records and bytes in earlier parts.
     ticks_before: u64,
     bytes_before: u64,
@@ -88,6 +90,7 @@ impl<C: Recorded> Writing<C> {
             acted: Instant::now(),
             ended: false,
             tidy_next: Instant::now(),
+            is_above_total: false,
             ticks_before: 0,
             bytes_before: 0,
         }

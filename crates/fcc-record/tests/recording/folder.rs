@@ -4,7 +4,7 @@ use std::fs;
 use std::time::Duration;
 
 use fcc_core::framework::Message;
-use fcc_record::{Compression, Notice, Recorder, RecorderSettings, Recording};
+use fcc_record::{Compression, Notice, Recorder, RecorderSettings, Recording, last_unfinished};
 
 use crate::disks::{gaps, ticks, wait_for, wait_for_ticks};
 use crate::flight::{about, flight, only_file, record, record_all, settings};
@@ -46,7 +46,7 @@ fn a_recording_is_split_by_age_without_a_gap() {
 }
 
 #[test]
-fn a_recording_is_split_by_size_and_the_folder_kept_small() {
+fn a_recording_is_split_by_size_and_earlier_ones_are_deleted() {
     split_and_kept_small(Some(2_000_000));
 }
 
@@ -79,14 +79,55 @@ fn split_and_kept_small(max_file_bytes: Option<u64>) {
         sizes.iter().all(|bytes| *bytes < 2_000_000 + 1_300_000),
         "{sizes:?}"
     );
-    assert!(
-        sizes.iter().sum::<u64>() < 5_000_000 + 3_300_000,
-        "{sizes:?}"
-    );
-    // The newest are kept, without a gap between them.
+    // The flight in progress keeps its own, from the first tick.
+    assert!(sizes.iter().sum::<u64>() > 5_000_000, "{sizes:?}");
     let kept: Vec<u64> = parts.iter().flat_map(|part| ticks(part.path())).collect();
-    assert_eq!(*kept.last().unwrap(), 20_000);
-    assert!(kept.windows(2).all(|pair| pair[1] == pair[0] + 1));
+    assert_eq!(kept, (1..=20_000).collect::<Vec<_>>());
+}
+
+/// On a board without a clock, which says 1970 or the time of its last shutdown: flights
+/// of other dates are in the folder, and the last was cut off.
+#[test]
+fn a_clock_that_goes_back_changes_no_order() {
+    const DAY_NS: u64 = 86_400 * 1_000_000_000;
+    let folder = tempfile::tempdir().unwrap();
+    let fly = |started_unix_ns: u64, keep_total_bytes: Option<u64>| {
+        let settings = RecorderSettings {
+            keep_total_bytes,
+            max_file_age: Some(Duration::from_secs(20)),
+            compression: Compression::None,
+            ..settings(folder.path())
+        };
+        let about = fcc_record::About {
+            started_unix_ns,
+            ..about()
+        };
+        let before = fcc_record::files(folder.path()).unwrap();
+        record_all(Recorder::start(about, settings).unwrap(), &flight(1_000));
+        let mut files = fcc_record::files(folder.path()).unwrap();
+        files.retain(|file| !before.contains(file));
+        files
+    };
+    let today = 20_000 * DAY_NS;
+    let [month_ago, yesterday, last] = [today, 1, 0].map(|started_ns| fly(started_ns, None));
+    assert_eq!(
+        last.len(),
+        2,
+        "25 s of flight, with a power cut in the second part"
+    );
+    let bytes = fs::read(&last[1]).unwrap();
+    fs::write(&last[1], &bytes[..bytes.len() / 2]).unwrap();
+    let now = 12 * 1_000_000_000;
+    assert_eq!(last_unfinished(folder.path(), now).as_ref(), Some(&last[1]));
+    let total: u64 = [&month_ago, &yesterday, &last]
+        .into_iter()
+        .flatten()
+        .map(|path| fs::metadata(path).unwrap().len())
+        .sum();
+    let present = fly(now, Some(total * 2 / 3));
+    assert!(month_ago.iter().all(|path| !path.exists()), "the oldest");
+    let left = fcc_record::files(folder.path()).unwrap();
+    assert!(left.ends_with(&[last, present].concat()), "{left:?}");
 }
 
 /// By another program: for example by a user who makes room.
