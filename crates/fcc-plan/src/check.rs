@@ -70,7 +70,12 @@ pub(crate) struct Leg {
 pub fn check(plan: &Plan, conditions: &Conditions) -> Result<(), Vec<Problem>> {
     let mut problems = Vec::new();
     if plan.items.is_empty() {
-        problems.push(Problem::of("items", "there are none: give at least one"));
+        let what = if plan.fence.is_empty() && plan.rally.is_empty() {
+            "there are none: give at least one"
+        } else {
+            "there are none, but a fence or rally points: put these behind the items of a plan"
+        };
+        problems.push(Problem::of("items", what));
     }
     if let Some(mps) = plan.cruise_mps
         && let Some(message) = airspeed_problem(mps, conditions)
@@ -79,7 +84,7 @@ pub fn check(plan: &Plan, conditions: &Conditions) -> Result<(), Vec<Problem>> {
     }
     problems.extend(polar_problems(plan));
     let legs = legs(plan, conditions, &mut problems);
-    let outline = Outline::of(plan);
+    let outline = Outline::of(plan, 0.0);
     for (n, leg) in legs.iter().enumerate() {
         let (before, next) = (n.checked_sub(1).and_then(|n| legs.get(n)), legs.get(n + 1));
         let begins_with = before.and_then(|before| turn_of(before, leg, conditions));
@@ -151,8 +156,15 @@ pub(crate) fn legs(plan: &Plan, conditions: &Conditions, problems: &mut Vec<Prob
                 }
             }
             Item::Jump { to, times } => {
-                if let Some(message) = jump_problem(plan, number, to, times) {
+                if let Some(message) = jump_problem(plan, number, to) {
                     note("jump", message);
+                }
+                // From here no leg leads to what is behind it: a command does.
+                if times.is_none() {
+                    at = None;
+                    if let Some(last) = legs.last_mut() {
+                        last.turns = false;
+                    }
                 }
             }
             Item::Takeoff { .. } | Item::Land { .. } | Item::Return => {
@@ -248,15 +260,12 @@ pub(crate) fn above_sea_level(altitude: Altitude, plan: &Plan) -> Result<f64, &'
     }
 }
 
-fn jump_problem(plan: &Plan, number: usize, to: usize, times: Option<u32>) -> Option<String> {
+fn jump_problem(plan: &Plan, number: usize, to: usize) -> Option<String> {
     if plan.item(to).is_none() {
         return Some(format!(
             "to {to}: there is no such item: give 1 to {}",
             plan.items.len()
         ));
-    }
-    if times.is_none() {
-        return Some("never ends: give how often".to_owned());
     }
     // Back over items that take no way is a loop without time.
     let between = plan

@@ -234,7 +234,7 @@ impl fmt::Display for Item {
                 to,
                 times: Some(times),
             } => write!(f, "{name}: to {to}, times {times}"),
-            Self::Jump { to, times: None } => write!(f, "{name}: to {to}"),
+            Self::Jump { to, times: None } => write!(f, "{name}: to {to}, for ever"),
             _ => f.write_str(name),
         }
     }

@@ -2,7 +2,7 @@
 
 use fcc_core::flight::terrain::Terrain;
 use fcc_plan::{AltitudeDatum, Item, Place, Plan};
-use fcc_report::{GroundLine, PlanLine, PlanLines, PlanPlace, PlanRow};
+use fcc_report::{GroundLine, PlanFence, PlanLines, PlanPlace, PlanRow};
 
 /// A row of the table for each item.
 pub(super) fn rows(plan: &Plan) -> Vec<PlanRow> {
@@ -128,12 +128,16 @@ fn from(origin: Place, place: Place) -> (f64, f64) {
     (distance_m * sine, distance_m * cosine)
 }
 
-/// The sides of the fence, from the plan's first place.
-pub(super) fn fence(plan: &Plan) -> Vec<PlanLine> {
+/// The fence, from the plan's first place.
+pub(super) fn fence(plan: &Plan) -> PlanFence {
     let home = plan.home.map(|home| home.place);
     let first = home.or_else(|| plan.items.iter().find_map(Item::place));
+    let permits = plan.fence.permits();
     let Some(origin) = first else {
-        return Vec::new();
+        return PlanFence {
+            sides: Vec::new(),
+            permits: Box::new(|_| true),
+        };
     };
     let line = |places: Vec<Place>| {
         places
@@ -141,7 +145,13 @@ pub(super) fn fence(plan: &Plan) -> Vec<PlanLine> {
             .map(|place| from(origin, place))
             .collect()
     };
-    sides(plan).map(line).collect()
+    PlanFence {
+        sides: sides(plan).map(line).collect(),
+        permits: Box::new(move |(east_m, north_m)| {
+            let course_deg = east_m.atan2(north_m).to_degrees();
+            permits(origin.ahead(course_deg, east_m.hypot(north_m)))
+        }),
+    }
 }
 
 /// The sides of the fence, each closed.

@@ -24,7 +24,7 @@ pub(crate) type Refusal = (String, String);
 
 impl Command {
     /// Parameter 1 to 7.
-    fn parameter(&self, number: usize) -> f64 {
+    pub(super) fn parameter(&self, number: usize) -> f64 {
         let index = number.wrapping_sub(1);
         self.parameters.get(index).copied().unwrap_or(f64::NAN)
     }
@@ -124,7 +124,7 @@ pub(crate) fn check(name: &str, value: f64, range: &RangeInclusive<f64>) -> Resu
 }
 
 /// A whole number within a range.
-fn whole(name: &str, value: f64, range: RangeInclusive<f64>) -> Result<u32, Refusal> {
+pub(super) fn whole(name: &str, value: f64, range: RangeInclusive<f64>) -> Result<u32, Refusal> {
     let number = check(name, value, &range)?;
     if number.fract() != 0.0 {
         return Err((name.to_owned(), format!("{number}: give a whole number")));
@@ -163,7 +163,7 @@ fn item(command: &Command) -> Result<Item, Refusal> {
         id::TAKEOFF => Item::Takeoff {
             place: command.place_or_here()?,
             altitude: command.altitude()?,
-            pitch_deg: command.unless_default(1, "pitch", &(0.0..=45.0))?,
+            pitch_deg: takeoff_pitch(command)?,
         },
         id::CONDITION_DELAY => Item::Delay {
             seconds: command.within(1, "seconds", &SECONDS)?,
@@ -186,6 +186,19 @@ fn item(command: &Command) -> Result<Item, Refusal> {
             return Err(("command".to_owned(), what));
         }
     })
+}
+
+/// The pitch of a take-off in degrees: less than one is one in radians, and climbs nowhere.
+fn takeoff_pitch(command: &Command) -> Result<Option<f64>, Refusal> {
+    let pitch = command.unless_default(1, "pitch", &(0.0..=45.0))?;
+    if let Some(given) = pitch.filter(|given| *given < 1.0) {
+        let what = format!(
+            "{given}: give degrees, 1 to 45 ({given} rad are {:.0}°)",
+            given.to_degrees()
+        );
+        return Err(("parameter 1 (pitch)".to_owned(), what));
+    }
+    Ok(pitch)
 }
 
 fn waypoint(command: &Command) -> Result<Item, Refusal> {

@@ -141,16 +141,22 @@ impl Reader {
             if corners.len() < 3 {
                 return node.refuse("give at least 3 corners");
             }
-            let inclusion = node.key("inclusion")?.boolean()?;
-            read.polygons.push(Polygon { corners, inclusion });
+            let (inclusion, group) = inclusion(&node)?;
+            read.polygons.push(Polygon {
+                corners,
+                inclusion,
+                group,
+            });
         }
         for node in entries(&fence, "circles")? {
             at_most(&node.path, read.circles.len(), limits::FENCES)?;
             let circle = node.key("circle")?;
+            let (inclusion, group) = inclusion(&node)?;
             read.circles.push(Circle {
                 centre: circle.key("center")?.coordinate()?.0,
                 radius_m: radius(&circle)?,
-                inclusion: node.key("inclusion")?.boolean()?,
+                inclusion,
+                group,
             });
         }
         if let Some(back) = fence.optional("breachReturn")? {
@@ -247,6 +253,14 @@ fn command(node: &Node<'_>) -> Result<Command, Refusal> {
         frame: node.key("frame")?.whole(255)? as u8,
         parameters,
     })
+}
+
+/// Whether to stay inside of a zone, and its group, for which QGroundControl has no key.
+fn inclusion(zone: &Node<'_>) -> Result<(bool, u16), Refusal> {
+    let inclusion = zone.key("inclusion")?.boolean()?;
+    let group = zone.optional("inclusionGroup")?.filter(|_| inclusion);
+    let group = group.map(|group| group.whole(u16::MAX)).transpose()?;
+    Ok((inclusion, group.unwrap_or(0)))
 }
 
 /// A radius above zero.

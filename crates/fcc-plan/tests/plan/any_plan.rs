@@ -80,7 +80,7 @@ pub(crate) fn any_item(items: usize) -> impl Strategy<Value = Item> {
         1 => (option::of(any_place()), any_altitude(), option::of(1e-3..=20_000.0)).prop_map(
             |(place, altitude, abort_altitude_m)| Item::Land { place, altitude, abort_altitude_m }
         ),
-        1 => (option::of(any_place()), any_altitude(), option::of(1e-3..=45.0)).prop_map(
+        1 => (option::of(any_place()), any_altitude(), option::of(1.0..=45.0)).prop_map(
             |(place, altitude, pitch_deg)| Item::Takeoff { place, altitude, pitch_deg }
         ),
         1 => (0.0..=604_800.0).prop_map(|seconds| Item::Delay { seconds }),
@@ -97,16 +97,25 @@ pub(crate) fn any_item(items: usize) -> impl Strategy<Value = Item> {
 }
 
 pub(crate) fn any_fence() -> impl Strategy<Value = Fence> {
-    let polygon = (vec(any_place(), 3..8), any::<bool>())
-        .prop_map(|(corners, inclusion)| Polygon { corners, inclusion });
-    let circle =
-        (any_place(), 1e-3..=100_000.0, any::<bool>()).prop_map(|(centre, radius_m, inclusion)| {
-            Circle {
-                centre,
-                radius_m,
-                inclusion,
-            }
+    // A zone to stay outside of has no group.
+    let rule = || {
+        (any::<bool>(), 0..=3_u16)
+            .prop_map(|(inside, group)| (inside, if inside { group } else { 0 }))
+    };
+    let polygon =
+        (vec(any_place(), 3..8), rule()).prop_map(|(corners, (inclusion, group))| Polygon {
+            corners,
+            inclusion,
+            group,
         });
+    let circle = (any_place(), 1e-3..=100_000.0, rule()).prop_map(
+        |(centre, radius_m, (inclusion, group))| Circle {
+            centre,
+            radius_m,
+            inclusion,
+            group,
+        },
+    );
     (
         vec(polygon, 0..4),
         vec(circle, 0..4),

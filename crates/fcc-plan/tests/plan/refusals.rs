@@ -73,6 +73,10 @@ fn a_line_says_item_field_and_what_to_do() {
             "index: 2: this line is number 1",
         ),
         (
+            "1 0 3 22 0.26 0 0 0 0 0 100 1",
+            "parameter 1 (pitch): 0.26: give degrees, 1 to 45 (0.26 rad are 15°)",
+        ),
+        (
             "1 0 3 84 0 0 0 0 47 8 100 1",
             "command: 84 is not supported",
         ),
@@ -122,6 +126,60 @@ fn what_has_no_target_or_place_is_refused_by_both() {
     assert_eq!(
         said(plan),
         "rallyPoints.points[0]: 0, 0 means that it is not set: give a place"
+    );
+}
+
+/// The files of PX4 and MAVROS begin with the first item; home is above sea level, has
+/// command 16 and no parameters, and its place is 0, 0 where it is not set.
+#[test]
+fn a_first_item_in_line_0_is_not_taken_for_home() {
+    let cases = [
+        (
+            "0 1 3 16 0 0 0 0 47 8 300 1",
+            "frame: 3 is not above sea level (0)",
+        ),
+        (
+            "0 1 10 16 0 0 0 0 47 8 300 1",
+            "frame: 10 is not above sea level (0)",
+        ),
+        ("0 1 0 22 15 0 0 0 47 8 300 1", "command: 22 is not 16"),
+        ("0 1 0 16 0 25 0 0 47 8 300 1", "parameter 2: 25 is not 0"),
+    ];
+    for (line, expected) in cases {
+        let said = said(&format!("QGC WPL 110\n{line}\n"));
+        assert!(
+            said.starts_with(&format!("line 2: {expected}, and line 0 is home")),
+            "{line}: {said}"
+        );
+        assert!(said.contains("put home before it"), "{said}");
+    }
+    for line in ["0 1 0 16 0 0 0 0 47 8 430 1", "0 1 3 0 0 0 0 0 0 0 0 1"] {
+        assert!(read(&format!("QGC WPL 110\n{line}\n")).is_ok(), "{line}");
+    }
+    let old = said("QGC WPL 120\n0 1 3 22 0 0 0 0 47 8 300 1\n");
+    assert!(
+        old.starts_with("line 1: version 120: only QGC WPL 110 is read"),
+        "{old}"
+    );
+}
+
+#[test]
+fn an_old_fence_or_rally_file_says_what_it_lacks() {
+    let open = "47 8\n47 8.1\n47.1 8.1\n47.1 8\n";
+    assert!(said(open).starts_with("is no fence of MAVProxy: give the place to return to"));
+    let word = "47 8\n47 8.1\n47.1 8.1 9\n";
+    assert_eq!(
+        said(word),
+        "line 3: \"47.1 8.1 9\": give latitude and longitude"
+    );
+    let place = "47 8\n97 8.1\n47.1 8.1\n47.1 8\n97 8.1\n";
+    assert_eq!(said(place), "line 2: latitude: 97: give -90 to 90");
+    let short = "RALLY 47 8 100\n";
+    assert!(said(short).starts_with("line 1: \"47 8 100\": give RALLY, latitude"));
+    let back = "QGC WPL 110\n0 0 0 5000 0 0 0 0 47 8 120 1\n";
+    assert_eq!(
+        said(back),
+        "line 2: frame: a place to return to is above home: give 3"
     );
 }
 
