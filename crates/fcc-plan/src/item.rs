@@ -149,6 +149,13 @@ pub enum Item {
         /// Where, for finding the nearest; none: at the next item with a place.
         place: Option<Place>,
     },
+    /// A command of a camera or its gimbal, which is not carried out.
+    Camera {
+        /// `MAV_CMD`.
+        command: u16,
+        /// Its parameters; none: left to the camera.
+        parameters: [Option<f64>; 7],
+    },
 }
 
 impl Item {
@@ -166,6 +173,7 @@ impl Item {
             Self::ChangeSpeed { .. } => "change speed",
             Self::Jump { .. } => "jump",
             Self::LandStart { .. } => "land start",
+            Self::Camera { .. } => "camera",
         }
     }
 
@@ -229,6 +237,7 @@ impl fmt::Display for Item {
                 radius_m.map_or(Ok(()), |radius_m| write!(f, ", radius {radius_m:.0} m"))
             }
             Self::Delay { seconds } => write!(f, "{name}: {seconds:.0} s"),
+            Self::Camera { command, .. } => write!(f, "{name}: command {command}"),
             Self::UntilDistance { distance_m } => write!(f, "{name}: {distance_m:.0} m"),
             Self::Jump {
                 to,

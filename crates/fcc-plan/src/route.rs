@@ -145,6 +145,7 @@ fn step_of(
         },
         Item::Jump { to, times } => jump(to, times, jumps)?,
         Item::LandStart { .. } => Step::LandStart,
+        Item::Camera { .. } => Step::Mark,
         Item::Takeoff {
             place,
             altitude,

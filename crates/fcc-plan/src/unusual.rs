@@ -27,7 +27,8 @@ pub struct Usual {
 
 /// Items that are flown low over the ground or above the ceiling, and legs that are longer
 /// than an aircraft flies, or are so if latitude and longitude are exchanged; heights above
-/// a home at exactly 0 m; jumps that never end. Take-off and landing may be low.
+/// a home at exactly 0 m; jumps that never end; commands of a camera. Take-off and landing may
+/// be low.
 pub fn unusual(plan: &Plan, conditions: &Conditions, usual: &Usual) -> Vec<Problem> {
     let altitudes = plan.items.iter().enumerate().filter_map(|(n, item)| {
         let altitude_m = above_sea_level(item.altitude()?, plan).ok()?;
@@ -48,6 +49,7 @@ pub fn unusual(plan: &Plan, conditions: &Conditions, usual: &Usual) -> Vec<Probl
     });
     let mut found: Vec<_> = home_at_zero(plan)
         .into_iter()
+        .chain(camera(plan))
         .chain(altitudes)
         .chain(lengths)
         .chain(loops)
@@ -73,6 +75,14 @@ fn home_at_zero(plan: &Plan) -> Option<Problem> {
         );
         Problem::of("home", message)
     })
+}
+
+fn camera(plan: &Plan) -> Option<Problem> {
+    let is_one = |item: &Item| matches!(item, Item::Camera { .. });
+    let first = plan.items.iter().position(is_one)?;
+    let count = plan.items.iter().filter(|item| is_one(item)).count();
+    let message = format!("commands of a camera or gimbal ({count}) are not carried out");
+    Some(Problem::of_item(first + 1, "command", message))
 }
 
 fn too_low(item: &Item, altitude_m: f64, usual: &Usual) -> Option<String> {

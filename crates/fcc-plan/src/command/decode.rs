@@ -177,11 +177,15 @@ fn item(command: &Command) -> Result<Item, Refusal> {
         id::LAND_START => Item::LandStart {
             place: command.place_or_here()?,
         },
+        camera if id::CAMERA.iter().any(|ids| ids.contains(&camera)) => Item::Camera {
+            command: camera,
+            parameters: command.parameters.map(|p| Some(p).filter(|p| !p.is_nan())),
+        },
         other => {
             let what = format!(
                 "{other} is not supported: use waypoint (16), loiter (17, 18, 19, 31), return (20), \
                  land (21), take-off (22), delay (112), distance (114), jump (177), change of \
-                 speed (178) or of altitude (186), landing sequence (189)"
+                 speed (178) or of altitude (186), landing sequence (189), or those of a camera"
             );
             return Err(("command".to_owned(), what));
         }

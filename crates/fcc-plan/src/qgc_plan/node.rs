@@ -54,6 +54,19 @@ impl<'a> Node<'a> {
         }
     }
 
+    /// A key with a list or an object that is not empty.
+    pub(super) fn content(&self) -> Result<Option<&'a str>, Refusal> {
+        let is_full = |value: &Value| match value {
+            Value::Array(values) => !values.is_empty(),
+            Value::Object(values) => !values.is_empty(),
+            _ => false,
+        };
+        let mut entries = self.object()?.iter();
+        Ok(entries
+            .find(|(_, value)| is_full(value))
+            .map(|(key, _)| key.as_str()))
+    }
+
     /// A key; none if it is missing or null.
     pub(super) fn optional(&self, key: &str) -> Result<Option<Self>, Refusal> {
         let path = match self.path.as_str() {

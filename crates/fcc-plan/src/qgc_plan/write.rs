@@ -22,9 +22,11 @@ pub(crate) fn write(plan: &Plan) -> String {
         "globalPlanAltitudeMode": 0,
         "items": items.map(|(n, item)| simple_item(n + 1, item)).collect::<Value>(),
     });
+    // It wants this one, too: zeros where it is not set.
     let home = plan.home;
     let home = home.map(|Home { place, altitude_m }| position(place, altitude_m));
-    let mission = with(mission, "plannedHomePosition", home);
+    let home = home.unwrap_or_else(|| json!([0, 0, 0]));
+    let mission = with(mission, "plannedHomePosition", Some(home));
     let mission = with(
         mission,
         "cruiseSpeed",

@@ -4,6 +4,7 @@ use fcc_plan::{
     Altitude, AltitudeDatum, Circle, Fence, Home, Item, Loiter, LoiterEnd, Obstacle, Place, Plan,
     Polygon, RallyPoint, Speed,
 };
+use proptest::array::uniform7;
 use proptest::collection::vec;
 use proptest::option;
 use proptest::prelude::*;
@@ -93,6 +94,11 @@ pub(crate) fn any_item(items: usize) -> impl Strategy<Value = Item> {
             |(to, times)| Item::Jump { to, times }
         ),
         1 => option::of(any_place()).prop_map(|place| Item::LandStart { place }),
+        1 => (
+            prop_oneof![Just(201_u16), Just(206), Just(530), Just(1_000), Just(2_000), Just(2_501)],
+            uniform7(option::of(-1e9..=1e9)),
+        )
+            .prop_map(|(command, parameters)| Item::Camera { command, parameters }),
     ]
 }
 

@@ -196,12 +196,17 @@ fn all_problems_are_listed() {
 fn a_plan_of_json_says_where() {
     let cases = [
         (
-            r#"{"type": "ComplexItem", "complexItemType": "survey"}"#,
-            "item 1: mission.items[0].type: \"survey\" is not supported",
+            r#"{"type": "ComplexItem", "complexItemType": "StructureScan"}"#,
+            "item 1: mission.items[0].type: \"StructureScan\" is not supported",
+        ),
+        (
+            r#"{"type": "ComplexItem", "complexItemType": "survey", "version": 3}"#,
+            "item 1: mission.items[0].type: lacks \"TransectStyleComplexItem\", which has its \
+             items: open the file with a present QGroundControl and save it again",
         ),
         (
             r#"{"type": "SimpleItem", "command": 16, "frame": 3, "params": [0, 0, 0]}"#,
-            "item 1: mission.items[0].params: give 7 numbers",
+            "item 1: mission.items[0].params: give 7 numbers, or 4 and a coordinate of 3",
         ),
         (
             r#"{"type": "SimpleItem", "command": 16, "frame": 3}"#,
