@@ -54,6 +54,10 @@ pub(crate) fn read(text: &str) -> Result<Plan, Vec<Problem>> {
                 },
                 ..problem
             });
+            // Keeps the numbers of those that follow.
+            if reader.fence == FenceReader::default() && reader.count > 1 {
+                reader.plan.items.resize(reader.count - 1, Item::Return);
+            }
             if reader.problems.len() >= limits::PROBLEMS {
                 break;
             }

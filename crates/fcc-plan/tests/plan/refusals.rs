@@ -190,6 +190,10 @@ fn all_problems_are_listed() {
     let said = of_line(lines);
     assert_eq!(said.lines().count(), 2, "{said}");
     assert!(said.contains("item 3: line 5: command: 99"), "{said}");
+    // A jump over and to what is refused has its target.
+    let jump =
+        "1 0 3 99 0 0 0 0 47 8 100 1\n2 0 2 177 3 1 0 0 0 0 0 1\n3 0 3 99 0 0 0 0 47 8 100 1";
+    assert!(!of_line(jump).contains("item 2"), "{}", of_line(jump));
 }
 
 #[test]
