@@ -143,38 +143,23 @@ pub(crate) fn legs(plan: &Plan, conditions: &Conditions, problems: &mut Vec<Prob
         let mut note = |field: &str, message: String| {
             problems.push(Problem::of_item(number, field, message));
         };
+        if let Some((field, message)) = item_problem(plan, number, item, airspeed_mps, conditions) {
+            note(field, message);
+        }
         match *item {
             Item::ChangeSpeed {
-                speed: Some(speed), ..
-            } => {
-                if let Some(message) = speed_problem(speed, conditions) {
-                    note("speed", message);
-                }
-                match speed {
-                    Speed::AirspeedMps(mps) => (airspeed_mps, ground_mps) = (mps, None),
-                    Speed::GroundSpeedMps(mps) => ground_mps = Some(mps),
-                }
-            }
-            Item::Jump { to, times } => {
-                if let Some(message) = jump_problem(plan, number, to) {
-                    note("jump", message);
-                }
-                // From here no leg leads to what is behind it: a command does.
-                if times.is_none() {
-                    at = None;
-                    if let Some(last) = legs.last_mut() {
-                        last.turns = false;
-                    }
-                }
-            }
-            Item::Takeoff { .. } | Item::Land { .. } | Item::Return => {
-                if let Some((field, message)) = runway_problem(plan, number, item) {
-                    note(field, message);
-                }
-            }
-            Item::Loiter(loiter) => {
-                if let Some(message) = loiter_problem(&loiter, airspeed_mps, conditions) {
-                    note("radius", message);
+                speed: Some(Speed::AirspeedMps(mps)),
+                ..
+            } => (airspeed_mps, ground_mps) = (mps, None),
+            Item::ChangeSpeed {
+                speed: Some(Speed::GroundSpeedMps(mps)),
+                ..
+            } => ground_mps = Some(mps),
+            // From here no leg leads to what is behind it: a command does.
+            Item::Jump { times: None, .. } => {
+                at = None;
+                if let Some(last) = legs.last_mut() {
+                    last.turns = false;
                 }
             }
             _ => {}
@@ -257,6 +242,30 @@ pub(crate) fn above_sea_level(altitude: Altitude, plan: &Plan) -> Result<f64, &'
             "is above terrain, and there are no elevations: set terrain.folder in the \
              configuration, or give it above home or sea level",
         ),
+    }
+}
+
+/// What is wrong with an item that is flown at this airspeed, whatever leg leads to it.
+fn item_problem(
+    plan: &Plan,
+    number: usize,
+    item: &Item,
+    airspeed_mps: f64,
+    conditions: &Conditions,
+) -> Option<(&'static str, String)> {
+    match *item {
+        Item::ChangeSpeed {
+            speed: Some(speed), ..
+        } => Some(("speed", speed_problem(speed, conditions)?)),
+        Item::Jump { to, .. } => Some(("jump", jump_problem(plan, number, to)?)),
+        Item::Takeoff { .. } | Item::Land { .. } | Item::Return => {
+            runway_problem(plan, number, item)
+        }
+        Item::Loiter(loiter) => {
+            let message = loiter_problem(&loiter, airspeed_mps, conditions)?;
+            Some(("radius", message))
+        }
+        _ => None,
     }
 }
 

@@ -153,6 +153,8 @@ pub enum Item {
     Camera {
         /// `MAV_CMD`.
         command: u16,
+        /// `MAV_FRAME`.
+        frame: u8,
         /// Its parameters; none: left to the camera.
         parameters: [Option<f64>; 7],
     },

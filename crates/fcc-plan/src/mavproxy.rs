@@ -36,7 +36,7 @@ fn numbers<const N: usize>(line: usize, words: &[&str], what: &str) -> Result<[f
     parsed
         .and_then(|numbers| numbers.try_into().ok())
         .ok_or_else(|| {
-            let given = quoted(&words.join(" ")).to_owned();
+            let given = quoted(&words.join(" "));
             Problem::of(format!("line {line}"), format!("\"{given}\": give {what}"))
         })
 }

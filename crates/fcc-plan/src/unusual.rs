@@ -40,12 +40,12 @@ pub fn unusual(plan: &Plan, conditions: &Conditions, usual: &Usual) -> Vec<Probl
         let message = too_long(leg)?;
         Some(Problem::of_item(leg.item, "leg", message))
     });
-    let loops = plan.items.iter().enumerate().filter_map(|(n, item)| {
-        matches!(item, Item::Jump { times: None, .. }).then(|| {
-            let message = "for ever: what is behind it is flown by a command only (fccd command \
-                           plan land, item N), and the plan has no end";
-            Problem::of_item(n + 1, "jump", message)
-        })
+    let items = plan.items.iter().enumerate();
+    let loops = items.filter(|(_, item)| matches!(item, Item::Jump { times: None, .. }));
+    let loops = loops.map(|(n, _)| {
+        let message = "for ever: what is behind it is flown by a command only (fccd command plan \
+                       land, item N), and the plan has no end";
+        Problem::of_item(n + 1, "jump", message)
     });
     let mut found: Vec<_> = home_at_zero(plan)
         .into_iter()

@@ -1,5 +1,5 @@
 //! What GDAL says about the values of a band, in the tags `GDAL_METADATA` and
-//! `GDAL_NODATA` (GDAL, "GTiff -- GeoTIFF File Format").
+//! `GDAL_NODATA` (GDAL, the driver "`GTiff`").
 
 /// How a value of a band is a height.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -32,12 +32,14 @@ impl Values {
             let number = text.parse::<f64>();
             number.map_err(|_| format!("its {name} is no number: {text:.20}"))
         };
-        let role = |role: &str, other: f64| match item(metadata, role) {
-            Some(text) => number(role, text).and_then(|number| match number.is_finite() {
-                true => Ok(number),
-                false => Err(format!("its {role} is {number}")),
-            }),
-            None => Ok(other),
+        let role = |role: &str, other: f64| {
+            let found = item(metadata, role).map(|text| number(role, text));
+            let found = found.transpose()?.unwrap_or(other);
+            if found.is_finite() {
+                Ok(found)
+            } else {
+                Err(format!("its {role} is {found}"))
+            }
         };
         let unit_m = match item(metadata, "unittype").map(str::trim) {
             None => keys_m,

@@ -121,17 +121,50 @@ impl GeoKeys {
     }
 }
 
-fn lattice(
-    (columns, rows): (u32, u32),
-    is_area: bool,
-    scale: &[f64],
-    tie: &[f64],
-) -> Result<Lattice, String> {
-    let (&[east_deg, north_deg, ..], &[i, j, _, x, y, _]) = (scale, tie) else {
-        return Err(format!(
-            "does not say where it is by one tie point and a scale: {WARP}"
-        ));
-    };
+/// Where the pixels are: the corner of the first, or its middle, and the way to the next column
+/// and to the next row, in degrees.
+struct Raster {
+    west_deg: f64,
+    first_deg: f64,
+    east_deg: f64,
+    north_deg: f64,
+}
+
+impl Raster {
+    /// By a matrix, which GDAL writes where rows do not go to the south, or by a tie point and
+    /// a scale.
+    fn of(matrix: &[f64], scale: &[f64], tie: &[f64]) -> Result<Self, String> {
+        match (matrix, scale, tie) {
+            (&[east_deg, 0.0, _, west_deg, 0.0, north_deg, _, first_deg, ..], ..) => Ok(Self {
+                west_deg,
+                first_deg,
+                east_deg,
+                north_deg,
+            }),
+            (&[_, ..], ..) => Err(format!("is rotated: {WARP}")),
+            ([], &[east_deg, south_deg, ..], &[i, j, _, x, y, _]) => Ok(Self {
+                west_deg: x - i * east_deg,
+                first_deg: y + j * south_deg,
+                east_deg,
+                north_deg: -south_deg,
+            }),
+            _ => Err(format!(
+                "does not say where it is by one tie point and a scale: {WARP}"
+            )),
+        }
+    }
+
+    /// Whether the first row is the southernmost.
+    fn is_south_up(&self) -> bool {
+        self.north_deg > 0.0
+    }
+}
+
+fn lattice((columns, rows): (u32, u32), is_area: bool, raster: &Raster) -> Result<Lattice, String> {
+    let (east_deg, north_deg) = (raster.east_deg, raster.north_deg.abs());
+    if east_deg < 0.0 {
+        return Err(format!("its columns go to the west: {WARP}"));
+    }
     let is_good = |deg: f64| deg.is_finite() && (1e-7..=1.0).contains(&deg);
     if !is_good(east_deg) || !is_good(north_deg) {
         return Err(format!(
@@ -139,9 +172,14 @@ fn lattice(
         ));
     }
     let middle = if is_area { 0.5 } else { 0.0 };
+    let northernmost = if raster.is_south_up() {
+        f64::from(rows) - 1.0
+    } else {
+        0.0
+    };
     let lattice = Lattice {
-        north_deg: y - (middle - j) * north_deg,
-        west_deg: x + (middle - i) * east_deg,
+        north_deg: raster.first_deg + (northernmost + middle) * raster.north_deg,
+        west_deg: raster.west_deg + middle * east_deg,
         posts_per_degree: [1.0 / north_deg, 1.0 / east_deg],
         rows: rows as usize,
         columns: columns as usize,
@@ -189,25 +227,11 @@ impl<R: Read + Seek> GeoTiff<R> {
             let numbers = value.transpose().map_err(|error| broken(&error))?;
             Ok::<_, String>(numbers.unwrap_or_default())
         };
-        // GDAL writes a matrix where rows do not go to the south.
-        let matrix = numbers(Tag::ModelTransformationTag)?;
-        let (scale, tie, is_south_up) = match *matrix.as_slice() {
-            [] => {
-                let tie = numbers(Tag::ModelTiepointTag)?;
-                (numbers(Tag::ModelPixelScaleTag)?, tie, false)
-            }
-            [east, 0.0, _, x, 0.0, north, _, y, ..] if east > 0.0 && north != 0.0 => {
-                let is_south_up = north > 0.0;
-                // Of the corner in the north-west, from the last row.
-                let row = if is_south_up { f64::from(size.1) } else { 0.0 };
-                let tie = vec![0.0, 0.0, 0.0, x, y + row * north, 0.0];
-                (vec![east, north.abs(), 0.0], tie, is_south_up)
-            }
-            [east, 0.0, _, _, 0.0, ..] if east <= 0.0 => {
-                return Err(format!("its columns go to the west: {WARP}"));
-            }
-            _ => return Err(format!("is rotated: {WARP}")),
-        };
+        let raster = Raster::of(
+            &numbers(Tag::ModelTransformationTag)?,
+            &numbers(Tag::ModelPixelScaleTag)?,
+            &numbers(Tag::ModelTiepointTag)?,
+        )?;
         let keys = tag(Tag::GeoKeyDirectoryTag)?
             .ok_or("has no GeoKeys: it is a TIFF, and no GeoTIFF")?
             .into_u16_vec()
@@ -219,16 +243,11 @@ impl<R: Read + Seek> GeoTiff<R> {
         };
         let metadata = text(Tag::Unknown(GDAL_METADATA))?.unwrap_or_default();
         let values = Values::of(text(Tag::GdalNodata)?.as_deref(), &metadata, unit_m)?;
-        let mut lattice = lattice(size, is_area, &scale, &tie)?;
-        if is_south_up && !is_area {
-            // The tie point is that of a post, and the last row is one before its end.
-            lattice.north_deg -= 1.0 / lattice.posts_per_degree[0];
-        }
         Ok(Self {
-            lattice,
+            lattice: lattice(size, is_area, &raster)?,
+            is_south_up: raster.is_south_up(),
             decoder,
             values,
-            is_south_up,
         })
     }
 

@@ -179,6 +179,7 @@ fn item(command: &Command) -> Result<Item, Refusal> {
         },
         camera if id::CAMERA.iter().any(|ids| ids.contains(&camera)) => Item::Camera {
             command: camera,
+            frame: command.frame,
             parameters: command.parameters.map(|p| Some(p).filter(|p| !p.is_nan())),
         },
         other => {
@@ -192,17 +193,19 @@ fn item(command: &Command) -> Result<Item, Refusal> {
     })
 }
 
-/// The pitch of a take-off in degrees: less than one is one in radians, and climbs nowhere.
+/// The pitch of a take-off in degrees. With less than two no aircraft lifts off; it may be
+/// one in radians.
 fn takeoff_pitch(command: &Command) -> Result<Option<f64>, Refusal> {
     let pitch = command.unless_default(1, "pitch", &(0.0..=45.0))?;
-    if let Some(given) = pitch.filter(|given| *given < 1.0) {
-        let what = format!(
-            "{given}: give degrees, 1 to 45 ({given} rad are {:.0}°)",
-            given.to_degrees()
-        );
-        return Err(("parameter 1 (pitch)".to_owned(), what));
-    }
-    Ok(pitch)
+    let Some(given) = pitch.filter(|given| *given < 2.0) else {
+        return Ok(pitch);
+    };
+    let in_radians = match given.to_degrees() {
+        degrees if degrees <= 45.0 => format!(" ({given} rad are {degrees:.0}°)"),
+        _ => String::new(),
+    };
+    let what = format!("{given}: too little to lift off: give 2 to 45 degrees{in_radians}");
+    Err(("parameter 1 (pitch)".to_owned(), what))
 }
 
 fn waypoint(command: &Command) -> Result<Item, Refusal> {

@@ -68,10 +68,11 @@ pub(crate) fn encode(item: &Item) -> Command {
         }
         Item::Camera {
             command,
+            frame,
             parameters,
         } => Command {
             id: command,
-            frame: frame::MISSION,
+            frame,
             parameters: parameters.map(|parameter| parameter.unwrap_or(f64::NAN)),
         },
     }

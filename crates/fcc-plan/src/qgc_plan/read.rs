@@ -356,6 +356,10 @@ fn entries<'a>(
 /// Only the present version is read: an older one has other keys.
 fn version(node: &Node<'_>, version: u16) -> Result<(), Refusal> {
     let found = node.key("version")?;
+    // As the first versions wrote it.
+    if version == 1 && found.text() == Ok("1.0") {
+        return Ok(());
+    }
     match found.whole(u16::MAX)? {
         number if number == version => Ok(()),
         other => found.refuse(format!(

@@ -81,7 +81,7 @@ pub(crate) fn any_item(items: usize) -> impl Strategy<Value = Item> {
         1 => (option::of(any_place()), any_altitude(), option::of(1e-3..=20_000.0)).prop_map(
             |(place, altitude, abort_altitude_m)| Item::Land { place, altitude, abort_altitude_m }
         ),
-        1 => (option::of(any_place()), any_altitude(), option::of(1.0..=45.0)).prop_map(
+        1 => (option::of(any_place()), any_altitude(), option::of(2.0..=45.0)).prop_map(
             |(place, altitude, pitch_deg)| Item::Takeoff { place, altitude, pitch_deg }
         ),
         1 => (0.0..=604_800.0).prop_map(|seconds| Item::Delay { seconds }),
@@ -98,7 +98,7 @@ pub(crate) fn any_item(items: usize) -> impl Strategy<Value = Item> {
             prop_oneof![Just(201_u16), Just(206), Just(530), Just(1_000), Just(2_000), Just(2_501)],
             uniform7(option::of(-1e9..=1e9)),
         )
-            .prop_map(|(command, parameters)| Item::Camera { command, parameters }),
+            .prop_map(|(command, parameters)| Item::Camera { command, frame: 2, parameters }),
     ]
 }
 

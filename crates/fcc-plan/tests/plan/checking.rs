@@ -145,7 +145,7 @@ fn the_fence_is_kept_across_the_date_line_as_well() {
     }
 }
 
-/// A circle of 3 km inside a polygon of 44 km: PX4 and ArduPilot keep both, and MAVLink's
+/// A circle of 3 km inside a polygon of 44 km: PX4 and `ArduPilot` keep both, and MAVLink's
 /// groups make it one of them.
 #[test]
 fn of_several_zones_all_are_kept_and_of_several_groups_one() {

@@ -224,6 +224,7 @@ fn a_survey_is_the_items_that_it_contains() {
     };
     let camera = Item::Camera {
         command: 206,
+        frame: 2,
         parameters: [25.0, 0.0, 1.0, 0.0, 0.0, 0.0, f64::NAN]
             .map(|p| Some(p).filter(|p| !p.is_nan())),
     };

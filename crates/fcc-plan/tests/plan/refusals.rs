@@ -74,7 +74,11 @@ fn a_line_says_item_field_and_what_to_do() {
         ),
         (
             "1 0 3 22 0.26 0 0 0 0 0 100 1",
-            "parameter 1 (pitch): 0.26: give degrees, 1 to 45 (0.26 rad are 15°)",
+            "parameter 1 (pitch): 0.26: too little to lift off: give 2 to 45 degrees (0.26 rad are 15°)",
+        ),
+        (
+            "1 0 3 22 1.5 0 0 0 0 0 100 1",
+            "parameter 1 (pitch): 1.5: too little to lift off: give 2 to 45 degrees",
         ),
         (
             "1 0 3 84 0 0 0 0 47 8 100 1",

@@ -115,6 +115,15 @@ fn south_up_is_read() {
         assert!(near(at(&elevations, 47.0, 8.0), 0.0), "{raster}");
         assert!(near(at(&elevations, 46.95, 8.03), 53.0));
         assert!(near(at(&elevations, 46.91, 8.19), 109.0));
+        // As some write it, by a scale.
+        made.tie = vec![0.0, 0.0, 0.0, west, south, 0.0];
+        made.scale = vec![0.01, -0.01, 0.0];
+        let by_scale = Made {
+            matrix: Vec::new(),
+            ..made.clone()
+        };
+        let elevations = read("a.tif", &by_scale.f32(&heights(upside_down))).unwrap();
+        assert!(near(at(&elevations, 46.95, 8.03), 53.0), "{raster}");
         // The same with a matrix to the south.
         made.matrix = matrix([0.01, 0.0, west], [0.0, -0.01, 93.91 - south]);
         let elevations = read("a.tif", &made.f32(&heights(HEIGHTS))).unwrap();
