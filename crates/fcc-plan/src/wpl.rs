@@ -29,11 +29,19 @@ pub(crate) fn read(text: &str) -> Result<Plan, Vec<Problem>> {
         .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
     let first = lines.next().map_or("", |(_, line)| line);
     if let Some(version) = first.strip_prefix("QGC WPL ").filter(|v| *v != "110") {
-        let what = format!(
-            "version {}: only {HEADER} is read: load the file into a present ground station and \
-             save it again",
-            quoted(version)
-        );
+        // QGroundControl's before it had a home, and MAVROS'.
+        let what = if version == "120" {
+            format!(
+                "version 120 has no home: write {HEADER}, put home before the items (place 0, 0: \
+                 not set), and number the lines, and the targets of jumps, from 0"
+            )
+        } else {
+            format!(
+                "version {}: only {HEADER} is read: load the file into a present ground station \
+                 and save it again",
+                quoted(version)
+            )
+        };
         return Err(vec![Problem::of("line 1", what)]);
     }
     if first.split_whitespace().ne(HEADER.split_whitespace()) {

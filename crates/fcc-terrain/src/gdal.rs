@@ -96,7 +96,7 @@ mod tests {
         assert_eq!(of(""), Ok(60.0));
         let scale = r#"  <Item name="SCALE" sample="0" role="scale">10</Item>"#;
         assert_eq!(of(scale), Ok(600.0));
-        let offset = r#"<Item role='offset' sample='0' name='OFFSET'>-20</Item>"#;
+        let offset = r"<Item role='offset' sample='0' name='OFFSET'>-20</Item>";
         assert_eq!(of(&format!("{offset}{scale}")), Ok(580.0));
         // Those of other bands are none of ours.
         assert_eq!(of(&scale.replace("\"0\"", "\"1\"")), Ok(60.0));
