@@ -1,4 +1,4 @@
-//! A jump for ever, as the missions of ArduPlane end, with a landing sequence behind it.
+//! A jump for ever, as the missions of `ArduPlane` end, with a landing sequence behind it.
 
 use std::fmt::Write as _;
 

@@ -107,29 +107,32 @@ pub fn plan_page(
 }
 
 fn figures(places: &[PlanPlace], fence: &PlanFence, ground: &[GroundPoint]) -> Vec<Figure> {
-    if places.is_empty() {
+    if places.is_empty() && fence.sides.is_empty() {
         return Vec::new();
     }
-    vec![
-        Figure {
-            title: "Map".to_owned(),
-            caption: "North up, from the first place; numbers are those of the items, light lines \
-                      the fence. Where it does not permit to fly is grey."
-                .to_owned(),
-            svg: map(places, fence),
+    let map = Figure {
+        title: "Map".to_owned(),
+        caption: "North up, from the first place; numbers are those of the items, light lines the \
+                  fence. Where it does not permit to fly is grey."
+            .to_owned(),
+        svg: map(places, fence),
+    };
+    // A fence alone has no heights.
+    if places.is_empty() {
+        return vec![map];
+    }
+    let profile = Figure {
+        title: "Height profile".to_owned(),
+        caption: if ground.is_empty() {
+            "Above mean sea level, along the legs without turns and loiters.".to_owned()
+        } else {
+            "Above mean sea level, along the legs without turns and loiters. The light line is \
+             the ground; where it is missing, its elevation is not known."
+                .to_owned()
         },
-        Figure {
-            title: "Height profile".to_owned(),
-            caption: if ground.is_empty() {
-                "Above mean sea level, along the legs without turns and loiters.".to_owned()
-            } else {
-                "Above mean sea level, along the legs without turns and loiters. The light line is \
-                 the ground; where it is missing, its elevation is not known."
-                    .to_owned()
-            },
-            svg: profile(places, ground),
-        },
-    ]
+        svg: profile(places, ground),
+    };
+    vec![map, profile]
 }
 
 /// The lowest and the highest of values, with a margin.
@@ -333,5 +336,7 @@ mod tests {
         let fenced = plan_page("A plan", &[], &places, &fence, &[]);
         let grey = |page: &str| page.matches("<rect").count();
         assert_eq!(grey(&fenced) - grey(&page), 115);
+        let alone = plan_page("A fence", &[], &[], &fence, &[]);
+        assert_eq!(alone.matches("<svg").count(), 1);
     }
 }
