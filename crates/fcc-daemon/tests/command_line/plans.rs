@@ -130,6 +130,15 @@ fn an_engine_that_is_out_takes_off_nowhere() {
 }
 
 #[test]
+fn a_plan_with_a_jump_for_ever_ends_with_its_time() {
+    let plan = legs(45.0, 800.0) + "3 0 2 177 1 -1 0 0 0 0 0 1\n";
+    let (exit, said) = flown(&plan, "", &[]);
+    assert_eq!(exit, Some(0), "{said}");
+    assert!(said.contains("ended: the time to fly is over\n"), "{said}");
+    assert!(said.contains("item 3: jump: for ever"), "{said}");
+}
+
+#[test]
 fn plans_are_flown_to_their_end() {
     let mut back = legs(45.0, 800.0);
     back += "3 0 3 20 0 0 0 0 0 0 0 1\n";
