@@ -263,8 +263,12 @@ impl Terrain<'_> {
                 .filter_map(|grid| grid.highest_m(latitude_deg, longitude_deg, reach_m, unknown))
                 .reduce(f64::max)
         };
+        let known_m = highest_m(&|_, _| None);
+        if known_m.is_some() || self.grids.len() < 2 {
+            return known_m;
+        }
         // Across a seam the posts of each grid, and of the others where it has none.
-        highest_m(&|_, _| None).or_else(|| highest_m(&|south, east| self.at_m(south, east)))
+        highest_m(&|latitude_deg, longitude_deg| self.at_m(latitude_deg, longitude_deg))
     }
 }
 

@@ -30,9 +30,9 @@ pub(super) fn landing_pattern(node: &Node<'_>) -> Result<[Item; 3], Refusal> {
         Ok((place, Altitude { m, above }))
     };
     // Renamed in QGroundControl 4.1.
-    let approach = match node.optional("loiterCoordinate")? {
-        Some(before) => before,
-        None => node.key("landingApproachCoordinate")?,
+    let approach = match node.optional("landingApproachCoordinate")? {
+        None if node.optional("loiterCoordinate")?.is_some() => node.key("loiterCoordinate")?,
+        _ => node.key("landingApproachCoordinate")?,
     };
     let (approach, approach_altitude) = at(approach, approach_key)?;
     let (place, altitude) = at(node.key("landCoordinate")?, land_key)?;

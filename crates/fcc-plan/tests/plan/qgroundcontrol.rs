@@ -1,7 +1,7 @@
 //! Files of QGroundControl, present and older, and what it requires of ours.
 //!
-//! Keys and versions by its sources (`src/MissionManager` and `src/QmlControls`,
-//! version 5.0): `PlanMasterController`, `MissionController`, `MissionItem`,
+//! Keys and versions by its sources (`src/MissionManager` and `src/QmlControls`):
+//! `PlanMasterController`, `MissionController`, `MissionItem`,
 //! `LandingComplexItem`, `TransectStyleComplexItem`, `GeoFenceController`,
 //! `QGCFencePolygon`, `QGCMapCircle`, `RallyPointController`.
 
