@@ -54,17 +54,16 @@ impl<'a> Node<'a> {
         }
     }
 
-    /// A key with a list or an object that is not empty.
-    pub(super) fn content(&self) -> Result<Option<&'a str>, Refusal> {
+    /// The one of these keys with a list or an object that is not empty.
+    pub(super) fn content(&self, keys: &[&str]) -> Result<Option<&'a str>, Refusal> {
         let is_full = |value: &Value| match value {
             Value::Array(values) => !values.is_empty(),
             Value::Object(values) => !values.is_empty(),
             _ => false,
         };
         let mut entries = self.object()?.iter();
-        Ok(entries
-            .find(|(_, value)| is_full(value))
-            .map(|(key, _)| key.as_str()))
+        let found = entries.find(|(key, value)| keys.contains(&key.as_str()) && is_full(value));
+        Ok(found.map(|(key, _)| key.as_str()))
     }
 
     /// A key; none if it is missing or null.

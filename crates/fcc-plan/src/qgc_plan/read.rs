@@ -261,6 +261,10 @@ fn items_of(node: &Node<'_>, number: usize) -> Result<(usize, Vec<Item>), Proble
 const TRANSECTS: &str = "TransectStyleComplexItem";
 const SAVE_AGAIN: &str = "open the file with a present QGroundControl and save it again";
 
+/// Zones of a fence and rally points, of any version; the first also had parameters of the
+/// vehicle.
+const CONTENT: [&str; 5] = ["polygon", "polygons", "circle", "circles", "points"];
+
 /// A section of the fence or the rally points: none if it is missing, empty, or of version 1
 /// without content, which QGroundControl ignores.
 fn section<'a>(root: &Node<'a>, key: &str) -> Result<Option<Node<'a>>, Refusal> {
@@ -275,7 +279,7 @@ fn section<'a>(root: &Node<'a>, key: &str) -> Result<Option<Node<'a>>, Refusal> 
         version(&node, 2)?;
         return Ok(Some(node));
     }
-    match node.content()? {
+    match node.content(&CONTENT)? {
         None => Ok(None),
         Some(key) => node.refuse(format!(
             "has \"{key}\" and is of version 1 or none, which QGroundControl ignores: draw it \

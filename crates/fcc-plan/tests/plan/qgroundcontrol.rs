@@ -106,6 +106,8 @@ fn sections_of_version_1_are_read_if_they_are_empty() {
     for sections in [
         r#""geoFence": {"polygon": [], "version": 1}, "rallyPoints": {"points": [], "version": 2},"#,
         r#""geoFence": {}, "rallyPoints": {},"#,
+        r#""geoFence": {"version": 1, "polygon": [],
+            "parameters": [{"compId": 1, "name": "FENCE_ACTION", "value": 1}]},"#,
         r#""geoFence": null, "rallyPoints": {"version": 1},"#,
         r#""geoFence": {"version": 2, "circles": [], "breachReturn": [0, 0, 0],
             "polygons": [{"version": 1, "inclusion": true, "polygon": []}]},"#,
