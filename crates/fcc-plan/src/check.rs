@@ -70,7 +70,12 @@ pub(crate) struct Leg {
 pub fn check(plan: &Plan, conditions: &Conditions) -> Result<(), Vec<Problem>> {
     let mut problems = Vec::new();
     if plan.items.is_empty() {
-        problems.push(Problem::of("items", "there are none: give at least one"));
+        let what = if plan.fence.is_empty() && plan.rally.is_empty() {
+            "there are none: give at least one"
+        } else {
+            "there are none, but a fence or rally points: put these behind the items of a plan"
+        };
+        problems.push(Problem::of("items", what));
     }
     if let Some(mps) = plan.cruise_mps
         && let Some(message) = airspeed_problem(mps, conditions)
@@ -79,7 +84,7 @@ pub fn check(plan: &Plan, conditions: &Conditions) -> Result<(), Vec<Problem>> {
     }
     problems.extend(polar_problems(plan));
     let legs = legs(plan, conditions, &mut problems);
-    let outline = Outline::of(plan);
+    let outline = Outline::of(plan, 0.0);
     for (n, leg) in legs.iter().enumerate() {
         let (before, next) = (n.checked_sub(1).and_then(|n| legs.get(n)), legs.get(n + 1));
         let begins_with = before.and_then(|before| turn_of(before, leg, conditions));
@@ -138,31 +143,23 @@ pub(crate) fn legs(plan: &Plan, conditions: &Conditions, problems: &mut Vec<Prob
         let mut note = |field: &str, message: String| {
             problems.push(Problem::of_item(number, field, message));
         };
+        if let Some((field, message)) = item_problem(plan, number, item, airspeed_mps, conditions) {
+            note(field, message);
+        }
         match *item {
             Item::ChangeSpeed {
-                speed: Some(speed), ..
-            } => {
-                if let Some(message) = speed_problem(speed, conditions) {
-                    note("speed", message);
-                }
-                match speed {
-                    Speed::AirspeedMps(mps) => (airspeed_mps, ground_mps) = (mps, None),
-                    Speed::GroundSpeedMps(mps) => ground_mps = Some(mps),
-                }
-            }
-            Item::Jump { to, times } => {
-                if let Some(message) = jump_problem(plan, number, to, times) {
-                    note("jump", message);
-                }
-            }
-            Item::Takeoff { .. } | Item::Land { .. } | Item::Return => {
-                if let Some((field, message)) = runway_problem(plan, number, item) {
-                    note(field, message);
-                }
-            }
-            Item::Loiter(loiter) => {
-                if let Some(message) = loiter_problem(&loiter, airspeed_mps, conditions) {
-                    note("radius", message);
+                speed: Some(Speed::AirspeedMps(mps)),
+                ..
+            } => (airspeed_mps, ground_mps) = (mps, None),
+            Item::ChangeSpeed {
+                speed: Some(Speed::GroundSpeedMps(mps)),
+                ..
+            } => ground_mps = Some(mps),
+            // From here no leg leads to what is behind it: a command does.
+            Item::Jump { times: None, .. } => {
+                at = None;
+                if let Some(last) = legs.last_mut() {
+                    last.turns = false;
                 }
             }
             _ => {}
@@ -248,15 +245,36 @@ pub(crate) fn above_sea_level(altitude: Altitude, plan: &Plan) -> Result<f64, &'
     }
 }
 
-fn jump_problem(plan: &Plan, number: usize, to: usize, times: Option<u32>) -> Option<String> {
+/// What is wrong with an item that is flown at this airspeed, whatever leg leads to it.
+fn item_problem(
+    plan: &Plan,
+    number: usize,
+    item: &Item,
+    airspeed_mps: f64,
+    conditions: &Conditions,
+) -> Option<(&'static str, String)> {
+    match *item {
+        Item::ChangeSpeed {
+            speed: Some(speed), ..
+        } => Some(("speed", speed_problem(speed, conditions)?)),
+        Item::Jump { to, .. } => Some(("jump", jump_problem(plan, number, to)?)),
+        Item::Takeoff { .. } | Item::Land { .. } | Item::Return => {
+            runway_problem(plan, number, item)
+        }
+        Item::Loiter(loiter) => {
+            let message = loiter_problem(&loiter, airspeed_mps, conditions)?;
+            Some(("radius", message))
+        }
+        _ => None,
+    }
+}
+
+fn jump_problem(plan: &Plan, number: usize, to: usize) -> Option<String> {
     if plan.item(to).is_none() {
         return Some(format!(
             "to {to}: there is no such item: give 1 to {}",
             plan.items.len()
         ));
-    }
-    if times.is_none() {
-        return Some("never ends: give how often".to_owned());
     }
     // Back over items that take no way is a loop without time.
     let between = plan
@@ -307,6 +325,8 @@ fn climb(leg: &Leg, conditions: &Conditions) -> Option<(&'static str, String)> {
 /// on the next one.
 fn room(leg: &Leg, next: &Leg, begins_m: f64, turn: &Turn) -> Option<(&'static str, String)> {
     let lacks = |room_m: f64, needs_m: f64, which: &str| {
+        // Of a leg that the turn before it fills, that one is told.
+        let room_m = room_m.max(0.0);
         (needs_m > room_m).then(|| {
             let message = format!(
                 "the turn needs {needs_m:.0} m of the leg {which}, which has {room_m:.0} m: move a \

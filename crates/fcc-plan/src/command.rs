@@ -34,6 +34,18 @@ pub(crate) mod id {
     pub(crate) const FENCE_CIRCLE_INCLUSION: u16 = 5_003;
     pub(crate) const FENCE_CIRCLE_EXCLUSION: u16 = 5_004;
     pub(crate) const RALLY_POINT: u16 = 5_100;
+    /// Those of a camera and its gimbal: region of interest, digicam and mount, trigger,
+    /// mode, zoom and focus, gimbal, pictures, video.
+    pub(crate) const CAMERA: [core::ops::RangeInclusive<u16>; 8] = [
+        195..=197,
+        201..=206,
+        214..=214,
+        530..=532,
+        1_000..=1_001,
+        2_000..=2_001,
+        2_003..=2_003,
+        2_500..=2_501,
+    ];
     /// Those of a fence and of rally points.
     pub(crate) const FENCE_AND_RALLY: core::ops::RangeInclusive<u16> =
         FENCE_RETURN_POINT..=RALLY_POINT;

@@ -22,7 +22,7 @@ const RATE_SHARE: f64 = 0.5;
 
 /// How long a plan takes at most, s: each leg against the strongest wind, with turns and
 /// loiters, climbs that are not on a leg, and three landings that are given up; at least
-/// half a minute.
+/// half a minute. What never ends counts twice.
 pub fn longest_s(plan: &Plan, conditions: &Conditions) -> f64 {
     let slowest =
         |airspeed_mps: f64| (airspeed_mps - conditions.wind_mps).max(SLOWEST_SHARE * airspeed_mps);
@@ -87,7 +87,7 @@ pub fn longest_s(plan: &Plan, conditions: &Conditions) -> f64 {
             }
             Item::Jump { to, times } => {
                 let again: f64 = of_item.get(to..=n).unwrap_or_default().iter().sum();
-                again * f64::from(times.unwrap_or(0))
+                again * f64::from(times.unwrap_or(1))
             }
             _ => 0.0,
         };

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use crate::plan::{Plan, limits};
 use crate::problem::Problem;
-use crate::{qgc_plan, wpl};
+use crate::{mavproxy, qgc_plan, wpl};
 
 /// The format of a file.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -70,7 +70,8 @@ fn each(file: &str, problems: &[Problem]) -> String {
     text
 }
 
-/// Reads a plan from a text of either format, which its content tells.
+/// Reads a plan from a text of either format, which its content tells; or a fence, or rally
+/// points, of older versions of MAVProxy.
 ///
 /// ```
 /// let text = "QGC WPL 110\n\
@@ -86,7 +87,7 @@ fn each(file: &str, problems: &[Problem]) -> String {
 pub fn read(text: &str) -> Result<Plan, Vec<Problem>> {
     match Format::of_text(text) {
         Format::QgcPlan => qgc_plan::read(text),
-        Format::QgcWpl => wpl::read(text),
+        Format::QgcWpl => mavproxy::read(text).unwrap_or_else(|| wpl::read(text)),
     }
 }
 

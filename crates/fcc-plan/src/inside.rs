@@ -135,7 +135,16 @@ fn outside(fence: &Fence<'_>, place: Place) -> Option<&'static str> {
         });
     }
     let clearance_m = fence.clearance_m(latitude, longitude, Vector2::zeros());
-    (clearance_m < 0.0).then_some("outside of the fence")
+    let is_inside_one = fence
+        .zones
+        .iter()
+        .any(|zone| zone.inclusion && depth_m(zone) > 0.0);
+    (clearance_m < 0.0).then_some(if is_inside_one {
+        "outside of the fence (inside one zone to stay inside of, outside of another of its \
+         group, which is kept as a whole)"
+    } else {
+        "outside of the fence"
+    })
 }
 
 /// Whether an aircraft on a leg can still turn away from the fence, in the strongest wind

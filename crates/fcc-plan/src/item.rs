@@ -149,6 +149,15 @@ pub enum Item {
         /// Where, for finding the nearest; none: at the next item with a place.
         place: Option<Place>,
     },
+    /// A command of a camera or its gimbal, which is not carried out.
+    Camera {
+        /// `MAV_CMD`.
+        command: u16,
+        /// `MAV_FRAME`.
+        frame: u8,
+        /// Its parameters; none: left to the camera.
+        parameters: [Option<f64>; 7],
+    },
 }
 
 impl Item {
@@ -166,6 +175,7 @@ impl Item {
             Self::ChangeSpeed { .. } => "change speed",
             Self::Jump { .. } => "jump",
             Self::LandStart { .. } => "land start",
+            Self::Camera { .. } => "camera",
         }
     }
 
@@ -229,12 +239,13 @@ impl fmt::Display for Item {
                 radius_m.map_or(Ok(()), |radius_m| write!(f, ", radius {radius_m:.0} m"))
             }
             Self::Delay { seconds } => write!(f, "{name}: {seconds:.0} s"),
+            Self::Camera { command, .. } => write!(f, "{name}: command {command}"),
             Self::UntilDistance { distance_m } => write!(f, "{name}: {distance_m:.0} m"),
             Self::Jump {
                 to,
                 times: Some(times),
             } => write!(f, "{name}: to {to}, times {times}"),
-            Self::Jump { to, times: None } => write!(f, "{name}: to {to}"),
+            Self::Jump { to, times: None } => write!(f, "{name}: to {to}, for ever"),
             _ => f.write_str(name),
         }
     }

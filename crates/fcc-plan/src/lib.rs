@@ -23,6 +23,7 @@ mod ground;
 mod inside;
 mod item;
 mod level;
+mod mavproxy;
 mod outline;
 mod path;
 mod plan;

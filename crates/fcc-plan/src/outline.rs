@@ -21,6 +21,7 @@ pub(crate) struct Outline {
 struct Zone {
     plane: LocalPlane,
     inclusion: bool,
+    group: u16,
     shape: Shape,
 }
 
@@ -30,28 +31,57 @@ enum Shape {
     Polygon(Vec<Vector2<f64>>),
 }
 
+impl Fence {
+    /// Whether it permits a place, whatever the altitude.
+    ///
+    /// ```
+    /// let text = "QGC WPL 110\n\
+    ///     0 1 0 16 0 0 0 0 47.4 8.5 430 1\n\
+    ///     1 0 0 5003 2000 0 0 0 47.4 8.5 0 1\n\
+    ///     2 0 0 5003 2000 0 0 0 47.42 8.5 0 1\n";
+    /// let permits = fcc_plan::read(text).unwrap().fence.permits();
+    /// let at = |latitude_deg| fcc_plan::Place { latitude_deg, longitude_deg: 8.5 };
+    /// assert!(permits(at(47.41)) && !permits(at(47.4)));
+    /// ```
+    pub fn permits(&self) -> impl Fn(Place) -> bool + 'static {
+        let outline = Outline::around(self, 0.0, 0.0);
+        move |place| {
+            let (latitude_rad, longitude_rad) = place.radians();
+            outline.with(|fence| {
+                fence.clearance_m(latitude_rad, longitude_rad, Vector2::zeros()) >= 0.0
+            })
+        }
+    }
+}
+
 impl Outline {
-    pub(crate) fn of(plan: &Plan) -> Self {
+    /// Of a plan, with the usual height of a return above home, m.
+    pub(crate) fn of(plan: &Plan, usual_m: f64) -> Self {
+        let home_m = plan.home.map_or(0.0, |home| home.altitude_m);
+        Self::around(&plan.fence, home_m, usual_m)
+    }
+
+    fn around(fence: &Fence, home_m: f64, usual_m: f64) -> Self {
         let Fence {
             polygons,
             circles,
             floor_m,
             ceiling_m,
             return_point,
-        } = &plan.fence;
+        } = fence;
         let circles = circles.iter().map(|circle| Zone {
             plane: circle.centre.plane(),
             inclusion: circle.inclusion,
+            group: circle.group,
             shape: Shape::Circle(circle.radius_m),
         });
-        let home_m = plan.home.map_or(0.0, |home| home.altitude_m);
         Self {
             zones: polygons.iter().filter_map(polygon).chain(circles).collect(),
             floor_m: *floor_m,
             ceiling_m: *ceiling_m,
             back: return_point.map(|(place, height_m)| Destination {
                 at: place.plane(),
-                altitude_m: home_m + height_m,
+                altitude_m: home_m + if height_m == 0.0 { usual_m } else { height_m },
             }),
         }
     }
@@ -84,6 +114,7 @@ fn polygon(polygon: &Polygon) -> Option<Zone> {
     Some(Zone {
         plane,
         inclusion: polygon.inclusion,
+        group: polygon.group,
         shape: Shape::Polygon(polygon.corners.iter().map(corner).collect()),
     })
 }
@@ -93,6 +124,7 @@ impl Zone {
         fence::Zone {
             plane: self.plane,
             inclusion: self.inclusion,
+            group: self.group,
             shape: match &self.shape {
                 Shape::Circle(radius_m) => fence::Shape::Circle {
                     radius_m: *radius_m,
@@ -106,6 +138,7 @@ impl Zone {
         fence::Zone {
             plane: self.plane,
             inclusion: self.inclusion,
+            group: self.group,
             shape: match self.shape {
                 Shape::Circle(radius_m) => fence::Shape::Circle { radius_m },
                 Shape::Polygon(corners_m) => fence::Shape::Polygon {

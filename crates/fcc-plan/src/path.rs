@@ -246,6 +246,7 @@ pub(crate) fn walk(plan: &Plan, conditions: &Conditions, visit: &mut dyn FnMut(&
                     .map(|home| home.1),
             };
             let before = index.checked_sub(1).and_then(|index| legs.get(index));
+            let before = before.filter(|before| before.to.0 == leg.from.0);
             let left = before.and_then(|before| circle(plan, before.item, conditions));
             let from = left.map_or(leg.from.0, |(centre, radius_m, side)| {
                 touching(leg.to.0, (centre, radius_m, -side))

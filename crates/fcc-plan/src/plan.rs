@@ -43,6 +43,8 @@ pub struct Polygon {
     pub corners: Vec<Place>,
     /// Stay inside; otherwise outside.
     pub inclusion: bool,
+    /// The group of an inclusion.
+    pub group: u16,
 }
 
 /// A circle of a fence.
@@ -54,10 +56,12 @@ pub struct Circle {
     pub radius_m: f64,
     /// Stay inside; otherwise outside.
     pub inclusion: bool,
+    /// The group of an inclusion.
+    pub group: u16,
 }
 
-/// Where the aircraft may fly: inside at least one of the inclusions, if there is
-/// any, and outside all others.
+/// Where the aircraft may fly: inside all inclusions of at least one group, if there is any,
+/// and outside all others.
 #[derive(Clone, PartialEq, Debug, Default, Serialize)]
 pub struct Fence {
     /// Polygons.
@@ -68,7 +72,8 @@ pub struct Fence {
     pub floor_m: Option<f64>,
     /// The highest altitude above mean sea level, m.
     pub ceiling_m: Option<f64>,
-    /// Where to fly after the fence was crossed, with an altitude above home, m.
+    /// Where to fly after the fence was crossed, with an altitude above home, m; 0: the
+    /// usual one of a return.
     pub return_point: Option<(Place, f64)>,
 }
 

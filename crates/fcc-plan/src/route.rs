@@ -60,7 +60,7 @@ impl Steps {
         Ok(Self {
             steps,
             returns: returns(plan, config),
-            fence: Outline::of(plan),
+            fence: Outline::of(plan, config.return_height_m),
             obstacles: plan.obstacles.iter().map(obstacle).collect(),
             airspeed_mps: plan.cruise_mps,
             hash: plan.hash().first_64_bits(),
@@ -145,6 +145,7 @@ fn step_of(
         },
         Item::Jump { to, times } => jump(to, times, jumps)?,
         Item::LandStart { .. } => Step::LandStart,
+        Item::Camera { .. } => Step::Mark,
         Item::Takeoff {
             place,
             altitude,

@@ -4,7 +4,7 @@ use fcc_core::flight::route::LONGEST_LEG_M;
 use fcc_core::units::FOOT_M;
 
 use crate::check::{Conditions, Leg, above_sea_level, legs};
-use crate::item::{Item, Place};
+use crate::item::{AltitudeDatum, Item, Place};
 use crate::level::Level;
 use crate::plan::{Plan, limits};
 use crate::problem::Problem;
@@ -26,8 +26,9 @@ pub struct Usual {
 }
 
 /// Items that are flown low over the ground or above the ceiling, and legs that are longer
-/// than an aircraft flies, or are so if latitude and longitude are exchanged. Take-off and
-/// landing may be low.
+/// than an aircraft flies, or are so if latitude and longitude are exchanged; heights above
+/// a home at exactly 0 m; jumps that never end; commands of a camera. Take-off and landing may
+/// be low.
 pub fn unusual(plan: &Plan, conditions: &Conditions, usual: &Usual) -> Vec<Problem> {
     let altitudes = plan.items.iter().enumerate().filter_map(|(n, item)| {
         let altitude_m = above_sea_level(item.altitude()?, plan).ok()?;
@@ -39,10 +40,49 @@ pub fn unusual(plan: &Plan, conditions: &Conditions, usual: &Usual) -> Vec<Probl
         let message = too_long(leg)?;
         Some(Problem::of_item(leg.item, "leg", message))
     });
-    let mut found: Vec<_> = altitudes.chain(lengths).collect();
+    let items = plan.items.iter().enumerate();
+    let loops = items.filter(|(_, item)| matches!(item, Item::Jump { times: None, .. }));
+    let loops = loops.map(|(n, _)| {
+        let message = "for ever: what is behind it is flown by a command only (fccd command plan \
+                       land, item N), and the plan has no end";
+        Problem::of_item(n + 1, "jump", message)
+    });
+    let mut found: Vec<_> = home_at_zero(plan)
+        .into_iter()
+        .chain(camera(plan))
+        .chain(altitudes)
+        .chain(lengths)
+        .chain(loops)
+        .collect();
     found.sort_by_key(|problem| problem.item);
     found.truncate(limits::PROBLEMS);
     found
+}
+
+/// Ground stations that do not know the elevation of home write 0.
+fn home_at_zero(plan: &Plan) -> Option<Problem> {
+    let is_zero = plan.home.is_some_and(|home| home.altitude_m == 0.0);
+    let is_relative = |item: &Item| {
+        item.altitude()
+            .is_some_and(|altitude| altitude.above == AltitudeDatum::Home)
+    };
+    let first = plan.items.iter().position(is_relative)?;
+    is_zero.then(|| {
+        let message = format!(
+            "its elevation is exactly 0 m, and item {} is above home: is it at the sea? \
+             Otherwise give its elevation above mean sea level",
+            first + 1
+        );
+        Problem::of("home", message)
+    })
+}
+
+fn camera(plan: &Plan) -> Option<Problem> {
+    let is_one = |item: &Item| matches!(item, Item::Camera { .. });
+    let first = plan.items.iter().position(is_one)?;
+    let count = plan.items.iter().filter(|item| is_one(item)).count();
+    let message = format!("commands of a camera or gimbal ({count}) are not carried out");
+    Some(Problem::of_item(first + 1, "command", message))
 }
 
 fn too_low(item: &Item, altitude_m: f64, usual: &Usual) -> Option<String> {

@@ -1,14 +1,14 @@
 //! `QGC WPL 110`: text, a line per command (MAVLink, "Mission Plain-Text File
 //! Format").
 //!
-//! Line 0 is home, as Mission Planner, MAVProxy and QGroundControl write it.
-//! Commands of a fence and rally points follow the items, as MAVProxy saves them.
+//! Line 0 is home, as Mission Planner, MAVProxy and QGroundControl write it. Commands of a
+//! fence and rally points follow the items; MAVProxy saves them alone, without home.
 
 use std::fmt::Write as _;
 
 use crate::command::{
-    ALTITUDE_M, Command, FenceReader, Refusal, at_most, check, decode, encode, fence_commands, id,
-    place, rally_commands,
+    ALTITUDE_M, Command, FenceReader, Refusal, at_most, check, decode, encode, fence_commands,
+    frame, id, place, rally_commands,
 };
 use crate::item::Item;
 use crate::plan::{Home, Plan, limits};
@@ -28,6 +28,22 @@ pub(crate) fn read(text: &str) -> Result<Plan, Vec<Problem>> {
         .enumerate()
         .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
     let first = lines.next().map_or("", |(_, line)| line);
+    if let Some(version) = first.strip_prefix("QGC WPL ").filter(|v| *v != "110") {
+        // QGroundControl's before it had a home, and MAVROS'.
+        let what = if version == "120" {
+            format!(
+                "version 120 has no home: write {HEADER}, put home before the items (place 0, 0: \
+                 not set), and number the lines, and the targets of jumps, from 0"
+            )
+        } else {
+            format!(
+                "version {}: only {HEADER} is read: load the file into a present ground station \
+                 and save it again",
+                quoted(version)
+            )
+        };
+        return Err(vec![Problem::of("line 1", what)]);
+    }
     if first.split_whitespace().ne(HEADER.split_whitespace()) {
         let what = format!(
             "\"{}\": the first line has to be {HEADER}, or that of a QGroundControl plan {{",
@@ -46,6 +62,10 @@ pub(crate) fn read(text: &str) -> Result<Plan, Vec<Problem>> {
                 },
                 ..problem
             });
+            // Keeps the numbers of those that follow.
+            if reader.fence == FenceReader::default() && reader.count > 1 {
+                reader.plan.items.resize(reader.count - 1, Item::Return);
+            }
             if reader.problems.len() >= limits::PROBLEMS {
                 break;
             }
@@ -98,7 +118,7 @@ impl Reader {
             let what = format!("{index}: this line is number {number}: number the lines from 0");
             return Err(refused(("index".to_owned(), what)));
         }
-        if number == 0 {
+        if number == 0 && !id::FENCE_AND_RALLY.contains(&command.id) {
             self.plan.home = home(&command).map_err(refused)?;
             return Ok(());
         }
@@ -165,16 +185,31 @@ fn fields(line: &str) -> Result<(f64, Command), Refusal> {
     Ok((index, command))
 }
 
-/// Home; none where it was not set, which is written as zeros.
+/// Home; none where it was not set, which is written as zeros. The files of PX4 and MAVROS
+/// begin with an item instead.
 fn home(command: &Command) -> Result<Option<Home>, Refusal> {
+    let no_home = |field: &str, given: String| {
+        let what = format!(
+            "{given}, and line 0 is home: if it is the first item, put home before it (place 0, 0: \
+             not set), and number the lines from 0"
+        );
+        Err((field.to_owned(), what))
+    };
     // Mission Planner writes 0 for the command.
     if !matches!(command.id, 0 | id::WAYPOINT) {
-        let what = format!("{}: line 0 is home: give command 16", command.id);
-        return Err(("command".to_owned(), what));
+        return no_home("command", format!("{} is not 16", command.id));
     }
-    let [.., latitude, longitude, altitude_m] = command.parameters;
+    let [first @ .., latitude, longitude, altitude_m] = command.parameters;
     if (latitude, longitude) == (0.0, 0.0) {
         return Ok(None);
+    }
+    if !matches!(command.frame, frame::GLOBAL | frame::GLOBAL_INT) {
+        let given = format!("{} is not above sea level (0)", command.frame);
+        return no_home("frame", given);
+    }
+    if let Some(n) = first.iter().position(|number| number.abs() > 0.0) {
+        let given = format!("{} is not 0", first.get(n).unwrap_or(&f64::NAN));
+        return no_home(&format!("parameter {}", n + 1), given);
     }
     Ok(Some(Home {
         place: place(latitude, longitude)?,

@@ -47,9 +47,9 @@ pub use events::EventLine;
 #[cfg(feature = "flight")]
 pub use flight::{
     AltimeterSettings, Difference, FlightAddition, FlightReport, FlightSurvey, FlownItem,
-    FlownPlan, GroundLine, GroundPoint, MethodResult, NavigationReplay, PlanLine, PlanLines,
-    PlanPlace, PlanRow, ReplacedPlan, ReplacedPlans, SourceConsistency, TouchDown, flight_table,
-    plan_page, plan_table,
+    FlownPlan, GroundLine, GroundPoint, MethodResult, NavigationReplay, PlanFence, PlanLine,
+    PlanLines, PlanPlace, PlanRow, ReplacedPlan, ReplacedPlans, SourceConsistency, TouchDown,
+    flight_table, plan_page, plan_table,
 };
 pub use log_histogram::LogBin;
 pub use origin::{FileEnd, Origin};

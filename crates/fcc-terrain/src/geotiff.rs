@@ -7,6 +7,7 @@ use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 use tiff::{ColorType, TiffError};
 
+use crate::gdal::Values;
 use crate::lattice::{Grid, Lattice, Overlap};
 
 /// The largest part of an image that is unpacked at once, and the largest table in its
@@ -15,6 +16,8 @@ const MOST_CHUNK_BYTES: usize = 64 << 20;
 const MOST_TABLE_BYTES: usize = 4 << 20;
 /// The largest image, in posts of a side.
 const MOST_POSTS: u32 = 200_000;
+/// The tag of GDAL for what no other one says.
+const GDAL_METADATA: u16 = 42_112;
 /// What puts an image into degrees of WGS-84 with heights above mean sea level.
 const WARP: &str = "convert it by gdalwarp -t_srs EPSG:4326";
 
@@ -22,7 +25,26 @@ const WARP: &str = "convert it by gdalwarp -t_srs EPSG:4326";
 pub(crate) struct GeoTiff<R: Read + Seek> {
     pub(crate) lattice: Lattice,
     decoder: Decoder<R>,
-    nodata: Option<f64>,
+    values: Values,
+    /// Whether its first row is the southernmost.
+    is_south_up: bool,
+}
+
+/// Why a compression is not read; none for those that are (TIFF 6.0, GDAL).
+fn unread(compression: u16) -> Option<String> {
+    let name = match compression {
+        1 | 5 | 7 | 8 | 32_773 | 32_946 => return None,
+        34_887 => "LERC".to_owned(),
+        50_000 => "ZSTD".to_owned(),
+        34_925 => "LZMA".to_owned(),
+        50_001 => "WebP".to_owned(),
+        50_002 | 52_546 => "JPEG XL".to_owned(),
+        other => format!("method {other}"),
+    };
+    Some(format!(
+        "is compressed by {name}, which is not read: convert it by gdal_translate -co \
+         COMPRESS=DEFLATE"
+    ))
 }
 
 fn broken(error: &TiffError) -> String {
@@ -41,8 +63,8 @@ impl GeoKeys {
         })
     }
 
-    /// Whether posts are in the middles of the pixels.
-    fn check(&self) -> Result<bool, String> {
+    /// Whether posts are in the middles of the pixels, and m in the unit of heights.
+    fn check(&self) -> Result<(bool, f64), String> {
         const MODEL_TYPE: u16 = 1_024;
         const RASTER_TYPE: u16 = 1_025;
         const GEODETIC_CRS: u16 = 2_048;
@@ -81,30 +103,68 @@ impl GeoKeys {
                  or 3855"
             ));
         }
-        if let Some(unit) = self.value(VERTICAL_UNITS).filter(|unit| *unit != 9_001) {
-            return Err(format!(
-                "its heights are in unit {unit}: give them in m, 9001"
-            ));
-        }
+        let unit_m = match self.value(VERTICAL_UNITS) {
+            None | Some(9_001) => 1.0,
+            Some(9_002) => 0.304_8,
+            Some(9_003) => 1_200.0 / 3_937.0,
+            Some(unit) => {
+                return Err(format!(
+                    "its heights are in unit {unit}: give them in m, 9001, or ft, 9002"
+                ));
+            }
+        };
         match self.value(RASTER_TYPE) {
-            None | Some(1) => Ok(true),
-            Some(2) => Ok(false),
+            None | Some(1) => Ok((true, unit_m)),
+            Some(2) => Ok((false, unit_m)),
             Some(other) => Err(format!("its raster type is {other}: give 1 or 2")),
         }
     }
 }
 
-fn lattice(
-    (columns, rows): (u32, u32),
-    is_area: bool,
-    scale: &[f64],
-    tie: &[f64],
-) -> Result<Lattice, String> {
-    let (&[east_deg, north_deg, ..], &[i, j, _, x, y, _]) = (scale, tie) else {
-        return Err(format!(
-            "does not say where it is by one tie point and a scale: {WARP}"
-        ));
-    };
+/// Where the pixels are: the corner of the first, or its middle, and the way to the next column
+/// and to the next row, in degrees.
+struct Raster {
+    west_deg: f64,
+    first_deg: f64,
+    east_deg: f64,
+    north_deg: f64,
+}
+
+impl Raster {
+    /// By a matrix, which GDAL writes where rows do not go to the south, or by a tie point and
+    /// a scale.
+    fn of(matrix: &[f64], scale: &[f64], tie: &[f64]) -> Result<Self, String> {
+        match (matrix, scale, tie) {
+            (&[east_deg, 0.0, _, west_deg, 0.0, north_deg, _, first_deg, ..], ..) => Ok(Self {
+                west_deg,
+                first_deg,
+                east_deg,
+                north_deg,
+            }),
+            (&[_, ..], ..) => Err(format!("is rotated: {WARP}")),
+            ([], &[east_deg, south_deg, ..], &[i, j, _, x, y, _]) => Ok(Self {
+                west_deg: x - i * east_deg,
+                first_deg: y + j * south_deg,
+                east_deg,
+                north_deg: -south_deg,
+            }),
+            _ => Err(format!(
+                "does not say where it is by one tie point and a scale: {WARP}"
+            )),
+        }
+    }
+
+    /// Whether the first row is the southernmost.
+    fn is_south_up(&self) -> bool {
+        self.north_deg > 0.0
+    }
+}
+
+fn lattice((columns, rows): (u32, u32), is_area: bool, raster: &Raster) -> Result<Lattice, String> {
+    let (east_deg, north_deg) = (raster.east_deg, raster.north_deg.abs());
+    if east_deg < 0.0 {
+        return Err(format!("its columns go to the west: {WARP}"));
+    }
     let is_good = |deg: f64| deg.is_finite() && (1e-7..=1.0).contains(&deg);
     if !is_good(east_deg) || !is_good(north_deg) {
         return Err(format!(
@@ -112,9 +172,14 @@ fn lattice(
         ));
     }
     let middle = if is_area { 0.5 } else { 0.0 };
+    let northernmost = if raster.is_south_up() {
+        f64::from(rows) - 1.0
+    } else {
+        0.0
+    };
     let lattice = Lattice {
-        north_deg: y - (middle - j) * north_deg,
-        west_deg: x + (middle - i) * east_deg,
+        north_deg: raster.first_deg + (northernmost + middle) * raster.north_deg,
+        west_deg: raster.west_deg + middle * east_deg,
         posts_per_degree: [1.0 / north_deg, 1.0 / east_deg],
         rows: rows as usize,
         columns: columns as usize,
@@ -139,6 +204,12 @@ impl<R: Read + Seek> GeoTiff<R> {
         limits.ifd_value_size = MOST_TABLE_BYTES;
         let opened = Decoder::new(from).map_err(|error| broken(&error))?;
         let mut decoder = opened.with_limits(limits);
+        let compression = decoder.find_tag(Tag::Compression);
+        let compression = compression.map_err(|error| broken(&error))?;
+        let compression = compression.and_then(|value| value.into_u16().ok());
+        if let Some(why) = compression.and_then(unread) {
+            return Err(why);
+        }
         let size = decoder.dimensions().map_err(|error| broken(&error))?;
         if !(2..=MOST_POSTS).contains(&size.0) || !(2..=MOST_POSTS).contains(&size.1) {
             return Err(format!(
@@ -156,33 +227,27 @@ impl<R: Read + Seek> GeoTiff<R> {
             let numbers = value.transpose().map_err(|error| broken(&error))?;
             Ok::<_, String>(numbers.unwrap_or_default())
         };
-        if !numbers(Tag::ModelTransformationTag)?.is_empty() {
-            return Err(format!("is rotated: {WARP}"));
-        }
-        let (scale, tie) = (
-            numbers(Tag::ModelPixelScaleTag)?,
-            numbers(Tag::ModelTiepointTag)?,
-        );
+        let raster = Raster::of(
+            &numbers(Tag::ModelTransformationTag)?,
+            &numbers(Tag::ModelPixelScaleTag)?,
+            &numbers(Tag::ModelTiepointTag)?,
+        )?;
         let keys = tag(Tag::GeoKeyDirectoryTag)?
             .ok_or("has no GeoKeys: it is a TIFF, and no GeoTIFF")?
             .into_u16_vec()
             .map_err(|error| broken(&error))?;
-        let is_area = GeoKeys(keys).check()?;
-        let nodata = tag(Tag::GdalNodata)?
-            .map(tiff::decoder::ifd::Value::into_string)
-            .transpose()
-            .map_err(|error| broken(&error))?;
-        let nodata = nodata
-            .map(|text| {
-                let text = text.trim_matches(['\0', ' ']);
-                let number = text.parse();
-                number.map_err(|_| format!("its GDAL_NODATA is no number: {text:.20}"))
-            })
-            .transpose()?;
+        let (is_area, unit_m) = GeoKeys(keys).check()?;
+        let mut text = |of: Tag| {
+            let value = tag(of)?.map(tiff::decoder::ifd::Value::into_string);
+            value.transpose().map_err(|error| broken(&error))
+        };
+        let metadata = text(Tag::Unknown(GDAL_METADATA))?.unwrap_or_default();
+        let values = Values::of(text(Tag::GdalNodata)?.as_deref(), &metadata, unit_m)?;
         Ok(Self {
-            lattice: lattice(size, is_area, &scale, &tie)?,
+            lattice: lattice(size, is_area, &raster)?,
+            is_south_up: raster.is_south_up(),
             decoder,
-            nodata,
+            values,
         })
     }
 
@@ -196,22 +261,35 @@ impl<R: Read + Seek> GeoTiff<R> {
         if overlap.columns.is_empty() {
             return Ok(());
         }
-        for down in chunks(&overlap.rows, height) {
+        let last = self.lattice.rows - 1;
+        let is_south_up = self.is_south_up;
+        let in_file = |row: usize| if is_south_up { last - row } else { row };
+        let rows = &overlap.rows;
+        let rows = if is_south_up && !rows.is_empty() {
+            in_file(rows.end - 1)..in_file(rows.start) + 1
+        } else {
+            rows.clone()
+        };
+        for down in chunks(&rows, height) {
             for right in chunks(&overlap.columns, width) {
                 let index = u32::try_from(down * across + right)
                     .map_err(|_| "has too many parts".to_owned())?;
                 let heights_m = self.chunk(index)?;
-                let (columns, rows) = self.decoder.chunk_data_dimensions(index);
-                let (columns, rows) = (columns as usize, rows as usize);
-                if heights_m.len() < columns * rows {
+                let (columns, lines) = self.decoder.chunk_data_dimensions(index);
+                let (columns, lines) = (columns as usize, lines as usize);
+                if heights_m.len() < columns * lines {
                     return Err(format!("part {index} is shorter than it says"));
                 }
-                let lines = heights_m.chunks_exact(columns.max(1)).take(rows);
+                let lines = heights_m.chunks_exact(columns.max(1)).take(lines);
                 for (row, line) in lines.enumerate() {
                     let row = down * height + row;
+                    if !rows.contains(&row) {
+                        continue;
+                    }
+                    let row = in_file(row);
                     for (column, height_m) in line.iter().enumerate() {
                         let column = right * width + column;
-                        if overlap.rows.contains(&row) && overlap.columns.contains(&column) {
+                        if overlap.columns.contains(&column) {
                             grid.put(overlap, row, column, *height_m)?;
                         }
                     }
@@ -226,14 +304,14 @@ impl<R: Read + Seek> GeoTiff<R> {
         let read = self.decoder.read_chunk(index);
         let read = read.map_err(|error| format!("part {index} cannot be read: {error}"))?;
         Ok(match read {
-            DecodingResult::U8(values) => heights_m(values, self.nodata),
-            DecodingResult::U16(values) => heights_m(values, self.nodata),
-            DecodingResult::U32(values) => heights_m(values, self.nodata),
-            DecodingResult::I8(values) => heights_m(values, self.nodata),
-            DecodingResult::I16(values) => heights_m(values, self.nodata),
-            DecodingResult::I32(values) => heights_m(values, self.nodata),
-            DecodingResult::F32(values) => heights_m(values, self.nodata),
-            DecodingResult::F64(values) => heights_m(values, self.nodata),
+            DecodingResult::U8(values) => heights_m(values, &self.values),
+            DecodingResult::U16(values) => heights_m(values, &self.values),
+            DecodingResult::U32(values) => heights_m(values, &self.values),
+            DecodingResult::I8(values) => heights_m(values, &self.values),
+            DecodingResult::I16(values) => heights_m(values, &self.values),
+            DecodingResult::I32(values) => heights_m(values, &self.values),
+            DecodingResult::F32(values) => heights_m(values, &self.values),
+            DecodingResult::F64(values) => heights_m(values, &self.values),
             _ => {
                 return Err("has heights of a type that is not read: give 16 or 32 bits".to_owned());
             }
@@ -241,12 +319,7 @@ impl<R: Read + Seek> GeoTiff<R> {
     }
 }
 
-fn heights_m(values: Vec<impl Into<f64>>, nodata: Option<f64>) -> Vec<f32> {
-    let height_m = |value: f64| match nodata {
-        // A void of 32 bits is written with more digits than it has.
-        Some(nodata) if value == nodata || value as f32 == nodata as f32 => f32::NAN,
-        _ => value as f32,
-    };
-    let values = values.into_iter().map(Into::into);
-    values.map(height_m).collect()
+fn heights_m(raw: Vec<impl Into<f64>>, values: &Values) -> Vec<f32> {
+    let raw = raw.into_iter().map(Into::into);
+    raw.map(|value| values.height_m(value)).collect()
 }

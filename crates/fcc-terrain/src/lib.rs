@@ -12,13 +12,14 @@
 //! | tiles | |
 //! |---|---|
 //! | SRTM's `.hgt` | 1 or 3 seconds of arc: 3,601 or 1,201 rows of as many posts from the north, 16 bits each, the higher byte first, -32,768 for a void; named by the south-west corner (USGS, "SRTM Collection User Guide", 2015) |
-//! | GeoTIFF, `.tif` or `.tiff` | one band of heights in m above mean sea level, in degrees of WGS-84 (OGC 19-008r4), without rotation; `GDAL_NODATA` for voids |
+//! | GeoTIFF, `.tif` or `.tiff` | one band of heights above mean sea level, in degrees of WGS-84 (OGC 19-008r4), without rotation; `GDAL_NODATA` for voids, scale, offset and unit of `GDAL_METADATA` |
 //!
 //! Nothing here runs in a tick: it reads files, and allocates.
 
 mod area;
 mod elevations;
 mod error;
+mod gdal;
 mod geotiff;
 mod hgt;
 mod lattice;

@@ -3,6 +3,8 @@
 //! A [`Terrain`] only looks into memory: it neither waits nor allocates, so a tick may
 //! ask it.
 
+use core::ops::RangeInclusive;
+
 use libm::{cos, floor, round};
 
 /// Metres in a degree of latitude where they are fewest, at the equator, and in one of
@@ -11,6 +13,9 @@ const LATITUDE_DEGREE_M: f64 = 110_574.0;
 const LONGITUDE_DEGREE_M: f64 = 111_319.0;
 /// Rounding of angles, in posts.
 const ROUNDING: f64 = 1e-6;
+/// Across a seam between grids, posts of both count up to this distance, in posts: where each
+/// ends less than a post before a common side, they are less than two apart.
+const SEAM_POSTS: f64 = 2.0;
 
 /// Elevations at the posts of a regular grid of latitudes and longitudes on WGS-84.
 #[derive(Clone, Copy, Debug)]
@@ -84,7 +89,39 @@ impl Grid<'_> {
         )
     }
 
-    fn highest_m(&self, latitude_deg: f64, longitude_deg: f64, reach_m: f64) -> Option<f64> {
+    /// What is known around a place, without the rest of a cell.
+    fn around(&self, latitude_deg: f64, longitude_deg: f64) -> Around {
+        let (row, column) = self.place(latitude_deg, longitude_deg);
+        let [per_latitude, per_longitude] = self.posts_per_degree;
+        let mut around = Around::default();
+        let near = |at: f64, posts: usize| {
+            let first = (floor(at) - 1.0).max(0.0) as usize;
+            (first..posts).take_while(move |post| *post as f64 - at < SEAM_POSTS)
+        };
+        for row_of_post in near(row, self.rows()) {
+            for column_of_post in near(column, self.columns) {
+                let Some(height_m) = self.height_m(row_of_post, column_of_post) else {
+                    continue;
+                };
+                let (south, east) = (row_of_post as f64 - row, column_of_post as f64 - column);
+                let share = |posts: f64| (1.0 - posts.abs() / SEAM_POSTS).max(0.0);
+                let weight = share(south) * share(east);
+                around.weight += weight;
+                around.height_m += weight * height_m;
+                around.south_deg += weight * south / per_latitude;
+                around.east_deg += weight * east / per_longitude;
+            }
+        }
+        around
+    }
+
+    /// The rows and columns within a distance of a place, and around them.
+    fn posts(
+        &self,
+        latitude_deg: f64,
+        longitude_deg: f64,
+        reach_m: f64,
+    ) -> Option<[RangeInclusive<usize>; 2]> {
         let [per_latitude, per_longitude] = self.posts_per_degree;
         let (row, column) = self.place(latitude_deg, longitude_deg);
         let rows = reach_m / LATITUDE_DEGREE_M * per_latitude;
@@ -94,14 +131,43 @@ impl Grid<'_> {
         let (last, beyond) = post(row + rows, self.rows())?;
         let (left, _) = post(column - columns, self.columns)?;
         let (right, aside) = post(column + columns, self.columns)?;
+        let rows = first..=last + usize::from(beyond > 0.0);
+        Some([rows, left..=right + usize::from(aside > 0.0)])
+    }
+
+    /// The highest of all posts within a distance, where `unknown` tells the height at the
+    /// latitude and longitude of one that is not known.
+    fn highest_m(
+        &self,
+        latitude_deg: f64,
+        longitude_deg: f64,
+        reach_m: f64,
+        unknown: impl Fn(f64, f64) -> Option<f64>,
+    ) -> Option<f64> {
+        let [rows, columns] = self.posts(latitude_deg, longitude_deg, reach_m)?;
+        let [per_latitude, per_longitude] = self.posts_per_degree;
         let mut highest_m = f64::NEG_INFINITY;
-        for row in first..=last + usize::from(beyond > 0.0) {
-            for column in left..=right + usize::from(aside > 0.0) {
-                highest_m = highest_m.max(self.height_m(row, column)?);
+        for row in rows {
+            for column in columns.clone() {
+                let height_m = self.height_m(row, column).or_else(|| {
+                    let latitude_deg = self.north_deg - row as f64 / per_latitude;
+                    unknown(latitude_deg, self.west_deg + column as f64 / per_longitude)
+                });
+                highest_m = highest_m.max(height_m?);
             }
         }
         Some(highest_m)
     }
+}
+
+/// Known posts around a place, by their weights.
+#[derive(Clone, Copy, Default)]
+struct Around {
+    weight: f64,
+    height_m: f64,
+    /// Where they are from the place.
+    south_deg: f64,
+    east_deg: f64,
 }
 
 /// A mast or a building: a cylinder from the ground on.
@@ -158,11 +224,32 @@ impl Terrain<'_> {
     }
 
     /// The elevation of a place, at a latitude and a longitude in rad, m above mean sea
-    /// level: bilinear between four posts. None where one of them is not known.
+    /// level: bilinear between four posts; in the gap between two grids, of less than two
+    /// posts, by the posts of both. None where they are not known.
     pub fn elevation_m(&self, latitude_rad: f64, longitude_rad: f64) -> Option<f64> {
-        let (latitude_deg, longitude_deg) = (latitude_rad.to_degrees(), longitude_rad.to_degrees());
+        self.at_m(latitude_rad.to_degrees(), longitude_rad.to_degrees())
+    }
+
+    fn at_m(&self, latitude_deg: f64, longitude_deg: f64) -> Option<f64> {
         let mut grids = self.grids.iter();
-        grids.find_map(|grid| grid.elevation_m(latitude_deg, longitude_deg))
+        grids
+            .find_map(|grid| grid.elevation_m(latitude_deg, longitude_deg))
+            .or_else(|| self.between_m(latitude_deg, longitude_deg))
+    }
+
+    /// The elevation of a place between two grids.
+    fn between_m(&self, latitude_deg: f64, longitude_deg: f64) -> Option<f64> {
+        let (mut all, mut is_between) = (Around::default(), false);
+        for grid in self.grids {
+            let one = grid.around(latitude_deg, longitude_deg);
+            // On the other side of the place.
+            is_between |= all.south_deg * one.south_deg + all.east_deg * one.east_deg < 0.0;
+            all.weight += one.weight;
+            all.height_m += one.height_m;
+            all.south_deg += one.south_deg;
+            all.east_deg += one.east_deg;
+        }
+        is_between.then(|| all.height_m / all.weight)
     }
 
     /// The highest elevation within a distance to the north, south, east and west of a
@@ -170,10 +257,18 @@ impl Terrain<'_> {
     /// one of them is not known.
     pub fn highest_m(&self, latitude_rad: f64, longitude_rad: f64, reach_m: f64) -> Option<f64> {
         let (latitude_deg, longitude_deg) = (latitude_rad.to_degrees(), longitude_rad.to_degrees());
-        let grids = self.grids.iter();
-        grids
-            .filter_map(|grid| grid.highest_m(latitude_deg, longitude_deg, reach_m))
-            .reduce(f64::max)
+        let highest_m = |unknown: &dyn Fn(f64, f64) -> Option<f64>| {
+            let grids = self.grids.iter();
+            grids
+                .filter_map(|grid| grid.highest_m(latitude_deg, longitude_deg, reach_m, unknown))
+                .reduce(f64::max)
+        };
+        let known_m = highest_m(&|_, _| None);
+        if known_m.is_some() || self.grids.len() < 2 {
+            return known_m;
+        }
+        // Across a seam the posts of each grid, and of the others where it has none.
+        highest_m(&|latitude_deg, longitude_deg| self.at_m(latitude_deg, longitude_deg))
     }
 }
 

@@ -9,7 +9,7 @@ use fcc_report::{plan_page, plan_table};
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::plan_picture::{fence, over_ground, places, rows};
+use super::plan_picture::{fence, over_ground, places, rows, zones};
 use crate::cli::plan::{PlanAction, PlanArgs, PlanCheckArgs, PlanConvertArgs, PlanShowArgs};
 use crate::exit::Exit;
 use crate::output;
@@ -137,7 +137,7 @@ fn show(args: &PlanShowArgs) -> Result<Exit, Failure> {
     let name = args.file.display();
     let rows = rows(&plan);
     let table = plan_table(&rows);
-    let mut written = String::new();
+    let mut written = zones(&plan);
     if let Some(out) = &args.html {
         let title = format!("{name}, {hash:.12}");
         let config = configuration(args.config.as_deref())?;

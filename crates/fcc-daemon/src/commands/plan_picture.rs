@@ -1,8 +1,14 @@
 //! A plan as its table and its page show it: items, places, ground and fence.
 
+use std::fmt::Write as _;
+
 use fcc_core::flight::terrain::Terrain;
-use fcc_plan::{AltitudeDatum, Item, Place, Plan};
-use fcc_report::{GroundLine, PlanLine, PlanLines, PlanPlace, PlanRow};
+use fcc_plan::{AltitudeDatum, Item, Place, Plan, Polygon};
+use fcc_report::{GroundLine, PlanFence, PlanLines, PlanPlace, PlanRow};
+
+fn place_text(place: Place) -> String {
+    format!("{:.6}, {:.6}", place.latitude_deg, place.longitude_deg)
+}
 
 /// A row of the table for each item.
 pub(super) fn rows(plan: &Plan) -> Vec<PlanRow> {
@@ -25,9 +31,7 @@ pub(super) fn rows(plan: &Plan) -> Vec<PlanRow> {
         [
             (n + 1).to_string(),
             item.to_string(),
-            place.map_or_else(String::new, |place| {
-                format!("{:.6}, {:.6}", place.latitude_deg, place.longitude_deg)
-            }),
+            place.map_or_else(String::new, place_text),
             altitude,
             leg.map_or_else(String::new, |(length_m, ..)| {
                 format!("{:.2} km", length_m / 1e3)
@@ -128,12 +132,54 @@ fn from(origin: Place, place: Place) -> (f64, f64) {
     (distance_m * sine, distance_m * cosine)
 }
 
-/// The sides of the fence, from the plan's first place.
-pub(super) fn fence(plan: &Plan) -> Vec<PlanLine> {
+/// What the fence consists of, and the rally points, a line each.
+pub(super) fn zones(plan: &Plan) -> String {
+    let side = |inclusion: bool, group: u16| match (inclusion, group) {
+        (true, 0) => "stay inside".to_owned(),
+        (true, group) => format!("stay inside, group {group}"),
+        (false, _) => "stay outside".to_owned(),
+    };
+    let mut text = String::new();
+    for Polygon {
+        corners,
+        inclusion,
+        group,
+    } in &plan.fence.polygons
+    {
+        let side = side(*inclusion, *group);
+        let _ = write!(
+            text,
+            "\nfence: polygon of {} corners: {side}",
+            corners.len()
+        );
+    }
+    for circle in &plan.fence.circles {
+        let side = side(circle.inclusion, circle.group);
+        let (at, radius_m) = (place_text(circle.centre), circle.radius_m);
+        let _ = write!(
+            text,
+            "\nfence: circle of {radius_m:.0} m around {at}: {side}"
+        );
+    }
+    for point in &plan.rally {
+        let (at, altitude_m) = (place_text(point.place), point.altitude_m);
+        let _ = write!(text, "\nrally point: {at}, {altitude_m:.0} m above home");
+    }
+    text
+}
+
+/// The fence, from the plan's first place, or its own.
+pub(super) fn fence(plan: &Plan) -> PlanFence {
     let home = plan.home.map(|home| home.place);
-    let first = home.or_else(|| plan.items.iter().find_map(Item::place));
+    let first = home
+        .or_else(|| plan.items.iter().find_map(Item::place))
+        .or_else(|| sides(plan).flatten().next());
+    let permits = plan.fence.permits();
     let Some(origin) = first else {
-        return Vec::new();
+        return PlanFence {
+            sides: Vec::new(),
+            permits: Box::new(|_| true),
+        };
     };
     let line = |places: Vec<Place>| {
         places
@@ -141,7 +187,13 @@ pub(super) fn fence(plan: &Plan) -> Vec<PlanLine> {
             .map(|place| from(origin, place))
             .collect()
     };
-    sides(plan).map(line).collect()
+    PlanFence {
+        sides: sides(plan).map(line).collect(),
+        permits: Box::new(move |(east_m, north_m)| {
+            let course_deg = east_m.atan2(north_m).to_degrees();
+            permits(origin.ahead(course_deg, east_m.hypot(north_m)))
+        }),
+    }
 }
 
 /// The sides of the fence, each closed.

@@ -130,6 +130,15 @@ fn an_engine_that_is_out_takes_off_nowhere() {
 }
 
 #[test]
+fn a_plan_with_a_jump_for_ever_ends_with_its_time() {
+    let plan = legs(45.0, 800.0) + "3 0 2 177 1 -1 0 0 0 0 0 1\n";
+    let (exit, said) = flown(&plan, "", &[]);
+    assert_eq!(exit, Some(0), "{said}");
+    assert!(said.contains("ended: the time to fly is over\n"), "{said}");
+    assert!(said.contains("item 3: jump: for ever"), "{said}");
+}
+
+#[test]
 fn plans_are_flown_to_their_end() {
     let mut back = legs(45.0, 800.0);
     back += "3 0 3 20 0 0 0 0 0 0 0 1\n";
@@ -342,4 +351,29 @@ fn a_plan_that_cannot_be_read_has_the_exit_code_of_a_wrong_one() {
         assert_eq!(exit, Some(2), "{said}");
         assert!(said.contains("cannot be read: No such file"), "{said}");
     }
+}
+
+/// Two circles of 3 km, 2 km apart: what both have in common is permitted, and the rest of the
+/// page is grey.
+#[test]
+fn a_fence_of_several_zones_is_shown_zone_by_zone_and_checked_as_a_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let fence = "3 0 0 5003 3000 0 0 0 45.01 8 0 1\n4 0 0 5003 3000 0 0 0 45.028 8 0 1\n";
+    fs::write(folder.path().join("a.txt"), legs(45.0, 300.0) + fence).unwrap();
+    let (exit, said) = ended(folder.path(), &["plan", "check", "a.txt"]);
+    assert_eq!(exit, Some(2), "{said}");
+    assert!(
+        said.contains("item 1: fence: 0 m along the leg it is outside of the fence (inside one"),
+        "{said}"
+    );
+    let (exit, said) = ended(
+        folder.path(),
+        &["plan", "show", "a.txt", "--html", "a.html"],
+    );
+    assert_eq!(exit, Some(0), "{said}");
+    let zone = "fence: circle of 3000 m around 45.010000, 8.000000: stay inside";
+    assert!(said.contains(zone), "{said}");
+    let page = fs::read_to_string(folder.path().join("a.html")).unwrap();
+    // A row of squares of 4 px on each side of what is permitted.
+    assert!(page.matches("<rect").count() > 100);
 }

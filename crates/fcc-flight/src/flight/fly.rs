@@ -72,7 +72,9 @@ pub fn fly(
     };
     let timer_name = timer.name();
     let names = Names::of(&assembly);
-    let flies_plan = assembly.autopilot.config().guidance.mode() == Mode::Plan;
+    let autopilot = assembly.autopilot.config();
+    let flies_plan = autopilot.guidance.mode() == Mode::Plan;
+    let has_end = autopilot.plan.is_none_or(|route| route.has_end());
     let mut observers = Observers::new(observers, names.clone());
     observers.prepare();
     let started_unix_ns = SystemTime::now()
@@ -143,7 +145,10 @@ pub fn fly(
         let interrupted = host.interrupted_by();
         outcome.explain(interrupted, over, observers.refusal.as_deref());
         let is_flown = !flies_plan || observers.monitor.plan.is_flown;
-        let over = over.filter(|over| matches!(over, Over::Time | Over::GivenUp));
+        let over = over.filter(|over| match over {
+            Over::Time => has_end,
+            over => *over == Over::GivenUp,
+        });
         if let Some(over) = over.filter(|_| interrupted.is_none() && !is_flown) {
             outcome.was_not_flown(observers.flown, observers.given_up.as_deref(), over);
         }

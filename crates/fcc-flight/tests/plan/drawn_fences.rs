@@ -67,6 +67,7 @@ impl Drawing {
                 corners_m: &self.corners_m,
             },
             inclusion: true,
+            group: 0,
         }];
         let fence = Fence {
             zones: &zones,

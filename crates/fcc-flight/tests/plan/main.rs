@@ -8,6 +8,7 @@ mod contingency;
 mod drawn_fences;
 mod failing_parts;
 mod flight;
+mod for_ever;
 mod glide;
 mod lost_low;
 mod range_jumps;

@@ -24,7 +24,7 @@ pub(crate) type Refusal = (String, String);
 
 impl Command {
     /// Parameter 1 to 7.
-    fn parameter(&self, number: usize) -> f64 {
+    pub(super) fn parameter(&self, number: usize) -> f64 {
         let index = number.wrapping_sub(1);
         self.parameters.get(index).copied().unwrap_or(f64::NAN)
     }
@@ -124,7 +124,7 @@ pub(crate) fn check(name: &str, value: f64, range: &RangeInclusive<f64>) -> Resu
 }
 
 /// A whole number within a range.
-fn whole(name: &str, value: f64, range: RangeInclusive<f64>) -> Result<u32, Refusal> {
+pub(super) fn whole(name: &str, value: f64, range: RangeInclusive<f64>) -> Result<u32, Refusal> {
     let number = check(name, value, &range)?;
     if number.fract() != 0.0 {
         return Err((name.to_owned(), format!("{number}: give a whole number")));
@@ -163,7 +163,7 @@ fn item(command: &Command) -> Result<Item, Refusal> {
         id::TAKEOFF => Item::Takeoff {
             place: command.place_or_here()?,
             altitude: command.altitude()?,
-            pitch_deg: command.unless_default(1, "pitch", &(0.0..=45.0))?,
+            pitch_deg: takeoff_pitch(command)?,
         },
         id::CONDITION_DELAY => Item::Delay {
             seconds: command.within(1, "seconds", &SECONDS)?,
@@ -177,15 +177,35 @@ fn item(command: &Command) -> Result<Item, Refusal> {
         id::LAND_START => Item::LandStart {
             place: command.place_or_here()?,
         },
+        camera if id::CAMERA.iter().any(|ids| ids.contains(&camera)) => Item::Camera {
+            command: camera,
+            frame: command.frame,
+            parameters: command.parameters.map(|p| Some(p).filter(|p| !p.is_nan())),
+        },
         other => {
             let what = format!(
                 "{other} is not supported: use waypoint (16), loiter (17, 18, 19, 31), return (20), \
                  land (21), take-off (22), delay (112), distance (114), jump (177), change of \
-                 speed (178) or of altitude (186), landing sequence (189)"
+                 speed (178) or of altitude (186), landing sequence (189), or those of a camera"
             );
             return Err(("command".to_owned(), what));
         }
     })
+}
+
+/// The pitch of a take-off in degrees. With less than two no aircraft lifts off; it may be
+/// one in radians.
+fn takeoff_pitch(command: &Command) -> Result<Option<f64>, Refusal> {
+    let pitch = command.unless_default(1, "pitch", &(0.0..=45.0))?;
+    let Some(given) = pitch.filter(|given| *given < 2.0) else {
+        return Ok(pitch);
+    };
+    let in_radians = match given.to_degrees() {
+        degrees if degrees <= 45.0 => format!(" ({given} rad are {degrees:.0}°)"),
+        _ => String::new(),
+    };
+    let what = format!("{given}: too little to lift off: give 2 to 45 degrees{in_radians}");
+    Err(("parameter 1 (pitch)".to_owned(), what))
 }
 
 fn waypoint(command: &Command) -> Result<Item, Refusal> {

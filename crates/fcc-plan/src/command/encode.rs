@@ -66,6 +66,15 @@ pub(crate) fn encode(item: &Item) -> Command {
             };
             at(id::LAND_START, [0.0; 4], place, altitude)
         }
+        Item::Camera {
+            command,
+            frame,
+            parameters,
+        } => Command {
+            id: command,
+            frame,
+            parameters: parameters.map(|parameter| parameter.unwrap_or(f64::NAN)),
+        },
     }
 }
 

@@ -1,6 +1,6 @@
 //! Fences and rally points as commands, which is how text files have them.
 
-use super::decode::{RADIUS_M, Refusal};
+use super::decode::{RADIUS_M, Refusal, whole};
 use super::{ALTITUDE_M, Command, frame, id};
 use crate::item::Place;
 use crate::plan::{Circle, Fence, Polygon, RallyPoint, limits};
@@ -9,7 +9,7 @@ use crate::plan::{Circle, Fence, Polygon, RallyPoint, limits};
 pub(crate) fn fence_commands(fence: &Fence) -> impl Iterator<Item = Command> {
     let back = fence.return_point.map(|(place, altitude_m)| {
         let id = id::FENCE_RETURN_POINT;
-        command(id, frame::RELATIVE, 0.0, place, altitude_m)
+        command(id, frame::RELATIVE, [0.0; 2], place, altitude_m)
     });
     let polygons = fence.polygons.iter().flat_map(|polygon| {
         let id = if polygon.inclusion {
@@ -17,9 +17,9 @@ pub(crate) fn fence_commands(fence: &Fence) -> impl Iterator<Item = Command> {
         } else {
             id::FENCE_POLYGON_EXCLUSION
         };
-        let count = polygon.corners.len() as f64;
+        let first = [polygon.corners.len() as f64, f64::from(polygon.group)];
         let corners = polygon.corners.iter();
-        corners.map(move |corner| command(id, frame::GLOBAL, count, *corner, 0.0))
+        corners.map(move |corner| command(id, frame::GLOBAL, first, *corner, 0.0))
     });
     let circles = fence.circles.iter().map(|circle| {
         let id = if circle.inclusion {
@@ -27,7 +27,8 @@ pub(crate) fn fence_commands(fence: &Fence) -> impl Iterator<Item = Command> {
         } else {
             id::FENCE_CIRCLE_EXCLUSION
         };
-        command(id, frame::GLOBAL, circle.radius_m, circle.centre, 0.0)
+        let first = [circle.radius_m, f64::from(circle.group)];
+        command(id, frame::GLOBAL, first, circle.centre, 0.0)
     });
     back.into_iter().chain(polygons).chain(circles)
 }
@@ -36,17 +37,17 @@ pub(crate) fn fence_commands(fence: &Fence) -> impl Iterator<Item = Command> {
 pub(crate) fn rally_commands(rally: &[RallyPoint]) -> impl Iterator<Item = Command> {
     let one = |point: &RallyPoint| {
         let (id, frame) = (id::RALLY_POINT, frame::RELATIVE);
-        command(id, frame, 0.0, point.place, point.altitude_m)
+        command(id, frame, [0.0; 2], point.place, point.altitude_m)
     };
     rally.iter().map(one)
 }
 
-fn command(id: u16, frame: u8, first: f64, place: Place, altitude_m: f64) -> Command {
+fn command(id: u16, frame: u8, [a, b]: [f64; 2], place: Place, altitude_m: f64) -> Command {
     let (latitude, longitude) = (place.latitude_deg, place.longitude_deg);
     Command {
         id,
         frame,
-        parameters: [first, 0.0, 0.0, 0.0, latitude, longitude, altitude_m],
+        parameters: [a, b, 0.0, 0.0, latitude, longitude, altitude_m],
     }
 }
 
@@ -90,6 +91,7 @@ impl FenceReader {
                     centre: place,
                     radius_m,
                     inclusion,
+                    group: group(command, inclusion)?,
                 });
             }
             id::RALLY_POINT => {
@@ -103,7 +105,13 @@ impl FenceReader {
                 });
             }
             id::FENCE_RETURN_POINT => {
-                self.fence.return_point = Some((place, altitude("altitude above home")?));
+                let altitude_m = altitude("altitude above home")?;
+                // ArduPilot gives it no altitude, and MAVProxy writes 0 above sea level.
+                let is_above_home = matches!(command.frame, frame::RELATIVE | frame::RELATIVE_INT);
+                if altitude_m != 0.0 && !is_above_home {
+                    return refused("frame", "a place to return to is above home: give 3");
+                }
+                self.fence.return_point = Some((place, altitude_m));
             }
             other => return refused("command", &format!("{other} is not supported")),
         }
@@ -112,6 +120,7 @@ impl FenceReader {
 
     fn corner(&mut self, command: &Command, inclusion: bool) -> Result<(), Refusal> {
         let corner = command.place()?;
+        let group = group(command, inclusion)?;
         let most = limits::FENCE_CORNERS as f64;
         let count = command.within(1, "corners of the polygon", &(3.0..=most))?;
         at_most("corners of the fence", self.corners, limits::FENCE_CORNERS)?;
@@ -123,6 +132,7 @@ impl FenceReader {
             polygons.push(Polygon {
                 corners: Vec::new(),
                 inclusion,
+                group,
             });
         }
         if let Some(polygon) = polygons.last_mut() {
@@ -130,6 +140,13 @@ impl FenceReader {
                 let what =
                     "the polygon before this one lacks corners: give as many as parameter 1 says";
                 return refused("command", what);
+            }
+            if polygon.group != group {
+                let what = format!(
+                    "{group}: the corners before have {}: give all corners of a polygon the same",
+                    polygon.group
+                );
+                return refused(GROUP, &what);
             }
             polygon.corners.push(corner);
         }
@@ -146,6 +163,16 @@ impl FenceReader {
                 &format!("the polygon lacks {lacks} corners: give as many as parameter 1 says"),
             ),
         }
+    }
+}
+
+const GROUP: &str = "parameter 2 (inclusion group)";
+
+/// The group of a zone to stay inside of; that of another has none.
+fn group(command: &Command, inclusion: bool) -> Result<u16, Refusal> {
+    match command.parameter(2) {
+        given if !inclusion || given.is_nan() => Ok(0),
+        given => Ok(whole(GROUP, given, 0.0..=f64::from(u16::MAX))? as u16),
     }
 }
 

@@ -6,17 +6,36 @@ use crate::command::{RADIUS_M, Refusal};
 use crate::item::{Altitude, AltitudeDatum, Item, Loiter, LoiterEnd, Place};
 
 pub(super) fn landing_pattern(node: &Node<'_>) -> Result<[Item; 3], Refusal> {
-    let above = if node.key("altitudesAreRelative")?.boolean()? {
-        AltitudeDatum::Home
-    } else {
-        AltitudeDatum::SeaLevel
+    let version = node.optional("version")?;
+    let is_first = match &version {
+        None => false,
+        Some(version) => match version.whole(u16::MAX)? {
+            number @ 1..=2 => number == 1,
+            other => return version.refuse(format!("{other}: give 1 or 2")),
+        },
     };
-    let at = |key: &str| -> Result<(Place, Altitude), Refusal> {
-        let (place, m) = node.key(key)?.position()?;
+    // Version 1 says it of each place.
+    let [approach_key, land_key] = if is_first {
+        ["loiterAltitudeRelative", "landAltitudeRelative"]
+    } else {
+        ["altitudesAreRelative"; 2]
+    };
+    let at = |place: Node<'_>, is_relative: &str| -> Result<(Place, Altitude), Refusal> {
+        let above = if node.key(is_relative)?.boolean()? {
+            AltitudeDatum::Home
+        } else {
+            AltitudeDatum::SeaLevel
+        };
+        let (place, m) = place.position()?;
         Ok((place, Altitude { m, above }))
     };
-    let (approach, approach_altitude) = at("landingApproachCoordinate")?;
-    let (place, altitude) = at("landCoordinate")?;
+    // Renamed in QGroundControl 4.1.
+    let approach = match node.optional("landingApproachCoordinate")? {
+        None if node.optional("loiterCoordinate")?.is_some() => node.key("loiterCoordinate")?,
+        _ => node.key("landingApproachCoordinate")?,
+    };
+    let (approach, approach_altitude) = at(approach, approach_key)?;
+    let (place, altitude) = at(node.key("landCoordinate")?, land_key)?;
     let loiters = match node.optional("useLoiterToAlt")? {
         Some(choice) => choice.boolean()?,
         None => true,

@@ -54,6 +54,18 @@ impl<'a> Node<'a> {
         }
     }
 
+    /// The one of these keys with a list or an object that is not empty.
+    pub(super) fn content(&self, keys: &[&str]) -> Result<Option<&'a str>, Refusal> {
+        let is_full = |value: &Value| match value {
+            Value::Array(values) => !values.is_empty(),
+            Value::Object(values) => !values.is_empty(),
+            _ => false,
+        };
+        let mut entries = self.object()?.iter();
+        let found = entries.find(|(key, value)| keys.contains(&key.as_str()) && is_full(value));
+        Ok(found.map(|(key, _)| key.as_str()))
+    }
+
     /// A key; none if it is missing or null.
     pub(super) fn optional(&self, key: &str) -> Result<Option<Self>, Refusal> {
         let path = match self.path.as_str() {

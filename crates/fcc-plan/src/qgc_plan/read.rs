@@ -62,7 +62,9 @@ impl Reader {
         let kind = root.key("fileType")?;
         if kind.text()? != "Plan" {
             let given = quoted(kind.text()?);
-            return kind.refuse(format!("\"{given}\": give a file with \"Plan\""));
+            return kind.refuse(format!(
+                "\"{given}\": give a file with \"Plan\", as QGroundControl saves it"
+            ));
         }
         version(root, 1)?;
         let mission = root.key("mission")?;
@@ -78,7 +80,9 @@ impl Reader {
     }
 
     fn mission(&mut self, mission: &Node<'_>) -> Result<(), Refusal> {
-        version(mission, 2)?;
+        if mission.optional("version")?.is_some() {
+            version(mission, 2)?;
+        }
         let home = mission.optional("plannedHomePosition")?;
         if let Some(home) = home.filter(|home| !home.is_unset()) {
             let (place, altitude_m) = home.position()?;
@@ -124,10 +128,9 @@ impl Reader {
     }
 
     fn fence(&mut self, root: &Node<'_>) -> Result<(), Refusal> {
-        let Some(fence) = root.optional("geoFence")? else {
+        let Some(fence) = section(root, "geoFence")? else {
             return Ok(());
         };
-        version(&fence, 2)?;
         let mut read = Fence::default();
         let mut corners_of_all = 0;
         for node in entries(&fence, "polygons")? {
@@ -138,22 +141,32 @@ impl Reader {
                 corners_of_all += 1;
                 corners.push(corner.coordinate()?.0);
             }
+            if corners.is_empty() {
+                continue;
+            }
             if corners.len() < 3 {
                 return node.refuse("give at least 3 corners");
             }
-            let inclusion = node.key("inclusion")?.boolean()?;
-            read.polygons.push(Polygon { corners, inclusion });
+            let (inclusion, group) = inclusion(&node)?;
+            read.polygons.push(Polygon {
+                corners,
+                inclusion,
+                group,
+            });
         }
         for node in entries(&fence, "circles")? {
             at_most(&node.path, read.circles.len(), limits::FENCES)?;
             let circle = node.key("circle")?;
+            let (inclusion, group) = inclusion(&node)?;
             read.circles.push(Circle {
                 centre: circle.key("center")?.coordinate()?.0,
                 radius_m: radius(&circle)?,
-                inclusion: node.key("inclusion")?.boolean()?,
+                inclusion,
+                group,
             });
         }
-        if let Some(back) = fence.optional("breachReturn")? {
+        let back = fence.optional("breachReturn")?;
+        if let Some(back) = back.filter(|back| !back.is_unset()) {
             read.return_point = Some(back.position()?);
         }
         self.plan.fence = read;
@@ -161,10 +174,9 @@ impl Reader {
     }
 
     fn rally(&mut self, root: &Node<'_>) -> Result<(), Refusal> {
-        let Some(rally) = root.optional("rallyPoints")? else {
+        let Some(rally) = section(root, "rallyPoints")? else {
             return Ok(());
         };
-        version(&rally, 2)?;
         for node in entries(&rally, "points")? {
             at_most(&node.path, self.plan.rally.len(), limits::RALLY_POINTS)?;
             let (place, altitude_m) = node.position()?;
@@ -209,7 +221,8 @@ fn items_of(node: &Node<'_>, number: usize) -> Result<(usize, Vec<Item>), Proble
         Some(jump_id) => usize::from(jump_id.whole(u16::MAX).map_err(refused)?),
         None => number,
     };
-    if kind == "SimpleItem" {
+    // The second in version 1 of a mission.
+    if matches!(kind, "SimpleItem" | "missionItem") {
         let command = command(node).map_err(refused)?;
         return Ok((jump_id, vec![decode(number, &command)?]));
     }
@@ -222,11 +235,57 @@ fn items_of(node: &Node<'_>, number: usize) -> Result<(usize, Vec<Item>), Proble
         let items = landing_pattern(node).map_err(refused)?;
         return Ok((jump_id, items.to_vec()));
     }
-    let what = format!(
-        "\"{}\" is not supported: give a SimpleItem or a fwLandingPattern",
-        quoted(kind)
-    );
+    // A survey or a corridor scan, with the items that it sends.
+    if let Some(transects) = node.optional(TRANSECTS).map_err(refused)? {
+        let list = transects.key("Items").and_then(|items| items.list());
+        let items = list.map_err(refused)?.enumerate().map(|(n, item)| {
+            let command = command(&item)
+                .map_err(|(field, message)| Problem::of_item(number + n, field, message))?;
+            decode(number + n, &command)
+        });
+        return Ok((jump_id, items.collect::<Result<_, _>>()?));
+    }
+    let what = if matches!(kind, "survey" | "CorridorScan") {
+        format!("lacks \"{TRANSECTS}\", which has its items: {SAVE_AGAIN}")
+    } else {
+        format!(
+            "\"{}\" is not supported: give a SimpleItem, a survey, a CorridorScan or a \
+             fwLandingPattern",
+            quoted(kind)
+        )
+    };
     Err(refused((format!("{}.type", node.path), what)))
+}
+
+/// What a survey and a corridor scan have in common.
+const TRANSECTS: &str = "TransectStyleComplexItem";
+const SAVE_AGAIN: &str = "open the file with a present QGroundControl and save it again";
+
+/// Zones of a fence and rally points, of any version; the first also had parameters of the
+/// vehicle.
+const CONTENT: [&str; 5] = ["polygon", "polygons", "circle", "circles", "points"];
+
+/// A section of the fence or the rally points: none if it is missing, empty, or of version 1
+/// without content, which QGroundControl ignores.
+fn section<'a>(root: &Node<'a>, key: &str) -> Result<Option<Node<'a>>, Refusal> {
+    let Some(node) = root.optional(key)? else {
+        return Ok(None);
+    };
+    let is_old = match node.optional("version")? {
+        Some(version) => version.whole(u16::MAX)? == 1,
+        None => true,
+    };
+    if !is_old {
+        version(&node, 2)?;
+        return Ok(Some(node));
+    }
+    match node.content(&CONTENT)? {
+        None => Ok(None),
+        Some(key) => node.refuse(format!(
+            "has \"{key}\" and is of version 1 or none, which QGroundControl ignores: draw it \
+             again with a present QGroundControl, and save it"
+        )),
+    }
 }
 
 /// The command of a simple item.
@@ -236,16 +295,46 @@ fn command(node: &Node<'_>) -> Result<Command, Refusal> {
         let what = format!("{id} is none of a mission: put it into geoFence or rallyPoints");
         return node.key("command")?.refuse(what);
     }
-    let list = node.key("params")?;
-    let numbers = list.list()?.take(8).map(|node| node.number_or_null());
-    let numbers: Vec<f64> = numbers.collect::<Result<_, _>>()?;
-    let Ok(parameters) = numbers.try_into() else {
-        return list.refuse("give 7 numbers");
-    };
+    let parameters = parameters(node)?;
     Ok(Command {
         id,
         frame: node.key("frame")?.whole(255)? as u8,
         parameters,
+    })
+}
+
+/// Whether to stay inside of a zone, and its group, for which QGroundControl has no key.
+fn inclusion(zone: &Node<'_>) -> Result<(bool, u16), Refusal> {
+    let inclusion = zone.key("inclusion")?.boolean()?;
+    let group = zone.optional("inclusionGroup")?.filter(|_| inclusion);
+    let group = group.map(|group| group.whole(u16::MAX)).transpose()?;
+    Ok((inclusion, group.unwrap_or(0)))
+}
+
+/// Seven parameters. Until QGroundControl 3.3 there were four, and a coordinate; in version 1
+/// of a mission each of the four had a key of its own.
+fn parameters(node: &Node<'_>) -> Result<[f64; 7], Refusal> {
+    let mut numbers = Vec::new();
+    let mut list = node.optional("params")?;
+    if list.is_none() && node.optional("param1")?.is_some() {
+        for key in ["param1", "param2", "param3", "param4"] {
+            numbers.push(node.key(key)?.number_or_null()?);
+        }
+    } else {
+        let params = node.key("params")?;
+        for number in params.list()?.take(8) {
+            numbers.push(number.number_or_null()?);
+        }
+    }
+    if let Some(coordinate) = node.optional("coordinate")?.filter(|_| numbers.len() == 4) {
+        for number in coordinate.list()?.take(4) {
+            numbers.push(number.number_or_null()?);
+        }
+        list = Some(coordinate);
+    }
+    numbers.try_into().or_else(|_| {
+        let at = list.unwrap_or_else(|| node.clone());
+        at.refuse("give 7 numbers, or 4 and a coordinate of 3")
     })
 }
 
@@ -271,11 +360,14 @@ fn entries<'a>(
 /// Only the present version is read: an older one has other keys.
 fn version(node: &Node<'_>, version: u16) -> Result<(), Refusal> {
     let found = node.key("version")?;
+    // As the first versions wrote it.
+    if version == 1 && found.text() == Ok("1.0") {
+        return Ok(());
+    }
     match found.whole(u16::MAX)? {
         number if number == version => Ok(()),
         other => found.refuse(format!(
-            "{other}: only version {version} is read: open the file with a present \
-             QGroundControl and save it again"
+            "{other}: only version {version} is read: {SAVE_AGAIN}"
         )),
     }
 }

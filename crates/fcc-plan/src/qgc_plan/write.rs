@@ -22,9 +22,11 @@ pub(crate) fn write(plan: &Plan) -> String {
         "globalPlanAltitudeMode": 0,
         "items": items.map(|(n, item)| simple_item(n + 1, item)).collect::<Value>(),
     });
+    // It wants this one, too: zeros where it is not set.
     let home = plan.home;
     let home = home.map(|Home { place, altitude_m }| position(place, altitude_m));
-    let mission = with(mission, "plannedHomePosition", home);
+    let home = home.unwrap_or_else(|| json!([0, 0, 0]));
+    let mission = with(mission, "plannedHomePosition", Some(home));
     let mission = with(
         mission,
         "cruiseSpeed",
@@ -75,14 +77,16 @@ fn fence(plan: &Plan) -> Value {
     let fence = &plan.fence;
     let polygons = fence.polygons.iter().map(|polygon| {
         let corners: Value = polygon.corners.iter().map(|c| coordinate(*c)).collect();
-        json!({ "version": 1, "inclusion": polygon.inclusion, "polygon": corners })
+        let zone = json!({ "version": 1, "inclusion": polygon.inclusion, "polygon": corners });
+        with(zone, "inclusionGroup", group(polygon.group))
     });
     let circles = fence.circles.iter().map(|circle| {
-        json!({
+        let zone = json!({
             "version": 1,
             "inclusion": circle.inclusion,
             "circle": { "center": coordinate(circle.centre), "radius": circle.radius_m },
-        })
+        });
+        with(zone, "inclusionGroup", group(circle.group))
     });
     let value = json!({
         "version": 2,
@@ -92,6 +96,11 @@ fn fence(plan: &Plan) -> Value {
     let back = fence.return_point;
     let back = back.map(|(place, altitude_m)| position(place, altitude_m));
     with(value, "breachReturn", back)
+}
+
+/// A group other than the one that all zones have without the key.
+fn group(group: u16) -> Option<Value> {
+    (group != 0).then(|| json!(group))
 }
 
 /// What the format has no place for.

@@ -4,6 +4,7 @@ use fcc_plan::{
     Altitude, AltitudeDatum, Circle, Fence, Home, Item, Loiter, LoiterEnd, Obstacle, Place, Plan,
     Polygon, RallyPoint, Speed,
 };
+use proptest::array::uniform7;
 use proptest::collection::vec;
 use proptest::option;
 use proptest::prelude::*;
@@ -80,7 +81,7 @@ pub(crate) fn any_item(items: usize) -> impl Strategy<Value = Item> {
         1 => (option::of(any_place()), any_altitude(), option::of(1e-3..=20_000.0)).prop_map(
             |(place, altitude, abort_altitude_m)| Item::Land { place, altitude, abort_altitude_m }
         ),
-        1 => (option::of(any_place()), any_altitude(), option::of(1e-3..=45.0)).prop_map(
+        1 => (option::of(any_place()), any_altitude(), option::of(2.0..=45.0)).prop_map(
             |(place, altitude, pitch_deg)| Item::Takeoff { place, altitude, pitch_deg }
         ),
         1 => (0.0..=604_800.0).prop_map(|seconds| Item::Delay { seconds }),
@@ -93,20 +94,34 @@ pub(crate) fn any_item(items: usize) -> impl Strategy<Value = Item> {
             |(to, times)| Item::Jump { to, times }
         ),
         1 => option::of(any_place()).prop_map(|place| Item::LandStart { place }),
+        1 => (
+            prop_oneof![Just(201_u16), Just(206), Just(530), Just(1_000), Just(2_000), Just(2_501)],
+            uniform7(option::of(-1e9..=1e9)),
+        )
+            .prop_map(|(command, parameters)| Item::Camera { command, frame: 2, parameters }),
     ]
 }
 
 pub(crate) fn any_fence() -> impl Strategy<Value = Fence> {
-    let polygon = (vec(any_place(), 3..8), any::<bool>())
-        .prop_map(|(corners, inclusion)| Polygon { corners, inclusion });
-    let circle =
-        (any_place(), 1e-3..=100_000.0, any::<bool>()).prop_map(|(centre, radius_m, inclusion)| {
-            Circle {
-                centre,
-                radius_m,
-                inclusion,
-            }
+    // A zone to stay outside of has no group.
+    let rule = || {
+        (any::<bool>(), 0..=3_u16)
+            .prop_map(|(inside, group)| (inside, if inside { group } else { 0 }))
+    };
+    let polygon =
+        (vec(any_place(), 3..8), rule()).prop_map(|(corners, (inclusion, group))| Polygon {
+            corners,
+            inclusion,
+            group,
         });
+    let circle = (any_place(), 1e-3..=100_000.0, rule()).prop_map(
+        |(centre, radius_m, (inclusion, group))| Circle {
+            centre,
+            radius_m,
+            inclusion,
+            group,
+        },
+    );
     (
         vec(polygon, 0..4),
         vec(circle, 0..4),

@@ -2,7 +2,7 @@
 
 use fcc_plan::{
     Altitude, AltitudeDatum, Circle, Conditions, Home, Item, Loiter, LoiterEnd, Obstacle, Plan,
-    Polygon, check,
+    Polygon, check, read,
 };
 use proptest::prelude::*;
 
@@ -131,6 +131,7 @@ fn the_fence_is_kept_across_the_date_line_as_well() {
                 place(59.9, wrapped(0.3)),
             ],
             inclusion: true,
+            group: 0,
         });
         assert_eq!(check(&plan, &conditions(20.0)), Ok(()), "{longitude}");
         plan.items[1] = Item::Waypoint {
@@ -144,6 +145,36 @@ fn the_fence_is_kept_across_the_date_line_as_well() {
     }
 }
 
+/// A circle of 3 km inside a polygon of 44 km: PX4 and `ArduPilot` keep both, and MAVLink's
+/// groups make it one of them.
+#[test]
+fn of_several_zones_all_are_kept_and_of_several_groups_one() {
+    let with_group = |group: u16| {
+        format!(
+            "QGC WPL 110\n0 1 0 16 0 0 0 0 45.05 8 120 1\n\
+             1 0 3 16 0 0 0 0 45.05 8 300 1\n2 0 3 16 0 0 0 0 45.05 8.1 300 1\n\
+             3 0 0 5001 4 {group} 0 0 44.8 7.8 0 1\n4 0 0 5001 4 {group} 0 0 45.3 7.8 0 1\n\
+             5 0 0 5001 4 {group} 0 0 45.3 8.3 0 1\n6 0 0 5001 4 {group} 0 0 44.8 8.3 0 1\n\
+             7 0 0 5003 3000 0 0 0 45.05 8 0 1\n"
+        )
+    };
+    let conditions = conditions(10.0);
+    let both = read(&with_group(0)).unwrap();
+    let said = check(&both, &conditions).unwrap_err();
+    assert!(
+        said.iter().any(|problem| problem.item == Some(2)),
+        "{said:?}"
+    );
+    let either = read(&with_group(1)).unwrap();
+    assert_eq!(check(&either, &conditions), Ok(()));
+    let unequal = with_group(0).replacen("5001 4 0", "5001 4 2", 1);
+    let said = read(&unequal).unwrap_err()[0].to_string();
+    assert!(
+        said.contains("line 6: parameter 2 (inclusion group): 0: the corners before have 2"),
+        "{said}"
+    );
+}
+
 #[test]
 fn circles_ceilings_and_obstacles() {
     let mut fenced = plan(8.0);
@@ -151,6 +182,7 @@ fn circles_ceilings_and_obstacles() {
         centre: place(60.05, 8.0),
         radius_m: 200.0,
         inclusion: false,
+        group: 0,
     });
     assert!(said(&fenced, 0.0).contains("item 1: fence"));
     let mut low = plan(8.0);
@@ -242,12 +274,41 @@ fn jumps_end_and_altitudes_are_known() {
     let said = said(&plan, 0.0);
     for expected in [
         "item 4: jump: to 9: there is no such item: give 1 to 7",
-        "item 5: jump: never ends",
         "item 6: jump: to 6: nothing is flown between",
         "item 7: altitude: is above terrain",
     ] {
         assert!(said.contains(expected), "{expected}: {said}");
     }
+    assert!(!said.contains("item 5"), "{said}");
+}
+
+/// What is behind a jump for ever is reached by a command: no leg leads there. The leg would
+/// descend from 3,000 to 130 m within 2.8 km (47°: 111,170 m for a degree of latitude).
+#[test]
+fn no_leg_leads_from_a_jump_for_ever_to_the_landing_behind_it() {
+    let with = |times: i32| {
+        let text = format!(
+            "QGC WPL 110\n0 1 0 16 0 0 0 0 47 8 100 1\n\
+             1 0 0 16 0 0 0 0 47 8 3000 1\n2 0 0 16 0 0 0 0 47.2 8 3000 1\n\
+             3 0 2 177 1 {times} 0 0 0 0 0 1\n4 0 2 189 0 0 0 0 0 0 0 1\n\
+             5 0 0 16 0 0 0 0 47.225 8 230 1\n6 0 0 21 0 0 0 0 47.25 8 100 1\n"
+        );
+        check(&read(&text).unwrap(), &conditions(10.0))
+    };
+    assert_eq!(with(-1), Ok(()));
+    let once = with(1).unwrap_err();
+    assert!(
+        once.iter().all(|problem| problem.item == Some(5)),
+        "{once:?}"
+    );
+}
+
+#[test]
+fn a_fence_alone_is_no_plan_and_says_so() {
+    let fence = read("QGC WPL 110\n0 0 0 5003 2000 0 0 0 47 8 0 1\n").unwrap();
+    let said = said(&fence, 0.0);
+    let expected = "items: there are none, but a fence or rally points: put these behind the items";
+    assert!(said.starts_with(expected), "{said}");
 }
 
 proptest! {

@@ -6,6 +6,7 @@ mod checking;
 mod flown;
 mod flyable;
 mod geometry;
+mod qgroundcontrol;
 mod reading;
 mod refusals;
 mod round_trip;

@@ -63,6 +63,7 @@ fn a_plan_of_qgroundcontrol_with_comments_and_a_landing_pattern() {
         centre: place(47.402, 8.566),
         radius_m: 900.5,
         inclusion: false,
+        group: 0,
     };
     assert_eq!(plan.fence.circles, [outside]);
     assert_eq!(plan.fence.return_point, Some((place(47.39, 8.55), 120.0)));
@@ -130,6 +131,28 @@ fn a_fence_and_rally_points_of_a_text() {
     assert_eq!(fence.polygons[1].corners[0], place(50.0, 8.5));
     assert_eq!(fence.circles[0].radius_m, 250.0);
     assert_eq!(rally[0].altitude_m, 90.0);
+}
+
+/// As `fence save` and `rally save` of MAVProxy write them, without home.
+#[test]
+fn a_fence_alone_and_rally_points_alone() {
+    let text = "QGC WPL 110\n\
+        0\t0\t0\t5000\t0.000000\t0.0\t0.0\t0.0\t47.05\t8.05\t0.000000\t0\n\
+        1\t0\t0\t5001\t3.000000\t0.0\t0.0\t0.0\t47.0\t8.0\t0.0\t0\n\
+        2\t0\t0\t5001\t3.000000\t0.0\t0.0\t0.0\t47.1\t8.0\t0.0\t0\n\
+        3\t0\t0\t5001\t3.000000\t0.0\t0.0\t0.0\t47.1\t8.1\t0.0\t0\n";
+    let plan = read(text).unwrap();
+    assert_eq!((plan.home, plan.items.len()), (None, 0));
+    let corners = [place(47.0, 8.0), place(47.1, 8.0), place(47.1, 8.1)];
+    assert_eq!(plan.fence.polygons[0].corners, corners);
+    assert_eq!(plan.fence.return_point, Some((place(47.05, 8.05), 0.0)));
+    let rally = "QGC WPL 110\n0\t0\t3\t5100\t0.0\t0.0\t0.0\t0.0\t47.2\t8.2\t90.0\t0\n";
+    assert_eq!(read(rally).unwrap().rally[0].altitude_m, 90.0);
+    // The same as older versions saved them.
+    let old = "47.05\t8.05\n47.0\t8.0\n47.1\t8.0\n47.1\t8.1\n47.0\t8.0\n";
+    assert_eq!(read(old).unwrap().fence, plan.fence);
+    let old = "RALLY 47.200000\t8.200000\t90.000000\t40.000000\t0.000000\t0\n";
+    assert_eq!(read(old).unwrap(), read(rally).unwrap());
 }
 
 /// 800 items, as the largest files in use have, and 1,000, the limit.

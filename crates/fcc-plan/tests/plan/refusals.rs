@@ -73,6 +73,14 @@ fn a_line_says_item_field_and_what_to_do() {
             "index: 2: this line is number 1",
         ),
         (
+            "1 0 3 22 0.26 0 0 0 0 0 100 1",
+            "parameter 1 (pitch): 0.26: too little to lift off: give 2 to 45 degrees (0.26 rad are 15°)",
+        ),
+        (
+            "1 0 3 22 1.5 0 0 0 0 0 100 1",
+            "parameter 1 (pitch): 1.5: too little to lift off: give 2 to 45 degrees",
+        ),
+        (
             "1 0 3 84 0 0 0 0 47 8 100 1",
             "command: 84 is not supported",
         ),
@@ -125,6 +133,63 @@ fn what_has_no_target_or_place_is_refused_by_both() {
     );
 }
 
+/// The files of PX4 and MAVROS begin with the first item; home is above sea level, has
+/// command 16 and no parameters, and its place is 0, 0 where it is not set.
+#[test]
+fn a_first_item_in_line_0_is_not_taken_for_home() {
+    let cases = [
+        (
+            "0 1 3 16 0 0 0 0 47 8 300 1",
+            "frame: 3 is not above sea level (0)",
+        ),
+        (
+            "0 1 10 16 0 0 0 0 47 8 300 1",
+            "frame: 10 is not above sea level (0)",
+        ),
+        ("0 1 0 22 15 0 0 0 47 8 300 1", "command: 22 is not 16"),
+        ("0 1 0 16 0 25 0 0 47 8 300 1", "parameter 2: 25 is not 0"),
+    ];
+    for (line, expected) in cases {
+        let said = said(&format!("QGC WPL 110\n{line}\n"));
+        assert!(
+            said.starts_with(&format!("line 2: {expected}, and line 0 is home")),
+            "{line}: {said}"
+        );
+        assert!(said.contains("put home before it"), "{said}");
+    }
+    for line in ["0 1 0 16 0 0 0 0 47 8 430 1", "0 1 3 0 0 0 0 0 0 0 0 1"] {
+        assert!(read(&format!("QGC WPL 110\n{line}\n")).is_ok(), "{line}");
+    }
+    let old = said("QGC WPL 120\n0 1 3 22 0 0 0 0 47 8 300 1\n");
+    let expected = "line 1: version 120 has no home: write QGC WPL 110, put home before the items";
+    assert!(old.starts_with(expected), "{old}");
+    let first = said("QGC WPL 100\n");
+    assert!(
+        first.starts_with("line 1: version 100: only QGC WPL 110 is read"),
+        "{first}"
+    );
+}
+
+#[test]
+fn an_old_fence_or_rally_file_says_what_it_lacks() {
+    let open = "47 8\n47 8.1\n47.1 8.1\n47.1 8\n";
+    assert!(said(open).starts_with("is no fence of MAVProxy: give the place to return to"));
+    let word = "47 8\n47 8.1\n47.1 8.1 9\n";
+    assert_eq!(
+        said(word),
+        "line 3: \"47.1 8.1 9\": give latitude and longitude"
+    );
+    let place = "47 8\n97 8.1\n47.1 8.1\n47.1 8\n97 8.1\n";
+    assert_eq!(said(place), "line 2: latitude: 97: give -90 to 90");
+    let short = "RALLY 47 8 100\n";
+    assert!(said(short).starts_with("line 1: \"47 8 100\": give RALLY, latitude"));
+    let back = "QGC WPL 110\n0 0 0 5000 0 0 0 0 47 8 120 1\n";
+    assert_eq!(
+        said(back),
+        "line 2: frame: a place to return to is above home: give 3"
+    );
+}
+
 #[test]
 fn all_problems_are_listed() {
     let lines =
@@ -132,18 +197,27 @@ fn all_problems_are_listed() {
     let said = of_line(lines);
     assert_eq!(said.lines().count(), 2, "{said}");
     assert!(said.contains("item 3: line 5: command: 99"), "{said}");
+    // A jump over and to what is refused has its target.
+    let jump =
+        "1 0 3 99 0 0 0 0 47 8 100 1\n2 0 2 177 3 1 0 0 0 0 0 1\n3 0 3 99 0 0 0 0 47 8 100 1";
+    assert!(!of_line(jump).contains("item 2"), "{}", of_line(jump));
 }
 
 #[test]
 fn a_plan_of_json_says_where() {
     let cases = [
         (
-            r#"{"type": "ComplexItem", "complexItemType": "survey"}"#,
-            "item 1: mission.items[0].type: \"survey\" is not supported",
+            r#"{"type": "ComplexItem", "complexItemType": "StructureScan"}"#,
+            "item 1: mission.items[0].type: \"StructureScan\" is not supported",
+        ),
+        (
+            r#"{"type": "ComplexItem", "complexItemType": "survey", "version": 3}"#,
+            "item 1: mission.items[0].type: lacks \"TransectStyleComplexItem\", which has its \
+             items: open the file with a present QGroundControl and save it again",
         ),
         (
             r#"{"type": "SimpleItem", "command": 16, "frame": 3, "params": [0, 0, 0]}"#,
-            "item 1: mission.items[0].params: give 7 numbers",
+            "item 1: mission.items[0].params: give 7 numbers, or 4 and a coordinate of 3",
         ),
         (
             r#"{"type": "SimpleItem", "command": 16, "frame": 3}"#,

@@ -76,3 +76,23 @@ fn a_leg_as_by_exchanged_coordinates_is_remarked_on() {
     let words = "item 1: leg: it is 890 km long, 4.8 h at 51.4 m/s: check both places";
     assert_eq!(long, [words]);
 }
+
+/// Ground stations write 0 for an elevation that they do not know.
+#[test]
+fn a_home_at_exactly_0_m_is_remarked_on_where_heights_are_above_it() {
+    let said = |home_m: f64, frame: u8| {
+        let text = format!(
+            "QGC WPL 110\n0 1 0 16 0 0 0 0 47 8 {home_m} 1\n1 0 {frame} 16 0 0 0 0 47.1 8 300 1\n"
+        );
+        let usual = Usual {
+            ground: None,
+            ceiling_m: 3_962.4,
+        };
+        let found = unusual(&read(&text).unwrap(), &CONDITIONS, &usual);
+        found.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    let words = "home: its elevation is exactly 0 m, and item 1 is above home: is it at the sea? \
+                 Otherwise give its elevation above mean sea level";
+    assert_eq!(said(0.0, 3), [words]);
+    assert!(said(0.0, 0).is_empty() && said(0.5, 3).is_empty());
+}

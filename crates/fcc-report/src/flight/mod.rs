@@ -28,7 +28,7 @@ pub use altimeter::AltimeterSettings;
 pub use legs::flight_table;
 pub use navigation::{Difference, MethodResult, NavigationReplay, SourceConsistency};
 pub use plan_items::{FlownItem, FlownPlan, TouchDown};
-pub use plan_page::{GroundPoint, PlanLine, PlanPlace, PlanRow, plan_page, plan_table};
+pub use plan_page::{GroundPoint, PlanFence, PlanLine, PlanPlace, PlanRow, plan_page, plan_table};
 pub use replaced_plans::{ReplacedPlan, ReplacedPlans};
 use track::Track;
 pub use track::{GroundLine, PlanLines};

@@ -8,7 +8,7 @@ use crate::plot::Figure;
 use crate::plot::axis::Axis;
 use crate::plot::panel::{Frame, Panel};
 use crate::plot::sheet::{
-    ACTUAL, Anchor, Dot, FAINT, Font, Height, MARK, OTHER, SMALL_PX, Sheet, WIDTH_PX,
+    ACTUAL, Anchor, Dot, FAINT, Font, GRID, Height, MARK, OTHER, SMALL_PX, Sheet, WIDTH_PX,
 };
 use crate::table::{markup, table};
 
@@ -20,6 +20,8 @@ const PROFILE_HEIGHT_PX: f64 = 160.0;
 /// What is shown around the places, as a share of their extent, and at least, m.
 const MARGIN: f64 = 0.1;
 const LEAST_MARGIN_M: f64 = 100.0;
+/// What is outside of the fence is found in squares of so many px.
+const SQUARE_PX: f64 = 4.0;
 /// Corners of a drawn circle.
 const CORNERS: u32 = 90;
 
@@ -58,6 +60,14 @@ pub fn plan_table(rows: &[PlanRow]) -> String {
 /// A line on the ground, (east, north) of the first place, m.
 pub type PlanLine = Vec<(f64, f64)>;
 
+/// A fence on a map.
+pub struct PlanFence {
+    /// The sides of its zones.
+    pub sides: Vec<PlanLine>,
+    /// Whether it permits a place, (east, north) of the first place, m.
+    pub permits: Box<dyn Fn((f64, f64)) -> bool>,
+}
+
 /// A point of the ground below a plan: the length of the legs to there, and its elevation
 /// above mean sea level, if that is known, m.
 pub type GroundPoint = (f64, Option<f64>);
@@ -67,7 +77,7 @@ pub fn plan_page(
     title: &str,
     rows: &[PlanRow],
     places: &[PlanPlace],
-    fence: &[PlanLine],
+    fence: &PlanFence,
     ground: &[GroundPoint],
 ) -> String {
     let table = table_of(rows);
@@ -96,30 +106,33 @@ pub fn plan_page(
     page.into_string()
 }
 
-fn figures(places: &[PlanPlace], fence: &[PlanLine], ground: &[GroundPoint]) -> Vec<Figure> {
-    if places.is_empty() {
+fn figures(places: &[PlanPlace], fence: &PlanFence, ground: &[GroundPoint]) -> Vec<Figure> {
+    if places.is_empty() && fence.sides.is_empty() {
         return Vec::new();
     }
-    vec![
-        Figure {
-            title: "Map".to_owned(),
-            caption: "North up, from the first place; numbers are those of the items, light lines \
-                      the fence."
-                .to_owned(),
-            svg: map(places, fence),
+    let map = Figure {
+        title: "Map".to_owned(),
+        caption: "North up, from the first place; numbers are those of the items, light lines the \
+                  fence. Where it does not permit to fly is grey."
+            .to_owned(),
+        svg: map(places, fence),
+    };
+    // A fence alone has no heights.
+    if places.is_empty() {
+        return vec![map];
+    }
+    let profile = Figure {
+        title: "Height profile".to_owned(),
+        caption: if ground.is_empty() {
+            "Above mean sea level, along the legs without turns and loiters.".to_owned()
+        } else {
+            "Above mean sea level, along the legs without turns and loiters. The light line is \
+             the ground; where it is missing, its elevation is not known."
+                .to_owned()
         },
-        Figure {
-            title: "Height profile".to_owned(),
-            caption: if ground.is_empty() {
-                "Above mean sea level, along the legs without turns and loiters.".to_owned()
-            } else {
-                "Above mean sea level, along the legs without turns and loiters. The light line is \
-                 the ground; where it is missing, its elevation is not known."
-                    .to_owned()
-            },
-            svg: profile(places, ground),
-        },
-    ]
+        svg: profile(places, ground),
+    };
+    vec![map, profile]
 }
 
 /// The lowest and the highest of values, with a margin.
@@ -130,13 +143,13 @@ fn around(values: impl Iterator<Item = f64> + Clone, least_m: f64) -> (f64, f64)
     (low - margin, high + margin)
 }
 
-fn map(places: &[PlanPlace], fence: &[PlanLine]) -> String {
+fn map(places: &[PlanPlace], fence: &PlanFence) -> String {
     let reach = |place: &PlanPlace| place.circle_m.unwrap_or(0.0);
     let ends = |of: fn(&PlanPlace) -> f64| {
         let each = places.iter();
         each.flat_map(move |place| [of(place) - reach(place), of(place) + reach(place)])
     };
-    let corners = || fence.iter().flatten();
+    let corners = || fence.sides.iter().flatten();
     let (east_m, north_m) = (
         around(
             ends(|place| place.east_m).chain(corners().map(|at| at.0)),
@@ -161,9 +174,12 @@ fn map(places: &[PlanPlace], fence: &[PlanLine]) -> String {
         y: Axis::exactly(widened(north_m, MAP_HEIGHT_PX), 5, "north, km"),
     };
     let mut sheet = Sheet::default();
+    if !fence.sides.is_empty() {
+        outside(&panel, &mut sheet, fence);
+    }
     panel.axes(&mut sheet, true, "");
     let at = |place: &PlanPlace| (place.east_m / 1e3, place.north_m / 1e3);
-    for line in fence {
+    for line in &fence.sides {
         let line: Vec<_> = line.iter().map(|at| (at.0 / 1e3, at.1 / 1e3)).collect();
         panel.line(&mut sheet, &line, MARK, 1.4);
     }
@@ -182,6 +198,33 @@ fn map(places: &[PlanPlace], fence: &[PlanLine]) -> String {
     }
     places_and_lines(&panel, &mut sheet, places, at);
     sheet.finish(TOP_PX + MAP_HEIGHT_PX + X_LABELS_PX, "Map", &[])
+}
+
+/// Fills what the fence does not permit, row by row.
+fn outside(panel: &Panel, sheet: &mut Sheet, fence: &PlanFence) {
+    let Panel { frame, x, y } = panel;
+    let columns = ((frame.right - frame.left) / SQUARE_PX) as u32;
+    let rows = ((frame.bottom - frame.top) / SQUARE_PX) as u32;
+    let at = |axis: &Axis, share: f64| axis.from + (axis.to - axis.from) * share;
+    let east = |column: f64| at(x, column / f64::from(columns));
+    let north = |row: f64| at(y, row / f64::from(rows));
+    for row in 0..rows {
+        let north_m = 1e3 * north(f64::from(row) + 0.5);
+        let is_outside = |column: &u32| {
+            let east_m = 1e3 * east(f64::from(*column) + 0.5);
+            !(fence.permits)((east_m, north_m))
+        };
+        let mut columns = (0..columns).peekable();
+        while let Some(first) = columns.find(is_outside) {
+            let mut end = first + 1;
+            while columns.next_if(is_outside).is_some() {
+                end += 1;
+            }
+            let [south_west, north_east] = [(first, row), (end, row + 1)]
+                .map(|(column, row)| (east(f64::from(column)), north(f64::from(row))));
+            panel.fill(sheet, south_west, north_east, GRID);
+        }
+    }
 }
 
 fn profile(places: &[PlanPlace], ground: &[GroundPoint]) -> String {
@@ -278,11 +321,22 @@ mod tests {
             place(Some(1), 4_000.0),
             place(Some(2), 9_000.0),
         ];
-        let page = plan_page("A <plan>", &[], &places, &[], &[]);
+        let mut fence = PlanFence {
+            sides: Vec::new(),
+            permits: Box::new(|(east_m, _)| east_m <= 0.0),
+        };
+        let page = plan_page("A <plan>", &[], &places, &fence, &[]);
         assert_eq!(page.matches("<svg").count(), 2);
         let ground = [(0.0, Some(500.0)), (500.0, None), (900.0, Some(700.0))];
-        let over_ground = plan_page("A plan", &[], &places, &[], &ground);
+        let over_ground = plan_page("A plan", &[], &places, &fence, &ground);
         assert!(over_ground.contains("The light line is the ground"));
         assert!(page.contains("A &lt;plan&gt;") && page.contains("home"));
+        // East of home a rectangle in each of the 115 rows.
+        fence.sides.push(vec![(0.0, -1_000.0), (0.0, 9_000.0)]);
+        let fenced = plan_page("A plan", &[], &places, &fence, &[]);
+        let grey = |page: &str| page.matches("<rect").count();
+        assert_eq!(grey(&fenced) - grey(&page), 115);
+        let alone = plan_page("A fence", &[], &[], &fence, &[]);
+        assert_eq!(alone.matches("<svg").count(), 1);
     }
 }

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use tiff::encoder::{Compression, DeflateLevel};
 
-use crate::made::{Made, at, heights, near, read};
+use crate::made::{Made, at, heights, matrix, near, read};
 
 const HEIGHTS: fn(u32, u32) -> f32 = |row, column| (10 * row + column) as f32;
 
@@ -76,6 +76,59 @@ fn types_compressions_and_voids() {
         at(&read("a.tif", &unsigned).unwrap(), 46.95, 8.03),
         53.0
     ));
+}
+
+/// 60 times 10 m; 60 ft are 18.288 m, by GDAL's metadata or by the keys.
+#[test]
+fn scale_offset_and_units_are_used() {
+    let height_m = |change: &dyn Fn(&mut Made)| {
+        let mut made = Made::default();
+        change(&mut made);
+        at(
+            &read("a.tif", &made.f32(&heights(|_, _| 60.0))).unwrap(),
+            46.95,
+            8.03,
+        )
+    };
+    let scale = r#"<Item name="OFFSET" sample="0" role="offset">-5</Item>
+                   <Item name="SCALE" sample="0" role="scale">10</Item>"#;
+    assert!(near(height_m(&|made| made.metadata = scale), 595.0));
+    let feet = r#"<Item name="UNITTYPE" sample="0" role="unittype">ft</Item>"#;
+    assert!(near(height_m(&|made| made.metadata = feet), 18.288));
+    let key = |made: &mut Made| made.keys.push([4_099, 0, 1, 9_002]);
+    assert!(near(height_m(&key), 18.288));
+    assert!(near(height_m(&|_| ()), 60.0));
+}
+
+/// The same posts, the southernmost first: 10 of them from 46.91° north, at points and in the
+/// middle of pixels.
+#[test]
+fn south_up_is_read() {
+    let upside_down = |row, column| HEIGHTS(9 - row, column);
+    for (raster, south, west) in [(2, 46.91, 8.0), (1, 46.905, 7.995)] {
+        let mut made = Made {
+            matrix: matrix([0.01, 0.0, west], [0.0, 0.01, south]),
+            ..Made::default()
+        };
+        made.keys[1][3] = raster;
+        let elevations = read("a.tif", &made.f32(&heights(upside_down))).unwrap();
+        assert!(near(at(&elevations, 47.0, 8.0), 0.0), "{raster}");
+        assert!(near(at(&elevations, 46.95, 8.03), 53.0));
+        assert!(near(at(&elevations, 46.91, 8.19), 109.0));
+        // As some write it, by a scale.
+        made.tie = vec![0.0, 0.0, 0.0, west, south, 0.0];
+        made.scale = vec![0.01, -0.01, 0.0];
+        let by_scale = Made {
+            matrix: Vec::new(),
+            ..made.clone()
+        };
+        let elevations = read("a.tif", &by_scale.f32(&heights(upside_down))).unwrap();
+        assert!(near(at(&elevations, 46.95, 8.03), 53.0), "{raster}");
+        // The same with a matrix to the south.
+        made.matrix = matrix([0.01, 0.0, west], [0.0, -0.01, 93.91 - south]);
+        let elevations = read("a.tif", &made.f32(&heights(HEIGHTS))).unwrap();
+        assert!(near(at(&elevations, 46.95, 8.03), 53.0), "{raster}");
+    }
 }
 
 proptest! {

@@ -32,6 +32,12 @@ pub(crate) struct Made {
     pub(crate) nodata: Option<&'static str>,
     pub(crate) compression: Compression,
     pub(crate) has_keys: bool,
+    /// Columns and rows.
+    pub(crate) size: (u32, u32),
+    /// Instead of a tie point and a scale.
+    pub(crate) matrix: Vec<f64>,
+    /// Items of `GDAL_METADATA`.
+    pub(crate) metadata: &'static str,
 }
 
 impl Default for Made {
@@ -44,8 +50,22 @@ impl Default for Made {
             nodata: None,
             compression: Compression::Uncompressed,
             has_keys: true,
+            size: (COLUMNS, ROWS),
+            matrix: Vec::new(),
+            metadata: "",
         }
     }
+}
+
+/// A matrix of the first two rows, without heights.
+pub(crate) fn matrix([a, b, x]: [f64; 3], [c, d, y]: [f64; 3]) -> Vec<f64> {
+    let rows = [
+        [a, b, 0.0, x],
+        [c, d, 0.0, y],
+        [0.0; 4],
+        [0.0, 0.0, 0.0, 1.0],
+    ];
+    rows.concat()
 }
 
 pub(crate) const COLUMNS: u32 = 20;
@@ -63,11 +83,21 @@ macro_rules! written {
             let mut bytes = Cursor::new(Vec::new());
             let encoder = TiffEncoder::new(&mut bytes).unwrap();
             let mut encoder = encoder.with_compression(self.compression);
-            let mut image = encoder.new_image::<$color>(COLUMNS, ROWS).unwrap();
+            let mut image = encoder
+                .new_image::<$color>(self.size.0, self.size.1)
+                .unwrap();
             image.rows_per_strip(3).unwrap();
             let mut tag = |tag, value: &dyn Value| value.write(image.encoder(), tag);
-            tag(Tag::ModelTiepointTag, &self.tie.as_slice());
-            tag(Tag::ModelPixelScaleTag, &self.scale.as_slice());
+            if self.matrix.is_empty() {
+                tag(Tag::ModelTiepointTag, &self.tie.as_slice());
+                tag(Tag::ModelPixelScaleTag, &self.scale.as_slice());
+            } else {
+                tag(Tag::ModelTransformationTag, &self.matrix.as_slice());
+            }
+            if !self.metadata.is_empty() {
+                let xml = format!("<GDALMetadata>\n  {}\n</GDALMetadata>\n", self.metadata);
+                tag(Tag::Unknown(42_112), &xml.as_str());
+            }
             if self.has_keys {
                 let header = [1, 1, 0, self.keys.len() as u16];
                 let keys = [&[header], self.keys.as_slice()].concat().concat();

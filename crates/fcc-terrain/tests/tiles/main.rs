@@ -5,3 +5,4 @@ mod geotiff;
 mod hgt;
 mod made;
 mod refusals;
+mod seams;

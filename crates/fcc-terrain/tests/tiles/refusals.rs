@@ -1,6 +1,6 @@
 //! What is refused, and with what words.
 
-use crate::made::{Made, heights, hgt, read};
+use crate::made::{Made, heights, hgt, matrix, read};
 
 fn refused(name: &str, bytes: &[u8]) -> String {
     read(name, bytes).unwrap_err().to_string()
@@ -60,7 +60,7 @@ fn geotiff_that_is_not_of_wgs_84_in_degrees_above_mean_sea_level() {
             geotiff(added(4_096, 5_703)),
             "its heights are above EPSG 5703",
         ),
-        (geotiff(added(4_099, 9_002)), "its heights are in unit 9002"),
+        (geotiff(added(4_099, 9_036)), "its heights are in unit 9036"),
         (
             geotiff(|made| made.has_keys = false),
             "it is a TIFF, and no GeoTIFF",
@@ -85,6 +85,18 @@ fn geotiff_that_is_not_of_wgs_84_in_degrees_above_mean_sea_level() {
             geotiff(|made| made.nodata = Some("none")),
             "its GDAL_NODATA is no number: none",
         ),
+        (
+            geotiff(|made| made.metadata = r#"<Item role="scale" sample="0">ten</Item>"#),
+            "its scale is no number: ten",
+        ),
+        (
+            geotiff(|made| made.matrix = matrix([0.01, 0.001, 8.0], [0.0, -0.01, 47.0])),
+            "is rotated: convert it by gdalwarp",
+        ),
+        (
+            geotiff(|made| made.matrix = matrix([-0.01, 0.0, 8.2], [0.0, -0.01, 47.0])),
+            "its columns go to the west: convert it by gdalwarp",
+        ),
     ] {
         assert!(text.contains(expected), "{expected}: {text}");
     }
@@ -94,4 +106,37 @@ fn geotiff_that_is_not_of_wgs_84_in_degrees_above_mean_sea_level() {
     let text = refused("a.tif", &cut[..cut.len() / 2]);
     assert!(text.contains("can be read: failed"), "{text}");
     assert!(refused("a.tif", b"II*\0").contains("is no TIFF that can be read"));
+}
+
+/// The tag of the compression, 259, is one `SHORT`; codes of GDAL's `GTiff` driver.
+#[test]
+fn a_compression_that_is_not_read_is_named() {
+    let made = Made::default().i16(&heights(|_, _| 100));
+    let entry = |code: u16| {
+        let [kind, count] = [
+            [3_u16, 1].map(u16::to_ne_bytes),
+            [0, code].map(u16::to_ne_bytes),
+        ];
+        [259_u16.to_ne_bytes(), kind[0], kind[1], count[0], count[1]].concat()
+    };
+    let plain = entry(1);
+    let at = made
+        .windows(plain.len())
+        .position(|bytes| bytes == plain)
+        .unwrap();
+    for (code, name) in [
+        (50_000, "ZSTD"),
+        (34_887, "LERC"),
+        (50_001, "WebP"),
+        (9, "method 9"),
+    ] {
+        let mut other = made.clone();
+        other[at..at + plain.len()].copy_from_slice(&entry(code));
+        let text = refused("a.tif", &other);
+        let expected = format!(
+            "a.tif: is compressed by {name}, which is not read: convert it by gdal_translate -co \
+             COMPRESS=DEFLATE"
+        );
+        assert_eq!(text, expected);
+    }
 }

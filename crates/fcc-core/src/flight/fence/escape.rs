@@ -146,6 +146,7 @@ mod tests {
                 corners_m: &corners_m,
             },
             inclusion: true,
+            group: 0,
         }];
         let fence = Fence {
             zones: &zones,

@@ -29,6 +29,8 @@ pub struct Zone<'a> {
     pub shape: Shape<'a>,
     /// Stay inside; otherwise outside.
     pub inclusion: bool,
+    /// Of a zone to stay inside of: those of one group count together.
+    pub group: u16,
 }
 
 impl Zone<'_> {
@@ -112,6 +114,7 @@ mod tests {
             plane: LocalPlane::at(latitude, longitude),
             shape: Shape::Circle { radius_m: 1_000.0 },
             inclusion: true,
+            group: 0,
         };
         let depth = |(latitude, longitude)| zone.depth_m(latitude, longitude, Vector2::zeros());
         assert!((depth(at(47.01, 179.995)) + 111.7).abs() < 1.0);

@@ -169,6 +169,13 @@ impl Route<'_> {
         self.steps.get(index)
     }
 
+    /// Whether no jump is taken for ever.
+    pub fn has_end(&self) -> bool {
+        let is_endless =
+            |step: &Step| matches!(step, Step::Jump { times, .. } if *times == FOR_EVER);
+        !self.steps.iter().any(is_endless)
+    }
+
     /// The nearest of the places to return to.
     pub fn nearest_return(&self, here: &OverGround) -> Option<Destination> {
         nearest_of(self.returns, here)
