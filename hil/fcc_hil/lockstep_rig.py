@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import fcc
@@ -53,6 +53,8 @@ class Conditions:
     """Readings that there are not, by their names."""
     position: bool = False
     """Whether position and velocity over the ground are measured, without errors."""
+    trim: bool = True
+    """Whether it is measured where the elevator trim stands."""
 
 
 class LockstepRig:
@@ -104,6 +106,9 @@ class LockstepRig:
         self._calibration = conditions.calibration
         self._without = conditions.without
         self._position = conditions.position
+        self._measures_trim = conditions.trim
+        self.measured: State | None = None
+        """What the sensors showed last; None if nothing came."""
         self.stick: tuple[float, float, float] | None = None
         """Where the pilot holds pitch, roll and yaw, -1 to 1; None if that is not measured."""
         self._switch = False
@@ -160,6 +165,7 @@ class LockstepRig:
         state = plant.state()
         self._late.append(self._noise.apply(state) if self._noise else state)
         measured, channels = self._sensors.read(plant.time_s, self._late[0])
+        self.measured = measured
         velocity = None if self._receiver is None else self._receiver.read(state)
         if measured is None:
             surfaces = self.machine.step(None)
@@ -197,7 +203,8 @@ class LockstepRig:
 
     def _stand(self) -> Controls:
         """Return where the controls stand, as it is measured."""
-        return self.plant.controls
+        stand = self.plant.controls
+        return stand if self._measures_trim else replace(stand, elevator_trim=None)
 
     def _write(self, controls: Controls) -> None:
         self._command = controls

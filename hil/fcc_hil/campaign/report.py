@@ -7,6 +7,7 @@ from typing import Any
 
 from .draw import Bounds, Fault, Flight
 from .flying import Outcome
+from .healthy import HealthyFlight
 from .verdict import KINDS
 
 _WORST: tuple[tuple[str, str, int, Callable[[list[float]], float]], ...] = (
@@ -32,10 +33,10 @@ def clean_share(outcomes: Sequence[Outcome]) -> float:
 def text(outcomes: Sequence[Outcome]) -> str:
     """Return the tables, then every flight that is not clean with the command that repeats it."""
     parts = [
-        _table("aircraft", outcomes, lambda flight: flight.aircraft),
-        _table("turbulence", outcomes, lambda flight: str(flight.weather.turbulence_severity)),
-        _table("delay", outcomes, _delay),
-        _table("fault", outcomes, lambda flight: flight.fault.what if flight.fault else "none"),
+        table("aircraft", outcomes, lambda flight: flight.aircraft),
+        table("turbulence", outcomes, lambda flight: str(flight.weather.turbulence_severity)),
+        table("delay", outcomes, _delay),
+        table("fault", outcomes, lambda flight: flight.fault.what if flight.fault else "none"),
         _figures(outcomes),
     ]
     bad = [outcome for outcome in outcomes if not outcome.verdict.is_clean]
@@ -52,8 +53,10 @@ def text(outcomes: Sequence[Outcome]) -> str:
 def failure(outcome: Outcome) -> str:
     """Return what broke in a flight, its conditions and the command that flies it again."""
     broken = outcome.verdict.broken
-    words = "; ".join(f"{kind}: {broken[kind]}" for kind in KINDS if kind in broken) or "clean"
-    return f"{outcome.command}\n    {conditions(outcome.flight)}\n    {words}"
+    words = "; ".join(f"{kind}: {broken[kind]}" for kind in broken) or "clean"
+    lines = [conditions(outcome.flight), words, *(alarm.words for alarm in outcome.alarms)]
+    lines += [f"refused at {refused}" for refused in outcome.refused]
+    return "\n    ".join([outcome.command, *lines])
 
 
 def conditions(flight: Flight) -> str:
@@ -66,9 +69,24 @@ def conditions(flight: Flight) -> str:
         f"turbulence {flight.weather.turbulence_severity}",
         f"{flight.delay_ms:.0f} ms late",
         "no servos" if servo_hz is None else f"servos of {servo_hz:.1f} Hz",
-        "no receiver" if receiver is None else f"receiver of {receiver.rate_hz:.0f} Hz",
-        "timed pattern" if flight.is_pattern else "orders",
     ]
+    if isinstance(flight, HealthyFlight):
+        parts += [
+            f"noise {flight.noise:.1f}",
+            "position" if flight.measures_position else "no position",
+            "trim measured" if flight.measures_trim else "trim not measured",
+            *(f"{name} in steps of {step:g}" for name, step in flight.steps.items()),
+            "biases in 1 sd: "
+            + " ".join(
+                f"{channel.rpartition('_')[0]} {sds:+.1f}"
+                for channel, sds in flight.biases_in_sigma.items()
+            ),
+        ]
+    else:
+        parts += [
+            "no receiver" if receiver is None else f"receiver of {receiver.rate_hz:.0f} Hz",
+            "timed pattern" if flight.is_pattern else "orders",
+        ]
     vertical = [gust.down_mps for gust in flight.gusts]
     if vertical:
         # Plus zero, because a rounded -0 looks like an error.
@@ -93,6 +111,7 @@ def document(outcomes: Sequence[Outcome], seed: int, bounds: Bounds) -> dict[str
         "seed": seed,
         "delay_ms": bounds.delay_ms,
         "turbulence": bounds.turbulence,
+        "kind": bounds.kind,
         "raw_sensors": bounds.raw_sensors,
         "clean_share": clean_share(outcomes),
         "flights": [outcome.document() for outcome in outcomes],
@@ -104,16 +123,21 @@ def _delay(flight: Flight) -> str:
     return f"{least:3} to {least + 25} ms"
 
 
-def _table(title: str, outcomes: Sequence[Outcome], group_of: Callable[[Flight], str]) -> str:
+def table(
+    title: str,
+    outcomes: Sequence[Outcome],
+    group_of: Callable[[Any], str],
+    of_kinds: Sequence[str] = KINDS,
+) -> str:
     """Return how many flights of each group are clean, and how many broke what."""
-    kinds = [kind for kind in KINDS if any(kind in it.verdict.broken for it in outcomes)]
+    kinds = [kind for kind in of_kinds if any(kind in it.verdict.broken for it in outcomes)]
     rows = []
     groups = sorted({group_of(outcome.flight) for outcome in outcomes})
     for group in (*groups, "all"):
         its = [it for it in outcomes if group in ("all", group_of(it.flight))]
         counts = [sum(kind in it.verdict.broken for it in its) for kind in kinds]
         rows.append([group, len(its), f"{100.0 * clean_share(its):.0f} %", *counts])
-    return _markdown([title, "flights", "clean", *kinds], rows)
+    return markdown([title, "flights", "clean", *kinds], rows)
 
 
 def _figures(outcomes: Sequence[Outcome]) -> str:
@@ -131,10 +155,10 @@ def _figures(outcomes: Sequence[Outcome]) -> str:
                 for name, _, digits, worst in _WORST
             ]
             rows.append([aircraft, *cells])
-    return _markdown(["worst of all flights", *(title for _, title, _, _ in _WORST)], rows)
+    return markdown(["worst of all flights", *(title for _, title, _, _ in _WORST)], rows)
 
 
-def _markdown(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+def markdown(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
     cells = [list(map(str, row)) for row in (head, *rows)]
     widths = [max(len(row[i]) for row in cells) for i in range(len(head))]
     lines = [
