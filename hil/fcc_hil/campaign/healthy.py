@@ -24,6 +24,8 @@ _CHANGES = 2.0 / 3.0
 """The share of the orders that change each of heading, altitude and airspeed."""
 _CLIMB_FT = 1_500.0
 """Around the first altitude, 3,000 ft above level ground."""
+_LAST_CLIMB_FT = 150.0
+"""Around the altitude at the last order, so that it stands when it is judged."""
 _FASTEST = 0.95
 """Of the fastest commanded airspeed: what the sensors add must not refuse an order."""
 
@@ -62,8 +64,9 @@ class SetPointOrder:
     """Since engaging."""
     heading_deg: float | None
     climb_ft: float | None
-    """Above the altitude at which the flight was engaged."""
+    """Above the altitude at which the flight was engaged, or the present one."""
     airspeed_kt: float | None
+    from_present: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -183,8 +186,9 @@ def _steps(random: np.random.Generator) -> dict[str, float]:
 def _set_points(
     random: np.random.Generator, seconds: float, slow_kt: float, fast_kt: float
 ) -> Iterator[SetPointOrder]:
+    last_s = seconds - LAST_ORDER_S
     time_s = float(random.uniform(*ORDER_S))
-    while time_s <= seconds - LAST_ORDER_S:
+    while time_s < last_s - ORDER_S[0]:
         heading_deg = float(random.uniform(0.0, 360.0))
         climb_ft = float(random.uniform(-_CLIMB_FT, _CLIMB_FT))
         airspeed_kt = float(random.uniform(slow_kt, fast_kt))
@@ -197,6 +201,13 @@ def _set_points(
             airspeed_kt if changes[2] else None,
         )
         time_s += float(random.uniform(*ORDER_S))
+    yield SetPointOrder(
+        last_s,
+        float(random.uniform(0.0, 360.0)),
+        float(random.uniform(-_LAST_CLIMB_FT, _LAST_CLIMB_FT)),
+        float(random.uniform(slow_kt, fast_kt)),
+        from_present=True,
+    )
 
 
 def _with_fault(flight: HealthyFlight) -> HealthyFlight:

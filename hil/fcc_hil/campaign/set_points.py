@@ -12,8 +12,9 @@ import numpy.typing as npt
 
 from ..lockstep_rig import LockstepRig
 from ..motion import longest_s
+from ..state import State
 from ..truth import Truth
-from ..units import FT_TO_M, KT_TO_MPS
+from ..units import FT_TO_M, KT_TO_MPS, STANDARD_GRAVITY_MPS2
 from .alarms import FAILSAFE, RELEASE, SURFACE, Alarm, alarms_of
 from .healthy import HealthyFlight, SetPointOrder
 from .verdict import Verdict
@@ -33,9 +34,10 @@ HELD = {"heading": 3.0, "altitude": 15.0, "airspeed": 4.0}
 _SETTLES_S = 15.0
 """After a climb at the configured rate."""
 _FULL, _IDLE = 0.97, 0.03
-_POWER_S = 60.0
 _LACKING = 0.25
-"""Power does not suffice if the throttle was at its end for this share of the last minute."""
+"""Power does not suffice if the throttle was at its end for this share of the last 45 s."""
+_TWICE_G_FT = 2.0 * STANDARD_GRAVITY_MPS2 * FT_TO_M
+"""The height of a speed in m/s is its square by this, in ft."""
 _GROUND_FT = 50.0
 
 BROKEN = (
@@ -64,10 +66,9 @@ def fly_set_points(rig: LockstepRig, flight: HealthyFlight) -> Flown:
     first_m = machine.setpoints.altitude_m
     rows: list[tuple[float, ...]] = []
     faults: list[tuple[float, frozenset[str]]] = [(0.0, frozenset())]
-    by_raw = flight.bounds.raw_sensors is not None
 
     def is_over() -> bool:
-        shown = machine.estimate if by_raw or rig.measured is None else rig.measured
+        shown = _shown(rig, flight)
         ordered = machine.setpoints
         rows.append(
             (
@@ -90,7 +91,7 @@ def fly_set_points(rig: LockstepRig, flight: HealthyFlight) -> Flown:
         # In failsafe no order is taken.
         if machine.state == "engaged":
             try:
-                _command(machine, order, first_m)
+                _command(machine, order, _shown(rig, flight).altitude_m if order.from_present else first_m)
                 last = order
             except (fcc.Error, ValueError) as error:
                 refused.append(f"{order.time_s:.0f} s: {error}")
@@ -107,11 +108,18 @@ def fly_set_points(rig: LockstepRig, flight: HealthyFlight) -> Flown:
     )
 
 
-def _command(machine: fcc.Machine, order: SetPointOrder, first_m: float) -> None:
+def _shown(rig: LockstepRig, flight: HealthyFlight) -> State | fcc.Estimate:
+    """Return what the sensors show; of raw sensors, what navigation makes of it."""
+    if flight.bounds.raw_sensors is not None or rig.measured is None:
+        return rig.machine.estimate
+    return rig.measured
+
+
+def _command(machine: fcc.Machine, order: SetPointOrder, from_m: float) -> None:
     machine.command(
         heading_rad=None if order.heading_deg is None else math.radians(order.heading_deg),
         pressure_altitude_m=(
-            None if order.climb_ft is None else first_m + order.climb_ft * FT_TO_M
+            None if order.climb_ft is None else from_m + order.climb_ft * FT_TO_M
         ),
         airspeed_mps=None if order.airspeed_kt is None else order.airspeed_kt * KT_TO_MPS,
     )
@@ -190,7 +198,7 @@ def _held(
     Nothing where power does not suffice or the flight still climbs or descends. A sensor with steps
     may show half of one beside the set point.
     """
-    if _lacks_power(truth) or _still_climbs(flight, truth, flown):
+    if _lacks_power(truth, flown) or _still_climbs(flight, truth, flown):
         return {}
     times = TIMES[flight.weather.turbulence_severity]
     ticks = truth["time_s"] >= truth["time_s"][-1] - HELD_S
@@ -205,9 +213,19 @@ def _held(
     return held
 
 
-def _lacks_power(truth: Truth) -> bool:
-    throttle = truth["throttle"][truth["time_s"] >= truth["time_s"][-1] - _POWER_S]
-    return bool(np.mean((throttle >= _FULL) | (throttle <= _IDLE)) > _LACKING)
+def _lacks_power(truth: Truth, flown: Flown) -> bool:
+    """Return whether the throttle is full while energy is to be gained, or idle while it is lost.
+
+    Full throttle above both set points is no lack of power.
+    """
+    late = truth["time_s"] >= truth["time_s"][-1] - HELD_S - _SETTLES_S
+    count = int(np.count_nonzero(late))
+    shown_ft, ordered_ft = (
+        (it["altitude"] + (it["airspeed"] * KT_TO_MPS) ** 2 / _TWICE_G_FT)[-count:]
+        for it in (flown.shown, flown.ordered)
+    )
+    throttle, short = truth["throttle"][late][-len(shown_ft) :], shown_ft < ordered_ft
+    return bool(np.mean(np.where(short, throttle >= _FULL, throttle <= _IDLE)) > _LACKING)
 
 
 def _still_climbs(flight: HealthyFlight, truth: Truth, flown: Flown) -> bool:
