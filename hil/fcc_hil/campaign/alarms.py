@@ -38,7 +38,9 @@ _CHANNELS = (
 )
 """By the first of these words in a text."""
 
-_SURFACE_NOTICE = re.compile(r"not move the aircraft|the (wrong|other) way|reversed|jammed|no effect")
+_SURFACE_NOTICE = re.compile(
+    r"not move the aircraft|the (wrong|other) way|reversed|jammed|no effect"
+)
 _SENSOR_NOTICE = re.compile(r"is not used again|do not count|it is not used|not used any more")
 _REASON = re.compile(r"(?:is doubted|excluded): (.*?)(?:; .*)?$")
 
@@ -138,7 +140,7 @@ def _of_events(events: Sequence[Event]) -> Iterator[_Signal]:
             yield from ((time_s, *_kind(name), False) for name in _names(ended))
         elif _SURFACE_NOTICE.search(text):
             yield time_s, SURFACE, text, True
-        elif notice := _SENSOR_NOTICE.search(text):
+        elif _SENSOR_NOTICE.search(text):
             yield time_s, EXCLUSION, text, True
 
 

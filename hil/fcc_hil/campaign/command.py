@@ -7,7 +7,7 @@ import time
 from functools import partial
 from typing import Any
 
-from .. import documents, ranges
+from .. import documents, ranges, replacement
 from ..printable import say
 from ..progress import bar
 from ..workers import local_workers, on_dask
@@ -89,6 +89,12 @@ def add(commands: Any) -> None:
         "--json", type=ranges.file_to_write, metavar="FILE", help="write everything here"
     )
     campaign.add_argument(
+        "--results",
+        type=ranges.file_to_write,
+        metavar="FILE",
+        help="write what is printed here, as Markdown",
+    )
+    campaign.add_argument(
         "--picture", type=ranges.file_to_write, metavar="FILE", help="write a picture here"
     )
     campaign.add_argument(
@@ -103,7 +109,8 @@ def add(commands: Any) -> None:
 def _campaign(parser: argparse.ArgumentParser, options: argparse.Namespace) -> int:
     if options.record and options.flight is None:
         parser.error("argument --record: give the number of a flight with --flight, too")
-    from . import report  # noqa: PLC0415 - needs the module fcc, which other commands do not
+    # They need the module fcc, which other commands do not.
+    from . import healthy_report, report  # noqa: PLC0415
     from .flying import Task, fly_task  # noqa: PLC0415
 
     usual = usual_bounds(options.kind)
@@ -129,12 +136,14 @@ def _campaign(parser: argparse.ArgumentParser, options: argparse.Namespace) -> i
             outcomes.append(outcome)
             notify(len(outcomes), f"{100.0 * report.clean_share(outcomes):.0f} % clean")
     if options.kind == usual_bounds("edges").kind:
-        say(report.text(outcomes))
+        text = report.text(outcomes)
     else:
-        from . import healthy_report  # noqa: PLC0415
-
-        say(healthy_report.text(outcomes))
+        text = healthy_report.text(outcomes)
+    say(text)
     say(f"took {time.monotonic() - began_s:.0f} s")
+    if options.results:
+        head = f"# Campaign: {options.kind}\n\n    {_repeated(options, bounds)}\n\n"
+        replacement.write(options.results, head + text + "\n")
     if options.json:
         document = report.document(outcomes, options.seed, bounds)
         documents.write(options.json, document)
@@ -148,6 +157,12 @@ def _campaign(parser: argparse.ArgumentParser, options: argparse.Namespace) -> i
         )
         draw_picture(options.picture, outcomes, title)
     return 1 if 100.0 * report.clean_share(outcomes) < options.least_clean else 0
+
+
+def _repeated(options: argparse.Namespace, bounds: Bounds) -> str:
+    """Return the command that flies it again."""
+    first = f" --first {options.first}" if options.first else ""
+    return f"fcc campaign{bounds.words} --seed {options.seed}{first} --flights {options.flights}"
 
 
 def _one(options: argparse.Namespace, bounds: Bounds) -> int:

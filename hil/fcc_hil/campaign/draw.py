@@ -57,6 +57,17 @@ class Bounds:
     kind: str = "edges"
     """edges, healthy, or airspeed: healthy but for the airspeed."""
 
+    @property
+    def words(self) -> str:
+        """The options of the command that are not the usual ones."""
+        usual = usual_bounds(self.kind)
+        words = "" if self.kind == "edges" else f" --{self.kind}"
+        if self.delay_ms != usual.delay_ms:
+            words += f" --delay-ms {self.delay_ms:g}"
+        if self.turbulence != usual.turbulence:
+            words += f" --turbulence {self.turbulence}"
+        return words if self.raw_sensors is None else f"{words} --raw {self.raw_sensors}"
+
 
 def usual_bounds(kind: str) -> Bounds:
     """Return the bounds of a kind of campaign, unless others are asked for."""

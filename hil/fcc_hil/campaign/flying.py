@@ -25,11 +25,11 @@ from ..sensor_faults import Faults
 from ..settings import Settings
 from ..truth import Truth
 from ..units import FT_TO_M, KT_TO_MPS, wrap_heading
+from . import airspeed, healthy
 from .air import mover
-from . import healthy
 from .alarms import Alarm
-from .draw import HOLD_S, LEG_S, Bounds, Fault, Flight, Order, draw, usual_bounds
-from .healthy import HealthyFlight
+from .draw import HOLD_S, LEG_S, Bounds, Fault, Flight, Order, draw
+from .healthy import TUBE, WRONG, HealthyFlight
 from .raw_faults import RawFaults
 from .set_points import fly_set_points
 from .set_points import judge as judge_set_points
@@ -61,15 +61,8 @@ class Outcome:
     def command(self) -> str:
         """The command that flies it again."""
         flight = self.flight
-        usual = usual_bounds(flight.bounds.kind)
-        bounds = "" if usual.kind == Bounds().kind else f" --{usual.kind}"
-        if flight.bounds.delay_ms != usual.delay_ms:
-            bounds += f" --delay-ms {flight.bounds.delay_ms:g}"
-        if flight.bounds.turbulence != usual.turbulence:
-            bounds += f" --turbulence {flight.bounds.turbulence}"
-        if flight.bounds.raw_sensors is not None:
-            bounds += f" --raw {flight.bounds.raw_sensors}"
-        return f"fcc campaign --flight {flight.number} --seed {flight.seed}{bounds}"
+        words = f"--flight {flight.number} --seed {flight.seed}"
+        return f"fcc campaign {words}{flight.bounds.words}"
 
     def document(self) -> dict[str, Any]:
         """Return it for JSON."""
@@ -125,7 +118,11 @@ def fly(flight: Flight, recording: Path | None = None) -> tuple[Outcome, Truth |
         pass
     elif isinstance(flight, HealthyFlight):
         flown = fly_set_points(rig, flight)
-        verdict = judge_set_points(flight, rig.truth().since(engaged_s), flown)
+        since = rig.truth().since(engaged_s)
+        verdict = judge_set_points(flight, since, flown)
+        if flight.fault is not None:
+            of_fault = airspeed.figures(flight, flight.fault, since, flown)
+            verdict = replace(verdict, figures={**verdict.figures, **of_fault})
     else:
         legs, refused = _fly(rig, flight)
         verdict = judge(flight, rig.truth(), legs, refused, is_released=not rig.holds_control)
@@ -254,9 +251,9 @@ def _put_in(fault: Fault, faults: Faults, *, by_raw: bool) -> None:
         return
     elif fault.what.endswith("frozen"):
         faults.freeze(sensor, **when)
-    elif fault.what.endswith(("biased", "wrong for a time")):
+    elif fault.what.endswith("biased") or fault.what == WRONG:
         faults.bias(sensor, by=fault.amount, **when)
-    elif sensor == "pitot":
+    elif fault.what == TUBE:
         faults.blocked_tube(**when)
     elif fault.what != "engine out":
         faults.loss(sensor, **when)

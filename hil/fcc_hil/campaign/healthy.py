@@ -13,7 +13,7 @@ from ..plant import STEPS_PER_SECOND, Weather
 from ..quantities import QUANTITIES
 from ..truth import TRUTH_HZ
 from .aircraft import AIRCRAFT
-from .draw import Bounds, Fault, Flight, draw_loading, with_raw_sensors
+from .draw import RAW_RECEIVER, Bounds, Fault, Flight, draw_loading, with_raw_sensors
 
 SECONDS, LONG_SECONDS, LONG_EACH = 310.0, 600.0, 4
 """Every fourth flight is a long one."""
@@ -54,6 +54,9 @@ _STEPS = {
 
 TUBE_S = (4.0, 28.0, 58.0)
 """When the pitot tube is blocked, since engaging."""
+_CRUISE = 1.7
+"""Times the stalling speed."""
+TUBE, WRONG = "pitot tube blocked", "airspeed wrong for a time"
 
 
 @dataclass(frozen=True)
@@ -114,7 +117,8 @@ def draw(number: int, seed: int, bounds: Bounds) -> HealthyFlight:
         flight = _with_fault(flight)
     if bounds.raw_sensors is None:
         return flight
-    return replace(with_raw_sensors(flight), steps={})
+    receiver = RAW_RECEIVER if flight.measures_position else None
+    return replace(with_raw_sensors(flight), steps={}, receiver=receiver)
 
 
 def _draw(number: int, seed: int, bounds: Bounds) -> HealthyFlight:
@@ -148,7 +152,7 @@ def _draw(number: int, seed: int, bounds: Bounds) -> HealthyFlight:
             for channel, (sigma, quantity) in BIASES.items()
         },
         sensor_delay_ticks=ticks,
-        actuation=Actuation(latency_steps=int((delay_s - ticks / TRUTH_HZ) * STEPS_PER_SECOND)),
+        actuation=Actuation(latency_steps=round((delay_s - ticks / TRUTH_HZ) * STEPS_PER_SECOND)),
         receiver=None,
         fault=None,
         is_pattern=False,
@@ -157,9 +161,7 @@ def _draw(number: int, seed: int, bounds: Bounds) -> HealthyFlight:
         measures_position=bool(random.random() < 0.5),
         measures_trim=bool(random.random() < 0.5),
         steps=steps,
-        set_points=tuple(
-            _set_points(random, seconds, slow_kt, _FASTEST * limits.fastest_order_kt)
-        ),
+        set_points=tuple(_set_points(random, seconds, slow_kt, _FASTEST * limits.fastest_order_kt)),
     )
 
 
@@ -217,10 +219,18 @@ def _with_fault(flight: HealthyFlight) -> HealthyFlight:
     if flight.number % 2 == 0:
         begins_s = TUBE_S[flight.number // 2 % len(TUBE_S)]
         order = SetPointOrder(begins_s, None, side * _CLIMB_FT, None)
-        fault = Fault("pitot tube blocked", begins_s, None)
-        return replace(flight, seconds=begins_s + 90.0, set_points=(order,), fault=fault)
+        fault = Fault(TUBE, begins_s, None)
+        # In cruise: nearer to the stall 1.2 Vs cannot be kept by anyone who is misled by 10 kt.
+        airspeed_kt = max(flight.airspeed_kt, _CRUISE * flight.stall_kt)
+        return replace(
+            flight,
+            airspeed_kt=airspeed_kt,
+            seconds=begins_s + 90.0,
+            set_points=(order,),
+            fault=fault,
+        )
     fault = Fault(
-        "airspeed wrong for a time",
+        WRONG,
         float(random.uniform(30.0, 60.0)),
         float(random.uniform(20.0, 40.0)),
         side * float(random.uniform(10.0, 25.0)),

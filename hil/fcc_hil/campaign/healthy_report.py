@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Sequence
 
+from . import airspeed
 from .alarms import EXCLUSION, FAILSAFE, RELEASE, SURFACE, Alarm
 from .flying import Outcome
 from .healthy import HealthyFlight
@@ -16,7 +17,7 @@ _TAKEN_BACK_S = 60.0
 
 
 def text(outcomes: Sequence[Outcome]) -> str:
-    """Return the figures, the alarms by channel and reason, and each flight with one, or unclean."""
+    """Return the figures, the alarms by reason, and each flight with one, or not clean."""
     parts = [figures(outcomes), _reasons(outcomes)]
     groups: tuple[tuple[str, Callable[[HealthyFlight], str]], ...] = (
         ("aircraft", lambda flight: flight.aircraft),
@@ -44,7 +45,7 @@ def figures(outcomes: Sequence[Outcome]) -> str:
     ]
     back, lasted = _taken_back(alarms)
     grounded = sum("ground" in outcome.verdict.broken for outcome in outcomes)
-    judged = sum(outcome.verdict.figures.get("judged_at_the_end", 0.0) > 0.0 for outcome in outcomes)
+    judged = sum("heading_rms" in outcome.verdict.figures for outcome in outcomes)
     rows = [
         ["flights; flight hours", f"{len(outcomes)}; {hours:.1f}"],
         [
@@ -69,7 +70,8 @@ def figures(outcomes: Sequence[Outcome]) -> str:
             f"{sum(it.cpu_s for it in outcomes) / max(1, len(outcomes)):.1f} s",
         ],
     ]
-    return markdown(["figure", ""], rows)
+    of_faults = [(it.flight, it.verdict.figures) for it in outcomes if it.flight.fault]
+    return markdown(["figure", ""], rows + (airspeed.rows(of_faults) if of_faults else []))
 
 
 def _taken_back(alarms: Sequence[Alarm]) -> tuple[int, int]:

@@ -159,6 +159,7 @@ def _figures(outcomes: Sequence[Outcome]) -> str:
 
 
 def markdown(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    """Return a table whose columns are aligned."""
     cells = [list(map(str, row)) for row in (head, *rows)]
     widths = [max(len(row[i]) for row in cells) for i in range(len(head))]
     lines = [

@@ -15,7 +15,7 @@ from ..motion import longest_s
 from ..state import State
 from ..truth import Truth
 from ..units import FT_TO_M, KT_TO_MPS, STANDARD_GRAVITY_MPS2
-from .alarms import FAILSAFE, RELEASE, SURFACE, Alarm, alarms_of
+from .alarms import FAILSAFE, RELEASE, Alarm, alarms_of
 from .healthy import HealthyFlight, SetPointOrder
 from .verdict import Verdict
 
@@ -90,8 +90,9 @@ def fly_set_points(rig: LockstepRig, flight: HealthyFlight) -> Flown:
             break
         # In failsafe no order is taken.
         if machine.state == "engaged":
+            from_m = _shown(rig, flight).altitude_m if order.from_present else first_m
             try:
-                _command(machine, order, _shown(rig, flight).altitude_m if order.from_present else first_m)
+                _command(machine, order, from_m)
                 last = order
             except (fcc.Error, ValueError) as error:
                 refused.append(f"{order.time_s:.0f} s: {error}")
@@ -118,9 +119,7 @@ def _shown(rig: LockstepRig, flight: HealthyFlight) -> State | fcc.Estimate:
 def _command(machine: fcc.Machine, order: SetPointOrder, from_m: float) -> None:
     machine.command(
         heading_rad=None if order.heading_deg is None else math.radians(order.heading_deg),
-        pressure_altitude_m=(
-            None if order.climb_ft is None else from_m + order.climb_ft * FT_TO_M
-        ),
+        pressure_altitude_m=(None if order.climb_ft is None else from_m + order.climb_ft * FT_TO_M),
         airspeed_mps=None if order.airspeed_kt is None else order.airspeed_kt * KT_TO_MPS,
     )
 
@@ -178,7 +177,7 @@ def judge(flight: HealthyFlight, truth: Truth, flown: Flown) -> Verdict:
         first = next((alarm for alarm in flown.alarms if alarm.kind == kind), None)
         if first is not None:
             broken[words] = f"at {first.begins_s:.1f} s for {first.lasted_s:.1f} s: {first.reason}"
-    if ended_s > flight.seconds - 1.0:
+    if flight.fault is None and ended_s > flight.seconds - 1.0:
         held = _held(flight, truth, flown)
         figures |= {f"{name}_rms": rms for name, (rms, _) in held.items()}
         broken |= {
@@ -186,13 +185,10 @@ def judge(flight: HealthyFlight, truth: Truth, flown: Flown) -> Verdict:
             for name, (rms, limit) in held.items()
             if not rms <= limit
         }
-    figures["judged_at_the_end"] = float("heading_rms" in figures)
     return Verdict(broken, figures)
 
 
-def _held(
-    flight: HealthyFlight, truth: Truth, flown: Flown
-) -> dict[str, tuple[float, float]]:
+def _held(flight: HealthyFlight, truth: Truth, flown: Flown) -> dict[str, tuple[float, float]]:
     """Return the RMS and its limit of what was to be held in the last 30 s.
 
     Nothing where power does not suffice or the flight still climbs or descends. A sensor with steps
