@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -22,6 +22,7 @@ from .rig import Event, FlightError
 from .standin import Settings
 from .state import Controls, State
 from .truth import Row, Truth, row
+from .units import wrap_heading_rad
 
 _STANDBY_S = 2.0
 """Navigation settles for 1 s before the autopilot may engage."""
@@ -53,6 +54,8 @@ class Conditions:
     """Readings that there are not, by their names."""
     position: bool = False
     """Whether position and velocity over the ground are measured, without errors."""
+    biases: Mapping[str, float] | None = None
+    """Constant errors of the sensors, by the fields of `state.State`."""
     trim: bool = True
     """Whether it is measured where the elevator trim stands."""
 
@@ -106,6 +109,7 @@ class LockstepRig:
         self._calibration = conditions.calibration
         self._without = conditions.without
         self._position = conditions.position
+        self._biases = conditions.biases
         self._measures_trim = conditions.trim
         self.measured: State | None = None
         """What the sensors showed last; None if nothing came."""
@@ -163,7 +167,8 @@ class LockstepRig:
             self._gust(plant)
         self._move()
         state = plant.state()
-        self._late.append(self._noise.apply(state) if self._noise else state)
+        shown = self._noise.apply(state) if self._noise else state
+        self._late.append(_biased(shown, self._biases) if self._biases else shown)
         measured, channels = self._sensors.read(plant.time_s, self._late[0])
         self.measured = measured
         velocity = None if self._receiver is None else self._receiver.read(state)
@@ -222,6 +227,14 @@ class LockstepRig:
             self.plant.step()
             if self.raw is not None:
                 self.raw.step()
+
+
+def _biased(state: State, biases: Mapping[str, float]) -> State:
+    changed = replace(state)
+    for channel, by in biases.items():
+        setattr(changed, channel, getattr(changed, channel) + by)
+    changed.heading_rad = wrap_heading_rad(changed.heading_rad)
+    return changed
 
 
 def _sensors_of(channels: frozenset[str]) -> list[str]:

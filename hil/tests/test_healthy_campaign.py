@@ -234,6 +234,17 @@ def test_alarms_have_channel_reason_and_duration() -> None:
     assert reasons[1] == "heading is frozen"
 
 
+def test_conditions_with_commas_are_told_from_a_list_of_them() -> None:
+    attitude = "attitude contradicts body rates, forces and heading and is not used"
+    altitude = "altitude contradicts the other sensors and is not used"
+    events = [
+        Event(2.0, f"now: {attitude}, {altitude}"),
+        Event(4.0, f"now: recovering from an upset; no longer: {attitude}"),
+    ]
+    found = [(it.channel, it.ends_s) for it in alarms_of(events, [], 20.0)]
+    assert found == [("attitude", 4.0), ("altitude", None)]
+
+
 def test_a_condition_that_is_in_no_table_counts() -> None:
     (alarm,) = alarms_of([Event(3.0, "now: altitude is odd")], [], 20.0)
     assert (alarm.kind, alarm.channel, alarm.lasted_s) == ("exclusion", "altitude", 17.0)

@@ -29,6 +29,13 @@ _HARMLESS = (
 )
 """Conditions in which nothing is excluded."""
 
+_WITH_COMMAS = (
+    "attitude contradicts body rates, forces and heading and is not used",
+    "body rates contradict attitude, forces and heading and are not used",
+    "a magnetometer, a barometer or a satellite receiver was wrong and is not used again",
+)
+"""Events list conditions with commas between them."""
+
 _OF_SURFACES = ("the outputs do not reach the aircraft", "the elevator trim does not follow")
 
 _CHANNELS = (
@@ -145,16 +152,18 @@ def _of_events(events: Sequence[Event]) -> Iterator[_Signal]:
 
 
 def _names(text: str) -> list[str]:
-    """Return the conditions of a list, without the harmless ones, some of which have a comma."""
+    """Return the conditions of a list, without the harmless ones."""
     for name in _HARMLESS:
         text = text.replace(name, "")
+    for name in _WITH_COMMAS:
+        text = text.replace(name, name.replace(",", ""))
     return [name for name in map(str.strip, re.split(", |; ", text)) if name]
 
 
 def _of_faults(faults: Sequence[tuple[float, frozenset[str]]]) -> Iterator[_Signal]:
     before: frozenset[str] = frozenset()
     for time_s, now in faults:
-        for name in now ^ before:
+        for name in sorted(now ^ before):
             if name not in _HARMLESS:
                 yield time_s, *_kind(name), name in now
         before = now

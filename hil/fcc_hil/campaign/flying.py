@@ -206,6 +206,7 @@ def _rig(flight: Flight) -> LockstepRig:
         errors = flight.errors()
         conditions = replace(
             conditions,
+            biases=flight.biases,
             trim=flight.measures_trim,
             position=flight.measures_position and not by_raw,
         )

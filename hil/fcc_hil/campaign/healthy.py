@@ -93,12 +93,8 @@ class HealthyFlight(Flight):
         }
 
     def errors(self) -> list[SensorFault]:
-        """Return biases and steps, as the sensors have them."""
-        errors = [
-            SensorFault(Kind.BIAS, QUANTITIES[BIASES[channel][1]].name, (channel,), 0.0, amount=by)
-            for channel, by in self.biases.items()
-        ]
-        return errors + [
+        """Return the steps, as the sensors have them."""
+        return [
             SensorFault(
                 Kind.ROUND,
                 name,

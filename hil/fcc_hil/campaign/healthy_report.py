@@ -36,6 +36,7 @@ def figures(outcomes: Sequence[Outcome]) -> str:
     alarms = [alarm for outcome in outcomes for alarm in outcome.alarms]
     stopping = (EXCLUSION, FAILSAFE, RELEASE)
     alarmed = sum(any(it.kind in stopping for it in outcome.alarms) for outcome in outcomes)
+    failed = sum(any(it.kind == SURFACE for it in outcome.alarms) for outcome in outcomes)
     counts = Counter(alarm.kind for alarm in alarms)
     easy = [
         it
@@ -57,8 +58,8 @@ def figures(outcomes: Sequence[Outcome]) -> str:
             for kind in stopping
         ),
         [
-            "surfaces called jammed, reversed or without effect",
-            f"{counts[SURFACE]}; {_rate(counts[SURFACE], hours)} per flight hour",
+            "flights with a surface called jammed, reversed or without effect",
+            f"{failed}; {_rate(failed, hours)} per flight hour",
         ],
         ["into the ground", str(grounded)],
         ["clean, all", _share(outcomes)],
