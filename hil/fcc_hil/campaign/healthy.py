@@ -20,14 +20,10 @@ SECONDS, LONG_SECONDS, LONG_EACH = 310.0, 600.0, 4
 ORDER_S = (8.0, 45.0)
 LAST_ORDER_S = 75.0
 """Before the end: a turn by 180° at the largest bank takes 40 s at 135 kt, and 30 s are judged."""
-_CHANGES = 2.0 / 3.0
-"""The share of the orders that change each of heading, altitude and airspeed."""
 _CLIMB_FT = 1_500.0
 """Around the first altitude, 3,000 ft above level ground."""
 _LAST_CLIMB_FT = 150.0
 """Around the altitude at the last order, so that it stands when it is judged."""
-_FASTEST = 0.95
-"""Of the fastest commanded airspeed: what the sensors add must not refuse an order."""
 
 BIASES = {
     "roll_rad": (1.0, "bank"),
@@ -157,7 +153,7 @@ def _draw(number: int, seed: int, bounds: Bounds) -> HealthyFlight:
         measures_position=bool(random.random() < 0.5),
         measures_trim=bool(random.random() < 0.5),
         steps=steps,
-        set_points=tuple(_set_points(random, seconds, slow_kt, _FASTEST * limits.fastest_order_kt)),
+        set_points=tuple(_set_points(random, seconds, slow_kt, limits.fastest_order_kt)),
     )
 
 
@@ -186,26 +182,21 @@ def _set_points(
 ) -> Iterator[SetPointOrder]:
     last_s = seconds - LAST_ORDER_S
     time_s = float(random.uniform(*ORDER_S))
-    while time_s < last_s - ORDER_S[0]:
-        heading_deg = float(random.uniform(0.0, 360.0))
-        climb_ft = float(random.uniform(-_CLIMB_FT, _CLIMB_FT))
-        airspeed_kt = float(random.uniform(slow_kt, fast_kt))
-        changes = random.uniform(size=3) < _CHANGES
-        changes[int(random.integers(3))] = True
+    while time_s <= last_s:
+        is_last = time_s == last_s
+        climb_ft = _LAST_CLIMB_FT if is_last else _CLIMB_FT
         yield SetPointOrder(
             time_s,
-            heading_deg if changes[0] else None,
-            climb_ft if changes[1] else None,
-            airspeed_kt if changes[2] else None,
+            heading_deg=float(random.uniform(0.0, 360.0)),
+            climb_ft=float(random.uniform(-climb_ft, climb_ft)),
+            airspeed_kt=float(random.uniform(slow_kt, fast_kt)),
+            from_present=is_last,
         )
+        if is_last:
+            return
         time_s += float(random.uniform(*ORDER_S))
-    yield SetPointOrder(
-        last_s,
-        float(random.uniform(0.0, 360.0)),
-        float(random.uniform(-_LAST_CLIMB_FT, _LAST_CLIMB_FT)),
-        float(random.uniform(slow_kt, fast_kt)),
-        from_present=True,
-    )
+        if time_s > last_s - ORDER_S[0]:
+            time_s = last_s
 
 
 def _with_fault(flight: HealthyFlight) -> HealthyFlight:
