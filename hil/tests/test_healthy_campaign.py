@@ -272,6 +272,9 @@ def test_a_blocked_tube_is_measured() -> None:
     tubes = [flight for flight in flights if flight.fault and flight.fault.lasts_s is None]
     assert [tube.fault.begins_s for tube in tubes if tube.fault] == [4.0, 28.0, 58.0] * 2
     others = [flight.fault for flight in flights if flight not in tubes]
+    # Long enough after it is good again to be used again within 60 s.
+    assert all(flight.seconds >= 60.0 + 40.0 + 60.0 for flight in flights if flight not in tubes)
+    assert all(order.time_s < it.seconds for it in flights for order in it.set_points)
     assert all(fault and 20.0 <= (fault.lasts_s or 0.0) <= 40.0 for fault in others)
     flight = _flight(fault=Fault("airspeed wrong for a time", 10.0, 30.0, 20.0))
     flight = replace(flight, biases=flight.biases | {"airspeed_mps": 0.0})

@@ -88,7 +88,7 @@ class Alarm:
         back = "to the end" if self.ends_s is None else f"for {self.lasted_s:.1f} s"
         ground = ", into the ground" if self.into_ground else ""
         return (
-            f"{self.begins_s:.1f} s {self.kind} {self.channel} {back}: {self.reason}; "
+            f"{self.begins_s:.1f} s {f'{self.kind} {self.channel}'.strip()} {back}: {self.reason}; "
             f"lowest {self.lowest_ft:.0f} ft{ground}"
         )
 

@@ -222,4 +222,4 @@ def _with_fault(flight: HealthyFlight) -> HealthyFlight:
         float(random.uniform(20.0, 40.0)),
         side * float(random.uniform(10.0, 25.0)),
     )
-    return replace(flight, seconds=180.0, fault=fault)
+    return replace(flight, fault=fault)

@@ -10,20 +10,6 @@ from .flying import Outcome
 from .healthy import HealthyFlight
 from .verdict import KINDS
 
-_WORST: tuple[tuple[str, str, int, Callable[[list[float]], float]], ...] = (
-    ("largest_load_g", "load g", 2, max),
-    ("least_load_g", "least g", 2, min),
-    ("largest_bank_deg", "bank °", 0, max),
-    ("largest_roll_rate_degps", "roll °/s", 0, max),
-    ("largest_pitch_rate_degps", "pitch °/s", 0, max),
-    ("pitch_rate_sd_degps", "pitch sd °/s", 1, max),
-    ("movement_per_s", "movement /s", 2, max),
-    ("largest_angle_of_attack_deg", "attack °", 1, max),
-    ("airspeed_over_stall", "V/Vs", 2, min),
-    ("height_lost_ft", "height lost ft", 0, max),
-)
-"""Figure, title, digits, and which of them is the worst."""
-
 
 def clean_share(outcomes: Sequence[Outcome]) -> float:
     """Return the share of flights in which nothing was broken."""
@@ -37,7 +23,6 @@ def text(outcomes: Sequence[Outcome]) -> str:
         table("turbulence", outcomes, lambda flight: str(flight.weather.turbulence_severity)),
         table("delay", outcomes, _delay),
         table("fault", outcomes, lambda flight: flight.fault.what if flight.fault else "none"),
-        _figures(outcomes),
     ]
     bad = [outcome for outcome in outcomes if not outcome.verdict.is_clean]
     parts += [failure(outcome) for outcome in bad]
@@ -138,24 +123,6 @@ def table(
         counts = [sum(kind in it.verdict.broken for it in its) for kind in kinds]
         rows.append([group, len(its), f"{100.0 * clean_share(its):.0f} %", *counts])
     return markdown([title, "flights", "clean", *kinds], rows)
-
-
-def _figures(outcomes: Sequence[Outcome]) -> str:
-    """Return the worst figures of each aircraft."""
-    rows = []
-    for aircraft in sorted({outcome.flight.aircraft for outcome in outcomes}):
-        flown = [
-            outcome.verdict.figures
-            for outcome in outcomes
-            if outcome.flight.aircraft == aircraft and outcome.verdict.figures
-        ]
-        if flown:
-            cells = [
-                f"{worst([figures[name] for figures in flown]):.{digits}f}"
-                for name, _, digits, worst in _WORST
-            ]
-            rows.append([aircraft, *cells])
-    return markdown(["worst of all flights", *(title for _, title, _, _ in _WORST)], rows)
 
 
 def markdown(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
