@@ -13,7 +13,7 @@ from fcc_hil import __main__ as commands
 from fcc_hil.campaign import airspeed
 from fcc_hil.campaign.alarms import Alarm, alarms_of
 from fcc_hil.campaign.draw import Fault, usual_bounds
-from fcc_hil.campaign.flying import drawn, fly
+from fcc_hil.campaign.flying import fly
 from fcc_hil.campaign.healthy import HealthyFlight, SetPointOrder, draw
 from fcc_hil.campaign.set_points import Flown, judge
 from fcc_hil.plant import Weather
@@ -268,7 +268,7 @@ def test_the_command_says_what_flies_a_flight_again(
 
 def test_a_blocked_tube_is_measured() -> None:
     bounds = usual_bounds("airspeed")
-    flights = [drawn(number, 7, bounds) for number in range(12)]
+    flights = [draw(number, 7, bounds) for number in range(12)]
     tubes = [flight for flight in flights if flight.fault and flight.fault.lasts_s is None]
     assert [tube.fault.begins_s for tube in tubes if tube.fault] == [4.0, 28.0, 58.0] * 2
     others = [flight.fault for flight in flights if flight not in tubes]

@@ -7,7 +7,7 @@ from typing import Any
 
 from .draw import Bounds, Fault, Flight
 from .flying import Outcome
-from .healthy import HealthyFlight
+from .healthy import WRONG, HealthyFlight
 from .verdict import KINDS
 
 
@@ -61,12 +61,15 @@ def conditions(flight: Flight) -> str:
             "position" if flight.measures_position else "no position",
             "trim measured" if flight.measures_trim else "trim not measured",
             *(f"{name} in steps of {step:g}" for name, step in flight.steps.items()),
-            "biases in 1 sd: "
-            + " ".join(
-                f"{channel.rpartition('_')[0]} {sds:+.1f}"
-                for channel, sds in flight.biases_in_sigma.items()
-            ),
+            "biases in 1 sd:",
         ]
+        parts[-1] += (
+            "".join(
+                f" {channel.rpartition('_')[0]} {sds:+.1f}"
+                for channel, sds in flight.biases_in_sigma.items()
+            )
+            or " the sensors' own"
+        )
     else:
         parts += [
             "no receiver" if receiver is None else f"receiver of {receiver.rate_hz:.0f} Hz",
@@ -85,7 +88,7 @@ def conditions(flight: Flight) -> str:
 
 def _amount(fault: Fault) -> str:
     """Return how much, of those faults that have an amount."""
-    if fault.what == "airspeed biased":
+    if fault.what in ("airspeed biased", WRONG):
         return f" by {fault.amount:+.1f} kt"
     return f" ({100.0 * fault.amount:.0f} %)" if fault.what == "samples lost" else ""
 
