@@ -92,7 +92,7 @@ def add(commands: Any) -> None:
         "--results",
         type=ranges.file_to_write,
         metavar="FILE",
-        help="write what is printed here, as Markdown",
+        help="write the tables here, as Markdown",
     )
     campaign.add_argument(
         "--picture", type=ranges.file_to_write, metavar="FILE", help="write a picture here"
@@ -139,9 +139,10 @@ def _campaign(parser: argparse.ArgumentParser, options: argparse.Namespace) -> i
             notify(len(outcomes), f"{100.0 * report.clean_share(outcomes):.0f} % clean")
     if options.kind == usual_bounds("edges").kind:
         text = report.text(outcomes)
+        say(text)
     else:
-        text = healthy_report.text(outcomes)
-    say(text)
+        text = healthy_report.tables(outcomes)
+        say(f"{text}\n\n{healthy_report.flights(outcomes)}")
     say(f"took {time.monotonic() - began_s:.0f} s")
     if options.results:
         head = f"# Campaign: {options.kind}\n\n    {_repeated(options, bounds)}\n\n"

@@ -16,8 +16,8 @@ _EASY_MS, _EASY_TURBULENCE = 75.0, 4
 _TAKEN_BACK_S = 60.0
 
 
-def text(outcomes: Sequence[Outcome]) -> str:
-    """Return the figures, the alarms by reason, and each flight with one, or not clean."""
+def tables(outcomes: Sequence[Outcome]) -> str:
+    """Return the figures, the alarms by reason, and the clean flights by group."""
     parts = [figures(outcomes), _reasons(outcomes)]
     groups: tuple[tuple[str, Callable[[HealthyFlight], str]], ...] = (
         ("aircraft", lambda flight: flight.aircraft),
@@ -26,8 +26,12 @@ def text(outcomes: Sequence[Outcome]) -> str:
         ("steps", lambda flight: ", ".join(flight.steps) or "none"),
     )
     parts += [table(title, outcomes, group_of, BROKEN) for title, group_of in groups]
-    parts += [failure(it) for it in outcomes if not it.verdict.is_clean or it.alarms]
     return "\n\n".join(parts)
+
+
+def flights(outcomes: Sequence[Outcome]) -> str:
+    """Return each flight with an alarm, or not clean."""
+    return "\n\n".join(failure(it) for it in outcomes if not it.verdict.is_clean or it.alarms)
 
 
 def figures(outcomes: Sequence[Outcome]) -> str:
