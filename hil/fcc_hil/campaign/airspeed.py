@@ -23,9 +23,10 @@ BACK_WITHIN_S = 60.0
 
 
 def figures(flight: HealthyFlight, fault: Fault, truth: Truth, flown: Flown) -> dict[str, float]:
-    """Return the figures of a flight whose airspeed fails; NaN for what did not happen.
+    """Return the figures of a flight whose airspeed fails.
 
-    Times are counted from an error of 10 kt, and from the end of the fault.
+    Times are counted from an error of 10 kt, and from the end of the fault: NaN if it was not
+    as wrong, or not excluded at that end; infinity if it was not excluded, or not used again.
     """
     time_s = (truth["time_s"] - truth["time_s"][0])[1:]
     off_kt = flown.shown["airspeed"] - truth["airspeed_kt"][1:]
@@ -45,7 +46,7 @@ def figures(flight: HealthyFlight, fault: Fault, truth: Truth, flown: Flown) -> 
 
 
 def _first(excluded: Sequence[Alarm], from_s: float, to_s: float) -> float:
-    return next((it.begins_s for it in excluded if from_s <= it.begins_s < to_s), math.nan)
+    return next((it.begins_s for it in excluded if from_s <= it.begins_s < to_s), math.inf)
 
 
 def _back(excluded: Sequence[Alarm], good_s: float) -> float:
@@ -65,14 +66,15 @@ def rows(flights: Sequence[tuple[Flight, Mapping[str, float]]]) -> list[list[str
             for flight, figures in flights
             if flight.fault and flight.fault.what == TUBE and flight.fault.begins_s == tube_s
         ]
+        wrong = [it for it in its if not math.isnan(it["excluded_after_s"])]
         within = sum(it["excluded_after_s"] <= LONGEST_S[tube_s] for it in its)
         flown = sum(
             it["least_over_stall"] >= LEAST_OVER_STALL and it["most_over_vne"] < 1.0 for it in its
         )
         name = f"tube blocked {tube_s:g} s after engaging"
         found += [
-            [f"{name}: excluded after 10 kt of error", _range(its, "excluded_after_s")],
-            [f"{name}: within {LONGEST_S[tube_s]:g} s", f"{within} of {len(its)}"],
+            [f"{name}: excluded after 10 kt of error", _range(wrong, "excluded_after_s")],
+            [f"{name}: within {LONGEST_S[tube_s]:g} s", f"{within} of {len(wrong)}"],
             [f"{name}: within 1.2 Vs and Vne", f"{flown} of {len(its)}"],
         ]
     its = [figures for flight, figures in flights if flight.fault and flight.fault.what == WRONG]

@@ -81,7 +81,7 @@ def fly_set_points(rig: LockstepRig, flight: HealthyFlight) -> Flown:
             faults.append((rig.time_s - engaged_s, now))
         return not rig.holds_control or not plant.fdm["position/h-agl-ft"] > _GROUND_FT
 
-    last, refused, is_done = None, [], False
+    last, refused = None, []
     for order in (*flight.set_points, None):
         until_s = flight.seconds if order is None else order.time_s
         rig.fly_to(engaged_s + until_s, until=is_over)
