@@ -319,8 +319,9 @@ bench-flight: $(STAMPS)/rust $(STAMPS)/python-module ## Fly the suite: ten aircr
 # For campaign, such as CAMPAIGN="--flights 60 --seed 1".
 CAMPAIGN ?=
 
-campaign: $(STAMPS)/rust $(STAMPS)/python-module ## Fly 300 flights at the edges of the envelope, and say what failed (CAMPAIGN=)
+campaign: $(STAMPS)/rust $(STAMPS)/python-module ## Fly 300 healthy flights, then 300 at the edges of the envelope, and say what failed (CAMPAIGN=)
 	@mkdir -p target
+	$(PYTHON) -m fcc_hil campaign --healthy --seed 200000 --json target/healthy.json --results target/healthy.md $(CAMPAIGN)
 	$(PYTHON) -m fcc_hil campaign --seed 200000 --json target/campaign.json --picture target/campaign.png $(CAMPAIGN)
 
 bench-live: $(STAMPS)/rust build $(STAMPS)/python ## Fly with and without 1,000 watchers, alternately (50 minutes)

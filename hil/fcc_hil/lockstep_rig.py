@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import fcc
@@ -22,6 +22,7 @@ from .rig import Event, FlightError
 from .standin import Settings
 from .state import Controls, State
 from .truth import Row, Truth, row
+from .units import wrap_heading_rad
 
 _STANDBY_S = 2.0
 """Navigation settles for 1 s before the autopilot may engage."""
@@ -53,6 +54,10 @@ class Conditions:
     """Readings that there are not, by their names."""
     position: bool = False
     """Whether position and velocity over the ground are measured, without errors."""
+    biases: Mapping[str, float] | None = None
+    """Constant errors of the sensors, by the fields of `state.State`."""
+    trim: bool = True
+    """Whether it is measured where the elevator trim stands."""
 
 
 class LockstepRig:
@@ -104,6 +109,10 @@ class LockstepRig:
         self._calibration = conditions.calibration
         self._without = conditions.without
         self._position = conditions.position
+        self._biases = conditions.biases
+        self._measures_trim = conditions.trim
+        self.measured: State | None = None
+        """What the sensors showed last; None if nothing came."""
         self.stick: tuple[float, float, float] | None = None
         """Where the pilot holds pitch, roll and yaw, -1 to 1; None if that is not measured."""
         self._switch = False
@@ -158,8 +167,10 @@ class LockstepRig:
             self._gust(plant)
         self._move()
         state = plant.state()
-        self._late.append(self._noise.apply(state) if self._noise else state)
+        shown = self._noise.apply(state) if self._noise else state
+        self._late.append(_biased(shown, self._biases) if self._biases else shown)
         measured, channels = self._sensors.read(plant.time_s, self._late[0])
+        self.measured = measured
         velocity = None if self._receiver is None else self._receiver.read(state)
         if measured is None:
             surfaces = self.machine.step(None)
@@ -197,7 +208,8 @@ class LockstepRig:
 
     def _stand(self) -> Controls:
         """Return where the controls stand, as it is measured."""
-        return self.plant.controls
+        stand = self.plant.controls
+        return stand if self._measures_trim else replace(stand, elevator_trim=None)
 
     def _write(self, controls: Controls) -> None:
         self._command = controls
@@ -215,6 +227,14 @@ class LockstepRig:
             self.plant.step()
             if self.raw is not None:
                 self.raw.step()
+
+
+def _biased(state: State, biases: Mapping[str, float]) -> State:
+    changed = replace(state)
+    for channel, by in biases.items():
+        setattr(changed, channel, getattr(changed, channel) + by)
+    changed.heading_rad = wrap_heading_rad(changed.heading_rad)
+    return changed
 
 
 def _sensors_of(channels: frozenset[str]) -> list[str]:

@@ -204,6 +204,9 @@ def test_the_command_names_what_flies_a_flight_again(
         (["--flight", "1", "--record", "/none/x.mcap"], "there is no folder '/none'"),
         (["--flight", "1", "--picture", "/none/x.png"], "there is no folder '/none'"),
         (["--json", "/"], "is a folder"),
+        (["--healthy", "--airspeed"], "not allowed with argument"),
+        (["--airspeed", "--raw", "board"], "not with --airspeed"),
+        (["--healthy", "--first", "-1"], "--first"),
     ],
 )
 def test_wrong_arguments_are_refused_before_flying(

@@ -49,6 +49,16 @@ class Limits:
         return self.floor_kt + self._configured("airspeed_margin_kt")
 
     @property
+    def fastest_order_kt(self) -> float:
+        """The highest airspeed that may be commanded."""
+        return self._configured("max_airspeed_kt") - self._configured("airspeed_margin_kt")
+
+    @property
+    def never_exceed_kt(self) -> float:
+        """The never-exceed speed, Vne."""
+        return self._configured("never_exceed_airspeed_kt")
+
+    @property
     def most_climb_fpm(self) -> float:
         """The largest climb rate that its configuration permits."""
         return self._configured("max_climb_fpm")

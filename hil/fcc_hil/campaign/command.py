@@ -7,13 +7,14 @@ import time
 from functools import partial
 from typing import Any
 
-from .. import documents, ranges
+from .. import documents, ranges, replacement
 from ..printable import say
 from ..progress import bar
 from ..workers import local_workers, on_dask
-from .draw import Bounds
+from .draw import Bounds, usual_bounds
 
 _MOST_LATE_MS = 1_000.0
+_LEAST_CLEAN = {"edges": 98.0, "healthy": 94.0, "airspeed": 94.0}
 
 
 def add(commands: Any) -> None:
@@ -21,6 +22,21 @@ def add(commands: Any) -> None:
     usual = Bounds()
     campaign = commands.add_parser(
         "campaign", help="fly at the edges of the envelope by chance, and say what failed and how"
+    )
+    kinds = campaign.add_mutually_exclusive_group()
+    for kind, words in (
+        ("healthy", "with sensors that have ordinary errors, and nothing that fails"),
+        ("airspeed", "the same with an airspeed that fails"),
+    ):
+        kinds.add_argument(
+            f"--{kind}", dest="kind", action="store_const", const=kind, default="edges", help=words
+        )
+    campaign.add_argument(
+        "--first",
+        type=ranges.whole(0, 999_999),
+        default=0,
+        metavar="N",
+        help="the number of the first flight (%(default)s)",
     )
     campaign.add_argument(
         "--flights", type=ranges.count, default=300, metavar="N", help="how many (%(default)s)"
@@ -41,17 +57,16 @@ def add(commands: Any) -> None:
     campaign.add_argument(
         "--delay-ms",
         type=ranges.number(0.0, _MOST_LATE_MS, "ms"),
-        default=usual.delay_ms,
         metavar="MS",
-        help="the longest delay from a measurement to the effect of the command (%(default)g)",
+        help="the longest delay from a measurement to the effect of the command "
+        f"({usual.delay_ms:g}; 150 if healthy)",
     )
     campaign.add_argument(
         "--turbulence",
         type=int,
         choices=range(8),
-        default=usual.turbulence,
         metavar="0..7",
-        help="the greatest severity (%(default)s)",
+        help=f"the greatest severity ({usual.turbulence}; 5 if healthy)",
     )
     campaign.add_argument(
         "--raw",
@@ -61,9 +76,8 @@ def add(commands: Any) -> None:
     campaign.add_argument(
         "--least-clean",
         type=ranges.number(0.0, 100.0, "%"),
-        default=98.0,
         metavar="PERCENT",
-        help="exit with 1 if less of the flights are clean (%(default)g)",
+        help="exit with 1 if less of the flights are clean (98; 94 if healthy)",
     )
     campaign.add_argument(
         "--workers", type=ranges.workers, metavar="N", help="processes (all processors)"
@@ -73,6 +87,12 @@ def add(commands: Any) -> None:
     )
     campaign.add_argument(
         "--json", type=ranges.file_to_write, metavar="FILE", help="write everything here"
+    )
+    campaign.add_argument(
+        "--results",
+        type=ranges.file_to_write,
+        metavar="FILE",
+        help="write the tables here, as Markdown",
     )
     campaign.add_argument(
         "--picture", type=ranges.file_to_write, metavar="FILE", help="write a picture here"
@@ -87,15 +107,25 @@ def add(commands: Any) -> None:
 
 
 def _campaign(parser: argparse.ArgumentParser, options: argparse.Namespace) -> int:
+    if options.kind == "airspeed" and options.raw:
+        parser.error("argument --raw: not with --airspeed: give --healthy, or neither")
     if options.record and options.flight is None:
         parser.error("argument --record: give the number of a flight with --flight, too")
-    from . import report  # noqa: PLC0415 - needs the module fcc, which other commands do not
+    # They need the module fcc, which other commands do not.
+    from . import healthy_report, report  # noqa: PLC0415
     from .flying import Task, fly_task  # noqa: PLC0415
 
-    bounds = Bounds(options.delay_ms, options.turbulence, options.raw)
+    usual = usual_bounds(options.kind)
+    bounds = Bounds(
+        usual.delay_ms if options.delay_ms is None else options.delay_ms,
+        usual.turbulence if options.turbulence is None else options.turbulence,
+        options.raw,
+        options.kind,
+    )
     if options.flight is not None:
         return _one(options, bounds)
-    tasks = [Task(number, options.seed, bounds) for number in range(options.flights)]
+    numbers = range(options.first, options.first + options.flights)
+    tasks = [Task(number, options.seed, bounds) for number in numbers]
     workers = (
         on_dask(fly_task, options.scheduler)
         if options.scheduler
@@ -107,8 +137,16 @@ def _campaign(parser: argparse.ArgumentParser, options: argparse.Namespace) -> i
         for outcome in fly_all(tasks):
             outcomes.append(outcome)
             notify(len(outcomes), f"{100.0 * report.clean_share(outcomes):.0f} % clean")
-    say(report.text(outcomes))
+    if options.kind == usual_bounds("edges").kind:
+        text = report.text(outcomes)
+        say(text)
+    else:
+        text = healthy_report.tables(outcomes)
+        say(f"{text}\n\n{healthy_report.flights(outcomes)}")
     say(f"took {time.monotonic() - began_s:.0f} s")
+    if options.results:
+        head = f"# Campaign: {options.kind}\n\n    {_repeated(options, bounds)}\n\n"
+        replacement.write(options.results, head + text + "\n")
     if options.json:
         document = report.document(outcomes, options.seed, bounds)
         documents.write(options.json, document)
@@ -121,16 +159,22 @@ def _campaign(parser: argparse.ArgumentParser, options: argparse.Namespace) -> i
             + (f", {bounds.raw_sensors}" if bounds.raw_sensors else "")
         )
         draw_picture(options.picture, outcomes, title)
-    return 1 if 100.0 * report.clean_share(outcomes) < options.least_clean else 0
+    least = _LEAST_CLEAN[options.kind] if options.least_clean is None else options.least_clean
+    return 1 if 100.0 * report.clean_share(outcomes) < least else 0
+
+
+def _repeated(options: argparse.Namespace, bounds: Bounds) -> str:
+    """Return the command that flies it again."""
+    first = f" --first {options.first}" if options.first else ""
+    return f"fcc campaign{bounds.words} --seed {options.seed}{first} --flights {options.flights}"
 
 
 def _one(options: argparse.Namespace, bounds: Bounds) -> int:
     """Fly one flight again, and show all of it."""
     from . import report  # noqa: PLC0415
-    from .draw import draw  # noqa: PLC0415
-    from .flying import fly  # noqa: PLC0415
+    from .flying import drawn, fly  # noqa: PLC0415
 
-    outcome, truth = fly(draw(options.flight, options.seed, bounds), options.record)
+    outcome, truth = fly(drawn(options.flight, options.seed, bounds), options.record)
     say(report.failure(outcome))
     for event in outcome.events:
         say(f"    {event.time_s:7.2f} s  {event.text}")

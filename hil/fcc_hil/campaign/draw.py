@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -53,6 +54,24 @@ class Bounds:
     """After MIL-F-8785C, 0..7."""
     raw_sensors: str | None = None
     """Flown by these alone, phone or board; None for sensors that measure what control needs."""
+    kind: str = "edges"
+    """edges, healthy, or airspeed: healthy but for the airspeed."""
+
+    @property
+    def words(self) -> str:
+        """The options of the command that are not the usual ones."""
+        usual = usual_bounds(self.kind)
+        words = "" if self.kind == "edges" else f" --{self.kind}"
+        if self.delay_ms != usual.delay_ms:
+            words += f" --delay-ms {self.delay_ms:g}"
+        if self.turbulence != usual.turbulence:
+            words += f" --turbulence {self.turbulence}"
+        return words if self.raw_sensors is None else f"{words} --raw {self.raw_sensors}"
+
+
+def usual_bounds(kind: str) -> Bounds:
+    """Return the bounds of a kind of campaign, unless others are asked for."""
+    return Bounds() if kind == "edges" else Bounds(150.0, 5, kind=kind)
 
 
 @dataclass(frozen=True)
@@ -136,15 +155,20 @@ class Flight:
         )
 
 
-def draw(number: int, seed: int, bounds: Bounds) -> Flight:
-    """Draw flight `number` of a campaign's `seed`. The aircraft take turns.
+_AnyFlight = TypeVar("_AnyFlight", bound=Flight)
 
-    By raw sensors it is the same flight, but for what these bring themselves: noise, biases, the
-    delay of measurements, and how often a receiver gives a fix.
-    """
+
+def draw(number: int, seed: int, bounds: Bounds) -> Flight:
+    """Draw flight `number` of a campaign's `seed`. The aircraft take turns."""
     flight = _draw(number, seed, bounds)
-    if bounds.raw_sensors is None:
-        return flight
+    return flight if bounds.raw_sensors is None else with_raw_sensors(flight)
+
+
+def with_raw_sensors(flight: _AnyFlight) -> _AnyFlight:
+    """Return the same flight by raw sensors, but for what these bring themselves.
+
+    That is noise, biases, the delay of measurements, and how often a receiver gives a fix.
+    """
     late_steps = round(flight.sensor_delay_ticks * STEPS_PER_SECOND / TRUTH_HZ)
     outputs = flight.actuation
     return replace(
@@ -160,7 +184,7 @@ def draw(number: int, seed: int, bounds: Bounds) -> Flight:
 def _draw(number: int, seed: int, bounds: Bounds) -> Flight:
     random = np.random.default_rng([seed, number])
     limits = list(AIRCRAFT.values())[number % len(AIRCRAFT)]
-    loading = _loading(random, limits)
+    loading = draw_loading(random, limits)
     slow_kt = max(SLOWEST * limits.stall_kt(loading.weight_lb), limits.floor_kt + _FLOOR_MARGIN_KT)
     # A third at the lowest speed.
     drawn_kt = float(random.uniform(1.5 * slow_kt - 0.5 * limits.fast_kt, limits.fast_kt))
@@ -198,7 +222,7 @@ def _draw(number: int, seed: int, bounds: Bounds) -> Flight:
     )
 
 
-def _loading(random: np.random.Generator, limits: Limits) -> Loading:
+def draw_loading(random: np.random.Generator, limits: Limits) -> Loading:
     """Return a loading from one person with little fuel to the greatest weight."""
     fuel_lb = float(random.uniform(0.1, 1.0)) * min(
         limits.tanks_lb, limits.most_lb - limits.bare_lb

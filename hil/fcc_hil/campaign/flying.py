@@ -25,9 +25,14 @@ from ..sensor_faults import Faults
 from ..settings import Settings
 from ..truth import Truth
 from ..units import FT_TO_M, KT_TO_MPS, wrap_heading
+from . import airspeed, healthy
 from .air import mover
+from .alarms import Alarm
 from .draw import HOLD_S, LEG_S, Bounds, Fault, Flight, Order, draw
+from .healthy import TUBE, WRONG, HealthyFlight
 from .raw_faults import RawFaults
+from .set_points import fly_set_points
+from .set_points import judge as judge_set_points
 from .verdict import Verdict, judge
 
 _ENGAGES_WITHIN_S = 10.0
@@ -48,19 +53,16 @@ class Outcome:
     """Of every bit of the truth: equal for equal flights; empty if it was not flown."""
     simulated_s: float
     cpu_s: float
+    alarms: tuple[Alarm, ...] = ()
+    """Of a healthy flight."""
+    refused: tuple[str, ...] = ()
 
     @property
     def command(self) -> str:
         """The command that flies it again."""
-        flight, usual = self.flight, Bounds()
-        bounds = ""
-        if flight.bounds.delay_ms != usual.delay_ms:
-            bounds += f" --delay-ms {flight.bounds.delay_ms:g}"
-        if flight.bounds.turbulence != usual.turbulence:
-            bounds += f" --turbulence {flight.bounds.turbulence}"
-        if flight.bounds.raw_sensors is not None:
-            bounds += f" --raw {flight.bounds.raw_sensors}"
-        return f"fcc campaign --flight {flight.number} --seed {flight.seed}{bounds}"
+        flight = self.flight
+        words = f"--flight {flight.number} --seed {flight.seed}"
+        return f"fcc campaign {words}{flight.bounds.words}"
 
     def document(self) -> dict[str, Any]:
         """Return it for JSON."""
@@ -69,6 +71,8 @@ class Outcome:
             "stall_kt": self.flight.stall_kt,
             "broken": dict(self.verdict.broken),
             "figures": self.verdict.figures,
+            "alarms": [asdict(alarm) | {"lasted_s": alarm.lasted_s} for alarm in self.alarms],
+            "refused": self.refused,
             "events": [asdict(event) for event in self.events],
             "digest": self.digest,
             "simulated_s": self.simulated_s,
@@ -88,7 +92,12 @@ class Task:
 
 def fly_task(task: Task) -> Outcome:
     """Fly one flight and judge it."""
-    return fly(draw(task.number, task.seed, task.bounds))[0]
+    return fly(drawn(task.number, task.seed, task.bounds))[0]
+
+
+def drawn(number: int, seed: int, bounds: Bounds) -> Flight:
+    """Draw a flight of any kind."""
+    return (draw if bounds.kind == Bounds().kind else healthy.draw)(number, seed, bounds)
 
 
 def fly(flight: Flight, recording: Path | None = None) -> tuple[Outcome, Truth | None]:
@@ -103,21 +112,32 @@ def fly(flight: Flight, recording: Path | None = None) -> tuple[Outcome, Truth |
         verdict = Verdict({"not flown": str(error)}, {})
         return Outcome(flight, verdict, _NO_EVENTS, "", 0.0, time.process_time() - began_s), None
     inhibits = "" if rig.holds_control else ", ".join(rig.machine.engage_inhibits) or "refused"
-    legs, refused = ([], []) if inhibits else _fly(rig, flight)
+    engaged_s = rig.time_s
+    verdict, flown = Verdict({"not engaged": inhibits}, {}), None
+    if inhibits:
+        pass
+    elif isinstance(flight, HealthyFlight):
+        flown = fly_set_points(rig, flight)
+        since = rig.truth().since(engaged_s)
+        verdict = judge_set_points(flight, since, flown)
+        if flight.fault is not None:
+            of_fault = airspeed.figures(flight, flight.fault, since, flown)
+            verdict = replace(verdict, figures={**verdict.figures, **of_fault})
+    else:
+        legs, refused = _fly(rig, flight)
+        verdict = judge(flight, rig.truth(), legs, refused, is_released=not rig.holds_control)
     truth = rig.truth()
     if recording is not None:
         rig.save_recording(recording)
     outcome = Outcome(
         flight=flight,
-        verdict=(
-            Verdict({"not engaged": inhibits}, {})
-            if inhibits
-            else judge(flight, truth, legs, refused, is_released=not rig.holds_control)
-        ),
+        verdict=verdict,
         events=tuple(rig.events),
         digest=hashlib.sha256(truth.table().tobytes()).hexdigest(),
         simulated_s=rig.time_s,
         cpu_s=time.process_time() - began_s,
+        alarms=() if flown is None else flown.alarms,
+        refused=() if flown is None else flown.refused,
     )
     return outcome, truth
 
@@ -127,17 +147,23 @@ def config_of(flight: Flight) -> str:
 
     With the flight's pattern, and the stalling speed of the greatest weight.
     """
-    first = flight.orders[0]
     values: dict[str, float | str | list[float]] = {
-        "guidance.mode": "timed-pattern",
-        # The first command ends the pattern.
-        "guidance.hold_s": HOLD_S if flight.is_pattern else 10.0 * HOLD_S,
-        "guidance.leg_s": LEG_S,
-        "guidance.turn_deg": first.turn_deg if flight.is_pattern else 0.0,
-        "guidance.climb_ft": first.climb_ft if flight.is_pattern else 0.0,
         "autopilot.envelope.stall_airspeed_kt": flight.limits.stall_setting_kt,
     }
     text = configuration(flight.aircraft)
+    if isinstance(flight, HealthyFlight):
+        text = without_section(text, "guidance")
+        values["guidance.mode"] = "hold"
+    else:
+        first = flight.orders[0]
+        values |= {
+            "guidance.mode": "timed-pattern",
+            # The first command ends the pattern.
+            "guidance.hold_s": HOLD_S if flight.is_pattern else 10.0 * HOLD_S,
+            "guidance.leg_s": LEG_S,
+            "guidance.turn_deg": first.turn_deg if flight.is_pattern else 0.0,
+            "guidance.climb_ft": first.climb_ft if flight.is_pattern else 0.0,
+        }
     if flight.bounds.raw_sensors is not None:
         # Where X-Plane is the source, there are no raw readings.
         text = without_section(text, "x-plane")
@@ -175,13 +201,24 @@ def _rig(flight: Flight) -> LockstepRig:
         raw_fault=falsify,
         without=MEASURED if by_raw else frozenset(),
     )
+    errors = []
+    if isinstance(flight, HealthyFlight):
+        errors = flight.errors()
+        conditions = replace(
+            conditions,
+            biases=flight.biases,
+            trim=flight.measures_trim,
+            position=flight.measures_position and not by_raw,
+        )
     if by_raw and flight.receiver is None:
         conditions = replace(conditions, without=conditions.without | {"gnss"})
     settings = Settings(aircraft=flight.aircraft, seed=seed, noise=not by_raw)
     rig = LockstepRig(settings, plant, fcc.Machine(config_of(flight)), conditions)
-    faults = Faults(lambda: rig.time_s, rig.set_faults, seed)
-    for name, by in flight.biases.items():
-        faults.bias(name, by=by)
+    faults = Faults(lambda: rig.time_s, lambda more: rig.set_faults([*errors, *more]), seed)
+    if not isinstance(flight, HealthyFlight):
+        for name, by in flight.biases.items():
+            faults.bias(name, by=by)
+    rig.set_faults([*errors, *faults.all])
     rig.prepare()
     if by_raw:
         rig.fly_to(RAW_STANDBY_S)
@@ -215,8 +252,10 @@ def _put_in(fault: Fault, faults: Faults, *, by_raw: bool) -> None:
         return
     elif fault.what.endswith("frozen"):
         faults.freeze(sensor, **when)
-    elif fault.what.endswith("biased"):
+    elif fault.what.endswith("biased") or fault.what == WRONG:
         faults.bias(sensor, by=fault.amount, **when)
+    elif fault.what == TUBE:
+        faults.blocked_tube(**when)
     elif fault.what != "engine out":
         faults.loss(sensor, **when)
 

@@ -14,7 +14,7 @@ import matplotlib.pyplot as plt
 
 from .. import replacement
 from .flying import Outcome
-from .verdict import KINDS, LARGEST_BANK_DEG, LOADS_G
+from .verdict import LARGEST_BANK_DEG, LOADS_G
 
 _COLOURS = ("#c0504d", "#d98a29", "#8a5fb0", "#3b8686", "#7a5c3e", "#c06c9c")
 _CLEAN, _GRID = "#b8c7d9", "#dddddd"
@@ -39,7 +39,7 @@ def draw(path: Path, outcomes: Sequence[Outcome], title: str) -> None:
     if not flown:
         raise ValueError("no flight to draw: none was flown")
     figure, rows = plt.subplots(2, 2, figsize=(11, 9), layout="constrained")
-    kinds = [kind for kind in KINDS if any(kind in it.verdict.broken for it in flown)]
+    kinds = sorted({kind for it in flown if (kind := _worst(it)) is not None})
     for axes, (across, across_title, up, up_title) in zip(rows.flat, _PANELS, strict=True):
         for kind in (None, *reversed(kinds)):
             shown = [it for it in flown if _worst(it) == kind]
@@ -71,7 +71,7 @@ def draw(path: Path, outcomes: Sequence[Outcome], title: str) -> None:
 
 
 def _worst(outcome: Outcome) -> str | None:
-    return next((kind for kind in KINDS if kind in outcome.verdict.broken), None)
+    return next(iter(outcome.verdict.broken), None)
 
 
 def _value(outcome: Outcome, name: str) -> float:

@@ -7,21 +7,8 @@ from typing import Any
 
 from .draw import Bounds, Fault, Flight
 from .flying import Outcome
+from .healthy import WRONG, HealthyFlight
 from .verdict import KINDS
-
-_WORST: tuple[tuple[str, str, int, Callable[[list[float]], float]], ...] = (
-    ("largest_load_g", "load g", 2, max),
-    ("least_load_g", "least g", 2, min),
-    ("largest_bank_deg", "bank °", 0, max),
-    ("largest_roll_rate_degps", "roll °/s", 0, max),
-    ("largest_pitch_rate_degps", "pitch °/s", 0, max),
-    ("pitch_rate_sd_degps", "pitch sd °/s", 1, max),
-    ("movement_per_s", "movement /s", 2, max),
-    ("largest_angle_of_attack_deg", "attack °", 1, max),
-    ("airspeed_over_stall", "V/Vs", 2, min),
-    ("height_lost_ft", "height lost ft", 0, max),
-)
-"""Figure, title, digits, and which of them is the worst."""
 
 
 def clean_share(outcomes: Sequence[Outcome]) -> float:
@@ -32,11 +19,10 @@ def clean_share(outcomes: Sequence[Outcome]) -> float:
 def text(outcomes: Sequence[Outcome]) -> str:
     """Return the tables, then every flight that is not clean with the command that repeats it."""
     parts = [
-        _table("aircraft", outcomes, lambda flight: flight.aircraft),
-        _table("turbulence", outcomes, lambda flight: str(flight.weather.turbulence_severity)),
-        _table("delay", outcomes, _delay),
-        _table("fault", outcomes, lambda flight: flight.fault.what if flight.fault else "none"),
-        _figures(outcomes),
+        table("aircraft", outcomes, lambda flight: flight.aircraft),
+        table("turbulence", outcomes, lambda flight: str(flight.weather.turbulence_severity)),
+        table("delay", outcomes, _delay),
+        table("fault", outcomes, lambda flight: flight.fault.what if flight.fault else "none"),
     ]
     bad = [outcome for outcome in outcomes if not outcome.verdict.is_clean]
     parts += [failure(outcome) for outcome in bad]
@@ -52,8 +38,10 @@ def text(outcomes: Sequence[Outcome]) -> str:
 def failure(outcome: Outcome) -> str:
     """Return what broke in a flight, its conditions and the command that flies it again."""
     broken = outcome.verdict.broken
-    words = "; ".join(f"{kind}: {broken[kind]}" for kind in KINDS if kind in broken) or "clean"
-    return f"{outcome.command}\n    {conditions(outcome.flight)}\n    {words}"
+    words = "; ".join(f"{kind}: {broken[kind]}" for kind in broken) or "clean"
+    lines = [conditions(outcome.flight), words, *(alarm.words for alarm in outcome.alarms)]
+    lines += [f"refused at {refused}" for refused in outcome.refused]
+    return "\n    ".join([outcome.command, *lines])
 
 
 def conditions(flight: Flight) -> str:
@@ -66,9 +54,27 @@ def conditions(flight: Flight) -> str:
         f"turbulence {flight.weather.turbulence_severity}",
         f"{flight.delay_ms:.0f} ms late",
         "no servos" if servo_hz is None else f"servos of {servo_hz:.1f} Hz",
-        "no receiver" if receiver is None else f"receiver of {receiver.rate_hz:.0f} Hz",
-        "timed pattern" if flight.is_pattern else "orders",
     ]
+    if isinstance(flight, HealthyFlight):
+        parts += [
+            f"noise {flight.noise:.1f}",
+            "position" if flight.measures_position else "no position",
+            "trim measured" if flight.measures_trim else "trim not measured",
+            *(f"{name} in steps of {step:g}" for name, step in flight.steps.items()),
+            "biases in 1 sd:",
+        ]
+        parts[-1] += (
+            "".join(
+                f" {channel.rpartition('_')[0]} {sds:+.1f}"
+                for channel, sds in flight.biases_in_sigma.items()
+            )
+            or " the sensors' own"
+        )
+    else:
+        parts += [
+            "no receiver" if receiver is None else f"receiver of {receiver.rate_hz:.0f} Hz",
+            "timed pattern" if flight.is_pattern else "orders",
+        ]
     vertical = [gust.down_mps for gust in flight.gusts]
     if vertical:
         # Plus zero, because a rounded -0 looks like an error.
@@ -82,7 +88,7 @@ def conditions(flight: Flight) -> str:
 
 def _amount(fault: Fault) -> str:
     """Return how much, of those faults that have an amount."""
-    if fault.what == "airspeed biased":
+    if fault.what in ("airspeed biased", WRONG):
         return f" by {fault.amount:+.1f} kt"
     return f" ({100.0 * fault.amount:.0f} %)" if fault.what == "samples lost" else ""
 
@@ -93,6 +99,7 @@ def document(outcomes: Sequence[Outcome], seed: int, bounds: Bounds) -> dict[str
         "seed": seed,
         "delay_ms": bounds.delay_ms,
         "turbulence": bounds.turbulence,
+        "kind": bounds.kind,
         "raw_sensors": bounds.raw_sensors,
         "clean_share": clean_share(outcomes),
         "flights": [outcome.document() for outcome in outcomes],
@@ -104,37 +111,25 @@ def _delay(flight: Flight) -> str:
     return f"{least:3} to {least + 25} ms"
 
 
-def _table(title: str, outcomes: Sequence[Outcome], group_of: Callable[[Flight], str]) -> str:
+def table(
+    title: str,
+    outcomes: Sequence[Outcome],
+    group_of: Callable[[Any], str],
+    of_kinds: Sequence[str] = KINDS,
+) -> str:
     """Return how many flights of each group are clean, and how many broke what."""
-    kinds = [kind for kind in KINDS if any(kind in it.verdict.broken for it in outcomes)]
+    kinds = [kind for kind in of_kinds if any(kind in it.verdict.broken for it in outcomes)]
     rows = []
     groups = sorted({group_of(outcome.flight) for outcome in outcomes})
     for group in (*groups, "all"):
         its = [it for it in outcomes if group in ("all", group_of(it.flight))]
         counts = [sum(kind in it.verdict.broken for it in its) for kind in kinds]
         rows.append([group, len(its), f"{100.0 * clean_share(its):.0f} %", *counts])
-    return _markdown([title, "flights", "clean", *kinds], rows)
+    return markdown([title, "flights", "clean", *kinds], rows)
 
 
-def _figures(outcomes: Sequence[Outcome]) -> str:
-    """Return the worst figures of each aircraft."""
-    rows = []
-    for aircraft in sorted({outcome.flight.aircraft for outcome in outcomes}):
-        flown = [
-            outcome.verdict.figures
-            for outcome in outcomes
-            if outcome.flight.aircraft == aircraft and outcome.verdict.figures
-        ]
-        if flown:
-            cells = [
-                f"{worst([figures[name] for figures in flown]):.{digits}f}"
-                for name, _, digits, worst in _WORST
-            ]
-            rows.append([aircraft, *cells])
-    return _markdown(["worst of all flights", *(title for _, title, _, _ in _WORST)], rows)
-
-
-def _markdown(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+def markdown(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    """Return a table whose columns are aligned."""
     cells = [list(map(str, row)) for row in (head, *rows)]
     widths = [max(len(row[i]) for row in cells) for i in range(len(head))]
     lines = [
