@@ -6,9 +6,12 @@ import math
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from .plan_file import TAKEOFF, Item, PlanFile
 from .plant import Plant, Weather
 from .settings import Settings, Start
+from .tangent_plane import Plane
 from .terrain_tiles import Tiles
 from .units import FT_TO_M
 
@@ -58,6 +61,7 @@ def plant(
 
 
 def _bearing_deg(start: Item, end: Item) -> float:
-    north = end.latitude_deg - start.latitude_deg
-    east = (end.longitude_deg - start.longitude_deg) * math.cos(math.radians(start.latitude_deg))
-    return math.degrees(math.atan2(east, north)) % 360.0
+    plane = Plane(math.radians(start.latitude_deg), math.radians(start.longitude_deg))
+    place = np.radians([end.latitude_deg]), np.radians([end.longitude_deg])
+    ((north_m, east_m),) = plane.of(*place)
+    return math.degrees(math.atan2(east_m, north_m)) % 360.0

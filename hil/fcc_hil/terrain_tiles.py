@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from .units import FT_TO_M
+from .units import FT_TO_M, wrap_degrees
 
 _SIDES = (3_601, 1_201)
 """Posts of a side: 1 and 3 seconds of arc."""
@@ -34,6 +34,7 @@ class Tiles:
 
         Bilinear between the four posts around. Raises ValueError for a tile that is none.
         """
+        longitude_deg = wrap_degrees(longitude_deg)
         south, west = math.floor(latitude_deg), math.floor(longitude_deg)
         tile = self._tile(south, west)
         if tile is None:

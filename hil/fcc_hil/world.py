@@ -137,7 +137,7 @@ class World:
         """
         self._origin_moved = True
         state = self.plant.state()
-        to_origin_rad = self.axes.longitude_rad - state.longitude_rad
+        to_origin_rad = math.remainder(self.axes.longitude_rad - state.longitude_rad, math.tau)
         moved_rad = math.copysign(max(abs(2.0 * to_origin_rad), math.radians(1.0)), -to_origin_rad)
         self.axes = LocalAxes(self.axes.latitude_rad, self.axes.longitude_rad + moved_rad)
 

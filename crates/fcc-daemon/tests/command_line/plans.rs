@@ -129,6 +129,17 @@ fn an_engine_that_is_out_takes_off_nowhere() {
     assert!(said.contains(words), "{said}");
 }
 
+/// Nothing is configured that watches the engine.
+#[test]
+fn an_engine_that_does_not_run_gives_the_take_off_up() {
+    let (exit, said) = flown(CIRCUIT, "engine_stops_at_s = 0\n", &[]);
+    assert_eq!(exit, Some(19), "{said}");
+    let words = "ended: the plan is not flown to its end: item 1 was flown, in the mode take-off; \
+                 the take-off is given up: rotate_kt is not reached within longest_roll_m or the \
+                 time of such a roll; look at the engine, the brakes and the load";
+    assert!(said.contains(words), "{said}");
+}
+
 #[test]
 fn a_plan_with_a_jump_for_ever_ends_with_its_time() {
     let plan = legs(45.0, 800.0) + "3 0 2 177 1 -1 0 0 0 0 0 1\n";

@@ -304,7 +304,7 @@ section! {
         /// A take-off from the hand begins with this acceleration along the aircraft; 0: it
         /// takes off on its wheels.
         launch_g => launch_mps2 * GRAVITY_MPS2,
-        /// A take-off that has not reached it within this way brakes.
+        /// A take-off that has not reached it within this way, or its time, brakes.
         longest_roll_m => longest_roll_m * SI,
         /// Indicated airspeed of the climb: below it, its pitch is reduced.
         climb_kt => climb_mps * KNOT_MPS,
@@ -318,6 +318,8 @@ section! {
         flare_s => flare_s * SI,
         /// The sink rate in which the flare ends.
         touchdown_fpm => touchdown_mps * FOOT_PER_MINUTE_MPS,
+        /// Without a range finder the height over the runway may be off by this.
+        height_uncertainty_ft => height_uncertainty_m * FOOT_M,
         /// Flaps of the take-off, 0 to 1.
         takeoff_flaps => takeoff_flaps * SI,
         /// Flaps of the landing, 0 to 1.

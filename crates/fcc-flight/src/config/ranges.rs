@@ -170,6 +170,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("autopilot.runway.glide_path_deg", 1.0, 10.0),
     ("autopilot.runway.flare_s", 0.5, 10.0),
     ("autopilot.runway.touchdown_fpm", 1.0, 400.0),
+    ("autopilot.runway.height_uncertainty_ft", 0.0, 100.0),
     ("autopilot.runway.takeoff_flaps", 0.0, 1.0),
     ("autopilot.runway.landing_flaps", 0.0, 1.0),
     ("autopilot.runway.brake", 0.0, 1.0),

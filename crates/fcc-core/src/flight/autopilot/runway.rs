@@ -6,7 +6,7 @@
 //! | Roll, Rotate | nose wheel and rudder along the centre line, wings level | elevator neutral, then pitch | full |
 //! | Climb, `GoAround` | bank onto the centre line | pitch, less below the climb's airspeed | full |
 //! | Approach | bank onto the centre line | climb rate of the glide path | airspeed |
-//! | Flare | rudder to the runway's heading, bank against the drift | sink rate by height | closing |
+//! | Flare | rudder to the runway's heading, bank against the drift | sink rate by height | closing; by the altitude, airspeed |
 //! | `RollOut`, Stopped | as in the roll | elevator back, but not in a tail wind | idle, brakes |
 //!
 //! Without power the approach is that of the [glide](super::gliding).
@@ -255,7 +255,7 @@ impl Autopilot {
         let roll_rad = limit_abs(atan(by_bank_mps2 / GRAVITY_MPS2), MOST_FLARE_BANK_RAD);
         let roll_rad = self.heading.led(roll_rad, dt_s);
         let held = self.heading.hold_bank(roll_rad, estimate, schedule, dt_s);
-        if demand.height_m > ALIGNS_M {
+        if demand.height_m > ALIGNS_M + demand.uncertainty_m {
             self.on_runway.rudder = held.rudder;
             return held;
         }
@@ -331,25 +331,25 @@ impl Autopilot {
                 )
             }
             RunwayPhase::Approach | RunwayPhase::Flare => {
+                let flares = demand.phase == RunwayPhase::Flare;
                 let altitude = &mut self.altitude;
                 let vertical = altitude.hold_climb_rate(
                     demand.climb_rate_mps,
                     estimate,
                     &envelope,
-                    if demand.phase == RunwayPhase::Flare {
-                        schedule.brisk()
-                    } else {
-                        schedule
-                    },
+                    if flares { schedule.brisk() } else { schedule },
                     dt_s,
                 );
+                let share = if flares { LOWEST_SHARE } else { 1.0 };
                 let airspeed = ThrottleDemand {
-                    airspeed_mps: envelope.floor_mps(estimate).max(self.targets.airspeed_mps),
+                    airspeed_mps: envelope
+                        .floor_mps(estimate)
+                        .max(share * self.targets.airspeed_mps),
                     climb_rate_mps: vertical.climb_rate_mps,
                     load_factor: 1.0,
                     least_throttle: envelope.least_throttle(estimate.airspeed_mps),
                 };
-                let throttle = if demand.phase == RunwayPhase::Flare {
+                let throttle = if flares && demand.uncertainty_m == 0.0 {
                     closing
                 } else {
                     self.airspeed.step(&airspeed, estimate, dt_s)

@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 
 use super::super::{Observation, metres_per_radian};
 use super::readings::{field_in, force_in, place_in, rates_in, velocity_in};
+use crate::blocks::wrap_pi;
 use crate::flight::Measurements;
 use crate::flight::atmosphere::pressure_altitude_m;
 use crate::framework::{Flags, Reading, Time};
@@ -155,7 +156,7 @@ pub(super) fn difference(of: &Sample, from: &Sample, velocity: [f64; 3]) -> Opti
             let (north, east) = metres_per_radian(from.latitude_rad, from.altitude_m);
             let apart = [
                 (of.latitude_rad - from.latitude_rad) * north,
-                (of.longitude_rad - from.longitude_rad) * east,
+                wrap_pi(of.longitude_rad - from.longitude_rad) * east,
                 from.altitude_m - of.altitude_m,
             ];
             (
@@ -175,4 +176,27 @@ pub(super) fn difference(of: &Sample, from: &Sample, velocity: [f64; 3]) -> Opti
     let apart = (of - from) / (most + SHARE * of.norm().min(from.norm()));
     let are_comparable = dt_s.abs() <= together.as_secs_f64() && apart.norm().is_finite();
     are_comparable.then_some(apart)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flight::inertial::GeodeticPosition;
+
+    /// On the equator, of 6,378,137 m, 2e-6 rad are 12.756 m: 0.638 of 20 m.
+    #[test]
+    fn receivers_on_both_sides_of_180_degrees_are_as_far_apart_as_elsewhere() {
+        let at = |longitude_rad| Sample {
+            sensor: 0,
+            taken: Time::from_nanos(0),
+            observation: Observation::Position(GeodeticPosition {
+                latitude_rad: 0.0,
+                longitude_rad,
+                altitude_m: 0.0,
+            }),
+        };
+        let west = core::f64::consts::PI - 1e-6;
+        let apart = difference(&at(-west), &at(west), [0.0; 3]).unwrap();
+        assert!((apart.y - 0.638).abs() < 1e-3 && apart.x == 0.0, "{apart}");
+    }
 }

@@ -8,7 +8,8 @@ pub struct RunwayConfig {
     /// A take-off from the hand begins with this acceleration, m/s², along the aircraft;
     /// 0: it takes off on its wheels.
     pub launch_mps2: f64,
-    /// A take-off that has not reached it within this way is given up, m.
+    /// A take-off that has not reached it within this way, m, or the
+    /// [time](Self::longest_roll_s) of it, is given up.
     pub longest_roll_m: f64,
     /// Indicated airspeed of the climb, below which its pitch is reduced, m/s.
     pub climb_mps: f64,
@@ -24,6 +25,8 @@ pub struct RunwayConfig {
     pub flare_s: f64,
     /// ... down to this one, m/s.
     pub touchdown_mps: f64,
+    /// Without a range finder the height over the runway may be off by this, m.
+    pub height_uncertainty_m: f64,
     /// Flaps of the take-off, 0..=1.
     pub takeoff_flaps: f64,
     /// Flaps of the landing, 0..=1.
@@ -53,6 +56,12 @@ impl RunwayConfig {
     pub fn is_thrown(&self) -> bool {
         self.launch_mps2 > 0.0
     }
+
+    /// How long the longest roll lasts at constant acceleration, s: without power it has no
+    /// way.
+    pub fn longest_roll_s(&self) -> f64 {
+        2.0 * self.longest_roll_m / self.rotate_mps
+    }
 }
 
 impl Default for RunwayConfig {
@@ -70,7 +79,8 @@ impl Default for RunwayConfig {
             approach_mps: 34.982_222,   // 68 kt
             glide_path_rad: 0.052_360,  // 3°
             flare_s: 4.0,
-            touchdown_mps: 0.203_2, // 40 ft/min
+            touchdown_mps: 0.203_2,      // 40 ft/min
+            height_uncertainty_m: 6.096, // 20 ft
             takeoff_flaps: 0.0,
             landing_flaps: 0.0,
             retractable_gear: false,

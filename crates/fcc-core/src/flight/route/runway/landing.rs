@@ -37,6 +37,9 @@ const COMPARED_BELOW: f64 = 2.0;
 const LONGEST_FLARES: f64 = 3.0;
 const SLOWEST_SHARE: f64 = 0.8;
 const FLOATS_M: f64 = 3.0;
+/// Where the height is uncertain so much of the glide path's sink rate stays: 140 ft/min of
+/// 370, as on glassy water (FAA-H-8083-23, chapter 6: 150).
+const UNCERTAIN_SHARE: f64 = 0.3;
 /// The lowest height of a flare's begin, m.
 const LEAST_FLARE_M: f64 = 1.0;
 /// Back above so many times that height, the landing is given up.
@@ -94,6 +97,7 @@ impl RunwayFlight {
 
     /// On the wheels; a bounce is flared again.
     pub(super) fn roll_out(&mut self, on_wheels: bool) -> Outcome {
+        self.config.height_uncertainty_m = 0.0;
         if !on_wheels && self.demand.height_m > BOUNCES_M && !self.demand.takes_off {
             self.phase = RunwayPhase::Flare;
         }
@@ -181,7 +185,7 @@ impl RunwayFlight {
         let height_m = self.demand.height_m;
         let is_ranged = here.height_m.is_some() && !self.is_range_doubted;
         let is_off = |off_m: f64| {
-            height_m - off_m.max(0.0) < COMPARED_BELOW * self.config.decision_height_m
+            height_m + off_m.min(0.0) < COMPARED_BELOW * self.config.decision_height_m
                 && fabs(off_m) > ALTIMETER_OFF_M
         };
         !is_ranged && height_m >= COMMITTED_M && here.above_receiver_m.is_some_and(is_off)
@@ -190,9 +194,9 @@ impl RunwayFlight {
     pub(super) fn flare(&mut self, here: &OverGround, on_wheels: bool) {
         let config = self.config;
         let height_m = self.demand.height_m.max(0.0);
-        let flared_mps = height_m / config.flare_s + config.touchdown_mps;
-        let sink_mps = self.sink_mps().max(config.touchdown_mps);
-        self.demand.climb_rate_mps = -flared_mps.min(sink_mps);
+        let above_m = (height_m - self.demand.uncertainty_m).max(0.0);
+        let flared_mps = above_m / config.flare_s + self.touchdown_mps();
+        self.demand.climb_rate_mps = -flared_mps.min(self.sink_mps());
         // With a range finder that shows nothing, the ground is far.
         let is_ranged = here.height_m.is_some() && !self.is_range_doubted;
         let is_near = is_ranged && height_m < FLOATS_M && self.may_be_down(here);
@@ -210,13 +214,24 @@ impl RunwayFlight {
 
     /// The sink rate of the glide path, m/s.
     fn sink_mps(&self) -> f64 {
-        self.slope * self.demand.ground_speed_mps
+        (self.slope * self.demand.ground_speed_mps).max(self.config.touchdown_mps)
+    }
+
+    /// The sink rate in which the flare ends, m/s: faster where the height is uncertain, so
+    /// that the wheels touch within a time.
+    fn touchdown_mps(&self) -> f64 {
+        let least_mps = self.config.touchdown_mps;
+        if self.demand.uncertainty_m > 0.0 {
+            least_mps + UNCERTAIN_SHARE * (self.sink_mps() - least_mps)
+        } else {
+            least_mps
+        }
     }
 
     /// The height of the flare's begin, m.
     pub(super) fn flares_m(&self) -> f64 {
-        let slowed_mps = self.sink_mps() - self.config.touchdown_mps;
-        (self.config.flare_s * slowed_mps).max(LEAST_FLARE_M)
+        let slowed_mps = self.sink_mps() - self.touchdown_mps();
+        (self.config.flare_s * slowed_mps).max(LEAST_FLARE_M) + self.demand.uncertainty_m
     }
 
     /// Gives it up: a landing, unless the wheels are on the ground, or a take-off, unless

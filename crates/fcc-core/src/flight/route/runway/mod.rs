@@ -110,6 +110,9 @@ pub struct RunwayDemand {
     pub cross_track_mps: f64,
     /// Of the wheels above the ground, m.
     pub height_m: f64,
+    /// What that may be off in a landing with power, m: until the wheels touch the airspeed is
+    /// held and the nose aligned, so much higher. 0 by a range finder.
+    pub uncertainty_m: f64,
     /// Speed over the ground along the runway, m/s.
     pub ground_speed_mps: f64,
     /// The head wind along it, m/s, as it was before the wheels touched: on them the
@@ -218,6 +221,7 @@ impl RunwayFlight {
                 cross_track_m: 0.0,
                 cross_track_mps: 0.0,
                 height_m: 0.0,
+                uncertainty_m: 0.0,
                 ground_speed_mps: 0.0,
                 head_wind_mps: 0.0,
                 climb_rate_mps: 0.0,

@@ -23,6 +23,8 @@ impl RunwayFlight {
         let config = RunwayConfig {
             approach_mps: airspeed_mps,
             flare_s: FLARE_S.min(config.flare_s),
+            // There is no power for a long one.
+            height_uncertainty_m: 0.0,
             ..config
         };
         let flight = Self::new(RunwayPhase::Approach, runway, config, here.altitude_m);

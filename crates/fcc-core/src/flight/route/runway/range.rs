@@ -24,17 +24,26 @@ impl RunwayFlight {
     }
 
     /// Of the wheels above the ground, m: over the runway by the range finder, unless the
-    /// altitude is lower and the range is doubted.
+    /// altitude is lower and the range is doubted; otherwise by the altitude, from which what
+    /// the altimeter is off the receiver is taken.
     pub(super) fn height_m(&mut self, here: &OverGround, motion: &Motion) -> f64 {
         let by_altitude_m = self.by_altitude_m(here);
         let by_range_m = here.height_m.map(|m| m - self.config.height_on_wheels_m);
         // It is the altimeter that has stepped, not the ground.
         self.ground_above_m = self.ground_above_m.map(|m| m + here.stepped_m);
         self.compare(by_range_m.map(|m| by_altitude_m - m));
-        match by_range_m.filter(|_| self.is_over_runway(motion)) {
+        let by_range_m = by_range_m.filter(|_| self.is_over_runway(motion));
+        let lands = matches!(self.phase, RunwayPhase::Approach | RunwayPhase::Flare);
+        let is_uncertain = lands && by_range_m.is_none();
+        self.demand.uncertainty_m = if is_uncertain {
+            self.config.height_uncertainty_m
+        } else {
+            0.0
+        };
+        match by_range_m {
             Some(by_range_m) if self.is_range_doubted => by_range_m.min(by_altitude_m),
             Some(by_range_m) => by_range_m,
-            None => by_altitude_m,
+            None => by_altitude_m - here.above_receiver_m.unwrap_or(0.0),
         }
     }
 

@@ -23,7 +23,7 @@ schema! {
         Ground = 6,
         /// It has flared, and is not down.
         LongFlare = 7,
-        /// The speed for lift-off is not reached within its way.
+        /// The speed for lift-off is not reached within its way, or the time of it.
         LongRoll = 8,
         /// The aircraft does not stand in the direction of the runway.
         Alignment = 9,
@@ -68,7 +68,8 @@ impl fmt::Display for RunwayReason {
             Self::Ground => "going around: the range finder shows ground near the glide path",
             Self::LongFlare => "going around: flared, and not down",
             Self::LongRoll => {
-                "the take-off is given up: rotate_kt is not reached within longest_roll_m"
+                "the take-off is given up: rotate_kt is not reached within longest_roll_m or the \
+                 time of such a roll; look at the engine, the brakes and the load"
             }
             Self::Alignment => {
                 "no take-off: the heading is not that of the runway; turn the aircraft, or mend \

@@ -153,7 +153,10 @@ impl RunwayFlight {
             RunwayPhase::Roll if is_aside => {
                 self.give_up(RunwayPhase::RollOut, RunwayReason::CentreLine);
             }
-            RunwayPhase::Roll if rolled_m > self.config.longest_roll_m => {
+            RunwayPhase::Roll
+                if rolled_m > self.config.longest_roll_m
+                    || self.phase_s > self.config.longest_roll_s() =>
+            {
                 self.give_up(RunwayPhase::RollOut, RunwayReason::LongRoll);
             }
             RunwayPhase::Roll if here.airspeed_mps >= self.config.rotate_mps => {

@@ -280,6 +280,22 @@ fn a_take_off_that_is_given_up_too_late_flies_on() {
     }
 }
 
+/// 890 ft to 55 kt (handbook of the 172P, 1981, section 5) are 19 s at constant acceleration.
+/// Without power, or without way, it is given up in less than a minute.
+#[test]
+fn a_take_off_that_does_not_reach_its_speed_is_given_up() {
+    use RunwayReason::{LongRoll, None};
+    for (mps, seconds, expected) in [
+        (0.0, 30, None),
+        (0.0, 60, LongRoll),
+        (2.0, 30, None),
+        (2.0, 60, LongRoll),
+    ] {
+        let follower = takes_off(&rolling(mps, mps), seconds * 40);
+        assert_eq!(reason(&follower), Some(expected), "{mps} {seconds}");
+    }
+}
+
 /// Rotates at 29 m/s and 300 m, so far off the line, m, and rolls on, climbs for 12 s over a
 /// switch that is stuck, or has lifted off and is down again.
 #[test]
