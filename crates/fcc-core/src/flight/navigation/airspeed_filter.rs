@@ -24,7 +24,7 @@ const AXIAL_SD: f64 = 0.02;
 const LIFT_SD_RAD: f64 = 0.017_5;
 const SENSOR_SD_MPS: f64 = 0.514;
 /// The correlation time of both models' errors, s: they depend on airspeed, power and load.
-const MODEL_S: f64 = 10.0;
+const MODEL_S: f64 = 5.0;
 /// The lift's, in multiples, while it determines the climb rate over long times.
 const LIFT_BY_ITSELF: f64 = 3.0;
 /// That of an airspeed whose models were wrong for some seconds, m/s.

@@ -13,6 +13,10 @@ pub(super) const DIFFERS_M: f64 = 12.0;
 const COPIED_MPS: f64 = 0.3;
 const FELT_MPS2: f64 = 0.1;
 const FELT_BANKED_MPS2: f64 = 0.5;
+/// What the step of a coarse altimeter, m, adds to both: its filter knows climb rate and bias
+/// the less, 1/s and 1/s².
+const COPIED_PER_STEP: f64 = 0.03;
+const FELT_PER_STEP: f64 = 0.006;
 /// The standard deviation of what it climbs: a barometer's noise, m, and this share of the
 /// error above, which is a limit.
 const LEAST_SD_M: f64 = 1.0;
@@ -69,7 +73,7 @@ impl Coasting {
             ground_m: Some(0.0),
             ground_more_mps,
             first: None,
-            error_mps: COPIED_MPS,
+            error_mps: COPIED_MPS + COPIED_PER_STEP * input.step_m,
             error_m: 0.0,
             lasted_s: 0.0,
         }
@@ -81,7 +85,9 @@ impl Coasting {
         let add = |sum: Option<f64>, per_s: Option<f64>| Some(sum? + per_s? * dt_s);
         self.path_m = add(self.path_m, input.path_mps);
         self.ground_m = add(self.ground_m, input.ground_mps);
-        self.error_mps += (FELT_MPS2 + FELT_BANKED_MPS2 * input.tan_bank.abs()) * dt_s;
+        let felt_mps2 =
+            FELT_MPS2 + FELT_BANKED_MPS2 * input.tan_bank.abs() + FELT_PER_STEP * input.step_m;
+        self.error_mps += felt_mps2 * dt_s;
         self.error_m += self.error_mps * dt_s;
         self.lasted_s += dt_s;
         if self.first.is_none() {

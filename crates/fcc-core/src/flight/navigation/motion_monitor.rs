@@ -15,7 +15,7 @@ use crate::flight::{Attitude, BodyRates};
 /// gyroscope before calibration, 0.5 °/s).
 const FOLLOWS_RADPS: f64 = 0.04;
 /// At first with this over the time that was followed, since the bias is not known yet.
-const FIRST_RAD: f64 = 2.0;
+const FIRST_RAD: f64 = 1.0;
 const MOST_LEARNED_RADPS: f64 = 0.035;
 /// The same while the rates are doubted: they agree when their offset is that of
 /// some seconds.
@@ -126,6 +126,11 @@ impl MotionMonitor {
 
     pub(super) const fn doubt(&self) -> Option<MotionDoubt> {
         self.doubt
+    }
+
+    /// The learned bias of the rates, rad/s.
+    pub(super) const fn rate_bias_radps(&self) -> [f64; 3] {
+        self.offset_radps
     }
 
     /// Whether one of them may be wrong.

@@ -34,7 +34,7 @@ impl RunwayFlight {
         self.compare(by_range_m.map(|m| by_altitude_m - m));
         let by_range_m = by_range_m.filter(|_| self.is_over_runway(motion));
         let lands = matches!(self.phase, RunwayPhase::Approach | RunwayPhase::Flare);
-        let is_uncertain = lands && by_range_m.is_none();
+        let is_uncertain = lands && here.height_m.is_none();
         self.demand.uncertainty_m = if is_uncertain {
             self.config.height_uncertainty_m
         } else {
@@ -43,6 +43,7 @@ impl RunwayFlight {
         match by_range_m {
             Some(by_range_m) if self.is_range_doubted => by_range_m.min(by_altitude_m),
             Some(by_range_m) => by_range_m,
+            None if here.height_m.is_some() => by_altitude_m,
             None => by_altitude_m - here.above_receiver_m.unwrap_or(0.0),
         }
     }
