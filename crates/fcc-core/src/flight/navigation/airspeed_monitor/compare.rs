@@ -9,17 +9,17 @@ use super::{ALONE_S, AirspeedMonitor, DIFFERS_RATIO, MonitorInput, SLOWER_LAG_S}
 use crate::blocks::{LowPass, limit};
 
 /// A difference of that share of the reference airspeed, of 3.5 standard deviations
-/// and of 10 times the gusts must last for 2.5 s.
+/// and of 10 times the gusts must last for 2 s.
 const DIFFERS_SDS: f64 = 2.5;
 const DIFFERS_GUSTS: f64 = 10.0;
-const DOUBTED_AFTER_S: f64 = 2.5;
+const DOUBTED_AFTER_S: f64 = 2.0;
 /// The forces vote for the sensor if they put the airspeed more than this share
 /// of the way towards it: then the wind has changed, after this time in s.
 const SENSOR_SHARE: f64 = 0.45;
 const WIND_CHANGED_AFTER_S: f64 = 2.0;
 /// An excluded sensor is used again when it has agreed for 10 s longer than not, another one of
 /// the same quantity for 1 s: within 7 % of the reference airspeed, 2 standard deviations or 3
-/// times the gusts, or because both forces side with it and the estimate has drifted.
+/// times the gusts, of the estimate or, since that may have drifted, of what both forces say.
 const AGREES_RATIO: f64 = 0.07;
 const AGREES_SDS: f64 = 2.0;
 const AGREES_GUSTS: f64 = 3.0;
@@ -71,14 +71,13 @@ impl AirspeedMonitor {
         for ((vote, lag), of) in vote.iter_mut().zip(&mut self.vote).zip(votes) {
             *vote = lag.step(of, dt_s);
         }
-        if let Some(doubt) = self.doubt {
-            let both = vote.iter().all(|vote| sides_with(*vote, differs));
-            let sensor = (sensor_mps, source, differs);
-            self.compare_doubted(bank, input, doubt, sensor, both, dt_s);
-            return;
-        }
         if input.altimeter_is_doubted {
-            // Lift and path are not measured independently then.
+            // The path comes from the lift then: it is no second force.
+            vote = [vote[0]; 2];
+        }
+        if let Some(doubt) = self.doubt {
+            let sensor = (sensor_mps, source, differs);
+            self.compare_doubted(bank, input, doubt, sensor, vote, dt_s);
             return;
         }
         let limit_mps = self.limit_mps(&bank.older);
@@ -164,15 +163,15 @@ impl AirspeedMonitor {
         input: &MonitorInput,
         doubt: Doubt,
         (sensor_mps, source, differs): (f64, u8, f64),
-        both_side_with_it: bool,
+        votes: [f64; 2],
         dt_s: f64,
     ) {
         let filter_mps = bank.older.airspeed_mps();
         let agrees_mps = (AGREES_RATIO * self.prior.reference_mps)
             .max(AGREES_SDS * bank.older.sd_mps())
             .max(AGREES_GUSTS * libm::sqrt(self.gusts_mps2));
-        let agrees =
-            differs.abs() < agrees_mps || both_side_with_it || self.agrees_with_ground(agrees_mps);
+        let by_forces = votes.iter().all(|vote| (differs - vote).abs() < agrees_mps);
+        let agrees = differs.abs() < agrees_mps || by_forces || self.agrees_with_ground(agrees_mps);
         let step_s = if agrees { dt_s } else { -dt_s };
         self.agrees_s = (self.agrees_s + step_s).max(0.0);
         let needed_s = if source == doubt.source {
