@@ -28,7 +28,10 @@ from fcc_hil.state import State
 from fcc_hil.units import FT_TO_M, KT_TO_MPS
 
 SEED = 2112
-_FAULT_S = 28.0
+_FAULT_S = 33.0
+"""28 s after engaging."""
+_PORT_S = 28.0
+"""When a static port is blocked."""
 _END_S = 75.0
 _VS_KT = 47.0
 """Of the c172p, flaps up (Pilot's Operating Handbook, Cessna 172P 1981, section 5)."""
@@ -73,6 +76,7 @@ def _fly(
     turn_every_s: float = math.inf,
     seed: int = SEED,
     throttle_is_measured: bool = False,
+    fault_s: float = _FAULT_S,
 ) -> _Flown:
     """Hold heading and altitude from 5 s on; at the fault's time change the altitude.
 
@@ -100,7 +104,7 @@ def _fly(
         velocity = receiver.read(state) if receiver else None
         if velocity is not None:
             sample.north_mps, sample.east_mps, sample.down_mps = velocity
-        if not commanded and plant.time_s >= _FAULT_S:
+        if not commanded and plant.time_s >= fault_s:
             machine.command(altitude_m=start_m + climb_ft * FT_TO_M)
             commanded = True
         if plant.time_s >= turns_s:
@@ -184,8 +188,8 @@ def test_an_airspeed_that_decays_is_no_blocked_static_port(severity: int) -> Non
 
 def _block_static(faults: Faults) -> None:
     """Trap the static pressure; the transducers keep their noise."""
-    faults.blocked_static(after=_FAULT_S)
-    faults.noise(altitude("ft"), sigma=2.5, after=_FAULT_S)
+    faults.blocked_static(after=_PORT_S)
+    faults.noise(altitude("ft"), sigma=2.5, after=_PORT_S)
 
 
 @pytest.mark.parametrize("climb_ft", [1_000.0, -1_000.0, 300.0])
@@ -194,7 +198,7 @@ def test_a_static_port_blocked_in_a_climb_or_descent_is_found(
     climb_ft: float, receiver: Receiver | None
 ) -> None:
     readings = ReceiverReadings(receiver, SEED) if receiver else None
-    flown = _fly(_block_static, climb_ft, receiver=readings, end_s=110.0)
+    flown = _fly(_block_static, climb_ft, receiver=readings, end_s=110.0, fault_s=_PORT_S)
     assert flown.true_kt.min() > 1.2 * _VS_KT
     assert flown.true_kt.max() < _VNE_KT
     assert np.abs(flown.used_ft - flown.true_ft).max() < 200.0

@@ -8,7 +8,7 @@ use super::super::scalar_update::squared;
 use super::{ALONE_S, AirspeedMonitor, DIFFERS_RATIO, MonitorInput, SLOWER_LAG_S};
 use crate::blocks::{LowPass, limit};
 
-/// A difference of that share of the reference airspeed, of 3.5 standard deviations
+/// A difference of that share of the reference airspeed, of 2.5 standard deviations
 /// and of 10 times the gusts must last for 2 s.
 const DIFFERS_SDS: f64 = 2.5;
 const DIFFERS_GUSTS: f64 = 10.0;
