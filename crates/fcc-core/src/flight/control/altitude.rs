@@ -439,7 +439,7 @@ mod tests {
                 .map(|_| altitude.hold_climb_rate(0.0, &estimate, &envelope, schedule, 0.025));
             commands.fold(0.0, |least: f64, command| least.min(command.pitch_rad))
         };
-        let sink_rad = libm::asin(envelope.max_sink_mps / 20.578);
+        let sink_rad = asin(envelope.max_sink_mps / 20.578);
         assert!((lowest(AirspeedSource::Forces) + sink_rad).abs() < 1e-6);
         assert!((lowest(AirspeedSource::Sensor) - envelope.min_pitch_rad).abs() < 1e-6);
     }

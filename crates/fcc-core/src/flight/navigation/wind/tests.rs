@@ -56,7 +56,7 @@ fn the_wind_and_the_airspeed_follow_from_turns() {
 
 /// The error of the sensor over its airspeed, and its standard deviation.
 fn scale(wind: &Wind) -> (f64, f64) {
-    (wind.x[2], libm::sqrt(wind.covariance[2][2]))
+    (wind.x[2], sqrt(wind.covariance[2][2]))
 }
 
 /// A sensor that reads 10 % too much or too little.
