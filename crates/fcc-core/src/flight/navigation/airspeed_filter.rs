@@ -56,9 +56,9 @@ const THRUST_WALK: f64 = 0.003;
 const ANGLE_WALK_RAD: f64 = 0.000_87;
 /// The share of the gusts' variance that acts along the path.
 const GUSTS_ALONG: f64 = 0.3;
-/// What the integrated acceleration lacks at first: 0.6° of pitch or 10 mg, one sd; and
+/// What the integrated acceleration lacks at first: 1° of pitch and 10 mg together; and
 /// its random walk, per √s, m/s².
-const BIAS_SD_MPS2: f64 = 0.1;
+const BIAS_SD_MPS2: f64 = 0.2;
 const BIAS_WALK_MPS2: f64 = 0.002;
 pub(super) const MIN_AIRSPEED_MPS: f64 = 5.0;
 
