@@ -39,7 +39,7 @@ use crate::framework::Time;
 /// times the resolution of a coarse attitude sensor.
 const TURNED_RAD: f64 = 0.087;
 /// The climb that a barometer must show, m.
-const CLIMBED_M: f64 = 30.0;
+const CLIMBED_M: f64 = 15.0;
 /// Changes of bank and pitch that change load and drag, rad (10°, 4°): well
 /// beyond those of a trimmed aircraft in calm air.
 const BANKED_RAD: f64 = 0.175;
