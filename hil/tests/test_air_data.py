@@ -28,17 +28,19 @@ from fcc_hil.state import State
 from fcc_hil.units import FT_TO_M, KT_TO_MPS
 
 SEED = 2112
-_FAULT_S = 28.0
+_FAULT_S = 33.0
+"""28 s after engaging."""
+_PORT_S = 28.0
+"""When a static port is blocked."""
 _END_S = 75.0
 _VS_KT = 47.0
 """Of the c172p, flaps up (Pilot's Operating Handbook, Cessna 172P 1981, section 5)."""
 _VNE_KT = 158.0
 
 _TUBE = "it rises and falls with the altitude: the pitot tube may be blocked"
-_STATIC = "it changes against the height, and the altitude stands: the static port may be blocked"
+_NO_ALTIMETER = "altitude contradicts the other sensors and is not used"
 _TOO_LOW = "it is lower than forces and motion allow"
 _TOO_HIGH = "it is higher than forces and motion allow"
-_WIND = "the velocity over the ground and the wind contradict it"
 
 Break = Callable[[Faults], object]
 
@@ -74,6 +76,7 @@ def _fly(
     turn_every_s: float = math.inf,
     seed: int = SEED,
     throttle_is_measured: bool = False,
+    fault_s: float = _FAULT_S,
 ) -> _Flown:
     """Hold heading and altitude from 5 s on; at the fault's time change the altitude.
 
@@ -101,7 +104,7 @@ def _fly(
         velocity = receiver.read(state) if receiver else None
         if velocity is not None:
             sample.north_mps, sample.east_mps, sample.down_mps = velocity
-        if not commanded and plant.time_s >= _FAULT_S:
+        if not commanded and plant.time_s >= fault_s:
             machine.command(altitude_m=start_m + climb_ft * FT_TO_M)
             commanded = True
         if plant.time_s >= turns_s:
@@ -185,50 +188,21 @@ def test_an_airspeed_that_decays_is_no_blocked_static_port(severity: int) -> Non
 
 def _block_static(faults: Faults) -> None:
     """Trap the static pressure; the transducers keep their noise."""
-    faults.blocked_static(after=_FAULT_S)
-    faults.noise(altitude("ft"), sigma=2.5, after=_FAULT_S)
+    faults.blocked_static(after=_PORT_S)
+    faults.noise(altitude("ft"), sigma=2.5, after=_PORT_S)
 
 
-@pytest.mark.parametrize(
-    ("climb_ft", "doubted_s", "error_ft"),
-    [
-        (1_000.0, 7.0, 200.0),
-        (-1_000.0, 7.0, 200.0),
-        (300.0, 7.0, 200.0),
-        (0.0, 30.0, 300.0),
-    ],
-)
+@pytest.mark.parametrize("climb_ft", [1_000.0, -1_000.0, 300.0])
 @pytest.mark.parametrize("receiver", [None, Receiver()], ids=["alone", "receiver"])
-def test_a_blocked_static_port_is_doubted_and_flown_on_without(
-    climb_ft: float, doubted_s: float, error_ft: float, receiver: Receiver | None
+def test_a_static_port_blocked_in_a_climb_or_descent_is_found(
+    climb_ft: float, receiver: Receiver | None
 ) -> None:
     readings = ReceiverReadings(receiver, SEED) if receiver else None
-    flown = _fly(_block_static, climb_ft, receiver=readings, end_s=110.0)
+    flown = _fly(_block_static, climb_ft, receiver=readings, end_s=110.0, fault_s=_PORT_S)
     assert flown.true_kt.min() > 1.2 * _VS_KT
     assert flown.true_kt.max() < _VNE_KT
-    assert flown.is_doubted.any()
-    assert flown.time_s[flown.is_doubted][0] - _FAULT_S < doubted_s
-    assert np.abs(flown.used_ft - flown.true_ft).max() < error_ft
-    climbed_ft = flown.true_ft[-1] - flown.true_ft[0]
-    assert abs(climbed_ft - climb_ft) < error_ft
-    # In level flight, where it changes slowly, it may be taken for a wrong airspeed first.
-    assert flown.doubts()[-1] == _STATIC
-    assert climb_ft == 0.0 or flown.doubts() == [_STATIC]
-
-
-@pytest.mark.parametrize(("seed", "severity"), [(5003, 0), (5007, 2), (5002, 3)])
-def test_a_static_port_that_is_blocked_in_level_flight_is_found_by_the_airspeed(
-    seed: int, severity: int
-) -> None:
-    """The aircraft drifts off so slowly that only the airspeed tells.
-
-    Not every flight is protected: docs/envelope.md has the figures.
-    """
-    weather = Weather(turbulence_severity=severity)
-    flown = _fly(_block_static, weather=weather, end_s=110.0, seed=seed)
-    assert np.abs(flown.used_ft - flown.true_ft).max() < 300.0
-    assert abs(flown.true_ft[-1] - flown.true_ft[0]) < 150.0
-    assert flown.doubts()[-1] == _STATIC
+    assert np.abs(flown.used_ft - flown.true_ft).max() < 200.0
+    assert any(_NO_ALTIMETER in text for text in flown.events)
 
 
 def test_a_sensor_that_agrees_again_is_taken_again() -> None:
@@ -251,29 +225,6 @@ def test_a_headwind_that_falls_by_20_kt_in_10_s_is_no_fault(receiver: Receiver |
 
 
 _WINDY = Weather(wind_from_deg=240.0, wind_kt=20.0, turbulence_severity=2)
-
-
-@pytest.mark.parametrize("per_s", [0.1, -0.1])
-def test_a_slow_drift_is_found_by_the_velocity_over_the_ground_and_the_wind(per_s: float) -> None:
-    """In straight flight a wind that changes looks the same: the turns tell."""
-    flown = [
-        _fly(
-            lambda faults: faults.drift(airspeed, per_s=per_s, after=100.0),
-            weather=_WINDY,
-            receiver=ReceiverReadings(Receiver(), SEED) if is_measured else None,
-            turn_every_s=60.0,
-            end_s=330.0,
-        )
-        for is_measured in (False, True)
-    ]
-    alone, measured = flown
-    assert not alone.is_doubted.any(), "forces learn it as if it were the aircraft's"
-    doubted_s = measured.time_s[measured.is_doubted][0]
-    assert abs(per_s) * (doubted_s - 100.0) < 20.0
-    later = measured.time_s > doubted_s + 15.0
-    assert np.abs(measured.used_kt - measured.true_kt)[later].mean() < 10.0
-    assert measured.is_doubted[-1]
-    assert measured.doubts() == [_WIND]
 
 
 class _WrongReceiver(ReceiverReadings):
@@ -324,16 +275,16 @@ def test_turbulence_is_no_fault(severity: int) -> None:
     [(200024, 211, Fault("engine out", 17.0, None)), (200026, 108, None)],
     ids=["engine out", "turbulence"],
 )
-def test_a_healthy_airspeed_that_is_doubted_is_kept_above_the_stall(
+def test_a_healthy_airspeed_is_used_and_kept_above_the_stall(
     seed: int, number: int, fault: Fault | None
 ) -> None:
     """An engine that fails while the throttle moves, and turbulence near the stall.
 
-    In the first it is not doubted any more.
+    Neither excludes the sensor.
     """
     flown, _ = fly(replace(draw(number, seed, Bounds()), receiver=None, fault=fault))
     doubted = any("is doubted: it is lower" in event.text for event in flown.events)
-    assert doubted == (fault is None)
+    assert not doubted
     assert flown.verdict.figures["airspeed_over_stall"] > 1.0
 
 

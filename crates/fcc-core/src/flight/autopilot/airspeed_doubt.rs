@@ -12,11 +12,11 @@ use crate::framework::{Flags, Notice, Time};
 
 /// The numbers of notices: one for each reason, with the sensor's number in the
 /// lowest bits.
-const REASONS: [(u8, DoubtReason, &str); 7] = [
+const REASONS: [(u8, DoubtReason, &str); 6] = [
     (
         0x20,
-        DoubtReason::Wind,
-        "the velocity over the ground and the wind contradict it",
+        DoubtReason::Ground,
+        "the speed over the ground contradicts it",
     ),
     (
         0x40,
@@ -32,11 +32,6 @@ const REASONS: [(u8, DoubtReason, &str); 7] = [
         0x80,
         DoubtReason::TooLow,
         "it is lower than forces and motion allow",
-    ),
-    (
-        0xa0,
-        DoubtReason::BlockedStatic,
-        "it changes against the height, and the altitude stands: the static port may be blocked",
     ),
     (
         0xc0,

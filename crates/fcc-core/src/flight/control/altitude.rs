@@ -4,7 +4,7 @@ use libm::{asin, cos, sin, tan};
 
 use super::{Envelope, MAX_TURN_BANK_RAD, SURFACE, Schedule, SpeedLimits};
 use crate::blocks::{LowPass, Pid, PidConfig, RateLimit, SquareRootProfile, limit, limit_abs};
-use crate::flight::navigation::Estimate;
+use crate::flight::navigation::{AirspeedSource, Estimate};
 use crate::units::GRAVITY_MPS2;
 
 /// Gains of the altitude loop; surface gains hold at the reference airspeed.
@@ -325,7 +325,17 @@ impl AltitudeLoop {
 
     /// Limits the pitch to that at which the airspeed stays within its limits.
     fn limit_pitch(&mut self, estimate: &Estimate, envelope: &Envelope, dt_s: f64) {
-        let limits = self.speed.step(estimate, envelope, dt_s);
+        let mut limits = self.speed.step(estimate, envelope, dt_s);
+        if estimate.airspeed_source == AirspeedSource::Forces {
+            // An estimate that is wrong neither dives nor zooms: it leads the path no further
+            // than what may be commanded.
+            let to = |climb_rate_mps: f64| {
+                let path = flight_path(climb_rate_mps, estimate);
+                estimate.pitch_rad + path - flight_path(estimate.climb_rate_mps, estimate)
+            };
+            limits.max_rad = limits.max_rad.max(to(-envelope.max_sink_mps));
+            limits.min_rad = limits.min_rad.min(to(envelope.max_climb_mps));
+        }
         let (least, most) = (envelope.min_pitch_rad, envelope.max_pitch_rad);
         self.pitch.set_output_limits(
             limit(limits.min_rad, least, most),
@@ -403,4 +413,34 @@ fn turn_load(estimate: &Estimate) -> f64 {
 fn flight_path(climb_rate_mps: f64, estimate: &Estimate) -> f64 {
     let speed = estimate.true_airspeed_mps.max(1.0);
     asin(limit_abs(climb_rate_mps / speed, 0.7))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Level at 100 kt, and the airspeed by forces is 60 kt too low: the nose is lowered for the
+    /// sink rate that may be commanded, 965 ft/min or 13.8° at the estimate, from a sensor's to
+    /// the smallest pitch.
+    #[test]
+    fn an_airspeed_by_forces_leads_to_no_more_sink_than_is_commanded() {
+        let envelope = Envelope::default();
+        let lowest = |airspeed_source| {
+            let estimate = Estimate {
+                airspeed_mps: 20.578,
+                true_airspeed_mps: 20.578,
+                airspeed_source,
+                ..Estimate::default()
+            };
+            let mut altitude = AltitudeLoop::new(AltitudeConfig::default(), &envelope);
+            let schedule = Schedule::at(51.444, 51.444);
+            altitude.engage(0.0, &estimate, schedule);
+            let commands = (0..400)
+                .map(|_| altitude.hold_climb_rate(0.0, &estimate, &envelope, schedule, 0.025));
+            commands.fold(0.0, |least: f64, command| least.min(command.pitch_rad))
+        };
+        let sink_rad = asin(envelope.max_sink_mps / 20.578);
+        assert!((lowest(AirspeedSource::Forces) + sink_rad).abs() < 1e-6);
+        assert!((lowest(AirspeedSource::Sensor) - envelope.min_pitch_rad).abs() < 1e-6);
+    }
 }

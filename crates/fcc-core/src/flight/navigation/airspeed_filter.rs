@@ -23,6 +23,8 @@ const LIFT_ANGLE_RAD: f64 = 0.067;
 const AXIAL_SD: f64 = 0.02;
 const LIFT_SD_RAD: f64 = 0.017_5;
 const SENSOR_SD_MPS: f64 = 0.514;
+/// The correlation time of both models' errors, s: they depend on airspeed, power and load.
+const MODEL_S: f64 = 5.0;
 /// The lift's, in multiples, while it determines the climb rate over long times.
 const LIFT_BY_ITSELF: f64 = 3.0;
 /// That of an airspeed whose models were wrong for some seconds, m/s.
@@ -47,30 +49,27 @@ const UPDRAUGHT_SHARE: f64 = 0.2;
 const GUST_S: f64 = 8.0;
 /// Random walks, per √s: of the airspeed in m/s, in upsets too, of the offset, of the thrust
 /// ratio, of the zero of the angle of attack in rad.
-const AIRSPEED_WALK_MPS: f64 = 0.3;
+const AIRSPEED_WALK_MPS: f64 = 0.2;
 const UPSET_WALK_MPS: f64 = 2.0;
 const OFFSET_WALK: f64 = 0.000_5;
 const THRUST_WALK: f64 = 0.003;
 const ANGLE_WALK_RAD: f64 = 0.000_87;
 /// The share of the gusts' variance that acts along the path.
 const GUSTS_ALONG: f64 = 0.3;
+/// What the integrated acceleration lacks at first: 0.6° of pitch or 10 mg, one sd; and
+/// its random walk, per √s, m/s².
+const BIAS_SD_MPS2: f64 = 0.1;
+const BIAS_WALK_MPS2: f64 = 0.002;
 pub(super) const MIN_AIRSPEED_MPS: f64 = 5.0;
 
 /// The state: indicated airspeed V in m/s, vertical wind w in m/s, offset of
 /// the axial force, thrust ratio, angle of attack of zero lift in rad, angle of
-/// attack for 1 g in rad.
-const N: usize = 6;
+/// attack for 1 g in rad, and what the integrated acceleration lacks, in m/s²: the biases
+/// of the attitude and of the accelerometers.
+const N: usize = 7;
 type State = super::scalar_update::State<N>;
-/// The last four of them.
+/// The four of them that are models of forces.
 type Models = [f64; 4];
-
-/// The difference of the airspeed that a model has from the filter's, and the
-/// weight of it.
-#[derive(Clone, Copy, Debug, Default)]
-struct Vote {
-    differs_mps: f64,
-    weight: f64,
-}
 
 /// An extended Kalman filter. The acceleration along the path is integrated;
 /// two models of forces correct it, both with q = (V/V₀)²:
@@ -90,8 +89,10 @@ pub(super) struct AirspeedFilter {
     /// The models as they were when the filter was copied.
     kept: State,
     is_copy: bool,
-    axial: Vote,
-    lift: Vote,
+    /// How far the airspeed is from this one by each force alone, with the models as they were
+    /// when the filter was copied, m/s; none where an engine has failed.
+    axial_mps: Option<f64>,
+    lift_mps: f64,
     pub(super) wind: Wind,
 }
 
@@ -106,19 +107,19 @@ impl AirspeedFilter {
             Some(learned) => learned::models(learned),
             None => Self::unlearned(prior, airspeed_mps, sample),
         };
-        let x = [airspeed_mps, 0.0, offset, thrust, zero_lift_rad, angle];
+        let x = [airspeed_mps, 0.0, offset, thrust, zero_lift_rad, angle, 0.0];
         let mut filter = Self {
             prior,
             x,
             covariance: [[0.0; N]; N],
             kept: x,
             is_copy: false,
-            axial: Vote::default(),
-            lift: Vote::default(),
+            axial_mps: None,
+            lift_mps: 0.0,
             wind: Wind::new(),
         };
         let [offset, thrust, zero_lift, angle] = sds;
-        let sds = [sd_mps, 1.0, offset, thrust, zero_lift, angle];
+        let sds = [sd_mps, 1.0, offset, thrust, zero_lift, angle, BIAS_SD_MPS2];
         add_variance(&mut filter.covariance, sds.map(squared));
         filter.learn_offset(sample);
         filter
@@ -166,7 +167,7 @@ impl AirspeedFilter {
         self.x[4] + self.x[5] * sample.up * squared(slower)
     }
 
-    fn climb_rate_by(&self, [.., zero, angle]: State, sample: &ForceSample) -> f64 {
+    fn climb_rate_by(&self, [.., zero, angle, _]: State, sample: &ForceSample) -> f64 {
         let alpha = zero + angle * sample.up * squared(self.slower());
         self.at_mps() / sample.sqrt_density * sample.upward.sin_path(alpha)
     }
@@ -194,8 +195,8 @@ impl AirspeedFilter {
     /// Takes the models that it remembers, without vertical wind: what was
     /// learned since came from an altimeter that is doubted.
     pub(super) fn restore_models(&mut self) {
-        let [.., offset, thrust, zero, angle] = self.kept;
-        self.x = [self.x[0], 0.0, offset, thrust, zero, angle];
+        let [.., offset, thrust, zero, angle, bias] = self.kept;
+        self.x = [self.x[0], 0.0, offset, thrust, zero, angle, bias];
         self.covariance[0][0] += squared(RESTORED_SD_MPS);
     }
 
@@ -225,14 +226,14 @@ impl AirspeedFilter {
 
     /// Integrates an acceleration along the path, of indicated airspeed.
     pub(super) fn accelerate(&mut self, acceleration_mps2: f64, dt_s: f64) {
-        self.x[0] += acceleration_mps2 * dt_s;
+        self.x[0] += (acceleration_mps2 + self.x[6]) * dt_s;
     }
 
     /// The uncertainty of `dt_s` seconds, then the corrections by both models.
     pub(super) fn correct(&mut self, sample: &ForceSample, dt_s: f64) {
         self.predict(sample.gusts_mps, dt_s);
         self.correct_by_axial_force(sample, dt_s);
-        self.correct_by_lift(sample);
+        self.correct_by_lift(sample, dt_s);
     }
 
     /// Corrects by a sensor's airspeed.
@@ -241,22 +242,17 @@ impl AirspeedFilter {
         update(
             &mut self.x,
             &mut self.covariance,
-            [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
             by,
             squared(SENSOR_SD_MPS),
         );
     }
 
-    /// How far the airspeed is from this one by the forces alone, with the
-    /// models as they were when the filter was copied, m/s.
-    pub(super) fn vote_mps(&self) -> f64 {
-        let Self { axial, lift, .. } = self;
-        let weight = axial.weight + lift.weight;
-        if weight > 0.0 {
-            (axial.weight * axial.differs_mps + lift.weight * lift.differs_mps) / weight
-        } else {
-            0.0
-        }
+    /// How far the airspeed is from this one by axial force and by lift, each alone and with
+    /// the models as they were when the filter was copied, m/s. A force that says nothing says
+    /// the sensor's `differs_mps`.
+    pub(super) fn by_forces_mps(&self, differs_mps: f64) -> [f64; 2] {
+        [self.axial_mps.unwrap_or(differs_mps), self.lift_mps]
     }
 
     /// `dt_s` seconds in an attitude for which the models do not hold.
@@ -266,28 +262,38 @@ impl AirspeedFilter {
 
     fn predict(&mut self, gusts_mps: f64, dt_s: f64) {
         let fades = exp(-dt_s / GUST_S);
+        let bias = self.covariance[6];
+        for (with_airspeed, with_bias) in self.covariance[0].iter_mut().zip(bias) {
+            *with_airspeed += with_bias * dt_s;
+        }
+        for [with_airspeed, .., with_bias] in &mut self.covariance {
+            *with_airspeed += *with_bias * dt_s;
+        }
         self.x[1] *= fades;
         self.covariance[1] = self.covariance[1].map(|p| p * fades);
         for [_, wind, ..] in &mut self.covariance {
             *wind *= fades;
         }
         let gusts = squared(gusts_mps);
+        // A copy does not learn: what it would learn comes from itself.
+        let walks = if self.is_copy { 0.0 } else { 1.0 };
         add_variance(
             &mut self.covariance,
             [
                 (squared(AIRSPEED_WALK_MPS) + GUSTS_ALONG * 2.0 * gusts / GUST_S) * dt_s,
                 (1.0 - fades * fades) * gusts,
-                squared(OFFSET_WALK) * dt_s,
-                squared(THRUST_WALK) * dt_s,
-                squared(ANGLE_WALK_RAD) * dt_s,
+                walks * squared(OFFSET_WALK) * dt_s,
+                walks * squared(THRUST_WALK) * dt_s,
+                walks * squared(ANGLE_WALK_RAD) * dt_s,
                 0.0,
+                squared(BIAS_WALK_MPS2) * dt_s,
             ],
         );
     }
 
     fn correct_by_axial_force(&mut self, sample: &ForceSample, dt_s: f64) {
         let Some((thrust, unknown)) = sample.thrust else {
-            self.axial = Vote::default();
+            self.axial_mps = None;
             return;
         };
         let slower = self.slower();
@@ -302,11 +308,7 @@ impl AirspeedFilter {
         let per_mps = per_mps.min(-1e-3);
         let kept = sample.forward - self.axial_of(self.kept, thrust, sample.up);
         let is_explained = kept.abs() < NO_LONGER_THE_SAME;
-        self.axial = Vote {
-            differs_mps: kept / per_mps,
-            weight: f64::from(u8::from(is_explained)) * squared(per_mps)
-                / (squared(AXIAL_SD) + THRUST_NOISE * unexplained),
-        };
+        self.axial_mps = is_explained.then_some(kept / per_mps);
         let by = sample.forward - self.axial_of(self.x, thrust, sample.up);
         if by.abs() > ENGINE_CHANGE {
             let (place, per_force) = self.changed_by_engine(by, thrust * slower);
@@ -321,9 +323,9 @@ impl AirspeedFilter {
         update(
             &mut self.x,
             &mut self.covariance,
-            [per_mps, 0.0, 1.0, thrust * slower, 0.0, induced],
+            [per_mps, 0.0, 1.0, thrust * slower, 0.0, induced, 0.0],
             by,
-            squared(AXIAL_SD) + THRUST_NOISE * unexplained,
+            correlated(squared(AXIAL_SD) + THRUST_NOISE * unexplained, dt_s),
         );
     }
 
@@ -340,33 +342,29 @@ impl AirspeedFilter {
     /// Force along x over weight, with the models of `by` and the present
     /// airspeed.
     fn axial_of(&self, by: State, thrust: f64, load: f64) -> f64 {
-        let [_, _, offset, ratio, _, angle] = by;
+        let [_, _, offset, ratio, _, angle, _] = by;
         let slower = self.slower();
         offset + ratio * thrust * slower - PARASITE_DRAG_RATIO / squared(slower)
             + (angle - INDUCED_DRAG_RATIO) * squared(load * slower)
     }
 
-    fn correct_by_lift(&mut self, sample: &ForceSample) {
+    fn correct_by_lift(&mut self, sample: &ForceSample, dt_s: f64) {
         let true_mps = self.at_mps() / sample.sqrt_density;
         let lift = sample.up * squared(self.slower());
         let upward = sample.upward;
         let share = upward.share;
         // In the scale of pitch: with the wings level a difference of pitch.
-        let differs = |[_, wind, _, _, zero, angle]: State| {
+        let differs = |[_, wind, _, _, zero, angle, _]: State| {
             let along = upward.angle_of_attack_rad((sample.climb_rate_mps - wind) / true_mps);
             share * (along - zero - angle * lift)
         };
         let path = limit_abs((sample.climb_rate_mps - self.x[1]) / true_mps, 0.5);
         let per_mps = -(path + 2.0 * share * self.x[5] * lift) / self.at_mps();
-        let gusts = squared(sample.gusts_mps) + 0.3;
         // A horizontal wind that changes and a vertical one look alike to the
         // filter. The vote is without one, so that it is for a sensor which
         // explains the lift by itself.
-        let by_kept = differs([0.0, 0.0, 0.0, 0.0, self.kept[4], self.kept[5]]);
-        self.lift = Vote {
-            differs_mps: by_kept / per_mps.min(-1e-3),
-            weight: squared(per_mps) / (gusts / squared(true_mps) + squared(LIFT_SD_RAD)),
-        };
+        let by_kept = differs([0.0, 0.0, 0.0, 0.0, self.kept[4], self.kept[5], 0.0]);
+        self.lift_mps = by_kept / per_mps.min(-1e-3);
         let by = differs(self.x);
         if by.abs() > UPDRAUGHT_RAD {
             self.covariance[1][1] += UPDRAUGHT_SHARE * squared(by * true_mps);
@@ -379,9 +377,9 @@ impl AirspeedFilter {
         update(
             &mut self.x,
             &mut self.covariance,
-            [per_mps, -1.0 / true_mps, 0.0, 0.0, share, share * lift],
+            [per_mps, -1.0 / true_mps, 0.0, 0.0, share, share * lift, 0.0],
             by,
-            squared(sd_rad),
+            correlated(squared(sd_rad), dt_s),
         );
     }
 
@@ -393,6 +391,12 @@ impl AirspeedFilter {
     fn slower(&self) -> f64 {
         self.prior.reference_mps / self.at_mps()
     }
+}
+
+/// The variance of one of the samples, `dt_s` apart, whose error of this variance is the same
+/// over [`MODEL_S`].
+fn correlated(variance: f64, dt_s: f64) -> f64 {
+    variance * (2.0 * MODEL_S / dt_s).max(1.0)
 }
 
 #[cfg(test)]

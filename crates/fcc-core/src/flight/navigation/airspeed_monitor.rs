@@ -1,7 +1,7 @@
 //! Whether the airspeed sensor is believed, and the airspeed without it.
 
 use super::airframe::AirframePrior;
-use super::airspeed_reason::{Doubt, DoubtReason, Reference};
+use super::airspeed_reason::{Doubt, Reference};
 use super::filter_bank::FilterBank;
 use super::force_sample::{ForceSample, acceleration_mps2};
 use super::scalar_update::squared;
@@ -14,12 +14,8 @@ mod compare;
 mod ground;
 mod path;
 mod sensorless;
-mod static_port;
 mod step;
 
-use ground::Behind;
-pub(super) use static_port::Blocked;
-use static_port::StaticPort;
 use step::StepDetector;
 
 /// The time between two corrections of the filters, s.
@@ -70,7 +66,7 @@ pub(super) struct MonitorInput {
     pub(super) sensor_mps: Option<(f64, u8)>,
     /// A new reading of the velocity over the ground.
     pub(super) over_ground: Option<OverGround>,
-    /// The altimeter is doubted, whose static port the sensor may share.
+    /// The altimeter is excluded: the climb rate is the models' own.
     pub(super) altimeter_is_doubted: bool,
     /// Whether forces and motion are measured.
     pub(super) motion_is_known: bool,
@@ -99,7 +95,8 @@ pub(super) struct AirspeedMonitor {
     recent_law: LowPass,
     gusts_mps2: f64,
     difference: LowPass,
-    vote: LowPass,
+    /// By axial force and by lift.
+    vote: [LowPass; 2],
     step: StepDetector,
     differs_s: f64,
     wind_s: f64,
@@ -116,20 +113,14 @@ pub(super) struct AirspeedMonitor {
     upset_s: f64,
     reference: Reference,
     doubt: Option<Doubt>,
-    /// The time since the last velocity over the ground, and for how long it and the
-    /// wind have contradicted the sensor, s.
+    /// The time since the last velocity over the ground, s.
     ground_s: f64,
-    contradicted_s: f64,
-    behind: Behind,
     /// The airspeed for which the sensor is to be left, m/s.
     left_for_mps: Option<f64>,
     /// The airspeed by both and its standard deviation, while it is known, and the
     /// sensor's difference from it, m/s.
     by_ground: Option<(f64, f64)>,
     ground_difference: LowPass,
-    /// While the cause of a doubt may be the static port.
-    static_port: Option<StaticPort>,
-    blocked: Option<Blocked>,
     /// A sensor was doubted in this flight: of several, readings that
     /// contradict the forces are left out.
     was_doubted: bool,
@@ -149,7 +140,7 @@ impl AirspeedMonitor {
             recent_law: LowPass::new(THRUST_RECENT_S),
             gusts_mps2: 1.0,
             difference: LowPass::new(DIFFERENCE_LAG_S),
-            vote: LowPass::new(VOTE_LAG_S),
+            vote: [LowPass::new(VOTE_LAG_S); 2],
             step: StepDetector::new(prior.reference_mps),
             differs_s: 0.0,
             wind_s: 0.0,
@@ -162,13 +153,9 @@ impl AirspeedMonitor {
             reference: Reference::NONE,
             doubt: None,
             ground_s: 0.0,
-            contradicted_s: 0.0,
-            behind: Behind::NONE,
             left_for_mps: None,
             by_ground: None,
             ground_difference: LowPass::new(VOTE_LAG_S),
-            static_port: None,
-            blocked: None,
             was_doubted: false,
         }
     }
@@ -188,13 +175,6 @@ impl AirspeedMonitor {
     /// silent.
     pub(super) fn slower_mps(&self) -> f64 {
         self.slower.output()
-    }
-
-    /// Whether the sensor was doubted because it shares the static port of a
-    /// doubted altimeter.
-    pub(super) fn shares_static_port(&self) -> bool {
-        self.doubt
-            .is_some_and(|doubt| doubt.reason == DoubtReason::BlockedStatic)
     }
 
     /// Whether an airspeed may be used beside others: until one was doubted,
@@ -219,18 +199,12 @@ impl AirspeedMonitor {
         Some((filter.airspeed_mps(), filter.sd_mps()))
     }
 
-    /// The altimeter has just been doubted; this is the airspeed without it, and
-    /// the sensor, if it shares the altimeter's static port.
-    pub(super) fn doubt_altimeter(&mut self, airspeed_mps: f64, shares: Option<u8>) {
+    /// The altimeter has just been excluded: what was learned by it is forgotten.
+    pub(super) fn exclude_altimeter(&mut self) {
         if let Some(bank) = &mut self.bank {
-            bank.older.adopt(airspeed_mps);
             bank.older.restore_models();
             (bank.believing, bank.younger) = (bank.older, bank.older);
             bank.younger_s = 0.0;
-            let reason = DoubtReason::BlockedStatic;
-            self.doubt = self.doubt.or(shares.map(|source| Doubt { source, reason }));
-            self.was_doubted |= shares.is_some();
-            self.agrees_s = 0.0;
         }
     }
 
@@ -301,8 +275,8 @@ impl AirspeedMonitor {
             bank.is_first = false;
             self.follow_sensor(&mut bank);
         }
-        let contradicted = self.follow_ground(&mut bank, input, &sample, dt_s);
-        if contradicted || self.doubt_step(&mut bank, input, dt_s) {
+        self.follow_ground(&mut bank, input, &sample, dt_s);
+        if self.doubt_step(&mut bank, input, dt_s) {
             // Nothing else is compared in this tick.
         } else if settles {
             self.follow_sensor(&mut bank);

@@ -16,11 +16,8 @@ pub(crate) enum DoubtReason {
     /// trapped, so its dynamic pressure changes by -dp = ρ g dh (FAA-H-8083-15B,
     /// chapter 5, blocked pitot tube and drain).
     BlockedTube,
-    /// The altimeter stands, and this one changes against the height: the static
-    /// pressure is trapped (the same, blocked static system).
-    BlockedStatic,
-    /// The velocity over the ground and the wind contradict it.
-    Wind,
+    /// It contradicts the speed over the ground in a take-off.
+    Ground,
     /// It is too high.
     TooHigh,
     /// It is too low.

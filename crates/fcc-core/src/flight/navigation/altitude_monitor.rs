@@ -1,12 +1,9 @@
 //! Whether the altimeter is believed, and altitude and climb rate without it.
 
-use super::airspeed_monitor::Blocked;
 use super::altitude_drift::{AltitudeDrift, Drifted, Receiver};
 use super::coasting::{Coasting, DIFFERS_M};
 use super::drift_judge::ClimbRates;
-use super::scalar_update::squared;
 use super::vertical::{Reference, VerticalState};
-use crate::units::GRAVITY_MPS2;
 
 /// The time for which a copy runs without the altimeter before it is compared,
 /// s: so long that an aircraft climbs beyond the limit, so short that the error
@@ -20,13 +17,10 @@ const SETTLED_S: f64 = 18.0;
 const DOUBTED_AFTER_S: f64 = 1.0;
 const DOUBTED_BY_RANGE_AFTER_S: f64 = 0.3;
 /// Without the altimeter the climb rate follows the path with this bandwidth,
-/// the ground velocity with that one, and the altitude that by the total pressure,
-/// rad/s: gusts have correlation times of up to 10 s (MIL-F-8785C, 3.7.3).
+/// the ground velocity with that one, rad/s: gusts have correlation times of up to 10 s
+/// (MIL-F-8785C, 3.7.3).
 const PATH_RADPS: f64 = 0.07;
 const GROUND_RADPS: f64 = 1.0;
-const TOTAL_RADPS: f64 = 0.15;
-/// The total pressure is not known from a lower airspeed, m/s: it ends at 0.
-pub(super) const LEAST_MPS: f64 = 13.0;
 /// The error of the path's climb rate, m/s, and the share of vertical gusts that
 /// stays in it; the altitude is sound up to this error, m (200 ft).
 const PATH_ERROR_MPS: f64 = 0.4;
@@ -60,17 +54,6 @@ pub(super) struct AltitudeInput {
     pub(super) receiver: Option<Receiver>,
     pub(super) tan_bank: f64,
     pub(super) gusts_mps: f64,
-    /// Indicated airspeed by the sensor and as estimated, m/s, and the felt
-    /// acceleration along the path, m/s².
-    pub(super) sensor_mps: Option<f64>,
-    pub(super) airspeed_mps: f64,
-    pub(super) accelerates_mps2: f64,
-    /// Of the air, over that at sea level.
-    pub(super) density_ratio: f64,
-    /// The altitude by the total pressure is known.
-    pub(super) has_total: bool,
-    /// A doubted airspeed tells that the static port is blocked.
-    pub(super) blocked: Option<Blocked>,
     /// Whether the altimeter may be doubted: while engaged.
     pub(super) may_doubt: bool,
 }
@@ -82,8 +65,6 @@ struct Doubted {
     has_moved: bool,
     agrees_s: f64,
     error_m: f64,
-    /// Only a blocked static port explains the airspeed.
-    by_airspeed: bool,
 }
 
 /// Holds the altimeter against the accelerometers.
@@ -106,7 +87,7 @@ pub(super) struct AltitudeMonitor {
 
 /// What is followed with a silent altimeter and without a receiver: level flight, which is
 /// flown then. The path by pitch and lift is none: it learns from the climb rate.
-pub(super) const LEVEL: Reference = Reference::ClimbRate(0.0, PATH_RADPS);
+pub(super) const LEVEL: Reference = Reference(0.0, PATH_RADPS);
 
 /// What the filter has to do.
 #[derive(Clone, Copy, Debug)]
@@ -115,14 +96,10 @@ pub(super) enum Verdict {
     Believed,
     /// Begin anew with this copy, without the altimeter.
     DoubtBegins(Coasting),
-    /// The same with this state, because the static port is blocked.
-    StaticPortIsBlocked(VerticalState),
     /// Follow no altimeter.
     Doubted,
     /// Adopt the altimeter's altitude, m.
     BelievedAgain(f64),
-    /// The same, because the altimeter moves: its port is not blocked.
-    StaticPortIsFree(f64),
 }
 
 impl AltitudeMonitor {
@@ -164,7 +141,6 @@ impl AltitudeMonitor {
             has_moved: false,
             agrees_s: 0.0,
             error_m: copy.error_m,
-            by_airspeed: false,
         });
         Verdict::DoubtBegins(copy)
     }
@@ -172,17 +148,13 @@ impl AltitudeMonitor {
     /// Processes one tick.
     pub(super) fn step(&mut self, input: &AltitudeInput, dt_s: f64) -> Verdict {
         if let Some(doubted) = &mut self.doubted {
-            if input.ground_mps.is_none() && !input.has_total {
+            if input.ground_mps.is_none() {
                 doubted.error_m += (PATH_ERROR_MPS + GUST_SHARE * input.gusts_mps) * dt_s;
             }
             let Some(altitude_m) = input.altitude_m else {
                 return Verdict::Doubted;
             };
             doubted.has_moved |= (altitude_m - doubted.stood_m).abs() > MOVED_M + input.step_m;
-            if doubted.has_moved && doubted.by_airspeed {
-                *self = Self::new();
-                return Verdict::StaticPortIsFree(altitude_m);
-            }
             let by_m = (altitude_m - input.followed.altitude_m).abs();
             let agrees = doubted.has_moved && by_m < DIFFERS_M + input.step_m + doubted.error_m;
             doubted.agrees_s = if agrees { doubted.agrees_s + dt_s } else { 0.0 };
@@ -191,21 +163,6 @@ impl AltitudeMonitor {
                 return Verdict::BelievedAgain(altitude_m);
             }
             return Verdict::Doubted;
-        }
-        if let (true, Some(blocked), Some(altitude_m)) =
-            (input.may_doubt, input.blocked, input.altitude_m)
-        {
-            self.doubted = Some(Doubted {
-                stood_m: altitude_m,
-                has_moved: false,
-                agrees_s: 0.0,
-                error_m: DIFFERS_M,
-                by_airspeed: true,
-            });
-            return Verdict::StaticPortIsBlocked(VerticalState {
-                altitude_m: altitude_m + blocked.height_m,
-                climb_rate_mps: blocked.climb_rate_mps,
-            });
         }
         if input.has_stepped {
             (self.older, self.younger) = (None, None);
@@ -263,23 +220,9 @@ impl AltitudeMonitor {
 }
 
 /// What altitude and climb rate follow without an altimeter: the climb rate over
-/// the ground, the altitude by the total pressure, or the climb rate by pitch and
-/// lift, in m and m/s.
-pub(super) fn reference(
-    ground_mps: Option<f64>,
-    by_total_m: Option<f64>,
-    path_mps: Option<f64>,
-) -> Option<Reference> {
-    let path = || path_mps.map(|mps| Reference::ClimbRate(mps, PATH_RADPS));
-    let total = || by_total_m.map(|m| Reference::Altitude(m, TOTAL_RADPS));
-    let ground = ground_mps.map(|mps| Reference::ClimbRate(mps, GROUND_RADPS));
-    ground.or_else(total).or_else(path)
-}
-
-/// The height above the altitude at which the static pressure is trapped, m, by
-/// an airspeed sensor at the same port and the airspeed by forces and motion,
-/// indicated, m/s: the tube still tells the total pressure, so that
-/// h = ½ ρ₀ (V² - V'²) / (ρ g).
-pub(super) fn height_by_total_pressure_m(sensor_mps: f64, forces_mps: f64, density: f64) -> f64 {
-    0.5 * (squared(forces_mps) - squared(sensor_mps)) / (density * GRAVITY_MPS2)
+/// the ground, or the one by pitch and lift, m/s.
+pub(super) fn reference(ground_mps: Option<f64>, path_mps: Option<f64>) -> Option<Reference> {
+    let path = path_mps.map(|mps| Reference(mps, PATH_RADPS));
+    let ground = ground_mps.map(|mps| Reference(mps, GROUND_RADPS));
+    ground.or(path)
 }

@@ -1,10 +1,8 @@
 //! A copy of the vertical filter that has run without the altimeter.
 
-use super::altitude_monitor::{AltitudeInput, height_by_total_pressure_m};
+use super::altitude_monitor::AltitudeInput;
 use super::drift_judge::Alone;
-use super::scalar_update::squared;
 use super::vertical::VerticalState;
-use crate::units::GRAVITY_MPS2;
 
 /// The altimeter differs by more than this, m, its step, and what the copy can be
 /// wrong by.
@@ -13,8 +11,12 @@ pub(super) const DIFFERS_M: f64 = 12.0;
 /// accelerometer, m/s², with the wings level and by tan φ: an error of the bank
 /// by 1° is one of the vertical acceleration by 0.017 g tan φ.
 const COPIED_MPS: f64 = 0.3;
-const FELT_MPS2: f64 = 0.04;
-const FELT_BANKED_MPS2: f64 = 0.17;
+const FELT_MPS2: f64 = 0.1;
+const FELT_BANKED_MPS2: f64 = 0.5;
+/// What the step of a coarse altimeter, m, adds to both: its filter knows climb rate and bias
+/// the less, 1/s and 1/s².
+const COPIED_PER_STEP: f64 = 0.03;
+const FELT_PER_STEP: f64 = 0.006;
 /// The standard deviation of what it climbs: a barometer's noise, m, and this share of the
 /// error above, which is a limit.
 const LEAST_SD_M: f64 = 1.0;
@@ -25,11 +27,9 @@ const BEGAN_ALIKE_MPS: f64 = 1.0;
 /// air's temperature, 30 K off the standard (ISO 2533).
 const TEMPERATURE_SHARE: f64 = 0.12;
 /// What must agree that the aircraft moves as the accelerometers say, by this
-/// share: the path by pitch and lift, the ground velocity, or an airspeed that
-/// differs as one does whose static pressure is trapped.
+/// share: the path by pitch and lift, or the ground velocity.
 const PATH_SHARE: f64 = 0.4;
 const GROUND_SHARE: f64 = 0.5;
-const TRAPPED: core::ops::RangeInclusive<f64> = 0.5..=2.0;
 /// A range finder over ground that is about level tells sooner: the altimeter is doubted
 /// if it differs from it by more than this, m, if the ground velocity agrees with the
 /// range to this share of that, and the copy to the share above.
@@ -41,8 +41,6 @@ const RANGE_SHARE: f64 = 0.35;
 pub(super) struct Coasting {
     pub(super) state: VerticalState,
     pub(super) bias_mps2: f64,
-    /// Indicated airspeed by the accelerometers alone, m/s.
-    pub(super) airspeed_mps: f64,
     began_m: f64,
     /// Climbed by the path, and by the ground velocity, m.
     path_m: Option<f64>,
@@ -70,13 +68,12 @@ impl Coasting {
         Self {
             state: input.followed,
             bias_mps2: input.bias_mps2,
-            airspeed_mps: input.airspeed_mps,
             began_m: input.followed.altitude_m,
             path_m: Some(0.0),
             ground_m: Some(0.0),
             ground_more_mps,
             first: None,
-            error_mps: COPIED_MPS,
+            error_mps: COPIED_MPS + COPIED_PER_STEP * input.step_m,
             error_m: 0.0,
             lasted_s: 0.0,
         }
@@ -85,11 +82,12 @@ impl Coasting {
     pub(super) fn step(&mut self, input: &AltitudeInput, dt_s: f64) {
         self.state.climb_rate_mps += (input.felt_mps2 - self.bias_mps2) * dt_s;
         self.state.altitude_m += self.state.climb_rate_mps * dt_s;
-        self.airspeed_mps += input.accelerates_mps2 * dt_s;
         let add = |sum: Option<f64>, per_s: Option<f64>| Some(sum? + per_s? * dt_s);
         self.path_m = add(self.path_m, input.path_mps);
         self.ground_m = add(self.ground_m, input.ground_mps);
-        self.error_mps += (FELT_MPS2 + FELT_BANKED_MPS2 * input.tan_bank.abs()) * dt_s;
+        let felt_mps2 =
+            FELT_MPS2 + FELT_BANKED_MPS2 * input.tan_bank.abs() + FELT_PER_STEP * input.step_m;
+        self.error_mps += felt_mps2 * dt_s;
         self.error_m += self.error_mps * dt_s;
         self.lasted_s += dt_s;
         if self.first.is_none() {
@@ -149,8 +147,7 @@ impl Coasting {
                 && by_m * beyond_m.signum() > GROUND_SHARE * beyond_m.abs();
         }
         let agrees = |path_m: f64| (path_m - shown_m) * by_m.signum() > PATH_SHARE * by_m.abs();
-        by_m.abs() > limit_m + self.error_m
-            && (self.path_m.is_some_and(agrees) || self.is_trapped(by_m, input))
+        by_m.abs() > limit_m + self.error_m && self.path_m.is_some_and(agrees)
     }
 
     /// With the altitude by the ground velocity, if there is one.
@@ -159,36 +156,5 @@ impl Coasting {
             self.state.altitude_m = self.began_m + ground_m;
         }
         self
-    }
-
-    /// Whether the airspeed differs as one does whose static pressure is that of
-    /// an altitude `by_m` lower: ½ ρ₀ (V² - V'²) = ρ g h (FAA-H-8083-15B,
-    /// chapter 5, blocked static system).
-    fn is_trapped(&self, by_m: f64, input: &AltitudeInput) -> bool {
-        input.sensor_mps.is_some_and(|sensor_mps| {
-            let density = input.density_ratio;
-            let height_m = height_by_total_pressure_m(sensor_mps, self.airspeed_mps, density);
-            TRAPPED.contains(&(height_m / by_m))
-        })
-    }
-
-    /// The right airspeed, m/s: the sensor's, or that corrected for a trapped
-    /// static pressure, whichever is nearer to the accelerometers'; and whether it
-    /// is the latter, so that the sensor shares the port.
-    pub(super) fn right_airspeed(
-        &self,
-        altitude_m: f64,
-        sensor_mps: f64,
-        density: f64,
-    ) -> (f64, bool) {
-        let height_m = self.state.altitude_m - altitude_m;
-        let squared_mps2 = squared(sensor_mps) + 2.0 * density * GRAVITY_MPS2 * height_m;
-        let corrected_mps = libm::sqrt(squared_mps2.max(0.0));
-        let by = |mps: f64| (mps - self.airspeed_mps).abs();
-        if by(corrected_mps) < by(sensor_mps) {
-            (corrected_mps, true)
-        } else {
-            (sensor_mps, false)
-        }
     }
 }

@@ -32,7 +32,7 @@ use evidence::{LeakyIntegrator, StuckDetector};
 use super::estimate::Estimate;
 use super::resolution::Resolutions;
 use crate::blocks::wrap_pi;
-use crate::flight::Measurements;
+use crate::flight::{BodyRates, Measurements};
 use crate::framework::Time;
 
 /// The rotation that attitude, heading or gyroscopes must show, rad (5°): ten
@@ -44,12 +44,12 @@ const CLIMBED_M: f64 = 15.0;
 /// beyond those of a trimmed aircraft in calm air.
 const BANKED_RAD: f64 = 0.175;
 const PITCHED_RAD: f64 = 0.07;
-/// Steps of a fine airspeed sensor, m/s: 0.1 kt, by which the airspeed of an
-/// aircraft that banks or pitches changes.
-const FINE_AIRSPEED_MPS: f64 = 0.06;
+/// Steps of a fine airspeed sensor, m/s: a tenth of 0.1 kt, within which the airspeed of an
+/// aircraft that banks or pitches in calm air may stay.
+const FINE_AIRSPEED_MPS: f64 = 0.005;
 /// The change of airspeed that a coarse sensor must show, m/s: an error of the
-/// accelerations by 0.15 m/s² (0.9° of pitch) never reaches it.
-const ACCELERATED_MPS: f64 = 1.5;
+/// accelerations by 0.5 m/s² (3° of pitch) never reaches it.
+const ACCELERATED_MPS: f64 = 5.0;
 /// A vertical acceleration that a fine airspeed sensor must show, m/s²: a gust that
 /// changes the lift by a fifth has a part along the path, and changes the drag.
 const GUST_MPS2: f64 = 2.0;
@@ -89,6 +89,8 @@ pub(crate) struct Known {
     /// The vertical acceleration, up, m/s².
     pub(crate) felt_up_mps2: f64,
     pub(crate) resolutions: Resolutions,
+    /// The learned bias of the gyroscopes, about x, y and z, rad/s.
+    pub(crate) rate_bias_radps: [f64; 3],
 }
 
 /// Roll, pitch and heading, rad, or their rates.
@@ -179,7 +181,7 @@ impl FrozenDetector {
             heading.value,
         ];
         let before = self.before.replace(angles).unwrap_or(angles);
-        let said = angle_rates(measurements, angles);
+        let said = angle_rates(measurements, navigation.rate_bias_radps, angles);
 
         let steps = [0.0, 0.0, resolutions.heading_rad];
         self.step_angles(attitude.taken, heading.taken, angles, said, steps, dt_s);
@@ -343,8 +345,14 @@ impl FrozenDetector {
 
 /// Rates of roll, pitch and heading from the gyroscopes (Stevens, Lewis and
 /// Johnson 2016, equation 1.4-4).
-fn angle_rates(measurements: &Measurements, [roll, pitch, _]: Angles) -> Angles {
-    let r = measurements.body_rates.value;
+fn angle_rates(measurements: &Measurements, bias: Angles, [roll, pitch, _]: Angles) -> Angles {
+    let rates = measurements.body_rates.value;
+    let [x, y, z] = bias;
+    let r = BodyRates {
+        roll_radps: rates.roll_radps - x,
+        pitch_radps: rates.pitch_radps - y,
+        yaw_radps: rates.yaw_radps - z,
+    };
     let (sin_roll, cos_roll) = (sin(roll), cos(roll));
     let horizontal =
         (r.pitch_radps * sin_roll + r.yaw_radps * cos_roll) / cos(pitch).max(MIN_COS_PITCH);

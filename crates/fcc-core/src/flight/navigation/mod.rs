@@ -385,6 +385,7 @@ impl Navigation {
             felt_mps2: self.airspeed.felt_mps2(),
             felt_up_mps2: self.vertical.felt_mps2(),
             resolutions: self.resolutions(),
+            rate_bias_radps: self.motion.rate_bias_radps(),
         }
     }
 }

@@ -28,7 +28,6 @@ impl Navigation {
                 upward: path.upward,
                 climb_rate_mps: path.vertical.climb_rate_mps,
                 climbs_by_lift: self.altitude_monitor.is_doubted()
-                    && !self.monitor.shares_static_port()
                     && !is_current(&measurements.velocity, now),
                 sqrt_density: path.sqrt_density,
                 ..ForceSample::NONE

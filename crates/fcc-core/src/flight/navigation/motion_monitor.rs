@@ -11,9 +11,12 @@ use crate::flight::orientation::{
 use crate::flight::{Attitude, BodyRates};
 
 /// The integrated rates follow the attitude with this bandwidth, rad/s, and learn
-/// their offset, at most this one, rad/s (0.4 °/s).
+/// their bias, at most this one, rad/s (2 °/s: four standard deviations of a phone's
+/// gyroscope before calibration, 0.5 °/s).
 const FOLLOWS_RADPS: f64 = 0.04;
-const MOST_LEARNED_RADPS: f64 = 0.007;
+/// At first with this over the time that was followed, since the bias is not known yet.
+const FIRST_RAD: f64 = 1.0;
+const MOST_LEARNED_RADPS: f64 = 0.035;
 /// The same while the rates are doubted: they agree when their offset is that of
 /// some seconds.
 const FOLLOWS_DOUBTED_RADPS: f64 = 1.0;
@@ -83,8 +86,10 @@ struct Suspicion {
 pub(super) struct MotionMonitor {
     /// The integrated rates: from body axes to earth axes.
     rotation: Option<[f64; 4]>,
-    /// The learned offset of the rates about x and y, rad/s.
-    offset_radps: [f64; 2],
+    /// For how long the attitude was followed, s.
+    followed_s: f64,
+    /// The learned bias of the rates, rad/s.
+    offset_radps: [f64; 3],
     /// About x and y: attitude less integrated rates, rad.
     difference: [LowPass; 2],
     witness: MotionWitness,
@@ -105,7 +110,8 @@ impl MotionMonitor {
     pub(super) const fn new() -> Self {
         Self {
             rotation: None,
-            offset_radps: [0.0; 2],
+            followed_s: 0.0,
+            offset_radps: [0.0; 3],
             difference: [LowPass::new(DIFFERENCE_LAG_S); 2],
             witness: MotionWitness::new(),
             suspicion: None,
@@ -120,6 +126,11 @@ impl MotionMonitor {
 
     pub(super) const fn doubt(&self) -> Option<MotionDoubt> {
         self.doubt
+    }
+
+    /// The learned bias of the rates, rad/s.
+    pub(super) const fn rate_bias_radps(&self) -> [f64; 3] {
+        self.offset_radps
     }
 
     /// Whether one of them may be wrong.
@@ -158,11 +169,11 @@ impl MotionMonitor {
 
     /// Integrates the rates without their offset.
     fn integrate(&mut self, rates: BodyRates, dt_s: f64) {
-        let [x, y] = self.offset_radps;
+        let [x, y, z] = self.offset_radps;
         let rates = BodyRates {
             roll_radps: rates.roll_radps - x,
             pitch_radps: rates.pitch_radps - y,
-            ..rates
+            yaw_radps: rates.yaw_radps - z,
         };
         self.rotation = self
             .rotation
@@ -201,15 +212,17 @@ impl MotionMonitor {
         let [lag_x, lag_y] = &mut self.difference;
         let difference = [lag_x.step(x, dt_s), lag_y.step(y, dt_s)];
         if self.doubt.is_some() {
-            self.correct(off, FOLLOWS_DOUBTED_RADPS, f64::INFINITY, dt_s);
-            let [x, y] = self.offset_radps;
+            self.correct(measured, off, (FOLLOWS_DOUBTED_RADPS, f64::INFINITY), dt_s);
+            let [x, y, _] = self.offset_radps;
             self.follow_doubted(hypot(x, y) < RATES_AGREE_RADPS, measured, dt_s);
             return None;
         }
         let [x, y] = difference;
         if hypot(x, y) < self.expected_rad() {
             self.suspicion = None;
-            self.correct(off, FOLLOWS_RADPS, MOST_LEARNED_RADPS, dt_s);
+            self.followed_s += dt_s;
+            let bandwidth_radps = FOLLOWS_RADPS.max(FIRST_RAD / self.followed_s.max(1.0));
+            self.correct(measured, off, (bandwidth_radps, MOST_LEARNED_RADPS), dt_s);
             return None;
         }
         self.judge(difference, measured, input, dt_s)
@@ -253,7 +266,7 @@ impl MotionMonitor {
             return by_rates.filter(|_| input.may_doubt);
         }
         let [began_x, began_y] = suspicion.began_rad;
-        let [offset_x, offset_y] = &mut self.offset_radps;
+        let [offset_x, offset_y, _] = &mut self.offset_radps;
         *offset_x -= (x - began_x) / suspicion.lasted_s;
         *offset_y -= (y - began_y) / suspicion.lasted_s;
         let is_large = hypot(*offset_x, *offset_y) > FLOWN_RADPS;
@@ -304,18 +317,23 @@ impl MotionMonitor {
         }
     }
 
-    /// Corrects the integral, critically damped, and its offset up to a limit.
-    fn correct(&mut self, off: [f64; 2], bandwidth_radps: f64, most_radps: f64, dt_s: f64) {
-        let [x, y] = off;
-        let length = hypot(x, y);
-        if let Some(rotation) = self.rotation
-            && length > 0.0
-        {
+    /// Corrects the integral, critically damped, and its bias up to a limit: about x and y by
+    /// the attitude, about z by the heading.
+    fn correct(
+        &mut self,
+        measured: [f64; 4],
+        [x, y]: [f64; 2],
+        (bandwidth_radps, most_radps): (f64, f64),
+        dt_s: f64,
+    ) {
+        let Some(rotation) = self.rotation else {
+            return;
+        };
+        let off = [x, y, about_z(rotation, measured)];
+        let length = sqrt(off.iter().map(|rad| rad * rad).sum());
+        if length > 0.0 {
             let angle = (2.0 * bandwidth_radps * dt_s).min(1.0) * length;
-            self.rotation = Some(product(
-                rotation,
-                rotation_about([x, y, 0.0], length, angle),
-            ));
+            self.rotation = Some(product(rotation, rotation_about(off, length, angle)));
         }
         for (offset, off) in self.offset_radps.iter_mut().zip(off) {
             let learned = *offset - bandwidth_radps * bandwidth_radps * off * dt_s;
@@ -324,6 +342,12 @@ impl MotionMonitor {
             *offset = limit_abs(learned, most_radps);
         }
     }
+}
+
+/// The rotation about z of the body from one orientation to another, rad.
+fn about_z([w, x, y, z]: [f64; 4], to: [f64; 4]) -> f64 {
+    let [w, _, _, z] = product([w, -x, -y, -z], to);
+    2.0 * atan2(z, w.abs()) * w.signum()
 }
 
 /// The rotation about x and y that brings gravity from one direction in body axes to another,

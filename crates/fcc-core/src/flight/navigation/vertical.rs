@@ -23,14 +23,9 @@ pub struct VerticalState {
     pub climb_rate_mps: f64,
 }
 
-/// What a filter without an altimeter follows, with this bandwidth, rad/s.
+/// The climb rate, m/s, that a filter without an altimeter follows, and the bandwidth, rad/s.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Reference {
-    /// A climb rate, m/s.
-    ClimbRate(f64, f64),
-    /// An altitude, m.
-    Altitude(f64, f64),
-}
+pub(super) struct Reference(pub(super) f64, pub(super) f64);
 
 /// Kalman filter: vertical acceleration integrated twice, corrected by
 /// barometric altitude, with an estimate of the accelerometer's bias (the
@@ -243,16 +238,10 @@ impl VerticalChannel {
         self.has_stepped = false;
         let state = &mut self.state;
         let towards = match reference {
-            Some(Reference::ClimbRate(climb_rate_mps, pole)) => {
+            Some(Reference(climb_rate_mps, pole)) => {
                 let error_mps = climb_rate_mps - state.climb_rate_mps;
                 state.climb_rate_mps += 2.0 * pole * error_mps * dt_s;
                 pole * pole * error_mps
-            }
-            Some(Reference::Altitude(altitude_m, pole)) => {
-                let error_m = altitude_m - state.altitude_m;
-                state.altitude_m += 3.0 * pole * error_m * dt_s;
-                state.climb_rate_mps += 3.0 * pole * pole * error_m * dt_s;
-                pole * pole * pole * error_m
             }
             None => 0.0,
         };

@@ -35,12 +35,6 @@ const CHANGE_LAG_S: f64 = 2.0;
 const CHANGE_SDS: f64 = 2.5;
 const CHANGED_WIND_MPS: f64 = 10.0;
 
-/// The sensor's error is known after so long without a sudden change, s: longer than
-/// most legs between two turns, in which a wrong velocity shows. One beyond this share
-/// of the airspeed is the velocity's: 1.94 are knots taken for m/s.
-const STEADY_S: f64 = 90.0;
-const LARGEST_SCALE: f64 = 0.3;
-
 /// One reading of the velocity over the ground.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct OverGround {
@@ -72,10 +66,8 @@ pub(super) struct Wind {
     /// Innovations along and across, m/s, with a lag.
     along_mps: f64,
     across_mps: f64,
-    /// Was corrected by a sensor's airspeed for this time, and without a sudden change
-    /// for this one, s.
+    /// Was corrected by a sensor's airspeed for this time, s.
     learned_s: f64,
-    steady_s: f64,
 }
 
 impl Wind {
@@ -90,7 +82,6 @@ impl Wind {
             along_mps: 0.0,
             across_mps: 0.0,
             learned_s: 0.0,
-            steady_s: 0.0,
         }
     }
 
@@ -140,9 +131,7 @@ impl Wind {
             across_mps,
             across * per_reading,
         );
-        self.steady_s += dt_s;
         if changed {
-            self.steady_s = 0.0;
             let wind = squared(CHANGED_WIND_MPS) * share;
             add_variance(&mut self.covariance, [wind, wind, 0.0, 0.0]);
         }
@@ -181,16 +170,6 @@ impl Wind {
     pub(super) fn found(&self) -> Option<([f64; 2], f64)> {
         let [north, east, _, turned] = self.x;
         (self.learned_s >= CORRELATED_S).then_some(([north, east], turned))
-    }
-
-    /// The error of the airspeed sensor over its airspeed, and its standard deviation;
-    /// none while heading and velocity contradict each other, as with a receiver that is
-    /// frozen or whose axes or units are others.
-    pub(super) fn sensor_error(&self) -> Option<(f64, f64)> {
-        let [.., scale, _] = self.x;
-        let agrees = self.steady_s > STEADY_S && fabs(scale) < LARGEST_SCALE;
-        let [.., [.., variance, _], _] = self.covariance;
-        (agrees && self.learned_s > STEADY_S).then(|| (scale, sqrt(variance.max(0.0))))
     }
 
     fn predict(&mut self, read: &OverGround, dt_s: f64) {

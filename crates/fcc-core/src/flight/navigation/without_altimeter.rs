@@ -8,7 +8,6 @@ use super::altitude_monitor::{self, AltitudeInput, Verdict};
 use super::attitude::Orientation;
 use super::path::Path;
 use super::sample_tracker::is_current;
-use super::scalar_update::squared;
 use super::upward::Upward;
 use super::vertical::VerticalState;
 use crate::blocks::limit_abs;
@@ -54,24 +53,12 @@ impl Navigation {
         let is_believed = !self.altitude_monitor.doubts_receiver();
         let ground_mps = (is_believed && is_current(&measurements.velocity, now))
             .then_some(-measurements.velocity.value.down_mps);
-        let airspeed = measurements.airspeed_mps;
         let altitude = measurements.altitude_m;
-        let density = squared(sample.sqrt_density);
-        let sensor_mps = is_current(&airspeed, now).then_some(airspeed.value);
-        let shared_mps = sensor_mps.filter(|mps| {
-            *mps > altitude_monitor::LEAST_MPS
-                && self.monitor.shares_static_port()
-                && is_current(&altitude, now)
-        });
-        let by_total_m = shared_mps.zip(path).map(|(sensor_mps, (_, forces_mps))| {
-            altitude.value
-                + altitude_monitor::height_by_total_pressure_m(sensor_mps, forces_mps, density)
-        });
         let is_doubted = self.altitude_monitor.is_doubted();
         if is_doubted || !is_current(&altitude, now) {
             let by_path_mps = path_mps.filter(|_| is_doubted);
             let level = (!is_doubted).then_some(altitude_monitor::LEVEL);
-            let reference = altitude_monitor::reference(ground_mps, by_total_m, by_path_mps);
+            let reference = altitude_monitor::reference(ground_mps, by_path_mps);
             let reference = reference.or(level);
             self.vertical
                 .step_without_altimeter(now, measurements, attitude, reference, dt_s);
@@ -95,12 +82,6 @@ impl Navigation {
             receiver: Receiver::of(measurements, now),
             tan_bank: limit_abs(tan(attitude.roll_rad), 3.0),
             gusts_mps: self.monitor.gusts_mps(),
-            sensor_mps,
-            airspeed_mps: self.estimate.airspeed_mps,
-            accelerates_mps2: self.airspeed.felt_mps2(),
-            density_ratio: density,
-            has_total: by_total_m.is_some(),
-            blocked: self.monitor.blocked_static(),
             may_doubt: self.is_engaged,
         };
         if dt_s > 0.0 {
@@ -108,20 +89,9 @@ impl Navigation {
                 Verdict::Believed | Verdict::Doubted => {}
                 Verdict::DoubtBegins(copy) => {
                     self.vertical.adopt(copy.state, copy.bias_mps2);
-                    let (right_mps, shares) =
-                        copy.right_airspeed(altitude.value, airspeed.value, density);
-                    let shares = shares.then_some(airspeed.source);
-                    self.monitor.doubt_altimeter(right_mps, shares);
-                }
-                Verdict::StaticPortIsBlocked(state) => {
-                    self.vertical.adopt(state, bias_mps2);
-                    self.monitor.doubt_static_port();
+                    self.monitor.exclude_altimeter();
                 }
                 Verdict::BelievedAgain(altitude_m) => self.vertical.adopt_altitude(altitude_m),
-                Verdict::StaticPortIsFree(altitude_m) => {
-                    self.vertical.adopt_altitude(altitude_m);
-                    self.monitor.static_port_is_free();
-                }
             }
         }
         self.vertical.state().0

@@ -45,6 +45,7 @@ impl AirspeedFilter {
             full_thrust_ratio,
             zero_lift_angle_rad,
             one_g_angle_rad,
+            _,
         ] = self.x;
         LearnedAirframe {
             axial_offset,

@@ -13,7 +13,7 @@ impl AirspeedFilter {
             update(
                 &mut self.x,
                 &mut self.covariance,
-                [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+                [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
                 by,
                 per_reading * squared(sd_mps),
             );

@@ -56,20 +56,25 @@ fn the_angle_of_attack_is_right_inverted() {
     assert!((descending - rad(-11.0)).abs() < 1e-9);
 }
 
-/// The filter learns the aircraft in level flight; then, 15 kt off, without
-/// a sensor in a turn with 60° of bank, lift and drag take it back.
+/// The filter learns the aircraft in level flight and in a turn with 45° of bank; then, 15 kt off, without
+/// a sensor in a turn with 60° of bank, lift and drag take it back in a minute and a half:
+/// their errors last for seconds.
 #[test]
 fn the_airspeed_is_found_in_a_turn_with_60_degrees_of_bank() {
     let level = level_turn(0.0);
     let mut filter = AirspeedFilter::new(PRIOR, (51.444, 1.0), &level);
-    for _ in 0..300 {
-        filter.correct(&level, 0.1);
-        filter.correct_by_sensor(51.444);
+    for bank_deg in [0.0, 45.0, 0.0, 45.0] {
+        let learns = level_turn(bank_deg);
+        for _ in 0..600 {
+            filter.correct(&learns, 0.1);
+            filter.correct_by_sensor(51.444);
+        }
     }
     let turn = level_turn(60.0);
+    let mut filter = filter.kept();
     filter.adopt(51.444 - 7.7);
     filter.without_models(10.0);
-    for _ in 0..300 {
+    for _ in 0..900 {
         filter.accelerate(acceleration_mps2(&turn, filter.airspeed_mps()), 0.1);
         filter.correct(&turn, 0.1);
     }

@@ -1,30 +1,28 @@
 //! Comparison of the airspeed sensor with forces and motion.
 
 use super::super::airspeed_filter::AirspeedFilter;
-use super::super::airspeed_reason::{Doubt, DoubtReason, Reference};
+use super::super::airspeed_reason::{Doubt, Reference};
 use super::super::filter_bank::FilterBank;
 use super::super::force_sample::angle_of_attack_rad;
 use super::super::scalar_update::squared;
-use super::static_port::StaticPort;
 use super::{ALONE_S, AirspeedMonitor, DIFFERS_RATIO, MonitorInput, SLOWER_LAG_S};
 use crate::blocks::{LowPass, limit};
 
-/// A difference of that share of the reference airspeed, of 3.5 standard deviations
-/// and of 4.5 times the gusts must last for 2.5 s.
-const DIFFERS_SDS: f64 = 3.5;
-const DIFFERS_GUSTS: f64 = 4.5;
-const DOUBTED_AFTER_S: f64 = 2.5;
-/// With an altimeter that is doubted for its static port: the share of that
-/// limit, and the time.
-const STATIC_SHARE: f64 = 0.5;
-const STATIC_AFTER_S: f64 = 0.5;
+/// A difference of that share of the reference airspeed, of 2.5 standard deviations
+/// and of 10 times the gusts must last for 2 s.
+const DIFFERS_SDS: f64 = 2.5;
+const DIFFERS_GUSTS: f64 = 10.0;
+const DOUBTED_AFTER_S: f64 = 2.0;
 /// The forces vote for the sensor if they put the airspeed more than this share
 /// of the way towards it: then the wind has changed, after this time in s.
 const SENSOR_SHARE: f64 = 0.45;
 const WIND_CHANGED_AFTER_S: f64 = 2.0;
-/// A doubted sensor is believed again when it has agreed within 7 % of the
-/// reference airspeed for 10 s; another sensor of the same quantity for 1 s.
+/// An excluded sensor is used again when it has agreed for 10 s longer than not, another one of
+/// the same quantity for 1 s: within 7 % of the reference airspeed, 2 standard deviations or 3
+/// times the gusts, of the estimate or, since that may have drifted, of what both forces say.
 const AGREES_RATIO: f64 = 0.07;
+const AGREES_SDS: f64 = 2.0;
+const AGREES_GUSTS: f64 = 3.0;
 const BELIEVED_AFTER_S: f64 = 10.0;
 const ANOTHER_BELIEVED_AFTER_S: f64 = 1.0;
 /// A doubted sensor that is lower than the forces is believed at once if the aircraft
@@ -41,8 +39,14 @@ const NO_WING_RAD: f64 = 0.42;
 const MOST_SLOWER_RATIO: f64 = 0.25;
 /// Doubt needs models that have learned the aircraft for this time, s; for this
 /// one if the sensor has stepped, which they need not tell.
-const LEARNED_S: f64 = 20.0;
+const LEARNED_S: f64 = 15.0;
 const LEARNED_FOR_STEP_S: f64 = 5.0;
+
+/// Whether a force puts the airspeed nearer to the sensor, `differs` from the filter, than to
+/// the filter.
+fn sides_with(vote_mps: f64, differs_mps: f64) -> bool {
+    vote_mps * differs_mps.signum() > SENSOR_SHARE * differs_mps.abs()
+}
 
 impl AirspeedMonitor {
     pub(super) fn limit_mps(&self, filter: &AirspeedFilter) -> f64 {
@@ -62,38 +66,44 @@ impl AirspeedMonitor {
     ) {
         let filter_mps = bank.older.airspeed_mps();
         let differs = self.difference.step(sensor_mps - filter_mps, dt_s);
-        let vote = self.vote.step(bank.older.vote_mps(), dt_s);
+        let votes = bank.older.by_forces_mps(sensor_mps - filter_mps);
+        let mut vote = [0.0; 2];
+        for ((vote, lag), of) in vote.iter_mut().zip(&mut self.vote).zip(votes) {
+            *vote = lag.step(of, dt_s);
+        }
+        if input.altimeter_is_doubted {
+            // The path comes from the lift then: it is no second force.
+            vote = [vote[0]; 2];
+        }
         if let Some(doubt) = self.doubt {
             let sensor = (sensor_mps, source, differs);
-            self.compare_doubted(bank, input, doubt, sensor, holds, dt_s);
+            self.compare_doubted(bank, input, doubt, sensor, vote, dt_s);
             return;
         }
-        let (share, doubted_after_s) = if input.altimeter_is_doubted {
-            (STATIC_SHARE, STATIC_AFTER_S)
-        } else {
-            (1.0, DOUBTED_AFTER_S)
-        };
-        let limit_mps = share * self.limit_mps(&bank.older);
+        let limit_mps = self.limit_mps(&bank.older);
         let is_large = holds && differs.abs() > limit_mps;
-        // Without an altimeter the lift does not tell the wind.
-        let for_sensor =
-            !input.altimeter_is_doubted && vote * differs.signum() > SENSOR_SHARE * differs.abs();
+        // The sensor is contradicted if neither force sides with it, and the wind has changed
+        // if both do.
+        let sides = vote.map(|vote| sides_with(vote, differs));
+        let by_ground = self.agrees_with_ground(limit_mps);
         let count = |now: bool, s: f64| if now { s + dt_s } else { (s - dt_s).max(0.0) };
-        let for_sensor = for_sensor || self.agrees_with_ground(limit_mps);
-        self.differs_s = count(is_large && !for_sensor, self.differs_s);
-        self.wind_s = count(is_large && for_sensor, self.wind_s);
+        self.differs_s = count(
+            is_large && sides == [false; 2] && !by_ground,
+            self.differs_s,
+        );
+        self.wind_s = count(is_large && (sides == [true; 2] || by_ground), self.wind_s);
         if differs.abs() < 0.3 * limit_mps {
             self.reference = Reference::new(input.altitude_m, sensor_mps);
         }
         if self.wind_s > WIND_CHANGED_AFTER_S {
             self.follow_sensor(bank);
-        } else if self.differs_s > doubted_after_s {
+        } else if self.differs_s > DOUBTED_AFTER_S {
             if input.may_doubt && bank.learned_s > LEARNED_S {
-                self.begin_doubt(bank, input, (sensor_mps, source), differs);
+                self.begin_doubt(input, (sensor_mps, source), differs);
             } else {
                 self.follow_sensor(bank);
             }
-        } else if bank.younger_s >= ALONE_S && differs.abs() < 0.6 * limit_mps {
+        } else if bank.younger_s >= ALONE_S && self.differs_s == 0.0 {
             bank.older = bank.younger;
             bank.younger = bank.believing.kept();
             bank.younger_s = 0.0;
@@ -103,27 +113,17 @@ impl AirspeedMonitor {
     /// Doubts the sensor, `(m/s, number)`, which differs by this from the older copy.
     fn begin_doubt(
         &mut self,
-        bank: &FilterBank,
         input: &MonitorInput,
         (sensor_mps, source): (f64, u8),
         differs_mps: f64,
     ) {
-        let reason = if input.altimeter_is_doubted {
-            DoubtReason::BlockedStatic
-        } else {
-            let sigma = squared(input.sample.sqrt_density);
-            self.reference
-                .reason(input.altitude_m, sensor_mps, sigma, differs_mps)
-        };
+        let sigma = squared(input.sample.sqrt_density);
+        let reason = self
+            .reference
+            .reason(input.altitude_m, sensor_mps, sigma, differs_mps);
         self.doubt = Some(Doubt { source, reason });
         self.was_doubted = true;
         self.agrees_s = 0.0;
-        let may_be_static = bank.older.is_copy()
-            && bank.learned_s > 2.0 * ALONE_S
-            && matches!(reason, DoubtReason::TooHigh | DoubtReason::TooLow);
-        let shown_mps = bank.older.airspeed_mps() + differs_mps;
-        self.static_port =
-            may_be_static.then(|| StaticPort::new(self.port_input(bank, input, shown_mps)));
     }
 
     /// Doubts a sensor that has stepped, whatever else is measured: its airspeed
@@ -151,7 +151,7 @@ impl AirspeedMonitor {
             if !was_wrong {
                 bank.older.adopt_known(before_mps);
             }
-            self.begin_doubt(bank, input, (sensor_mps, source), sensor_mps - before_mps);
+            self.begin_doubt(input, (sensor_mps, source), sensor_mps - before_mps);
         }
         doubts
     }
@@ -163,16 +163,17 @@ impl AirspeedMonitor {
         input: &MonitorInput,
         doubt: Doubt,
         (sensor_mps, source, differs): (f64, u8, f64),
-        holds: bool,
+        votes: [f64; 2],
         dt_s: f64,
     ) {
         let filter_mps = bank.older.airspeed_mps();
-        self.look_at_static_port(bank, input, filter_mps + differs, holds, dt_s);
-        let is_static = doubt.reason == DoubtReason::BlockedStatic;
-        let agrees_mps = AGREES_RATIO * self.prior.reference_mps;
-        let agrees = (differs.abs() < agrees_mps || self.agrees_with_ground(agrees_mps))
-            && !(is_static && input.altimeter_is_doubted);
-        self.agrees_s = if agrees { self.agrees_s + dt_s } else { 0.0 };
+        let agrees_mps = (AGREES_RATIO * self.prior.reference_mps)
+            .max(AGREES_SDS * bank.older.sd_mps())
+            .max(AGREES_GUSTS * libm::sqrt(self.gusts_mps2));
+        let by_forces = votes.iter().all(|vote| (differs - vote).abs() < agrees_mps);
+        let agrees = differs.abs() < agrees_mps || by_forces || self.agrees_with_ground(agrees_mps);
+        let step_s = if agrees { dt_s } else { -dt_s };
+        self.agrees_s = (self.agrees_s + step_s).max(0.0);
         let needed_s = if source == doubt.source {
             BELIEVED_AFTER_S
         } else {
@@ -184,7 +185,7 @@ impl AirspeedMonitor {
             && input.sample.up > NEAR_STALL_LOAD
             && angle_of_attack_rad(&input.sample, filter_mps) > NEAR_STALL_RAD
             && carries;
-        let slower_mps = if carries && !is_static {
+        let slower_mps = if carries {
             limit(-differs, 0.0, MOST_SLOWER_RATIO * self.prior.reference_mps)
         } else {
             0.0
@@ -202,7 +203,7 @@ impl AirspeedMonitor {
             bank.believing.adopt(sensor_mps);
             bank.believing.wind.trust_sensor();
             self.follow_sensor(bank);
-            (self.doubt, self.static_port, self.blocked) = (None, None, None);
+            self.doubt = None;
             self.slower = LowPass::new(SLOWER_LAG_S);
         }
     }
@@ -211,7 +212,9 @@ impl AirspeedMonitor {
     pub(super) fn follow_sensor(&mut self, bank: &mut FilterBank) {
         bank.follow_sensor();
         self.difference.reset(0.0);
-        self.vote.reset(0.0);
+        for vote in &mut self.vote {
+            vote.reset(0.0);
+        }
         self.differs_s = 0.0;
         self.wind_s = 0.0;
     }

@@ -5,7 +5,7 @@ use crate::framework::Time;
 /// The least number of unchanged readings: a sensor with few readings per
 /// second repeats some of them.
 const FEWEST_REPEATS: u32 = 10;
-/// The time constant of the leak for the limits below, s: gyroscopes off by 0.5
+/// The time constant of the leak for the limits of the detector, s: gyroscopes off by 0.5
 /// °/s, or a climb by 1.5 m/s, never reach them. A limit that is greater by the
 /// resolution of a sensor has a leak that is slower to match.
 const LEAK_S: f64 = 10.0;

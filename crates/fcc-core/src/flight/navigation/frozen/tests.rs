@@ -67,6 +67,7 @@ fn watch(mut measured: impl FnMut(i64) -> Measurements) -> Vec<(f64, Frozen)> {
         felt_mps2: 0.0,
         felt_up_mps2: 0.0,
         resolutions: FINE,
+        rate_bias_radps: [0.0; 3],
     };
     let mut seen = Vec::new();
     for tick in 0..800 {
@@ -231,6 +232,7 @@ fn watch_coarse(frozen_at_s: f64, felt_mps2: f64) -> Vec<(f64, Frozen)> {
             altitude_m: STEP_M,
             altitude_step_m: STEP_M,
         },
+        rate_bias_radps: [0.0; 3],
     };
     let last = flying((frozen_at_s / DT_S) as i64);
     let mut seen = Vec::new();
@@ -260,15 +262,15 @@ fn good_coarse_sensors_are_not_frozen() {
 }
 
 /// 5 m/s must climb 15 m and a step: 9 s without the leak. 6° at 5 °/s take 1.2 s,
-/// so the least time of 2 s counts. 0.3 m/s² must gain 2 m/s: 6.7 s without it.
+/// so the least time of 2 s counts. 1 m/s² must gain 5.5 m/s: 5.5 s without it.
 #[test]
 fn frozen_coarse_sensors_are_found() {
-    let seen = watch_coarse(20.0, 0.3);
+    let seen = watch_coarse(20.0, 1.0);
     let at_s = |of: fn(&Frozen) -> bool| {
         let (at_s, _) = seen.iter().find(|(_, frozen)| of(frozen)).unwrap();
         at_s - 20.0
     };
     assert!((9.0..18.0).contains(&at_s(|frozen| frozen.altitude)));
     assert!((1.0..2.1).contains(&at_s(|frozen| frozen.heading)));
-    assert!((6.0..11.0).contains(&at_s(|frozen| frozen.airspeed)));
+    assert!((5.5..9.5).contains(&at_s(|frozen| frozen.airspeed)));
 }

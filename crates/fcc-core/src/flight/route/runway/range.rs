@@ -34,7 +34,7 @@ impl RunwayFlight {
         self.compare(by_range_m.map(|m| by_altitude_m - m));
         let by_range_m = by_range_m.filter(|_| self.is_over_runway(motion));
         let lands = matches!(self.phase, RunwayPhase::Approach | RunwayPhase::Flare);
-        let is_uncertain = lands && by_range_m.is_none();
+        let is_uncertain = lands && here.height_m.is_none();
         self.demand.uncertainty_m = if is_uncertain {
             self.config.height_uncertainty_m
         } else {
