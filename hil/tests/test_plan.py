@@ -14,6 +14,7 @@ from pymavlink import mavwp
 
 from fcc_hil import plan_file, plan_flight
 from fcc_hil.__main__ import main
+from fcc_hil.lockstep_rig import LockstepRig
 from fcc_hil.plan_score import PlanScore
 from fcc_hil.plant import Weather
 
@@ -64,6 +65,30 @@ def test_a_landing_that_is_not_flown_ends_the_command_with_an_error(
     monkeypatch.setattr(plan_flight, "fly", lambda *_: (circling, None))
     assert main(["plan", "--plan", str(CIRCUIT)]) == 1
     assert "the landing was not flown" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("plan", "event", "within_s"),
+    [
+        # Of 600 m to 55 kt at constant acceleration: 42 s.
+        (CIRCUIT, "the take-off is given up: rotate_kt is not reached", 43.0),
+        # From 100 kt to 65 kt without power.
+        (TWELVE_LEGS, "too little energy for speed and height", 30.0),
+    ],
+)
+def test_an_engine_that_does_not_run_is_an_event(plan: Path, event: str, within_s: float) -> None:
+    """Issue: on the runway and in the air, where nothing is configured that watches it."""
+    rigs: list[LockstepRig] = []
+
+    def watch(rig: LockstepRig) -> bool:
+        if not rigs:
+            rigs.append(rig)
+            rig.plant.fail_engines()
+        return any(event in said.text for said in rig.events)
+
+    plan_flight.fly(plan, plan_flight.PlanConditions(), longest_s=within_s, watch=watch)
+    (rig,) = rigs
+    assert any(event in said.text for said in rig.events)
 
 
 def test_a_plan_goes_through_pymavlinks_reader(fccd: Path, tmp_path: Path) -> None:

@@ -1,5 +1,7 @@
 //! What a user should know before a flight begins.
 
+use fcc_core::flight::AutopilotConfig;
+
 use super::x_plane::InputChoice;
 use super::{Config, NavigationMethod, RawSensorsChoice};
 
@@ -31,6 +33,7 @@ impl Config {
             );
         }
         remarks.extend(self.airspeed_remark());
+        remarks.extend(self.latency_remark());
         remarks.extend(self.unmeasured_limits());
         if let Some(plan) = self.plan.plan().filter(|_| self.flies_plan()) {
             let file = self.plan.file.as_ref();
@@ -40,6 +43,23 @@ impl Config {
             remarks.extend(found.iter().map(|remark| format!("{of}{remark}")));
         }
         remarks
+    }
+
+    /// The greatest latency for the gains of an aircraft in which nothing measures it, as long
+    /// as none is given.
+    fn latency_remark(&self) -> Option<String> {
+        let config = self.autopilot_config();
+        let greatest_s = config.unmeasured_latency_s()?;
+        let is_default = config.assumed_latency_s == AutopilotConfig::default().assumed_latency_s;
+        is_default.then(|| {
+            format!(
+                "autopilot.pace is {}, and below 0.8 the latency is not measured in flight: from \
+                 {:.0} ms on the pitch may oscillate; set autopilot.assumed_latency_ms to the time \
+                 from an output to its effect",
+                config.pace,
+                1e3 * greatest_s,
+            )
+        })
     }
 
     /// Limits of `[contingency]` for what no sensor of the configuration measures. X-Plane's
@@ -87,5 +107,29 @@ impl Config {
             ))
         });
         without.collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Config;
+
+    /// As JSBSim's OV10, which oscillates from 125 ms on, and not with 75.
+    #[test]
+    fn an_aircraft_whose_latency_is_not_measured_is_remarked_on() {
+        let remarks = |keys: &str| {
+            let text = format!("[built-in]\n[autopilot]\n{keys}\n");
+            Config::parse(&text, "f").unwrap().remarks_at_start()
+        };
+        let [remark] = &remarks("scale.pace = 0.675")[..] else {
+            panic!("one remark");
+        };
+        assert!(remark.contains("from 119 ms on"), "{remark}");
+        for keys in [
+            "scale.pace = 0.9",
+            "scale.pace = 0.675\nassumed_latency_ms = 150",
+        ] {
+            assert_eq!(remarks(keys), [""; 0], "{keys}");
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! What is between the outputs and their effect: latency, play, oscillation.
 
-use super::{Autopilot, flags};
+use super::{Autopilot, AutopilotConfig, flags};
 use crate::blocks::limit;
 use crate::flight::Surfaces;
 use crate::flight::control::{ElevatorResponse, OscillationMonitor, PlayInverse, Schedule};
@@ -23,6 +23,14 @@ const LEAST_PACE: f64 = 0.35;
 const SLOWEST_MEASURED: f64 = 1.25;
 /// A latency above the first is reported until it is below the second, s.
 const LATE_S: (f64, f64) = (0.12, 0.1);
+
+impl AutopilotConfig {
+    /// The greatest latency for these gains, s, where it is not measured in flight.
+    pub fn unmeasured_latency_s(&self) -> Option<f64> {
+        let unit = 1.0 / self.pace;
+        (unit > SLOWEST_MEASURED).then_some(PITCH_TUNED_FOR_S * unit)
+    }
+}
 
 /// Follows how the aircraft responds to what was sent.
 #[derive(Clone, Debug)]

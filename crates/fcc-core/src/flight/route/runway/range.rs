@@ -24,8 +24,8 @@ impl RunwayFlight {
     }
 
     /// Of the wheels above the ground, m: over the runway by the range finder, unless the
-    /// altitude is lower and the range is doubted; otherwise by the altitude, from which what
-    /// the altimeter is off the receiver is taken.
+    /// altitude is lower and the range is doubted; otherwise by the altitude, without a
+    /// range finder less what the altimeter is off the receiver.
     pub(super) fn height_m(&mut self, here: &OverGround, motion: &Motion) -> f64 {
         let by_altitude_m = self.by_altitude_m(here);
         let by_range_m = here.height_m.map(|m| m - self.config.height_on_wheels_m);
@@ -43,7 +43,7 @@ impl RunwayFlight {
         match by_range_m {
             Some(by_range_m) if self.is_range_doubted => by_range_m.min(by_altitude_m),
             Some(by_range_m) => by_range_m,
-            None if here.height_m.is_some() => by_altitude_m,
+            None if here.ranges || here.height_m.is_some() => by_altitude_m,
             None => by_altitude_m - here.above_receiver_m.unwrap_or(0.0),
         }
     }

@@ -97,6 +97,26 @@ fn a_flare_that_does_not_come_down_is_given_up() {
     }
 }
 
+/// Without a range finder it sinks with at most 150 ft/min, as on glassy water (FAA-H-8083-23,
+/// chapter 6), from 20 ft above the runway on, and higher with the path's 365: by the receiver,
+/// whatever the altimeter shows.
+#[test]
+fn an_uncertain_height_is_sunk_through_slowly() {
+    for off_m in [-9.0, 0.0, 9.0] {
+        let mut follower = landing();
+        for (height_m, slow) in [(30.0, false), (14.0, false), (5.0, true), (0.2, true)] {
+            let here = OverGround {
+                above_receiver_m: Some(off_m),
+                ..at(-height_m / 0.0524, height_m + off_m, 35.0)
+            };
+            (0..2).for_each(|_| follower.advance(&here, 0.025));
+            let sink_fpm = -follower.runway().unwrap().climb_rate_mps * 60.0 / FOOT_M;
+            assert_eq!(sink_fpm < 150.0, slow, "{off_m} {height_m} {sink_fpm}");
+            assert!(sink_fpm > 100.0, "{off_m} {height_m} {sink_fpm}");
+        }
+    }
+}
+
 /// Below the decision height, 200 ft, far before the runway, or below the runway.
 #[test]
 fn a_landing_that_begins_too_low_climbs_first() {
