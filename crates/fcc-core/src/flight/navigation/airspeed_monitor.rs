@@ -16,6 +16,7 @@ mod path;
 mod sensorless;
 mod step;
 
+use ground::Behind;
 use step::StepDetector;
 
 /// The time between two corrections of the filters, s.
@@ -115,6 +116,7 @@ pub(super) struct AirspeedMonitor {
     doubt: Option<Doubt>,
     /// The time since the last velocity over the ground, s.
     ground_s: f64,
+    behind: Behind,
     /// The airspeed for which the sensor is to be left, m/s.
     left_for_mps: Option<f64>,
     /// The airspeed by both and its standard deviation, while it is known, and the
@@ -153,6 +155,7 @@ impl AirspeedMonitor {
             reference: Reference::NONE,
             doubt: None,
             ground_s: 0.0,
+            behind: Behind::NONE,
             left_for_mps: None,
             by_ground: None,
             ground_difference: LowPass::new(VOTE_LAG_S),
@@ -275,8 +278,8 @@ impl AirspeedMonitor {
             bank.is_first = false;
             self.follow_sensor(&mut bank);
         }
-        self.follow_ground(&mut bank, input, &sample, dt_s);
-        if self.doubt_step(&mut bank, input, dt_s) {
+        let contradicted = self.follow_ground(&mut bank, input, &sample, dt_s);
+        if contradicted || self.doubt_step(&mut bank, input, dt_s) {
             // Nothing else is compared in this tick.
         } else if settles {
             self.follow_sensor(&mut bank);
