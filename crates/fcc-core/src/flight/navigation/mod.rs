@@ -346,7 +346,7 @@ impl Navigation {
         self.vertical.coast(passed_s);
         self.airspeed.adopt_next();
         self.agreement = Agreement::new();
-        self.motion = MotionMonitor::new();
+        self.motion = self.motion.renewed();
         if self.monitor.doubt().is_none() {
             self.monitor = AirspeedMonitor::new(self.airframe);
         }

@@ -124,6 +124,15 @@ impl MotionMonitor {
         }
     }
 
+    /// The same from now on, with the learned bias of the rates.
+    pub(super) const fn renewed(&self) -> Self {
+        Self {
+            followed_s: self.followed_s,
+            offset_radps: self.offset_radps,
+            ..Self::new()
+        }
+    }
+
     pub(super) const fn doubt(&self) -> Option<MotionDoubt> {
         self.doubt
     }
