@@ -167,10 +167,15 @@ impl AirspeedMonitor {
         dt_s: f64,
     ) {
         let filter_mps = bank.older.airspeed_mps();
-        let agrees_mps = (AGREES_RATIO * self.prior.reference_mps)
-            .max(AGREES_SDS * bank.older.sd_mps())
-            .max(AGREES_GUSTS * libm::sqrt(self.gusts_mps2));
-        let by_forces = votes.iter().all(|vote| (differs - vote).abs() < agrees_mps);
+        // Models that were begun anew for the sensor's sake say little against it.
+        let (sd_mps, learned) = (bank.older.sd_mps(), bank.older.is_copy());
+        let uncertain_mps = if learned {
+            (AGREES_SDS * sd_mps).max(AGREES_GUSTS * libm::sqrt(self.gusts_mps2))
+        } else {
+            0.0
+        };
+        let agrees_mps = (AGREES_RATIO * self.prior.reference_mps).max(uncertain_mps);
+        let by_forces = learned && votes.iter().all(|vote| (differs - vote).abs() < agrees_mps);
         let agrees = differs.abs() < agrees_mps || by_forces || self.agrees_with_ground(agrees_mps);
         let step_s = if agrees { dt_s } else { -dt_s };
         self.agrees_s = (self.agrees_s + step_s).max(0.0);
