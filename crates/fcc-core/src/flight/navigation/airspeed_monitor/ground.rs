@@ -21,9 +21,11 @@ const LOST_S: f64 = 1.5;
 const SHEAR_MPS: f64 = 12.0;
 const LAGS_FOR_S: f64 = 1.0;
 /// One that stands still while the aircraft becomes faster or slower by more than this
-/// share of the reference airspeed, over this lag, s, moves by less than this share of
-/// that.
+/// share of the reference airspeed and so many times the gusts, over this lag, s, moves by
+/// less than this share of that, for this time, s: shorter is a gust of turbulence 4 and 5.
 const STILL_RATIO: f64 = 0.14;
+const STILL_GUSTS: f64 = 3.0;
+const STILL_FOR_S: f64 = 2.0;
 const STILL_LAG_S: f64 = 10.0;
 const STILL_SHARE: f64 = 0.2;
 const AT_FIRST_S: f64 = 60.0;
@@ -168,7 +170,8 @@ impl AirspeedMonitor {
         let moved_mps = by_ground_mps - *slow_ground_mps;
         let shown_mps = sensor_mps - *slow_sensor_mps;
         let (off_mps, forces_mps) = (by_ground_mps - sensor_mps, bank.older.airspeed_mps());
-        let is_still = fabs(moved_mps) > STILL_RATIO * self.prior.reference_mps
+        let gusts_mps = STILL_GUSTS * self.gusts_mps();
+        let is_still = fabs(moved_mps) > (STILL_RATIO * self.prior.reference_mps).max(gusts_mps)
             && fabs(shown_mps) < STILL_SHARE * fabs(moved_mps)
             && off_mps * moved_mps > 0.5 * squared(moved_mps)
             && (forces_mps - sensor_mps) * off_mps > 0.5 * squared(off_mps);
@@ -177,7 +180,7 @@ impl AirspeedMonitor {
         } else {
             0.0
         };
-        (self.behind.still_s > LAGS_FOR_S).then_some(by_ground_mps)
+        (self.behind.still_s > STILL_FOR_S).then_some(by_ground_mps)
     }
 
     /// The sensor is to be left for an airspeed, m/s.
