@@ -60,7 +60,7 @@ class _Flown:
 
     def doubts(self) -> list[str]:
         """Return why the airspeed was doubted, in order, by the events."""
-        begin, end = "airspeed of sensor 1 is doubted: ", "; flying on without it"
+        begin, end = "airspeed of sensor 1 is excluded: ", "; flying on without it"
         parts = [text.partition(begin) for text in self.events]
         return [reason.removesuffix(end) for _, _, reason in parts if reason.endswith(end)]
 
@@ -284,7 +284,7 @@ def test_a_healthy_airspeed_is_used_and_kept_above_the_stall(
     Neither excludes the sensor.
     """
     flown, _ = fly(replace(draw(number, seed, Bounds()), receiver=None, fault=fault))
-    doubted = any("is doubted: it is lower" in event.text for event in flown.events)
+    doubted = any("is excluded: it is lower" in event.text for event in flown.events)
     assert not doubted
     assert flown.verdict.figures["airspeed_over_stall"] > 1.0
 

@@ -209,7 +209,7 @@ def test_alarms_have_channel_reason_and_duration() -> None:
     events = [
         Event(0.0, "standby -> engaged"),
         Event(5.0, "now: recovering from an upset"),
-        Event(10.0, "airspeed of sensor 1 is doubted: it is higher than forces; flying on"),
+        Event(10.0, "airspeed of sensor 1 is excluded: it is higher than forces; flying on"),
         Event(10.0, f"now: {doubted}"),
         Event(40.0, f"no longer: {doubted}; now: oscillation: gain is reduced"),
         Event(50.0, "engaged -> failsafe: heading is frozen"),

@@ -49,7 +49,7 @@ _SURFACE_NOTICE = re.compile(
     r"not move the aircraft|the (wrong|other) way|reversed|jammed|no effect"
 )
 _SENSOR_NOTICE = re.compile(r"is not used again|do not count|it is not used|not used any more")
-_REASON = re.compile(r"(?:is doubted|excluded): (.*?)(?:; .*)?$")
+_REASON = re.compile(r"excluded: (.*?)(?:; .*)?$")
 
 _SAME_S = 1.0
 """A condition that returns within this time goes on."""

@@ -12,7 +12,7 @@ use crate::framework::{Flags, Notice, Time};
 
 /// The numbers of notices: one for each reason, with the sensor's number in the
 /// lowest bits.
-const REASONS: [(u8, DoubtReason, &str); 6] = [
+const REASONS: [(u8, DoubtReason, &str); 4] = [
     (
         0x20,
         DoubtReason::Ground,
@@ -33,20 +33,8 @@ const REASONS: [(u8, DoubtReason, &str); 6] = [
         DoubtReason::TooLow,
         "it is lower than forces and motion allow",
     ),
-    (
-        0xc0,
-        DoubtReason::Contradicts,
-        "neither lift nor path agrees with it",
-    ),
-    (
-        0xe0,
-        DoubtReason::Impossible,
-        "it is beyond 90 degrees or no number",
-    ),
 ];
 const SENSORS: u8 = 0x1f;
-/// From here on they are those of the angle of attack.
-const FIRST_OF_ANGLE: u8 = 0xc0;
 
 /// Limits move inwards by this many standard deviations of the airspeed, at most
 /// by this share of the range between them.
@@ -62,14 +50,9 @@ pub(super) fn write(kind: u8, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         .iter()
         .find(|(number, ..)| *number == kind & !SENSORS);
     match known {
-        Some((number, _, reason)) => write!(
+        Some((_, _, reason)) => write!(
             f,
-            "{} of sensor {} is doubted: {reason}; flying on without it",
-            if *number < FIRST_OF_ANGLE {
-                "airspeed"
-            } else {
-                "angle of attack"
-            },
+            "airspeed of sensor {} is excluded: {reason}; flying on without it",
             (kind & SENSORS) + 1
         ),
         None => f.write_str("an unknown notice"),
@@ -96,11 +79,10 @@ impl Autopilot {
     }
 
     /// Prepares the notice of a doubt that has begun, or whose reason is another.
-    pub(super) fn note_doubt(&mut self, before: [Option<Doubt>; 2]) {
-        let begun = self.doubts().into_iter().zip(before);
-        let mut begun =
-            begun.filter_map(|(now, before)| now.filter(|doubt| before != Some(*doubt)));
-        self.doubt_notice = begun.next().and_then(|doubt| {
+    pub(super) fn note_doubt(&mut self, before: Option<Doubt>) {
+        let now = self.navigation.airspeed_doubt();
+        let begun = now.filter(|doubt| before != Some(*doubt));
+        self.doubt_notice = begun.and_then(|doubt| {
             let known = REASONS
                 .iter()
                 .find(|(_, reason, _)| *reason == doubt.reason);
@@ -111,15 +93,7 @@ impl Autopilot {
         });
     }
 
-    /// The doubts of airspeed and angle of attack.
-    pub(super) const fn doubts(&self) -> [Option<Doubt>; 2] {
-        [
-            self.navigation.airspeed_doubt(),
-            self.navigation.angle_doubt(),
-        ]
-    }
-
-    /// The conditions that airspeed, altitude and angle of attack are doubted.
+    /// The conditions that airspeed and altitude are excluded.
     pub(super) fn doubted(&self) -> Flags {
         Flags::NONE
             .with(
@@ -129,10 +103,6 @@ impl Autopilot {
             .with(
                 flags::DOUBTED_ALTITUDE,
                 self.navigation.altitude_doubt().is_some(),
-            )
-            .with(
-                flags::DOUBTED_ANGLE,
-                self.navigation.angle_doubt().is_some(),
             )
     }
 

@@ -74,7 +74,6 @@ impl Autopilot {
             distrusted: Flags::NONE,
             returning_altitude: ReturningAltitude::default(),
             doubt_notice: None,
-            receiver_notice: None,
             is_at_floor: false,
             config,
         }

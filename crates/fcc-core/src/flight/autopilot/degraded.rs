@@ -19,10 +19,8 @@ pub(super) const FLOWN_OTHERWISE: u8 = 4;
 /// The items of notices of what is flown otherwise than before; 0 is the glide.
 pub(super) mod otherwise {
     pub(in super::super) const LATE_FIXES: u16 = 1;
-    pub(in super::super) const HEIGHT_DOUBTED: u16 = 2;
-    pub(in super::super) const HEIGHT_BELIEVED: u16 = 3;
-    pub(in super::super) const VELOCITY_REFUSED: u16 = 4;
-    pub(in super::super) const VELOCITY_USED: u16 = 5;
+    pub(in super::super) const VELOCITY_REFUSED: u16 = 2;
+    pub(in super::super) const VELOCITY_USED: u16 = 3;
 }
 
 /// The notice with one of these items.
@@ -289,8 +287,7 @@ impl Autopilot {
     /// comes from; so does the climb by a satellite receiver in place of an altitude.
     pub(super) fn unreplaced(&self, now: Time, lost: Flags) -> Flags {
         let is_known = self.is_accurate(ACCURATE_RATIO) && !lost.intersects(FORCES_NEED);
-        let climb_is_known = self.accepted.velocity.is_fresh(now, self.config.max_age)
-            && !self.navigation.doubts_receivers_height();
+        let climb_is_known = self.accepted.velocity.is_fresh(now, self.config.max_age);
         lost.keeping(flags::AIRSPEED, !is_known)
             .keeping(flags::ALTITUDE, !climb_is_known)
     }

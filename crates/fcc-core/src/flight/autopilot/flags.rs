@@ -103,8 +103,6 @@ pub const RELEASING: Flags = Flags::bit(44);
 pub const TRIM_NOT_FOLLOWED: Flags = Flags::bit(45);
 /// A release is being prepared, and the trim does not follow.
 pub const UNTRIMMED: Flags = Flags::bit(46);
-/// The angle of attack contradicts lift and path, and is not used.
-pub const DOUBTED_ANGLE: Flags = Flags::bit(47);
 /// The wing has stalled above the configured stalling speed.
 pub const STALLS_FASTER: Flags = Flags::bit(48);
 /// The body rates are not the derivatives of pitch, roll and heading.
@@ -160,7 +158,6 @@ pub(super) const NOT_SENSED: Flags = Flags::from_bits(
         | SUSPECT_AIRSPEED.bits()
         | DOUBTED_AIRSPEED.bits()
         | DOUBTED_ALTITUDE.bits()
-        | DOUBTED_ANGLE.bits()
         | DOUBTED_MOTION.bits()
         | DOUBTED_GYROSCOPE.bits()
         | FROM_THE_FUTURE.bits()
@@ -227,7 +224,7 @@ pub(super) const NAMES: [&str; 64] = [
     "levelling and trimming before the release",
     "the elevator trim does not follow",
     "the release cannot trim: hold the elevator",
-    "angle of attack contradicts lift and path and is not used",
+    "not used (bit 47)",
     "the wing stalls above the configured speed: flying faster",
     "body rates contradict attitude or heading: check signs, axes, units and offsets of both",
     "vertical acceleration contradicts gravity: check its sign and unit, and those of pitch and roll",

@@ -188,12 +188,6 @@ impl GroundMotion {
         self.altimeter_is_doubted = is_doubted;
     }
 
-    /// The receiver's altitude is wrong, and says nothing of the altimeter.
-    pub(super) const fn forget_receivers_height(&mut self) {
-        self.here.above_receiver_m = None;
-        self.below_altimeter_m = 0.0;
-    }
-
     /// By how much the aircraft is lower than the altimeter shows, m, as far as a receiver
     /// said so: in cold air, or with the setting of another pressure.
     pub(super) const fn below_altimeter_m(&self) -> f64 {

@@ -189,7 +189,6 @@ pub struct Autopilot {
     returning_altitude: ReturningAltitude,
     /// That the airspeed has just been doubted.
     doubt_notice: Option<Notice>,
-    receiver_notice: Option<Notice>,
     /// Whether the target altitude is limited by the floor.
     is_at_floor: bool,
 }

@@ -10,7 +10,7 @@ use super::whereabouts::Whereabouts;
 use super::{Autopilot, flags};
 use crate::flight::inertial::RawNavigation;
 use crate::flight::navigation::{
-    ANGLE_OF_ATTACK, FrozenDetector, GateLimits, Lost, airspeed_can_follow, plausibility_gate,
+    FrozenDetector, GateLimits, Lost, airspeed_can_follow, plausibility_gate,
 };
 use crate::flight::{Measurements, PlantState};
 use crate::framework::{Flags, Reading, Readings, Tick, Time};
@@ -53,14 +53,12 @@ impl Autopilot {
         let step_s = self.clock.step_s();
         self.note_throttle(now);
         self.follow_intermittent(step_s);
-        let doubted = self.doubts();
-        let receiver_was_doubted = self.navigation.doubts_receivers_height();
+        let doubted = self.navigation.airspeed_doubt();
         self.navigate(now, measured, step_s);
         self.follow_ground(now, step_s);
         self.follow_battery(now, step_s);
         self.follow_engine(now, step_s);
         self.note_doubt(doubted);
-        self.note_receiver(receiver_was_doubted);
         let known = self.navigation.known();
         self.frozen.step(now, &self.accepted, &known, step_s);
         self.take_over_after_loss(now);
@@ -185,11 +183,7 @@ impl Autopilot {
     /// Accepts the plausible ones of a tick's measurements.
     fn pass_gate(&mut self, measured: &Measurements) {
         let limits = self.gate_limits();
-        let plausible = plausibility_gate(&mut self.accepted, measured, &limits);
-        let angle = measured.angle_of_attack_rad;
-        let is_impossible = !plausible.contains(ANGLE_OF_ATTACK);
-        self.navigation
-            .impossible_angle_from(is_impossible.then_some(angle.source));
+        plausibility_gate(&mut self.accepted, measured, &limits);
     }
 
     /// By what measurements are judged at present.

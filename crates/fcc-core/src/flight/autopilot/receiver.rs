@@ -2,11 +2,8 @@
 
 use core::fmt;
 
-use super::Autopilot;
 use super::degraded::flown_otherwise;
-use super::degraded::otherwise::{
-    HEIGHT_BELIEVED, HEIGHT_DOUBTED, LATE_FIXES, VELOCITY_REFUSED, VELOCITY_USED,
-};
+use super::degraded::otherwise::{LATE_FIXES, VELOCITY_REFUSED, VELOCITY_USED};
 use crate::framework::Notice;
 
 const PERMILLE: f64 = 1_000.0;
@@ -40,13 +37,6 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> Option<fmt::
                  are used at the time that they are of"
             ));
         }
-        (HEIGHT_DOUBTED, _) => {
-            "the satellite receiver climbs or sinks otherwise than altimeter, pitch and lift: \
-             its altitude and vertical velocity do not count"
-        }
-        (HEIGHT_BELIEVED, _) => {
-            "the satellite receiver climbs and sinks as the altimeter does again"
-        }
         (VELOCITY_REFUSED, _) => {
             "the satellite receiver's velocity contradicts its own positions, or airspeed and \
              compass, or is only repeated: it is not used"
@@ -57,24 +47,11 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> Option<fmt::
     Some(f.write_str(text))
 }
 
-impl Autopilot {
-    /// Prepares the notice that the receiver's height counts no longer, or again.
-    pub(super) fn note_receiver(&mut self, was_doubted: bool) {
-        let is_doubted = self.navigation.doubts_receivers_height();
-        self.receiver_notice = (is_doubted != was_doubted).then(|| {
-            flown_otherwise(if is_doubted {
-                HEIGHT_DOUBTED
-            } else {
-                HEIGHT_BELIEVED
-            })
-        });
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::string::ToString;
 
+    use super::super::Autopilot;
     use super::*;
     use crate::framework::EventKind;
 
@@ -88,9 +65,7 @@ mod tests {
     fn each_says_what_is_flown() {
         assert!(text(late_fixes(1.04)).contains("come 1.0 s later than they say"));
         assert!(text(late_fixes(0.0)).contains("come in time again"));
-        assert!(text(flown_otherwise(HEIGHT_DOUBTED)).contains("vertical velocity do not count"));
         assert!(text(velocity(true)).contains("contradicts its own positions"));
         assert!(text(velocity(false)).contains("is used again"));
-        assert!(text(flown_otherwise(HEIGHT_BELIEVED)).contains("as the altimeter does again"));
     }
 }

@@ -154,9 +154,6 @@ impl Autopilot {
         if let Some(raw) = &self.raw {
             self.ground.take(raw.solution(), dt_s);
         }
-        if self.navigation.doubts_receivers_height() {
-            self.ground.forget_receivers_height();
-        }
         let on_wheels_m = self.config.route.runway.height_on_wheels_m;
         self.told_once.touch.pass(dt_s);
         self.told_once.range.pass(dt_s);

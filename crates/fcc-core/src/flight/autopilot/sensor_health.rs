@@ -60,7 +60,6 @@ impl Autopilot {
             .or_else(|| self.degraded_notice())
             .or_else(|| self.wrong_sensor_notice())
             .or(self.doubt_notice)
-            .or(self.receiver_notice)
     }
 
     /// Whether the gyroscopes are not flown by, because the magnetic field contradicts them;

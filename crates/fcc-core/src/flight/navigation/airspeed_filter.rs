@@ -153,23 +153,14 @@ impl AirspeedFilter {
 
     /// The climb rate by pitch and lift, m/s, without vertical wind.
     pub(super) fn climb_rate_mps(&self, sample: &ForceSample) -> f64 {
-        self.climb_rate_by(self.x, sample)
-    }
-
-    /// The same with the models as they were when the filter was copied.
-    pub(super) fn kept_climb_rate_mps(&self, sample: &ForceSample) -> f64 {
-        self.climb_rate_by(self.kept, sample)
+        let alpha = self.x[4] + self.x[5] * sample.up * squared(self.slower());
+        self.at_mps() / sample.sqrt_density * sample.upward.sin_path(alpha)
     }
 
     /// The angle of attack that the lift needs at an airspeed, rad.
     pub(super) fn lift_angle_rad(&self, sample: &ForceSample, airspeed_mps: f64) -> f64 {
         let slower = self.prior.reference_mps / airspeed_mps.max(MIN_AIRSPEED_MPS);
         self.x[4] + self.x[5] * sample.up * squared(slower)
-    }
-
-    fn climb_rate_by(&self, [.., zero, angle, _]: State, sample: &ForceSample) -> f64 {
-        let alpha = zero + angle * sample.up * squared(self.slower());
-        self.at_mps() / sample.sqrt_density * sample.upward.sin_path(alpha)
     }
 
     /// Standard deviation of the airspeed, m/s.

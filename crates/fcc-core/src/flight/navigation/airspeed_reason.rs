@@ -1,4 +1,4 @@
-//! Why a sensor of airspeed or angle of attack is doubted.
+//! Why a sensor of airspeed is excluded.
 
 use crate::units::GRAVITY_MPS2;
 
@@ -9,7 +9,7 @@ const SEA_LEVEL_DENSITY: f64 = 1.225;
 const TELLING_M: f64 = 8.0;
 const SEEN: core::ops::RangeInclusive<f64> = 0.6..=1.6;
 
-/// What is wrong with a doubted airspeed or angle of attack.
+/// What is wrong with an excluded airspeed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum DoubtReason {
     /// It rises with height as an altimeter does: the total pressure is
@@ -22,13 +22,9 @@ pub(crate) enum DoubtReason {
     TooHigh,
     /// It is too low.
     TooLow,
-    /// An angle of attack that neither lift nor path explains.
-    Contradicts,
-    /// An angle of attack beyond ±90°, or no number.
-    Impossible,
 }
 
-/// A doubted sensor of airspeed or angle of attack.
+/// An excluded sensor of airspeed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) struct Doubt {
     /// The number of the sensor.

@@ -1,8 +1,6 @@
 //! Whether the altimeter is believed, and altitude and climb rate without it.
 
-use super::altitude_drift::{AltitudeDrift, Drifted, Receiver};
 use super::coasting::{Coasting, DIFFERS_M};
-use super::drift_judge::ClimbRates;
 use super::vertical::{Reference, VerticalState};
 
 /// The time for which a copy runs without the altimeter before it is compared,
@@ -46,12 +44,9 @@ pub(super) struct AltitudeInput {
     pub(super) felt_mps2: f64,
     /// Climb rates by pitch and lift, and over the ground, m/s.
     pub(super) path_mps: Option<f64>,
-    /// The same by pitch and lift as they belonged together 20 to 40 s ago.
-    pub(super) kept_path_mps: Option<f64>,
     pub(super) ground_mps: Option<f64>,
     /// The range finder's height above the ground, m.
     pub(super) range_m: Option<f64>,
-    pub(super) receiver: Option<Receiver>,
     pub(super) tan_bank: f64,
     pub(super) gusts_mps: f64,
     /// Whether the altimeter may be doubted: while engaged.
@@ -81,7 +76,6 @@ pub(super) struct AltitudeMonitor {
     followed_s: f64,
     beyond_s: f64,
     beyond_range_s: f64,
-    drift: AltitudeDrift,
     doubted: Option<Doubted>,
 }
 
@@ -110,7 +104,6 @@ impl AltitudeMonitor {
             followed_s: 0.0,
             beyond_s: 0.0,
             beyond_range_s: 0.0,
-            drift: AltitudeDrift::new(),
             doubted: None,
         }
     }
@@ -119,19 +112,9 @@ impl AltitudeMonitor {
         self.doubted.is_some()
     }
 
-    /// Whether the receiver's altitude and vertical velocity are not believed.
-    pub(super) const fn doubts_receiver(&self) -> bool {
-        self.drift.doubts_receiver()
-    }
-
     /// Whether the altitude without the altimeter is still known.
     pub(super) fn is_sound(&self) -> bool {
         self.doubted.is_none_or(|doubted| doubted.error_m < SOUND_M)
-    }
-
-    /// A copy that runs without the altimeter from now on.
-    fn copy(&self, input: &AltitudeInput) -> Coasting {
-        Coasting::of(input, self.drift.receiver_more_mps())
     }
 
     /// Begins anew with a copy, without the altimeter.
@@ -166,31 +149,13 @@ impl AltitudeMonitor {
         }
         if input.has_stepped {
             (self.older, self.younger) = (None, None);
-            self.drift.restart();
-        }
-        let altimeter = input
-            .altitude_m
-            .map(|altitude_m| (altitude_m, input.step_m));
-        let rates = ClimbRates {
-            altimeter_mps: input.followed.climb_rate_mps,
-            path_mps: input.kept_path_mps,
-            alone: input
-                .altitude_m
-                .zip(self.older)
-                .and_then(|(altitude_m, older)| older.alone(altitude_m)),
-        };
-        let drifted = self.drift.step(altimeter, input.receiver, rates, dt_s);
-        if let (true, Some(Drifted::Altimeter(right_m))) = (input.may_doubt, drifted) {
-            let mut copy = self.copy(input);
-            copy.state.altitude_m = right_m;
-            return self.doubt(copy, input);
         }
         let (Some(altitude_m), Some(mut older), Some(mut younger)) =
             (input.altitude_m, self.older, self.younger)
         else {
             let followed_s = self.followed_s + dt_s;
             self.followed_s = input.altitude_m.map_or(0.0, |_| followed_s);
-            let copy = (self.followed_s > SETTLED_S).then(|| self.copy(input));
+            let copy = (self.followed_s > SETTLED_S).then(|| Coasting::of(input));
             (self.older, self.younger) = (copy, copy);
             return Verdict::Believed;
         };
@@ -212,7 +177,7 @@ impl AltitudeMonitor {
         let by_m = (older.state.altitude_m - altitude_m).abs();
         if younger.lasted_s > ALONE_S && by_m < 0.5 * (DIFFERS_M + input.step_m) + older.error_m {
             older = younger;
-            younger = self.copy(input);
+            younger = Coasting::of(input);
         }
         (self.older, self.younger) = (Some(older), Some(younger));
         Verdict::Believed

@@ -1,7 +1,6 @@
 //! A copy of the vertical filter that has run without the altimeter.
 
 use super::altitude_monitor::AltitudeInput;
-use super::drift_judge::Alone;
 use super::vertical::VerticalState;
 
 /// The altimeter differs by more than this, m, its step, and what the copy can be
@@ -17,12 +16,6 @@ const FELT_BANKED_MPS2: f64 = 0.5;
 /// the less, 1/s and 1/s².
 const COPIED_PER_STEP: f64 = 0.03;
 const FELT_PER_STEP: f64 = 0.006;
-/// The standard deviation of what it climbs: a barometer's noise, m, and this share of the
-/// error above, which is a limit.
-const LEAST_SD_M: f64 = 1.0;
-const SD_SHARE: f64 = 0.25;
-/// Altimeter and ground velocity contradict each other beyond this difference, m/s.
-const BEGAN_ALIKE_MPS: f64 = 1.0;
 /// The share of a climb by which geometric and pressure altitude differ: the
 /// air's temperature, 30 K off the standard (ISO 2533).
 const TEMPERATURE_SHARE: f64 = 0.12;
@@ -45,8 +38,6 @@ pub(super) struct Coasting {
     /// Climbed by the path, and by the ground velocity, m.
     path_m: Option<f64>,
     ground_m: Option<f64>,
-    /// The ground's climb rate less the filter's when it was copied, m/s.
-    ground_more_mps: f64,
     /// As they were with the first range.
     first: Option<Heights>,
     error_mps: f64,
@@ -64,14 +55,13 @@ struct Heights {
 }
 
 impl Coasting {
-    pub(super) const fn of(input: &AltitudeInput, ground_more_mps: f64) -> Self {
+    pub(super) const fn of(input: &AltitudeInput) -> Self {
         Self {
             state: input.followed,
             bias_mps2: input.bias_mps2,
             began_m: input.followed.altitude_m,
             path_m: Some(0.0),
             ground_m: Some(0.0),
-            ground_more_mps,
             first: None,
             error_mps: COPIED_MPS + COPIED_PER_STEP * input.step_m,
             error_m: 0.0,
@@ -93,21 +83,6 @@ impl Coasting {
         if self.first.is_none() {
             self.first = self.heights(input.followed.altitude_m, input);
         }
-    }
-
-    /// What altimeter and ground velocity have climbed more than the accelerometers say; none
-    /// of a copy that began while these two contradicted each other, at the climb rate of
-    /// the altimeter, which may be the wrong one.
-    pub(super) fn alone(&self, altitude_m: f64) -> Option<Alone> {
-        if self.ground_more_mps.abs() > BEGAN_ALIKE_MPS {
-            return None;
-        }
-        let climbed_m = self.state.altitude_m - self.began_m;
-        Some(Alone {
-            altimeter_m: altitude_m - self.state.altitude_m,
-            receiver_m: self.ground_m? - climbed_m - self.ground_more_mps * self.lasted_s,
-            sd_m: LEAST_SD_M + SD_SHARE * self.error_m,
-        })
     }
 
     /// None without a range or a ground velocity.

@@ -2,8 +2,6 @@
 
 use libm::{asin, cos, sin, sqrt};
 
-use super::airspeed_reason::Doubt;
-use super::angle_monitor::{AngleMonitor, OtherAngles};
 use super::attitude::Orientation;
 use super::path::Path;
 use super::sample_tracker::is_current;
@@ -45,9 +43,11 @@ impl Default for Lift {
 /// Load, angle of attack and the acceleration along the flight path, from the
 /// accelerometers.
 ///
-/// The angle of attack is measured where a source has it that agrees with lift
-/// or path. Otherwise it follows from the lift: α = α₀ + a·n/V² below the stall (lift n·W = ½ρV²·S·c(α);
-/// Stevens, Lewis and Johnson 2016, section 2.3). That line leads from the angle
+/// The angle of attack follows from the lift: α = α₀ + a·n/V² below the stall
+/// (lift n·W = ½ρV²·S·c(α); Stevens, Lewis and Johnson 2016, section 2.3). Where it is
+/// measured too, it is the middle one of that, the measured one, and pitch less path: a
+/// vane that jams, a vertical wind, and a stall, beyond which the lift no longer follows,
+/// falsify one of the three. The line leads from the angle
 /// without lift to the stalling angle at the stalling speed; it is moved in
 /// flight, slowly and within 3°, to pitch less path angle
 /// where the flight is not accelerated. A vertical wind falsifies the latter,
@@ -60,17 +60,12 @@ pub struct LiftChannel {
     gust_square: LowPass,
     /// What was learned of the angle without lift, rad.
     learned_rad: f64,
-    monitor: AngleMonitor,
-    /// The source of an impossible measured angle.
-    impossible: Option<u8>,
 }
 
 /// The angle of attack without lift, and that of the stall, of an unswept wing
 /// without flaps: those of JSBSim's Cessna 172 (lift table of c172p.xml), close
 /// to the NACA 2412 section (Abbott and von Doenhoff 1959, appendix IV).
 const ZERO_LIFT_RAD: f64 = -0.047;
-/// In less wind than this a vane points anywhere, m/s: the aircraft stands in gusts.
-const VANE_MPS: f64 = 10.0;
 /// See above.
 pub(crate) const STALL_RAD: f64 = 0.28;
 
@@ -103,19 +98,7 @@ impl LiftChannel {
             slow_load: LowPass::new(PATH_TAU_S),
             gust_square: LowPass::new(GUST_TAU_S),
             learned_rad: 0.0,
-            monitor: AngleMonitor::new(),
-            impossible: None,
         }
-    }
-
-    /// The source of a measured angle of attack that is impossible, from now on.
-    pub(super) const fn impossible_from(&mut self, source: Option<u8>) {
-        self.impossible = source;
-    }
-
-    /// The doubt of the measured angle of attack, while it lasts.
-    pub(super) const fn doubt(&self) -> Option<Doubt> {
-        self.monitor.doubt()
     }
 
     /// The same channel in its initial state.
@@ -144,20 +127,13 @@ impl LiftChannel {
         let by_lift_rad =
             self.angle_of_attack(load_factor, path.orientation, sin_path, airspeed_mps, dt_s);
         let measured = measurements.angle_of_attack_rad;
-        let has_wind = airspeed_mps > VANE_MPS;
-        let rates = measurements.body_rates.value;
-        let believed = self.monitor.step(
-            (has_wind && is_current(&measured, now)).then_some((measured.value, measured.source)),
-            self.impossible.filter(|_| has_wind),
-            &OtherAngles {
-                by_lift_rad,
-                by_path_rad: path.upward.angle_of_attack_rad(sin_path),
-                speed_ratio: airspeed_mps / self.stall_airspeed_mps,
-                turning_radps: rates.yaw_radps.abs().max(rates.roll_radps.abs()),
-            },
-            dt_s,
-        );
-        let angle_of_attack_rad = believed.unwrap_or(by_lift_rad);
+        let angle_of_attack_rad = if is_current(&measured, now) {
+            let by_path_rad = path.upward.angle_of_attack_rad(sin_path);
+            let (low, high) = (by_lift_rad.min(by_path_rad), by_lift_rad.max(by_path_rad));
+            limit(measured.value, low, high)
+        } else {
+            by_lift_rad
+        };
         Lift {
             load_factor,
             gust_load,
@@ -275,29 +251,6 @@ mod tests {
         for alpha in [-0.05_f64, 0.0, 0.17] {
             let found = acceleration(&force, alpha, &orientation);
             assert!((found - exact).abs() < 0.1, "{found} at {alpha}");
-        }
-    }
-
-    /// A vane of an aircraft that stands points anywhere, backwards too; at 30 m/s such
-    /// an angle is wrong.
-    #[test]
-    fn a_vane_without_wind_is_not_judged() {
-        let orientation = Orientation::default();
-        let path = Path {
-            orientation: &orientation,
-            upward: Upward::LEVEL,
-            vertical: VerticalState::default(),
-            sqrt_density: 1.0,
-        };
-        let level = SpecificForce {
-            z_mps2: -GRAVITY_MPS2,
-            ..SpecificForce::default()
-        };
-        for (airspeed_mps, is_doubted) in [(2.0, false), (30.0, true)] {
-            let mut channel = LiftChannel::new(25.0);
-            channel.impossible_from(Some(1));
-            flown(&mut channel, level, &path, airspeed_mps, 2.0);
-            assert_eq!(channel.doubt().is_some(), is_doubted);
         }
     }
 }

@@ -11,13 +11,10 @@ mod airframe;
 mod airspeed_filter;
 mod airspeed_monitor;
 mod airspeed_reason;
-mod altitude_drift;
 mod altitude_monitor;
-mod angle_monitor;
 mod attitude;
 mod coasting;
 mod config;
-mod drift_judge;
 mod estimate;
 mod filter_bank;
 mod force_sample;
@@ -59,7 +56,6 @@ pub(crate) use agreement::Contradictions;
 pub use air_data::AirspeedChannel;
 pub use airframe::LearnedAirframe;
 pub(crate) use airspeed_reason::{Doubt, DoubtReason};
-pub(crate) use altitude_drift::Receiver;
 pub use attitude::AttitudeChannel;
 pub use config::NavigationConfig;
 pub use estimate::{AirspeedSource, Estimate};
@@ -67,13 +63,13 @@ pub(crate) use frozen::{Frozen, FrozenDetector, Known};
 pub use lift::{Lift, LiftChannel};
 pub(crate) use motion_monitor::MotionDoubt;
 pub(crate) use plausibility::{
-    ANGLE_OF_ATTACK, ATTITUDE_RAD, ENGAGE_SWITCH, GateLimits, HEADING_RAD, HEIGHT_M,
-    PlausibilityLimit, RATES_RADPS, SPECIFIC_FORCE_MPS2, airspeed_can_follow, airspeed_is_suspect,
-    is_possible_fix, plausibility_gate,
+    ATTITUDE_RAD, ENGAGE_SWITCH, GateLimits, HEADING_RAD, HEIGHT_M, PlausibilityLimit, RATES_RADPS,
+    SPECIFIC_FORCE_MPS2, airspeed_can_follow, airspeed_is_suspect, is_possible_fix,
+    plausibility_gate,
 };
 pub(crate) use replacement::{DERIVED_RATES_LATE_S, Lost, Replacement};
 pub(crate) use resolution::Resolutions;
-pub(crate) use returning_altitude::ReturningAltitude;
+pub(crate) use returning_altitude::{Receiver, ReturningAltitude};
 use upward::Upward;
 pub use vertical::VerticalChannel;
 
@@ -198,25 +194,10 @@ impl Navigation {
         self.monitor.slower_mps()
     }
 
-    /// The doubt of the sensor of the angle of attack, while it lasts.
-    pub(crate) const fn angle_doubt(&self) -> Option<Doubt> {
-        self.lift.doubt()
-    }
-
-    /// The source of a measured angle of attack that is impossible, from now on.
-    pub(crate) const fn impossible_angle_from(&mut self, source: Option<u8>) {
-        self.lift.impossible_from(source);
-    }
-
     /// Whether the altimeter is doubted, and the altitude without it known.
     pub(crate) fn altitude_doubt(&self) -> Option<bool> {
         let monitor = &self.altitude_monitor;
         monitor.is_doubted().then(|| monitor.is_sound())
-    }
-
-    /// Whether the receiver's altitude and vertical velocity are not believed.
-    pub(crate) const fn doubts_receivers_height(&self) -> bool {
-        self.altitude_monitor.doubts_receiver()
     }
 
     /// Whether an airspeed may be used beside those of other sensors.

@@ -129,9 +129,7 @@ pub(crate) struct GateLimits {
     pub(crate) altitude_step_m: f64,
 }
 
-/// The bit of the angle of attack in what the gate returns.
-pub(crate) const ANGLE_OF_ATTACK: Flags = Flags::bit(6);
-/// That of the engage switch in the measurements.
+/// The bit of the engage switch in the measurements.
 pub(crate) const ENGAGE_SWITCH: Flags = Flags::bit(10);
 
 /// Copies the plausible values from `new` into `good`, and returns which they

@@ -2,9 +2,10 @@
 
 use libm::fabs;
 
-use super::altitude_drift::Receiver;
 use super::plausibility::{HEIGHT_M, is_possible_altitude};
-use crate::framework::Reading;
+use super::sample_tracker::is_current;
+use crate::flight::Measurements;
+use crate::framework::{Reading, Time};
 
 /// It is followed for this time, s, in so many samples at least.
 const FOLLOWED_S: f64 = 4.0;
@@ -24,6 +25,24 @@ const MOST_CLIMB_MPS: f64 = 10.0;
 const NEAR_M: f64 = 40.0;
 const RECEIVER_DRIFTS_MPS: f64 = 1.0;
 const UNMEASURED_MPS: f64 = 5.0;
+
+/// What a satellite receiver measures of the height.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Receiver {
+    altitude_m: f64,
+    climb_rate_mps: f64,
+}
+
+impl Receiver {
+    /// What it measures at `now`, if it does.
+    pub(crate) fn of(measured: &Measurements, now: Time) -> Option<Self> {
+        let (position, velocity) = (&measured.position, &measured.velocity);
+        (is_current(position, now) && is_current(velocity, now)).then_some(Self {
+            altitude_m: position.value.altitude_m,
+            climb_rate_mps: -velocity.value.down_mps,
+        })
+    }
+}
 
 /// The sums of a straight line through samples, by the time since the first one.
 #[derive(Clone, Copy, Debug, Default)]

@@ -3,7 +3,6 @@
 use libm::tan;
 
 use super::Navigation;
-use super::altitude_drift::Receiver;
 use super::altitude_monitor::{self, AltitudeInput, Verdict};
 use super::attitude::Orientation;
 use super::path::Path;
@@ -50,8 +49,7 @@ impl Navigation {
         let sample = self.monitor_input(now, measurements, &before).sample;
         let path = self.monitor.path(&sample);
         let path_mps = path.map(|(climb_rate_mps, _)| climb_rate_mps);
-        let is_believed = !self.altitude_monitor.doubts_receiver();
-        let ground_mps = (is_believed && is_current(&measurements.velocity, now))
+        let ground_mps = is_current(&measurements.velocity, now)
             .then_some(-measurements.velocity.value.down_mps);
         let altitude = measurements.altitude_m;
         let is_doubted = self.altitude_monitor.is_doubted();
@@ -76,10 +74,8 @@ impl Navigation {
             bias_mps2,
             felt_mps2: self.vertical.felt_mps2() + bias_mps2,
             path_mps,
-            kept_path_mps: self.monitor.kept_path_mps(&sample),
             ground_mps,
             range_m: measurements.height_by_range_m(now, attitude.roll_rad, attitude.pitch_rad),
-            receiver: Receiver::of(measurements, now),
             tan_bank: limit_abs(tan(attitude.roll_rad), 3.0),
             gusts_mps: self.monitor.gusts_mps(),
             may_doubt: self.is_engaged,
