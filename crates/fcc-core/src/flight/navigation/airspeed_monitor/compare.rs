@@ -8,9 +8,9 @@ use super::super::scalar_update::squared;
 use super::{ALONE_S, AirspeedMonitor, DIFFERS_RATIO, MonitorInput, SLOWER_LAG_S};
 use crate::blocks::{LowPass, limit};
 
-/// A difference of that share of the reference airspeed, of 2.5 standard deviations
+/// A difference of that share of the reference airspeed, of 3 standard deviations
 /// and of 10 times the gusts must last for 2.5 s.
-const DIFFERS_SDS: f64 = 2.5;
+const DIFFERS_SDS: f64 = 3.0;
 const DIFFERS_GUSTS: f64 = 10.0;
 const DOUBTED_AFTER_S: f64 = 2.5;
 /// The forces vote for the sensor if they put the airspeed more than this share
