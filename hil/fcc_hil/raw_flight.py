@@ -191,12 +191,8 @@ def fly(
         estimate.append(tuple(getattr(found, name) for name in _ESTIMATE))
         return False
 
-    rig.fly_to(rig.time_s + RAW_STANDBY_S, keep)
-    rig.set_switch(on=True)
-    engaged_s = rig.time_s
-    rig.fly_to(engaged_s + 1.0, keep)
-    if not rig.holds_control:
-        raise FlightError(f"not engaged: {', '.join(machine.engage_inhibits)}")
+    engaged_s = rig.time_s + RAW_STANDBY_S
+    rig.engage(after_s=RAW_STANDBY_S, until=keep)
     rig.fly_to(engaged_s + pattern.duration_s(legs), keep)
     if rig.raw is None or not rig.holds_control:
         raise FlightError("the flight did not last to the end of the pattern")
