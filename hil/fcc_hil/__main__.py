@@ -29,7 +29,7 @@ from .fly import (
 from .pattern import TimedPattern
 from .peer import fly_peer
 from .plant import TrimError
-from .plot import plot_flight
+from .plot import plot_pattern
 from .printable import say
 from .process import StandInError, StandInProcess, interrupt
 from .soak import SoakError
@@ -76,7 +76,7 @@ def _fly(options: argparse.Namespace) -> int:
     if options.json:
         documents.write(options.json, flight.document(peer))
     if options.plot:
-        plot_flight(
+        plot_pattern(
             options.plot,
             flight.truth,
             plan.pattern,
@@ -140,7 +140,7 @@ def _peer(options: argparse.Namespace) -> int:
     if options.plot:
         title = "JSBSim's own c172x autopilot on the timed pattern"
         pattern = TimedPattern(climb_ft=climb_ft)
-        plot_flight(options.plot, truth, pattern, 0.0, options.legs, title)
+        plot_pattern(options.plot, truth, pattern, 0.0, options.legs, title)
     return 0
 
 

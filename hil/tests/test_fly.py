@@ -17,7 +17,7 @@ from fcc_hil.cockpit import OVERRIDE_JOYSTICK
 from fcc_hil.daemon import Daemon, DaemonError, command
 from fcc_hil.fly import FlightError, Plan, altitudes_note, fly, peer_row
 from fcc_hil.pattern import TimedPattern
-from fcc_hil.plot import plot_flight
+from fcc_hil.plot import plot_pattern
 from fcc_hil.process import StandInError, StandInProcess
 from fcc_hil.standin import Mode, Settings
 from fcc_hil.udp import free_port
@@ -52,7 +52,7 @@ def test_a_flight_from_switch_to_score(tmp_path: Path) -> None:
     assert set(document["flight"]) == {"legs", "worst"}
 
     picture = tmp_path / "flight.png"
-    plot_flight(picture, flight.truth, SHORT, flight.engaged_at_s, 1, "A short flight")
+    plot_pattern(picture, flight.truth, SHORT, flight.engaged_at_s, 1, "A short flight")
     assert picture.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
 
 
