@@ -20,7 +20,7 @@ from .pattern import TimedPattern
 from .printable import say
 from .process import StandInProcess
 from .rig import FlightError
-from .score import Score, score
+from .score import Score
 from .standin import Progress, Settings
 from .truth import COLUMNS, Truth
 from .units import FT_TO_M, INHG_TO_PA, STANDARD_INHG, pressure_altitude_m
@@ -95,14 +95,13 @@ class Flight:
         }
 
 
-def progress_line(plan: Plan, engaged_at_s: float, progress: Progress) -> str:
-    """Return one line with the state of the flight."""
+def progress_line(progress: Progress, engaged_at_s: float, where: str) -> str:
+    """Return one line with the state of the flight, and where in it that is."""
     now = dict(zip(COLUMNS, progress.now, strict=True))
     # Plus zero, because a rounded -0 looks like an error.
     bank_deg = round(now["roll_deg"], 1) + 0.0
-    leg = min(plan.legs, plan.pattern.legs_begun(progress.time_s - engaged_at_s))
     return (
-        f"true: {progress.time_s - engaged_at_s:6.1f} s  leg {leg} of {plan.legs}  "
+        f"true: {progress.time_s - engaged_at_s:6.1f} s  {where}  "
         f"altitude {now['altitude_ft']:7.1f} ft  heading {now['heading_deg']:5.1f}°  "
         f"airspeed {now['airspeed_kt']:5.1f} kt  bank {bank_deg:5.1f}°"
     )
@@ -148,10 +147,7 @@ def fly(plan: Plan, notify: Callable[[str], None]) -> Flight:
         # The status first: transferring the truth takes longer than a frame.
         status = simulator.status()
         truth = simulator.truth()
-    figures = score(
-        truth.trace(),
-        plan.pattern.legs(plan.legs, engaged_at_s, truth.captured_at(engaged_at_s)),
-    )
+    figures = truth.score(plan.pattern, plan.legs, engaged_at_s)
     return Flight(plan, figures, truth, engaged_at_s, report, exit_code, status, failures)
 
 
@@ -214,7 +210,8 @@ def _watch(
             simulator.act(action)
         progress = simulator.progress()
         if progress.time_s >= next_line_s:
-            notify(progress_line(plan, engaged_at_s, progress))
+            leg = min(plan.legs, plan.pattern.legs_begun(progress.time_s - engaged_at_s))
+            notify(progress_line(progress, engaged_at_s, f"leg {leg} of {plan.legs}"))
             next_line_s += 1.0
         # One more row than the last leg needs, so that it is complete.
         if progress.time_s > engaged_at_s + duration_s + _LOOK_S:

@@ -20,7 +20,7 @@ from .noise import SensorNoise
 from .pattern import TimedPattern
 from .plant import Plant, Weather
 from .quantities import READINGS
-from .score import Score, score
+from .score import Score
 from .state import Controls, State
 from .truth import STEPS_PER_ROW, TRUTH_HZ, Truth, row
 
@@ -138,6 +138,4 @@ def fly(scenario: Scenario) -> tuple[Score, Truth]:
         plant.write(as_controls(surfaces))
         rows.append(row(state, plant.controls))
     truth = Truth(rows)
-    captured = truth.captured_at(engaged_at_s)
-    legs = scenario.pattern.legs(scenario.legs, engaged_at_s, captured)
-    return score(truth.trace(), legs), truth
+    return truth.score(scenario.pattern, scenario.legs, engaged_at_s), truth

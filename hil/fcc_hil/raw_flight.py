@@ -27,7 +27,7 @@ from .plant import Plant, Weather
 from .raw_calibration import calibrate
 from .raw_sensors import DELAYS_S, FIELD_UT
 from .rig import FlightError
-from .score import Score, score
+from .score import Score
 from .standin import Settings
 from .units import FT_TO_M, KT_TO_MPS
 
@@ -210,13 +210,7 @@ def fly(
         table = np.array(kept)
         for column, name in enumerate(names):
             arrays[f"{kind}_{name}"] = table[:, column]
-    flown = rig.truth()
-    captured = flown.captured_at(engaged_s)
-    return RawFlight(
-        arrays,
-        score(flown.trace(), pattern.legs(legs, engaged_s, captured)),
-        machine.learned_airframe,
-    )
+    return RawFlight(arrays, rig.truth().score(pattern, legs, engaged_s), machine.learned_airframe)
 
 
 def write_learned(path: Path, learned: Mapping[str, float]) -> None:

@@ -13,9 +13,9 @@ import numpy as np
 
 from ..lockstep import Scenario, fly
 from ..motion import LEAST, motion
-from ..pattern import Leg
+from ..pattern import TimedPattern
 from ..peer import fly_peer
-from ..score import LegScore, Score, score, worst
+from ..score import LegScore, Score, worst
 from ..truth import Truth
 from ..workers import local_workers
 from .limits import broken
@@ -143,15 +143,6 @@ def _motion(scenario: Scenario, truth: Truth) -> dict[str, float]:
 
 def _hold(scenario: Scenario, truth: Truth) -> LegScore:
     """Score the end of the hold before the first leg."""
-    start_s = float(truth["time_s"][0])
-    captured = truth.captured_at(start_s)
-    leg = Leg(
-        start_s=start_s,
-        end_s=start_s + scenario.pattern.hold_s,
-        heading_from_deg=captured.heading_deg,
-        heading_deg=captured.heading_deg,
-        altitude_from_ft=captured.altitude_ft,
-        altitude_ft=captured.altitude_ft,
-        airspeed_kt=captured.airspeed_kt,
-    )
-    return score(truth.trace(), [leg])["worst"]
+    start_s, hold_s = float(truth["time_s"][0]), scenario.pattern.hold_s
+    hold = TimedPattern(hold_s=0.0, leg_s=hold_s, turn_deg=0.0, climb_ft=0.0)
+    return truth.score(hold, 1, start_s)["worst"]
