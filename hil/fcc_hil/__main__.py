@@ -130,14 +130,14 @@ def _standin(options: argparse.Namespace) -> int:
 
 def _peer(options: argparse.Namespace) -> int:
     climb_ft = 0.0 if options.level else TimedPattern().climb_ft
-    figures, truth = fly_peer(options.legs, options.seed, TimedPattern(climb_ft=climb_ft))
+    pattern = TimedPattern(climb_ft=climb_ft)
+    figures, truth = fly_peer(options.legs, options.seed, pattern)
     if options.json:
         print(json.dumps(figures, indent=2))
     else:
         say(table([("JSBSim's c172x autopilot", figures)]))
     if options.plot:
         title = "JSBSim's own c172x autopilot on the timed pattern"
-        pattern = TimedPattern(climb_ft=climb_ft)
         plot_pattern(options.plot, truth, pattern, 0.0, options.legs, title)
     return 0
 

@@ -270,8 +270,6 @@ def _tune(options: argparse.Namespace) -> int:
 
 def _soak(options: argparse.Namespace) -> int:
     seconds = 60.0 * options.minutes
-    if seconds <= 0.0:
-        raise ValueError("--minutes: give more than 0")
     task = Soak(options.fccd, seconds, options.rate, not options.idle)
     with bar("flying", round(seconds)) as show:
         result = soak(task, lambda flown_s: show(round(flown_s), "flying"))

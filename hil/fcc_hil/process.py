@@ -20,7 +20,6 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from multiprocessing.connection import Connection
 from operator import attrgetter, methodcaller
-from types import TracebackType
 from typing import Any, cast
 
 from . import actions
@@ -141,12 +140,7 @@ class StandInProcess:
     def __enter__(self) -> StandInProcess:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.stop()
 
     def read(self, path: str) -> float | None:
