@@ -309,8 +309,8 @@ soak: $(STAMPS)/rust build $(STAMPS)/python $(STAMPS)/rt-tests ## Fly for half a
 	@mkdir -p target
 	$(PYTHON) -m fcc_hil soak --fccd $(FCCD) --json target/soak.json $(SOAK)
 
-bench-peer: $(STAMPS)/rust build $(STAMPS)/python-module ## Fly the benchmark: the autopilot and JSBSim's own
-	$(PYTHON) -m fcc_hil bench
+bench-peer: $(STAMPS)/rust $(STAMPS)/python-module ## Fly the suite's two Cessnas and JSBSim's own autopilot
+	$(PYTHON) -m fcc_hil suite --only 'c172[px]: *'
 
 bench-flight: $(STAMPS)/rust $(STAMPS)/python-module ## Fly the suite: ten aircraft, all weathers, against stated limits
 	@mkdir -p target

@@ -15,24 +15,22 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import actions, documents, simulator_options, watcher_load
+from . import actions, documents, ranges, simulator_options, watcher_load
 from . import commands as flights
 from .daemon import DaemonError, command
 from .fly import (
-    FlightError,
     Plan,
     altitudes_note,
     fly,
-    peer_row,
     print_progress,
 )
 from .pattern import TimedPattern
 from .peer import fly_peer
 from .plant import TrimError
-from .plot import plot_flight
+from .plot import plot_pattern
 from .printable import say
 from .process import StandInError, StandInProcess, interrupt
-from .soak import SoakError
+from .rig import FlightError
 from .standin import BEACON_GROUP
 from .table import table
 
@@ -55,7 +53,7 @@ def _fly(options: argparse.Namespace) -> int:
         actions=tuple(sorted(options.at)),
     )
     flight = fly(plan, print_progress)
-    peer = peer_row(plan)
+    peer, _ = fly_peer(plan.legs, plan.settings.seed, plan.pattern)
     say(
         "\n"
         + table(
@@ -76,7 +74,7 @@ def _fly(options: argparse.Namespace) -> int:
     if options.json:
         documents.write(options.json, flight.document(peer))
     if options.plot:
-        plot_flight(
+        plot_pattern(
             options.plot,
             flight.truth,
             plan.pattern,
@@ -132,29 +130,15 @@ def _standin(options: argparse.Namespace) -> int:
 
 def _peer(options: argparse.Namespace) -> int:
     climb_ft = 0.0 if options.level else TimedPattern().climb_ft
-    figures, truth = fly_peer(options.legs, options.seed, TimedPattern(climb_ft=climb_ft))
+    pattern = TimedPattern(climb_ft=climb_ft)
+    figures, truth = fly_peer(options.legs, options.seed, pattern)
     if options.json:
         print(json.dumps(figures, indent=2))
     else:
         say(table([("JSBSim's c172x autopilot", figures)]))
     if options.plot:
         title = "JSBSim's own c172x autopilot on the timed pattern"
-        pattern = TimedPattern(climb_ft=climb_ft)
-        plot_flight(options.plot, truth, pattern, 0.0, options.legs, title)
-    return 0
-
-
-def _bench(options: argparse.Namespace) -> int:
-    from .bench import run  # noqa: PLC0415 - needs the module fcc, which the others do not
-
-    flights = []
-    for name, figures in run(options.legs):
-        flights.append((name, figures))
-        say(f"  flown: {name}", to=sys.stderr)
-    if options.json:
-        print(json.dumps(dict(flights), indent=2))
-    else:
-        say(table(flights))
+        plot_pattern(options.plot, truth, pattern, 0.0, options.legs, title)
     return 0
 
 
@@ -199,11 +183,12 @@ def _parser() -> argparse.ArgumentParser:
     flies = commands.add_parser(
         "fly", help="fly the daemon through the timed pattern in real time and score it"
     )
-    flies.add_argument("--fccd", type=Path, required=True, help="the daemon's program")
+    ranges.add_daemon(flies)
     flies.add_argument("--config", type=Path, help="the daemon's configuration")
-    flies.add_argument("--legs", type=int, default=8, help="of 20 s each (default %(default)s)")
-    flies.add_argument("--json", type=Path, metavar="FILE", help="write timing and score here")
-    flies.add_argument("--plot", type=Path, metavar="FILE", help="write a picture here (PNG)")
+    flies.add_argument(
+        "--legs", type=ranges.count, default=8, help="of 20 s each (default %(default)s)"
+    )
+    ranges.add_files(flies, json="write timing and score here", plot="write a picture here (PNG)")
     simulator_options.add(flies)
     flies.set_defaults(run=_fly)
 
@@ -251,24 +236,17 @@ def _parser() -> argparse.ArgumentParser:
     serves.set_defaults(run=_standin)
 
     peer = commands.add_parser("peer", help="fly JSBSim's own autopilot through the pattern")
-    peer.add_argument("--legs", type=int, default=8, help="(default %(default)s)")
-    peer.add_argument("--seed", type=int, default=1, help="of every random sequence")
+    peer.add_argument("--legs", type=ranges.count, default=8, help="(default %(default)s)")
+    ranges.add_seed(peer, "of every random sequence")
     peer.add_argument("--level", action="store_true", help="turn without climbing")
     peer.add_argument("--json", action="store_true", help="print the score as JSON")
-    peer.add_argument("--plot", type=Path, metavar="FILE", help="write a picture here (PNG)")
+    ranges.add_files(peer, plot="write a picture here (PNG)")
     peer.set_defaults(run=_peer)
-
-    bench = commands.add_parser(
-        "bench", help="compare the autopilot with JSBSim's own, in lockstep"
-    )
-    bench.add_argument("--legs", type=int, default=8, help="(default %(default)s)")
-    bench.add_argument("--json", action="store_true", help="print the scores as JSON")
-    bench.set_defaults(run=_bench)
 
     bench_live = commands.add_parser(
         "bench-live", help="fly with and without watchers that join, leave and are killed"
     )
-    bench_live.add_argument("--fccd", type=Path, required=True, help="the daemon's program")
+    ranges.add_daemon(bench_live)
     bench_live.add_argument("--watcher", type=Path, required=True, help="the example `watch`")
     bench_live.add_argument(
         "--rounds", type=int, default=5, help="of two flights each (default %(default)s)"
@@ -312,17 +290,12 @@ def _drop_output() -> None:
 
 def _run(arguments: Sequence[str] | None) -> int:
     options = _parser().parse_args(arguments)
-    if getattr(options, "legs", 1) < 1:
-        say("error: --legs: give at least 1", to=sys.stderr)
-        return 2
     try:
         code: int = options.run(options)
     except BrokenPipeError:
         raise
     except (
         FlightError,
-        SoakError,
-        watcher_load.FlightError,
         DaemonError,
         StandInError,
         TrimError,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from .plant import STEP_S
 from .state import Controls
@@ -36,11 +36,10 @@ class Servos:
         """Return the positions one step later; the throttle is late, but has no servo."""
         self._waiting.append(command)
         to, now, share = self._waiting[0], self._now, self._share
-        self._now = Controls(
+        self._now = replace(
+            to,
             elevator=now.elevator + share * (to.elevator - now.elevator),
             aileron=now.aileron + share * (to.aileron - now.aileron),
             rudder=now.rudder + share * (to.rudder - now.rudder),
-            throttle=to.throttle,
-            elevator_trim=to.elevator_trim,
         )
         return self._now

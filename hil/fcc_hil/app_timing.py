@@ -18,7 +18,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from .daemon import Daemon, DaemonError, command
+from .daemon import Daemon, command
+from .rig import FlightError
+from .table import markdown
 
 NICE = -19
 """What the app asks for where it is refused ``SCHED_FIFO``."""
@@ -80,10 +82,6 @@ class Flight:
     max_us: float
 
 
-class NoFlightError(DaemonError):
-    """A program did not fly."""
-
-
 def run(comparison: Comparison) -> Iterator[Flight]:
     """Fly all of them, round by round; yield every flight as it ends."""
     for _ in range(comparison.rounds):
@@ -112,7 +110,7 @@ def fly(comparison: Comparison, loop: Loop) -> Flight:
                 daemon.stop(signal.SIGINT)
         recordings = list(Path(scratch).glob("*.mcap"))
         if len(recordings) != 1:
-            raise NoFlightError(f"{loop.name}: {len(recordings)} recordings")
+            raise FlightError(f"{loop.name}: {len(recordings)} recordings")
         report = _end([str(comparison.fccd), "report", "--json", str(recordings[0])], 60.0)
     timing = json.loads(report)["timing"]
     late = timing["lateness_us"]
@@ -140,10 +138,10 @@ def _end(words: Sequence[str], within_s: float) -> str:
             list(words), capture_output=True, text=True, check=False, timeout=within_s
         )
     except subprocess.TimeoutExpired:
-        raise NoFlightError(f"{words[0]} did not end within {within_s:.0f} s") from None
+        raise FlightError(f"{words[0]} did not end within {within_s:.0f} s") from None
     if ended.returncode != 0:
         said = (ended.stdout + ended.stderr)[-_LAST_WORDS:]
-        raise NoFlightError(f"{words[0]} ended with {ended.returncode}: {said}")
+        raise FlightError(f"{words[0]} ended with {ended.returncode}: {said}")
     return ended.stdout
 
 
@@ -164,10 +162,7 @@ def ratio(flights: Sequence[Flight], *, fifo: bool = False) -> float:
 
 def table(flights: Sequence[Flight]) -> str:
     """Return medians over the rounds, and each round's p99, as a Markdown table."""
-    lines = [
-        "| loop | granted | late p50 µs | p99 µs | max µs | within ±2 % | missed | p99 of each |",
-        "|---|---|---|---|---|---|---|---|",
-    ]
+    rows = []
     for loop in LOOPS:
         flown = [flight for flight in flights if flight.loop == loop.name]
         if not flown:
@@ -178,27 +173,26 @@ def table(flights: Sequence[Flight]) -> str:
             median(flown, loop, lambda flight: flight.max_us),
         ]
         within = median(flown, loop, lambda flight: flight.within_2_percent)
-        cells = [
-            loop.name,
-            ", ".join(sorted({flight.policy for flight in flown})),
-            *(f"{figure:,.0f}" for figure in figures),
-            f"{within * 100.0:.1f} %",
-            f"{sum(flight.missed for flight in flown)}",
-            ", ".join(f"{flight.p99_us:,.0f}" for flight in flown),
-        ]
-        lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join(lines)
+        rows.append(
+            [
+                loop.name,
+                ", ".join(sorted({flight.policy for flight in flown})),
+                *(f"{figure:,.0f}" for figure in figures),
+                f"{within * 100.0:.1f} %",
+                sum(flight.missed for flight in flown),
+                ", ".join(f"{flight.p99_us:,.0f}" for flight in flown),
+            ]
+        )
+    head = ["loop", "granted", "late p50 µs", "p99 µs", "max µs", "within ±2 %", "missed"]
+    return markdown([*head, "p99 of each"], rows)
 
 
-def as_json(comparison: Comparison, flights: Sequence[Flight]) -> str:
-    """Return every flight, and the ratios."""
-    return json.dumps(
-        {
-            "rate_hz": comparison.rate_hz,
-            "seconds": comparison.seconds,
-            "flights": [asdict(flight) for flight in flights],
-            "p99_ratio": ratio(flights),
-            "p99_ratio_fifo": ratio(flights, fifo=True),
-        },
-        indent=2,
-    )
+def document(comparison: Comparison, flights: Sequence[Flight]) -> dict[str, object]:
+    """Return every flight, and the ratios, for JSON."""
+    return {
+        "rate_hz": comparison.rate_hz,
+        "seconds": comparison.seconds,
+        "flights": [asdict(flight) for flight in flights],
+        "p99_ratio": ratio(flights),
+        "p99_ratio_fifo": ratio(flights, fifo=True),
+    }

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from . import app_timing, ranges, replacement
+from . import app_timing, documents, ranges
 from .printable import say
 
 
@@ -16,7 +16,7 @@ def add(commands: Any) -> None:
     app = commands.add_parser(
         "bench-android", help="compare the loop's timing in the Android app with the daemon's"
     )
-    app.add_argument("--fccd", type=Path, required=True, help="the daemon's program")
+    ranges.add_daemon(app)
     app.add_argument("--app", type=Path, required=True, help="android/host-tests/timing-flight")
     app.add_argument("--rounds", type=ranges.count, default=5, help="(default %(default)s)")
     app.add_argument(
@@ -33,9 +33,7 @@ def add(commands: Any) -> None:
         metavar="HZ",
         help="of the loop (%(default)s)",
     )
-    app.add_argument(
-        "--json", type=ranges.file_to_write, metavar="FILE", help="write all figures here"
-    )
+    ranges.add_files(app, json="write all figures here")
     app.set_defaults(run=_compare)
 
 
@@ -52,5 +50,5 @@ def _compare(options: argparse.Namespace) -> int:
         ratio = app_timing.ratio(flights, fifo=fifo)
         say(f"median p99 of the app over the best daemon's, {what}: {ratio:.2f}")
     if options.json:
-        replacement.write(options.json, app_timing.as_json(comparison, flights) + "\n")
+        documents.write(options.json, app_timing.document(comparison, flights))
     return 0

@@ -129,9 +129,9 @@ class _Serial:
 class _Udp:
     """Datagrams; what is out of range is lost."""
 
-    def __init__(self, host: str, port: int) -> None:
+    def __init__(self) -> None:
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self._socket.bind((host, port))
+        self._socket.bind(("127.0.0.1", 0))
         self._socket.setblocking(False)
         self._is_there = True
         self.bit_errors = 0.0
@@ -175,18 +175,12 @@ class _Udp:
 class RunningBoard:
     """A board that runs."""
 
-    def __init__(
-        self,
-        serial_link: Path | None = None,
-        host: str = "127.0.0.1",
-        port: int = 0,
-        seed: int = 1,
-    ) -> None:
+    def __init__(self, serial_link: Path | None = None, seed: int = 1) -> None:
         """Start it: at a serial line, to which `serial_link` will lead, or at a UDP port."""
         self.readings = Readings()
         self.changes: list[Change] = []
         self._end: _Serial | _Udp = (
-            _Udp(host, port) if serial_link is None else _Serial(serial_link, random.Random(seed))
+            _Udp() if serial_link is None else _Serial(serial_link, random.Random(seed))
         )
         self._lock = threading.Lock()
         self._board = ServoBoard()
@@ -200,11 +194,6 @@ class RunningBoard:
     def port(self) -> int:
         """Return the UDP port; 0 on a serial line."""
         return self._end.port if isinstance(self._end, _Udp) else 0
-
-    @property
-    def control(self) -> Control:
-        """Return who has control."""
-        return self._board.control
 
     def drive(self, otherwise: Controls) -> Controls:
         """Return where the servos go; what nobody holds goes where `otherwise` says."""

@@ -14,6 +14,7 @@ from .campaign import command as campaign
 from .printable import say
 from .progress import bar
 from .soak import Soak, soak
+from .workers import all_workers
 
 _LARGEST_SEEDS = 1_000
 _AXES = ("elevator", "aileron", "rudder", "throttle")
@@ -45,15 +46,8 @@ def add(commands: Any) -> None:
         "--only", metavar="PATTERN", help="cases whose name matches, as in 'c172*noise*'"
     )
     suite.add_argument("--quick", action="store_true", help="only those flown as a test")
-    suite.add_argument(
-        "--workers", type=ranges.workers, metavar="N", help="processes (all processors)"
-    )
-    suite.add_argument(
-        "--json", type=ranges.file_to_write, metavar="FILE", help="write all figures here"
-    )
-    suite.add_argument(
-        "--picture", type=ranges.file_to_write, metavar="FILE", help="write a picture here"
-    )
+    ranges.add_workers(suite)
+    ranges.add_files(suite, json="write all figures here", picture="write a picture here")
     suite.set_defaults(run=_suite)
 
     margins = commands.add_parser(
@@ -100,13 +94,8 @@ def add(commands: Any) -> None:
         metavar="NAME,NAME",
         help="light and heavy as in the campaign, or file (default: file)",
     )
-    margins.add_argument("--workers", type=ranges.workers, metavar="N", help="processes")
-    margins.add_argument(
-        "--json", type=ranges.file_to_write, metavar="FILE", help="write all figures here"
-    )
-    margins.add_argument(
-        "--picture", type=ranges.file_to_write, metavar="FILE", help="write a picture here"
-    )
+    ranges.add_workers(margins)
+    ranges.add_files(margins, json="write all figures here", picture="write a picture here")
     margins.set_defaults(run=_margins)
     campaign.add(commands)
 
@@ -152,9 +141,7 @@ def add(commands: Any) -> None:
         metavar="N",
         help="candidates (%(default)s)",
     )
-    tune.add_argument(
-        "--workers", type=ranges.workers, metavar="N", help="processes (all processors)"
-    )
+    ranges.add_workers(tune)
     tune.add_argument(
         "--dask", metavar="ADDRESS", help="fly on a Dask cluster, as in tcp://10.0.0.5:8786"
     )
@@ -163,7 +150,7 @@ def add(commands: Any) -> None:
     soaks = commands.add_parser(
         "soak", help="fly for a long time under stress, and compare with the machine's own delays"
     )
-    soaks.add_argument("--fccd", type=Path, required=True, help="the daemon's program")
+    ranges.add_daemon(soaks)
     soaks.add_argument(
         "--minutes",
         type=ranges.number(0.01, 100_000.0, "min"),
@@ -172,15 +159,13 @@ def add(commands: Any) -> None:
     )
     soaks.add_argument("--rate", type=ranges.count, default=100, metavar="HZ", help="(%(default)s)")
     soaks.add_argument("--idle", action="store_true", help="without stress-ng")
-    soaks.add_argument(
-        "--json", type=ranges.file_to_write, metavar="FILE", help="write all figures here"
-    )
+    ranges.add_files(soaks, json="write all figures here")
     soaks.set_defaults(run=_soak)
 
     floods = commands.add_parser(
         "bench-flood", help="fly without and with 100,000 datagrams a second of another host"
     )
-    floods.add_argument("--fccd", type=Path, required=True, help="the daemon's program")
+    ranges.add_daemon(floods)
     floods.add_argument(
         "--seconds", type=float, default=30.0, metavar="S", help="of each (%(default)s)"
     )
@@ -192,8 +177,7 @@ def add(commands: Any) -> None:
 def _suite(options: argparse.Namespace) -> int:
     from .suite import report  # noqa: PLC0415 - needs the module fcc, which others do not
     from .suite.flying import fly_all  # noqa: PLC0415
-    from .suite.matrix import cases, scenario_of  # noqa: PLC0415
-    from .suite.speed import measure  # noqa: PLC0415
+    from .suite.matrix import cases  # noqa: PLC0415
 
     chosen = [
         case
@@ -210,12 +194,9 @@ def _suite(options: argparse.Namespace) -> int:
             flown[outcome.case.name] = outcome
             notify(len(flown), outcome.case.name)
     outcomes = [flown[case.name] for case in chosen]
-    # Alone, after the other processes have ended.
-    speed = measure(scenario_of("c172p"))
-    say(report.text(outcomes, speed))
+    say(report.text(outcomes))
     if options.json:
-        document = report.document(outcomes, speed)
-        documents.write(options.json, document)
+        documents.write(options.json, report.document(outcomes))
     if options.picture:
         from .suite.picture import draw  # noqa: PLC0415 - matplotlib takes a second
 
@@ -262,10 +243,10 @@ def _tune(options: argparse.Namespace) -> int:
         legs=options.legs,
         turbulence=options.turbulence,
     )
-    workers = (
-        tuning.on_dask(options.dask) if options.dask else tuning.local_workers(options.workers)
-    )
-    with workers as fly_all, bar("tuning", task.evaluations) as show:
+    with (
+        all_workers(tuning.flight_cost, options.dask, options.workers) as fly_all,
+        bar("tuning", task.evaluations) as show,
+    ):
 
         def notify(flown: int, least: float) -> None:
             show(min(flown, task.evaluations), f"cost {least:.3f}")
@@ -289,8 +270,6 @@ def _tune(options: argparse.Namespace) -> int:
 
 def _soak(options: argparse.Namespace) -> int:
     seconds = 60.0 * options.minutes
-    if seconds <= 0.0:
-        raise ValueError("--minutes: give more than 0")
     task = Soak(options.fccd, seconds, options.rate, not options.idle)
     with bar("flying", round(seconds)) as show:
         result = soak(task, lambda flown_s: show(round(flown_s), "flying"))

@@ -7,12 +7,15 @@ import json
 import signal
 import subprocess
 import tempfile
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
+from .rig import FlightError
+
 _STOP_S = 5.0
+_LOOK_S = 0.05
 
 
 class DaemonError(RuntimeError):
@@ -51,12 +54,7 @@ class Daemon:
     def __enter__(self) -> Daemon:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.stop()
         self._output.close()
 
@@ -64,6 +62,23 @@ class Daemon:
     def exit_code(self) -> int | None:
         """Return its exit code, negative for a signal, or None while it runs."""
         return self._process.poll()
+
+    def require_running(self) -> None:
+        """Raise FlightError if it has ended."""
+        if self.exit_code is not None:
+            raise FlightError(self._with_log(f"the daemon ended with exit code {self.exit_code}"))
+
+    def wait_until(self, arrived: Callable[[], bool], within_s: float, otherwise: str) -> None:
+        """Wait until something has arrived; raise FlightError if it ends, or it is too late."""
+        deadline_s = time.monotonic() + within_s
+        while not arrived():
+            self.require_running()
+            if time.monotonic() > deadline_s:
+                raise FlightError(self._with_log(f"{otherwise} within {within_s:.0f} s"))
+            time.sleep(_LOOK_S)
+
+    def _with_log(self, words: str) -> str:
+        return f"{words}; its messages: {self.log}" if self.log else words
 
     @property
     def pid(self) -> int:

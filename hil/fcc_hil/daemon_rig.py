@@ -95,7 +95,7 @@ class DaemonRig(StandInRig):
             # A daemon that receives nothing waits long for the release to be confirmed.
             with contextlib.suppress(StandInError):
                 self.set_faults([])
-        self.daemon.__exit__(None, None, None)
+        self.daemon.__exit__()
         super().close()
 
     def _look(self) -> Progress:

@@ -15,12 +15,13 @@ test has flown it to, so the result is the same in either case.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
+from . import flown_plan, plan_score
 from .faulty_sensors import SensorFault
-from .over_ground import OverGroundRequirements
 from .pattern import SetPoints, TimedPattern
 from .plan_file import PlanFile
 from .quantities import Condition, Quantity, Samples, finite, quantity_of
@@ -29,13 +30,16 @@ from .quantities import seconds as _seconds
 from .requirements import (
     Stretch,
     Verdict,
+    all_below,
     never,
     overshoots_less_than,
+    passes,
     settles,
     stays,
 )
 from .rig import ENGAGED, FAILSAFE, RELEASED, Event, FlightError, Rig
 from .sensor_faults import Faults
+from .tangent_plane import away_m
 from .truth import TRUTH_HZ, Truth
 
 STATES = ("standby", "engaged", "failsafe", "stopped")
@@ -44,6 +48,9 @@ _ROW_S = 1.0 / TRUTH_HZ
 _TOLERANCE_S = 1e-6
 _LAST_HAPPENINGS = 6
 _SET_POINTS = ("heading", "altitude", "airspeed")
+_STEP_S = 5.0
+"""What is flown between two looks at where the aircraft is over the ground."""
+_STANDS_MPS = 0.5
 
 
 class RequirementError(AssertionError):
@@ -54,15 +61,13 @@ class RequirementError(AssertionError):
 class Leg:
     """A stretch of constant set points; times since engagement."""
 
-    number: int
-    """0 before the first change."""
     start_s: float
     end_s: float
     before: SetPoints
     points: SetPoints
 
 
-class Flight(OverGroundRequirements):
+class Flight:
     """One flight of an aircraft by the autopilot."""
 
     def __init__(
@@ -258,6 +263,52 @@ class Flight(OverGroundRequirements):
         required = f"{what} never from {from_:g} s to {to:g} s"
         self._hold(required, never(what, stretch.time_s, stretch.values))
 
+    # Where it goes over the ground.
+
+    def passes(self, waypoint: int | tuple[float, float], *, within: float, by: float) -> None:
+        """Require that it comes within `within` m of a place, by `by` s after engagement.
+
+        The place is that of an item of the plan, by its number, or latitude and longitude in
+        degrees. What is flown ends up to 5 s behind it.
+        """
+        __tracebackhide__ = True
+        within, by = _positive("within", within), _seconds("by", by)
+        words, latitude_deg, longitude_deg = self._place(waypoint)
+        verdict = self._fly_until(
+            by, lambda truth: self._passes(truth, (latitude_deg, longitude_deg), within)
+        )
+        self._hold(f"the aircraft passes {words} within {within:g} m by {by:g} s", verdict)
+
+    def lands(
+        self,
+        *,
+        by: float,
+        centre_line: float | None = None,
+        sink: float | None = None,
+        heading: float | None = None,
+        along: float | None = None,
+    ) -> None:
+        """Require that it stands on the plan's runway by `by` s after engagement.
+
+        Where its wheels touch, it is at most `centre_line` m off the centre line and `along` m off
+        the place that the plan gives, sinks with at most `sink` ft/min, and points at most
+        `heading` degrees off the runway.
+        """
+        __tracebackhide__ = True
+        by = _seconds("by", by)
+        given = {"centre_line": centre_line, "sink": sink, "heading": heading, "along": along}
+        limits = {name: v if v is None else _positive(name, v) for name, v in given.items()}
+        if self.plan is None:
+            raise FlightError('there is no plan: @pytest.mark.autopilot(mode="plan", plan=...)')
+        plan = self.plan
+        verdict = self._fly_until(by, lambda truth: _lands(truth, plan, limits))
+        units = {"centre_line": "m", "sink": "ft/min", "heading": "°", "along": "m"}
+        within = [f"{name} {v:g} {units[name]}" for name, v in limits.items() if v is not None]
+        required = f"the aircraft lands by {by:g} s" + ", ".join(["", *within]).replace(
+            ", ", ": ", 1
+        )
+        self._hold(required, verdict, events=True)
+
     # How it is done.
 
     def _prepare(self) -> None:
@@ -317,12 +368,12 @@ class Flight(OverGroundRequirements):
     def _leg(self, since_engaged_s: float) -> Leg:
         pattern, captured = self.pattern, self.captured
         if pattern is None:
-            return Leg(0, 0.0, np.inf, captured, captured)
+            return Leg(0.0, np.inf, captured, captured)
         begun = pattern.legs_begun(since_engaged_s + _TOLERANCE_S)
         start_s = 0.0 if begun == 0 else pattern.hold_s + (begun - 1) * pattern.leg_s
         points = pattern.set_points(start_s + _TOLERANCE_S, captured)
         before = pattern.set_points(max(0.0, start_s - _ROW_S), captured)
-        return Leg(begun, start_s, pattern.hold_s + begun * pattern.leg_s, before, points)
+        return Leg(start_s, pattern.hold_s + begun * pattern.leg_s, before, points)
 
     def _stretch(self, quantity: Quantity, at: float | None, from_s: float, to_s: float) -> Stretch:
         truth = self.rig.truth()
@@ -343,6 +394,30 @@ class Flight(OverGroundRequirements):
             ]
             targets = np.array([_set_point(quantity, point) for point in points])
         return Stretch(quantity, time_s[shown], values, targets)
+
+    def _place(self, waypoint: object) -> tuple[str, float, float]:
+        if isinstance(waypoint, tuple):
+            latitude, longitude = (finite("waypoint", value) for value in waypoint)
+            return f"{latitude:.6f}°, {longitude:.6f}°", latitude, longitude
+        items = () if self.plan is None else self.plan.items
+        found = [item for item in items if item.number == waypoint and item.has_place]
+        if not found:
+            numbers = ", ".join(str(item.number) for item in items if item.has_place) or "none"
+            raise ValueError(f"no item {waypoint} of the plan has a place: those are {numbers}")
+        return f"item {waypoint}", found[0].latitude_deg, found[0].longitude_deg
+
+    def _passes(self, truth: Truth, place: tuple[float, float], within: float) -> Verdict:
+        time_s = truth["time_s"] - self.engaged_at_s
+        track = (truth["latitude_deg"], truth["longitude_deg"])
+        return passes(time_s, away_m(*place, track), within)
+
+    def _fly_until(self, by: float, judge: Callable[[Truth], Verdict]) -> Verdict:
+        """Fly on until a verdict on what was flown since engagement is met, or it is too late."""
+        while True:
+            verdict = judge(self.rig.truth().since(self.engaged_at_s))
+            if verdict.is_met or self.time_s >= by:
+                return verdict
+            self._fly_to(self.engaged_at_s + min(self.time_s + _STEP_S, by))
 
     def _since_engaged(self, happening: Event) -> float:
         return happening.time_s - self.engaged_at_s
@@ -380,3 +455,21 @@ def _target(stretch: Stretch, at: float | None) -> str:
     if at is None and first != last:
         return "its set point"
     return stretch.quantity.words(last)
+
+
+def _lands(truth: Truth, plan: PlanFile, limits: dict[str, float | None]) -> Verdict:
+    flown = flown_plan.of_truth(truth)
+    score = plan_score.score_landing(plan, flown, 0)
+    # Half a second of its way.
+    moves = flown_plan.moved_m(flown, rows=TRUTH_HZ // 2) > _STANDS_MPS / 2.0
+    if score is None or moves:
+        place = "on the ground, and moves" if score is not None else "not on the plan's runway"
+        return Verdict(is_met=False, flown=f"it is {place} at the end")
+    return all_below(
+        [
+            ("off the centre line", score.centre_line_m, limits["centre_line"], "m"),
+            ("sink", score.sink_fpm, limits["sink"], "ft/min"),
+            ("off the heading", score.heading_error_deg, limits["heading"], "°"),
+            ("along the runway", score.along_m, limits["along"], "m"),
+        ]
+    )

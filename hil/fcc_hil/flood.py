@@ -17,7 +17,7 @@ import socket
 import struct
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing.synchronize import Event
@@ -25,8 +25,9 @@ from pathlib import Path
 from typing import Protocol
 
 from .daemon import Daemon, command
-from .fly import ENGAGE_SWITCH, FlightError
+from .fly import await_subscriptions, switch_on
 from .process import StandInProcess
+from .rig import FlightError
 from .standin import Settings
 from .udp import free_port
 
@@ -36,8 +37,6 @@ _BATCH = 64
 """Datagrams in one call: the most that the kernel cuts."""
 _INDEX = 0
 _VALUE = 1e6
-_LOOK_S = 0.05
-_SUBSCRIBE_S = 15.0
 _SETTLE_S = 3.0
 
 
@@ -170,10 +169,9 @@ def fly(plan: Plan) -> Result:
         )
         words = ["taskset", "--cpu-list", str(cpus[0]), *command(plan.fccd, config)]
         with Daemon(words, Path(scratch, "said")) as daemon:
-            _await(lambda: simulator.progress().subscriptions > 0, daemon)
+            await_subscriptions(simulator, daemon)
             time.sleep(_SETTLE_S)
-            simulator.write(ENGAGE_SWITCH, 1.0)
-            _await(lambda: simulator.progress().overridden, daemon)
+            switch_on(simulator, daemon)
             time.sleep(_SETTLE_S)
             quiet = _percent(daemon.pid, plan.seconds)
             with flood(("127.0.0.1", port), plan.per_second, cpus[-1]) as sent:
@@ -202,11 +200,3 @@ def _percent(pid: int, seconds: float) -> float:
     before, began_s = cpu_s(pid), time.monotonic()
     time.sleep(seconds)
     return 100.0 * (cpu_s(pid) - before) / (time.monotonic() - began_s)
-
-
-def _await(arrived: Callable[[], bool], daemon: Daemon) -> None:
-    deadline_s = time.monotonic() + _SUBSCRIBE_S
-    while not arrived():
-        if daemon.exit_code is not None or time.monotonic() > deadline_s:
-            raise FlightError(f"the daemon does not fly; its messages: {daemon.log}")
-        time.sleep(_LOOK_S)

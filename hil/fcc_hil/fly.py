@@ -17,10 +17,10 @@ from .cockpit import ENGAGE_SWITCH as ENGAGE_SWITCH  # noqa: PLC0414 - as others
 from .cockpit import OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES
 from .daemon import Daemon
 from .pattern import TimedPattern
-from .peer import fly_peer
 from .printable import say
 from .process import StandInProcess
-from .score import Score, score
+from .rig import FlightError
+from .score import Score
 from .standin import Progress, Settings
 from .truth import COLUMNS, Truth
 from .units import FT_TO_M, INHG_TO_PA, STANDARD_INHG, pressure_altitude_m
@@ -32,10 +32,6 @@ _RELEASE_S = 3.0
 _LOOK_S = 0.05
 # Real time may exceed the simulated flight by this before giving up.
 _PATIENCE = 1.5
-
-
-class FlightError(RuntimeError):
-    """The flight could not be completed."""
 
 
 @dataclass(frozen=True)
@@ -99,14 +95,13 @@ class Flight:
         }
 
 
-def progress_line(plan: Plan, engaged_at_s: float, progress: Progress) -> str:
-    """Return one line with the state of the flight."""
+def progress_line(progress: Progress, engaged_at_s: float, where: str) -> str:
+    """Return one line with the state of the flight, and where in it that is."""
     now = dict(zip(COLUMNS, progress.now, strict=True))
     # Plus zero, because a rounded -0 looks like an error.
     bank_deg = round(now["roll_deg"], 1) + 0.0
-    leg = min(plan.legs, plan.pattern.legs_begun(progress.time_s - engaged_at_s))
     return (
-        f"true: {progress.time_s - engaged_at_s:6.1f} s  leg {leg} of {plan.legs}  "
+        f"true: {progress.time_s - engaged_at_s:6.1f} s  {where}  "
         f"altitude {now['altitude_ft']:7.1f} ft  heading {now['heading_deg']:5.1f}°  "
         f"airspeed {now['airspeed_kt']:5.1f} kt  bank {bank_deg:5.1f}°"
     )
@@ -129,21 +124,12 @@ def fly(plan: Plan, notify: Callable[[str], None]) -> Flight:
     """Fly in real time. Raise FlightError if the flight cannot be completed."""
     with StandInProcess(plan.settings) as simulator, Daemon(plan.daemon) as daemon:
         notify(f"{plan.settings.aircraft} flies on UDP port {simulator.port}")
-        _await(
-            simulator,
-            daemon,
-            lambda progress: progress.subscriptions > 0,
-            _SUBSCRIBE_S,
-            f"the daemon has not subscribed to anything on UDP port {simulator.port}; "
-            "check the simulator's address and port in its configuration",
-        )
+        await_subscriptions(simulator, daemon)
         start_s = simulator.progress().time_s
-        _await(
-            simulator,
-            daemon,
-            lambda progress: progress.time_s >= start_s + plan.steady_s,
+        daemon.wait_until(
+            lambda: simulator.progress().time_s >= start_s + plan.steady_s,
             _PATIENCE * plan.steady_s + _ENGAGE_S,
-            "simulated time has stopped",
+            "simulated time does not pass",
         )
         engaged_at_s = _engage(plan, simulator, daemon)
         _watch(plan, simulator, daemon, engaged_at_s, notify)
@@ -161,49 +147,47 @@ def fly(plan: Plan, notify: Callable[[str], None]) -> Flight:
         # The status first: transferring the truth takes longer than a frame.
         status = simulator.status()
         truth = simulator.truth()
-    figures = score(
-        truth.trace(),
-        plan.pattern.legs(plan.legs, engaged_at_s, truth.captured_at(engaged_at_s)),
-    )
+    figures = truth.score(plan.pattern, plan.legs, engaged_at_s)
     return Flight(plan, figures, truth, engaged_at_s, report, exit_code, status, failures)
 
 
-def _await(
+def await_subscriptions(simulator: StandInProcess, daemon: Daemon) -> None:
+    """Wait until the daemon has subscribed to something. Raise FlightError if it does not."""
+    daemon.wait_until(
+        lambda: simulator.progress().subscriptions > 0,
+        _SUBSCRIBE_S,
+        f"the daemon has not subscribed to anything on UDP port {simulator.port} (check the "
+        "simulator's address and port in its configuration)",
+    )
+
+
+def switch_on(
     simulator: StandInProcess,
     daemon: Daemon,
-    arrived: Callable[[Progress], bool],
-    patience_s: float,
-    otherwise: str,
-) -> None:
-    deadline_s = time.monotonic() + patience_s
-    while not arrived(simulator.progress()):
-        if daemon.exit_code is not None:
-            raise FlightError(f"the daemon ended with exit code {daemon.exit_code}")
-        if time.monotonic() > deadline_s:
-            raise FlightError(otherwise)
-        time.sleep(_LOOK_S)
+    switch: str = ENGAGE_SWITCH,
+    within_s: float = _ENGAGE_S,
+) -> float:
+    """Switch on, and wait for the daemon to take control; return when, in simulated time."""
+    switched_at_s = simulator.write(switch, 1.0)
+    daemon.wait_until(
+        lambda: simulator.progress().overridden,
+        within_s,
+        f"the daemon has not taken the controls by {switch} (check the engage switch in its "
+        "configuration)",
+    )
+    return switched_at_s
 
 
 def _engage(plan: Plan, simulator: StandInProcess, daemon: Daemon) -> float:
     """Switch on; return the simulated time at which that was."""
     for attempt in range(1, plan.attempts + 1):
-        engaged_at_s = simulator.write(plan.engage_switch, 1.0)
         try:
-            _await(
-                simulator,
-                daemon,
-                lambda progress: progress.overridden,
-                _ENGAGE_S,
-                f"the daemon has not taken the controls {_ENGAGE_S:.0f} s after "
-                f"{plan.engage_switch} went to 1; check the engage switch in its configuration",
-            )
+            return switch_on(simulator, daemon, plan.engage_switch)
         except FlightError:
             if attempt == plan.attempts or daemon.exit_code is not None:
                 raise
             simulator.write(plan.engage_switch, 0.0)
             time.sleep(_ENGAGE_S)
-        else:
-            return engaged_at_s
     raise ValueError(f"attempts = {plan.attempts}: give at least 1")
 
 
@@ -226,16 +210,13 @@ def _watch(
             simulator.act(action)
         progress = simulator.progress()
         if progress.time_s >= next_line_s:
-            notify(progress_line(plan, engaged_at_s, progress))
+            leg = min(plan.legs, plan.pattern.legs_begun(progress.time_s - engaged_at_s))
+            notify(progress_line(progress, engaged_at_s, f"leg {leg} of {plan.legs}"))
             next_line_s += 1.0
         # One more row than the last leg needs, so that it is complete.
         if progress.time_s > engaged_at_s + duration_s + _LOOK_S:
             return
-        if daemon.exit_code is not None:
-            raise FlightError(
-                f"the daemon ended with exit code {daemon.exit_code}, "
-                f"{progress.time_s - engaged_at_s:.1f} s into the flight"
-            )
+        daemon.require_running()
         if time.monotonic() > give_up_s:
             raise FlightError("simulated time runs too slowly; is the machine overloaded?")
         time.sleep(_LOOK_S)
@@ -255,12 +236,6 @@ def _switch_off(plan: Plan, simulator: StandInProcess, daemon: Daemon) -> list[s
         for path in (OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES)
         if simulator.read(path) == 1.0
     ]
-
-
-def peer_row(plan: Plan) -> Score:
-    """Return the score of JSBSim's own autopilot on the same pattern, in calm air."""
-    figures, _ = fly_peer(plan.legs, plan.settings.seed, plan.pattern)
-    return figures
 
 
 def print_progress(line: str) -> None:

@@ -19,10 +19,12 @@ from .loading import Loading
 from .noise import SensorNoise
 from .pattern import TimedPattern
 from .plant import Plant, Weather
-from .score import Score, score
+from .quantities import READINGS
+from .score import Score
 from .state import Controls, State
 from .truth import STEPS_PER_ROW, TRUTH_HZ, Truth, row
 
+_CHANNELS = tuple(channel for channels in READINGS.values() for channel in channels)
 _CALM = Weather()
 _THESIS_PATTERN = TimedPattern()
 
@@ -58,20 +60,9 @@ class Scenario:
 def measurements(state: State) -> fcc.Measurements:
     """Return the measurements of ideal sensors."""
     return fcc.Measurements(
-        pitch_rad=state.pitch_rad,
-        roll_rad=state.roll_rad,
-        heading_rad=state.heading_rad,
-        roll_rate_radps=state.roll_rate_radps,
-        pitch_rate_radps=state.pitch_rate_radps,
-        yaw_rate_radps=state.yaw_rate_radps,
-        specific_force_x_mps2=state.specific_force_x_mps2,
-        specific_force_y_mps2=state.specific_force_y_mps2,
-        specific_force_z_mps2=state.specific_force_z_mps2,
-        airspeed_mps=state.airspeed_mps,
-        altitude_m=state.altitude_m,
         weight_on_wheels=float(state.on_ground),
         engine_speed_radps=state.engine_speed_radps,
-        battery_voltage_v=state.battery_voltage_v,
+        **{channel: getattr(state, channel) for channel in _CHANNELS},
     )
 
 
@@ -147,6 +138,4 @@ def fly(scenario: Scenario) -> tuple[Score, Truth]:
         plant.write(as_controls(surfaces))
         rows.append(row(state, plant.controls))
     truth = Truth(rows)
-    captured = truth.captured_at(engaged_at_s)
-    legs = scenario.pattern.legs(scenario.legs, engaged_at_s, captured)
-    return score(truth.trace(), legs), truth
+    return truth.score(scenario.pattern, scenario.legs, engaged_at_s), truth

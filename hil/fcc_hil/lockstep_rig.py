@@ -26,6 +26,7 @@ from .units import wrap_heading_rad
 
 _STANDBY_S = 2.0
 """Navigation settles for 1 s before the autopilot may engage."""
+_ENGAGES_WITHIN_S = 1.0
 
 
 _AT_ONCE = Actuation()
@@ -87,8 +88,7 @@ class LockstepRig:
         self.machine = machine
         self.events: list[Event] = []
         self._steps = round(steps)
-        conditions = conditions or Conditions()
-        self._gust = conditions.gust
+        self._conditions = conditions = conditions or Conditions()
         self._noise = SensorNoise(settings.seed, conditions.levels) if settings.noise else None
         self._late: deque[State] = deque(maxlen=conditions.sensor_delay_ticks + 1)
         self._sensors = FaultySensors()
@@ -105,12 +105,6 @@ class LockstepRig:
             if conditions.raw_sensors
             else None
         )
-        self._raw_fault = conditions.raw_fault
-        self._calibration = conditions.calibration
-        self._without = conditions.without
-        self._position = conditions.position
-        self._biases = conditions.biases
-        self._measures_trim = conditions.trim
         self.measured: State | None = None
         """What the sensors showed last; None if nothing came."""
         self.stick: tuple[float, float, float] | None = None
@@ -131,6 +125,14 @@ class LockstepRig:
     def prepare(self) -> None:
         """Let navigation settle while the trimmed aircraft flies."""
         self.fly_to(self.time_s + _STANDBY_S)
+
+    def engage(self, *, after_s: float, until: Callable[[], bool] | None = None) -> None:
+        """Fly for so long in standby, then engage within a second. Raise FlightError otherwise."""
+        self.fly_to(self.time_s + after_s, until)
+        self.set_switch(on=True)
+        self.fly_to(self.time_s + _ENGAGES_WITHIN_S, until)
+        if not self.holds_control:
+            raise FlightError(f"not engaged: {', '.join(self.machine.engage_inhibits)}")
 
     def set_switch(self, *, on: bool) -> None:
         """Move the engage switch; the loop reads it in the next tick."""
@@ -162,13 +164,13 @@ class LockstepRig:
         """Do nothing: nothing runs in the background."""
 
     def _fly_a_tick(self) -> None:
-        plant = self.plant
-        if self._gust:
-            self._gust(plant)
+        plant, conditions = self.plant, self._conditions
+        if conditions.gust:
+            conditions.gust(plant)
         self._move()
         state = plant.state()
         shown = self._noise.apply(state) if self._noise else state
-        self._late.append(_biased(shown, self._biases) if self._biases else shown)
+        self._late.append(_biased(shown, conditions.biases) if conditions.biases else shown)
         measured, channels = self._sensors.read(plant.time_s, self._late[0])
         self.measured = measured
         velocity = None if self._receiver is None else self._receiver.read(state)
@@ -177,11 +179,11 @@ class LockstepRig:
         else:
             values = measurements(measured)
             ages_s = {} if self.raw is None else self.raw.read(values)
-            if self._raw_fault is not None:
-                self._raw_fault(values, plant.time_s)
-            if self._calibration is not None:
-                self._calibration.apply(values)
-            if self._position:
+            if conditions.raw_fault is not None:
+                conditions.raw_fault(values, plant.time_s)
+            if conditions.calibration is not None:
+                conditions.calibration.apply(values)
+            if conditions.position:
                 values.latitude_rad = measured.latitude_rad
                 values.longitude_rad = measured.longitude_rad
                 values.position_altitude_m = measured.elevation_m
@@ -192,7 +194,7 @@ class LockstepRig:
                 values.pilot_pitch, values.pilot_roll, values.pilot_yaw = self.stick
             surfaces = self.machine.step(
                 values,
-                missing=[*self._without, *_sensors_of(channels)],
+                missing=[*conditions.without, *_sensors_of(channels)],
                 ages_s=ages_s,
                 readback=as_surfaces(self._stand()),
                 switch=self._switch,
@@ -209,7 +211,7 @@ class LockstepRig:
     def _stand(self) -> Controls:
         """Return where the controls stand, as it is measured."""
         stand = self.plant.controls
-        return stand if self._measures_trim else replace(stand, elevator_trim=None)
+        return stand if self._conditions.trim else replace(stand, elevator_trim=None)
 
     def _write(self, controls: Controls) -> None:
         self._command = controls

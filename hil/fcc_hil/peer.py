@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from .pattern import TimedPattern
 from .plant import Plant
-from .score import Score, score
+from .score import Score
 from .state import Controls
 from .truth import STEPS_PER_ROW, Truth, row
 from .units import FT_TO_M
@@ -41,7 +41,7 @@ def fly_peer(
         plant.step(STEPS_PER_ROW)
         rows.append(row(plant.state(), _commanded(plant)))
     truth = Truth(rows)
-    return score(truth.trace(), pattern.legs(legs, engaged_at_s, captured)), truth
+    return truth.score(pattern, legs, engaged_at_s), truth
 
 
 def _commanded(plant: Plant) -> Controls:

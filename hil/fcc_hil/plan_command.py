@@ -6,7 +6,7 @@ import argparse
 import signal
 import sys
 import tempfile
-from dataclasses import asdict
+from dataclasses import asdict, astuple, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +16,7 @@ from .fly import print_progress
 from .printable import say
 from .process import interrupt
 from .rig import FlightError
+from .table import markdown
 
 if TYPE_CHECKING:
     from .flown_plan import FlownPlan
@@ -39,13 +40,7 @@ def add(commands: Any) -> None:
     plan.add_argument(
         "--turbulence", type=int, choices=range(8), default=0, help="severity (default: 0)"
     )
-    plan.add_argument(
-        "--seed",
-        type=ranges.whole(0, ranges.LARGEST_SEED),
-        default=1,
-        metavar="N",
-        help="of all errors (default: 1)",
-    )
+    ranges.add_seed(plan)
     plan.add_argument(
         "--position",
         choices=("plain", "precise"),
@@ -65,12 +60,7 @@ def add(commands: Any) -> None:
         help="elevation tiles (.hgt): the ground that is flown over, and known to the autopilot",
     )
     plan.add_argument("--law", choices=("l1", "npfg"), default="npfg", help="(default: npfg)")
-    plan.add_argument(
-        "--json", type=ranges.file_to_write, metavar="FILE", help="write the figures here"
-    )
-    plan.add_argument(
-        "--plot", type=ranges.file_to_write, metavar="FILE", help="write a picture here, .png"
-    )
+    ranges.add_files(plan, json="write the figures here", plot="write a picture here, .png")
     plan.add_argument(
         "--realtime",
         action="store_true",
@@ -152,32 +142,10 @@ def _plan(options: argparse.Namespace) -> int:
 
 
 def _show(score: PlanScore) -> None:
-    say("item  closest m  altitude ft")
-    for waypoint in score.waypoints:
-        note = "" if waypoint.passed else "  not passed"
-        say(
-            f"{waypoint.item:4} {waypoint.closest_m:10.1f} {waypoint.altitude_error_ft:12.1f}{note}"
-        )
-    say("\nleg to  cross-track RMS m  max m  altitude RMS ft  max ft  airspeed kt")
-    for leg in score.legs:
-        say(
-            f"{leg.item:6} {leg.cross_track_rms_m:18.2f} {leg.cross_track_max_m:6.1f} "
-            f"{leg.altitude_rms_ft:16.1f} {leg.altitude_max_ft:7.1f} {leg.airspeed_error_kt:12.1f}"
-        )
-    if score.turns:
-        say("\nturn at  degrees  radius m  from its arc RMS m  max m  bank to deg")
-    for turn in score.turns:
-        say(
-            f"{turn.item:7} {turn.degrees:8.1f} {turn.radius_m:9.0f} "
-            f"{turn.cross_track_rms_m:18.1f} {turn.cross_track_max_m:6.1f} "
-            f"{turn.bank_max_deg:12.1f}"
-        )
-    for circle in score.circles:
-        say(
-            f"\ncircle {circle.item}: {circle.radius_m:.0f} m, within "
-            f"{circle.radius_error_max_percent:.1f} %, bank to {circle.bank_max_deg:.1f} deg, "
-            f"{circle.seconds:.0f} s"
-        )
+    for scores in (score.waypoints, score.legs, score.turns, score.circles):
+        if scores:
+            head = [field.name for field in fields(scores[0])]
+            say(markdown(head, [map(_cell, astuple(one)) for one in scores]) + "\n")
     for name, parts in (("take-off", score.takeoff), ("landing", score.landing)):
         if parts is not None:
             figures = (f"{key} {value:.1f}" for key, value in asdict(parts).items())
@@ -187,3 +155,7 @@ def _show(score: PlanScore) -> None:
         if ground.collides:
             what = "the ground is flown into"
         say(f"\n{what} at {ground.latitude_deg:.5f}, {ground.longitude_deg:.5f}")
+
+
+def _cell(value: object) -> str:
+    return f"{value:.2f}" if isinstance(value, float) else str(value)

@@ -16,7 +16,7 @@ import fcc
 import numpy as np
 
 from . import clearance, plan_file, plan_score, plan_start
-from .flown_plan import FlownPlan, go_arounds
+from .flown_plan import FlownPlan, go_arounds, of_truth
 from .lockstep_rig import Conditions, LockstepRig
 from .plant import Weather
 from .raw_calibration import calibrate
@@ -106,12 +106,9 @@ def fly(
     )
     settings = Settings(aircraft=conditions.aircraft, seed=seed)
     rig = LockstepRig(settings, plant, machine, between)
-    rig.fly_to(rig.time_s + (RUNWAY_STANDBY_S if takes_off else RAW_STANDBY_S))
-    rig.set_switch(on=True)
-    rig.fly_to(rig.time_s + 1.0)
-    if not rig.holds_control:
-        raise FlightError(f"not engaged: {', '.join(machine.engage_inhibits)}")
-    rows: list[tuple[float, ...]] = []
+    rig.engage(after_s=RUNWAY_STANDBY_S if takes_off else RAW_STANDBY_S)
+    demands: list[tuple[float, ...]] = []
+    begun_s = rig.time_s
     reached: dict[int, float] = {}
     seen = 0
     last = max(item.number for item in read.items if item.has_place)
@@ -120,23 +117,13 @@ def fly(
 
     def keep() -> bool:
         nonlocal seen, end_s
-        state, points = plant.state(), machine.setpoints
-        rows.append(
+        points = machine.setpoints
+        demands.append(
             (
-                state.time_s,
-                state.latitude_rad,
-                state.longitude_rad,
-                state.elevation_m,
-                state.airspeed_mps,
-                state.roll_rad,
                 points.guidance_item,
                 points.course_rad,
                 points.airspeed_mps,
                 points.altitude_above_reference_m,
-                state.heading_rad,
-                state.down_mps,
-                float(state.on_ground),
-                state.height_m,
             )
         )
         modes.append(points.guidance_mode)
@@ -147,12 +134,19 @@ def fly(
         if last in reached:
             end_s = min(end_s, reached[last] + AFTER_S)
         is_over = watch is not None and watch(rig)
-        return is_over or state.time_s >= end_s or not rig.holds_control
+        return is_over or rig.time_s >= end_s or not rig.holds_control
 
     rig.fly_to(rig.time_s + longest_s, keep)
     if not rig.holds_control:
         raise FlightError("; ".join(event.text for event in rig.events[-3:]))
-    flown = FlownPlan(*np.array(rows).T)
+    item, course_rad, airspeed_mps, altitude_m = np.array(demands).T
+    flown = replace(
+        of_truth(rig.truth().since(begun_s + 0.5 * machine.period_s)),
+        item=item,
+        course_rad=course_rad,
+        airspeed_demand_mps=airspeed_mps,
+        altitude_demand_m=altitude_m,
+    )
     score = plan_score.score(read, flown, reached, LOITER_M, go_arounds(modes))
     if conditions.terrain is not None:
         score = replace(score, terrain=clearance.score(flown, modes))

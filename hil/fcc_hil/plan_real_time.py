@@ -18,11 +18,10 @@ import numpy as np
 from . import clearance, plan_file, plan_flight, plan_score, plan_start
 from .daemon_rig import DaemonRig
 from .flown_plan import FlownPlan, go_arounds, of_truth
+from .fly import progress_line
 from .plan_flight import PlanConditions
 from .rig import FlightError
 from .settings import Settings
-from .standin import Progress
-from .truth import COLUMNS
 from .units import STANDARD_INHG
 
 _ENGAGE_S = 3.0
@@ -91,22 +90,14 @@ def _watch(
         seen = len(rig.events)
         if time.monotonic() >= next_line_s:
             next_line_s = time.monotonic() + _LINE_S
-            notify(_line(rig.progress, engaged_at_s, reached))
+            where = f"item {max(reached, default=0)} reached"
+            notify(progress_line(rig.progress, engaged_at_s, where))
         return not rig.holds_control or rig.time_s > reached.get(last, np.inf) + plan_flight.AFTER_S
 
     rig.fly_to(engaged_at_s + plan_flight.LONGEST_S, has_ended)
     if not rig.holds_control:
         raise FlightError(f"control was given back; the messages of fccd:\n{rig.log}")
     return reached
-
-
-def _line(progress: Progress, engaged_at_s: float, reached: dict[int, float]) -> str:
-    now = dict(zip(COLUMNS, progress.now, strict=True))
-    return (
-        f"true: {progress.time_s - engaged_at_s:6.1f} s  item {max(reached, default=0)} reached  "
-        f"altitude {now['altitude_ft']:7.1f} ft  heading {now['heading_deg']:5.1f}°  "
-        f"airspeed {now['airspeed_kt']:5.1f} kt"
-    )
 
 
 def _with_demands(flown: FlownPlan, recordings: list[Path]) -> tuple[FlownPlan, list[str]]:

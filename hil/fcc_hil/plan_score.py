@@ -230,16 +230,10 @@ def _waypoint(item: Item, flown: FlownPlan, reached: dict[int, float]) -> Waypoi
 
 
 def _leg(start: Item, end: Item, flown: FlownPlan) -> LegScore:
-    plane = _plane(end)
-    begin = plane.of(
-        np.array([math.radians(start.latitude_deg)]), np.array([math.radians(start.longitude_deg)])
-    )[0]
-    course = -begin / np.hypot(*begin)
-    course_rad = math.atan2(course[1], course[0])
-    at = plane.of(flown.latitude_rad, flown.longitude_rad)
+    course_rad, across, _ = _along(start, end, end, flown)
     off = within_pi(flown.course_rad - course_rad)
     on = (flown.item == end.number) & (np.abs(off) < ON_COURSE_RAD)
-    cross = (course[0] * at[:, 1] - course[1] * at[:, 0])[on]
+    cross = across[on]
     if not len(cross):
         return LegScore(end.number, 0.0, *[math.nan] * 5)
     altitude = (flown.elevation_m - flown.altitude_demand_m)[on] / FT_TO_M

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import jsbsim
 
@@ -188,17 +188,13 @@ class Plant:
 
         `throttles`, one for each engine, replace the common throttle.
         """
-        clipped = Controls(
+        clipped = replace(
+            controls,
             elevator=min(1.0, max(-1.0, controls.elevator)),
             aileron=min(1.0, max(-1.0, controls.aileron)),
             rudder=min(1.0, max(-1.0, controls.rudder)),
             throttle=min(1.0, max(0.0, controls.throttle)),
             elevator_trim=self._controls.elevator_trim,
-            flaps=controls.flaps,
-            left_brake=controls.left_brake,
-            right_brake=controls.right_brake,
-            nose_wheel=controls.nose_wheel,
-            gear=controls.gear,
         )
         fdm = self.fdm
         for path, value in (

@@ -1,8 +1,11 @@
-"""A flight through the timed pattern as a picture."""
+"""A flight as a picture: what was flown against time, what was ordered and what happened."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 import matplotlib as mpl
 import numpy as np
@@ -10,40 +13,98 @@ import numpy as np
 mpl.use("Agg")
 
 import matplotlib.pyplot as plt
-from matplotlib.axes import Axes
 
 from . import replacement
 from .pattern import SetPoints, TimedPattern
 from .score import Samples
 from .truth import Truth
 
-_ASKED = "#c0504d"
-_FLOWN = "#1f4e79"
-_SURFACES = {"elevator": "#1f4e79", "aileron": "#c0504d", "rudder": "#6a9a3b"}
-_GRID = "#dddddd"
-_NAMES = ("altitude_ft", "airspeed_kt", "roll_deg", *_SURFACES, "throttle")
+Panel = tuple[tuple[str, ...], str]
+"""Columns of the truth, and the label of their axis."""
+CONTROLS: Panel = ("elevator", "aileron", "rudder", "throttle"), "controls, -1..1"
+PANELS: tuple[Panel, ...] = (
+    (("heading_deg",), "heading, °"),
+    (("altitude_ft",), "altitude, ft"),
+    (("airspeed_kt",), "airspeed, kt"),
+    (("roll_deg",), "bank, °"),
+    CONTROLS,
+)
+_ORDERED = ("heading_deg", "altitude_ft", "airspeed_kt")
+_COLOURS = ("#1f4e79", "#c0504d", "#6b9e3f", "#7f7f7f")
+GRID = "#dddddd"
+_NO_LIMITS: Mapping[str, tuple[float, str]] = MappingProxyType({})
 
 
-def _asked(pattern: TimedPattern, since_s: Samples, captured: SetPoints) -> dict[str, Samples]:
-    points = [pattern.set_points(max(0.0, float(t)), captured) for t in since_s]
-    # Continuous past north, so that the line has no jumps.
-    legs = np.array([pattern.legs_begun(max(0.0, float(t))) for t in since_s])
-    return {
-        "heading": captured.heading_deg + legs * pattern.turn_deg,
-        "altitude": np.array([point.altitude_ft for point in points]),
-        "airspeed": np.array([point.airspeed_kt for point in points]),
-    }
+@dataclass(frozen=True)
+class Mark:
+    """Something that happened."""
+
+    begins_s: float
+    colour: str
+    ends_s: float | None = None
+    """None for a moment."""
+    label: str = ""
 
 
-def _style(axes: Axes, label: str) -> None:
-    axes.set_ylabel(label)
-    axes.grid(visible=True, color=_GRID, linewidth=0.6)
-    axes.set_axisbelow(True)
-    for side in ("top", "right"):
-        axes.spines[side].set_visible(False)
+def draw(
+    path: Path,
+    truth: Truth,
+    title: str,
+    *,
+    panels: Sequence[Panel] = PANELS,
+    points: Sequence[tuple[float, SetPoints]] = (),
+    limits: Mapping[str, tuple[float, str]] = _NO_LIMITS,
+    marks: Sequence[Mark] = (),
+) -> None:
+    """Write a picture, as PNG, SVG or another format by the file's extension.
+
+    `points` are the set points with their times, `limits` are by column, each with its name.
+    """
+    figure, rows = plt.subplots(
+        len(panels), 1, figsize=(10, 1.0 + 2.0 * len(panels)), sharex=True, layout="constrained"
+    )
+    time_s = truth["time_s"]
+    for axes, (columns, label) in zip(rows, panels, strict=True):
+        for column, colour in zip(columns, _COLOURS, strict=False):
+            flown = _continuous(column, truth[column])
+            if points and column in _ORDERED:
+                ordered = np.array([getattr(point, column) for _, point in points])
+                ordered = _continuous(column, ordered)
+                if column == "heading_deg":
+                    begun = np.interp(points[0][0], time_s, flown)
+                    ordered += 360.0 * np.round((begun - ordered[0]) / 360.0)
+                times_s = [point_s for point_s, _ in points]
+                axes.plot(times_s, ordered, color=_COLOURS[1], linewidth=1.2, label="set point")
+            axes.plot(time_s, flown, color=colour, linewidth=1.2, label=_name(column))
+            if column in limits:
+                limit, name = limits[column]
+                axes.axhline(limit, color=_COLOURS[1], linewidth=0.8, linestyle="--", label=name)
+        axes.set_ylabel(label)
+        axes.grid(visible=True, color=GRID, linewidth=0.6)
+        axes.set_axisbelow(True)
+        if len(axes.get_lines()) > 1:
+            # Above the plot, where it covers nothing.
+            axes.legend(
+                frameon=False,
+                fontsize=8,
+                ncols=len(axes.get_lines()),
+                loc="lower right",
+                bbox_to_anchor=(1.0, 0.97),
+                borderpad=0.0,
+            )
+        for mark in marks:
+            if mark.ends_s is None:
+                axes.axvline(mark.begins_s, color=mark.colour, linewidth=1.0, linestyle="--")
+            else:
+                axes.axvspan(mark.begins_s, mark.ends_s, color=mark.colour, alpha=0.25)
+    named = [mark for mark in marks if mark.label]
+    rows[-1].set_xlabel("; ".join(["simulated time, s", *(mark.label for mark in named)]))
+    figure.suptitle(title, fontsize=10, wrap=True)
+    replacement.draw(path, figure, dpi=110)
+    plt.close(figure)
 
 
-def plot_flight(
+def plot_pattern(
     path: Path,
     truth: Truth,
     pattern: TimedPattern,
@@ -51,51 +112,28 @@ def plot_flight(
     legs: int,
     title: str,
 ) -> None:
-    """Write a picture of a flight, as PNG or another format by the file's extension."""
-    ends_s = engaged_at_s + pattern.duration_s(legs)
-    shown = (truth["time_s"] >= engaged_at_s) & (truth["time_s"] < ends_s - 1e-6)
-    column = {name: truth[name][shown] for name in ("time_s", "heading_deg", *_NAMES)}
-    since_s = column["time_s"] - engaged_at_s
-    captured = truth.captured_at(engaged_at_s)
-    asked = _asked(pattern, since_s, captured)
-    heading = np.rad2deg(np.unwrap(np.deg2rad(column["heading_deg"])))
-    heading += 360.0 * np.round((asked["heading"][0] - heading[0]) / 360.0)
-
-    figure, rows = plt.subplots(5, 1, figsize=(10, 11), sharex=True, layout="constrained")
-    for axes, name, flown, label in (
-        (rows[0], "heading", heading, "heading, deg"),
-        (rows[1], "altitude", column["altitude_ft"], "altitude, ft"),
-        (rows[2], "airspeed", column["airspeed_kt"], "airspeed, kt"),
-    ):
-        axes.plot(since_s, asked[name], color=_ASKED, linewidth=1.2, label="set point")
-        axes.plot(since_s, flown, color=_FLOWN, linewidth=1.6, label="flown")
-        _style(axes, label)
-    rows[0].legend(loc="upper left", frameon=False)
-    rows[0].set_yticks(np.arange(captured.heading_deg, np.max(asked["heading"]) + 1.0, 90.0))
-    rows[0].yaxis.set_major_formatter(lambda value, _position: f"{value % 360.0:.0f}")
-    middle_kt = captured.airspeed_kt
-    half_kt = max(5.0, 1.2 * float(np.max(np.abs(column["airspeed_kt"] - middle_kt))))
-    rows[2].set_ylim(middle_kt - half_kt, middle_kt + half_kt)
-
-    rows[3].plot(since_s, column["roll_deg"], color=_FLOWN, linewidth=1.6)
-    rows[3].axhline(30.0, color=_ASKED, linewidth=0.8, linestyle="--")
-    rows[3].annotate(
-        "limit 30°", (since_s[0], 30.0), xytext=(2, -10), textcoords="offset points", color=_ASKED
+    """Write a picture of a flight through the timed pattern."""
+    captured, flown = truth.captured_at(engaged_at_s), truth.since(engaged_at_s)
+    points = [
+        (time_s, pattern.set_points(max(0.0, time_s - engaged_at_s), captured))
+        for time_s in map(float, flown["time_s"])
+    ]
+    begins_s = [leg.start_s for leg in pattern.legs(legs, engaged_at_s, captured)]
+    draw(
+        path,
+        flown,
+        title,
+        points=points,
+        limits={"roll_deg": (30.0, "limit")},
+        marks=[Mark(time_s, GRID) for time_s in begins_s],
     )
-    _style(rows[3], "bank, deg")
 
-    for name, colour in _SURFACES.items():
-        rows[4].plot(since_s, column[name], color=colour, linewidth=1.0, label=name)
-    rows[4].plot(since_s, column["throttle"], color="#7f7f7f", linewidth=1.4, label="throttle")
-    rows[4].legend(loc="upper right", ncols=4, frameon=False)
-    lowest = min(float(np.min(column[name])) for name in _SURFACES)
-    rows[4].set_ylim(min(-0.35, 1.15 * lowest), 1.3)
-    _style(rows[4], "controls, -1..1")
-    rows[4].set_xlabel("time since engagement, s")
-    rows[4].set_xlim(float(since_s[0]), float(since_s[-1]))
-    for axes in rows:
-        for leg in range(legs):
-            axes.axvline(pattern.hold_s + leg * pattern.leg_s, color=_GRID, linewidth=1.0, zorder=0)
-    figure.suptitle(title, fontsize=13)
-    replacement.draw(path, figure, dpi=130)
-    plt.close(figure)
+
+def _continuous(column: str, values: Samples) -> Samples:
+    """Return a heading without jumps at north; of another column its values."""
+    return np.unwrap(values, period=360.0) if column == "heading_deg" else values
+
+
+def _name(column: str) -> str:
+    """Return the name without its unit, which the axis has: `pitch_deg` is pitch."""
+    return column.removesuffix("_deg").removesuffix("_kt").removesuffix("_ft").replace("_", " ")

@@ -16,9 +16,10 @@ import gc
 import multiprocessing
 import os
 import signal
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from multiprocessing.connection import Connection
-from types import TracebackType
+from operator import attrgetter, methodcaller
 from typing import Any, cast
 
 from . import actions
@@ -28,7 +29,6 @@ from .cockpit import Release, Write
 from .faulty_sensors import SensorFault
 from .person import AttendedStandIn
 from .standin import Mode, Progress, Settings, StandIn
-from .state import Controls
 from .truth import Row, Truth
 
 _START_S = 30.0
@@ -43,66 +43,8 @@ class StandInError(RuntimeError):
     """The stand-in's process could not be started, or has ended."""
 
 
-class _Commands:
-    """The stand-in's commands by name, in its own process."""
-
-    def __init__(self, simulator: StandIn, scheduling: str) -> None:
-        self.simulator = simulator
-        self.scheduling = scheduling
-        self.running = True
-
-    def read(self, path: str) -> float | None:
-        return self.simulator.read(path)
-
-    def write(self, path: str, value: float) -> float:
-        return self.simulator.write(path, value)
-
-    def progress(self) -> Progress:
-        return self.simulator.progress()
-
-    def status(self) -> dict[str, Any]:
-        return {**self.simulator.status(), "scheduling": self.scheduling}
-
-    def truth(self) -> Truth:
-        return Truth(self.simulator.truth)
-
-    def rows(self, first: int) -> list[Row]:
-        return self.simulator.truth[first:]
-
-    def set_sensor_faults(self, faults: Sequence[SensorFault]) -> None:
-        self.simulator.sensors.set_faults(faults)
-
-    def journal(self) -> list[Write]:
-        return self.simulator.cockpit.journal
-
-    def releases(self) -> list[Release]:
-        return self.simulator.cockpit.releases
-
-    def set_mode(self, mode: Mode) -> None:
-        self.simulator.enter(mode)
-
-    def act(self, action: str) -> None:
-        actions.act(self.simulator, action)
-
-    def hold(self, pilot: Controls) -> None:
-        self.simulator.cockpit.hold(pilot)
-
-    def set_frame_rate(self, rate_hz: float) -> None:
-        self.simulator.clock.set_rate(rate_hz)
-
-    def restart_flight(self) -> None:
-        self.simulator.restart_flight()
-
-    def jump(self, seconds: float) -> None:
-        self.simulator.jump(seconds)
-
-    def board(self, action: str, *arguments: float) -> object:
-        if not isinstance(self.simulator, BoardedStandIn):
-            raise ValueError("there is no servo board: set Settings.board")
-        return self.simulator.at_board(action, *arguments)
-
-    def stop(self) -> None:
-        self.running = False
+Order = Callable[[StandIn], object]
+"""What is to be done with the stand-in, in its own process: it is sent there, so not a lambda."""
 
 
 def interrupt(*_: object) -> None:
@@ -138,19 +80,21 @@ def _serve(settings: Settings, pipe: Connection) -> None:
         pipe.send(error)
         return
     pipe.send((simulator.port, simulator.reply_port))
-    orders = _Commands(simulator, request_real_time())
+    simulator.scheduling = request_real_time()
 
     def each_frame() -> bool:
         try:
-            while orders.running and pipe.poll():
-                name, arguments = pipe.recv()
+            while pipe.poll():
+                order: Order | None = pipe.recv()
+                if order is None:
+                    return False
                 try:
-                    pipe.send(getattr(orders, name)(*arguments))
+                    pipe.send(order(simulator))
                 except (ValueError, RuntimeError) as error:
                     pipe.send(error)
         except (EOFError, OSError):
             return False
-        return orders.running
+        return True
 
     # A garbage collection in flight would delay a frame, and there are no reference cycles to
     # collect.
@@ -158,6 +102,18 @@ def _serve(settings: Settings, pipe: Connection) -> None:
     gc.disable()
     simulator.run(each_frame)
     simulator.close()
+
+
+def _truth(simulator: StandIn) -> Truth:
+    return Truth(simulator.truth)
+
+
+def _rows(simulator: StandIn, first: int) -> list[Row]:
+    return simulator.truth[first:]
+
+
+def _set_sensor_faults(simulator: StandIn, faults: Sequence[SensorFault]) -> None:
+    simulator.sensors.set_faults(faults)
 
 
 class StandInProcess:
@@ -184,98 +140,77 @@ class StandInProcess:
     def __enter__(self) -> StandInProcess:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.stop()
 
     def read(self, path: str) -> float | None:
         """Return a dataref as a client would read it now, without noise; None if unknown."""
-        return cast("float | None", self._ask("read", path))
+        return cast("float | None", self._ask(methodcaller("read", path)))
 
     def write(self, path: str, value: float) -> float:
         """Set a dataref from inside the simulator; return the simulated time, s."""
-        return cast(float, self._ask("write", path, value))
+        return cast(float, self._ask(methodcaller("write", path, value)))
 
     def progress(self) -> Progress:
         """Return the progress of the flight."""
-        return cast(Progress, self._ask("progress"))
+        return cast(Progress, self._ask(methodcaller("progress")))
 
     def status(self) -> dict[str, Any]:
         """Return clients, received messages, refused datagrams and the statistics of frames."""
-        return cast("dict[str, Any]", self._ask("status"))
+        return cast("dict[str, Any]", self._ask(methodcaller("status")))
 
     def truth(self) -> Truth:
         """Return the truth so far, 40 rows per second of simulated time."""
-        return cast(Truth, self._ask("truth"))
+        return cast(Truth, self._ask(_truth))
 
     def rows(self, first: int) -> list[Row]:
         """Return the rows of the truth from number `first` on, as `truth.row` makes them."""
-        return cast("list[Row]", self._ask("rows", first))
+        return cast("list[Row]", self._ask(partial(_rows, first=first)))
 
     def set_sensor_faults(self, faults: Sequence[SensorFault]) -> None:
         """Replace the faults of the sensors."""
-        self._ask("set_sensor_faults", list(faults))
+        self._ask(partial(_set_sensor_faults, faults=list(faults)))
 
     def journal(self) -> list[Write]:
         """Return every write to a dataref so far."""
-        return cast("list[Write]", self._ask("journal"))
+        return cast("list[Write]", self._ask(attrgetter("cockpit.journal")))
 
     def releases(self) -> list[Release]:
         """Return every release of an override so far, with the controls at that time."""
-        return cast("list[Release]", self._ask("releases"))
+        return cast("list[Release]", self._ask(attrgetter("cockpit.releases")))
 
     def set_mode(self, mode: Mode) -> None:
         """Pause, stall, freeze or run."""
-        self._ask("set_mode", mode)
+        self._ask(methodcaller("enter", mode))
 
     def act(self, action: str) -> None:
         """Do what a person or the simulator does: `pause`, `freeze:1.5`, ... (see `actions`).
 
         Raise StandInError for what is no action.
         """
-        self._ask("act", action)
-
-    def hold(self, pilot: Controls) -> None:
-        """Move the pilot's stick, pedals and throttle levers."""
-        self._ask("hold", pilot)
-
-    def set_frame_rate(self, rate_hz: float) -> None:
-        """Change the frame rate; below 19 a second simulated time slows down."""
-        self._ask("set_frame_rate", rate_hz)
-
-    def restart_flight(self) -> None:
-        """Put the aircraft back to its start."""
-        self._ask("restart_flight")
-
-    def jump(self, seconds: float) -> None:
-        """Move the simulator's clock without flying."""
-        self._ask("jump", seconds)
+        self._ask(partial(actions.act, text=action))
 
     def board_port(self) -> int:
         """Return the servo board's UDP port."""
-        return cast("int", self._ask("board", "port"))
+        return cast("int", self._ask(methodcaller("at_board", "port")))
 
     def board_changes(self) -> list[Change]:
         """Return every change of control of the servo board's so far."""
-        return cast("list[Change]", self._ask("board", "changes"))
+        return cast("list[Change]", self._ask(methodcaller("at_board", "changes")))
 
     def board_counts(self) -> dict[str, int]:
         """Return how many frames the servo board received, and were corrupt and lost."""
-        return cast("dict[str, int]", self._ask("board", "counts"))
+        return cast("dict[str, int]", self._ask(methodcaller("at_board", "counts")))
 
     def at_board(self, action: str, *arguments: float) -> None:
         """Pull out its cable, put it back, disturb it or reboot it (`RunningBoard`)."""
-        self._ask("board", action, *arguments)
+        self._ask(methodcaller("at_board", action, *arguments))
 
     def stop(self) -> None:
         """End it; does nothing if it has ended."""
         if self._process.is_alive():
-            with contextlib.suppress(StandInError):
-                self._ask("stop")
+            with contextlib.suppress(OSError):
+                self._pipe.send(None)
             self._process.join(_STOP_S)
         self.kill()
 
@@ -286,9 +221,9 @@ class StandInProcess:
         self._process.join(_STOP_S)
         self._pipe.close()
 
-    def _ask(self, name: str, *arguments: object) -> object:
+    def _ask(self, order: Order) -> object:
         try:
-            self._pipe.send((name, arguments))
+            self._pipe.send(order)
         except OSError as error:
             raise StandInError("the stand-in's process has ended") from error
         return self._receive(_ANSWER_S)

@@ -190,11 +190,11 @@ def quantity_of(given: Quantity | str) -> Quantity:
 _LONGEST_S = 24 * 3_600.0
 
 
-def seconds(name: str, value: object, least: float = 0.0) -> float:
+def seconds(name: str, value: object) -> float:
     """Return a time in s; raise ValueError or TypeError for what is none."""
     value_s = finite(name, value)
-    if not least <= value_s <= _LONGEST_S:
-        raise ValueError(f"{name} is {value_s:g} s: give {least:g} to {_LONGEST_S:g}")
+    if not 0.0 <= value_s <= _LONGEST_S:
+        raise ValueError(f"{name} is {value_s:g} s: give 0 to {_LONGEST_S:g}")
     return value_s
 
 

@@ -1,4 +1,4 @@
-"""Arguments of a command line: numbers in their range and files that can be written, or refused."""
+"""Arguments of a command line, refused before flying: numbers in their range, files to write."""
 
 from __future__ import annotations
 
@@ -95,3 +95,24 @@ def file_to_write(text: str) -> Path:
 
 count = whole(1, 1_000_000)
 workers = whole(1, _MOST_PROCESSES)
+
+
+def add_files(parser: argparse.ArgumentParser, **files: str) -> None:
+    """Add an option for each file to be written, by its name and its help."""
+    for name, words in files.items():
+        parser.add_argument(f"--{name}", type=file_to_write, metavar="FILE", help=words)
+
+
+def add_workers(parser: argparse.ArgumentParser) -> None:
+    """Add the option for the number of processes."""
+    parser.add_argument("--workers", type=workers, metavar="N", help="processes (all processors)")
+
+
+def add_seed(parser: argparse.ArgumentParser, words: str = "of all errors (default: 1)") -> None:
+    """Add the option for a seed."""
+    parser.add_argument("--seed", type=whole(0, LARGEST_SEED), default=1, metavar="N", help=words)
+
+
+def add_daemon(parser: argparse.ArgumentParser) -> None:
+    """Add the required option for the daemon's program."""
+    parser.add_argument("--fccd", type=Path, required=True, help="the daemon's program")

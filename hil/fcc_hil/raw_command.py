@@ -22,13 +22,7 @@ def add(commands: Any) -> None:
         "--sensors", choices=("phone", "board"), default="phone", help="(default: phone)"
     )
     raw.add_argument("--aircraft", choices=sorted(AIRCRAFT), default="c172p")
-    raw.add_argument(
-        "--seed",
-        type=ranges.whole(0, ranges.LARGEST_SEED),
-        default=1,
-        metavar="N",
-        help="of all errors (default: 1)",
-    )
+    ranges.add_seed(raw)
     raw.add_argument(
         "--navigation",
         choices=("measured", "kalman", "thesis"),
@@ -45,25 +39,16 @@ def add(commands: Any) -> None:
         help="fly through a servo board, on a line that gets each bit wrong with this probability",
     )
     raw.add_argument(
-        "--learned",
-        type=ranges.file_to_write,
-        metavar="FILE",
-        help="write what was learned of the aircraft here, [autopilot.airframe] in TOML",
-    )
-    raw.add_argument(
         "--airframe",
         type=Path,
         metavar="FILE",
         help="fly without an airspeed sensor, by what --learned wrote here in another flight",
     )
-    raw.add_argument(
-        "--out",
-        type=ranges.file_to_write,
-        metavar="FILE",
-        help="write readings and truth here, .npz",
-    )
-    raw.add_argument(
-        "--json", type=ranges.file_to_write, metavar="FILE", help="write the figures here"
+    ranges.add_files(
+        raw,
+        learned="write what was learned of the aircraft here, [autopilot.airframe] in TOML",
+        out="write readings and truth here, .npz",
+        json="write the figures here",
     )
     raw.set_defaults(run=_raw)
 

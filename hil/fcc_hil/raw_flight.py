@@ -27,7 +27,7 @@ from .plant import Plant, Weather
 from .raw_calibration import calibrate
 from .raw_sensors import DELAYS_S, FIELD_UT
 from .rig import FlightError
-from .score import Score, score
+from .score import Score
 from .standin import Settings
 from .units import FT_TO_M, KT_TO_MPS
 
@@ -191,12 +191,8 @@ def fly(
         estimate.append(tuple(getattr(found, name) for name in _ESTIMATE))
         return False
 
-    rig.fly_to(rig.time_s + RAW_STANDBY_S, keep)
-    rig.set_switch(on=True)
-    engaged_s = rig.time_s
-    rig.fly_to(engaged_s + 1.0, keep)
-    if not rig.holds_control:
-        raise FlightError(f"not engaged: {', '.join(machine.engage_inhibits)}")
+    engaged_s = rig.time_s + RAW_STANDBY_S
+    rig.engage(after_s=RAW_STANDBY_S, until=keep)
     rig.fly_to(engaged_s + pattern.duration_s(legs), keep)
     if rig.raw is None or not rig.holds_control:
         raise FlightError("the flight did not last to the end of the pattern")
@@ -214,13 +210,7 @@ def fly(
         table = np.array(kept)
         for column, name in enumerate(names):
             arrays[f"{kind}_{name}"] = table[:, column]
-    flown = rig.truth()
-    captured = flown.captured_at(engaged_s)
-    return RawFlight(
-        arrays,
-        score(flown.trace(), pattern.legs(legs, engaged_s, captured)),
-        machine.learned_airframe,
-    )
+    return RawFlight(arrays, rig.truth().score(pattern, legs, engaged_s), machine.learned_airframe)
 
 
 def write_learned(path: Path, learned: Mapping[str, float]) -> None:

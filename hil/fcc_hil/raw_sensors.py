@@ -8,6 +8,7 @@ from __future__ import annotations
 import fcc
 
 from .plant import Plant
+from .quantities import SENSORS
 from .units import impact_pressure_pa
 
 FIELD_UT = (21.1, 0.0, 45.3)
@@ -55,6 +56,13 @@ READINGS = {
 }
 """The raw readings, each with its values among the measurements."""
 
+_OF_STATE = (
+    *("time_s", *SENSORS["attitude"], *SENSORS["heading"]),
+    *(*SENSORS["body_rates"], *SENSORS["specific_force"]),
+    *("latitude_rad", "longitude_rad", "north_mps", "east_mps", "down_mps", "height_m"),
+)
+"""What the truth has of the aircraft's state, by the same names."""
+
 
 class RawSensors:
     """The raw sensors of one aircraft, and everything that they have read."""
@@ -87,25 +95,10 @@ class RawSensors:
     def _truth(self) -> fcc.RawTruth:
         state = self._plant.state()
         return fcc.RawTruth(
-            time_s=state.time_s,
-            pitch_rad=state.pitch_rad,
-            roll_rad=state.roll_rad,
-            heading_rad=state.heading_rad,
-            roll_rate_radps=state.roll_rate_radps,
-            pitch_rate_radps=state.pitch_rate_radps,
-            yaw_rate_radps=state.yaw_rate_radps,
-            specific_force_x_mps2=state.specific_force_x_mps2,
-            specific_force_y_mps2=state.specific_force_y_mps2,
-            specific_force_z_mps2=state.specific_force_z_mps2,
             static_pressure_pa=state.pressure_pa,
             differential_pressure_pa=impact_pressure_pa(state.airspeed_mps),
             air_temperature_k=state.temperature_k,
-            latitude_rad=state.latitude_rad,
-            longitude_rad=state.longitude_rad,
             position_altitude_m=state.elevation_m,
-            north_mps=state.north_mps,
-            east_mps=state.east_mps,
-            down_mps=state.down_mps,
-            height_m=state.height_m,
             throttle=min(1.0, max(0.0, self._plant.controls.throttle)),
+            **{name: getattr(state, name) for name in _OF_STATE},
         )

@@ -17,6 +17,14 @@ from .standin import Settings
 from .terrain_tiles import Tiles
 from .udp import ReplyPort
 
+_SHARES = {
+    "loss": "lost",
+    "duplicate": "duplicated",
+    "reorder": "overtaken by the next",
+    "truncate": "truncated",
+}
+"""The faults of a share of datagrams, and what they do."""
+
 
 def address(text: str) -> Address:
     """Read HOST:PORT. Raises argparse.ArgumentTypeError, as do the others."""
@@ -210,12 +218,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "repeated, as in --at 30:pause --at 40:run --at 50:freeze:1.5",
     )
     network = parser.add_argument_group("network faults, in both directions")
-    for name, what in (
-        ("loss", "lost"),
-        ("duplicate", "duplicated"),
-        ("reorder", "overtaken by the next"),
-        ("truncate", "truncated"),
-    ):
+    for name, what in _SHARES.items():
         network.add_argument(
             f"--{name}", type=float, default=0.0, metavar="FRACTION", help=f"of datagrams {what}"
         )
@@ -226,12 +229,9 @@ def add(parser: argparse.ArgumentParser) -> None:
 def settings(options: argparse.Namespace) -> Settings:
     """Return what they say."""
     faults = Faults(
-        loss=options.loss,
-        duplicate=options.duplicate,
-        reorder=options.reorder,
-        truncate=options.truncate,
         delay_s=options.delay / 1e3,
         jitter_s=options.jitter / 1e3,
+        **{name: getattr(options, name) for name in _SHARES},
     )
     given: dict[str, Any] = {}
     if options.qnh is not None:

@@ -29,13 +29,13 @@ from pathlib import Path
 from typing import Any
 
 from .daemon import Daemon, command
-from .fly import ENGAGE_SWITCH
+from .fly import ENGAGE_SWITCH, await_subscriptions, switch_on
 from .process import StandInProcess
+from .rig import FlightError
 from .standin import Settings
 
 _LOOP_THREAD = "fcc-loop"
 _PRIORITY = 80
-_SUBSCRIBE_S = 15.0
 _SETTLE_S = 3.0
 _ENGAGE_S = 15.0
 _LOOK_S = 0.25
@@ -45,10 +45,6 @@ _LONGEST_LATENESS_US = 1_000_000
 _SWITCHES_BESIDE_TICKS = 5
 _CYCLICTEST = "cyclictest"
 _STRESS = "stress-ng"
-
-
-class SoakError(RuntimeError):
-    """The flight could not be completed."""
 
 
 @dataclass(frozen=True)
@@ -144,11 +140,11 @@ class _BackgroundProgram:
             self._process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=log)
 
     def look(self) -> None:
-        """Raise SoakError if it has ended."""
+        """Raise FlightError if it has ended."""
         code = self._process.poll()
         if code is not None:
             log = self._log.read_text("utf-8", "replace").strip()
-            raise SoakError(f"{self._name} ended with {code}: {log}")
+            raise FlightError(f"{self._name} ended with {code}: {log}")
 
     def end(self) -> None:
         # With a signal and not killed: it ends its children, and writes its result.
@@ -170,10 +166,10 @@ def periods_lost(histogram: dict[str, int], max_us: float, period_us: float) -> 
 
 
 def soak(plan: Soak, notify: Callable[[float], None]) -> Result:
-    """Fly; `say` is called with the seconds flown. Raises SoakError."""
+    """Fly; `say` is called with the seconds flown. Raises FlightError."""
     for name in (_CYCLICTEST, _STRESS) if plan.stress else (_CYCLICTEST,):
         if shutil.which(name) is None:
-            raise SoakError(f"{name} is missing: use `make soak`, which installs it")
+            raise FlightError(f"{name} is missing: use `make soak`, which installs it")
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
         measured = folder / "cyclictest.json"
@@ -181,20 +177,15 @@ def soak(plan: Soak, notify: Callable[[float], None]) -> Result:
             config = folder / "fccd.toml"
             config.write_text(_config(plan, simulator.port, folder / "recordings"))
             with Daemon(command(plan.fccd, config), folder / "said") as daemon:
-                _await(
-                    lambda: simulator.progress().subscriptions > 0,
-                    daemon,
-                    partial(_look, daemon),
-                    _SUBSCRIBE_S,
-                    "does not subscribe to the simulator",
-                )
+                await_subscriptions(simulator, daemon)
                 loop = _thread(daemon.pid)
                 cpus = _status(loop)["Cpus_allowed_list"]
                 # From before control is taken until the daemon has ended: missed ticks and lost
                 # periods are from the same time.
                 with _background(plan, cpus, measured) as background:
                     look = partial(_look, daemon, *background)
-                    _engage(simulator, daemon, look)
+                    _fly(_SETTLE_S, look)
+                    switch_on(simulator, daemon, within_s=_ENGAGE_S)
                     watched = _watch(plan, loop, look, notify)
                     simulator.write(ENGAGE_SWITCH, 0.0)
                     time.sleep(1.0)
@@ -202,7 +193,7 @@ def soak(plan: Soak, notify: Callable[[float], None]) -> Result:
                     exit_code = daemon.stop()
                 report = daemon.report()
                 if report is None:
-                    raise SoakError(f"the daemon printed no report; its messages: {daemon.log}")
+                    raise FlightError(f"the daemon printed no report; its messages: {daemon.log}")
         machine = _machine(measured, 1e6 / plan.rate_hz)
     return _result(report, watched, exit_code, cpus, machine)
 
@@ -227,35 +218,6 @@ failsafe_after = 0
 """
 
 
-def _engage(simulator: StandInProcess, daemon: Daemon, look: Callable[[], None]) -> None:
-    _fly(_SETTLE_S, look)
-    simulator.write(ENGAGE_SWITCH, 1.0)
-    _await(
-        lambda: simulator.progress().overridden,
-        daemon,
-        look,
-        _ENGAGE_S,
-        "does not take control",
-    )
-
-
-def _await(
-    arrived: Callable[[], bool],
-    daemon: Daemon,
-    look: Callable[[], None],
-    patience_s: float,
-    otherwise: str,
-) -> None:
-    deadline_s = time.monotonic() + patience_s
-    while not arrived():
-        look()
-        if time.monotonic() > deadline_s:
-            raise SoakError(
-                f"the daemon {otherwise} within {patience_s:.0f} s; its messages: {daemon.log}"
-            )
-        time.sleep(_LOOK_S)
-
-
 def _fly(
     seconds: float, look: Callable[[], None], notify: Callable[[float], None] | None = None
 ) -> None:
@@ -268,9 +230,8 @@ def _fly(
 
 
 def _look(daemon: Daemon, *background: _BackgroundProgram) -> None:
-    """Raise SoakError if anything that is to run has ended."""
-    if daemon.exit_code is not None:
-        raise SoakError(f"the daemon ended with {daemon.exit_code}; its messages: {daemon.log}")
+    """Raise FlightError if anything that is to run has ended."""
+    daemon.require_running()
     for beside in background:
         beside.look()
 
@@ -301,7 +262,7 @@ def _thread(pid: int) -> Path:
     for task in Path(f"/proc/{pid}/task").iterdir():
         if (task / "comm").read_text().strip() == _LOOP_THREAD:
             return task
-    raise SoakError(f"process {pid} has no thread {_LOOP_THREAD}")
+    raise FlightError(f"process {pid} has no thread {_LOOP_THREAD}")
 
 
 def _status(task: Path) -> dict[str, str]:
@@ -346,7 +307,7 @@ def _machine(measured: Path, period_us: float) -> Machine:
             longest_periods=int(thread["max"] // period_us),
         )
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise SoakError(f"cyclictest did not measure: {error!r}") from error
+        raise FlightError(f"cyclictest did not measure: {error!r}") from error
 
 
 def _result(

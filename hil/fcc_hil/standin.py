@@ -53,6 +53,8 @@ class StandIn(World):
     def __init__(self, settings: Settings) -> None:
         """Set the aircraft up in flight and open the ports; raise OSError if that fails."""
         super().__init__(settings)
+        self.scheduling = ""
+        """What the kernel granted its process."""
         self.messages: dict[str, int] = {}
         """Number of accepted datagrams of each kind."""
         self.refused = 0
@@ -141,7 +143,12 @@ class StandIn(World):
             "outbound": asdict(self._outbound.counts),
             "frames": self.clock.report(),
             "engines": self.plant.engines,
+            "scheduling": self.scheduling,
         }
+
+    def at_board(self, action: str, *_: float) -> object:
+        """Raise ValueError: a stand-in with a servo board does something there (`boarded`)."""
+        raise ValueError(f"{action}: there is no servo board: set Settings.board")
 
     def _receive(self) -> None:
         now_s = time.monotonic()

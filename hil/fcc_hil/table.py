@@ -1,8 +1,8 @@
-"""Scores as a table: one row for each flight, mean and worst over its legs."""
+"""Tables in Markdown, and scores as one: a row for each flight, mean and worst over its legs."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from .score import LegScore, Score
 
@@ -35,14 +35,22 @@ def table(flights: Sequence[tuple[str, Score]]) -> str:
 
     If some leg has no time to settle, the number of legs that have one is given.
     """
-    rows = [["mean/worst", *(title for _, title, _ in _COLUMNS)]]
-    for name, flight in flights:
-        cells = [_cell(flight["legs"], column, digits) for column, _, digits in _COLUMNS]
-        rows.append([name, *cells])
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    return markdown(
+        ["mean/worst", *TITLES],
+        [
+            [name, *(_cell(flight["legs"], column, digits) for column, _, digits in _COLUMNS)]
+            for name, flight in flights
+        ],
+    )
+
+
+def markdown(head: Sequence[str], rows: Iterable[Iterable[object]]) -> str:
+    """Return a Markdown table whose columns are aligned."""
+    cells = [list(map(str, row)) for row in (head, *rows)]
+    widths = [max(len(row[i]) for row in cells) for i in range(len(head))]
     lines = [
         "| " + " | ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) + " |"
-        for row in rows
+        for row in cells
     ]
     lines.insert(1, "|" + "|".join("-" * (width + 2) for width in widths) + "|")
     return "\n".join(lines)

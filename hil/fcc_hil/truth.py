@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from .pattern import SetPoints
+from .pattern import SetPoints, TimedPattern
 from .plant import STEPS_PER_SECOND
-from .score import Trace
+from .score import Score, Trace, score
 from .state import Controls, State
 from .units import FT_TO_M, KT_TO_MPS, STANDARD_GRAVITY_MPS2
 
@@ -96,6 +96,11 @@ class Truth:
     def trace(self) -> Trace:
         """Return the columns for the score."""
         return Trace(*(self[name] for name in COLUMNS[:5]))
+
+    def score(self, pattern: TimedPattern, legs: int, engaged_at_s: float) -> Score:
+        """Score a flight through the timed pattern. Raise ValueError as `score` does."""
+        captured = self.captured_at(engaged_at_s)
+        return score(self.trace(), pattern.legs(legs, engaged_at_s, captured))
 
     def captured_at(self, time_s: float) -> SetPoints:
         """Return the set points that an autopilot captures when it engages at `time_s`."""

@@ -6,7 +6,6 @@ the other; half of them leave, half are killed with SIGKILL. The lateness of the
 
 from __future__ import annotations
 
-import json
 import os
 import random
 import statistics
@@ -17,6 +16,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from .daemon import Daemon
+from .rig import FlightError
 
 RATE_HZ = 1000
 _STAY_S = (1.0, 5.0)
@@ -51,10 +53,6 @@ class Flight:
     exit_code: int
 
 
-class FlightError(RuntimeError):
-    """The daemon did not fly."""
-
-
 def run(load: Load) -> Iterator[Flight]:
     """Fly each round without and with watchers; yield every flight as it ends."""
     for number in range(load.rounds):
@@ -73,38 +71,30 @@ def fly(load: Load, watchers: int, number: int) -> Flight:
     """Fly once; `watchers` start at a constant rate and leave or are killed."""
     chance = random.Random(load.seed + number)
     instance = f"watched-{os.getpid()}"
-    with tempfile.TemporaryDirectory() as scratch, Path(scratch, "report.json").open("w+") as out:
+    with tempfile.TemporaryDirectory() as scratch:
         config = Path(scratch, "fccd.toml")
         config.write_text(
             f"[built-in]\nengage_at_s = 1.5\n[loop]\nrate_hz = {RATE_HZ}\n"
             '[guidance]\nmode = "hold"\n'
         )
-        words: list[str | Path] = [load.fccd, "fly", "--json", "--quiet", "--config", config]
+        words = [str(load.fccd), "fly", "--json", "--quiet", "--config", str(config)]
         words += ["--instance", instance, "--seconds", str(load.seconds)]
-        daemon = subprocess.Popen(words, stdout=out, stderr=subprocess.DEVNULL)
-        try:
+        with Daemon(words, Path(scratch, "said")) as daemon:
             time.sleep(_SETTLE_S)
             _watch(load, watchers, instance, daemon, chance)
-            exit_code = daemon.wait(load.seconds + 30.0)
-        finally:
-            daemon.kill()
-            daemon.wait()
-        out.seek(0)
-        text = out.read()
-    if not text:
+            exit_code, report = daemon.stop(), daemon.report()
+    if report is None:
         raise FlightError(f"the daemon ended with {exit_code} and printed no report")
-    return _figures(json.loads(text), watchers, exit_code)
+    return _figures(report, watchers, exit_code)
 
 
-def _watch(
-    load: Load, watchers: int, instance: str, daemon: subprocess.Popen[Any], chance: random.Random
-) -> None:
+def _watch(load: Load, watchers: int, instance: str, daemon: Daemon, chance: random.Random) -> None:
     """Start and end watchers until all have run and the daemon has ended."""
     pace_s = (load.seconds - 2.0 * _SETTLE_S) / max(watchers, 1)
     began_s = time.monotonic()
     come = 0
     here: list[tuple[float, subprocess.Popen[Any]]] = []
-    while daemon.poll() is None:
+    while daemon.exit_code is None:
         now_s = time.monotonic() - began_s
         if come < watchers and now_s >= come * pace_s:
             stays_s = chance.uniform(*_STAY_S)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from multiprocessing import get_context
 from typing import TypeVar
 
@@ -56,3 +56,10 @@ def on_dask(
         yield lambda pieces: (future.result() for future in client.map(work, pieces, pure=False))
     finally:
         client.close()
+
+
+def all_workers(
+    work: Callable[[Piece], Result], scheduler: str | None, count: int | None
+) -> AbstractContextManager[Callable[[Sequence[Piece]], Iterator[Result]]]:
+    """Return those of the Dask cluster at an address, or else `count` of this machine."""
+    return on_dask(work, scheduler) if scheduler else local_workers(work, count)

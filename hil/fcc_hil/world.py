@@ -332,16 +332,11 @@ class World:
     def _move_surfaces(self, most: float) -> None:
         """Move the surfaces towards the controls, by `most` of a full deflection."""
         now, to = self.surfaces, self.cockpit.controls()
-        self.surfaces = Controls(
+        self.surfaces = replace(
+            to,
             elevator=now.elevator + min(most, max(-most, to.elevator - now.elevator)),
             aileron=now.aileron + min(most, max(-most, to.aileron - now.aileron)),
             rudder=now.rudder + min(most, max(-most, to.rudder - now.rudder)),
-            throttle=to.throttle,
-            elevator_trim=to.elevator_trim,
-            flaps=to.flaps,
-            left_brake=to.left_brake,
-            right_brake=to.right_brake,
-            gear=to.gear,
         )
 
     def _remember(self, state: State) -> None:

@@ -20,12 +20,11 @@ from fcc_hil.aircraft import by_name
 from fcc_hil.campaign.air import strength
 from fcc_hil.campaign.aircraft import AIRCRAFT
 from fcc_hil.campaign.draw import HOLD_S, LEG_S, Bounds, Fault, Flight, Gust, draw
+from fcc_hil.campaign.faults import RawFaults
 from fcc_hil.campaign.flying import Task, fly_task
-from fcc_hil.campaign.raw_faults import RawFaults
-from fcc_hil.campaign.verdict import judge, largest_pitch_rate_sd_degps
+from fcc_hil.campaign.verdict import HELD, Flown, judge, largest_rate_sd_degps
 from fcc_hil.loading import Loading
 from fcc_hil.motion import longest_s
-from fcc_hil.pattern import Leg
 from fcc_hil.plant import Plant, Weather
 from fcc_hil.state import Controls
 from fcc_hil.truth import COLUMNS, TRUTH_HZ, Truth
@@ -39,7 +38,7 @@ USAGE = 2
 def _calm(**changes: object) -> Flight:
     """Return a flight of the c172p without gusts, noise and fault."""
     plain = replace(
-        draw(0, 1, USUAL), gusts=(), noise=0.0, weather=Weather(), fault=None, is_pattern=True
+        draw(0, 1, USUAL), gusts=(), noise=0.0, weather=Weather(), fault=None, seconds=20.0
     )
     return replace(plain, **changes)  # type: ignore[arg-type]
 
@@ -47,21 +46,23 @@ def _calm(**changes: object) -> Flight:
 def _truth(seconds: float, **columns: float) -> Truth:
     """Return level flight at 100 kt and 3,000 ft, with some columns at another value."""
     level = {"altitude_ft": 3_000.0, "airspeed_kt": 100.0, "load_g": 1.0, "throttle": 0.6}
-    values = level | columns
+    values = level | {"height_ft": 3_000.0} | columns
     return Truth(
         [
             tuple({**values, "time_s": tick / TRUTH_HZ}.get(name, 0.0) for name in COLUMNS)
-            for tick in range(round(seconds * TRUTH_HZ))
+            for tick in range(round(seconds * TRUTH_HZ) + 1)
         ]
     )
 
 
-def _leg(ends_s: float) -> Leg:
-    return Leg(0.0, ends_s, 0.0, 0.0, 3_000.0, 3_000.0, 100.0)
-
-
-def _broken(flight: Flight, truth: Truth) -> set[str]:
-    return set(judge(flight, truth, [_leg(20.0)], [], is_released=False).broken)
+def _broken(flight: Flight, truth: Truth, refused: tuple[str, ...] = ()) -> set[str]:
+    """Return what is broken in a flight with ideal sensors."""
+    shown = [truth[name][1:] for name in ("heading_deg", "altitude_ft", "airspeed_kt")]
+    ordered = [np.full_like(shown[0], value) for value in (0.0, 3_000.0, 100.0)]
+    flown = Flown(
+        dict(zip(HELD, shown, strict=True)), dict(zip(HELD, ordered, strict=True)), (), refused, ()
+    )
+    return set(judge(flight, truth, flown).broken)
 
 
 def test_stalling_speeds_are_those_of_the_handbooks() -> None:
@@ -131,15 +132,25 @@ def test_a_gust_comes_and_goes() -> None:
         ("angle_of_attack_deg", 16.1, "stall"),
         ("airspeed_kt", 40.0, "below Vs"),
         ("roll_deg", 61.0, "bank"),
-        ("roll_deg", 91.0, "lost"),
         ("load_g", 3.9, "load"),
-        ("altitude_ft", 90.0, "lost"),
-        ("heading_deg", 4.0, "unsettled"),
+        ("height_ft", 40.0, "ground"),
+        ("heading_deg", 4.0, "heading"),
+        ("altitude_ft", 2_979.0, "altitude"),
     ],
 )
 def test_what_is_broken_is_found(column: str, value: float, kind: str) -> None:
     assert _broken(_calm(), _truth(20.0)) == set()
-    assert kind in _broken(_calm(), _truth(20.0, **{column: value}))
+    assert _broken(_calm(), _truth(20.0, **{column: value})) == {kind}
+
+
+def test_a_refused_order_breaks_and_what_a_lost_quantity_delays_does_not() -> None:
+    assert _broken(_calm(), _truth(20.0), ("15 s: too fast",)) == {"refused"}
+    late = _truth(20.0, heading_deg=4.0)
+    briefly = Fault("heading lost briefly", 16.0, 0.5)
+    assert _broken(_calm(), late) == {"heading"}
+    # The leg that ends at 15 s was flown before.
+    assert _broken(_calm(fault=briefly), late) == {"heading"}
+    assert _broken(_calm(fault=replace(briefly, begins_s=5.0)), late) == set()
 
 
 def test_a_second_without_interruption_counts() -> None:
@@ -149,9 +160,9 @@ def test_a_second_without_interruption_counts() -> None:
 
 
 def test_the_limit_of_an_oscillation_follows_air_and_noise() -> None:
-    assert largest_pitch_rate_sd_degps(_calm()) == 2.0
+    assert largest_rate_sd_degps(_calm()) == 2.0
     rough = _calm(noise=1.0, weather=Weather(turbulence_severity=3))
-    assert largest_pitch_rate_sd_degps(rough) == pytest.approx((4.0 + 4.0 + 9.0) ** 0.5)
+    assert largest_rate_sd_degps(rough) == pytest.approx((4.0 + 4.0 + 9.0) ** 0.5)
 
 
 def test_processes_and_a_cluster_fly_the_same() -> None:
@@ -176,7 +187,7 @@ def test_the_command_names_what_flies_a_flight_again(
     asked = ["campaign", "--flights", "1", "--seed", "5", "--workers", "1", "--turbulence", "2"]
     written = ["--json", str(figures), "--picture", str(picture), "--least-clean", "0"]
     assert commands.main([*asked, *written]) == 0
-    assert "of 1 flights clean" in capsys.readouterr().out
+    assert "clean, all" in capsys.readouterr().out
     assert picture.read_bytes().startswith(b"\x89PNG")
     flown = json.loads(figures.read_text(encoding="utf-8"))["flights"]
     command = flown[0]["command"].split()
@@ -255,8 +266,8 @@ def test_by_raw_sensors_it_is_the_same_flight_without_what_they_bring_themselves
         measured, raw = draw(number, 3, USUAL), draw(number, 3, Bounds(raw_sensors="phone"))
         assert (raw.noise, raw.biases, raw.sensor_delay_ticks) == (1.0, {}, 0)
         assert raw.delay_ms == pytest.approx(measured.delay_ms, abs=10.0)
-        assert (raw.receiver is None) == (measured.receiver is None)
-        same = ("loading", "airspeed_kt", "weather", "gusts", "fault", "orders", "is_pattern")
+        assert raw.has_receiver == measured.has_receiver
+        same = ("loading", "airspeed_kt", "weather", "gusts", "fault", "orders", "pattern")
         assert [getattr(raw, name) for name in same] == [getattr(measured, name) for name in same]
 
 
@@ -269,7 +280,7 @@ def test_a_flight_by_raw_sensors_is_judged_and_can_be_flown_again() -> None:
         if (fault := draw(number, 31, bounds).fault) and fault.what == "airspeed frozen"
     )
     outcome = fly_task(task)
-    assert not {"lost", "stall", "below Vs", "not flown", "not engaged"} & set(
+    assert not {"ground", "stall", "below Vs", "not flown", "not engaged"} & set(
         outcome.verdict.broken
     )
     assert outcome.command.endswith(f"--flight {task.number} --seed 31 --raw board")

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import os
 
+import contingency_flight
+import fence_flight
 import numpy as np
 import pytest
-
-from fcc_hil import contingency_flight, fence_flight, terrain_flight
+import terrain_flight
 
 FENCES = int(os.environ.get("FCC_FENCES", "1"))
 FLIGHTS = int(os.environ.get("FCC_CONTINGENCIES", "0"))

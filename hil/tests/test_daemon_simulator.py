@@ -220,7 +220,7 @@ def test_a_simulator_that_hangs_is_a_failsafe_and_one_that_jumps_is_released(
         simulator.write(ENGAGE_SWITCH, 0.0)
         engage(simulator, daemon)
         jumped_ns = time.monotonic_ns()
-        simulator.jump(100.0)
+        simulator.act("jump:100")
         assert "simulator time jumped" in daemon.wait_for("control is given back at once")
         daemon.wait_for("engaged -> standby")
         assert_released(simulator)
@@ -237,7 +237,7 @@ def test_a_reloaded_flight_is_not_continued(fccd: Path, tmp_path: Path) -> None:
     """The switch is off and the clock at zero again; the release is in the same tick."""
     with flight(fccd, tmp_path, others=SHORT_FAILSAFE) as (simulator, daemon):
         engage(simulator, daemon)
-        simulator.restart_flight()
+        simulator.act("restart")
         daemon.wait_for("engaged -> standby")
         wait_until(lambda: not simulator.progress().overridden, "the overrides are released")
         engage(simulator, daemon)

@@ -81,11 +81,11 @@ def slow(fccd: Path, scratch: Path) -> Flown:
     with flight(fccd, scratch, others=PATIENT) as (simulator, daemon):
         engage(simulator, daemon)
         slowed_ns = time.monotonic_ns()
-        simulator.set_frame_rate(SLOW_FPS)
+        simulator.act(f"fps:{SLOW_FPS}")
         daemon.wait_for("X-Plane is slow")
         for _ in range(3):
             assert "engaged" in daemon.wait_for("heading")
-        simulator.set_frame_rate(60.0)
+        simulator.act("fps:60")
         daemon.wait_for("time runs again")
         ending = daemon.end(signal.SIGTERM)
         assert_released(simulator)

@@ -15,10 +15,12 @@ from fcc_hil import documents
 from fcc_hil.__main__ import main
 from fcc_hil.cockpit import OVERRIDE_JOYSTICK
 from fcc_hil.daemon import Daemon, DaemonError, command
-from fcc_hil.fly import FlightError, Plan, altitudes_note, fly, peer_row
+from fcc_hil.fly import Plan, altitudes_note, fly
 from fcc_hil.pattern import TimedPattern
-from fcc_hil.plot import plot_flight
+from fcc_hil.peer import fly_peer
+from fcc_hil.plot import plot_pattern
 from fcc_hil.process import StandInError, StandInProcess
+from fcc_hil.rig import FlightError
 from fcc_hil.standin import Mode, Settings
 from fcc_hil.udp import free_port
 
@@ -44,7 +46,9 @@ def test_a_flight_from_switch_to_score(tmp_path: Path) -> None:
     assert len([line for line in lines if "heading" in line]) == pytest.approx(4, abs=1)
 
     document_path = tmp_path / "flight.json"
-    documents.write(document_path, flight.document(peer_row(flight.plan)))
+    documents.write(
+        document_path, flight.document(fly_peer(flight.plan.legs, pattern=flight.plan.pattern)[0])
+    )
     document = json.loads(document_path.read_text())
     assert document["timing"]["rate_hz"] == 40.0
     assert document["aircraft"] == "c172p"
@@ -52,7 +56,7 @@ def test_a_flight_from_switch_to_score(tmp_path: Path) -> None:
     assert set(document["flight"]) == {"legs", "worst"}
 
     picture = tmp_path / "flight.png"
-    plot_flight(picture, flight.truth, SHORT, flight.engaged_at_s, 1, "A short flight")
+    plot_pattern(picture, flight.truth, SHORT, flight.engaged_at_s, 1, "A short flight")
     assert picture.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
 
 
@@ -134,7 +138,7 @@ def test_the_stand_ins_process_takes_commands_and_can_be_killed() -> None:
     simulator.set_mode(Mode.PAUSED)
     before = simulator.progress()
     assert before.mode is Mode.PAUSED
-    simulator.set_frame_rate(200.0)
+    simulator.act("fps:200")
     simulator.set_mode(Mode.RUNNING)
     while simulator.progress().time_s < before.time_s + 0.1:
         pass
@@ -158,4 +162,5 @@ def test_peer_command(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Non
     assert main(["peer", "--legs", "2", "--plot", str(tmp_path / "peer.png")]) == 0
     assert "0 of 2 legs" in capsys.readouterr().out
     assert (tmp_path / "peer.png").exists()
-    assert main(["peer", "--legs", "0"]) == 2
+    with pytest.raises(SystemExit, match="2"):
+        main(["peer", "--legs", "0"])

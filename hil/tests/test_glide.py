@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import os
 
-from fcc_hil import glide_flight
+import glide_flight
+
 from fcc_hil.workers import local_workers
 
 SEEDS = int(os.environ.get("FCC_GLIDES", "1"))

@@ -6,11 +6,12 @@ import math
 import os
 from pathlib import Path
 
+import drawn_plan
 import fcc
 import pytest
+from drawn_plan import Drawn
 
-from fcc_hil import drawn_plan, plan_flight
-from fcc_hil.drawn_plan import Drawn
+from fcc_hil import plan_flight
 from fcc_hil.plan_flight import PlanConditions
 from fcc_hil.plan_score import PlanScore
 from fcc_hil.plant import Weather

@@ -12,10 +12,9 @@ import pytest
 from fcc_hil import __main__ as commands
 from fcc_hil.campaign import airspeed
 from fcc_hil.campaign.alarms import Alarm, alarms_of
-from fcc_hil.campaign.draw import Fault, usual_bounds
+from fcc_hil.campaign.draw import Fault, Flight, draw, usual_bounds
 from fcc_hil.campaign.flying import fly
-from fcc_hil.campaign.healthy import HealthyFlight, SetPointOrder, draw
-from fcc_hil.campaign.set_points import Flown, judge
+from fcc_hil.campaign.verdict import Flown, judge
 from fcc_hil.plant import Weather
 from fcc_hil.rig import Event
 from fcc_hil.truth import COLUMNS, TRUTH_HZ, Truth
@@ -80,12 +79,12 @@ def test_conditions_are_those_of_the_requirement() -> None:
 
 def test_set_points_are_those_of_the_requirement() -> None:
     for flight in DRAWN:
-        times_s = [order.time_s for order in flight.set_points]
+        times_s = [order.time_s for order in flight.orders]
         gaps_s = np.diff([0.0, *times_s])
         assert min(gaps_s) >= 8.0
         assert max(gaps_s) <= 45.0 + 8.0
         assert times_s[-1] == flight.seconds - 75.0
-        for order in flight.set_points:
+        for order in flight.orders:
             assert order.heading_deg is None or 0.0 <= order.heading_deg < 360.0
             assert order.climb_ft is None or abs(order.climb_ft) <= 1_500.0
             kt = order.airspeed_kt
@@ -97,13 +96,13 @@ def test_set_points_are_those_of_the_requirement() -> None:
 def test_the_same_number_and_seed_are_the_same_flight() -> None:
     assert draw(3, 7, BOUNDS) == DRAWN[3]
     assert draw(3, 8, BOUNDS) != DRAWN[3]
-    short = replace(draw(1, 7, BOUNDS), seconds=20.0, set_points=())
+    short = replace(draw(1, 7, BOUNDS), seconds=20.0, orders=())
     first, second = (fly(short)[0] for _ in range(2))
     assert first.digest == second.digest
     assert first.digest != fly(replace(short, number=6))[0].digest
 
 
-def _flight(severity: int = 0, **changes: object) -> HealthyFlight:
+def _flight(severity: int = 0, **changes: object) -> Flight:
     weather = Weather(turbulence_severity=severity)
     plain = replace(DRAWN[0], aircraft="c172p", seconds=100.0, steps={}, weather=weather)
     return replace(plain, **changes)  # type: ignore[arg-type]
@@ -123,14 +122,14 @@ def _truth(**columns: float) -> Truth:
 def _flown(
     shown: dict[str, float] | None = None,
     alarms: tuple[Alarm, ...] = (),
-    last: SetPointOrder | None = None,
+    changes_s: tuple[float, ...] = (),
 ) -> Flown:
     level = {"heading": 0.0, "altitude": 3_000.0, "airspeed": 100.0}
     ticks = np.ones(100 * TRUTH_HZ)
     return Flown(
         {name: value * ticks for name, value in (level | (shown or {})).items()},
         {name: value * ticks for name, value in level.items()},
-        last,
+        changes_s,
         (),
         alarms,
     )
@@ -191,10 +190,8 @@ def test_lack_of_power_and_a_climb_are_no_error() -> None:
     fast = _flown({"airspeed": 110.0})
     assert set(judge(_flight(), _truth(throttle=1.0), fast).broken) == {"airspeed"}
     # 965 ft/min at most: 1,500 ft take 93 s.
-    last = SetPointOrder(5.0, None, 1_500.0, None)
-    assert judge(_flight(), _truth(), _flown({"altitude": 1_500.0}, last=last)).is_clean
-    last = SetPointOrder(5.0, None, 100.0, None)
-    low = _flown({"altitude": 2_900.0}, last=last)
+    assert judge(_flight(), _truth(), _flown({"altitude": 1_500.0}, changes_s=(5.0,))).is_clean
+    low = _flown({"altitude": 2_900.0}, changes_s=(5.0,))
     assert set(judge(_flight(), _truth(), low).broken) == {"altitude"}
 
 
@@ -274,7 +271,7 @@ def test_a_blocked_tube_is_measured() -> None:
     others = [flight.fault for flight in flights if flight not in tubes]
     # Long enough after it is good again to be used again within 60 s.
     assert all(flight.seconds >= 60.0 + 40.0 + 60.0 for flight in flights if flight not in tubes)
-    assert all(order.time_s < it.seconds for it in flights for order in it.set_points)
+    assert all(order.time_s < it.seconds for it in flights for order in it.orders)
     assert all(fault and 20.0 <= (fault.lasts_s or 0.0) <= 40.0 for fault in others)
     flight = _flight(fault=Fault("airspeed wrong for a time", 10.0, 30.0, 20.0))
     flight = replace(flight, biases=flight.biases | {"airspeed_mps": 0.0})
@@ -295,6 +292,6 @@ def test_by_raw_sensors_it_is_the_same_flight() -> None:
         measured = draw(number, 3, BOUNDS)
         raw = draw(number, 3, replace(BOUNDS, raw_sensors="phone"))
         assert (raw.noise, raw.biases, raw.steps, raw.sensor_delay_ticks) == (1.0, {}, {}, 0)
-        assert (raw.receiver is not None) == measured.measures_position
-        same = ("loading", "airspeed_kt", "weather", "set_points", "seconds", "measures_trim")
+        assert raw.has_receiver == measured.measures_position
+        same = ("loading", "airspeed_kt", "weather", "orders", "seconds", "measures_trim")
         assert [getattr(raw, name) for name in same] == [getattr(measured, name) for name in same]

@@ -12,11 +12,11 @@ import fcc
 import numpy as np
 import pytest
 
-from fcc_hil.bench import TUNING_SEEDS
 from fcc_hil.lockstep import Scenario, fly, measurements
 from fcc_hil.pattern import TimedPattern
 from fcc_hil.plant import Plant, Weather
 from fcc_hil.score import LegScore
+from fcc_hil.suite.matrix import TUNING_SEEDS
 
 SEED = 2012
 AIRCRAFT = ("c172p", "c172x")

@@ -9,14 +9,15 @@ import fcc
 import numpy as np
 import pytest
 
+from fcc_hil.actuation import Actuation, Servos
 from fcc_hil.aircraft import by_name
 from fcc_hil.campaign.draw import Bounds, draw
 from fcc_hil.campaign.flying import fly
 from fcc_hil.lockstep import measurements
-from fcc_hil.margins import Actuation, Condition, measure
+from fcc_hil.margins import Condition, measure
 from fcc_hil.margins.measure import margins_of
 from fcc_hil.noise import SensorNoise
-from fcc_hil.plant import Plant
+from fcc_hil.plant import STEPS_PER_SECOND, Plant
 from fcc_hil.state import Controls
 
 _SEED = 2012
@@ -50,7 +51,8 @@ def _fly(
     plant = Plant(replace(by_name(aircraft), airspeed_kt=airspeed_kt), seed=_SEED)
     machine = fcc.Machine(f"{_HOLD}[autopilot.scale]\nelevator = {elevator_gain}\n")
     sensors = SensorNoise(_SEED) if noise else None
-    actuation = Actuation(plant, delay_s, servo_hz)
+    latency_steps = round(delay_s * STEPS_PER_SECOND)
+    servos = Servos(Actuation(latency_steps, servo_hz or None), plant.controls)
     flown = _Flight()
     for tick in range(round((2.0 + seconds) * 40)):
         state = plant.state()
@@ -70,7 +72,9 @@ def _fly(
             rudder=surfaces.rudder,
             throttle=surfaces.throttle,
         )
-        actuation.fly(command, 3)
+        for _ in range(3):
+            plant.write(servos.step(command))
+            plant.step()
         if tick > (2.0 + judged_after_s) * 40:
             flown.pitch_rate_degps.append(math.degrees(state.pitch_rate_radps))
             flown.load_g.append(-state.specific_force_z_mps2 / 9.80665)

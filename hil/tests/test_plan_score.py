@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from drawn_plan import LATITUDE_DEG, LONGITUDE_DEG
 
 from fcc_hil import plan_file, plan_score
-from fcc_hil.drawn_plan import LATITUDE_DEG, LONGITUDE_DEG
 from fcc_hil.flown_plan import FlownPlan
 from fcc_hil.plan_score import PlanScore
 

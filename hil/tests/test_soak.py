@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 from fcc_hil.__main__ import main
-from fcc_hil.soak import Machine, Result, Soak, SoakError, periods_lost, soak
+from fcc_hil.rig import FlightError
+from fcc_hil.soak import Machine, Result, Soak, periods_lost, soak
 
 GOOD = Result(
     ticks=180_000,
@@ -132,7 +133,7 @@ def test_a_flight_ends_if_a_background_program_ends(
 ) -> None:
     for name in ("cyclictest", "stress-ng"):
         programs(name, _REFUSED if name == refused else _CYCLICTEST)
-    with pytest.raises(SoakError, match=f"{refused} ended with 1: missing capabilities"):
+    with pytest.raises(FlightError, match=f"{refused} ended with 1: missing capabilities"):
         soak(Soak(fccd, 600.0, 100, stress=True), lambda _: None)
 
 
@@ -150,5 +151,5 @@ def test_a_missing_program_is_reported_before_the_flight(
     # Found by its name, although it is `nice` that starts it.
     programs("nice", _CYCLICTEST)
     monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(SoakError, match=f"{missing} is missing"):
+    with pytest.raises(FlightError, match=f"{missing} is missing"):
         soak(Soak(Path("fccd"), 600.0, 100, stress=True), lambda _: None)

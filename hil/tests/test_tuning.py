@@ -16,11 +16,11 @@ from fcc_hil import __main__ as commands
 from fcc_hil.configurations import value_of
 from fcc_hil.score import LegScore, Score
 from fcc_hil.truth import Truth
-from fcc_hil.tuning import COSTS, SCALE_KEYS, Task, cost_of, local_workers, on_dask, tune
-from fcc_hil.tuning.cost import NOT_FLOWN, weighed
+from fcc_hil.tuning import COSTS, SCALE_KEYS, Task, cost_of, flight_cost, tune
+from fcc_hil.tuning.cost import NOT_FLOWN, Flight, weighed
 from fcc_hil.tuning.identify import first_guess
 from fcc_hil.tuning.search import scenarios
-from fcc_hil.tuning.workers import Flight
+from fcc_hil.workers import local_workers, on_dask
 
 ELEVATOR = "autopilot.scale.elevator"
 LIMP = "[autopilot.scale]\nelevator = 0.15\n"
@@ -106,7 +106,7 @@ def test_costs_by_name_and_by_weights() -> None:
 
 def test_the_search_finds_a_wrong_elevator_scale_repeatably(fccd: Path, tmp_path: Path) -> None:
     calls = []
-    with local_workers(1) as fly_all:
+    with local_workers(flight_cost, 1) as fly_all:
         found = tune(_task(), fly_all, lambda flown, least: calls.append((flown, least)))
         again = tune(_task(), fly_all)
     assert found.after < 0.8 * found.before
@@ -120,7 +120,7 @@ def test_the_search_finds_a_wrong_elevator_scale_repeatably(fccd: Path, tmp_path
 
 
 def test_the_result_is_never_worse_than_the_given_configuration() -> None:
-    with local_workers(1) as fly_all:
+    with local_workers(flight_cost, 1) as fly_all:
         found = tune(_task(config="[autopilot.scale]\npace = 1.0\n", evaluations=3), fly_all)
     assert found.after <= found.before
 
@@ -136,20 +136,20 @@ def test_the_reference_aircraft_has_a_scale_of_one() -> None:
 def test_a_flight_that_cannot_be_flown_has_the_highest_cost() -> None:
     task = _task()
     bad = [Flight(s, task.cost.weights) for s in scenarios(task, "[autopilot]\nbank = 3\n")]
-    with local_workers(1) as fly_all:
+    with local_workers(flight_cost, 1) as fly_all:
         assert list(fly_all(bad)) == [NOT_FLOWN]
 
 
 def test_a_cluster_and_processes_fly_the_same() -> None:
     task = _task(seeds=(1, 2))
     flights = [Flight(scenario, task.cost.weights) for scenario in scenarios(task, LIMP)]
-    with local_workers(2) as fly_all:
+    with local_workers(flight_cost, 2) as fly_all:
         here = list(fly_all(flights))
     with (
         LocalCluster(
             n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
         ) as cluster,
-        on_dask(cluster.scheduler_address) as fly_all,
+        on_dask(flight_cost, cluster.scheduler_address) as fly_all,
     ):
         there = list(fly_all(flights))
     assert here == there
@@ -158,14 +158,14 @@ def test_a_cluster_and_processes_fly_the_same() -> None:
 
 def test_without_dask_the_message_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(ValueError, match="pip install"), on_dask("tcp://127.0.0.1:1"):
+    with pytest.raises(ValueError, match="pip install"), on_dask(flight_cost, "tcp://127.0.0.1:1"):
         pass
 
 
 def test_a_missing_cluster_is_reported() -> None:
     with (
         pytest.raises(ValueError, match="no Dask scheduler"),
-        on_dask("tcp://127.0.0.1:9", timeout_s=1.0),
+        on_dask(flight_cost, "tcp://127.0.0.1:9", timeout_s=1.0),
     ):
         pass
 
@@ -181,7 +181,7 @@ def test_a_missing_cluster_is_reported() -> None:
     ],
 )
 def test_invalid_tasks_are_refused(changes: dict[str, object], match: str) -> None:
-    with local_workers(1) as fly_all, pytest.raises(ValueError, match=match):
+    with local_workers(flight_cost, 1) as fly_all, pytest.raises(ValueError, match=match):
         tune(_task(**changes), fly_all)
 
 

@@ -18,6 +18,11 @@ from ..units import FT_TO_M, KT_TO_MPS
 _SEA_LEVEL_DENSITY_SLUGFT3 = 0.0023769
 """Of the standard atmosphere (ISO 2533)."""
 
+SLOWEST = 1.3
+"""The lowest speed ordered, as a multiple of the stalling speed: that of an approach."""
+_FLOOR_MARGIN_KT = 4.0
+"""Above the lowest permitted speed, because measurements have errors."""
+
 
 @dataclass(frozen=True)
 class Limits:
@@ -88,7 +93,7 @@ class Limits:
 
     def slow_kt(self, weight_lb: float) -> float:
         """Return 1.3 Vs, or 4 kt above the lowest permitted airspeed if that is more."""
-        return max(1.3 * self.stall_kt(weight_lb), self.floor_kt + 4.0)
+        return max(SLOWEST * self.stall_kt(weight_lb), self.floor_kt + _FLOOR_MARGIN_KT)
 
     def _configured(self, name: str) -> float:
         # Here, because the commands that fly the daemon do without the module.

@@ -10,9 +10,8 @@ import numpy as np
 from ..truth import Truth
 from ..units import KT_TO_MPS
 from .alarms import EXCLUSION, Alarm
-from .draw import Fault, Flight
-from .healthy import TUBE, TUBE_S, WRONG, HealthyFlight
-from .set_points import Flown
+from .draw import TUBE, TUBE_S, WRONG, Fault, Flight
+from .verdict import Flown
 
 _WRONG_KT, _WRONG_TICKS = 10.0, 20
 """It is wrong once its mean error over half a second is as large."""
@@ -22,7 +21,7 @@ LONGEST_S = {4.0: 10.0, 28.0: 5.0, 58.0: 5.0}
 BACK_WITHIN_S = 60.0
 
 
-def figures(flight: HealthyFlight, fault: Fault, truth: Truth, flown: Flown) -> dict[str, float]:
+def figures(flight: Flight, fault: Fault, truth: Truth, flown: Flown) -> dict[str, float]:
     """Return the figures of a flight whose airspeed fails.
 
     Times are counted from an error of 10 kt, and from the end of the fault: NaN if it was not

@@ -10,11 +10,10 @@ from typing import Any
 from .. import documents, ranges, replacement
 from ..printable import say
 from ..progress import bar
-from ..workers import local_workers, on_dask
-from .draw import Bounds, usual_bounds
+from ..workers import all_workers
+from .draw import KINDS, Bounds, usual_bounds
 
 _MOST_LATE_MS = 1_000.0
-_LEAST_CLEAN = {"edges": 98.0, "healthy": 94.0, "airspeed": 94.0}
 
 
 def add(commands: Any) -> None:
@@ -41,13 +40,7 @@ def add(commands: Any) -> None:
     campaign.add_argument(
         "--flights", type=ranges.count, default=300, metavar="N", help="how many (%(default)s)"
     )
-    campaign.add_argument(
-        "--seed",
-        type=ranges.whole(0, ranges.LARGEST_SEED),
-        default=1,
-        metavar="N",
-        help="of all that is drawn (%(default)s); see docs/campaign.md",
-    )
+    ranges.add_seed(campaign, "of all that is drawn (%(default)s); see docs/campaign.md")
     campaign.add_argument(
         "--flight",
         type=ranges.whole(0, 999_999),
@@ -79,29 +72,16 @@ def add(commands: Any) -> None:
         metavar="PERCENT",
         help="exit with 1 if less of the flights are clean (98; 94 if healthy)",
     )
-    campaign.add_argument(
-        "--workers", type=ranges.workers, metavar="N", help="processes (all processors)"
-    )
+    ranges.add_workers(campaign)
     campaign.add_argument(
         "--scheduler", metavar="ADDRESS", help="fly on a Dask cluster, as in tcp://10.0.0.5:8786"
     )
-    campaign.add_argument(
-        "--json", type=ranges.file_to_write, metavar="FILE", help="write everything here"
-    )
-    campaign.add_argument(
-        "--results",
-        type=ranges.file_to_write,
-        metavar="FILE",
-        help="write the tables here, as Markdown",
-    )
-    campaign.add_argument(
-        "--picture", type=ranges.file_to_write, metavar="FILE", help="write a picture here"
-    )
-    campaign.add_argument(
-        "--record",
-        type=ranges.file_to_write,
-        metavar="FILE",
-        help="with --flight: write its recording here (.mcap)",
+    ranges.add_files(
+        campaign,
+        json="write everything here",
+        results="write the tables here, as Markdown",
+        picture="write a picture here",
+        record="with --flight: write its recording here (.mcap)",
     )
     campaign.set_defaults(run=partial(_campaign, campaign))
 
@@ -112,7 +92,7 @@ def _campaign(parser: argparse.ArgumentParser, options: argparse.Namespace) -> i
     if options.record and options.flight is None:
         parser.error("argument --record: give the number of a flight with --flight, too")
     # They need the module fcc, which other commands do not.
-    from . import healthy_report, report  # noqa: PLC0415
+    from . import report  # noqa: PLC0415
     from .flying import Task, fly_task  # noqa: PLC0415
 
     usual = usual_bounds(options.kind)
@@ -126,23 +106,15 @@ def _campaign(parser: argparse.ArgumentParser, options: argparse.Namespace) -> i
         return _one(options, bounds)
     numbers = range(options.first, options.first + options.flights)
     tasks = [Task(number, options.seed, bounds) for number in numbers]
-    workers = (
-        on_dask(fly_task, options.scheduler)
-        if options.scheduler
-        else local_workers(fly_task, options.workers)
-    )
+    workers = all_workers(fly_task, options.scheduler, options.workers)
     began_s = time.monotonic()
     outcomes = []
     with workers as fly_all, bar("flying", len(tasks)) as notify:
         for outcome in fly_all(tasks):
             outcomes.append(outcome)
             notify(len(outcomes), f"{100.0 * report.clean_share(outcomes):.0f} % clean")
-    if options.kind == usual_bounds("edges").kind:
-        text = report.text(outcomes)
-        say(text)
-    else:
-        text = healthy_report.tables(outcomes)
-        say(f"{text}\n\n{healthy_report.flights(outcomes)}")
+    text = report.tables(outcomes)
+    say(f"{text}\n\n{report.flights(outcomes)}")
     say(f"took {time.monotonic() - began_s:.0f} s")
     if options.results:
         head = f"# Campaign: {options.kind}\n\n    {_repeated(options, bounds)}\n\n"
@@ -159,8 +131,10 @@ def _campaign(parser: argparse.ArgumentParser, options: argparse.Namespace) -> i
             + (f", {bounds.raw_sensors}" if bounds.raw_sensors else "")
         )
         draw_picture(options.picture, outcomes, title)
-    least = _LEAST_CLEAN[options.kind] if options.least_clean is None else options.least_clean
-    return 1 if 100.0 * report.clean_share(outcomes) < least else 0
+    least_percent = options.least_clean
+    if least_percent is None:
+        least_percent = KINDS[options.kind].least_clean_percent
+    return 1 if 100.0 * report.clean_share(outcomes) < least_percent else 0
 
 
 def _repeated(options: argparse.Namespace, bounds: Bounds) -> str:
@@ -172,9 +146,10 @@ def _repeated(options: argparse.Namespace, bounds: Bounds) -> str:
 def _one(options: argparse.Namespace, bounds: Bounds) -> int:
     """Fly one flight again, and show all of it."""
     from . import report  # noqa: PLC0415
-    from .flying import drawn, fly  # noqa: PLC0415
+    from .draw import draw  # noqa: PLC0415
+    from .flying import fly  # noqa: PLC0415
 
-    outcome, truth = fly(drawn(options.flight, options.seed, bounds), options.record)
+    outcome, truth = fly(draw(options.flight, options.seed, bounds), options.record)
     say(report.failure(outcome))
     for event in outcome.events:
         say(f"    {event.time_s:7.2f} s  {event.text}")
@@ -184,9 +159,9 @@ def _one(options: argparse.Namespace, bounds: Bounds) -> int:
     if options.json:
         documents.write(options.json, outcome.document())
     if options.picture:
-        from .flight_picture import draw as draw_picture  # noqa: PLC0415
+        from .picture import draw_flight  # noqa: PLC0415
 
         if truth is None:
             raise ValueError("no flight to draw: it was not flown")
-        draw_picture(options.picture, truth, outcome)
+        draw_flight(options.picture, truth, outcome)
     return 0 if outcome.verdict.is_clean else 1

@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import Any
 
 import fcc
+import numpy as np
 
 from ..aircraft import by_name
 from ..configurations import configuration, with_values, without_section
 from ..lockstep_rig import Conditions, LockstepRig
 from ..noise import NoiseLevels
-from ..pattern import Leg, SetPoints
 from ..plant import Plant, TrimError
 from ..raw_calibration import calibrate
 from ..raw_flight import MEASURED, RAW_LATITUDE_DEG, RAW_STANDBY_S
@@ -23,21 +23,18 @@ from ..raw_sensors import FIELD_UT
 from ..rig import Event
 from ..sensor_faults import Faults
 from ..settings import Settings
+from ..state import State
 from ..truth import Truth
-from ..units import FT_TO_M, KT_TO_MPS, wrap_heading
-from . import airspeed, healthy
+from ..units import FT_TO_M, KT_TO_MPS
+from . import airspeed
 from .air import mover
-from .alarms import Alarm
-from .draw import HOLD_S, LEG_S, Bounds, Fault, Flight, Order, draw
-from .healthy import TUBE, WRONG, HealthyFlight
-from .raw_faults import RawFaults
-from .set_points import fly_set_points
-from .set_points import judge as judge_set_points
-from .verdict import Verdict, judge
+from .alarms import Alarm, alarms_of
+from .draw import LEGS_S, Bounds, Flight, Order, draw
+from .faults import ENGINE_OUT, RawFaults, put_in
+from .verdict import GROUND_FT, HELD, Flown, Verdict, hits_ground, judge
 
 _ENGAGES_WITHIN_S = 10.0
 _TRIES_FOR_S = 1.0
-_GROUND_FT = 50.0
 _NO_EVENTS: tuple[Event, ...] = ()
 
 
@@ -54,7 +51,6 @@ class Outcome:
     simulated_s: float
     cpu_s: float
     alarms: tuple[Alarm, ...] = ()
-    """Of a healthy flight."""
     refused: tuple[str, ...] = ()
 
     @property
@@ -92,12 +88,7 @@ class Task:
 
 def fly_task(task: Task) -> Outcome:
     """Fly one flight and judge it."""
-    return fly(drawn(task.number, task.seed, task.bounds))[0]
-
-
-def drawn(number: int, seed: int, bounds: Bounds) -> Flight:
-    """Draw a flight of any kind."""
-    return (draw if bounds.kind == Bounds().kind else healthy.draw)(number, seed, bounds)
+    return fly(draw(task.number, task.seed, task.bounds))[0]
 
 
 def fly(flight: Flight, recording: Path | None = None) -> tuple[Outcome, Truth | None]:
@@ -111,21 +102,20 @@ def fly(flight: Flight, recording: Path | None = None) -> tuple[Outcome, Truth |
     except (TrimError, ValueError) as error:
         verdict = Verdict({"not flown": str(error)}, {})
         return Outcome(flight, verdict, _NO_EVENTS, "", 0.0, time.process_time() - began_s), None
-    inhibits = "" if rig.holds_control else ", ".join(rig.machine.engage_inhibits) or "refused"
-    engaged_s = rig.time_s
-    verdict, flown = Verdict({"not engaged": inhibits}, {}), None
-    if inhibits:
-        pass
-    elif isinstance(flight, HealthyFlight):
-        flown = fly_set_points(rig, flight)
+    alarms: tuple[Alarm, ...] = ()
+    refused: tuple[str, ...] = ()
+    if rig.holds_control:
+        engaged_s = rig.time_s
+        flown = _fly(rig, flight)
+        alarms, refused = flown.alarms, flown.refused
         since = rig.truth().since(engaged_s)
-        verdict = judge_set_points(flight, since, flown)
-        if flight.fault is not None:
+        verdict = judge(flight, since, flown)
+        if flight.bounds.kind == "airspeed" and flight.fault is not None:
             of_fault = airspeed.figures(flight, flight.fault, since, flown)
             verdict = replace(verdict, figures={**verdict.figures, **of_fault})
     else:
-        legs, refused = _fly(rig, flight)
-        verdict = judge(flight, rig.truth(), legs, refused, is_released=not rig.holds_control)
+        inhibits = ", ".join(rig.machine.engage_inhibits) or "refused"
+        verdict = Verdict({"not engaged": inhibits}, {})
     truth = rig.truth()
     if recording is not None:
         rig.save_recording(recording)
@@ -136,8 +126,8 @@ def fly(flight: Flight, recording: Path | None = None) -> tuple[Outcome, Truth |
         digest=hashlib.sha256(truth.table().tobytes()).hexdigest(),
         simulated_s=rig.time_s,
         cpu_s=time.process_time() - began_s,
-        alarms=() if flown is None else flown.alarms,
-        refused=() if flown is None else flown.refused,
+        alarms=alarms,
+        refused=refused,
     )
     return outcome, truth
 
@@ -149,21 +139,12 @@ def config_of(flight: Flight) -> str:
     """
     values: dict[str, float | str | list[float]] = {
         "autopilot.envelope.stall_airspeed_kt": flight.limits.stall_setting_kt,
+        "guidance.mode": "hold",
     }
-    text = configuration(flight.aircraft)
-    if isinstance(flight, HealthyFlight):
-        text = without_section(text, "guidance")
-        values["guidance.mode"] = "hold"
-    else:
-        first = flight.orders[0]
-        values |= {
-            "guidance.mode": "timed-pattern",
-            # The first command ends the pattern.
-            "guidance.hold_s": HOLD_S if flight.is_pattern else 10.0 * HOLD_S,
-            "guidance.leg_s": LEG_S,
-            "guidance.turn_deg": first.turn_deg if flight.is_pattern else 0.0,
-            "guidance.climb_ft": first.climb_ft if flight.is_pattern else 0.0,
-        }
+    text = without_section(configuration(flight.aircraft), "guidance")
+    if flight.pattern is not None:
+        values["guidance.mode"] = "timed-pattern"
+        values |= {f"guidance.{key}": value for key, value in asdict(flight.pattern).items()}
     if flight.bounds.raw_sensors is not None:
         # Where X-Plane is the source, there are no raw readings.
         text = without_section(text, "x-plane")
@@ -190,6 +171,7 @@ def _rig(flight: Flight) -> LockstepRig:
     levels = NoiseLevels(**{name: flight.noise * sigma for name, sigma in asdict(usual).items()})
     engaged_s = [math.inf]
     falsify = RawFaults(flight.fault, lambda: plant.time_s - engaged_s[0]) if by_raw else None
+    without = MEASURED if by_raw else frozenset()
     conditions = Conditions(
         levels=levels,
         sensor_delay_ticks=flight.sensor_delay_ticks,
@@ -199,33 +181,23 @@ def _rig(flight: Flight) -> LockstepRig:
         raw_sensors=sensors,
         calibration=None if sensors is None else calibrate(sensors, seed, FIELD_UT),
         raw_fault=falsify,
-        without=MEASURED if by_raw else frozenset(),
+        without=without | {"gnss"} if by_raw and not flight.has_receiver else without,
+        biases=flight.biases,
+        trim=flight.measures_trim,
+        position=flight.measures_position and not by_raw,
     )
-    errors = []
-    if isinstance(flight, HealthyFlight):
-        errors = flight.errors()
-        conditions = replace(
-            conditions,
-            biases=flight.biases,
-            trim=flight.measures_trim,
-            position=flight.measures_position and not by_raw,
-        )
-    if by_raw and flight.receiver is None:
-        conditions = replace(conditions, without=conditions.without | {"gnss"})
     settings = Settings(aircraft=flight.aircraft, seed=seed, noise=not by_raw)
     rig = LockstepRig(settings, plant, fcc.Machine(config_of(flight)), conditions)
+    errors = flight.errors()
     faults = Faults(lambda: rig.time_s, lambda more: rig.set_faults([*errors, *more]), seed)
-    if not isinstance(flight, HealthyFlight):
-        for name, by in flight.biases.items():
-            faults.bias(name, by=by)
-    rig.set_faults([*errors, *faults.all])
+    rig.set_faults(errors)
     rig.prepare()
     if by_raw:
         rig.fly_to(RAW_STANDBY_S)
     _engage(rig)
     engaged_s[0] = rig.time_s
     if flight.fault is not None:
-        _put_in(flight.fault, faults, by_raw=by_raw)
+        put_in(flight.fault, faults, by_raw=by_raw)
     return rig
 
 
@@ -240,91 +212,76 @@ def _engage(rig: LockstepRig) -> None:
             rig.fly_to(rig.time_s + _TRIES_FOR_S)
 
 
-def _put_in(fault: Fault, faults: Faults, *, by_raw: bool) -> None:
-    """Put a sensor's fault in; the engine is failed by `_fly`, one raw sensor by `RawFaults`."""
-    when: dict[str, Any] = {"after": fault.begins_s, "lasts": fault.lasts_s}
-    sensor = fault.what.split()[0]
-    if fault.what == "samples lost":
-        faults.loss("everything", share=fault.amount, **when)
-    elif sensor == "everything":
-        faults.loss(sensor, **when)
-    elif by_raw:
-        return
-    elif fault.what.endswith("frozen"):
-        faults.freeze(sensor, **when)
-    elif fault.what.endswith("biased") or fault.what == WRONG:
-        faults.bias(sensor, by=fault.amount, **when)
-    elif fault.what == TUBE:
-        faults.blocked_tube(**when)
-    elif fault.what != "engine out":
-        faults.loss(sensor, **when)
-
-
-def _fly(rig: LockstepRig, flight: Flight) -> tuple[list[Leg], list[str]]:
-    """Fly to the end, or until the controls are released or the ground is reached.
-
-    Returns the legs, the first of which is the hold, and the refused orders.
-    """
-    plant, engaged_at_s = rig.plant, rig.time_s
-    now = rig.truth().captured_at(engaged_at_s)
-    failed = flight.fault is not None and flight.fault.what == "engine out"
-    fails_s = engaged_at_s + flight.fault.begins_s if failed and flight.fault else math.inf
+def _fly(rig: LockstepRig, flight: Flight) -> Flown:
+    """Fly to the end, or until the controls are released or the ground is reached."""
+    machine, plant, engaged_s = rig.machine, rig.plant, rig.time_s
+    first_m = machine.setpoints.altitude_m
+    rows: list[tuple[float, ...]] = []
+    faults: list[tuple[float, frozenset[str]]] = [(0.0, frozenset())]
+    fault = flight.fault
+    stops_s = fault.begins_s if fault is not None and fault.what == ENGINE_OUT else math.inf
 
     def is_over() -> bool:
-        nonlocal fails_s
-        if rig.time_s >= fails_s:
+        shown = _shown(rig, flight)
+        ordered = machine.setpoints
+        rows.append(
+            (
+                *(shown.heading_rad, shown.altitude_m, shown.airspeed_mps),
+                *(ordered.heading_rad, ordered.altitude_m, ordered.airspeed_mps),
+            )
+        )
+        if rig.time_s - engaged_s >= stops_s:
             plant.fail_engines()
-            fails_s = math.inf
-        height_ft = plant.fdm["position/h-agl-ft"]
-        return not rig.holds_control or not height_ft > _GROUND_FT
+        now = frozenset(machine.faults)
+        if now != faults[-1][1]:
+            faults.append((rig.time_s - engaged_s, now))
+        return not rig.holds_control or not plant.fdm["position/h-agl-ft"] > GROUND_FT
 
-    legs = [_leg(engaged_at_s, HOLD_S, now, now)]
-    refused: list[str] = []
-    rig.fly_to(legs[0].end_s, until=is_over)
-    for drawn in flight.orders:
-        if is_over():
+    changes_s, refused = [], []
+    for order in (*flight.orders, None):
+        until_s = flight.seconds if order is None else order.time_s
+        rig.fly_to(engaged_s + until_s, until=is_over)
+        is_done = rig.time_s < engaged_s + until_s - 1e-6
+        if order is None or is_done:
             break
         # In failsafe no order is taken.
-        waits = not flight.is_pattern and rig.machine.state != "engaged"
-        order = Order(0.0, 0.0) if waits else drawn
-        to = _after(order, now)
-        if not flight.is_pattern and not waits:
-            refused += _command(rig.machine, order, to)
-        legs.append(_leg(legs[-1].end_s, LEG_S, now, to))
-        now = to
-        rig.fly_to(legs[-1].end_s, until=is_over)
-    return legs, refused
-
-
-def _after(order: Order, now: SetPoints) -> SetPoints:
-    return SetPoints(
-        heading_deg=wrap_heading(now.heading_deg + order.turn_deg),
-        altitude_ft=now.altitude_ft + order.climb_ft,
-        airspeed_kt=now.airspeed_kt if order.airspeed_kt is None else order.airspeed_kt,
+        if machine.state == "engaged":
+            from_m = _shown(rig, flight).altitude_m if order.from_present else first_m
+            try:
+                _command(machine, order, from_m)
+                changes_s.append(order.time_s)
+            except (fcc.Error, ValueError) as error:
+                refused.append(f"{order.time_s:.0f} s: {error}")
+    degrees = np.array([math.degrees(1.0), 1.0 / FT_TO_M, 1.0 / KT_TO_MPS] * 2)
+    columns = (np.array(rows) * degrees).T
+    since = [replace(event, time_s=event.time_s - engaged_s) for event in rig.events]
+    alarms = alarms_of(since, faults, rig.time_s - engaged_s)
+    return Flown(
+        shown=dict(zip(HELD, columns[:3], strict=True)),
+        ordered=dict(zip(HELD, columns[3:], strict=True)),
+        changes_s=LEGS_S if flight.pattern else tuple(changes_s),
+        refused=tuple(refused),
+        alarms=tuple(_followed(alarm, rig.truth().since(engaged_s)) for alarm in alarms),
     )
 
 
-def _command(machine: fcc.Machine, order: Order, to: SetPoints) -> list[str]:
-    """Command a change of the autopilot's own set points; return the refusal, if there is one."""
-    stand = machine.setpoints
-    try:
-        machine.command(
-            heading_rad=stand.heading_rad + math.radians(order.turn_deg),
-            pressure_altitude_m=stand.altitude_m + order.climb_ft * FT_TO_M,
-            airspeed_mps=None if order.airspeed_kt is None else to.airspeed_kt * KT_TO_MPS,
-        )
-    except (fcc.Error, ValueError) as error:
-        return [str(error)]
-    return []
+def _shown(rig: LockstepRig, flight: Flight) -> State | fcc.Estimate:
+    """Return what the sensors show; of raw sensors, what navigation makes of it."""
+    if flight.bounds.raw_sensors is not None or rig.measured is None:
+        return rig.machine.estimate
+    return rig.measured
 
 
-def _leg(start_s: float, lasts_s: float, now: SetPoints, to: SetPoints) -> Leg:
-    return Leg(
-        start_s=start_s,
-        end_s=start_s + lasts_s,
-        heading_from_deg=now.heading_deg,
-        heading_deg=to.heading_deg,
-        altitude_from_ft=now.altitude_ft,
-        altitude_ft=to.altitude_ft,
-        airspeed_kt=to.airspeed_kt,
+def _command(machine: fcc.Machine, order: Order, from_m: float) -> None:
+    machine.command(
+        heading_rad=None if order.heading_deg is None else math.radians(order.heading_deg),
+        pressure_altitude_m=(None if order.climb_ft is None else from_m + order.climb_ft * FT_TO_M),
+        airspeed_mps=None if order.airspeed_kt is None else order.airspeed_kt * KT_TO_MPS,
     )
+
+
+def _followed(alarm: Alarm, truth: Truth) -> Alarm:
+    """Return it with what followed."""
+    after = truth.since(float(truth["time_s"][0]) + alarm.begins_s)
+    lowest_ft = float(np.min(after["altitude_ft"]))
+    return replace(alarm, lowest_ft=lowest_ft, into_ground=hits_ground(after))

@@ -1,4 +1,4 @@
-"""A campaign as a picture: each flight by speed, load, delay and turbulence."""
+"""A campaign as a picture, each flight by speed, load, delay and turbulence; and one flight."""
 
 from __future__ import annotations
 
@@ -12,12 +12,14 @@ mpl.use("Agg")
 
 import matplotlib.pyplot as plt
 
-from .. import replacement
+from .. import plot, replacement
+from ..truth import Truth
 from .flying import Outcome
-from .verdict import LARGEST_BANK_DEG, LOADS_G
+from .report import conditions
+from .verdict import LIMITS
 
 _COLOURS = ("#c0504d", "#d98a29", "#8a5fb0", "#3b8686", "#7a5c3e", "#c06c9c")
-_CLEAN, _GRID = "#b8c7d9", "#dddddd"
+_CLEAN = "#b8c7d9"
 
 _PANELS = (
     (
@@ -29,6 +31,15 @@ _PANELS = (
     ("least_load_g", "least load, g", "largest_load_g", "largest load, g"),
     ("delay_ms", "delay, ms", "pitch_rate_sd_degps", "pitch rate when steady, °/s (1 sd)"),
     ("turbulence", "turbulence, severity of MIL-F-8785C", "largest_bank_deg", "largest bank, °"),
+)
+_FLIGHT_PANELS: tuple[plot.Panel, ...] = (
+    (("airspeed_kt",), "airspeed, kt"),
+    (("altitude_ft",), "altitude, ft"),
+    (("angle_of_attack_deg", "pitch_deg"), "angle, °"),
+    (("roll_deg",), "bank, °"),
+    (("load_g",), "load, g"),
+    (("pitch_rate_degps",), "pitch rate, °/s"),
+    plot.CONTROLS,
 )
 _MOST_SHOWN = {"pitch_rate_sd_degps": 20.0, "largest_angle_of_attack_deg": 30.0}
 
@@ -55,15 +66,19 @@ def draw(path: Path, outcomes: Sequence[Outcome], title: str) -> None:
             )
         axes.set_xlabel(across_title)
         axes.set_ylabel(up_title)
-        axes.grid(visible=True, color=_GRID, linewidth=0.6)
+        axes.grid(visible=True, color=plot.GRID, linewidth=0.6)
         axes.set_axisbelow(True)
         for side in ("top", "right"):
             axes.spines[side].set_visible(False)
-    rows[0][1].axvline(LOADS_G[0], color="black", linewidth=0.6)
-    rows[0][1].axhline(LOADS_G[1], color="black", linewidth=0.6)
     severities = sorted({it.flight.weather.turbulence_severity for it in flown})
     rows[1][1].set_xticks(range(severities[0], severities[-1] + 1))
-    rows[1][1].axhline(LARGEST_BANK_DEG, color="black", linewidth=0.6)
+    limits = LIMITS[flown[0].flight.bounds.kind]
+    bank_deg = [limits.bank_deg[severity] for severity in severities]
+    rows[1][1].step(severities, bank_deg, where="mid", color="black", linewidth=0.6)
+    # In calm air.
+    least_g, most_g = limits.loads_g[0]
+    rows[0][1].axvline(least_g, color="black", linewidth=0.6)
+    rows[0][1].axhline(most_g, color="black", linewidth=0.6)
     rows[0][0].legend(frameon=False, fontsize=8)
     figure.suptitle(title, fontsize=12)
     replacement.draw(path, figure, dpi=90)
@@ -82,3 +97,18 @@ def _value(outcome: Outcome, name: str) -> float:
         # Side by side, not on top of each other.
         return flight.weather.turbulence_severity + 0.6 * (flight.number % 11) / 11.0 - 0.3
     return outcome.verdict.figures[name]
+
+
+def draw_flight(path: Path, truth: Truth, outcome: Outcome) -> None:
+    """Write one flight as a picture: what was flown against time."""
+    flight, broken = outcome.flight, "; ".join(outcome.verdict.broken) or "clean"
+    plot.draw(
+        path,
+        truth,
+        f"{conditions(flight)}: {broken}",
+        panels=_FLIGHT_PANELS,
+        limits={
+            "airspeed_kt": (flight.stall_kt, "stalling speed"),
+            "angle_of_attack_deg": (flight.limits.stall_deg, "stalling angle"),
+        },
+    )

@@ -1,6 +1,5 @@
 """Gain and phase margins of the autopilot with JSBSim's aircraft, measured in flight."""
 
-from .actuation import Actuation
 from .measure import AXES, Condition, Margins, airspeeds_kt, measure, measure_all
 
-__all__ = ["AXES", "Actuation", "Condition", "Margins", "airspeeds_kt", "measure", "measure_all"]
+__all__ = ["AXES", "Condition", "Margins", "airspeeds_kt", "measure", "measure_all"]

@@ -11,22 +11,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
-from multiprocessing import get_context
 from typing import Any
 
 import fcc
 import numpy as np
 from numpy.typing import NDArray
 
+from ..actuation import Actuation, Servos
 from ..aircraft import by_name
 from ..campaign.aircraft import AIRCRAFT, Limits
 from ..configurations import configuration, with_values
 from ..lockstep import measurements
-from ..plant import Plant
+from ..plant import STEPS_PER_SECOND, Plant
 from ..state import Controls
-from .actuation import Actuation
+from ..workers import local_workers
 
 AXES = ("elevator", "aileron", "rudder", "throttle")
 WANTED_DB, WANTED_DEG = 6.0, 45.0
@@ -145,8 +144,8 @@ def measure(condition: Condition) -> Margins:
 
 def measure_all(conditions: Sequence[Condition], workers: int | None = None) -> Iterator[Margins]:
     """Measure conditions in parallel processes; yield them in their order."""
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        yield from pool.map(measure, conditions)
+    with local_workers(measure, workers) as measure_each:
+        yield from measure_each(conditions)
 
 
 def margins_of(
@@ -195,7 +194,8 @@ def _fly(
         aileron=stand.aileron,
         rudder=stand.rudder,
     )
-    actuation = Actuation(plant, condition.delay_s, condition.servo_hz)
+    latency_steps = round(condition.delay_s * STEPS_PER_SECOND)
+    servos = Servos(Actuation(latency_steps, condition.servo_hz or None), plant.controls)
     phases = np.random.default_rng(3).uniform(0.0, 2.0 * np.pi, frequency_hz.size)
     ticks = round((_SETTLING_S + excitation.period_s) * _TICK_HZ)
     time_s = np.arange(ticks) / _TICK_HZ
@@ -212,6 +212,9 @@ def _fly(
         )
         commands[tick] = getattr(command, condition.axis)
         excited[tick] = commands[tick] + added[tick]
-        actuation.fly(replace(command, **{condition.axis: float(excited[tick])}), _STEPS)
+        command = replace(command, **{condition.axis: float(excited[tick])})
+        for _ in range(_STEPS):
+            plant.write(servos.step(command))
+            plant.step()
     begin = ticks - round(excitation.period_s * _TICK_HZ)
     return commands[begin:], excited[begin:]

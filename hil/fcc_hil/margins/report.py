@@ -13,6 +13,7 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt
 
 from .. import replacement
+from ..table import markdown
 from .measure import AXES, WANTED_DB, WANTED_DEG, Margins
 
 _SHOWN_DB, _SHOWN_DEG = 30.0, 120.0
@@ -42,14 +43,13 @@ def text(measured: Sequence[Margins]) -> str:
         row = rows.setdefault((_name(margins), condition.airspeed_kt), {})
         row[condition.axis] = _cell(margins)
     axes = [axis for axis in AXES if any(axis in row for row in rows.values())]
-    lines = [
-        "| | kt | " + " | ".join(axes) + " |",
-        "|---|---|" + "---|" * len(axes),
-    ]
-    for (name, airspeed_kt), row in rows.items():
-        cells = " | ".join(row.get(axis, "") for axis in axes)
-        lines.append(f"| {name} | {airspeed_kt:g} | {cells} |")
-    return "\n".join(lines)
+    return markdown(
+        ["", "kt", *axes],
+        [
+            [name, f"{airspeed_kt:g}", *(row.get(axis, "") for axis in axes)]
+            for (name, airspeed_kt), row in rows.items()
+        ],
+    )
 
 
 def draw(path: Path, measured: Sequence[Margins]) -> None:

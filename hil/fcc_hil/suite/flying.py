@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import hashlib
 import math
-import os
 import time
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, replace
-from multiprocessing import get_context
 from typing import Any
 
 import numpy as np
 
 from ..lockstep import Scenario, fly
 from ..motion import LEAST, motion
-from ..pattern import Leg
+from ..pattern import TimedPattern
 from ..peer import fly_peer
-from ..score import LegScore, Score, score, worst
+from ..score import LegScore, Score, worst
 from ..truth import Truth
+from ..workers import local_workers
 from .limits import broken
 from .matrix import Case
 
@@ -84,19 +82,12 @@ def fly_case(case: Case) -> Outcome:
 def fly_all(cases: Sequence[Case], workers: int | None = None) -> Iterator[Outcome]:
     """Fly cases in `workers` processes (one for each processor by default).
 
-    Yields each outcome when it is done, in any order. Each flight depends only on its case, so the
+    Yields the outcomes of the longest flights first. Each flight depends only on its case, so the
     number of processes does not change it.
     """
-    workers = workers or os.cpu_count() or 1
-    if workers == 1:
-        yield from map(fly_case, cases)
-        return
-    # Forked children would inherit the locks of the caller's threads.
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+    with local_workers(fly_case, workers) as fly_each:
         # The longest first, so that no process is left with one at the end.
-        flights = [pool.submit(fly_case, case) for case in sorted(cases, key=_duration_s)[::-1]]
-        for flight in as_completed(flights):
-            yield flight.result()
+        yield from fly_each(sorted(cases, key=_duration_s, reverse=True))
 
 
 def _duration_s(case: Case) -> float:
@@ -152,15 +143,6 @@ def _motion(scenario: Scenario, truth: Truth) -> dict[str, float]:
 
 def _hold(scenario: Scenario, truth: Truth) -> LegScore:
     """Score the end of the hold before the first leg."""
-    start_s = float(truth["time_s"][0])
-    captured = truth.captured_at(start_s)
-    leg = Leg(
-        start_s=start_s,
-        end_s=start_s + scenario.pattern.hold_s,
-        heading_from_deg=captured.heading_deg,
-        heading_deg=captured.heading_deg,
-        altitude_from_ft=captured.altitude_ft,
-        altitude_ft=captured.altitude_ft,
-        airspeed_kt=captured.airspeed_kt,
-    )
-    return score(truth.trace(), [leg])["worst"]
+    start_s, hold_s = float(truth["time_s"][0]), scenario.pattern.hold_s
+    hold = TimedPattern(hold_s=0.0, leg_s=hold_s, turn_deg=0.0, climb_ft=0.0)
+    return truth.score(hold, 1, start_s)["worst"]

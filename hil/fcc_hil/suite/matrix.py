@@ -15,7 +15,14 @@ from .limit_table import EDGES, ROUGH, SMOOTH, TAKEN_OVER, late
 from .limits import Limits, limits
 
 SEEDS = (4101, 4102, 4103, 4104, 4105)
-"""None of these was used for tuning."""
+TUNING_SEEDS = (
+    *(1, 2, 3, 101, 102),
+    *range(300, 308),
+    *range(500, 516),
+    *range(900, 910),
+    *range(2026, 2031),
+)
+"""Seeds used for tuning, none of which is in SEEDS."""
 
 CESSNAS = ("c172p", "c172x")
 LIGHT = (*CESSNAS, "c172r", "J3Cub")

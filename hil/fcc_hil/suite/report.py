@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from ..table import COLUMNS, TITLES, table
+from ..table import COLUMNS, TITLES, markdown, table
 from .flying import Outcome
-from .speed import Speed
 
 _MOTION = (
     ("least_load_g", "least load g", 2),
@@ -23,13 +22,15 @@ _MOTION = (
 """Figure, title and digits."""
 
 
-def text(outcomes: Sequence[Outcome], speed: Speed | None = None) -> str:
+def text(outcomes: Sequence[Outcome]) -> str:
     """Return the table, mean/worst over the legs, then every exceeded limit."""
     flown = [(_title(outcome), outcome.score) for outcome in outcomes]
     parts = [table([(title, figures) for title, figures in flown if figures is not None])]
     parts += [part for part in (_asked(outcomes), _further(outcomes), _motion(outcomes)) if part]
-    if speed is not None:
-        parts.append(speed.words())
+    flown_s, cpu_s = (
+        sum(getattr(outcome, name) for outcome in outcomes) for name in ("simulated_s", "cpu_s")
+    )
+    parts.append(f"{flown_s:.0f} s flown, {flown_s / cpu_s:.0f} times real time on one processor")
     bad = [outcome for outcome in outcomes if outcome.broken]
     for outcome in bad:
         parts.append("\n".join([f"{outcome.case.name}:", *(f"    {it}" for it in outcome.broken)]))
@@ -40,12 +41,9 @@ def text(outcomes: Sequence[Outcome], speed: Speed | None = None) -> str:
     return "\n\n".join(parts)
 
 
-def document(outcomes: Iterable[Outcome], speed: Speed | None = None) -> dict[str, Any]:
+def document(outcomes: Iterable[Outcome]) -> dict[str, Any]:
     """Return it for JSON."""
-    return {
-        "cases": [outcome.document() for outcome in outcomes],
-        "speed": speed.document() if speed else None,
-    }
+    return {"cases": [outcome.document() for outcome in outcomes]}
 
 
 def _title(outcome: Outcome) -> str:
@@ -61,23 +59,20 @@ def _asked(outcomes: Sequence[Outcome]) -> str:
             rows.setdefault(tuple(asked[column] for column in COLUMNS), outcome.case.name)
     if not rows:
         return ""
-    lines = [
-        f"| {name} | {' | '.join(f'{most:.3g}' for most in mosts)} |"
-        for mosts, name in rows.items()
-    ]
-    head = f"| limit of the worst leg, from here on | {' | '.join(TITLES)} |"
-    return "\n".join([head, "|---" * (len(COLUMNS) + 1) + "|", *lines])
+    return markdown(
+        ["limit of the worst leg, from here on", *TITLES],
+        [[name, *(f"{most:.3g}" for most in mosts)] for mosts, name in rows.items()],
+    )
 
 
 def _motion(outcomes: Sequence[Outcome]) -> str:
     """Return how each aircraft moved."""
-    titles = [title for _, title, _ in _MOTION]
-    lines = [f"| how it moved | {' | '.join(titles)} |", "|---" * (len(titles) + 1) + "|"]
-    for outcome in outcomes:
-        if outcome.figures:
-            cells = [f"{outcome.figures[name] or 0.0:.{digits}f}" for name, _, digits in _MOTION]
-            lines.append(f"| {outcome.case.name} | {' | '.join(cells)} |")
-    return "\n".join(lines) if len(lines) > 2 else ""
+    rows = [
+        [it.case.name, *(f"{it.figures[name] or 0.0:.{digits}f}" for name, _, digits in _MOTION)]
+        for it in outcomes
+        if it.figures
+    ]
+    return markdown(["how it moved", *(title for _, title, _ in _MOTION)], rows) if rows else ""
 
 
 def _further(outcomes: Sequence[Outcome]) -> str:
@@ -88,14 +83,14 @@ def _further(outcomes: Sequence[Outcome]) -> str:
         if not figures or "largest_bank_deg" not in outcome.case.limits:
             continue
         rows.append(
-            f"| {outcome.case.name} | {1.0 - (figures['unsettled_share'] or 0.0):.0%} "
-            f"| {figures['mean_altitude_rms_ft']:.2f} | {figures['largest_bank_deg']:.0f} "
-            f"| {figures['turned_back_deg']:.1f} | {figures['hold_altitude_error_ft']:.2f} |"
+            [
+                outcome.case.name,
+                f"{1.0 - (figures['unsettled_share'] or 0.0):.0%}",
+                f"{figures['mean_altitude_rms_ft']:.2f}",
+                f"{figures['largest_bank_deg']:.0f}",
+                f"{figures['turned_back_deg']:.1f}",
+                f"{figures['hold_altitude_error_ft']:.2f}",
+            ]
         )
-    if not rows:
-        return ""
-    head = (
-        "| | legs settled | mean altitude RMS ft | largest bank ° | turned back ° "
-        "| held before, RMS ft |\n|---|---|---|---|---|---|"
-    )
-    return "\n".join([head, *rows])
+    head = ["", "legs settled", "mean altitude RMS ft", "largest bank °", "turned back °"]
+    return markdown([*head, "held before, RMS ft"], rows) if rows else ""

@@ -87,13 +87,22 @@ def cost_of(text: str) -> Cost:
     return Cost(text, weights)
 
 
-def flight_cost(scenario: Scenario, weights: Weights) -> float:
-    """Fly a scenario; return its cost. A flight that fails costs NOT_FLOWN."""
+@dataclass(frozen=True)
+class Flight:
+    """A flight of a candidate, for a worker."""
+
+    scenario: Scenario
+    weights: Weights
+
+
+def flight_cost(flight: Flight) -> float:
+    """Fly; return the cost. A flight that fails costs NOT_FLOWN."""
+    scenario = flight.scenario
     try:
         flown, truth = fly(scenario)
     except (ValueError, RuntimeError, ArithmeticError):
         return NOT_FLOWN
-    total = weighed(flown, truth, scenario.pattern.leg_s, weights)
+    total = weighed(flown, truth, scenario.pattern.leg_s, flight.weights)
     return min(total, NOT_FLOWN) if np.isfinite(total) else NOT_FLOWN
 
 

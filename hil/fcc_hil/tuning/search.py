@@ -8,7 +8,7 @@ seeded, so the same task finds the same gains.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -16,9 +16,8 @@ import numpy as np
 from ..configurations import configuration, pattern_of, value_of, with_values
 from ..lockstep import Scenario
 from ..plant import Weather
-from .cost import COSTS, Cost
+from .cost import COSTS, Cost, Flight
 from .identify import first_guess
-from .workers import Flight, FlyAll
 
 SCALE_KEYS = tuple(
     f"autopilot.scale.{name}" for name in ("elevator", "aileron", "rudder", "throttle", "pace")
@@ -62,6 +61,8 @@ class Found:
     evaluations: int
 
 
+FlyAll = Callable[[Sequence[Flight]], Iterator[float]]
+"""Flies all, and yields their costs in order."""
 Notify = Callable[[int, float], None]
 """Called after each round with the number of candidates flown and the lowest cost so far."""
 

@@ -7,15 +7,16 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+import drawn_plan
 import numpy as np
+from drawn_plan import Drawn
 
-from . import drawn_plan, plan_flight
-from .drawn_plan import Drawn
-from .lockstep_rig import LockstepRig
-from .plan_flight import PlanConditions
-from .plant import Weather
-from .tangent_plane import Array, away_m
-from .units import FT_TO_M
+from fcc_hil import plan_flight
+from fcc_hil.lockstep_rig import LockstepRig
+from fcc_hil.plan_flight import PlanConditions
+from fcc_hil.plant import Weather
+from fcc_hil.tangent_plane import Array, away_m
+from fcc_hil.units import FT_TO_M
 
 GROUND_M = 400.0
 _RIDGE_DEG, _WIDTH_DEG = 47.06, 0.008

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import engaged
 import numpy as np
 
-from . import engaged
-from .plant import Plant, Weather
-from .rig import FlightError
-from .tangent_plane import Plane
+from fcc_hil.plant import Plant, Weather
+from fcc_hil.rig import FlightError
+from fcc_hil.tangent_plane import Plane
 
 RADIUS_M = 4_000.0
 LATITUDE_DEG, LONGITUDE_DEG = 47.0, 8.0

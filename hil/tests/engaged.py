@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable
 from pathlib import Path
 
 import fcc
 
-from .lockstep_rig import Conditions, LockstepRig
-from .plan_flight import SENSORS, configuration
-from .plant import Plant
-from .raw_calibration import calibrate
-from .raw_flight import MEASURED, RAW_STANDBY_S
-from .raw_sensors import FIELD_UT
-from .rig import FlightError
-from .standin import Settings
+from fcc_hil.lockstep_rig import Conditions, LockstepRig
+from fcc_hil.plan_flight import SENSORS, configuration
+from fcc_hil.plant import Plant
+from fcc_hil.raw_calibration import calibrate
+from fcc_hil.raw_flight import MEASURED, RAW_STANDBY_S
+from fcc_hil.raw_sensors import FIELD_UT
+from fcc_hil.standin import Settings
 
 ENGAGED_AFTER_S = RAW_STANDBY_S + 1.0
 """So long after it was set up the aircraft is engaged."""
-RawFault = Callable[[fcc.Measurements, float], None]
 
 
 def machine(plan: str, wind_kt: float, *, mode: str = "plan", config: str = "") -> fcc.Machine:
@@ -30,27 +27,13 @@ def machine(plan: str, wind_kt: float, *, mode: str = "plan", config: str = "") 
         return fcc.Machine(configuration(file, "kalman", "npfg", wind_kt, mode=mode) + config)
 
 
-def engage(
-    plant: Plant,
-    loop: fcc.Machine,
-    seed: int,
-    *,
-    sensors: str = SENSORS,
-    raw_fault: RawFault | None = None,
-) -> LockstepRig:
+def engage(plant: Plant, loop: fcc.Machine, seed: int) -> LockstepRig:
     """Let navigation settle in level flight, and engage; raises FlightError if it does not."""
     conditions = Conditions(
-        raw_sensors=sensors,
-        calibration=calibrate(sensors, seed, FIELD_UT),
-        without=MEASURED,
-        raw_fault=raw_fault,
+        raw_sensors=SENSORS, calibration=calibrate(SENSORS, seed, FIELD_UT), without=MEASURED
     )
     rig = LockstepRig(Settings(seed=seed), plant, loop, conditions)
-    rig.fly_to(rig.time_s + RAW_STANDBY_S)
-    rig.set_switch(on=True)
-    rig.fly_to(rig.time_s + ENGAGED_AFTER_S - RAW_STANDBY_S)
-    if not rig.holds_control:
-        raise FlightError(f"not engaged: {', '.join(loop.engage_inhibits)}")
+    rig.engage(after_s=RAW_STANDBY_S)
     return rig
 
 

@@ -1,14 +1,18 @@
-"""The campaign's faults of a quantity, as the raw sensors that it comes from have them."""
+"""Puts the drawn fault of a flight in, in whatever it is flown by."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import fcc
 
 from ..raw_faults import airspeed_off, lost, repeated
+from ..sensor_faults import Faults
 from ..units import KT_TO_MPS
-from .draw import Fault
+from .draw import TUBE, WRONG, Fault
+
+ENGINE_OUT = "engine out"
 
 _READINGS = {
     "attitude": ("raw_body_rates", "raw_specific_force"),
@@ -17,6 +21,26 @@ _READINGS = {
     "airspeed": ("differential_pressure",),
 }
 """Of each quantity the readings that are lost with it: of the attitude the inertial unit's."""
+
+
+def put_in(fault: Fault, faults: Faults, *, by_raw: bool) -> None:
+    """Put a fault of sensors in; the engine is failed in flight, one raw sensor by `RawFaults`."""
+    when: dict[str, Any] = {"after": fault.begins_s, "lasts": fault.lasts_s}
+    sensor = fault.what.split()[0]
+    if fault.what == "samples lost":
+        faults.loss("everything", share=fault.amount, **when)
+    elif sensor == "everything":
+        faults.loss(sensor, **when)
+    elif by_raw or fault.what == ENGINE_OUT:
+        return
+    elif fault.what.endswith("frozen"):
+        faults.freeze(sensor, **when)
+    elif fault.what.endswith("biased") or fault.what == WRONG:
+        faults.bias(sensor, by=fault.amount, **when)
+    elif fault.what == TUBE:
+        faults.blocked_tube(**when)
+    else:
+        faults.loss(sensor, **when)
 
 
 class RawFaults:

@@ -5,15 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import drawn_plan
+import engaged
 import numpy as np
+from drawn_plan import LATITUDE_DEG, LONGITUDE_DEG, Metres
 
-from . import drawn_plan, engaged
-from .drawn_plan import LATITUDE_DEG, LONGITUDE_DEG, Metres
-from .plan_file import LAND, WAYPOINT
-from .plant import Plant, Weather
-from .rig import FlightError
-from .tangent_plane import Plane
-from .units import FT_TO_M, KT_TO_MPS
+from fcc_hil.plan_file import LAND, WAYPOINT
+from fcc_hil.plant import Plant, Weather
+from fcc_hil.rig import FlightError
+from fcc_hil.tangent_plane import Plane
+from fcc_hil.units import FT_TO_M, KT_TO_MPS
 
 BEFORE_AIM_M, BEHIND_AIM_M, HALF_WIDTH_M = 300.0, 500.0, 15.0
 """The runway, to the north at sea level, from the point that is aimed at: the plan's origin."""

@@ -12,19 +12,20 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import drawn_plan
 import fcc
 import numpy as np
+from drawn_plan import LATITUDE_DEG, LONGITUDE_DEG, Drawn
 
-from . import drawn_plan, plan_flight
-from .drawn_plan import LATITUDE_DEG, LONGITUDE_DEG, Drawn
-from .lockstep_rig import LockstepRig
-from .plan_flight import PlanConditions
-from .plan_score import LandingScore, PlanScore
-from .plant import Weather
-from .raw_faults import lost
-from .rig import FlightError
-from .tangent_plane import Plane
-from .units import FT_TO_M
+from fcc_hil import plan_flight
+from fcc_hil.lockstep_rig import LockstepRig
+from fcc_hil.plan_flight import PlanConditions
+from fcc_hil.plan_score import LandingScore, PlanScore
+from fcc_hil.plant import Weather
+from fcc_hil.raw_faults import lost
+from fcc_hil.rig import FlightError
+from fcc_hil.tangent_plane import Plane
+from fcc_hil.units import FT_TO_M
 
 ALTITUDE_M = 3_000.0 * FT_TO_M
 CIRCLE_M = 800.0

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from .plan_file import LAND, WAYPOINT
+from fcc_hil.plan_file import LAND, WAYPOINT
 
 LATITUDE_DEG, LONGITUDE_DEG = 47.0, 8.0
 """Of the place that they are counted from."""
