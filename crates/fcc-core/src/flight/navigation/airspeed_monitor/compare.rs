@@ -9,9 +9,9 @@ use super::{ALONE_S, AirspeedMonitor, DIFFERS_RATIO, MonitorInput, SLOWER_LAG_S}
 use crate::blocks::{LowPass, limit};
 
 /// A difference of that share of the reference airspeed, of 3 standard deviations
-/// and of 10 times the gusts must last for 2.5 s.
+/// and of 7.5 times the gusts must last for 2.5 s.
 const DIFFERS_SDS: f64 = 3.0;
-const DIFFERS_GUSTS: f64 = 10.0;
+const DIFFERS_GUSTS: f64 = 7.5;
 const DOUBTED_AFTER_S: f64 = 2.5;
 /// The forces vote for the sensor if they put the airspeed more than this share
 /// of the way towards it: then the wind has changed, after this time in s.
