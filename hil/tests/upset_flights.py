@@ -214,14 +214,22 @@ def _between(stand: Controls, goal: Controls, share: float) -> Controls:
     )
 
 
-def full_aileron(time_s: float, _state: State, wanted: Controls) -> Controls | None:
-    """Full left aileron for 3 s, the rest as the autopilot wants it: a servo that runs away."""
-    return replace(wanted, aileron=-1.0) if time_s < 3.0 else None
+def full_aileron(for_s: float) -> Script:
+    """Return full left aileron, the rest as the autopilot wants it: a servo that runs away."""
+
+    def script(time_s: float, _state: State, wanted: Controls) -> Controls | None:
+        return replace(wanted, aileron=-1.0) if time_s < for_s else None
+
+    return script
 
 
-def full_aileron_by_a_pilot(time_s: float, _state: State, _wanted: Controls) -> Controls | None:
-    """Full left aileron for 3 s, the rest centred."""
-    return Controls(aileron=-1.0, throttle=0.65) if time_s < 3.0 else None
+def full_aileron_by_a_pilot(for_s: float) -> Script:
+    """Return full left aileron, the rest centred."""
+
+    def script(time_s: float, _state: State, _wanted: Controls) -> Controls | None:
+        return Controls(aileron=-1.0, throttle=0.65) if time_s < for_s else None
+
+    return script
 
 
 def to_attitude(

@@ -28,8 +28,9 @@ const MAX_ROLL_RATE_RADPS: f64 = 2.6;
 /// How far ahead the roll is extrapolated for the shorter way, s: the time in
 /// which it is stopped.
 const ROLL_STOPS_S: f64 = 0.2;
-/// Beyond this bank the side once chosen is kept, rad (140°).
-const KEEPS_SIDE_RAD: f64 = 2.44;
+/// Beyond this bank the side once chosen is kept, rad (160°): rolled on through inverted by
+/// an aileron that ran away, the other side is the shorter way.
+const KEEPS_SIDE_RAD: f64 = 2.79;
 /// The ailerons' share while the wing is stalled: they drop the wing they raise.
 const STALLED_AILERON: f64 = 0.3;
 /// How far ahead the airspeed is extrapolated for the throttle, s.
