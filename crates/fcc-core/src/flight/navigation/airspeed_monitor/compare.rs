@@ -13,6 +13,10 @@ use crate::blocks::{LowPass, limit};
 const DIFFERS_SDS: f64 = 3.0;
 const DIFFERS_GUSTS: f64 = 7.5;
 const DOUBTED_AFTER_S: f64 = 2.5;
+/// So does the younger copy, older than this time, s, by this share of it: what the models
+/// are wrong by grows with the time since the copy.
+const YOUNGER_S: f64 = 6.0;
+const YOUNGER_SHARE: f64 = 0.5;
 /// The forces vote for the sensor if they put the airspeed more than this share
 /// of the way towards it: then the wind has changed, after this time in s.
 const SENSOR_SHARE: f64 = 0.45;
@@ -81,7 +85,10 @@ impl AirspeedMonitor {
             return;
         }
         let limit_mps = self.limit_mps(&bank.older);
-        let is_large = holds && differs.abs() > limit_mps;
+        let by_younger = differs + filter_mps - bank.younger.airspeed_mps();
+        let younger_agrees =
+            bank.younger_s > YOUNGER_S && by_younger * differs.signum() < YOUNGER_SHARE * limit_mps;
+        let is_large = holds && differs.abs() > limit_mps && !younger_agrees;
         // The sensor is contradicted if neither force sides with it, and the wind has changed
         // if both do.
         let sides = vote.map(|vote| sides_with(vote, differs));
