@@ -4,7 +4,6 @@
 //! module reads its messages, passes them to each [`Observer`], and collects
 //! the [`Outcome`]. What only the host program can do is done by its [`Host`].
 
-mod again;
 mod assemble;
 mod board;
 mod calibrated;
