@@ -3,7 +3,7 @@
 #![cfg(test)]
 
 use fcc_flight::config::{
-    BoardSensor, BudgetSection, BuiltInSection, ChipSection, Config, CpuChoice, IioSection,
+    BudgetSection, BuiltInSection, ChipSection, Config, CpuChoice, DeviceEntry, IioSection,
     SensorEntry, ServoBoardSection, XPlaneSection,
 };
 use fcc_linux::chip::ChipKind;
@@ -116,23 +116,19 @@ fn the_example_of_a_board_is_a_configuration() {
     let kinds: Vec<_> = config
         .sensor
         .iter()
-        .filter_map(SensorEntry::board)
+        .filter_map(SensorEntry::device)
+        .filter(|device| device.is_board())
         .collect();
-    let [
-        BoardSensor::Chip(kind, imu),
-        _,
-        BoardSensor::Chip(pitot, section),
-        _,
-    ] = kinds[..]
-    else {
+    let [DeviceEntry::Chip(imu), _, DeviceEntry::Chip(section), _] = kinds[..] else {
         panic!("{kinds:?}");
     };
     let usual = ChipSection::default();
+    let kind = imu.kind;
     assert_eq!((kind, kind.rate_hz()), (ChipKind::Icm42688, 200.0));
     assert_eq!(imu.silent_after_ms, usual.silent_after_ms);
-    let i2c = usual.to_linux(kind).wiring.to_string();
+    let i2c = usual.to_linux().wiring.to_string();
     assert_eq!(i2c, "/dev/i2c-1, address 0x68");
-    assert_eq!(section.to_linux(pitot).range_psi, 1.0);
+    assert_eq!(section.to_linux().range_psi, 1.0);
     let written = [
         format!("#rate_hz = {:.1} ", kind.rate_hz()),
         format!("#silent_after_ms = {}\n", usual.silent_after_ms),

@@ -1,6 +1,7 @@
 //! Events in shared memory, as numbers and as text.
 
 use fcc_core::framework::{self, EventKind, LoopCommand, StateCode};
+use fcc_core::schema;
 use serde::{Deserialize, Serialize};
 
 use super::Text;
@@ -24,78 +25,78 @@ pub struct Event {
     pub text: Text<976>,
 }
 
-/// The kind of event; in brackets the meaning of [`Event::values`].
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[repr(u32)]
-pub enum EventCode {
-    /// Not an event of the loop.
-    Remark = 0,
-    /// The loop's state changed (phase before, phase now, faults that led to
-    /// failsafe). Phases: 0 standby, 1 engaged, 2 failsafe, 3 stopped.
-    StateChanged = 1,
-    /// A command was read (0 engage, 1 disengage, 2 stop, 3 for the controller).
-    CommandReceived = 2,
-    /// Engaging was refused (the engage inhibits).
-    EngageRefused = 3,
-    /// A sensor failed.
-    SensorFault = 4,
-    /// A sensor works again.
-    SensorRecovered = 5,
-    /// An actuator failed.
-    ActuatorFault = 6,
-    /// An actuator works again.
-    ActuatorRecovered = 7,
-    /// Records were lost because they were not fetched in time (count, first
-    /// and last tick).
-    RecordsDropped = 8,
-    /// Events were lost because they were not fetched in time (count, first and
-    /// last tick).
-    EventsDropped = 9,
-    /// Records are not in the recording (count, first and last tick).
-    NotRecorded = 10,
-    /// The actuators were released (1 if all succeeded).
-    Released = 11,
-    /// A part of the loop panicked.
-    Panicked = 12,
-    /// The timer failed.
-    TimerFailed = 13,
-    /// Ticks begin to overrun (duration, budget, the stage that took longest);
-    /// the index is the stage whose budget was exceeded. Stages: 0 the timer, 1
-    /// sensors, 2 estimate, 3 guide, 4 control, 5 actuators, 6 the whole tick.
-    Overrun = 14,
-    /// No tick has overrun for a second (count, first and last tick).
-    OverrunsOver = 15,
-    /// The loop hung (time without progress).
-    Hung = 16,
-    /// Readings are taken from another sensor than before (which, one bit each;
-    /// the sensor before); the index is the sensor now.
-    SourceChanged = 17,
-    /// The controller's mode changed (mode before, mode now). An autopilot's: 0
-    /// none, 1 hold, 2 timed pattern, 3 plan, 4 loiter, 5 go-to, 6 return.
-    ModeChanged = 18,
-    /// Conditions that the controller reports while control is held changed
-    /// (those that began, those that ended).
-    ConditionsChanged = 19,
-    /// The controller noticed something (how long it lasted, ns, how large it was,
-    /// which one of several); the index is which. An autopilot's: 1 the simulator
-    /// stood still, 2 the link was lost, 5 the simulator's clock is missing, 10 an
-    /// item of the plan was reached.
-    Noticed = 20,
-    /// Control is given back at once (why, one bit each, as in the flags of a
-    /// state).
-    ReleasedAtOnce = 21,
-    /// The engage switch was switched on while none of its readings arrived,
-    /// and control is not taken.
-    SwitchedOnUnseen = 22,
-    /// A command to engage was refused, because the engage switch is off.
-    EngageRefusedBySwitch = 23,
-    /// Ticks leave no time to sleep, and deadlines are skipped (time used by a
-    /// tick, period).
-    Overloaded = 24,
-    /// For a second ticks have left time (how many did not, first and last tick).
-    OverloadOver = 25,
-    /// The loop stops, overloaded for too long.
-    StoppedByOverload = 26,
+schema! {
+    /// The kind of event; in brackets the meaning of [`Event::values`].
+    pub enum EventCode {
+        /// Not an event of the loop.
+        Remark = 0,
+        /// The loop's state changed (phase before, phase now, faults that led to
+        /// failsafe). Phases: 0 standby, 1 engaged, 2 failsafe, 3 stopped.
+        StateChanged = 1,
+        /// A command was read (0 engage, 1 disengage, 2 stop, 3 for the controller).
+        CommandReceived = 2,
+        /// Engaging was refused (the engage inhibits).
+        EngageRefused = 3,
+        /// A sensor failed.
+        SensorFault = 4,
+        /// A sensor works again.
+        SensorRecovered = 5,
+        /// An actuator failed.
+        ActuatorFault = 6,
+        /// An actuator works again.
+        ActuatorRecovered = 7,
+        /// Records were lost because they were not fetched in time (count, first
+        /// and last tick).
+        RecordsDropped = 8,
+        /// Events were lost because they were not fetched in time (count, first and
+        /// last tick).
+        EventsDropped = 9,
+        /// Records are not in the recording (count, first and last tick).
+        NotRecorded = 10,
+        /// The actuators were released (1 if all succeeded).
+        Released = 11,
+        /// A part of the loop panicked.
+        Panicked = 12,
+        /// The timer failed.
+        TimerFailed = 13,
+        /// Ticks begin to overrun (duration, budget, the stage that took longest);
+        /// the index is the stage whose budget was exceeded. Stages: 0 the timer, 1
+        /// sensors, 2 estimate, 3 guide, 4 control, 5 actuators, 6 the whole tick.
+        Overrun = 14,
+        /// No tick has overrun for a second (count, first and last tick).
+        OverrunsOver = 15,
+        /// The loop hung (time without progress).
+        Hung = 16,
+        /// Readings are taken from another sensor than before (which, one bit each;
+        /// the sensor before); the index is the sensor now.
+        SourceChanged = 17,
+        /// The controller's mode changed (mode before, mode now). An autopilot's: 0
+        /// none, 1 hold, 2 timed pattern, 3 plan, 4 loiter, 5 go-to, 6 return.
+        ModeChanged = 18,
+        /// Conditions that the controller reports while control is held changed
+        /// (those that began, those that ended).
+        ConditionsChanged = 19,
+        /// The controller noticed something (how long it lasted, ns, how large it was,
+        /// which one of several); the index is which. An autopilot's: 1 the simulator
+        /// stood still, 2 the link was lost, 5 the simulator's clock is missing, 10 an
+        /// item of the plan was reached.
+        Noticed = 20,
+        /// Control is given back at once (why, one bit each, as in the flags of a
+        /// state).
+        ReleasedAtOnce = 21,
+        /// The engage switch was switched on while none of its readings arrived,
+        /// and control is not taken.
+        SwitchedOnUnseen = 22,
+        /// A command to engage was refused, because the engage switch is off.
+        EngageRefusedBySwitch = 23,
+        /// Ticks leave no time to sleep, and deadlines are skipped (time used by a
+        /// tick, period).
+        Overloaded = 24,
+        /// For a second ticks have left time (how many did not, first and last tick).
+        OverloadOver = 25,
+        /// The loop stops, overloaded for too long.
+        StoppedByOverload = 26,
+    }
 }
 
 impl Event {

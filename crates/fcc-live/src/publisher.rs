@@ -79,7 +79,6 @@ impl<C: Telemetry> PublisherOf<C> {
             instance: instance.clone(),
             waiting,
             first_command: takes_commands.then_some(0),
-            again: true,
         })
         .map(|thread| Self::by(Carrier::Thread(thread)))
     }

@@ -27,9 +27,6 @@ pub(super) struct Order {
     pub(super) waiting: usize,
     /// The identifier of the first command; none if no commands are taken.
     pub(super) first_command: Option<u64>,
-    /// Whether the thread publishes again by itself when its files were
-    /// changed; otherwise it ends.
-    pub(super) again: bool,
 }
 
 /// What the thread tells without waiting.

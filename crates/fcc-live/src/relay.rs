@@ -121,7 +121,6 @@ fn begin(socket: &impl AsFd, room: &mut [u8]) -> Option<Order> {
                     instance,
                     waiting,
                     first_command: takes_commands.then_some(first_command),
-                    again: false,
                 });
             }
             Received::Nothing => wait(socket),

@@ -86,17 +86,9 @@ pub(super) fn publish<C: Telemetry>(
         if next_check <= Instant::now() {
             next_check = Instant::now() + CHECK_EVERY;
             if thread.is_damaged() {
-                if !order.again {
-                    // Nothing of it is touched any more.
-                    std::mem::forget(thread);
-                    return;
-                }
-                let (again, words) = thread.publish_again(&order.instance, &columns);
-                let _ = reports.try_send(words);
-                let Some(again) = again else {
-                    return;
-                };
-                thread = again;
+                // Nothing of it is touched any more.
+                std::mem::forget(thread);
+                return;
             }
         }
         thread.connect_watchers();
@@ -105,8 +97,6 @@ pub(super) fn publish<C: Telemetry>(
         std::thread::park_timeout(LOOK_EVERY);
     }
 }
-
-const CHANGED: &str = "the files of live telemetry were removed or changed";
 
 /// Waits for a thread to end, for a limited time.
 pub(super) fn wait(thread: &JoinHandle<()>, at_most: Duration) {
@@ -206,7 +196,6 @@ fn publish_columns(
 struct Publishing {
     desk: Option<CommandServer>,
     ports: Ports,
-    info: Option<Info>,
     /// Records in a row that could not be published.
     failures: u32,
     paused: bool,
@@ -227,41 +216,10 @@ impl Publishing {
         Ok(Self {
             desk,
             ports,
-            info: None,
             failures: 0,
             paused: false,
             room: ChangeLimit::default(),
         })
-    }
-
-    /// Publishes under the same name after the files were removed, and says how
-    /// that went.
-    fn publish_again(
-        self,
-        instance: &Instance,
-        described: &RecordDescription,
-    ) -> (Option<Self>, String) {
-        let rings = self.desk.map(CommandServer::into_rings);
-        // They would remove the new ones of the same names.
-        drop(self.ports);
-        match Self::open(instance, described, rings) {
-            Ok(Self { desk, ports, .. }) => {
-                if let Some(info) = self.info {
-                    let _ = ports.infos.send_copy(info);
-                }
-                let again = Self {
-                    desk,
-                    ports,
-                    failures: 0,
-                    ..self
-                };
-                (Some(again), format!("{CHANGED}: it is published again"))
-            }
-            Err(error) => (
-                None,
-                format!("{CHANGED}, and it cannot be published again: {error}"),
-            ),
-        }
     }
 
     /// Receives and answers commands; they wait while shared memory is nearly
@@ -309,7 +267,6 @@ impl Publishing {
                 }
             }
             Item::Info(info) => {
-                self.info = Some(*info);
                 if !self.paused {
                     let _ = self.ports.infos.send_copy(*info);
                 }

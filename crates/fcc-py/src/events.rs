@@ -1,8 +1,12 @@
 //! Events.
 
-use fcc_core::framework::{Controller, Event, EventKind, EventOf, Time};
+use std::fmt::Debug;
+
+use fcc_core::framework::{Controller, Event, EventOf, Time};
 use fcc_telemetry::describe_event;
 use pyo3::prelude::*;
+
+use crate::values::code;
 
 /// An event: the number of its tick, the time of that tick in s and in ns on
 /// the loop's clock (0 and None before the first tick), its kind, and a
@@ -13,7 +17,7 @@ pub struct PyEvent {
     pub(crate) tick: u64,
     pub(crate) time_s: f64,
     pub(crate) time_ns: Option<i64>,
-    pub(crate) kind: &'static str,
+    pub(crate) kind: String,
     pub(crate) text: String,
 }
 
@@ -42,12 +46,12 @@ impl PyEvent {
     }
 
     /// An event with its description.
-    pub(crate) fn described<O>(event: &Event<O>, text: String) -> Self {
+    pub(crate) fn described<O: Debug>(event: &Event<O>, text: String) -> Self {
         Self {
             tick: event.tick,
             time_s: seconds(event.time),
             time_ns: (!event.time.is_never()).then(|| event.time.as_nanos()),
-            kind: kind_of(&event.kind),
+            kind: kind_name(&event.kind),
             text,
         }
     }
@@ -58,35 +62,9 @@ pub fn seconds(time: Time) -> f64 {
     time.as_nanos().max(0) as f64 * 1e-9
 }
 
-fn kind_of<T>(kind: &EventKind<T>) -> &'static str {
-    match kind {
-        EventKind::StateChanged { .. } => "state-changed",
-        EventKind::CommandReceived(_) => "command-received",
-        EventKind::StopRequested => "stop-requested",
-        EventKind::EngageRefused { .. } => "engage-refused",
-        EventKind::SensorFault { .. } => "sensor-fault",
-        EventKind::SensorRecovered { .. } => "sensor-recovered",
-        EventKind::ActuatorFault { .. } => "actuator-fault",
-        EventKind::ActuatorRecovered { .. } => "actuator-recovered",
-        EventKind::RecordsDropped { .. } => "records-dropped",
-        EventKind::EventsDropped { .. } => "events-dropped",
-        EventKind::NotRecorded { .. } => "not-recorded",
-        EventKind::Released { .. } => "released",
-        EventKind::Panicked => "panicked",
-        EventKind::TimerFailed => "timer-failed",
-        EventKind::Overrun { .. } => "overrun",
-        EventKind::OverrunsOver { .. } => "overruns-over",
-        EventKind::Hung { .. } => "hung",
-        EventKind::SourceChanged(_) => "source-changed",
-        EventKind::ModeChanged { .. } => "mode-changed",
-        EventKind::Noticed(_) => "noticed",
-        EventKind::ReleasedAtOnce { .. } => "released-at-once",
-        EventKind::SwitchedOnUnseen => "switched-on-unseen",
-        EventKind::EngageRefusedBySwitch => "engage-refused-by-switch",
-        EventKind::ConditionsChanged { .. } => "conditions-changed",
-        EventKind::Overloaded { .. } => "overloaded",
-        EventKind::OverloadOver { .. } => "overload-over",
-        EventKind::StoppedByOverload => "stopped-by-overload",
-        _ => "other",
-    }
+/// The name of a kind of event: `StateChanged { .. }` as `state-changed`.
+pub(crate) fn kind_name(kind: &impl Debug) -> String {
+    let shown = format!("{kind:?}");
+    let variant = shown.split(|letter: char| !letter.is_alphanumeric()).next();
+    code(variant.unwrap_or_default())
 }

@@ -9,7 +9,7 @@ use super::calibrate::unix_s;
 use crate::cli::CheckArgs;
 use crate::exit::Exit;
 use crate::output;
-use crate::process::{commanders_refused, unknown_names};
+use crate::process::unknown_names;
 use fcc_flight::calibrate::{CalibrationFileError, apply};
 use fcc_flight::config::{Aircraft, Config, ConfigError, Problem};
 
@@ -62,7 +62,6 @@ fn check_file(path: &Path) -> (Checked, Result<String, ConfigError>) {
             let mut remarks = config.remarks(&text);
             remarks.extend(calibrated);
             remarks.extend(unknown_names(&config.rights));
-            remarks.extend(commanders_refused(&config.rights, Path::new("/")));
             let aircraft = match config.aircraft() {
                 Some(Aircraft::XPlane(_)) => "X-Plane's aircraft",
                 Some(Aircraft::BuiltIn(_)) => "the built-in aircraft",

@@ -11,7 +11,6 @@
 //! | `instance_lock` | keeps two daemons from one plant |
 //! | `left_held` | releases what a killed daemon left held |
 //! | `rights` | gives up the rights of root before a flight |
-//! | `service_unit` | what the installed service's unit prevents |
 //! | `signals` | the signals that end a flight, and those that must not |
 //! | `stack` | the limit on the stack |
 
@@ -25,7 +24,6 @@ mod plant_file;
 mod release_handover;
 mod release_helper;
 mod rights;
-mod service_unit;
 mod signals;
 mod stack;
 pub(crate) mod standard_output;
@@ -56,7 +54,6 @@ pub(crate) use own_program::{begin_helper, outlive_signals};
 pub(crate) use plant_file::{Mark, is_flown};
 pub(crate) use release_helper::{ReleaseHelper, run_release_helper};
 pub(crate) use rights::{RightsError, give_up, unknown_names};
-pub(crate) use service_unit::commanders_refused;
 use signals::{BlockedSignals, Caught};
 pub(crate) use signals::{end_with_parent, survive_file_size_limit, tolerate};
 pub(crate) use stack::raise_stack_limit;

@@ -13,8 +13,8 @@ use super::entry::Circumstances;
 use super::hands::in_hands;
 use super::order::check_order;
 use super::{Applied, CalibrationFileError, CalibrationKind, Entry, Extent, apply};
-use crate::config::{BoardSensor, Config, RawSource};
-use crate::flight::{AssemblyError, PhoneHost, line_sensor, open_phone, uncalibrated};
+use crate::config::{Config, RawSource};
+use crate::flight::{AssemblyError, PhoneHost, open_device};
 
 /// For so long the sensors may take to give something, s.
 const OPENING_S: f64 = 5.0;
@@ -177,10 +177,7 @@ impl CalibrationSession {
         for source in sources {
             let board = config.board_sensor_of(&source.place);
             let sensor: Box<dyn Sensor<Measurements>> = if let Some(board) = board {
-                match board {
-                    BoardSensor::Phone(section) => open_phone(section, phone.take())?.sensor,
-                    board => Box::new(uncalibrated(&board)?.0),
-                }
+                open_device(board, &mut phone)?.0
             } else if let Some(handled) = in_hands(&config, &source, (kind, extent), fault) {
                 length_s = Some(handled.length_s());
                 Box::new(handled)
@@ -197,7 +194,7 @@ impl CalibrationSession {
         // Where it is, is asked for the strength of the field alone.
         if kind == CalibrationKind::Magnetometer && config.earth_field_ut().is_none() {
             for (place, receiver) in config.receivers() {
-                opened.push(Opened::new(place, line_sensor(&receiver)?.0));
+                opened.push(Opened::new(place, open_device(receiver, &mut phone)?.0));
             }
         }
         Ok(Self {

@@ -178,63 +178,62 @@ pub struct GnssSection {
 }
 
 /// Key, smallest and largest value, as in the table of all keys.
-pub(super) const RANGES: &[(&str, f64, f64)] = &[
-    (
-        "built-in.calibration.accelerometer.rotation_deg",
-        -180.0,
-        180.0,
+macro_rules! axes_ranges {
+    ($sensor:literal, $bias:literal, $most:literal) => {
+        &[
+            (
+                concat!("built-in.calibration.", $sensor, ".rotation_deg"),
+                -180.0,
+                180.0,
+            ),
+            (
+                concat!("built-in.calibration.", $sensor, ".", $bias),
+                -$most,
+                $most,
+            ),
+            (
+                concat!("built-in.calibration.", $sensor, ".scale"),
+                0.5,
+                2.0,
+            ),
+            (
+                concat!("built-in.calibration.", $sensor, ".misalignment"),
+                -0.5,
+                0.5,
+            ),
+            (
+                concat!("built-in.calibration.", $sensor, ".delay_ms"),
+                0.0,
+                1_000.0,
+            ),
+        ]
+    };
+}
+
+macro_rules! scalar_ranges {
+    ($sensor:literal, $bias:literal, $most:literal) => {
+        &[
+            (concat!($sensor, ".", $bias), -$most, $most),
+            (concat!($sensor, ".scale"), 0.5, 2.0),
+            (concat!($sensor, ".delay_ms"), 0.0, 1_000.0),
+        ]
+    };
+}
+
+pub(super) const RANGES: &[&[(&str, f64, f64)]] = &[
+    axes_ranges!("accelerometer", "bias_mps2", 5.0),
+    axes_ranges!("gyroscope", "bias_degps", 50.0),
+    axes_ranges!("magnetometer", "bias_ut", 500.0),
+    scalar_ranges!("built-in.calibration.static_pressure", "bias_pa", 2_000.0),
+    scalar_ranges!(
+        "built-in.calibration.differential_pressure",
+        "bias_pa",
+        500.0
     ),
-    ("built-in.calibration.accelerometer.bias_mps2", -5.0, 5.0),
-    ("built-in.calibration.accelerometer.scale", 0.5, 2.0),
-    ("built-in.calibration.accelerometer.misalignment", -0.5, 0.5),
-    ("built-in.calibration.accelerometer.delay_ms", 0.0, 1_000.0),
-    ("built-in.calibration.gyroscope.rotation_deg", -180.0, 180.0),
-    ("built-in.calibration.gyroscope.bias_degps", -50.0, 50.0),
-    ("built-in.calibration.gyroscope.scale", 0.5, 2.0),
-    ("built-in.calibration.gyroscope.misalignment", -0.5, 0.5),
-    ("built-in.calibration.gyroscope.delay_ms", 0.0, 1_000.0),
-    (
-        "built-in.calibration.magnetometer.rotation_deg",
-        -180.0,
-        180.0,
-    ),
-    ("built-in.calibration.magnetometer.bias_ut", -500.0, 500.0),
-    ("built-in.calibration.magnetometer.scale", 0.5, 2.0),
-    ("built-in.calibration.magnetometer.misalignment", -0.5, 0.5),
-    ("built-in.calibration.magnetometer.delay_ms", 0.0, 1_000.0),
-    (
-        "built-in.calibration.static_pressure.bias_pa",
-        -2_000.0,
-        2_000.0,
-    ),
-    ("built-in.calibration.static_pressure.scale", 0.5, 2.0),
-    (
-        "built-in.calibration.static_pressure.delay_ms",
-        0.0,
-        1_000.0,
-    ),
-    (
-        "built-in.calibration.differential_pressure.bias_pa",
-        -500.0,
-        500.0,
-    ),
-    ("built-in.calibration.differential_pressure.scale", 0.5, 2.0),
-    (
-        "built-in.calibration.differential_pressure.delay_ms",
-        0.0,
-        1_000.0,
-    ),
-    ("built-in.calibration.air_temperature.bias_k", -50.0, 50.0),
-    ("built-in.calibration.air_temperature.scale", 0.5, 2.0),
-    (
-        "built-in.calibration.air_temperature.delay_ms",
-        0.0,
-        1_000.0,
-    ),
-    ("built-in.calibration.range.bias_m", -10.0, 10.0),
-    ("built-in.calibration.range.scale", 0.5, 2.0),
-    ("built-in.calibration.range.delay_ms", 0.0, 1_000.0),
-    ("built-in.calibration.gnss.delay_ms", 0.0, 1_000.0),
+    scalar_ranges!("built-in.calibration.air_temperature", "bias_k", 50.0),
+    scalar_ranges!("built-in.calibration.range", "bias_m", 10.0),
+    scalar_ranges!("servo-board.differential_pressure", "bias_pa", 1_000.0),
+    &[("built-in.calibration.gnss.delay_ms", 0.0, 1_000.0)],
 ];
 
 impl CalibrationSection {

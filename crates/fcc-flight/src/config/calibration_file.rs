@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    BoardSensor, BuiltInSection, CalibrationSection, Config, RawSensorsChoice, SensorEntry,
+    BuiltInSection, CalibrationSection, Config, DeviceEntry, RawSensorsChoice, SensorEntry,
     ServoBoardSection,
 };
 
@@ -95,11 +95,11 @@ impl Config {
             if matches!(entry, SensorEntry::ServoBoard(_)) {
                 return self.servo_board.as_ref().map(servo_board);
             }
-            let board = entry.board()?;
+            let board = entry.device().filter(|device| device.is_board())?;
             Some(RawSource {
                 place: listed(at),
                 sensor: board.describe(),
-                calibration: *board.calibration(),
+                calibration: *board.calibration()?,
             })
         });
         sources.collect()
@@ -126,7 +126,10 @@ impl Config {
             section.map(|section| &mut section.calibration)
         } else {
             let entry = entries.find(|(at, _)| listed(*at) == place);
-            entry.and_then(|(_, entry)| entry.calibration_mut())
+            entry.and_then(|(_, entry)| match entry {
+                SensorEntry::Device(device) => device.board_calibration_mut(),
+                _ => None,
+            })
         };
         if let Some(section) = section {
             *section = *calibration;
@@ -134,10 +137,10 @@ impl Config {
     }
 
     /// The sensor of a board that is the source of this place.
-    pub(crate) fn board_sensor_of(&self, place: &str) -> Option<BoardSensor<'_>> {
-        let mut entries = self.sensor.iter().enumerate();
-        let (_, entry) = entries.find(|(at, _)| listed(*at) == place)?;
-        entry.board()
+    pub(crate) fn board_sensor_of(&self, place: &str) -> Option<&DeviceEntry> {
+        let mut boards = self.devices().filter(|(_, device)| device.is_board());
+        let (_, board) = boards.find(|(at, _)| listed(*at) == place)?;
+        Some(board)
     }
 }
 

@@ -8,10 +8,7 @@ use toml::Spanned;
 use toml::de::DeTable;
 
 use super::read::{Entry, Reader};
-use super::{
-    ChipSection, Config, GnssSerialSection, GpioSwitchSection, GpsdSection, IioSection,
-    PhoneSection, RcReceiverSection, ServosSection, XPlaneSection,
-};
+use super::{ChipSection, Config, DeviceEntry, ServosSection, XPlaneSection};
 
 /// One entry of `[[sensor]]`: a kind, and that kind's keys.
 #[derive(Clone, Debug, Serialize)]
@@ -21,34 +18,11 @@ pub enum SensorEntry {
     Simulator(NoKeys),
     /// An X-Plane that is only read, never written to.
     XPlane(Box<XPlaneSection>),
-    /// A driver of the kernel.
-    Iio(Box<IioSection>),
-    /// The phone that the program runs on.
-    Phone(Box<PhoneSection>),
-    /// An ICM-42688-P, an accelerometer and gyroscope.
-    Icm42688(Box<ChipSection>),
-    /// An MPU-6050, 6500, 9250 or 9255, an accelerometer and gyroscope.
-    Mpu6050(Box<ChipSection>),
-    /// A BMP388 or BMP390, a barometer.
-    Bmp388(Box<ChipSection>),
-    /// A BMP180, a barometer.
-    Bmp180(Box<ChipSection>),
-    /// A 4525DO, a pitot tube's sensor.
-    Ms4525do(Box<ChipSection>),
-    /// An SDP31, SDP32 or SDP33, a pitot tube's sensor.
-    Sdp3x(Box<ChipSection>),
-    /// A QMC5883L, a magnetometer.
-    Qmc5883l(Box<ChipSection>),
     /// The servo board's, of `[servo-board]`.
     ServoBoard(NoKeys),
-    /// A satellite receiver on a serial line.
-    GnssSerial(Box<GnssSerialSection>),
-    /// A satellite receiver that gpsd reads.
-    Gpsd(Box<GpsdSection>),
-    /// An RC receiver on a serial line.
-    RcReceiver(Box<RcReceiverSection>),
-    /// The engage switch on a line of GPIO.
-    GpioSwitch(Box<GpioSwitchSection>),
+    /// A device of its own.
+    #[serde(untagged)]
+    Device(Box<DeviceEntry>),
 }
 
 /// One entry of `[[actuator]]`: a kind, and that kind's keys.
@@ -148,22 +122,22 @@ impl Entry for SensorEntry {
     ];
 
     fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, reader: &mut Reader<'t>) -> Option<Self> {
-        let chip = ChipKind::ALL.into_iter().find(|chip| chip.key() == kind);
-        if let Some(chip) = chip {
-            let section = reader.table(keys, 1)?;
-            return Some(Self::of_chip(chip, section));
-        }
-        match kind {
-            "x-plane" => reader.table(keys, 1).map(Self::XPlane),
-            "iio" => reader.table(keys, 1).map(Self::Iio),
-            "phone" => reader.table(keys, 1).map(Self::Phone),
-            "servo-board" => reader.table(keys, 1).map(Self::ServoBoard),
-            "gnss-serial" => reader.table(keys, 1).map(Self::GnssSerial),
-            "gpsd" => reader.table(keys, 1).map(Self::Gpsd),
-            "rc-receiver" => reader.table(keys, 1).map(Self::RcReceiver),
-            "gpio-switch" => reader.table(keys, 1).map(Self::GpioSwitch),
-            _ => reader.table(keys, 1).map(Self::Simulator),
-        }
+        let device = match kind {
+            "simulator" => return reader.table(keys, 1).map(Self::Simulator),
+            "x-plane" => return reader.table(keys, 1).map(Self::XPlane),
+            "servo-board" => return reader.table(keys, 1).map(Self::ServoBoard),
+            "iio" => DeviceEntry::Iio(reader.table(keys, 1)?),
+            "phone" => DeviceEntry::Phone(reader.table(keys, 1)?),
+            "gnss-serial" => DeviceEntry::GnssSerial(reader.table(keys, 1)?),
+            "gpsd" => DeviceEntry::Gpsd(reader.table(keys, 1)?),
+            "rc-receiver" => DeviceEntry::RcReceiver(reader.table(keys, 1)?),
+            "gpio-switch" => DeviceEntry::GpioSwitch(reader.table(keys, 1)?),
+            chip => DeviceEntry::Chip(ChipSection {
+                kind: ChipKind::ALL.into_iter().find(|kind| kind.key() == chip)?,
+                ..reader.table(keys, 1)?
+            }),
+        };
+        Some(Self::Device(Box::new(device)))
     }
 
     fn unread() -> Option<Self> {
@@ -193,7 +167,7 @@ mod tests {
             SensorEntry::Simulator(_) => "simulator",
             SensorEntry::XPlane(_) => "x-plane",
             SensorEntry::ServoBoard(_) => "servo-board",
-            other => panic!("{other:?}"),
+            SensorEntry::Device(other) => panic!("{other:?}"),
         });
         (kinds.collect(), config.actuators().len())
     }

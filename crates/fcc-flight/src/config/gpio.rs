@@ -22,25 +22,13 @@ pub struct GpioSwitchSection {
     /// Whether a low level is on.
     pub active_low: bool,
     /// The line's resistor.
-    pub pull: PullChoice,
+    pub pull: Pull,
     /// The switch has changed after this long at its new position.
     pub debounce_ms: u64,
     /// It counts as silent after this long without being read.
     pub silent_after_ms: u64,
     /// After this long without a position, the next sensor's is used.
     pub fallback_after_ms: u64,
-}
-
-/// The resistor of a line.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum PullChoice {
-    /// To the supply.
-    Up,
-    /// To ground.
-    Down,
-    /// One outside of the board.
-    None,
 }
 
 /// The line that changes while the loop has control.
@@ -68,7 +56,7 @@ impl Default for GpioSwitchSection {
             chip: usual_chip(),
             line: None,
             active_low: true,
-            pull: PullChoice::Up,
+            pull: Pull::Up,
             debounce_ms: 30,
             silent_after_ms: 500,
             fallback_after_ms: FALLBACK_AFTER.as_millis() as u64,
@@ -83,15 +71,6 @@ impl GpioSwitchSection {
             chip: self.chip.clone(),
             line: self.line.unwrap_or_default(),
             is_active_low: self.active_low,
-        }
-    }
-
-    /// That line's resistor.
-    pub const fn pull(&self) -> Pull {
-        match self.pull {
-            PullChoice::Up => Pull::Up,
-            PullChoice::Down => Pull::Down,
-            PullChoice::None => Pull::None,
         }
     }
 
@@ -114,11 +93,3 @@ impl HeartbeatSection {
 
 /// More than any chip has.
 pub(super) const HIGHEST_LINE: f64 = 1_023.0;
-
-/// Key, smallest and largest value, as in the table of all keys.
-pub(super) const RANGES: &[(&str, f64, f64)] = &[
-    ("gpio-switch.line", 0.0, HIGHEST_LINE),
-    ("gpio-switch.debounce_ms", 0.0, 200.0),
-    ("gpio-switch.silent_after_ms", 50.0, 60_000.0),
-    ("gpio-switch.fallback_after_ms", 10.0, 60_000.0),
-];

@@ -73,9 +73,3 @@ impl GpsdSection {
         (!is_one).then_some("is no address: give host and port, such as \"localhost:2947\"")
     }
 }
-
-/// Key, smallest and largest value, as in the table of all keys.
-pub(super) const RANGES: &[(&str, f64, f64)] = &[
-    ("gpsd.silent_after_ms", 50.0, 60_000.0),
-    ("gpsd.fallback_after_ms", 10.0, 60_000.0),
-];

@@ -6,7 +6,7 @@ use std::time::Duration;
 use fcc_core::flight::inertial::{MagneticNorth, RawNavigationConfig, RawNavigationMethod};
 use serde::{Deserialize, Serialize};
 
-use super::{BoardSensor, Config, RawSensorsChoice, SensorEntry};
+use super::{Config, DeviceEntry, RawSensorsChoice, SensorEntry};
 
 /// The middle of the World Magnetic Model 2025: a small computer may not know
 /// the date, and a declination changes by 0.1 to 0.2° a year.
@@ -84,11 +84,10 @@ impl Config {
             .built_in
             .as_ref()
             .is_some_and(|section| section.raw_sensors != RawSensorsChoice::None);
-        let mut boards = self.sensor.iter().filter_map(SensorEntry::board);
         is_simulated
-            || boards.any(|board| match board {
-                BoardSensor::Chip(kind, _) => kind.is_inertial(),
-                BoardSensor::Iio(_) | BoardSensor::Phone(_) => true,
+            || self.devices().any(|(_, device)| match device {
+                DeviceEntry::Chip(section) => section.kind.is_inertial(),
+                device => device.is_board(),
             })
     }
 }
@@ -96,11 +95,11 @@ impl Config {
 impl Config {
     /// That a board has nothing to find its airspeed with, if it certainly has not.
     pub(super) fn airspeed_remark(&self) -> Option<String> {
-        let gives_airspeed = |entry: &SensorEntry| match entry.board() {
-            Some(BoardSensor::Chip(kind, _)) => kind.measures_airspeed(),
+        let gives_airspeed = |entry: &SensorEntry| match entry.device() {
+            Some(DeviceEntry::Chip(section)) => section.kind.measures_airspeed(),
             // Not known before it is opened.
-            Some(BoardSensor::Iio(_)) => true,
-            Some(BoardSensor::Phone(_)) => false,
+            Some(DeviceEntry::Iio(_)) => true,
+            Some(_) => false,
             None => matches!(entry, SensorEntry::XPlane(_) | SensorEntry::ServoBoard(_)),
         };
         let is_by_board =

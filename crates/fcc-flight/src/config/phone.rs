@@ -5,7 +5,7 @@ use std::time::Duration;
 use fcc_core::framework::FALLBACK_AFTER;
 use serde::{Deserialize, Serialize};
 
-use super::{CalibrationSection, Config, SensorEntry};
+use super::CalibrationSection;
 
 /// The sensors of the phone that the program runs on: in the Android app alone.
 ///
@@ -64,25 +64,6 @@ impl PhoneSection {
         )
     }
 }
-
-/// Reports a phone that is listed twice: there is one.
-pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
-    let is_phone = |entry: &SensorEntry| matches!(entry, SensorEntry::Phone(_));
-    let mut entries = config.sensor.iter().enumerate();
-    let phones = entries.by_ref().filter(|(_, entry)| is_phone(entry));
-    for (at, _) in phones.skip(1) {
-        let message = "is the phone a second time: keep one".to_owned();
-        report(&[&format!("sensor[{at}].kind")], message);
-    }
-}
-
-/// Key, smallest and largest value, as in the table of all keys. Over 200 Hz Android
-/// wants a permission, `HIGH_SAMPLING_RATE_SENSORS`.
-pub(super) const RANGES: &[(&str, f64, f64)] = &[
-    ("phone.rate_hz", 50.0, 200.0),
-    ("phone.silent_after_ms", 50.0, 60_000.0),
-    ("phone.fallback_after_ms", 10.0, 60_000.0),
-];
 
 #[cfg(test)]
 mod tests {

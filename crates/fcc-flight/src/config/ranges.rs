@@ -9,8 +9,8 @@ use toml::de::DeValue;
 
 use super::places::Places;
 use super::{
-    Config, Problem, SensorEntry, XPlaneSection, airframe, board, calibration, gpio, gpsd, lines,
-    navigation, phone, relations, servo_board,
+    Config, Problem, SensorEntry, XPlaneSection, airframe, autopilot, calibration, device,
+    navigation, relations, servo_board,
 };
 
 /// Key, smallest and largest value.
@@ -84,103 +84,6 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("altimeter.field_elevation_ft", -1_500.0, 20_000.0),
     ("autopilot.reference_airspeed_kt", 15.0, 600.0),
     ("autopilot.assumed_latency_ms", 0.0, 300.0),
-    ("autopilot.scale.elevator", 0.01, 100.0),
-    ("autopilot.scale.aileron", 0.01, 100.0),
-    ("autopilot.scale.rudder", 0.0, 100.0),
-    ("autopilot.scale.throttle", 0.01, 100.0),
-    ("autopilot.scale.pace", 0.05, 5.0),
-    ("autopilot.envelope.max_bank_deg", 5.0, 60.0),
-    ("autopilot.envelope.max_load_factor_g", 1.0, 6.0),
-    ("autopilot.envelope.max_pitch_deg", 2.0, 45.0),
-    ("autopilot.envelope.min_pitch_deg", -45.0, -2.0),
-    ("autopilot.envelope.min_airspeed_kt", 5.0, 400.0),
-    ("autopilot.envelope.max_airspeed_kt", 10.0, 600.0),
-    ("autopilot.envelope.max_climb_fpm", 10.0, 10_000.0),
-    ("autopilot.envelope.max_sink_fpm", 10.0, 10_000.0),
-    ("autopilot.envelope.airspeed_margin_kt", 0.5, 100.0),
-    ("autopilot.envelope.floor_ft", -1_500.0, 60_000.0),
-    ("autopilot.envelope.floor_margin_ft", 0.0, 1_000.0),
-    ("autopilot.envelope.stall_airspeed_kt", 5.0, 300.0),
-    ("autopilot.envelope.best_glide_airspeed_kt", 5.0, 400.0),
-    ("autopilot.envelope.maneuvering_airspeed_kt", 10.0, 600.0),
-    ("autopilot.envelope.never_exceed_airspeed_kt", 10.0, 700.0),
-    ("autopilot.envelope.limit_load_factor_g", 1.5, 12.0),
-    (
-        "autopilot.envelope.limit_negative_load_factor_g",
-        -10.0,
-        0.0,
-    ),
-    ("autopilot.envelope.max_angle_of_attack_deg", 3.0, 45.0),
-    ("autopilot.navigation.attitude_tau_s", 0.01, 100.0),
-    ("autopilot.navigation.heading_tau_s", 0.01, 100.0),
-    ("autopilot.navigation.vertical_bandwidth_radps", 0.01, 10.0),
-    ("autopilot.navigation.airspeed_tau_s", 0.01, 100.0),
-    ("autopilot.navigation.side_force_tau_s", 0.0, 10.0),
-    ("autopilot.heading.heading_gain_per_s", 0.01, 10.0),
-    ("autopilot.heading.rollout_rate_degps", 0.5, 180.0),
-    ("autopilot.heading.lead_s", 0.0, 5.0),
-    ("autopilot.heading.roll_gain_per_s", 0.1, 20.0),
-    ("autopilot.heading.max_roll_rate_degps", 1.0, 360.0),
-    (
-        "autopilot.heading.max_roll_acceleration_degps2",
-        1.0,
-        3_600.0,
-    ),
-    ("autopilot.heading.aileron_per_roll_rate", 0.0, 10.0),
-    ("autopilot.heading.roll_rate_gain", 0.0, 10.0),
-    ("autopilot.heading.roll_rate_integral_gain", 0.0, 50.0),
-    ("autopilot.heading.rudder_per_aileron", -2.0, 2.0),
-    ("autopilot.heading.rudder_washout_s", 0.1, 60.0),
-    ("autopilot.heading.rudder_per_side_g", 0.0, 100.0),
-    ("autopilot.heading.rudder_per_side_g_s", 0.0, 100.0),
-    ("autopilot.heading.yaw_damping", 0.0, 20.0),
-    ("autopilot.altitude.altitude_gain_per_s", 0.01, 5.0),
-    ("autopilot.altitude.capture_g", 0.002, 1.0),
-    ("autopilot.altitude.climb_acceleration_g", 0.002, 1.0),
-    ("autopilot.altitude.climb_rate_gain", 0.0, 20.0),
-    (
-        "autopilot.altitude.climb_rate_integral_gain_per_s",
-        0.0,
-        20.0,
-    ),
-    ("autopilot.altitude.flight_path_lag_s", 0.0, 10.0),
-    ("autopilot.altitude.angle_of_attack_per_g_deg", 0.0, 20.0),
-    ("autopilot.altitude.pitch_gain_per_s", 0.1, 20.0),
-    ("autopilot.altitude.max_pitch_rate_degps", 0.5, 90.0),
-    ("autopilot.altitude.pitch_rate_gain", 0.0, 20.0),
-    ("autopilot.altitude.pitch_rate_integral_gain", 0.0, 100.0),
-    ("autopilot.altitude.elevator_per_g", 0.0, 10.0),
-    ("autopilot.airspeed.airspeed_gain_per_s", 0.0, 10.0),
-    (
-        "autopilot.airspeed.airspeed_integral_gain_per_s2",
-        0.0,
-        10.0,
-    ),
-    ("autopilot.airspeed.acceleration_gain", 0.0, 5.0),
-    ("autopilot.airspeed.throttle_per_g", 0.0, 100.0),
-    ("autopilot.airspeed.induced_drag_ratio", 0.0, 1.0),
-    ("autopilot.airspeed.max_throttle_rate_per_s", 0.01, 100.0),
-    ("autopilot.airspeed.trim_throttle", 0.0, 1.0),
-    ("autopilot.runway.rotate_kt", 5.0, 150.0),
-    ("autopilot.runway.launch_g", 0.0, 10.0),
-    ("autopilot.runway.longest_roll_m", 1.0, 5000.0),
-    ("autopilot.runway.climb_kt", 5.0, 200.0),
-    ("autopilot.runway.climb_pitch_deg", 1.0, 30.0),
-    ("autopilot.runway.approach_kt", 5.0, 200.0),
-    ("autopilot.runway.glide_path_deg", 1.0, 10.0),
-    ("autopilot.runway.flare_s", 0.5, 10.0),
-    ("autopilot.runway.touchdown_fpm", 1.0, 400.0),
-    ("autopilot.runway.height_uncertainty_ft", 0.0, 100.0),
-    ("autopilot.runway.takeoff_flaps", 0.0, 1.0),
-    ("autopilot.runway.landing_flaps", 0.0, 1.0),
-    ("autopilot.runway.brake", 0.0, 1.0),
-    ("autopilot.runway.steering_radius_m", 0.1, 100.0),
-    ("autopilot.runway.height_on_wheels_m", 0.0, 20.0),
-    ("autopilot.runway.decision_height_ft", 0.0, 1000.0),
-    ("autopilot.runway.most_cross_track_m", 1.0, 1000.0),
-    ("autopilot.runway.most_off_path_m", 1.0, 1000.0),
-    ("autopilot.runway.most_off_airspeed_kt", 1.0, 100.0),
-    ("autopilot.runway.most_bank_deg", 1.0, 60.0),
     ("x-plane.local_port", 0.0, 65_535.0),
     ("x-plane.reply_port", 0.0, 65_535.0),
     ("x-plane.data_version", 9.0, 12.0),
@@ -211,15 +114,12 @@ const RANGES: &[(&str, f64, f64)] = &[
 fn ranges() -> impl Iterator<Item = &'static (&'static str, f64, f64)> {
     RANGES
         .iter()
-        .chain(calibration::RANGES)
+        .chain(autopilot::ranges())
+        .chain(calibration::RANGES.iter().copied().flatten())
         .chain(navigation::RANGES)
         .chain(airframe::RANGES)
-        .chain(board::RANGES)
+        .chain(device::RANGES)
         .chain(servo_board::RANGES)
-        .chain(lines::RANGES)
-        .chain(gpsd::RANGES)
-        .chain(gpio::RANGES)
-        .chain(phone::RANGES)
 }
 
 /// Smallest and largest value of a numeric key.
@@ -343,7 +243,7 @@ fn places_of(places: &Places<'_>, key: &str) -> Vec<String> {
     let of_kind = (0..entries.map_or(0, |entries| entries.len())).filter(|at| {
         let given = places.value(&format!("sensor[{at}].kind"));
         let given = given.and_then(DeValue::as_str);
-        given.is_some_and(|given| board::is_of_kind(kind, name, given))
+        given.is_some_and(|given| device::is_of_kind(kind, name, given))
     });
     let keys = of_kind.map(|at| format!("sensor[{at}].{name}"));
     let keys = std::iter::once(key.to_owned()).chain(keys);

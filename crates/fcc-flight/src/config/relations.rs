@@ -4,8 +4,8 @@ use fcc_core::flight::control::Envelope;
 
 use super::autopilot::{self, EnvelopeSection};
 use super::{
-    ActuatorEntry, AutopilotSection, Config, GuidanceSection, NavigationMethod, SensorEntry, board,
-    contingency, lines, navigation, phone, raw_readings, servo_board, servos, shared_devices,
+    ActuatorEntry, AutopilotSection, Config, GuidanceSection, NavigationMethod, SensorEntry,
+    contingency, device, navigation, raw_readings, servo_board, servos, shared_devices,
 };
 
 /// Of `SCHED_FIFO` (sched(7)).
@@ -75,10 +75,8 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     lists(config, report);
     navigation::check(config, report);
     raw_readings::check(config, report);
-    board::check(config, report);
+    device::check(config, report);
     servo_board::check(config, report);
-    lines::check(config, report);
-    phone::check(config, report);
     servos::check(config, report);
     shared_devices::check(config, report);
 }

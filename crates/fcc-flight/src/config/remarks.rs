@@ -50,10 +50,10 @@ impl Config {
                         .as_ref()
                         .map(|section| section.fallback_after_ms),
                 ),
-                other => {
-                    let board = other.board().map(|board| board.patience());
-                    let after = board.map(|(_, fallback)| fallback.as_millis() as u64);
-                    (format!("sensor[{at}]"), after)
+                SensorEntry::Device(device) => {
+                    let (_, fallback) = device.patience();
+                    let after_ms = device.is_board().then_some(fallback.as_millis() as u64);
+                    (format!("sensor[{at}]"), after_ms)
                 }
             };
             if let Some(fallback_ms) = fallback_ms.filter(|after_ms| *after_ms >= most) {

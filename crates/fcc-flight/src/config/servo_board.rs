@@ -107,13 +107,6 @@ pub(super) const RANGES: &[(&str, f64, f64)] = &[
     ("servo-board.baud", 57_600.0, 1e6),
     ("servo-board.silent_after_ms", 50.0, 60_000.0),
     ("servo-board.fallback_after_ms", 10.0, 60_000.0),
-    (
-        "servo-board.differential_pressure.bias_pa",
-        -1_000.0,
-        1_000.0,
-    ),
-    ("servo-board.differential_pressure.scale", 0.5, 2.0),
-    ("servo-board.differential_pressure.delay_ms", 0.0, 1_000.0),
 ];
 
 /// The longest path of the engage switch: its request is a message of at most

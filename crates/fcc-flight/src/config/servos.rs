@@ -27,7 +27,7 @@ pub struct ServosSection {
     /// Pulses in a second.
     pub rate_hz: f64,
     /// What they do while nobody has control.
-    pub released: ReleasedChoice,
+    pub released: Released,
     /// They go to failsafe after this long without outputs.
     pub silent_after_ms: u64,
     /// The line that changes while the loop has control.
@@ -43,7 +43,7 @@ pub struct ServosSection {
 #[serde(deny_unknown_fields)]
 pub struct ServoSection {
     /// What it follows.
-    pub drives: DrivesChoice,
+    pub drives: Drives,
     /// Its output there.
     pub output: u32,
     /// Another chip than that of all.
@@ -86,40 +86,6 @@ const fn max_us() -> f64 {
     USUAL.max_us
 }
 
-/// What a servo follows.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum DrivesChoice {
-    /// The elevator.
-    Elevator,
-    /// The ailerons.
-    Aileron,
-    /// The rudder.
-    Rudder,
-    /// The throttle.
-    Throttle,
-    /// The flaps.
-    Flaps,
-    /// The left wheel's brake.
-    LeftBrake,
-    /// The right wheel's brake.
-    RightBrake,
-    /// The nose wheel.
-    NoseWheel,
-    /// The landing gear.
-    Gear,
-}
-
-/// What servos do while nobody has control.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ReleasedChoice {
-    /// They hold their failsafe positions.
-    Failsafe,
-    /// They get no pulse.
-    Off,
-}
-
 impl Default for ServosSection {
     fn default() -> Self {
         let usual = ServoSettings::new(Vec::new());
@@ -129,7 +95,7 @@ impl Default for ServosSection {
             address: 0x40,
             oscillator_mhz: 25.0,
             rate_hz: 50.0,
-            released: ReleasedChoice::Failsafe,
+            released: Released::Failsafe,
             silent_after_ms: usual.silent_after.as_millis() as u64,
             heartbeat: None,
             channels: Vec::new(),
@@ -139,26 +105,15 @@ impl Default for ServosSection {
 
 impl ServoSection {
     fn to_linux(&self) -> ServoChannel {
-        let drives = match self.drives {
-            DrivesChoice::Elevator => Drives::Elevator,
-            DrivesChoice::Aileron => Drives::Aileron,
-            DrivesChoice::Rudder => Drives::Rudder,
-            DrivesChoice::Throttle => Drives::Throttle,
-            DrivesChoice::Flaps => Drives::Flaps,
-            DrivesChoice::LeftBrake => Drives::LeftBrake,
-            DrivesChoice::RightBrake => Drives::RightBrake,
-            DrivesChoice::NoseWheel => Drives::NoseWheel,
-            DrivesChoice::Gear => Drives::Gear,
-        };
         ServoChannel {
-            drives,
+            drives: self.drives,
             min_us: self.min_us,
             centre_us: self.centre_us,
             max_us: self.max_us,
             is_reversed: self.reversed,
             trim: self.trim,
             slew_per_s: self.slew_per_s,
-            failsafe: self.failsafe.unwrap_or(drives.usual_failsafe()),
+            failsafe: self.failsafe.unwrap_or(self.drives.usual_failsafe()),
         }
     }
 
@@ -179,10 +134,7 @@ impl ServosSection {
     pub fn to_linux(&self) -> ServoSettings {
         let channels = self.channels.iter().map(ServoSection::to_linux).collect();
         ServoSettings {
-            released: match self.released {
-                ReleasedChoice::Failsafe => Released::Failsafe,
-                ReleasedChoice::Off => Released::Off,
-            },
+            released: self.released,
             silent_after: Duration::from_millis(self.silent_after_ms),
             ..ServoSettings::new(channels)
         }
@@ -298,10 +250,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
 }
 
 /// What control takes pitch and bank by: without one of them nothing can be flown.
-const NEEDED: [(DrivesChoice, &str); 2] = [
-    (DrivesChoice::Elevator, "elevator"),
-    (DrivesChoice::Aileron, "aileron"),
-];
+const NEEDED: [(Drives, &str); 2] = [(Drives::Elevator, "elevator"), (Drives::Aileron, "aileron")];
 
 /// Reports surfaces without which there is no control, if servos alone drive them.
 fn undriven(config: &Config, report: &mut impl FnMut(&[&str], String)) {

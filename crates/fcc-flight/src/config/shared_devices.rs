@@ -3,7 +3,7 @@
 use fcc_linux::chip::Wiring;
 use fcc_linux::gpio::GpioPin;
 
-use super::{ActuatorEntry, BoardSensor, Config, LineSensor};
+use super::{ActuatorEntry, Config, DeviceEntry};
 
 /// Reports each entry whose device an earlier one has.
 pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
@@ -26,28 +26,28 @@ fn devices(config: &Config) -> Vec<(String, String)> {
     if let Some(line) = board.and_then(|board| board.serial.as_ref()) {
         all.push(("servo-board".to_owned(), line.display().to_string()));
     }
-    for (at, entry) in config.sensor.iter().enumerate() {
-        let board = entry.board().map(|board| match board {
-            BoardSensor::Chip(kind, section) => match section.to_linux(kind).wiring {
+    for (at, device) in config.devices() {
+        let uses = match device {
+            DeviceEntry::Chip(section) => match section.to_linux().wiring {
                 Wiring::I2c { path, address } => format!("{} {address:#04x}", path.display()),
                 Wiring::Spi { path } => path.display().to_string(),
             },
-            BoardSensor::Iio(section) => {
+            DeviceEntry::Iio(section) => {
                 format!("{} {}", section.sysfs.display(), section.device)
             }
             // That there is one phone is said of its own.
-            BoardSensor::Phone(_) => String::new(),
-        });
-        let line = entry.line().and_then(|line| match line {
-            LineSensor::Gnss(section) => Some(section.path.display().to_string()),
-            LineSensor::Rc(section) => Some(section.path.display().to_string()),
-            LineSensor::Switch(section) => section.line.map(|_| shown(&section.pin())),
+            DeviceEntry::Phone(_) => continue,
+            DeviceEntry::GnssSerial(section) => section.path.display().to_string(),
+            DeviceEntry::RcReceiver(section) => section.path.display().to_string(),
+            DeviceEntry::GpioSwitch(section) if section.line.is_none() => continue,
+            DeviceEntry::GpioSwitch(section) => shown(&section.pin()),
             // It serves many, but the same fixes.
-            LineSensor::Gpsd(section) => Some(section.source()),
-        });
+            DeviceEntry::Gpsd(section) => section.source(),
+        };
         // What is missing is said of its own.
-        let device = board.or(line).filter(|device| !device.is_empty());
-        all.extend(device.map(|device| (format!("sensor[{at}]"), device)));
+        if !uses.is_empty() {
+            all.push((format!("sensor[{at}]"), uses));
+        }
     }
     for (at, entry) in config.actuators().iter().enumerate() {
         let ActuatorEntry::Servos(section) = entry else {

@@ -11,20 +11,19 @@ use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation, TruthHandle};
 use fcc_xplane::{OpenError, XPlane, XPlaneAuthority, XPlaneConfig, XPlaneStatus};
 
-use super::board::{DeviceReporter, WatchedDevice, board_sensor};
-use super::calibrated::Calibrated;
+use super::calibrated::calibrated;
 use super::control_override::ControlOverride;
+use super::device::{DeviceReporter, WatchedDevice, open_device};
 use super::event_log::EventLog;
 #[cfg(feature = "live")]
 use super::limits::setpoint_limits;
 use super::line_watch::LineWatch;
-use super::lines::line_sensor;
 #[cfg(feature = "live")]
 use super::live::Live;
 use super::observer::Observer;
 #[cfg(feature = "live")]
 use super::other_users::CommandSocket;
-use super::phone::{PhoneHost, phone_sensor};
+use super::phone::PhoneHost;
 use super::plan::Pace;
 use super::recording::{FlightRecorder, RecordingRequest};
 use super::restart::{RestartKeeper, RestartRequest};
@@ -173,19 +172,10 @@ fn assemble_with(
                 }));
             }
             SensorEntry::ServoBoard(_) => sensors.append(&mut servo_board.sensors),
-            SensorEntry::Phone(section) => {
-                let (sensor, mut watched) = phone_sensor(section, phone.take())?;
-                sensors.push(sensor);
+            SensorEntry::Device(device) => {
+                let (sensor, mut watched) = open_device(device, &mut phone)?;
+                sensors.push(calibrated(sensor, device.calibration()));
                 devices.append(&mut watched);
-            }
-            other => {
-                let board = other.board().map(|board| board_sensor(&board));
-                let line = other.line().map(|line| line_sensor(&line));
-                if let Some(opened) = board.or(line) {
-                    let (sensor, status) = opened?;
-                    sensors.push(sensor);
-                    devices.push(status);
-                }
             }
         }
     }
@@ -236,10 +226,7 @@ fn built_in(
     let simulation = Simulation::new(simulated)?;
     let (sensor, truth) = tap(simulation.sensor, ticks);
     Ok(Plant {
-        sensors: vec![match section.calibration.to_core() {
-            Some(calibration) => Box::new(Calibrated::new(Box::new(sensor), &calibration)),
-            None => Box::new(sensor),
-        }],
+        sensors: vec![calibrated(Box::new(sensor), Some(&section.calibration))],
         actuators: vec![Box::new(simulation.actuator)],
         truth: Some(truth),
         true_now: Some(simulation.truth),
@@ -278,10 +265,7 @@ fn servo_board(config: &Config) -> Result<Plant, AssemblyError> {
     let link = section.to_link(config.realtime.priority);
     let (sensor, actuator, status) = fcc_servo_link::open(&link)?;
     Ok(Plant {
-        sensors: vec![match section.calibration().to_core() {
-            Some(calibration) => Box::new(Calibrated::new(sensor, &calibration)),
-            None => sensor,
-        }],
+        sensors: vec![calibrated(sensor, Some(&section.calibration()))],
         actuators: vec![actuator],
         line: Some(LineWatch::new(status)),
         ..Plant::default()

@@ -6,22 +6,29 @@ use fcc_core::flight::Measurements;
 use fcc_core::flight::calibration::Calibration;
 use fcc_core::framework::{Sensor, SensorFault, Tick};
 
+use crate::config::CalibrationSection;
+
 /// A sensor, and the calibration of its raw readings: they are calibrated here
 /// and nowhere else.
-pub(super) struct Calibrated<S: ?Sized> {
-    sensor: Box<S>,
+struct Calibrated {
+    sensor: Box<dyn Sensor<Measurements>>,
     calibration: Calibration,
     /// What the sensor gave.
     given: Measurements,
 }
 
-impl<S: ?Sized> Calibrated<S> {
-    pub(super) fn new(sensor: Box<S>, calibration: &Calibration) -> Self {
-        Self {
+/// The sensor with this calibration, if it has one that changes anything.
+pub(super) fn calibrated(
+    sensor: Box<dyn Sensor<Measurements>>,
+    section: Option<&CalibrationSection>,
+) -> Box<dyn Sensor<Measurements>> {
+    match section.and_then(CalibrationSection::to_core) {
+        Some(calibration) => Box::new(Calibrated {
             sensor,
-            calibration: *calibration,
+            calibration,
             given: Measurements::default(),
-        }
+        }),
+        None => sensor,
     }
 }
 
@@ -29,7 +36,7 @@ impl<S: ?Sized> Calibrated<S> {
     clippy::missing_trait_methods,
     reason = "a method that is not passed on would have its default"
 )]
-impl<S: Sensor<Measurements> + ?Sized> Sensor<Measurements> for Calibrated<S> {
+impl Sensor<Measurements> for Calibrated {
     fn sample(&mut self, tick: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
         let sampled = self.sensor.sample(tick, &mut self.given);
         *into = self.calibration.applied(&self.given);
@@ -87,7 +94,11 @@ mod tests {
         let barometer = Barometer {
             pressure_pa: Some(90_030.0),
         };
-        let mut sensor = Calibrated::new(Box::new(barometer), &calibration);
+        let mut sensor = Calibrated {
+            sensor: Box::new(barometer),
+            calibration,
+            given: Measurements::default(),
+        };
         let mut measured = Measurements::default();
         for (tick, sampled) in [(1, Ok(())), (2, Err(SensorFault::Silent))] {
             let woke = Time::from_nanos(tick * 25_000_000);

@@ -7,6 +7,7 @@ use std::time::Duration;
 use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{ActuatorFault, Tick, Time};
 use fcc_core::units::KNOT_MPS;
+use fcc_linux::servo::Drives as Control;
 use fcc_runtime::StopHandle;
 use fcc_timer::{ManualTimer, Timer};
 use serde::Serialize;
@@ -14,7 +15,7 @@ use serde::Serialize;
 use super::assemble::Assembly;
 use super::fly::{FlyError, refuse_if_taken, release_by};
 use super::host::Host;
-use crate::config::{ActuatorEntry, Config, DrivesChoice as Control};
+use crate::config::{ActuatorEntry, Config};
 
 /// The first deflection, so that linkage that binds is seen before the full one.
 const SMALL: f64 = 0.3;

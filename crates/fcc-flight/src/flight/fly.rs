@@ -192,7 +192,7 @@ impl RealTime<'_> {
                 hang_after: self.watchdog.hang_after(self.period),
                 loop_priority: self.loop_priority,
             };
-            HangWatch::start(config, &self.link, self.authority.cloned(), host)
+            HangWatch::start(&config, &self.link, self.authority.cloned(), host)
                 .map(|(watchdog, granted)| (Some(watchdog), Some(granted)))
                 .map_err(FlyError::Watchdog)?
         } else {

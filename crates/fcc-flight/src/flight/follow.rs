@@ -74,9 +74,7 @@ impl Follower<'_> {
                 authority.report(&mut |words| self.observers.remark(words.to_string()));
             }
             hung = watchdog.as_mut().and_then(|watchdog| {
-                watchdog.look(self.link, self.host, &mut |words| {
-                    self.observers.remark(words);
-                })
+                watchdog.look(self.link, &mut |words| self.observers.remark(words))
             });
             thread::sleep(FETCH_EVERY);
         }

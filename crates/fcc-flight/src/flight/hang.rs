@@ -8,9 +8,8 @@
 //! disk, the program ends without it.
 
 //!
-//! The watchdog's thread may fail, too. If it ends before the loop does, another
-//! is started; if its release of the controls panics, it counts as not
-//! confirmed; if that never returns, a further thread ends the program.
+//! The watchdog's thread may fail, too. If its release of the controls panics, it
+//! counts as not confirmed; if that never returns, a further thread ends the program.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -22,7 +21,6 @@ use fcc_core::framework::ControlAuthority;
 use fcc_runtime::{Hang, HeartbeatReading, Link, WatchdogConfig, watch};
 use fcc_timer::RealtimeGranted;
 
-use super::again::StartsLeft;
 use super::host::Host;
 use super::pilot::Pilot;
 
@@ -47,10 +45,7 @@ pub(super) struct Hung {
 
 /// Receives a hang of the loop from the watchdog.
 pub(super) struct HangWatch {
-    config: WatchdogConfig,
-    authority: Option<Arc<dyn ControlAuthority>>,
     receiver: Receiver<Hung>,
-    starts: StartsLeft,
     is_over: bool,
 }
 
@@ -61,101 +56,56 @@ impl HangWatch {
     /// # Errors
     /// When no thread can be created.
     pub(super) fn start(
-        config: WatchdogConfig,
+        config: &WatchdogConfig,
         link: &Link<Pilot>,
         authority: Option<Arc<dyn ControlAuthority>>,
         host: &dyn Host,
     ) -> io::Result<(Self, RealtimeGranted)> {
-        let (receiver, granted) = start(&config, link, authority.clone(), host)?;
-        let this = Self {
-            config,
-            authority,
-            receiver,
-            starts: StartsLeft::new(),
-            is_over: false,
-        };
-        Ok((this, granted))
+        let stop = link.stop.clone();
+        let (last_resort, at_last) = (host.last_resort(), host.last_resort());
+        let (sender, receiver) = mpsc::channel();
+        let granted = watch(link.heartbeat.clone(), config, move |Hang { silent }| {
+            // If it wakes up once more, it releases by itself.
+            stop.stop();
+            // Without that thread the release has to return.
+            let _ = thread::Builder::new()
+                .name("fcc-end".to_owned())
+                .stack_size(STACK_BYTES)
+                .spawn(move || {
+                    thread::sleep(AT_LAST);
+                    at_last(false);
+                });
+            // A panic's message may wait for a full pipe; that thread does not.
+            let release = || authority.is_none_or(|authority| release_controls(authority.as_ref()));
+            let released = catch_unwind(AssertUnwindSafe(release)).unwrap_or(false);
+            // If the receiver no longer exists, the program is about to end.
+            let _ = sender.send(Hung { silent, released });
+            thread::sleep(GRACE);
+            last_resort(released);
+        })?;
+        let is_over = false;
+        Ok((Self { receiver, is_over }, granted))
     }
 
-    /// The hang, after the release of the controls. Starts the watchdog again if
-    /// it has ended before the loop.
+    /// The hang, after the release of the controls.
     pub(super) fn look(
         &mut self,
         link: &Link<Pilot>,
-        host: &dyn Host,
         report: &mut dyn FnMut(String),
     ) -> Option<Hung> {
         match self.receiver.try_recv() {
             Ok(hung) => return Some(hung),
-            Err(TryRecvError::Empty) => {}
-            Err(TryRecvError::Disconnected) => self.replace(link, host, report),
+            // It ends with the loop.
+            Err(TryRecvError::Disconnected)
+                if !self.is_over && link.heartbeat.read() != HeartbeatReading::Ended =>
+            {
+                self.is_over = true;
+                report("the watchdog has ended: a loop that hangs is not noticed".to_owned());
+            }
+            Err(TryRecvError::Disconnected | TryRecvError::Empty) => {}
         }
         None
     }
-
-    fn replace(&mut self, link: &Link<Pilot>, host: &dyn Host, report: &mut dyn FnMut(String)) {
-        // It ends with the loop.
-        if self.is_over || link.heartbeat.read() == HeartbeatReading::Ended {
-            return;
-        }
-        match self.starts.take() {
-            Some(false) => {}
-            Some(true) => match start(&self.config, link, self.authority.clone(), host) {
-                Ok((receiver, _)) => {
-                    self.receiver = receiver;
-                    report("the watchdog had ended, and was started again".to_owned());
-                }
-                Err(error) => {
-                    report(format!(
-                        "the watchdog has ended, and cannot be started: {error}"
-                    ));
-                }
-            },
-            None => {
-                self.is_over = true;
-                report(
-                    "the watchdog has ended again, and is not started any more: a loop that \
-                     hangs is not noticed"
-                        .to_owned(),
-                );
-            }
-        }
-    }
-}
-
-fn start(
-    config: &WatchdogConfig,
-    link: &Link<Pilot>,
-    authority: Option<Arc<dyn ControlAuthority>>,
-    host: &dyn Host,
-) -> io::Result<(Receiver<Hung>, RealtimeGranted)> {
-    let stop = link.stop.clone();
-    let (last_resort, at_last) = (host.last_resort(), host.last_resort());
-    let (sender, receiver) = mpsc::channel();
-    #[cfg(feature = "fault-injection")]
-    let fails = super::injection::watchdog_fails();
-    let granted = watch(link.heartbeat.clone(), config, move |Hang { silent }| {
-        #[cfg(feature = "fault-injection")]
-        assert!(!fails, "injected panic of the watchdog");
-        // If it wakes up once more, it releases by itself.
-        stop.stop();
-        // Without that thread the release has to return.
-        let _ = thread::Builder::new()
-            .name("fcc-end".to_owned())
-            .stack_size(STACK_BYTES)
-            .spawn(move || {
-                thread::sleep(AT_LAST);
-                at_last(false);
-            });
-        // A panic's message may wait for a full pipe; that thread does not.
-        let release = || authority.is_none_or(|authority| release_controls(authority.as_ref()));
-        let released = catch_unwind(AssertUnwindSafe(release)).unwrap_or(false);
-        // If the receiver no longer exists, the program is about to end.
-        let _ = sender.send(Hung { silent, released });
-        thread::sleep(GRACE);
-        last_resort(released);
-    })?;
-    Ok((receiver, granted))
 }
 
 /// Releases the controls; whether they are free now.

@@ -10,11 +10,8 @@
 //!   `FCCD_SLOW_SPINS` it computes for that long, otherwise it sleeps;
 //! - `FCCD_BLOCK_AT_S`: this many seconds after the first tick, a sensor
 //!   blocks;
-//! - `FCCD_WATCHDOG_PANICS`: the first watchdog that finds a hang panics;
 //! - `FCCD_RELEASE_FAILS`: the watchdog's release of the controls panics
 //!   (`panics`), or never returns (`blocks`);
-//! - `FCCD_STATE_PANICS`: the thread that writes the state file panics at its
-//!   first request;
 //! - `FCCD_PAUSE_AT_S`: this many seconds after the loop's start, its messages
 //!   are not read, for `FCCD_PAUSE_S` (for ever, if not given).
 //!
@@ -154,12 +151,6 @@ impl Pause {
     }
 }
 
-/// Whether this watchdog is to panic: the first, if at all.
-pub(super) fn watchdog_fails() -> bool {
-    static FIRST: AtomicBool = AtomicBool::new(true);
-    std::env::var_os("FCCD_WATCHDOG_PANICS").is_some() && FIRST.swap(false, Ordering::Relaxed)
-}
-
 /// Fails instead of releasing the controls, if that is to happen.
 pub(super) fn fail_release() {
     let how = std::env::var("FCCD_RELEASE_FAILS").unwrap_or_default();
@@ -167,16 +158,6 @@ pub(super) fn fail_release() {
     if how == "blocks" {
         thread::sleep(Duration::from_secs(3_600));
     }
-}
-
-/// Panics at the first call, if that is to happen.
-pub(super) fn fail_state_file() {
-    static FIRST: AtomicBool = AtomicBool::new(true);
-    let fails = std::env::var_os("FCCD_STATE_PANICS").is_some();
-    assert!(
-        !(fails && FIRST.swap(false, Ordering::Relaxed)),
-        "injected panic of the state file"
-    );
 }
 
 fn number(name: &str) -> Option<f64> {

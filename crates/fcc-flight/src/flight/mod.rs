@@ -4,14 +4,13 @@
 //! module reads its messages, passes them to each [`Observer`], and collects
 //! the [`Outcome`]. What only the host program can do is done by its [`Host`].
 
-mod again;
 mod assemble;
-mod board;
 mod calibrated;
 mod check_controls;
 #[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
 mod control_override;
+mod device;
 mod event_log;
 mod flapping;
 mod fly;
@@ -23,7 +22,6 @@ mod host;
 mod injection;
 mod limits;
 mod line_watch;
-mod lines;
 #[cfg(feature = "live")]
 mod live;
 mod monitor;
@@ -48,9 +46,9 @@ mod truth_recorder;
 pub use assemble::{
     Assembly, AssemblyError, assemble, assemble_on_phone, authority_without_connection,
 };
-pub(crate) use board::uncalibrated;
 pub use check_controls::{Checked, Movement, Unchecked, Verdict, check_controls};
 pub use control_override::ControlOverride;
+pub(crate) use device::open_device;
 pub use flapping::Flapping;
 pub use fly::{FlyError, fly};
 pub use ground::Impact;
@@ -58,14 +56,12 @@ pub use host::Host;
 #[cfg(feature = "fault-injection")]
 pub use injection::{allocate_in_loop, loop_allocator_calls};
 pub use limits::setpoint_limits;
-pub(crate) use lines::line_sensor;
 pub use observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 #[cfg(feature = "live")]
 pub use other_users::{OtherUserError, command_another_users, command_of};
 #[cfg(all(fuzzing, feature = "live"))]
 pub use other_users::{answer_as_received, line_of_parts};
 pub use outcome::{Conclusion, EventEntry, Outcome, RecordingOutcome};
-pub(crate) use phone::open_phone;
 pub use phone::{OpenPhone, PhoneHost};
 pub use pilot::Pilot;
 pub use plan::{Length, Pace, Plan};

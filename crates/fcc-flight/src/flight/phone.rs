@@ -7,8 +7,7 @@ use fcc_core::framework::Sensor;
 use fcc_linux::DeviceStatus;
 
 use super::assemble::AssemblyError;
-use super::board::WatchedDevice;
-use super::calibrated::Calibrated;
+use super::device::{WatchedDevice, WatchedSensor};
 use crate::config::PhoneSection;
 
 /// A host that runs on a phone.
@@ -29,32 +28,17 @@ pub struct OpenPhone {
     pub devices: Vec<(&'static str, DeviceStatus)>,
 }
 
-/// A sensor, and the devices that it is made of.
-pub(super) type WatchedSensor = (Box<dyn Sensor<Measurements>>, Vec<WatchedDevice>);
-
 /// The phone's sensors, uncalibrated.
-pub(crate) fn open_phone(
-    section: &PhoneSection,
-    host: Option<&mut dyn PhoneHost>,
-) -> Result<OpenPhone, AssemblyError> {
-    let host = host.ok_or(AssemblyError::NoPhone)?;
-    host.open(section).map_err(|source| AssemblyError::Device {
-        name: "phone".to_owned(),
-        source,
-    })
-}
-
-/// The phone's sensors, calibrated.
-pub(super) fn phone_sensor(
+pub(super) fn open_phone(
     section: &PhoneSection,
     host: Option<&mut dyn PhoneHost>,
 ) -> Result<WatchedSensor, AssemblyError> {
-    let opened = open_phone(section, host)?;
-    let sensor: Box<dyn Sensor<Measurements>> = match section.calibration.to_core() {
-        Some(calibration) => Box::new(Calibrated::new(opened.sensor, &calibration)),
-        None => opened.sensor,
-    };
+    let host = host.ok_or(AssemblyError::NoPhone)?;
+    let opened = host.open(section).map_err(|source| AssemblyError::Device {
+        name: "phone".to_owned(),
+        source,
+    })?;
     let devices = opened.devices.into_iter();
     let watched = devices.map(|(name, status)| WatchedDevice::new(name, name.to_owned(), status));
-    Ok((sensor, watched.collect()))
+    Ok((opened.sensor, watched.collect()))
 }

@@ -12,7 +12,7 @@ use fcc_linux::servo::{
 };
 
 use super::assemble::AssemblyError;
-use super::board::WatchedDevice;
+use super::device::WatchedDevice;
 use crate::config::{ActuatorEntry, Config, ServosSection};
 
 const SERVOS: &str = "servos";

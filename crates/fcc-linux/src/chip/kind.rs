@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use linux_embedded_hal::spidev::{SpiModeFlags, SpidevOptions};
 use linux_embedded_hal::{Delay, I2cdev, SpidevDevice};
+use serde::Serialize;
 
 use super::bmp3::Bmp3;
 use super::bmp180::Bmp180;
@@ -22,7 +23,8 @@ use crate::claim::claim;
 use crate::{Clock, DeviceError};
 
 /// The kinds of chips, as a configuration names them.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum ChipKind {
     /// An accelerometer and gyroscope.
     Icm42688,

@@ -3,6 +3,7 @@
 //! "Interfacing to MEAS Digital Pressure Modules", 2016).
 
 use embedded_hal::i2c::I2c;
+use serde::{Deserialize, Serialize};
 
 use super::{BusError, Chip, I2cBus, Measurement, Registers};
 use crate::{DeviceError, RawValues};
@@ -20,7 +21,8 @@ const PA_PER_PSI: f64 = 6_894.757;
 const FULL_SCALE: f64 = 16_383.0;
 
 /// Which part of the counts is used for the range (ordering information).
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum OutputType {
     /// From 10 to 90 %.
     #[default]

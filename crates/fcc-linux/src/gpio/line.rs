@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use gpiocdev::Request;
 use gpiocdev::line::{Bias, Value};
 use nix::errno::Errno;
+use serde::{Deserialize, Serialize};
 
 use crate::DeviceError;
 use crate::servo::HeartbeatLine;
@@ -22,7 +23,8 @@ pub struct GpioPin {
 }
 
 /// The resistor of a line that is read.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Pull {
     /// To the supply.
     Up,

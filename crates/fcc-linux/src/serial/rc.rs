@@ -5,6 +5,7 @@ use core::time::Duration;
 use std::path::PathBuf;
 
 use fcc_core::framework::Time;
+use serde::{Deserialize, Serialize};
 
 use super::{
     Crsf, Frames, LineSettings, Pilot, RcChannels, RcValues, ReceiverFrame, Sbus, SerialLine,
@@ -18,7 +19,8 @@ const SBUS_GAP: Duration = Duration::from_millis(3);
 const NOTHING_UNDERSTOOD: usize = 7_000;
 
 /// What a receiver speaks.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum RcProtocol {
     /// [`Sbus`]: a line that cannot invert needs an inverter.
     Sbus,

@@ -1,9 +1,11 @@
 //! From a surface's deflection to a servo's pulse.
 
 use fcc_core::flight::Surfaces;
+use serde::{Deserialize, Serialize};
 
 /// Which of the autopilot's outputs a servo follows.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Drives {
     /// -1 to 1, positive raises the nose.
     Elevator,

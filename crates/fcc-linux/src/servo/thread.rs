@@ -10,6 +10,7 @@ use std::time::Instant;
 use fcc_core::flight::Surfaces;
 use fcc_core::framework::{PlantId, TakeoverNotice};
 use rtrb::{Consumer, RingBuffer};
+use serde::{Deserialize, Serialize};
 
 use super::{Drives, ServoActuator, ServoChannel};
 use crate::{DeviceError, DeviceStatus};
@@ -52,7 +53,8 @@ pub struct ServoBus {
 }
 
 /// What servos do while nobody has control.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Released {
     /// They hold their failsafe positions.
     Failsafe,

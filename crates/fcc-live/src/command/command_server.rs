@@ -61,12 +61,6 @@ impl CommandServer {
         )
     }
 
-    /// Ends the service, for another one with the same rings. Who waits for an
-    /// answer gets none.
-    pub(in super::super) fn into_rings(self) -> Rings {
-        (self.commands, self.verdicts, self.next_id)
-    }
-
     /// Opens the service, or creates it.
     pub(in super::super) fn open(
         access: &Access,

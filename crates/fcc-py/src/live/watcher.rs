@@ -4,7 +4,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use fcc_core::framework::Time;
-use fcc_live::{Event, Info, RecorderState, RowWatcher, Status, WatchError};
+use fcc_live::{Event, EventCode, Info, RecorderState, RowWatcher, Status, WatchError};
 use fcc_telemetry::Instance;
 use numpy::PyArrayDescr;
 use pyo3::prelude::*;
@@ -13,7 +13,7 @@ use pyo3::types::PyDict;
 use super::instance;
 use crate::arguments::within;
 use crate::errors;
-use crate::events::{PyEvent, seconds};
+use crate::events::{PyEvent, kind_name, seconds};
 use crate::structured::{array, columns, dtype_of};
 
 /// The interval between reads while it waits.
@@ -213,43 +213,12 @@ fn event_of(event: &Event) -> PyEvent {
         tick: event.tick,
         time_s: seconds(time),
         time_ns: (!time.is_never()).then_some(event.time_ns),
-        kind: kind_of(event.code),
+        kind: u8::try_from(event.code)
+            .ok()
+            .and_then(EventCode::from_number)
+            .map_or_else(|| "other".to_owned(), |code| kind_name(&code)),
         text: event.text.as_str().to_owned(),
     }
-}
-
-/// The numbers of `fcc_live::EventCode`.
-fn kind_of(code: u32) -> &'static str {
-    const KINDS: [&str; 27] = [
-        "remark",
-        "state-changed",
-        "command-received",
-        "engage-refused",
-        "sensor-fault",
-        "sensor-recovered",
-        "actuator-fault",
-        "actuator-recovered",
-        "records-dropped",
-        "events-dropped",
-        "not-recorded",
-        "released",
-        "panicked",
-        "timer-failed",
-        "overrun",
-        "overruns-over",
-        "hung",
-        "source-changed",
-        "mode-changed",
-        "conditions-changed",
-        "noticed",
-        "released-at-once",
-        "switched-on-unseen",
-        "engage-refused-by-switch",
-        "overloaded",
-        "overload-over",
-        "stopped-by-overload",
-    ];
-    KINDS.get(code as usize).copied().unwrap_or("other")
 }
 
 fn info_dict<'py>(py: Python<'py>, info: &Info) -> PyResult<Bound<'py, PyDict>> {

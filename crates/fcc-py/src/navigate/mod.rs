@@ -11,7 +11,6 @@ mod pressures;
 mod repeats;
 mod result;
 mod sources;
-mod trials;
 mod turns;
 mod units;
 
@@ -120,7 +119,7 @@ pub(crate) fn navigate<'py>(
         delay: Duration::from_secs_f64(sources.delay_s(LONGEST_WAIT_S)),
         earth_field_ut: field,
     };
-    let wrong = py.detach(|| axes::wrong(&sources, config));
+    let wrong = py.detach(|| axes::wrong(&sources));
     let are_axes_right = wrong.is_none();
     plausible::warn(py, wrong)?;
     let mut run = if is_thesis {

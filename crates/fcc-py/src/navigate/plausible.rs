@@ -50,13 +50,13 @@ const OTHER_SPEEDS: [(&str, f64); 4] = [
     ("cm/s", 0.01),
 ];
 
-/// Refuses what nothing can be computed from, and warns of what is unlikely: whether nothing is.
+/// Refuses what nothing can be computed from, and warns of what is unlikely.
 pub(super) fn check(
     py: Python<'_>,
     series: &[Option<Series>],
     delays_s: &[f64],
     mounting: &Mounting,
-) -> PyResult<bool> {
+) -> PyResult<()> {
     let given: Vec<(&Kind, &Series)> = KINDS
         .iter()
         .zip(series)
@@ -64,7 +64,7 @@ pub(super) fn check(
         .collect();
     // A gyroscope, or else an accelerometer.
     let Some((driving, others)) = given.split_first() else {
-        return Ok(true);
+        return Ok(());
     };
     let of = |name: &str| given.iter().find(|(kind, _)| kind.name == name);
     let mut unlikely = Vec::new();
@@ -105,9 +105,7 @@ pub(super) fn check(
             late((kind, series.as_ref()?), *delay_s, &heading)
         }));
     }
-    let is_likely = unlikely.is_empty();
-    warn(py, unlikely)?;
-    Ok(is_likely)
+    warn(py, unlikely)
 }
 
 pub(super) fn warn(py: Python<'_>, unlikely: impl IntoIterator<Item = String>) -> PyResult<()> {

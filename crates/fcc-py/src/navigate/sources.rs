@@ -46,8 +46,6 @@ pub(super) struct Sources {
     pub(super) events: Vec<Event>,
     pub(super) steps: Vec<Time>,
     pub(super) begin_s: f64,
-    /// Nothing was said of units, signs and clocks.
-    pub(super) is_likely: bool,
     present: [bool; 8],
     delay_s: f64,
     /// Between samples of the accelerometer, unless they come with the
@@ -116,7 +114,6 @@ impl Sources {
             events: Vec::new(),
             steps: driving.times_s.iter().map(|t| time(t - begin_s)).collect(),
             begin_s,
-            is_likely: true,
             present,
             delay_s: 0.0,
             accelerometer_s: interval_s(gyroscope.as_ref(), accelerometer.as_ref()),
@@ -136,7 +133,7 @@ impl Sources {
             }
         }
         // After the samples themselves: in a wrong unit they are not possible.
-        sources.is_likely = plausible::check(py, &series, &delays, mounting)?;
+        plausible::check(py, &series, &delays, mounting)?;
         if of("magnetometer").and_then(units::field).is_some() {
             sources.leave_field_out();
         }

@@ -78,8 +78,6 @@ pub(super) struct Relation {
     /// in it. With its handedness reversed they are those of the other sign, so this is of
     /// the left hand if, and only if, the gyroscope is.
     pub(super) rates: Matrix3<f64>,
-    /// What is added to it in the body.
-    pub(super) of_body: Vector3<f64>,
     /// No other rates explain its turns nearly as well.
     pub(super) is_only_one: bool,
 }
@@ -92,68 +90,63 @@ impl Relation {
             return None;
         }
         let strength: f64 = turns.iter().map(|turn| turn.begin.norm_squared()).sum();
-        let given = Self::left(turns, Matrix3::identity(), false);
-        let is_given = given.0 < WRONG * WRONG * strength;
-        let mut best = given;
+        let given = left(turns, Matrix3::identity(), false);
+        let is_given = given < WRONG * WRONG * strength;
+        let mut best = (given, Matrix3::identity());
         let mut others = Vec::new();
         // Proper rotations: of both hands because rates are reversed, too.
         for axes in signed_permutations().filter(|axes| axes.determinant() > 0.0) {
             for is_reversed in [false, true] {
-                let found = Self::left(turns, axes, is_reversed);
-                others.push(found.0);
-                if !is_given && found.0 < best.0 {
-                    best = found;
+                let found = left(turns, axes, is_reversed);
+                others.push(found);
+                if !is_given && found < best.0 {
+                    best = (found, if is_reversed { -axes } else { axes });
                 }
             }
         }
-        if !is_given && given.0 < CLEARLY * best.0 {
+        if !is_given && given < CLEARLY * best.0 {
             return None;
         }
         let as_good = others.iter().filter(|left| **left < CLEARLY * best.0);
         Some(Self {
+            rates: best.1,
             is_only_one: as_good.count() < 2,
-            ..best.1
         })
     }
 
     pub(super) fn is_as_given(&self) -> bool {
         self.rates == Matrix3::identity()
     }
+}
 
-    /// What rates in these axes leave of how the vector turns, with whatever adds to it in the
-    /// body, as a sum of squares.
-    fn left(turns: &[Turn], axes: Matrix3<f64>, is_reversed: bool) -> (f64, Self) {
-        let mut squares = 0.0;
-        let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
-        for turn in turns {
-            let by = if is_reversed {
-                turn.reversed
-            } else {
-                turn.given
-            };
-            // The same vector in axes in which the rates are as given.
-            let by = axes * by.matrix() * axes.transpose();
-            let apart = turn.end - by * turn.begin;
-            let of_body = Matrix3::identity() - by;
-            squares += apart.norm_squared();
-            normal += of_body.transpose() * of_body;
-            right += of_body.transpose() * apart;
-        }
-        // What does not turn is not told from the vector.
-        let smallest = 1e-3 * normal.trace();
-        let inverse = normal.pseudo_inverse(smallest);
-        let of_body = inverse.map_or_else(|_| Vector3::zeros(), |inverse| inverse * right);
-        let relation = Self {
-            rates: if is_reversed { -axes } else { axes },
-            of_body,
-            is_only_one: true,
+/// What rates in these axes leave of how the vector turns, with whatever adds to it in the
+/// body, as a sum of squares.
+fn left(turns: &[Turn], axes: Matrix3<f64>, is_reversed: bool) -> f64 {
+    let mut squares = 0.0;
+    let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
+    for turn in turns {
+        let by = if is_reversed {
+            turn.reversed
+        } else {
+            turn.given
         };
-        (squares - of_body.dot(&right), relation)
+        // The same vector in axes in which the rates are as given.
+        let by = axes * by.matrix() * axes.transpose();
+        let apart = turn.end - by * turn.begin;
+        let of_body = Matrix3::identity() - by;
+        squares += apart.norm_squared();
+        normal += of_body.transpose() * of_body;
+        right += of_body.transpose() * apart;
     }
+    // What does not turn is not told from the vector.
+    let smallest = 1e-3 * normal.trace();
+    let inverse = normal.pseudo_inverse(smallest);
+    let of_body = inverse.map_or_else(|_| Vector3::zeros(), |inverse| inverse * right);
+    squares - of_body.dot(&right)
 }
 
 /// The axes in each order with each sign.
-pub(super) fn signed_permutations() -> impl Iterator<Item = Matrix3<f64>> {
+fn signed_permutations() -> impl Iterator<Item = Matrix3<f64>> {
     const ORDERS: [[usize; 3]; 6] = [
         [0, 1, 2],
         [1, 0, 2],

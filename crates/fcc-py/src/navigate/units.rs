@@ -22,7 +22,7 @@ const BACKWARD_PA: f64 = -15.0;
 const SELDOM: usize = 10;
 /// What is not upside down shows specific force upwards: its middle one downwards by more
 /// than this, m/s², is of another sign, or of an aircraft on its back.
-pub(super) const DOWNWARD_MPS2: f64 = 5.0;
+const DOWNWARD_MPS2: f64 = 5.0;
 /// The middle strength of a force, m/s²: half of gravity to that of a turn at 60° of bank.
 const WEIGHT_MPS2: RangeInclusive<f64> = 5.0..=20.0;
 

@@ -326,7 +326,7 @@ fn from_python(column: &Column, value: &Bound<'_, PyAny>) -> PyResult<Value> {
 }
 
 /// The name of a variant in Python: `TimedPattern` is `timed-pattern`.
-fn code(variant: &str) -> String {
+pub(crate) fn code(variant: &str) -> String {
     spaced(variant).replace(' ', "-")
 }
 

@@ -7,12 +7,12 @@ mod class;
 mod flight;
 mod shape;
 
-pub(crate) use class::names;
 pub use class::{
     Attributes, Values, are_equal, from_array, from_keywords, register, to_array, written,
 };
 #[cfg(feature = "flight")]
 pub(crate) use class::{as_row, from_row};
+pub(crate) use class::{code, names};
 #[cfg(feature = "flight")]
 pub(crate) use flight::{
     PyEstimate, PyMeasurements, PyRawTruth, PySetpoints, PySurfaces, PyTruth, with_plant,

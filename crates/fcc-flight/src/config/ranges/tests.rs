@@ -84,7 +84,7 @@ fn every_number_of_a_sensor_has_a_range() {
         missing.retain(|key| {
             let is_it = |(range, ..): &&(&str, f64, f64)| {
                 let (of, name) = range.split_once('.').unwrap_or_default();
-                name == key && board::is_of_kind(of, name, kind)
+                name == key && device::is_of_kind(of, name, kind)
             };
             !ranges().any(|range| is_it(&range)) && key != "address"
         });

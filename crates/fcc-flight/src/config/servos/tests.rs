@@ -1,6 +1,6 @@
 use fcc_linux::serial::RcChannel;
 
-use crate::config::{Config, SensorEntry};
+use crate::config::{Config, DeviceEntry};
 
 /// Each error without the name of the text.
 fn lines(text: &str) -> Vec<String> {
@@ -158,7 +158,7 @@ fn a_negative_channel_is_reversed_and_without_one_no_stick_is_read() {
             "[built-in]\n[[sensor]]\nkind = \"rc-receiver\"\npath = \"/dev/ttyS0\"\n{keys}"
         );
         let config = Config::parse(&text, "test").unwrap();
-        let SensorEntry::RcReceiver(section) = &config.sensor[0] else {
+        let Some(DeviceEntry::RcReceiver(section)) = config.sensor[0].device() else {
             panic!("an RC receiver");
         };
         section.channels()

@@ -6,9 +6,6 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use std::{io, thread};
 
-use fcc_timer::not_started;
-
-use super::super::again::StartsLeft;
 use super::saved::Saved;
 use super::{kept_plan, state_file};
 use crate::config::PreparedPlan;
@@ -24,7 +21,6 @@ pub(super) struct Keeper {
     path: PathBuf,
     desk: Arc<Requests>,
     trouble: Receiver<String>,
-    starts: StartsLeft,
     is_over: bool,
 }
 
@@ -37,23 +33,18 @@ struct Requests {
 #[derive(Default)]
 struct Slot {
     requested: Option<DiskRequest>,
-    /// Being executed.
-    in_hand: Option<DiskRequest>,
     is_over: bool,
 }
 
-#[derive(Clone)]
 enum DiskRequest {
     /// A state, and the plan that it needs beside it.
-    Keep(Arc<Saved>, Option<Arc<PreparedPlan>>),
+    Keep(Box<Saved>, Option<Arc<PreparedPlan>>),
     Clear,
 }
 
 impl DiskRequest {
     /// `plan` is the hash of the plan that is beside the state.
     fn execute(&self, path: &Path, plan: &mut Option<u64>) -> io::Result<()> {
-        #[cfg(feature = "fault-injection")]
-        super::super::injection::fail_state_file();
         match self {
             Self::Keep(saved, kept) => {
                 let hash = kept.as_ref().map(|kept| kept.replacement.plan_hash);
@@ -83,7 +74,6 @@ impl Keeper {
             path,
             desk,
             trouble,
-            starts: StartsLeft::new(),
             is_over: false,
         })
     }
@@ -91,7 +81,7 @@ impl Keeper {
     /// Stores this state, replacing the previous one, with the plan that replaced the
     /// configuration's.
     pub(super) fn keep(&self, saved: Saved, plan: Option<Arc<PreparedPlan>>) {
-        self.desk.request(DiskRequest::Keep(Arc::new(saved), plan));
+        self.desk.request(DiskRequest::Keep(Box::new(saved), plan));
     }
 
     /// Removes the stored state.
@@ -99,41 +89,17 @@ impl Keeper {
         self.desk.request(DiskRequest::Clear);
     }
 
-    /// A description of a new problem; none if there is none. Starts the thread
-    /// again if it has ended.
+    /// A description of a new problem; none if there is none.
     pub(super) fn trouble(&mut self) -> Option<String> {
         match self.trouble.try_recv() {
             Ok(words) => Some(words),
             Err(TryRecvError::Empty) => None,
-            Err(TryRecvError::Disconnected) => self.replace(),
+            Err(TryRecvError::Disconnected) if std::mem::replace(&mut self.is_over, true) => None,
+            Err(TryRecvError::Disconnected) => Some(format!(
+                "{}: its thread has ended, so a restart would not know of this flight",
+                self.path.display()
+            )),
         }
-    }
-
-    fn replace(&mut self) -> Option<String> {
-        if self.is_over {
-            return None;
-        }
-        let words = match self.starts.take() {
-            Some(false) => return None,
-            Some(true) => {
-                self.desk.request_again();
-                match start_thread(self.path.clone(), Arc::clone(&self.desk)) {
-                    Ok(trouble) => {
-                        self.trouble = trouble;
-                        "its thread had ended, and was started again".to_owned()
-                    }
-                    Err(error) => format!(
-                        "its thread has ended, and cannot be started: {}",
-                        not_started(error)
-                    ),
-                }
-            }
-            None => {
-                self.is_over = true;
-                "its thread has ended again, so a restart would not know of this flight".to_owned()
-            }
-        };
-        Some(format!("{}: {words}", self.path.display()))
     }
 
     /// Waits, for a limited time, until everything is on the disk.
@@ -158,7 +124,6 @@ fn start_thread(path: PathBuf, desk: Arc<Requests>) -> io::Result<Receiver<Strin
             let (mut failing, mut plan) = (false, None);
             while let Some(requested) = desk.next() {
                 let done = requested.execute(&path, &mut plan);
-                desk.done();
                 if let Err(error) = &done
                     && !failing
                 {
@@ -185,25 +150,11 @@ impl Requests {
         self.filled.notify_one();
     }
 
-    /// Requests again what a thread that has ended did not finish, unless there is
-    /// a later request.
-    fn request_again(&self) {
-        let mut slot = self.slot();
-        let unfinished = slot.in_hand.take();
-        slot.requested = slot.requested.take().or(unfinished);
-    }
-
-    /// The request has been executed.
-    fn done(&self) {
-        self.slot().in_hand = None;
-    }
-
     /// Waits for the next request; none at the end.
     fn next(&self) -> Option<DiskRequest> {
         let mut slot = self.slot();
         loop {
             if let Some(requested) = slot.requested.take() {
-                slot.in_hand = Some(requested.clone());
                 return Some(requested);
             }
             if slot.is_over {

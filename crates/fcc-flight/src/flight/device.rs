@@ -1,16 +1,20 @@
-//! The sensors of a board: their threads, and what is wrong with them.
+//! Devices: their threads, and what is wrong with them.
 
+use std::io;
 use std::time::{Duration, Instant};
 
 use fcc_core::flight::Measurements;
 use fcc_core::framework::{Controller, Sensor};
+use fcc_linux::gpio::{GpioLine, GpioSwitch};
+use fcc_linux::gpsd::Gpsd;
 use fcc_linux::iio::Iio;
-use fcc_linux::{DeviceOwner, DeviceSensor, DeviceStatus, DeviceThread, RawValues};
+use fcc_linux::serial::{GnssReceiver, RcReceiver};
+use fcc_linux::{Clock, DeviceOwner, DeviceStatus, DeviceThread, monotonic};
 
 use super::assemble::AssemblyError;
-use super::calibrated::Calibrated;
 use super::observer::{Access, Observer};
-use crate::config::BoardSensor;
+use super::phone::{PhoneHost, open_phone};
+use crate::config::DeviceEntry;
 
 /// A device, and its state for programs.
 pub(crate) struct WatchedDevice {
@@ -39,49 +43,76 @@ impl WatchedDevice {
 /// hundredth value is damaged would fill the recording.
 const QUIET: Duration = Duration::from_secs(5);
 
-/// Starts the thread that reads a device. One that is not connected is no error:
-/// it may be, later.
-pub(super) fn board_sensor(
-    board: &BoardSensor<'_>,
-) -> Result<(Box<dyn Sensor<Measurements>>, WatchedDevice), AssemblyError> {
-    let (sensor, watched) = uncalibrated(board)?;
-    let sensor: Box<dyn Sensor<Measurements>> = match board.calibration().to_core() {
-        Some(calibration) => Box::new(Calibrated::new(Box::new(sensor), &calibration)),
-        None => Box::new(sensor),
-    };
-    Ok((sensor, watched))
-}
+/// A sensor, and the devices that it is made of.
+pub(crate) type WatchedSensor = (Box<dyn Sensor<Measurements>>, Vec<WatchedDevice>);
 
-/// The same without its calibration.
-pub(crate) fn uncalibrated(
-    board: &BoardSensor<'_>,
-) -> Result<(DeviceSensor<RawValues>, WatchedDevice), AssemblyError> {
-    let (kind, name) = (board.name(), board.describe());
-    let (silent_after, fallback_after) = board.patience();
+/// Starts the thread that reads a device, uncalibrated. One that is not connected is no
+/// error: it may be, later.
+pub(crate) fn open_device(
+    device: &DeviceEntry,
+    phone: &mut Option<&mut dyn PhoneHost>,
+) -> Result<WatchedSensor, AssemblyError> {
+    if let DeviceEntry::Phone(section) = device {
+        return open_phone(section, phone.take());
+    }
+    let (kind, name) = (device.name(), device.describe());
+    let (silent_after, fallback_after) = device.patience();
     let thread = DeviceThread::new(kind)
         .named(name.clone())
         .silent_after(silent_after)
         .fallback_after(fallback_after);
-    let status = thread.status();
-    let started = match board {
-        BoardSensor::Chip(kind, section) => {
-            let config = section.to_linux(*kind);
-            thread.start(move || config.open())
-        }
-        BoardSensor::Iio(section) => {
-            let config = section.to_linux();
-            let mut owner = DeviceOwner::default();
-            thread.start(move || {
-                owner.claim(&config.folder()?)?;
-                Iio::open(&config)
-            })
-        }
-        BoardSensor::Phone(_) => return Err(AssemblyError::NoPhone),
-    };
-    match started {
-        Ok(sensor) => Ok((sensor, WatchedDevice::new(kind, name, status))),
+    let watched = WatchedDevice::new(kind, name.clone(), thread.status());
+    match started(device, thread) {
+        Ok(sensor) => Ok((sensor, vec![watched])),
         Err(source) => Err(AssemblyError::Device { name, source }),
     }
+}
+
+fn started(
+    device: &DeviceEntry,
+    thread: DeviceThread,
+) -> io::Result<Box<dyn Sensor<Measurements>>> {
+    let mut owner = DeviceOwner::default();
+    Ok(match device {
+        DeviceEntry::Chip(section) => {
+            let config = section.to_linux();
+            Box::new(thread.start(move || config.open())?)
+        }
+        DeviceEntry::Iio(section) => {
+            let config = section.to_linux();
+            Box::new(thread.start(move || {
+                owner.claim(&config.folder()?)?;
+                Iio::open(&config)
+            })?)
+        }
+        DeviceEntry::GnssSerial(section) => {
+            let settings = section.to_linux();
+            Box::new(thread.start(move || {
+                owner.claim(&settings.line.path)?;
+                GnssReceiver::open(&settings, monotonic)
+            })?)
+        }
+        DeviceEntry::Gpsd(section) => {
+            let settings = section.to_linux();
+            Box::new(thread.start(move || Gpsd::open(&settings, monotonic))?)
+        }
+        DeviceEntry::RcReceiver(section) => {
+            let (protocol, channels) = (section.protocol, section.channels());
+            let line = protocol.line(&section.path);
+            Box::new(thread.start(move || {
+                owner.claim(&line.path)?;
+                RcReceiver::open(&line, protocol, channels, monotonic)
+            })?)
+        }
+        DeviceEntry::GpioSwitch(section) => {
+            let (pin, pull, settles_in) = (section.pin(), section.pull, section.settles_in());
+            Box::new(thread.start(move || {
+                let line = GpioLine::input(&pin, pull)?;
+                Ok(GpioSwitch::new(line, settles_in, Clock::default()))
+            })?)
+        }
+        DeviceEntry::Phone(_) => return Err(io::ErrorKind::Unsupported.into()),
+    })
 }
 
 /// Reports what is wrong with a device, and when it is read again: the loop's

@@ -2,7 +2,7 @@ use std::time::Duration;
 
 use fcc_linux::chip::{ChipKind, Wiring};
 
-use super::BoardSensor;
+use super::DeviceEntry;
 use crate::config::{Config, SensorEntry};
 
 fn lines(text: &str) -> Vec<String> {
@@ -16,10 +16,10 @@ fn a_chip_has_the_usual_wiring() {
                 [[sensor]]\nkind = \"bmp388\"\nfallback_after_ms = 200\n\
                 [sensor.calibration.static_pressure]\nbias_pa = 30\n";
     let config = Config::parse(text, "test").unwrap();
-    let found: Vec<_> = config.sensors().filter_map(SensorEntry::board).collect();
+    let found: Vec<_> = config.sensors().filter_map(SensorEntry::device).collect();
     let [
-        BoardSensor::Chip(first, imu),
-        barometer @ BoardSensor::Chip(_, section),
+        DeviceEntry::Chip(imu),
+        barometer @ DeviceEntry::Chip(section),
     ] = found[..]
     else {
         panic!("{found:?}");
@@ -27,15 +27,12 @@ fn a_chip_has_the_usual_wiring() {
     let spi = Wiring::Spi {
         path: "/dev/spidev0.0".into(),
     };
-    assert_eq!(
-        (first, imu.to_linux(first).wiring),
-        (ChipKind::Icm42688, spi)
-    );
+    assert_eq!((imu.kind, imu.to_linux().wiring), (ChipKind::Icm42688, spi));
     let i2c = Wiring::I2c {
         path: "/dev/i2c-1".into(),
         address: 0x76,
     };
-    assert_eq!(section.to_linux(ChipKind::Bmp388).wiring, i2c);
+    assert_eq!(section.to_linux().wiring, i2c);
     let (silent, fallback) = barometer.patience();
     assert_eq!(
         (silent, fallback),
@@ -43,6 +40,7 @@ fn a_chip_has_the_usual_wiring() {
     );
     let bias = barometer
         .calibration()
+        .unwrap()
         .to_core()
         .unwrap()
         .static_pressure
