@@ -34,6 +34,7 @@ class _Commanded(TypedDict, total=False):
     pause: float | None
     return_home: float | None
     land: float | None
+    go_around: float | None
     go_to_latitude_rad: float | None
     go_to_longitude_rad: float | None
     go_to_altitude_m: float | None
@@ -516,7 +517,7 @@ class Setpoints:
 
     @property
     def guidance_captured_heading_rad(self) -> float:
-        """Magnetic heading, rad, continuous through full turns."""
+        """Magnetic heading, rad, clockwise from magnetic north."""
 
     @property
     def guidance_captured_altitude_m(self) -> float:
@@ -580,7 +581,7 @@ class Setpoints:
 
 @final
 class Estimate:
-    """Navigation's estimate; the heading continues through full turns."""
+    """Navigation's estimate."""
 
     # <schema>
     @property
@@ -593,7 +594,7 @@ class Estimate:
 
     @property
     def heading_rad(self) -> float:
-        """Magnetic heading, rad, continuous through full turns."""
+        """Magnetic heading, rad, clockwise from magnetic north."""
 
     @property
     def roll_rate_radps(self) -> float:

@@ -43,6 +43,10 @@ _ICAO = "sim/aircraft/view/acf_ICAO"
 """A string: its elements are characters."""
 _ALTITUDE = "sim/cockpit2/gauges/indicators/altitude_ft_pilot"
 _BATTERY = "sim/cockpit2/electrical/battery_voltage_actual_volts[0]"
+_ENGINE_SPEED = "sim/cockpit2/engine/indicators/engine_speed_rpm[0]"
+_ON_GROUND = "sim/flightmodel/failures/onground_any"
+RPOS = "RPOS"
+"""The position by its own message, beside the datarefs."""
 
 
 def _pitch_deg(r: Readout) -> float:
@@ -125,11 +129,9 @@ _READABLE: dict[str, Getter] = {
     "sim/network/misc/network_time_sec": lambda r: r.network_time_s,
     _T + "framerate_period": lambda r: r.smoothed_period_s,
     "sim/operation/misc/frame_rate_period": lambda r: r.frame_period_s,
-    "sim/cockpit2/engine/indicators/engine_speed_rpm[0]": lambda r: (
-        r.state.engine_speed_radps * 60.0 / math.tau
-    ),
+    _ENGINE_SPEED: lambda r: r.state.engine_speed_radps * 60.0 / math.tau,
     _BATTERY: lambda r: r.state.battery_voltage_v,
-    "sim/flightmodel/failures/onground_any": lambda r: float(r.state.on_ground),
+    _ON_GROUND: lambda r: float(r.state.on_ground),
     "sim/aircraft/engine/acf_num_engines": lambda r: float(r.cockpit.engines),
     "sim/version/xplane_internal_version": lambda r: float(r.dialect.version),
 }
@@ -166,6 +168,14 @@ _TELLS: dict[str, tuple[str, ...]] = {
     "airspeed_mps": (_P + "indicated_airspeed",),
     "altitude_m": (_ALTITUDE, _P2 + "pressure_altitude"),
     "battery_voltage_v": (_BATTERY,),
+    "latitude_rad": (RPOS, _P + "latitude", _P + "local_x", _P + "local_y", _P + "local_z"),
+    "longitude_rad": (RPOS, _P + "longitude"),
+    "elevation_m": (RPOS, _P + "elevation"),
+    "north_mps": (_P + "local_vz", _P + "groundspeed", _P + "hpath"),
+    "east_mps": (_P + "local_vx",),
+    "down_mps": (_P + "local_vy", _P + "vh_ind_fpm", _P + "vpath"),
+    "engine_speed_radps": (_ENGINE_SPEED,),
+    "on_ground": (_ON_GROUND,),
 }
 """The datarefs that are missing when the sensor for a field of `state.State` is silent.
 Accelerations are along the world's axes, so any missing one removes all three."""

@@ -18,6 +18,7 @@ from enum import Enum
 
 import numpy as np
 
+from .local_axes import EARTH_RADIUS_M
 from .state import State
 from .units import calibrated_airspeed_mps, impact_pressure_pa, wrap_heading_rad
 
@@ -168,11 +169,11 @@ class _Running:
         return self._kept
 
     def _bias(self, _time_s: float, values: _Values) -> _Values:
-        return {name: _add(name, value, self.fault.amount) for name, value in values.items()}
+        return {name: _add(name, values, self.fault.amount) for name in values}
 
     def _drift(self, time_s: float, values: _Values) -> _Values:
         by = self.fault.amount * (time_s - self.fault.begins_s)
-        drifted = {name: _add(name, value, by) for name, value in values.items()}
+        drifted = {name: _add(name, values, by) for name in values}
         airspeed_mps = drifted.get("airspeed_mps")
         return (
             drifted if airspeed_mps is None else drifted | {"airspeed_mps": max(0.0, airspeed_mps)}
@@ -210,15 +211,15 @@ class _Running:
 
     def _noise(self, _time_s: float, values: _Values) -> _Values:
         return {
-            name: _add(name, value, self.fault.amount * self._random.standard_normal())
-            for name, value in values.items()
+            name: _add(name, values, self.fault.amount * self._random.standard_normal())
+            for name in values
         }
 
     def _round(self, _time_s: float, values: _Values) -> _Values:
-        step = self.fault.amount
         return {
             name: None if value is None else _in_range(name, round(value / step) * step)
             for name, value in values.items()
+            for step in (self.fault.amount * _unit(name, values),)
         }
 
     def _slow(self, time_s: float, values: _Values) -> _Values:
@@ -256,8 +257,17 @@ class _Running:
         return dict.fromkeys(values) if self.draw() else values
 
 
-def _add(channel: str, value: float | None, amount: float) -> float | None:
-    return None if value is None else _in_range(channel, value + amount)
+def _add(channel: str, values: _Values, amount: float) -> float | None:
+    value = values[channel]
+    return None if value is None else _in_range(channel, value + amount * _unit(channel, values))
+
+
+def _unit(channel: str, values: _Values) -> float:
+    """Return a unit of the fault's amount in that of a channel: of a position, metres in rad."""
+    if channel not in ("latitude_rad", "longitude_rad"):
+        return 1.0
+    latitude_rad = values["latitude_rad"] if channel == "longitude_rad" else 0.0
+    return 1.0 / (EARTH_RADIUS_M * math.cos(latitude_rad or 0.0))
 
 
 def _in_range(channel: str, value: float) -> float:

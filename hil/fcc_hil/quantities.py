@@ -28,6 +28,9 @@ _SPEED = {"kt": 1.0, "m/s": KT_TO_MPS, "km/h": 1.852}
 _CLIMB = {"ft/min": 1.0, "m/s": FT_TO_M / 60.0}
 _FORCE = {"g": 1.0, "m/s2": STANDARD_GRAVITY_MPS2}
 _VOLTAGE = {"V": 1.0}
+_DISTANCE = {"m": 1.0}
+_OVER_GROUND = {"m/s": 1.0}
+_SHAFT = {"rpm": 1.0, "rad/s": math.tau / 60.0}
 _FRACTION = {"": 1.0}
 
 
@@ -158,6 +161,12 @@ pitch_rate = _rate("pitch_rate", _RATES[1])
 yaw_rate = _rate("yaw_rate", _RATES[2])
 specific_force = Quantity("specific_force", "g", _FORCE, None, _FORCES)
 battery = Quantity("battery", "V", _VOLTAGE, None, ("battery_voltage_v",))
+position = Quantity(
+    "position", "m", _DISTANCE, None, ("latitude_rad", "longitude_rad", "elevation_m")
+)
+velocity = Quantity("velocity", "m/s", _OVER_GROUND, None, ("north_mps", "east_mps", "down_mps"))
+engine_speed = Quantity("engine_speed", "rpm", _SHAFT, None, ("engine_speed_radps",))
+weight_on_wheels = Quantity("weight_on_wheels", "", _FRACTION, None, ("on_ground",))
 
 QUANTITIES: dict[str, Quantity] = {
     quantity.name: quantity
@@ -165,6 +174,7 @@ QUANTITIES: dict[str, Quantity] = {
         *(heading, altitude, airspeed, bank, pitch, climb, lateral),
         *(elevator, aileron, rudder, throttle),
         *(attitude, body_rates, roll_rate, pitch_rate, yaw_rate, specific_force, battery),
+        *(position, velocity, engine_speed, weight_on_wheels),
     )
 }
 
@@ -174,7 +184,10 @@ SENSORS: dict[str, tuple[str, ...]] = {
 }
 """The sensors that the autopilot flies by, with their channels."""
 
-READINGS = SENSORS | {battery.name: battery.channels}
+READINGS = SENSORS | {
+    quantity.name: quantity.channels
+    for quantity in (battery, position, velocity, engine_speed, weight_on_wheels)
+}
 """Everything that is measured and can have a fault."""
 
 

@@ -11,7 +11,7 @@ import random
 from dataclasses import dataclass, field
 
 from .cockpit import Cockpit
-from .datarefs import Getter, getter
+from .datarefs import RPOS, Getter, getter
 from .faults import Address
 from .protocol import Dialect, RequestPosition, Subscribe, rpos_reply, rref_replies
 from .readout import Readout
@@ -91,7 +91,7 @@ class Subscriptions:
         for client, state in self._clients.items():
             paths = [value.path for value in state.values.values()]
             if state.position is not None:
-                paths.append("RPOS")
+                paths.append(RPOS)
             if paths:
                 listing[client] = paths
         return listing
@@ -114,6 +114,7 @@ class Subscriptions:
             if self._shuffle is not None:
                 self._shuffle(pairs)
             datagrams += [(client, reply) for reply in rref_replies(pairs, self._dialect)]
-            if state.position is not None and state.position.take(now_s):
+            is_due = state.position is not None and state.position.take(now_s)
+            if is_due and RPOS not in withheld:
                 datagrams.append((client, rpos_reply(readout.position())))
         return datagrams

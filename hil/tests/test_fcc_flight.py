@@ -35,6 +35,20 @@ def test_the_timed_pattern_is_flown_and_scored() -> None:
     assert modes == ["mode: timed-pattern, was none"]
 
 
+def test_every_direction_is_in_one_turn() -> None:
+    """Eight turns of 90° are two full ones; the columns are those that name a heading in rad."""
+    records = fcc.fly().records
+    names = [name for name in records.dtype.names or () if name.endswith("heading_rad")]
+    assert len(names) >= 4, names
+    for name in names:
+        assert np.all((records[name] >= 0.0) & (records[name] < 2.0 * np.pi)), name
+    off = records["estimated_heading_rad"] - records["heading_rad"]
+    engaged = records["state"] == fcc.STATES.index("engaged")
+    # By the shorter way at north.
+    assert np.degrees(np.abs(np.angle(np.exp(1j * off[engaged])))).max() < 5.0
+    assert np.degrees(np.median(np.abs(off[engaged]))) < 1.0
+
+
 def test_the_same_seed_flies_the_same_flight_to_the_last_bit() -> None:
     rough = fcc.Config().replace({"built-in.gusts": "severe", "built-in.seed": 7})
     one, same = fcc.fly(rough, seconds=20.0), fcc.fly(rough, seconds=20.0)

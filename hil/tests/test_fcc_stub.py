@@ -7,11 +7,13 @@ the schema anew.
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import fcc
+import pytest
 
 STUB = Path(__file__).parents[2] / "crates/fcc-py/fcc.pyi"
 LONGEST = 80
@@ -69,6 +71,24 @@ def test_the_values_of_the_stub_are_those_of_the_schema() -> None:
     if "FCC_UPDATE" in os.environ:
         STUB.write_text(declared)
     assert STUB.read_text() == declared, "see the head of this test"
+
+
+def _commands() -> set[str]:
+    with pytest.raises(ValueError, match="choose of ") as refused:
+        fcc.Machine().command(**{"none": 1.0})  # type: ignore[call-arg]
+    return set(str(refused.value).partition("choose of ")[2].split(", "))
+
+
+def test_the_stub_has_every_command() -> None:
+    body = STUB.read_text().partition("class _Commanded")[2].partition("\n\n__version__")[0]
+    assert set(re.findall(r"^    (\w+): float", body, re.MULTILINE)) == _commands()
+
+
+def test_the_documents_have_every_command() -> None:
+    page = (STUB.parents[2] / "docs/telemetry.md").read_text()
+    table = page.partition("| name of a set point")[2].partition("\n\n")[0]
+    first = "".join(row.split("|")[1] for row in table.splitlines()[2:])
+    assert set(re.findall(r"`(\w+)`", first)) == _commands()
 
 
 def test_the_stubs_match_the_module(tmp_path: Path) -> None:

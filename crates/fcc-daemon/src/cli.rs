@@ -267,8 +267,9 @@ pub struct ReplayArgs {
 #[derive(Args, Debug)]
 pub struct TopArgs {
     /// The daemon's name, as given by --instance or in its configuration
-    #[arg(long, value_name = "NAME", default_value_t = Instance::default())]
-    pub instance: Instance,
+    /// [default: that of the only one that runs, or else fccd]
+    #[arg(long, value_name = "NAME")]
+    pub instance: Option<Instance>,
     /// Print one snapshot as JSON and end
     #[arg(long)]
     pub json: bool,

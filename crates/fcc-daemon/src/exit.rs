@@ -25,7 +25,7 @@ macro_rules! exits {
 exits! {
     Success = 0, "success";
     Failure = 1, "the operating system, the network or a part of the program failed";
-    Usage = 2, "the command line is wrong, the configuration or the plan is wrong or cannot be read, or a file is no recording, or one of another plant";
+    Usage = 2, "the command line is wrong, or a configuration, a plan, a recording or a folder of recordings is wrong or cannot be read";
     Failsafe = 3, "the flight entered failsafe";
     RealtimeDenied = 4, "a real-time request was denied and realtime.strict is set";
     NotReleased = 5, "the controls may not have been released";

@@ -68,6 +68,7 @@ pub use info::Info;
 pub use lateness::{LATENESS_BOUNDS_NS, LatenessCounts};
 #[cfg(fuzzing)]
 pub use message::read_message;
+pub use place::running;
 #[cfg(feature = "flight")]
 pub use publisher::Publisher;
 pub use publisher::PublisherOf;

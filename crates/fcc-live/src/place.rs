@@ -195,7 +195,7 @@ pub(super) fn look(instance: &Instance) -> Presence {
 }
 
 /// The names by which this user's programs publish now, sorted.
-pub(super) fn running() -> Vec<String> {
+pub fn running() -> Vec<Instance> {
     let of_user = RunFolder::all_of_this_user();
     let found = of_user.iter().flat_map(|all| entries(all.as_path()));
     let names = found.filter_map(|path| {
@@ -203,15 +203,16 @@ pub(super) fn running() -> Vec<String> {
         name.parse::<Instance>().ok()
     });
     let is_here = |name: &Instance| matches!(look(name), Presence::Here(_));
-    let mut names: Vec<_> = names.filter(is_here).map(|name| name.to_string()).collect();
+    let mut names: Vec<_> = names.filter(is_here).collect();
     names.sort();
     names.dedup();
     names
 }
 
 /// What an error says of them.
-pub(super) fn in_words(running: &[String]) -> String {
-    match running {
+pub(super) fn in_words(running: &[Instance]) -> String {
+    let names: Vec<_> = running.iter().map(ToString::to_string).collect();
+    match names.as_slice() {
         [] => String::new(),
         names => format!("; running here: {}", names.join(", ")),
     }

@@ -5,7 +5,7 @@
 use std::fmt::Write as _;
 use std::mem::offset_of;
 
-use fcc_live::{Event, Info, LAYOUT, Status};
+use fcc_live::{EVENT_HISTORY, Event, Info, LAYOUT, MAX_WATCHERS, RECORD_BUFFER, Status};
 
 const DOCUMENT: &str = include_str!("../../../docs/telemetry.md");
 
@@ -38,7 +38,14 @@ fn assert_documented(table: &str) {
 #[test]
 fn the_version_is_the_documented_one() {
     assert_eq!(LAYOUT, DESCRIBED);
-    assert!(DOCUMENT.contains(&format!("record/v{LAYOUT}`")));
+    for topic in ["columns", "record", "event", "status"] {
+        assert!(DOCUMENT.contains(&format!("{topic}/v{LAYOUT}`")), "{topic}");
+    }
+    assert!(DOCUMENT.contains(&format!("the one you support (here: {LAYOUT})")));
+    assert!(DOCUMENT.contains(&format!("for up to {MAX_WATCHERS} programs")));
+    let buffers = format!("1,{:03} records are one second", RECORD_BUFFER - 1_000);
+    assert!(DOCUMENT.contains(&buffers), "{buffers}");
+    assert!(DOCUMENT.contains(&format!("the last {EVENT_HISTORY} events")));
 }
 
 #[test]

@@ -1,8 +1,10 @@
 //! Whether a replay gives the same outputs, bit for bit.
 
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-use fcc_core::framework::schema::Schema;
+use fcc_core::blocks::wrap_two_pi;
+use fcc_core::framework::schema::{Schema, Value};
 use fcc_core::framework::{Controller, Record};
 use fcc_telemetry::schema::Column;
 use serde::Serialize;
@@ -87,6 +89,7 @@ impl Identity {
             let (Some(&was), Some(&is)) = (was.get(*index), is.get(*index)) else {
                 continue;
             };
+            let was = in_one_turn(output, was);
             if was.bits() == is.bits() {
                 continue;
             }
@@ -155,6 +158,14 @@ impl Identity {
             }
         }
         text
+    }
+}
+
+/// A direction in one turn: earlier recordings have some that continue through full turns.
+fn in_one_turn(output: &Column, value: Value) -> Value {
+    match value {
+        Value::Number(rad) if output.range == Some((0.0, TAU)) => Value::Number(wrap_two_pi(rad)),
+        value => value,
     }
 }
 

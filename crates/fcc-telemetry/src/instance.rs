@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 /// assert_eq!(Instance::default().to_string(), "fccd");
 /// # Ok::<(), fcc_telemetry::InstanceError>(())
 /// ```
-#[derive(Clone, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Instance(String);
 

@@ -65,9 +65,14 @@ impl<C: Telemetry> Picture<C> {
         self.record.is_some() && self.status.is_some()
     }
 
-    /// Seconds since the program began to publish.
+    /// Seconds since the loop's first tick, as in its log and its recording.
     pub(super) fn seconds(&self, time_ns: i64) -> f64 {
-        time_ns.saturating_sub(self.info.started_ns) as f64 * 1e-9
+        let first_ns = self.record.as_ref().map_or(self.info.started_ns, |record| {
+            let periods = record.tick.number.saturating_sub(1) as f64;
+            let since_ns = (periods * 1e9 / self.info.rate_hz) as i64;
+            record.tick.scheduled.as_nanos().saturating_sub(since_ns)
+        });
+        time_ns.saturating_sub(first_ns) as f64 * 1e-9
     }
 
     /// Takes the newest record.

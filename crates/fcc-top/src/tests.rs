@@ -26,7 +26,8 @@ fn picture() -> Picture<Autopilot> {
         (2.0, EventCode::StateChanged, "standby -> engaged"),
     ] {
         picture.event(Event {
-            time_ns: (at_s * 1e9) as i64,
+            // The first tick is a period after publishing began, and time counts from it.
+            time_ns: ((0.025 + at_s) * 1e9) as i64,
             code: code as u32,
             text: Text::new(text),
             ..Event::default()

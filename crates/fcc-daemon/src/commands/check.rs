@@ -72,7 +72,7 @@ fn check_file(path: &Path) -> (Checked, Result<String, ConfigError>) {
                 config.tick.rate_hz, config.tick.timer
             );
             for remark in &remarks {
-                let _ = write!(text, "\n{file}: {remark}");
+                let _ = write!(text, "\n{file}: remark: {remark}");
             }
             let checked = Checked {
                 file,

@@ -54,9 +54,8 @@ impl Failure {
 impl From<OpenError> for Failure {
     fn from(error: OpenError) -> Self {
         let exit = match error {
-            OpenError::AnotherPlant { .. } | OpenError::NotARecording { .. } => Exit::Usage,
             OpenError::CutInDescription { .. } => Exit::Incomplete,
-            _ => Exit::Failure,
+            _ => Exit::Usage,
         };
         Self::of(exit, error)
     }

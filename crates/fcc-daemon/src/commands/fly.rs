@@ -5,7 +5,9 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use fcc_report::FlownPlan;
 use fcc_runtime::SpawnError;
+use serde::Serialize;
 use signal_hook::consts::{SIGINT, SIGTERM};
 
 use super::calibrate::apply_calibration;
@@ -14,7 +16,7 @@ use super::lookup::{LONG, looking_up};
 use super::outcome;
 use crate::cli::{FlyArgs, RecordingArgs};
 use crate::exit::Exit;
-use crate::observers::{Announcer, Beginning, Service, StatusLine, aircraft};
+use crate::observers::{Announcer, Beginning, PlanResult, Service, StatusLine, aircraft};
 use crate::output::{self, Printer};
 #[cfg(feature = "live")]
 use crate::process::own_program;
@@ -100,6 +102,8 @@ pub(super) fn conduct(
         observers.push(Box::new(StatusLine::new(aircraft::describe)));
     }
     observers.push(Box::new(Service::from_environment()));
+    let flown_plan = PlanResult::default();
+    observers.push(Box::new(flown_plan.clone()));
     let flown = fly_assembly(
         assembly,
         &config.tick,
@@ -115,10 +119,17 @@ pub(super) fn conduct(
         };
         Failure::of(exit, error)
     })?;
-    Ok(report(&outcome, json))
+    Ok(report(&outcome, &flown_plan.0.borrow(), json))
 }
 
-fn report(outcome: &Outcome, json: bool) -> Exit {
+fn report(outcome: &Outcome, flown_plan: &FlownPlan, json: bool) -> Exit {
+    #[derive(Serialize)]
+    struct Printed<'a> {
+        #[serde(flatten)]
+        outcome: &'a Outcome,
+        #[serde(skip_serializing_if = "FlownPlan::is_empty")]
+        flown_plan: &'a FlownPlan,
+    }
     // A reader that has left may end the program here: the controls are
     // released, and the recording is on the disk.
     for signal in [SIGTERM, SIGINT] {
@@ -127,9 +138,13 @@ fn report(outcome: &Outcome, json: bool) -> Exit {
     }
     let exit = outcome.conclusion.into();
     if json {
-        return output::json(outcome, exit);
+        let printed = Printed {
+            outcome,
+            flown_plan,
+        };
+        return output::json(&printed, exit);
     }
-    output::result(outcome::text(outcome), exit)
+    output::result(outcome::text(outcome, flown_plan), exit)
 }
 
 /// Reads the plan of the command line, or of the configuration, and checks it.

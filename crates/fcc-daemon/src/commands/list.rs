@@ -23,9 +23,13 @@ pub(super) fn list(args: &ListArgs) -> Result<Exit, Failure> {
             None
         }
         found => Some(found.map_err(|error| {
-            Failure::new(format_args!(
-                "{folder}: cannot be listed: {error}. Give the folder that flights were recorded to"
-            ))
+            Failure::of(
+                Exit::Usage,
+                format_args!(
+                    "{folder}: cannot be listed: {error}. Give the folder that flights were \
+                     recorded to"
+                ),
+            )
         })?),
     };
     let is_there = found.is_some();

@@ -3,10 +3,10 @@
 use std::fmt::Write as _;
 
 use fcc_flight::flight::{Outcome, Pace};
-use fcc_report::{flight_table, timing_table};
+use fcc_report::{FlownPlan, flight_table, timing_table};
 
 /// Tables, and the state of the recording.
-pub(super) fn text(outcome: &Outcome) -> String {
+pub(super) fn text(outcome: &Outcome, plan: &FlownPlan) -> String {
     let mut text = String::new();
     // In lockstep there is no real time to keep.
     if outcome.pace == Pace::RealTime {
@@ -16,6 +16,10 @@ pub(super) fn text(outcome: &Outcome) -> String {
     if let Some(flight) = outcome.flight.as_ref().filter(|f| !f.legs.is_empty()) {
         text.push_str(&flight_table(flight, outcome.scored_by));
         text.push_str("\n\n");
+    }
+    if !plan.is_empty() {
+        let touched = plan.finding().unwrap_or_default();
+        let _ = writeln!(text, "{}\n\n{touched}\n", plan.text());
     }
     if let Some(why) = &outcome.not_scored {
         let _ = writeln!(text, "no score: {why}\n");

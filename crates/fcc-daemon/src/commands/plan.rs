@@ -74,7 +74,7 @@ fn print(checked: &Checked, exit: Exit) -> Exit {
         let hash = sha256.get(..12).unwrap_or_default();
         let mut text = format!("{file}: valid: {} items, {hash}", checked.items);
         for remark in &checked.remarks {
-            let _ = write!(text, "\n{file}: {remark}");
+            let _ = write!(text, "\n{file}: remark: {remark}");
         }
         return output::result(text, exit);
     }

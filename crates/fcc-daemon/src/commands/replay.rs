@@ -51,10 +51,8 @@ pub(super) fn replay(args: &ReplayArgs) -> Result<Exit, Failure> {
 /// Why files are no recording that can be replayed.
 pub(super) fn not_opened(error: ChainError) -> Failure {
     let exit = match error {
-        ChainError::Open(OpenError::AnotherPlant { .. } | OpenError::NotARecording { .. }) => {
-            Exit::Usage
-        }
-        ChainError::Open(OpenError::Io { .. }) => Exit::Failure,
+        ChainError::Open(OpenError::CutInDescription { .. }) => Exit::NotReplayed,
+        ChainError::Open(error) => return error.into(),
         _ => Exit::NotReplayed,
     };
     Failure::of(exit, error)

@@ -1,7 +1,8 @@
 //! `fccd top`: a flight on this machine, live.
 
 use fcc_core::flight::Autopilot;
-use fcc_live::Watcher;
+use fcc_live::{Watcher, running};
+use fcc_telemetry::Instance;
 
 use super::failure::Failure;
 use crate::cli::TopArgs;
@@ -10,11 +11,39 @@ use crate::output;
 
 /// Watches a daemon.
 pub(super) fn top(args: &TopArgs) -> Result<Exit, Failure> {
+    let instance = args.instance.clone();
+    let instance = instance.unwrap_or_else(|| the_one(&running()));
     if args.json {
-        let snapshot = Watcher::open(&args.instance).and_then(fcc_top::snapshot);
+        let snapshot = Watcher::open(&instance).and_then(fcc_top::snapshot);
         let snapshot = snapshot.map_err(Failure::new)?;
         return Ok(output::json(&snapshot, Exit::Success));
     }
-    fcc_top::top::<Autopilot>(&args.instance).map_err(Failure::new)?;
+    fcc_top::top::<Autopilot>(&instance).map_err(Failure::new)?;
     Ok(Exit::Success)
+}
+
+/// The only daemon that runs, or else the one without another name.
+fn the_one(running: &[Instance]) -> Instance {
+    match running {
+        [one] => one.clone(),
+        _ => Instance::default(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_only_daemon_is_watched_whatever_its_name() {
+        let named = |names: &[&str]| names.iter().map(|name| name.parse().unwrap()).collect();
+        let one = |names: &[&str]| -> String {
+            let running: Vec<Instance> = named(names);
+            the_one(&running).to_string()
+        };
+        assert_eq!(one(&[]), "fccd");
+        assert_eq!(one(&["left"]), "left");
+        assert_eq!(one(&["fccd", "left"]), "fccd");
+        assert_eq!(one(&["left", "right"]), "fccd");
+    }
 }

@@ -4,7 +4,7 @@ use fcc_core::framework::{Reading, State};
 use fcc_telemetry::units::{M_FT, MPS_KT};
 use fcc_telemetry::{FlightRecord, ShownAltitude};
 
-/// Attitude, altitude and airspeed, and while engaged what is commanded; none
+/// Heading, altitude and airspeed, and while engaged the mode and what is commanded; none
 /// before they are known. What no sensor measures, navigation knows from raw readings.
 pub(crate) fn describe(record: &FlightRecord) -> Option<String> {
     let measured = &record.measurements;
@@ -23,41 +23,31 @@ pub(crate) fn describe(record: &FlightRecord) -> Option<String> {
     };
     let heading = compass(known(&measured.heading_rad, estimate.heading_rad));
     let shown = ShownAltitude::of(record);
-    let name = shown.name;
+    let name = match shown.name {
+        "pressure altitude" => "p.alt",
+        "altitude" => "alt",
+        name => name,
+    };
     let altitude = if measured.altitude_m.is_never() && !is_raw {
-        "    –".to_owned()
+        "   –".to_owned()
     } else {
         let altitude_m = known(&measured.altitude_m, estimate.altitude_m);
-        format!("{:5.0}", (altitude_m - shown.datum_m) * M_FT)
+        format!("{:4.0}", (altitude_m - shown.datum_m) * M_FT)
     };
-    let qnh = shown
-        .setting_hpa
-        .map_or_else(String::new, |hpa| format!("  QNH {hpa:.1} hPa"));
     let airspeed = known(&measured.airspeed_mps, estimate.airspeed_mps) * MPS_KT;
-    let roll_rad = if measured.attitude.is_never() {
-        estimate.roll_rad
-    } else {
-        measured.attitude.value.roll_rad
-    };
-    // Plus zero, because a rounded -0 looks like an error.
-    let bank = roll_rad.to_degrees().round() + 0.0;
     let desired = &record.setpoints;
     Some(if record.state == State::Engaged {
+        let mode = desired.guidance.to_string();
         format!(
-            "{}  heading {heading:3.0}° → {:3.0}°  bank {bank:3.0}°  \
-             {name} {altitude} → {:5.0} ft{qnh}  airspeed {airspeed:5.1} → {:5.1} kt  \
-             throttle {:3.0} %",
-            desired.guidance,
+            "{:<8}  hdg {heading:3.0}→{:3.0}°  {name} {altitude}→{:4.0} ft  \
+             {airspeed:3.0}→{:3.0} kt",
+            mode.replace("timed-pattern ", "").replace("item ", ""),
             compass(desired.heading_rad),
             (desired.altitude_m - shown.datum_m) * M_FT,
             desired.airspeed_mps * MPS_KT,
-            record.outputs.throttle * 100.0,
         )
     } else {
-        format!(
-            "heading {heading:3.0}°  bank {bank:3.0}°  {name} {altitude} ft{qnh}  \
-             airspeed {airspeed:5.1} kt"
-        )
+        format!("hdg {heading:3.0}°  {name} {altitude} ft  {airspeed:3.0} kt")
     })
 }
 

@@ -9,7 +9,7 @@ pub(crate) struct Beginning(pub(crate) Vec<String>);
 impl<C: Controller> Observer<C> for Beginning {
     fn begin(&mut self, _: &Facts<'_>, reports: &mut Reports) {
         for remark in self.0.drain(..) {
-            reports.remark(remark);
+            reports.remark(format!("remark: {remark}"));
         }
     }
 }

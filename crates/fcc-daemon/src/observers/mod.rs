@@ -3,11 +3,13 @@
 pub(crate) mod aircraft;
 mod announcer;
 mod beginning;
+mod plan_result;
 mod service;
 mod status;
 
 pub(crate) use announcer::Announcer;
 pub(crate) use beginning::Beginning;
+pub(crate) use plan_result::PlanResult;
 pub(crate) use service::Service;
 pub(crate) use status::StatusLine;
 
@@ -22,6 +24,7 @@ mod tests {
         observer_conforms(|| Box::new(Announcer::default()));
         observer_conforms(|| Box::new(Beginning(Vec::new())));
         observer_conforms(|| Box::new(StatusLine::new(aircraft::describe)));
+        observer_conforms(|| Box::new(PlanResult::default()));
         observer_conforms(|| Box::new(Service::from_environment()));
     }
 }

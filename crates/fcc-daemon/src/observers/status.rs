@@ -1,5 +1,7 @@
 //! A status line each second.
 
+use std::fmt::Write as _;
+
 use fcc_core::framework::{Controller, EventKind, EventOf, RecordOf, State};
 use fcc_flight::flight::{FlightTime, Observer};
 
@@ -52,52 +54,28 @@ impl<C: Controller> StatusLine<C> {
         }
     }
 
+    /// Of 80 columns at most while engaged: what a terminal has.
     fn line(&self, record: &RecordOf<C>, at: &FlightTime) -> String {
-        let now_s = at.time_s;
-        let overload = if self.overloaded { "  overload" } else { "" };
-        let timing = format!(
-            "late ≤ {} µs  missed {}{overload}",
-            lateness(self.worst_us),
-            self.missed
-        );
-        let Some(plant) = (self.describe)(record) else {
-            return format!(
-                "{now_s:8.2} s  {:<8}  no measurements yet  {timing}",
-                record.state
-            );
-        };
+        let plant = (self.describe)(record).unwrap_or_else(|| "no measurements yet".to_owned());
+        // Engaged, the plant's part begins with its mode.
         let state = match record.state.state() {
-            State::Engaged => {
-                let since_s = at.engaged_at_s.map_or(0.0, |at_s| now_s - at_s);
-                format!("engaged {since_s:5.0} s")
-            }
-            state => format!("{state:<13}"),
+            State::Engaged => String::new(),
+            state => format!("{state:<9} "),
         };
-        let mut line = format!("{now_s:8.2} s  {state}  {plant}  {timing}");
+        let mut line = format!(
+            "{:8.2} s  {state}{plant}  ≤{:5.0} µs",
+            at.time_s, self.worst_us
+        );
+        if self.missed > 0 {
+            let _ = write!(line, "  missed {}", self.missed);
+        }
+        if self.overloaded {
+            line.push_str("  overload");
+        }
         for (n, bit) in record.engage_inhibits.iter().enumerate() {
             line.push_str(if n == 0 { "  not ready: " } else { ", " });
             line.push_str(C::flag_name(bit));
         }
         line
-    }
-}
-
-/// Of one width up to 99,999 µs: tenths are of no use in a lateness of a millisecond.
-fn lateness(us: f64) -> String {
-    if us < 999.95 {
-        format!("{us:5.1}")
-    } else {
-        format!("{us:5.0}")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::lateness;
-
-    #[test]
-    fn a_lateness_has_one_width() {
-        let told = [0.0, 202.84, 999.94, 999.96, 1_600.3, 10_035.0].map(lateness);
-        assert_eq!(told, ["  0.0", "202.8", "999.9", " 1000", " 1600", "10035"]);
     }
 }

@@ -22,6 +22,41 @@ fn nothing_recorded_yet_is_an_empty_list() {
     assert_eq!(listed.stdout, b"[]\n");
 }
 
+/// A missing input is a wrong command line, whatever kind of file it is.
+#[test]
+fn a_missing_file_has_one_exit_code_in_all_commands() {
+    let folder = tempfile::tempdir().unwrap();
+    let config = folder.path().join("c.toml");
+    fs::write(&config, "[built-in]\n").unwrap();
+    for words in [
+        "check no.toml",
+        "check-controls no.toml",
+        "calibrate gyroscope no.toml",
+        "doctor --config no.toml",
+        "fly --config no.toml",
+        "fly --plan no.waypoints",
+        "run --config no.toml",
+        "run --config c.toml --plan no.waypoints",
+        "x-plane check --config no.toml",
+        "plan check no.waypoints",
+        "plan show no.waypoints",
+        "plan convert no.waypoints to.plan",
+        "list no-folder",
+        "probe --root no-folder",
+        "recover no.mcap",
+        "replay no.mcap",
+        "replay --navigation kalman no.mcap",
+        "report no.mcap",
+    ] {
+        let words: Vec<&str> = words.split(' ').collect();
+        let ended = fccd(folder.path(), &words).output().unwrap();
+        let said = String::from_utf8(ended.stderr).unwrap();
+        assert_eq!(ended.status.code(), Some(2), "{words:?}: {said}");
+        let named = words.iter().find(|word| word.starts_with("no"));
+        assert!(said.contains(*named.unwrap()), "{words:?}: {said}");
+    }
+}
+
 #[test]
 fn a_recording_that_is_being_written_is_not_said_to_be_cut() {
     let folder = tempfile::tempdir().unwrap();

@@ -10,7 +10,7 @@ fn printed(folder: &std::path::Path, arguments: &[&str]) -> (Option<i32>, String
 
 #[test]
 fn a_flight_that_moves_nothing_says_so() {
-    const WORDS: &str = "there is no actuator: engaging moves nothing";
+    const WORDS: &str = "f.toml: remark: there is no actuator: engaging moves nothing";
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("f.toml"), "actuator = []\n[built-in]\n").unwrap();
     let (exit, checked) = printed(folder.path(), &["check", "f.toml"]);
@@ -21,7 +21,7 @@ fn a_flight_that_moves_nothing_says_so() {
     );
     let fly = ["fly", "--lockstep", "--seconds", "1", "--config", "f.toml"];
     let (_, flown) = printed(folder.path(), &fly);
-    assert!(flown.contains(WORDS), "{flown}");
+    assert!(flown.contains("there is no actuator: engaging moves nothing"), "{flown}");
 }
 
 /// Control commands NaN; failsafe's time does not pass.

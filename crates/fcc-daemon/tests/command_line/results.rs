@@ -32,6 +32,36 @@ fn a_flight_that_is_not_engaged_says_why_at_its_end() {
     );
 }
 
+/// A terminal has 80 columns; a landing gear withstands 10 ft/s, 600 ft/min (14 CFR 23.473).
+#[test]
+fn a_flown_plan_is_told_in_80_columns_and_with_its_touch_down() {
+    let folder = tempfile::tempdir().unwrap();
+    let plan = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../config/plans/circuit.waypoints"
+    );
+    let words = ["fly", "--lockstep", "--no-recording", "--plan", plan];
+    let ended = fccd(folder.path(), &words).output().unwrap();
+    assert_eq!(ended.status.code(), Some(0));
+    let said = String::from_utf8(ended.stderr).unwrap();
+    let engaged: Vec<&str> = said.lines().filter(|line| line.contains("→")).collect();
+    assert!(engaged.len() > 100, "{said}");
+    for line in engaged {
+        assert!(line.chars().count() <= 80, "{line}");
+    }
+    let text = String::from_utf8(ended.stdout).unwrap();
+    assert!(text.contains("Items of the flight plan:\n"), "{text}");
+    let (_, touched) = text.split_once("\nTouched down at ").unwrap();
+    let sink = touched.split(' ').nth(2).unwrap();
+    assert!((1.0..600.0).contains(&sink.parse().unwrap()), "{touched}");
+    let json = fccd(folder.path(), &[&words[..], &["--json"]].concat())
+        .output()
+        .unwrap();
+    let json: Value = serde_json::from_slice(&json.stdout).unwrap();
+    let sink = json["flown_plan"]["touch_down"]["sink_fpm"].as_f64();
+    assert!((1.0..600.0).contains(&sink.unwrap()));
+}
+
 /// A flight that touches the ground ends there, with a code of its own; its
 /// recording is whole and its report shows the impact.
 #[test]

@@ -1,12 +1,33 @@
 //! Differences are found to the last bit, and the deviation of another
 //! configuration is measured.
 
+use fcc_core::blocks::wrap_two_pi;
+use fcc_core::flight::Autopilot;
 use fcc_core::framework::Message;
 use fcc_core::framework::State::Engaged;
 use fcc_flight::config::{Config, GuidanceSection};
+use fcc_replay::Identity;
+use fcc_telemetry::FlightRecord;
 
 use super::flights::{Happenings, again, fly, records, rough};
 use super::{deviation, flipped};
+
+/// An earlier version recorded 342.7° after almost two turns as 702.7°.
+#[test]
+fn a_recorded_heading_that_continues_through_full_turns_is_the_same() {
+    let compared = |recorded_deg: f64, again_deg: f64| {
+        let [mut recorded, mut again] = [FlightRecord::default(); 2];
+        recorded.estimate.heading_rad = recorded_deg.to_radians();
+        again.estimate.heading_rad = wrap_two_pi(again_deg.to_radians());
+        let mut identity = Identity::of::<Autopilot>();
+        identity.take(&recorded, &again);
+        identity.is_identical()
+    };
+    assert!(compared(702.7, 702.7));
+    assert!(compared(-1.0, -1.0));
+    assert!(compared(90.0, 90.0));
+    assert!(!compared(702.7, 342.8));
+}
 
 /// One of the gains of a configuration.
 type Gain = fn(&mut Config) -> &mut f64;

@@ -70,7 +70,7 @@ values_class! {
 }
 
 values_class! {
-    /// Navigation's estimate; the heading continues through full turns.
+    /// Navigation's estimate.
     #[pyclass(name = "Estimate", module = "fcc", frozen)]
     struct PyEstimate(Estimate),;
 }

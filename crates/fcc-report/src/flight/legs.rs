@@ -32,8 +32,10 @@ lateral          largest sideways acceleration";
 /// meanings of the columns.
 pub fn flight_table(score: &FlightScore, by: ScoredBy) -> String {
     let by = match by {
-        ScoredBy::Truth => "the true values of the simulated aircraft",
-        ScoredBy::Measurement => "the measurements of the sensors",
+        ScoredBy::Truth => {
+            "the true values of the simulated aircraft (fccd report: by the measurements)"
+        }
+        ScoredBy::Measurement => "the measurements of the sensors, noise included",
     };
     let table = legs(score);
     format!("Legs, scored by {by}:\n{table}\n\n{LEG_LEGEND}")

@@ -228,13 +228,13 @@ impl Reported for Autopilot {
         vec![
             plot(
                 "Heading",
-                "Magnetic heading, desired and actual, as the navigation estimated it from the \
+                "Magnetic heading, desired, and as the navigation estimated it from the \
                  measurements (thesis, figure 6.4).",
                 vec![panel("heading_rad", "heading").sized(200.0, Scale::Compass)],
             ),
             plot(
                 "Altitude and pitch",
-                "Pressure altitude, desired and actual, and below it the pitch \
+                "Pressure altitude, desired and estimated, and below it the pitch \
                  (thesis, figure 6.5).",
                 vec![
                     panel("altitude_m", "altitude").sized(170.0, Scale::Around(20.0)),
@@ -245,7 +245,7 @@ impl Reported for Autopilot {
             ),
             plot(
                 "Airspeed and throttle",
-                "Indicated airspeed, desired and actual, and the throttle commanded.",
+                "Indicated airspeed, desired and estimated, and the throttle commanded.",
                 vec![
                     panel("airspeed_mps", "airspeed").sized(130.0, Scale::Around(4.0)),
                     of.output("throttle", AVIATION).sized(80.0, Scale::Percent),
@@ -253,7 +253,7 @@ impl Reported for Autopilot {
             ),
             plot(
                 "Bank and surfaces",
-                "Bank, desired and actual, and the surfaces commanded, all three on the same \
+                "Bank, desired and estimated, and the surfaces commanded, all three on the same \
                  scale: 1 is full deflection; positive raises the nose, rolls right, yaws right.",
                 vec![
                     panel("roll_rad", "bank")

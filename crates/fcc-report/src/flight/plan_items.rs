@@ -73,7 +73,7 @@ pub struct TouchDown {
 impl FlownPlan {
     /// Follows the ends of items and of the plan, after which the aircraft circles: that is
     /// no part of an item.
-    pub(super) fn notice(&mut self, notice: &Notice) {
+    pub fn notice(&mut self, notice: &Notice) {
         if notice.kind != ITEM_REACHED {
             return;
         }
@@ -90,7 +90,8 @@ impl FlownPlan {
         self.ended_s = Some(0.0);
     }
 
-    pub(super) fn take(&mut self, record: &RecordOf<Autopilot>, time_s: f64) {
+    /// Takes the next tick, at a time since the first, s.
+    pub fn take(&mut self, record: &RecordOf<Autopilot>, time_s: f64) {
         if record.state.state() != State::Engaged {
             return;
         }
@@ -143,12 +144,12 @@ impl FlownPlan {
     }
 
     /// Whether nothing of a plan was flown.
-    pub(super) const fn is_empty(&self) -> bool {
+    pub const fn is_empty(&self) -> bool {
         self.items.is_empty() && self.touch_down.is_none()
     }
 
     /// The table as text; of a long flight the items that were flown last.
-    pub(super) fn text(&self) -> String {
+    pub fn text(&self) -> String {
         let rest = self.items.len().saturating_sub(MOST_AS_TEXT);
         match self.items.get(rest..) {
             None | Some([]) => String::new(),
@@ -172,7 +173,7 @@ impl FlownPlan {
     }
 
     /// The touch-down in words.
-    pub(super) fn finding(&self) -> Option<String> {
+    pub fn finding(&self) -> Option<String> {
         self.touch_down.map(|touch| {
             let side = if touch.centre_line_m < 0.0 {
                 "left"

@@ -51,7 +51,7 @@ impl Quantities {
             curves.push(Curve::new(ink, "measured", role, value));
         }
         if let Some(value) = found.and_then(|of| of.estimated) {
-            curves.push(Curve::new(Ink::Actual, "actual", Role::Estimated, value));
+            curves.push(Curve::new(Ink::Actual, "estimated", Role::Estimated, value));
         }
         if let Some(value) = found.and_then(|of| of.desired) {
             curves.push(Curve::new(Ink::Desired, "desired", Role::Desired, value));

@@ -46,7 +46,7 @@ fn labels(column: &Column) -> Vec<String> {
 pub struct ValueRange {
     /// Name.
     pub quantity: String,
-    /// `measured`, `actual` (estimated), `desired` or `commanded`.
+    /// `measured`, `estimated`, `desired` or `commanded`.
     pub role: &'static str,
     /// Its unit; empty for none.
     pub unit: &'static str,

@@ -278,7 +278,7 @@ impl Autopilot {
         };
         // Where the runway is, is not known well enough.
         if action != ContingencyAction::Continue {
-            self.guidance.go_around(RunwayReason::Failsafe);
+            self.guidance.go_around(RunwayReason::NoPosition);
         }
         self.contingencies.is_loss_met = self.meet(Contingency::PositionLost, action);
     }

@@ -365,7 +365,10 @@ impl Controller for Autopilot {
     fn estimated(&self) -> Estimate {
         let estimate = self.ages.shown_in(self.navigation.estimate());
         let estimate = self.ground.shown_in(&estimate);
-        self.actuation.shown_in(&estimate)
+        Estimate {
+            heading_rad: wrap_two_pi(estimate.heading_rad),
+            ..self.actuation.shown_in(&estimate)
+        }
     }
 
     fn setpoints(&self) -> Setpoints {

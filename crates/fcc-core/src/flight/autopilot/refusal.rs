@@ -149,7 +149,7 @@ impl Autopilot {
                 return Err(Refusal::OnWheels);
             }
             if demand.height_m < COMMANDED_M {
-                self.guidance.go_around(RunwayReason::Failsafe);
+                self.guidance.go_around(RunwayReason::Commanded);
                 return Err(Refusal::LowOverRunway);
             }
         }

@@ -340,7 +340,7 @@ impl Autopilot {
     /// Gives a landing up.
     pub(super) fn go_around(&mut self) {
         if self.after(ModeInput::GoAround).is_some() {
-            self.guidance.go_around(RunwayReason::Failsafe);
+            self.guidance.go_around(RunwayReason::Commanded);
         }
     }
 

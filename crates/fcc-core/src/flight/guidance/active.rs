@@ -130,10 +130,10 @@ impl ActiveMode {
         }
     }
 
-    /// Gives a landing up, or the roll of a take-off for a reason.
-    pub fn go_around(&mut self, of_takeoff: RunwayReason) {
+    /// Gives a landing, or the roll of a take-off, up for a reason.
+    pub fn go_around(&mut self, reason: RunwayReason) {
         if let Self::OverGround(mode) = self {
-            mode.go_around(of_takeoff);
+            mode.go_around(reason);
         }
     }
 

@@ -16,6 +16,8 @@ mod over_ground_mode;
 mod pattern;
 mod progress;
 
+use core::f64::consts::TAU;
+
 use super::navigation::Estimate;
 
 pub use active::{ActiveMode, GuidanceConfig};
@@ -42,10 +44,11 @@ schema! {
         /// Indicated airspeed, m/s.
         #[field(1)]
         pub airspeed_mps: f64,
-        /// Magnetic heading, rad, continuous through full turns: the number
-        /// determines the direction of the turn. Turns that accumulate faster
-        /// than the aircraft can follow are never reversed.
-        #[field(2)]
+        // Continuous through full turns inside of the loop: the number determines the
+        // direction of the turn. Turns that accumulate faster than the aircraft can
+        // follow are never reversed.
+        /// Magnetic heading, rad, clockwise from magnetic north.
+        #[field(2, range = 0.0..=TAU)]
         pub heading_rad: f64,
         /// Pressure altitude, m.
         #[field(3)]

@@ -84,9 +84,9 @@ impl OverGroundMode {
         self.follower.lands_back()
     }
 
-    /// Gives a landing up, or the roll of a take-off for a reason.
-    pub fn go_around(&mut self, of_takeoff: RunwayReason) {
-        self.follower.go_around(of_takeoff);
+    /// Gives a landing, or the roll of a take-off, up for a reason.
+    pub fn go_around(&mut self, reason: RunwayReason) {
+        self.follower.go_around(reason);
     }
 
     /// The targets for airspeed and altitude; the heading is the present one.

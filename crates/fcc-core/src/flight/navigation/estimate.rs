@@ -1,6 +1,6 @@
 //! What navigation knows of the aircraft's motion.
 
-use core::f64::consts::{FRAC_PI_2, PI};
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use libm::{cos, sin};
 
@@ -30,10 +30,8 @@ schema! {
     /// ```
     /// use fcc_core::flight::navigation::Estimate;
     ///
-    /// // The heading is continuous: 370° is 10° after a turn to the right.
-    /// let turned = Estimate { heading_rad: 370.0_f64.to_radians(), ..Estimate::default() };
-    /// let compass_rad = fcc_core::blocks::wrap_two_pi(turned.heading_rad);
-    /// assert!((compass_rad.to_degrees() - 10.0).abs() < 1e-9);
+    /// let level = Estimate { heading_rad: 10.0_f64.to_radians(), ..Estimate::default() };
+    /// assert_eq!(level.roll_rad, 0.0);
     /// ```
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct Estimate {
@@ -43,9 +41,9 @@ schema! {
         /// Nose up, rad.
         #[field(2)]
         pub pitch_rad: f64,
-        /// Magnetic heading, rad, continuous through full turns: 370° is 10°
-        /// after one turn to the right.
-        #[field(3)]
+        // Continuous through full turns inside of the loop, where differences are taken.
+        /// Magnetic heading, rad, clockwise from magnetic north.
+        #[field(3, range = 0.0..=TAU)]
         pub heading_rad: f64,
         /// Turn rates about the body axes.
         #[field(4)]

@@ -45,10 +45,10 @@ impl Follower {
         self.given_up >= MOST_LANDINGS
     }
 
-    /// Gives a landing up, or the roll of a take-off for a reason.
-    pub fn go_around(&mut self, of_takeoff: RunwayReason) {
+    /// Gives a landing, or the roll of a take-off, up for a reason.
+    pub fn go_around(&mut self, reason: RunwayReason) {
         if let Phase::Runway(flight) = &mut self.phase {
-            flight.go_around(of_takeoff);
+            flight.go_around(reason);
         }
     }
 

@@ -39,7 +39,7 @@ pub(super) fn apply_calibration(config: &mut Config) -> Result<(), Failure> {
 
 fn say(remarks: &[String]) {
     for remark in remarks {
-        output::message(format_args!("fccd: {remark}"));
+        output::message(format_args!("fccd: remark: {remark}"));
     }
 }
 

@@ -1,5 +1,6 @@
 //! The controls on the wheels.
 
+use super::super::ground_motion::STANDS_MPS;
 use super::super::{Autopilot, flags};
 use super::{CLOSES_PER_S, RUDDER_PER_RADPS};
 use crate::blocks::{limit, limit_abs};
@@ -141,7 +142,10 @@ impl Autopilot {
         let brakes = matches!(demand.phase, RunwayPhase::RollOut | RunwayPhase::Stopped)
             && (speed_mps < BRAKES_BELOW * config.approach_mps || demand.phase_s > BRAKES_AFTER_S);
         let rolls = demand.phase == RunwayPhase::RollOut && !demand.takes_off;
-        let strays = brakes && rolls && strays(demand.cross_track_m, demand.cross_track_mps);
+        // Dead reckoning moves a standing aircraft, and noise of the velocity does.
+        let is_known = self.ground.is_measured() && self.ground.speed_mps() > STANDS_MPS;
+        let strays =
+            is_known && brakes && rolls && strays(demand.cross_track_m, demand.cross_track_mps);
         let control = &mut self.on_runway;
         if strays && !control.strayed {
             control.strayed = true;

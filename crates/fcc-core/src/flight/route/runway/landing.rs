@@ -234,18 +234,17 @@ impl RunwayFlight {
         (self.config.flare_s * slowed_mps).max(LEAST_FLARE_M) + self.demand.uncertainty_m
     }
 
-    /// Gives it up: a landing, unless the wheels are on the ground, or a take-off, unless
-    /// they have left it, for a reason.
-    pub(in crate::flight::route) const fn go_around(&mut self, of_takeoff: RunwayReason) {
-        match self.phase {
+    /// Gives it up for a reason: a landing, unless the wheels are on the ground, or a
+    /// take-off, unless they have left it.
+    pub(in crate::flight::route) const fn go_around(&mut self, reason: RunwayReason) {
+        let phase = match self.phase {
             RunwayPhase::Approach | RunwayPhase::Flare if self.glide_sine.is_none() => {
-                self.give_up(RunwayPhase::GoAround, RunwayReason::Commanded);
+                RunwayPhase::GoAround
             }
-            RunwayPhase::Hand | RunwayPhase::Roll => {
-                self.give_up(RunwayPhase::RollOut, of_takeoff);
-            }
-            _ => {}
-        }
+            RunwayPhase::Hand | RunwayPhase::Roll => RunwayPhase::RollOut,
+            _ => return,
+        };
+        self.give_up(phase, reason);
     }
 
     /// Why a landing is given up on the glide path below the decision height.

@@ -53,6 +53,8 @@ schema! {
         TailWind = 22,
         /// The roll-out leaves the centre line with its brakes set.
         Strays = 23,
+        /// No position was measured for longer than configured.
+        NoPosition = 24,
     }
 }
 
@@ -118,6 +120,7 @@ impl fmt::Display for RunwayReason {
                 "the roll-out leaves the centre line: brakes released, and half of them from \
                  now on; look at brakes and nose wheel"
             }
+            Self::NoPosition => "given up: no position for longer than position_lost_after_s",
             Self::Failsafe => "the take-off is given up",
             Self::Touched => {
                 "the wheels touch the ground outside of a take-off or a landing: climb, or take \

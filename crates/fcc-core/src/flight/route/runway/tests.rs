@@ -208,7 +208,7 @@ fn the_third_landing_that_is_given_up_is_the_last() {
                 ..at(-1_000.0, 55.0, 35.0)
             };
             if is_commanded {
-                follower.go_around(RunwayReason::Failsafe);
+                follower.go_around(RunwayReason::Commanded);
             }
             follower.advance(&banked, 0.025);
             assert_eq!(phase(&follower), Some(RunwayPhase::GoAround));
@@ -233,10 +233,13 @@ fn the_third_landing_that_is_given_up_is_the_last() {
 }
 
 #[test]
-fn a_landing_is_given_up_by_a_command_until_the_wheels_touch() {
-    let mut follower = landing();
-    follower.go_around(RunwayReason::Failsafe);
-    assert_eq!(phase(&follower), Some(RunwayPhase::GoAround));
+fn a_landing_is_given_up_for_its_reason_until_the_wheels_touch() {
+    for reason in [RunwayReason::Commanded, RunwayReason::NoPosition] {
+        let mut follower = landing();
+        follower.go_around(reason);
+        let given_up = (phase(&follower), self::reason(&follower));
+        assert_eq!(given_up, (Some(RunwayPhase::GoAround), Some(reason)));
+    }
     let mut follower = landing();
     let range = OverGround {
         height_m: Some(1.3),
@@ -245,7 +248,7 @@ fn a_landing_is_given_up_by_a_command_until_the_wheels_touch() {
     };
     follower.advance(&range, 0.025);
     follower.advance(&range, 0.025);
-    follower.go_around(RunwayReason::Failsafe);
+    follower.go_around(RunwayReason::Commanded);
     assert_eq!(phase(&follower), Some(RunwayPhase::RollOut));
 }
 
