@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 use toml::de::DeTable;
 
-use super::read::{Entry, Reader};
+use super::read::{Entry, Keys};
 use super::{
     ChipSection, Config, GnssSerialSection, GpioSwitchSection, GpsdSection, IioSection,
     PhoneSection, RcReceiverSection, ServosSection, XPlaneSection,
@@ -147,22 +147,22 @@ impl Entry for SensorEntry {
         "gpio-switch",
     ];
 
-    fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, reader: &mut Reader<'t>) -> Option<Self> {
+    fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, from: &mut impl Keys<'t>) -> Option<Self> {
         let chip = ChipKind::ALL.into_iter().find(|chip| chip.key() == kind);
         if let Some(chip) = chip {
-            let section = reader.table(keys, 1)?;
+            let section = from.table(keys, 1)?;
             return Some(Self::of_chip(chip, section));
         }
         match kind {
-            "x-plane" => reader.table(keys, 1).map(Self::XPlane),
-            "iio" => reader.table(keys, 1).map(Self::Iio),
-            "phone" => reader.table(keys, 1).map(Self::Phone),
-            "servo-board" => reader.table(keys, 1).map(Self::ServoBoard),
-            "gnss-serial" => reader.table(keys, 1).map(Self::GnssSerial),
-            "gpsd" => reader.table(keys, 1).map(Self::Gpsd),
-            "rc-receiver" => reader.table(keys, 1).map(Self::RcReceiver),
-            "gpio-switch" => reader.table(keys, 1).map(Self::GpioSwitch),
-            _ => reader.table(keys, 1).map(Self::Simulator),
+            "x-plane" => from.table(keys, 1).map(Self::XPlane),
+            "iio" => from.table(keys, 1).map(Self::Iio),
+            "phone" => from.table(keys, 1).map(Self::Phone),
+            "servo-board" => from.table(keys, 1).map(Self::ServoBoard),
+            "gnss-serial" => from.table(keys, 1).map(Self::GnssSerial),
+            "gpsd" => from.table(keys, 1).map(Self::Gpsd),
+            "rc-receiver" => from.table(keys, 1).map(Self::RcReceiver),
+            "gpio-switch" => from.table(keys, 1).map(Self::GpioSwitch),
+            _ => from.table(keys, 1).map(Self::Simulator),
         }
     }
 
@@ -174,11 +174,11 @@ impl Entry for SensorEntry {
 impl Entry for ActuatorEntry {
     const KINDS: &'static [&'static str] = &["simulator", "servo-board", "servos"];
 
-    fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, reader: &mut Reader<'t>) -> Option<Self> {
+    fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, from: &mut impl Keys<'t>) -> Option<Self> {
         match kind {
-            "servo-board" => reader.table(keys, 1).map(Self::ServoBoard),
-            "servos" => reader.table(keys, 1).map(Self::Servos),
-            _ => reader.table(keys, 1).map(Self::Simulator),
+            "servo-board" => from.table(keys, 1).map(Self::ServoBoard),
+            "servos" => from.table(keys, 1).map(Self::Servos),
+            _ => from.table(keys, 1).map(Self::Simulator),
         }
     }
 }

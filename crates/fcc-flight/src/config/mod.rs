@@ -39,6 +39,7 @@ mod replacement;
 mod restart;
 mod rights;
 mod runtime;
+mod schema;
 mod servo_board;
 mod servos;
 mod shared_devices;
@@ -90,6 +91,7 @@ pub use runtime::{
     EarlyWakeSection, EngageSection, FailsafeSection, LoopSection, RealtimeSection, ReleaseSection,
     Then,
 };
+pub use schema::schema;
 pub use servo_board::ServoBoardSection;
 pub use servos::{DrivesChoice, ReleasedChoice, ServoSection, ServosSection};
 pub use telemetry::TelemetrySection;

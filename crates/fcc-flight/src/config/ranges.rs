@@ -161,12 +161,12 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("autopilot.airspeed.induced_drag_ratio", 0.0, 1.0),
     ("autopilot.airspeed.max_throttle_rate_per_s", 0.01, 100.0),
     ("autopilot.airspeed.trim_throttle", 0.0, 1.0),
-    ("autopilot.runway.rotate_kt", 5.0, 150.0),
+    ("autopilot.runway.rotate_kt", 5.0, 300.0),
     ("autopilot.runway.launch_g", 0.0, 10.0),
     ("autopilot.runway.longest_roll_m", 1.0, 5000.0),
-    ("autopilot.runway.climb_kt", 5.0, 200.0),
+    ("autopilot.runway.climb_kt", 5.0, 600.0),
     ("autopilot.runway.climb_pitch_deg", 1.0, 30.0),
-    ("autopilot.runway.approach_kt", 5.0, 200.0),
+    ("autopilot.runway.approach_kt", 5.0, 600.0),
     ("autopilot.runway.glide_path_deg", 1.0, 10.0),
     ("autopilot.runway.flare_s", 0.5, 10.0),
     ("autopilot.runway.touchdown_fpm", 1.0, 400.0),
@@ -229,6 +229,15 @@ pub(super) fn range_of(key: &str) -> Option<(f64, f64)> {
         .map(|(_, least, most)| (*least, *most))
 }
 
+/// The same of a key of a sensor of this kind.
+pub(super) fn range_of_entry(kind: &str, key: &str) -> Option<(f64, f64)> {
+    let is_it = |(range, ..): &&(&str, f64, f64)| {
+        let (of, name) = range.split_once('.').unwrap_or_default();
+        name == key && board::is_of_kind(of, name, kind)
+    };
+    ranges().find(is_it).map(|(_, least, most)| (*least, *most))
+}
+
 /// A range, as messages give it.
 pub(super) fn in_words((least, most): (f64, f64)) -> String {
     format!("{} to {}", number(least), number(most))
@@ -248,7 +257,7 @@ pub(super) fn check(config: &Config, places: &Places<'_>, unread: &[Problem]) ->
         line => !unread.iter().any(|problem| problem.line == line),
     };
     let mut others = Vec::new();
-    relations::check(config, &mut |keys: &[&str], message: String| {
+    relations::check(config, &mut |keys: &[&str], mut message: String| {
         // A number that is out of its range says nothing about another one.
         let is_out = |problem: &Problem| {
             problem
@@ -257,6 +266,7 @@ pub(super) fn check(config: &Config, places: &Places<'_>, unread: &[Problem]) ->
                 .is_some_and(|key| keys.contains(&key))
         };
         if let Some(key) = keys.first().filter(|_| !problems.iter().any(is_out)) {
+            message.push_str(&defaults(config, places, keys));
             others.push(problem_at(places, key, message));
         }
     });
@@ -266,6 +276,15 @@ pub(super) fn check(config: &Config, places: &Places<'_>, unread: &[Problem]) ->
     others.extend(without_aircraft(config));
     problems.extend(others.into_iter().filter(|problem| is_read(problem.line)));
     problems
+}
+
+/// The values of these keys that the text does not contain, for the end of a message.
+fn defaults(config: &Config, places: &Places<'_>, keys: &[&str]) -> String {
+    // One key alone contradicts no other.
+    let absent = keys.iter().filter(|key| keys.len() > 1 && !places.has(key));
+    let values = absent.filter_map(|key| Some((key, config.value(key).ok()?)));
+    let texts = values.map(|(key, value)| format!("; {key} = {value} by default, not in the file"));
+    texts.collect()
 }
 
 fn problem_at(places: &Places<'_>, key: &str, message: String) -> Problem {
