@@ -1181,7 +1181,7 @@ def fly(
     real_time: bool = False,
     keep: bool = True,
 ) -> Flight:
-    """Fly the built-in aircraft, in lockstep or in real time."""
+    """Fly the built-in aircraft, in lockstep or in real time; EngageError if it never engaged."""
 
 @final
 class Pid:
