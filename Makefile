@@ -365,10 +365,9 @@ clean: ## Remove built files
 # --- set-up ------------------------------------------------------------------
 
 # rustup reads rust-toolchain.toml and fetches what is missing at first use.
-$(STAMPS)/rust: rust-toolchain.toml scripts/has-libclang scripts/check-rust
+$(STAMPS)/rust: rust-toolchain.toml scripts/check-rust
 	@./scripts/check-rust
 	@command -v cc >/dev/null || ./scripts/apt-install gcc libc6-dev
-	@./scripts/has-libclang || ./scripts/apt-install libclang-dev
 	@mkdir -p $(STAMPS) && touch $@
 
 $(STAMPS)/python: hil/pyproject.toml hil/locked.txt

@@ -1182,7 +1182,7 @@ def fly(
     real_time: bool = False,
     keep: bool = True,
 ) -> Flight:
-    """Fly the built-in aircraft, in lockstep or in real time."""
+    """Fly the built-in aircraft, in lockstep or in real time; EngageError if it never engaged."""
 
 @final
 class Pid:

@@ -253,7 +253,7 @@ def _program(config: pytest.Config) -> Path:
     found = shutil.which(given)
     if found is None:
         pytest.fail(
-            f"there is no program {given}: `cargo build --release -p fcc-daemon`, and give its "
+            f"there is no program {given}: `make build`, and give its "
             "path with --fccd-program or in $FCCD",
             pytrace=False,
         )

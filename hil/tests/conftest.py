@@ -47,7 +47,7 @@ def beacon(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, int]
 @pytest.fixture(scope="session")
 def fccd() -> Path:
     """Return the daemon."""
-    return _program("FCCD", "cargo build --release -p fcc-daemon")
+    return _program("FCCD", "make build")
 
 
 @pytest.fixture(scope="session")

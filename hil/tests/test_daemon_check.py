@@ -7,7 +7,10 @@ import os
 from pathlib import Path
 
 import pytest
+import tomlkit
 from test_daemon_commands import run
+
+CONFIGS = Path(__file__).parents[2] / "config"
 
 WRONG = {
     "an unknown key": (
@@ -72,6 +75,31 @@ WRONG = {
         3,
         "autopilot.envelope.min_airspeed_kt",
         "less than max_airspeed_kt",
+    ),
+    # 14 CFR 23.73 in force until 2017: 1.3 times the stalling speed, here 53 kt.
+    "an approach at the stalling speed": (
+        "[built-in]\n[autopilot.runway]\napproach_kt = 53.0\n",
+        3,
+        "autopilot.runway.approach_kt",
+        "choose 65.0 to 135",
+    ),
+    "a rotation above the climb": (
+        "[built-in]\n[autopilot.runway]\nrotate_kt = 90.0\nclimb_kt = 70.0\n",
+        3,
+        "autopilot.runway.rotate_kt",
+        "choose 53.0 to 70",
+    ),
+    "a rotation below the stalling speed": (
+        "[built-in]\n[autopilot.runway]\nrotate_kt = 40.0\n",
+        3,
+        "autopilot.runway.rotate_kt",
+        "choose 53.0 to 75",
+    ),
+    "a default that contradicts a value": (
+        "[built-in]\n[failsafe]\nall_silent_s = 0.1\n",
+        3,
+        "failsafe.all_silent_s",
+        "; failsafe.sensor_max_age_ms = 250 by default, not in the file",
     ),
     "a stage longer than its tick": (
         "[built-in]\n[budget]\ntick_us = 900\ncontrol_us = 1000\n",
@@ -149,6 +177,39 @@ def test_a_problem_is_reported_with_its_place_and_the_permitted_values(
     (problem,) = checked["problems"]
     assert (problem["line"], problem["key"]) == (line, key)
     assert right in problem["message"]
+
+
+def test_speeds_of_the_cessnas_runway_are_refused_in_a_slow_aircraft(
+    fccd: Path, tmp_path: Path
+) -> None:
+    """Never exceed 60 kt: the Cessna's climb at 75 and approach at 68 kt are above it."""
+    file = tmp_path / "slow.toml"
+    file.write_text(
+        "[built-in]\n[autopilot.envelope]\nstall_airspeed_kt = 25\nmin_airspeed_kt = 28\n"
+        "best_glide_airspeed_kt = 32\nmaneuvering_airspeed_kt = 45\nmax_airspeed_kt = 58\n"
+        "never_exceed_airspeed_kt = 60\n"
+    )
+    problems = json.loads(run([fccd, "check", file, "--json"]).stdout)["problems"]
+    key = "autopilot.runway"
+    high, absent = "58: {} to envelope.max_airspeed_kt", "by default, not in the file"
+    climb = high.format("envelope.min_airspeed_kt")
+    approach = high.format("1.2 times envelope.stall_airspeed_kt")
+    assert {problem["key"]: problem["message"] for problem in problems} == {
+        f"{key}.climb_kt": f"is 75: choose 28.0 to {climb}; {key}.climb_kt = 75.0 {absent}",
+        f"{key}.approach_kt": f"is 68: choose 30.0 to {approach}; {key}.approach_kt = 68.0 {absent}",
+    }
+
+
+def test_the_schema_is_one_that_the_examples_satisfy(fccd: Path) -> None:
+    """Of all keys of the shipped configurations, each is one of the schema's."""
+    schema = json.loads(run([fccd, "schema"]).stdout)
+    assert schema["type"] == "object"
+    for name in ("built-in", "x-plane", "servo-board"):
+        given = tomlkit.parse((CONFIGS / f"{name}.toml").read_text()).unwrap()
+        given.pop("sensor", None)
+        given.pop("actuator", None)
+        for section, keys in given.items():
+            assert keys.keys() <= schema["properties"][section]["properties"].keys()
 
 
 def test_every_problem_is_reported_in_the_order_of_the_file(fccd: Path, tmp_path: Path) -> None:

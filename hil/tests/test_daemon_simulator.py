@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import socket
 import time
@@ -19,6 +20,7 @@ from daemon_under_test import (
 )
 from fault_flights import AT_ONCE_S, NS, Flown
 from read_only_simulator import ReadOnlySimulator
+from test_daemon_commands import run
 
 from fcc_hil.fly import ENGAGE_SWITCH
 from fcc_hil.process import StandInProcess
@@ -27,6 +29,7 @@ from fcc_hil.standin import Mode, Settings
 SUCCESS = 0
 FAILURE = 1
 FAILSAFE = 3
+REFUSED = 11
 
 TOO_OLD = "attitude is missing or too old"
 MAX_SILENCE_S = 0.3
@@ -231,6 +234,31 @@ def test_a_simulator_that_hangs_is_a_failsafe_and_one_that_jumps_is_released(
     (hung,) = flown.failsafes
     assert_lost_when_too_old(flown, hung)
     assert_released_at_once(flown, jumped_ns)
+
+
+def test_standby_says_what_it_waits_for_and_a_command_engages_without_a_button(
+    fccd: Path, tmp_path: Path
+) -> None:
+    """As troubleshooting says: a switch that stays off, and `fccd command engage`."""
+    name = f"standby-{os.getpid()}"
+    telemetry = f'[telemetry]\ninstance = "{name}"\n'
+    command: list[str | Path] = [fccd, "command", "engage", "--instance", name]
+    with flight(fccd, tmp_path, others=telemetry) as (simulator, daemon):
+        daemon.wait_for("  waits for the engage switch")
+        refused = run(command)
+        assert refused.returncode == REFUSED
+        assert "switch it on, or configure command_needs_switch = false" in refused.stderr
+        simulator.write(ENGAGE_SWITCH, 1.0)
+        daemon.wait_for("standby -> engaged")
+        run([*command[:2], "disengage", *command[3:]])
+        daemon.wait_for("waits for a command, or the engage switch off and on")
+        daemon.end(signal.SIGTERM)
+    others = f"[engage]\ncommand_needs_switch = false\n{telemetry}"
+    with flight(fccd, tmp_path, others=others) as (_, daemon):
+        daemon.wait_for("waits for the engage switch or a command")
+        assert run(command).returncode == SUCCESS
+        daemon.wait_for("standby -> engaged")
+        daemon.end(signal.SIGTERM)
 
 
 def test_a_reloaded_flight_is_not_continued(fccd: Path, tmp_path: Path) -> None:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import threading
 import time
 import warnings
+from pathlib import Path
 
 import fcc
 import numpy as np
 import pytest
 
 FOOT_M = 0.3048
+CONFIGS = Path(__file__).parents[2] / "config"
 SLOWEST_TIMES_REAL_TIME = 100.0
 """It is some thousands; a machine that does much else must not fail this."""
 
@@ -170,6 +172,41 @@ def test_in_real_time_time_passes() -> None:
     assert time.monotonic() - began_s >= 1.4
     assert flight.timing["timer"] == "timerfd"
     assert flight.timing["ticks"] + flight.timing["missed"] >= 150
+
+
+def test_a_plan_by_replace_is_flown_as_one_of_a_text() -> None:
+    """The circuit's home is 45 N, 8 E, 120 m, in line 0 of its file."""
+    plan = {"guidance.mode": "plan", "plan.file": str(CONFIGS / "plans/circuit.waypoints")}
+    config = fcc.Config.load(CONFIGS / "built-in.toml").replace(plan)
+    assert (config["built-in.latitude_deg"], config["built-in.longitude_deg"]) == (45.0, 8.0)
+    assert config["built-in.ground_ft"] == pytest.approx(120.0 / FOOT_M)
+    flight = fcc.fly(config, seconds=60.0)
+    modes = [event.text for event in flight.events if event.kind == "mode-changed"]
+    assert modes[0] == "mode: take-off, was none"
+
+
+def test_another_plan_by_replace_brings_its_own_begin(tmp_path: Path) -> None:
+    other = tmp_path / "other.waypoints"
+    lines = (CONFIGS / "plans/circuit.waypoints").read_text()
+    other.write_text(lines.replace("\t45.", "\t46."))
+    first = fcc.Config(f'[plan]\nfile = "{CONFIGS}/plans/circuit.waypoints"\n')
+    assert first["built-in.latitude_deg"] == 45.0
+    assert first.replace({"plan.file": str(other)})["built-in.latitude_deg"] == 46.0
+    with pytest.raises(fcc.ConfigError, match=r"plan\.file: .*cannot be read"):
+        first.replace({"plan.file": "no-such.plan"})
+
+
+def test_a_flight_that_never_engages_raises_the_reason() -> None:
+    def blind(time_s: float, measurements: fcc.Measurements) -> fcc.Measurements:
+        del time_s
+        measurements.altitude_m = float("nan")
+        return measurements
+
+    with (
+        pytest.warns(RuntimeWarning, match="not real time"),
+        pytest.raises(fcc.EngageError, match=r"not engaged: .*altitude is missing or too old"),
+    ):
+        fcc.fly(seconds=1.0, sensor=blind)
 
 
 def test_x_planes_aircraft_is_refused() -> None:

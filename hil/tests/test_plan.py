@@ -195,18 +195,3 @@ def test_a_file_that_is_none_does_not_hide_the_others(fccd: Path, tmp_path: Path
     assert [result["ok"] for result in results] == [False, True, False]
     assert "no file" in results[0]["problems"][0]["message"]
     assert "cannot be read" in results[2]["problems"][0]["message"]
-
-
-@pytest.mark.parametrize(
-    ("keys", "item"), [("approach_kt = 53.0", 9), ("rotate_kt = 90.0\nclimb_kt = 60.0", 1)]
-)
-def test_speeds_with_which_it_does_not_land(
-    fccd: Path, tmp_path: Path, keys: str, item: int
-) -> None:
-    """An approach at 53 kt, the stalling speed, and a lift-off above the climb's airspeed."""
-    config = tmp_path / "fccd.toml"
-    config.write_text(f"[built-in]\n[autopilot.runway]\n{keys}\n")
-    done = _run(fccd, "check", "--json", "--config", config, CIRCUIT)
-    assert done.returncode == 2
-    (problem,) = json.loads(done.stdout)["problems"]
-    assert (problem["item"], problem["field"]) == (item, "autopilot.runway")

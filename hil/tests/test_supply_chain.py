@@ -65,3 +65,25 @@ def test_a_build_for_others_names_no_folder_of_this_machine() -> None:
         maps = [word.removeprefix(option) for word in exported[flags].split() if option in word]
         assert f"{ROOT}=/build/fccd" in maps
         assert all(to.split("=")[1].startswith("/build/") for to in maps)
+
+
+def test_the_daemon_is_built_from_the_libraries_of_the_python_module() -> None:
+    """Else `make build` compiles them once more; pyo3 is the module's alone."""
+
+    def libraries(*words: str) -> set[str]:
+        tree = ["cargo", "tree", "--locked", "--prefix=none", "--no-dedupe", "--edges=normal,build"]
+        done = subprocess.run(
+            [*tree, "--format={p} {f}", *words],
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        return {line for line in done.stdout.splitlines() if not line.startswith("pyo3")}
+
+    makefile = (ROOT / "Makefile").read_text()
+    assert "cargo build --locked --release -p fcc-daemon -p fcc-py --bin fccd" in makefile
+    module = libraries("--package=fcc-py", "--features=pyo3/extension-module")
+    assert module <= libraries("--package=fcc-py", "--package=fcc-daemon")
+    for name in ("README.md", "docs/tutorial.md", "hil/README.md"):
+        assert "cargo build --release -p fcc-daemon" not in (ROOT / name).read_text()

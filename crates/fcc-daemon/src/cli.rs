@@ -84,6 +84,8 @@ pub enum Action {
         /// The shell
         shell: Shell,
     },
+    /// Print the JSON Schema of configuration files, by which editors complete and check them
+    Schema,
     /// Write manual pages into a folder, for packages
     #[command(hide = true)]
     Man {

@@ -11,6 +11,7 @@ use fcc_linux::chip::ChipKind;
 const BUILT_IN: &str = include_str!("../../../config/built-in.toml");
 const BOARD: &str = include_str!("../../../config/board.toml");
 const X_PLANE: &str = include_str!("../../../config/x-plane.toml");
+const APP: &str = include_str!("../../../android/app/src/main/res/raw/example_built_in.toml");
 const SERVO_BOARD: &str = include_str!("../../../config/servo-board.toml");
 
 /// `#key = value` becomes `key = value`; what begins with `# ` is prose.
@@ -133,10 +134,92 @@ fn the_example_of_a_board_is_a_configuration() {
         format!("#rate_hz = {:.1} ", kind.rate_hz()),
         format!("#silent_after_ms = {}\n", usual.silent_after_ms),
         format!("#fallback_after_ms = {}\n", usual.fallback_after_ms),
-        "#i2c = \"/dev/i2c-1\"\n#address = 0x68\n".to_owned(),
+        "#i2c = \"/dev/i2c-1\" ".to_owned(),
+        "#address = 0x68 ".to_owned(),
         format!("#   rate_hz = {:.1}\n", IioSection::default().rate_hz),
     ];
     for line in written {
         assert!(BOARD.contains(&line), "{line}");
     }
+}
+
+/// What a user takes the comment sign away from: a key, or a table with its keys.
+fn commented(text: &str) -> Vec<Vec<usize>> {
+    let mut found: Vec<Vec<usize>> = Vec::new();
+    let mut is_in_table = false;
+    for (at, line) in text.lines().enumerate() {
+        let is_example = line.starts_with("#   ") && !line.starts_with("#    ");
+        let rest = line.trim_start_matches(['#', ' ']);
+        let key = rest.split_once(" = ").map_or("", |(key, _)| key);
+        let is_key = !key.is_empty() && !key.contains(' ');
+        let is_commented = is_example || (line.starts_with('#') && !line.starts_with("# "));
+        if is_example && is_in_table && (is_key || rest.starts_with('[')) {
+            if rest.starts_with("[[sensor]]") || rest.starts_with("[[actuator]]") {
+                found.push(Vec::new());
+            }
+            found.last_mut().unwrap().push(at);
+        } else if is_commented && (is_key || rest.starts_with('[')) {
+            is_in_table = rest.starts_with('[');
+            found.push(vec![at]);
+        } else {
+            is_in_table = false;
+        }
+    }
+    found
+}
+
+/// The text without these comment signs, and with one before what they are "instead of".
+fn changed(text: &str, commented: &[usize]) -> String {
+    let lines: Vec<_> = text.lines().collect();
+    let uncommented = commented.iter().map(|at| lines[*at]);
+    let instead = uncommented.filter_map(|line| line.split_once("# instead of "));
+    let instead: Vec<_> = instead
+        .filter_map(|(_, key)| key.split([' ', ';']).next())
+        .map(|key| format!("{key} = "))
+        .collect();
+    let changed = lines.iter().enumerate().map(|(at, line)| {
+        if commented.contains(&at) {
+            line.trim_start_matches(['#', ' ']).to_owned()
+        } else if instead.iter().any(|key| line.starts_with(key)) {
+            format!("#{line}")
+        } else {
+            (*line).to_owned()
+        }
+    });
+    changed.collect::<Vec<_>>().join("\n")
+}
+
+/// Three stood above their section's header, and were keys of the one before.
+#[test]
+fn each_commented_line_is_valid_where_it_stands() {
+    for (name, text, least) in [
+        ("built-in.toml", BUILT_IN, 200),
+        ("x-plane.toml", X_PLANE, 70),
+        ("servo-board.toml", SERVO_BOARD, 8),
+        ("board.toml", BOARD, 12),
+        ("example_built_in.toml", APP, 3),
+    ] {
+        let commented = commented(text);
+        assert!(commented.len() >= least, "{name}: {}", commented.len());
+        for lines in commented {
+            if let Err(error) = Config::parse(&changed(text, &lines), name) {
+                panic!("{error}");
+            }
+        }
+    }
+}
+
+/// The same name is a key of the simulated battery, which nothing watches.
+#[test]
+fn the_limit_of_the_battery_is_one_of_the_contingencies() {
+    let text = BUILT_IN.replace("#   battery_charge_percent", "battery_charge_percent");
+    let config = Config::parse(&text, "built-in.toml").unwrap();
+    assert_eq!(config.contingency.battery_charge_percent, Some(25.0));
+    let misplaced = "[built-in]\n[terrain]\nbattery_charge_percent = 25.0\n";
+    let message = Config::parse(misplaced, "f").unwrap_err().to_string();
+    assert!(
+        message
+            .contains("`built-in.battery_charge_percent` or `contingency.battery_charge_percent`"),
+        "{message}"
+    );
 }

@@ -25,6 +25,19 @@ const NAME: &str = "config";
 #[derive(Clone)]
 pub(crate) struct PyConfig {
     pub(crate) config: Config,
+    /// As it was given: without its plan and what follows from that.
+    given: Config,
+}
+
+impl PyConfig {
+    /// With its plan, which a recorded one contains.
+    pub(crate) fn of(given: Config, name: &str) -> Result<Self, ConfigError> {
+        let config = match given.plan.plan() {
+            Some(_) => given.clone(),
+            None => given.clone().with_plan(name)?,
+        };
+        Ok(Self { config, given })
+    }
 }
 
 pub(crate) fn refused(error: &ConfigError) -> PyErr {
@@ -42,8 +55,7 @@ impl PyConfig {
             )));
         }
         Config::parse_without_aircraft(text, NAME)
-            .and_then(|config| config.with_plan(NAME))
-            .map(|config| Self { config })
+            .and_then(|given| Self::of(given, NAME))
             .map_err(|error| refused(&error))
     }
 
@@ -52,8 +64,7 @@ impl PyConfig {
     #[expect(clippy::needless_pass_by_value, reason = "pyo3 passes paths by value")]
     fn load(path: PathBuf) -> PyResult<Self> {
         Config::load(&path)
-            .and_then(|config| config.with_plan(&path.display().to_string()))
-            .map(|config| Self { config })
+            .and_then(|given| Self::of(given, &path.display().to_string()))
             .map_err(|error| refused(&error))
     }
 
@@ -79,7 +90,7 @@ impl PyConfig {
     /// Another configuration, with other values for some keys:
     /// `config.replace({"autopilot.heading.roll_gain_per_s": 2.0})`. A dict
     /// replaces a whole section, and another `guidance.mode` drops the keys of the mode before.
-    /// All is checked as a file is.
+    /// It is what a text with these values is: all is checked, and the plan is read.
     fn replace(&self, values: &Bound<'_, PyDict>) -> PyResult<Self> {
         let mut changes = Vec::new();
         for (key, value) in values {
@@ -92,9 +103,9 @@ impl PyConfig {
         let changes = changes
             .iter()
             .map(|(key, value)| (key.as_str(), value.clone()));
-        self.config
+        self.given
             .with_values(changes)
-            .map(|config| Self { config })
+            .and_then(|given| Self::of(given, NAME))
             .map_err(|error| refused(&error))
     }
 

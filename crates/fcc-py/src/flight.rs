@@ -134,7 +134,8 @@ impl PyFlight {
 ///
 /// The flight ends `seconds` after the engage switch goes on (by default as
 /// long as `fccd fly` takes: the hold and 8 legs, or 60 s without a pattern),
-/// when the loop stops, or when the aircraft hits the ground (`Flight.impact`). With `keep` False no records and truths are kept: a
+/// when the loop stops, or when the aircraft hits the ground (`Flight.impact`). One that never
+/// engaged is an `EngageError` with the reason. With `keep` False no records and truths are kept: a
 /// row of both is some 730 bytes. The GIL is released meanwhile: several flights
 /// run side by side in threads.
 ///
@@ -204,10 +205,15 @@ pub(crate) fn fly(
         truth: assembly.true_now.clone().filter(|_| keep),
         records: Rows::with_room(room),
         truths: Rows::with_room(room),
-        events: Vec::new(),
-        last: FlightRecord::default(),
+        ..Log::default()
     };
     let (outcome, log, took) = py.detach(move || conduct(assembly, config, plan, log, &raised))?;
+    if !log.has_engaged {
+        let mut texts = log.events.into_iter().map(|event| event.text);
+        let refusal = texts.rfind(|text| text.starts_with("not engaged"));
+        let why = refusal.unwrap_or_else(|| format!("not engaged: {}", outcome.ending));
+        return Err(errors::ENGAGE.with(why));
+    }
     PyFlight::new(py, outcome, log, took, period_s)
 }
 
@@ -267,6 +273,7 @@ struct Log {
     truths: Rows<Truth>,
     events: Vec<PyEvent>,
     last: FlightRecord,
+    has_engaged: bool,
 }
 
 fn lock(log: &Mutex<Log>) -> MutexGuard<'_, Log> {
@@ -286,6 +293,7 @@ impl Observer<Autopilot> for PythonObserver {
     fn record(&mut self, record: &FlightRecord, _: &FlightTime) {
         let log = &mut *lock(&self.log);
         log.last = *record;
+        log.has_engaged |= record.state == State::Engaged;
         if let Some(truth) = &log.truth {
             log.records.push(record);
             log.truths.push(&truth.get());

@@ -123,9 +123,7 @@ impl<C: Controller> fmt::Display for EventDescription<C> {
                 "overload over: {count} ticks left no time to sleep, the last was {last}"
             ),
             EventKind::StoppedByOverload => f.write_str("overloaded for too long: the loop stops"),
-            EventKind::EngageRefusedBySwitch => {
-                f.write_str("not engaged by the command: the engage switch is off")
-            }
+            EventKind::EngageRefusedBySwitch => f.write_str(REFUSED_BY_SWITCH),
             EventKind::ConditionsChanged { began, ended } => condition_change::<C>(f, began, ended),
             EventKind::SourceChanged(SourceChange { readings, from, to }) => {
                 for (n, bit) in readings.iter().enumerate() {
@@ -138,6 +136,9 @@ impl<C: Controller> fmt::Display for EventDescription<C> {
         }
     }
 }
+
+const REFUSED_BY_SWITCH: &str = "not engaged by the command: the engage switch is off; switch \
+                                 it on, or configure command_needs_switch = false";
 
 /// A change of state with the cause of a failsafe.
 fn state_change<C: Controller>(f: &mut fmt::Formatter<'_>, from: State, to: State) -> fmt::Result {

@@ -99,7 +99,9 @@ pub(super) fn conduct(
     observers.push(Box::new(Announcer::default()));
     observers.push(Box::new(Beginning(config.remarks_at_start())));
     if !quiet {
-        observers.push(Box::new(StatusLine::new(aircraft::describe)));
+        let by_command = !config.engage.command_needs_switch;
+        let line = StatusLine::new(aircraft::describe, aircraft::switch, by_command);
+        observers.push(Box::new(line));
     }
     observers.push(Box::new(Service::from_environment()));
     let flown_plan = PlanResult::default();

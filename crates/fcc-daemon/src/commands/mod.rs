@@ -121,6 +121,7 @@ fn carry_out(command: Action) -> Result<Exit, Failure> {
         Action::Publisher => publisher::publisher()?,
         Action::ReleaseHelper => release_helper::release_helper()?,
         Action::Completions { shell } => completions(shell),
+        Action::Schema => output::json(&fcc_flight::config::schema(), Exit::Success),
         Action::Man { folder } => man(&folder)?,
     })
 }

@@ -1,6 +1,6 @@
 //! The aircraft in a status line.
 
-use fcc_core::framework::{Reading, State};
+use fcc_core::framework::{Reading, State, Switch};
 use fcc_telemetry::units::{M_FT, MPS_KT};
 use fcc_telemetry::{FlightRecord, ShownAltitude};
 
@@ -49,6 +49,12 @@ pub(crate) fn describe(record: &FlightRecord) -> Option<String> {
     } else {
         format!("hdg {heading:3.0}°  {name} {altitude} ft  {airspeed:3.0} kt")
     })
+}
+
+/// The position of the engage switch; none if it was never read.
+pub(crate) fn switch(record: &FlightRecord) -> Option<Switch> {
+    let switch = &record.measurements.engage_switch;
+    (!switch.is_never()).then_some(switch.value)
 }
 
 /// Whole degrees, 0 to 359, as on a compass card.

@@ -23,7 +23,7 @@ mod tests {
     fn every_observer_conforms_to_the_trait() {
         observer_conforms(|| Box::new(Announcer::default()));
         observer_conforms(|| Box::new(Beginning(Vec::new())));
-        observer_conforms(|| Box::new(StatusLine::new(aircraft::describe)));
+        observer_conforms(|| Box::new(StatusLine::new(aircraft::describe, aircraft::switch, true)));
         observer_conforms(|| Box::new(PlanResult::default()));
         observer_conforms(|| Box::new(Service::from_environment()));
     }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use fcc_core::framework::{Controller, EventKind, EventOf, RecordOf, State};
+use fcc_core::framework::{Controller, EventKind, EventOf, RecordOf, State, Switch};
 use fcc_flight::flight::{FlightTime, Observer};
 
 use crate::output;
@@ -11,6 +11,10 @@ use crate::output;
 pub(crate) struct StatusLine<C: Controller> {
     /// The plant's part of the line; none before there are measurements.
     describe: fn(&RecordOf<C>) -> Option<String>,
+    /// Whether the engage switch is read, and its position.
+    switch: fn(&RecordOf<C>) -> Option<Switch>,
+    /// Whether a command engages although that switch is off.
+    by_command: bool,
     printed_s: Option<f64>,
     worst_us: f64,
     missed: u64,
@@ -44,9 +48,15 @@ impl<C: Controller> Observer<C> for StatusLine<C> {
 }
 
 impl<C: Controller> StatusLine<C> {
-    pub(crate) const fn new(describe: fn(&RecordOf<C>) -> Option<String>) -> Self {
+    pub(crate) const fn new(
+        describe: fn(&RecordOf<C>) -> Option<String>,
+        switch: fn(&RecordOf<C>) -> Option<Switch>,
+        by_command: bool,
+    ) -> Self {
         Self {
             describe,
+            switch,
+            by_command,
             printed_s: None,
             worst_us: 0.0,
             missed: 0,
@@ -75,6 +85,14 @@ impl<C: Controller> StatusLine<C> {
         for (n, bit) in record.engage_inhibits.iter().enumerate() {
             line.push_str(if n == 0 { "  not ready: " } else { ", " });
             line.push_str(C::flag_name(bit));
+        }
+        if record.state == State::Standby && record.engage_inhibits.is_empty() {
+            line.push_str(match ((self.switch)(record), self.by_command) {
+                (None, _) => "  waits for a command: no engage switch is read",
+                (Some(Switch::Off), true) => "  waits for the engage switch or a command",
+                (Some(Switch::Off), false) => "  waits for the engage switch",
+                (Some(Switch::On), _) => "  waits for a command, or the engage switch off and on",
+            });
         }
         line
     }

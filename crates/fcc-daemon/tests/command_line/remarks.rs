@@ -21,7 +21,10 @@ fn a_flight_that_moves_nothing_says_so() {
     );
     let fly = ["fly", "--lockstep", "--seconds", "1", "--config", "f.toml"];
     let (_, flown) = printed(folder.path(), &fly);
-    assert!(flown.contains("there is no actuator: engaging moves nothing"), "{flown}");
+    assert!(
+        flown.contains("there is no actuator: engaging moves nothing"),
+        "{flown}"
+    );
 }
 
 /// Control commands NaN; failsafe's time does not pass.

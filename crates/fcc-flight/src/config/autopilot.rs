@@ -310,18 +310,18 @@ section! {
     /// `[autopilot.runway]`: speeds and limits of take-off and landing.
     RunwaySection for RunwayConfig in "autopilot.runway" {
         /// Indicated airspeed at which the nose is raised.
-        rotate_kt (5.0 to 150.0) => rotate_mps * KNOT_MPS,
+        rotate_kt (5.0 to 300.0) => rotate_mps * KNOT_MPS,
         /// A take-off from the hand begins with this acceleration along the aircraft; 0: it
         /// takes off on its wheels.
         launch_g (0.0 to 10.0) => launch_mps2 * GRAVITY_MPS2,
         /// A take-off that has not reached it within this way, or its time, brakes.
         longest_roll_m (1.0 to 5000.0) => longest_roll_m * SI,
         /// Indicated airspeed of the climb: below it, its pitch is reduced.
-        climb_kt (5.0 to 200.0) => climb_mps * KNOT_MPS,
+        climb_kt (5.0 to 600.0) => climb_mps * KNOT_MPS,
         /// Pitch of the climb, unless the plan gives one.
         climb_pitch_deg (1.0 to 30.0) => climb_pitch_rad * DEGREE_RAD,
         /// Indicated airspeed of the approach, to which half of the head wind is added.
-        approach_kt (5.0 to 200.0) => approach_mps * KNOT_MPS,
+        approach_kt (5.0 to 600.0) => approach_mps * KNOT_MPS,
         /// Angle of the glide path.
         glide_path_deg (1.0 to 10.0) => glide_path_rad * DEGREE_RAD,
         /// In the flare the sink rate is the height over this.

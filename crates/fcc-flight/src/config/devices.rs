@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 use toml::de::DeTable;
 
-use super::read::{Entry, Reader};
+use super::read::{Entry, Keys};
 use super::{ChipSection, Config, DeviceEntry, ServosSection, XPlaneSection};
 
 /// One entry of `[[sensor]]`: a kind, and that kind's keys.
@@ -121,20 +121,20 @@ impl Entry for SensorEntry {
         "gpio-switch",
     ];
 
-    fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, reader: &mut Reader<'t>) -> Option<Self> {
+    fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, from: &mut impl Keys<'t>) -> Option<Self> {
         let device = match kind {
-            "simulator" => return reader.table(keys, 1).map(Self::Simulator),
-            "x-plane" => return reader.table(keys, 1).map(Self::XPlane),
-            "servo-board" => return reader.table(keys, 1).map(Self::ServoBoard),
-            "iio" => DeviceEntry::Iio(reader.table(keys, 1)?),
-            "phone" => DeviceEntry::Phone(reader.table(keys, 1)?),
-            "gnss-serial" => DeviceEntry::GnssSerial(reader.table(keys, 1)?),
-            "gpsd" => DeviceEntry::Gpsd(reader.table(keys, 1)?),
-            "rc-receiver" => DeviceEntry::RcReceiver(reader.table(keys, 1)?),
-            "gpio-switch" => DeviceEntry::GpioSwitch(reader.table(keys, 1)?),
+            "simulator" => return from.table(keys, 1).map(Self::Simulator),
+            "x-plane" => return from.table(keys, 1).map(Self::XPlane),
+            "servo-board" => return from.table(keys, 1).map(Self::ServoBoard),
+            "iio" => DeviceEntry::Iio(from.table(keys, 1)?),
+            "phone" => DeviceEntry::Phone(from.table(keys, 1)?),
+            "gnss-serial" => DeviceEntry::GnssSerial(from.table(keys, 1)?),
+            "gpsd" => DeviceEntry::Gpsd(from.table(keys, 1)?),
+            "rc-receiver" => DeviceEntry::RcReceiver(from.table(keys, 1)?),
+            "gpio-switch" => DeviceEntry::GpioSwitch(from.table(keys, 1)?),
             chip => DeviceEntry::Chip(ChipSection {
                 kind: ChipKind::ALL.into_iter().find(|kind| kind.key() == chip)?,
-                ..reader.table(keys, 1)?
+                ..from.table(keys, 1)?
             }),
         };
         Some(Self::Device(Box::new(device)))
@@ -148,11 +148,11 @@ impl Entry for SensorEntry {
 impl Entry for ActuatorEntry {
     const KINDS: &'static [&'static str] = &["simulator", "servo-board", "servos"];
 
-    fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, reader: &mut Reader<'t>) -> Option<Self> {
+    fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, from: &mut impl Keys<'t>) -> Option<Self> {
         match kind {
-            "servo-board" => reader.table(keys, 1).map(Self::ServoBoard),
-            "servos" => reader.table(keys, 1).map(Self::Servos),
-            _ => reader.table(keys, 1).map(Self::Simulator),
+            "servo-board" => from.table(keys, 1).map(Self::ServoBoard),
+            "servos" => from.table(keys, 1).map(Self::Servos),
+            _ => from.table(keys, 1).map(Self::Simulator),
         }
     }
 }

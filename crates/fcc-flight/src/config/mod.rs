@@ -40,6 +40,7 @@ mod replacement;
 mod restart;
 mod rights;
 mod runtime;
+mod schema;
 mod servo_board;
 mod servos;
 mod shared_devices;
@@ -92,6 +93,7 @@ pub use runtime::{
     EarlyWakeSection, EngageSection, FailsafeSection, LoopSection, RealtimeSection, ReleaseSection,
     Then,
 };
+pub use schema::schema;
 pub use servo_board::ServoBoardSection;
 pub use servos::{ServoSection, ServosSection};
 pub use telemetry::TelemetrySection;

@@ -104,7 +104,7 @@ impl<'a> Places<'a> {
 }
 
 /// The parts of `sensor[1]`; no index for a plain name.
-fn indexed(part: &str) -> (&str, Option<usize>) {
+pub(super) fn indexed(part: &str) -> (&str, Option<usize>) {
     let parts = part
         .strip_suffix(']')
         .and_then(|part| part.split_once('['))

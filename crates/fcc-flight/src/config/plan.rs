@@ -252,34 +252,6 @@ impl Config {
         Ok(())
     }
 
-    /// Speeds of `[autopilot.runway]` with which it does not take off or land.
-    pub(super) fn runway_problems(&self, plan: &fcc_plan::Plan) -> Option<Problem> {
-        /// An approach at 1.3 times the stalling speed is usual (14 CFR 23.73 until 2017).
-        const LEAST_OVER_STALL: f64 = 1.2;
-        let (runway, envelope) = (&self.autopilot.runway, &self.autopilot.envelope);
-        let least_kt = LEAST_OVER_STALL * envelope.stall_airspeed_kt;
-        let of = |wanted: fn(&Item) -> bool, message: String| {
-            let index = plan.items.iter().position(wanted)?;
-            Some(Problem::of_item(index + 1, "autopilot.runway", message))
-        };
-        if runway.approach_kt < least_kt {
-            let message = format!(
-                "approach_kt is {}: choose at least {least_kt:.1}, {LEAST_OVER_STALL} times \
-                 autopilot.envelope.stall_airspeed_kt",
-                runway.approach_kt
-            );
-            return of(|item| matches!(item, Item::Land { .. }), message);
-        }
-        if runway.rotate_kt > runway.climb_kt {
-            let message = format!(
-                "rotate_kt is {}: choose at most climb_kt, {}",
-                runway.rotate_kt, runway.climb_kt
-            );
-            return of(|item| matches!(item, Item::Takeoff { .. }), message);
-        }
-        None
-    }
-
     /// The built-in aircraft begins at the plan's home, or at its first place; on the
     /// runway there, if the plan begins with a take-off. Its ground is as high as the
     /// runway, unless the configuration has another one.

@@ -129,6 +129,15 @@ pub(super) fn range_of(key: &str) -> Option<(f64, f64)> {
         .map(|(_, least, most)| (*least, *most))
 }
 
+/// The same of a key of a sensor of this kind.
+pub(super) fn range_of_entry(kind: &str, key: &str) -> Option<(f64, f64)> {
+    let is_it = |(range, ..): &&(&str, f64, f64)| {
+        let (of, name) = range.split_once('.').unwrap_or_default();
+        name == key && device::is_of_kind(of, name, kind)
+    };
+    ranges().find(is_it).map(|(_, least, most)| (*least, *most))
+}
+
 /// A range, as messages give it.
 pub(super) fn in_words((least, most): (f64, f64)) -> String {
     format!("{} to {}", number(least), number(most))
@@ -148,7 +157,7 @@ pub(super) fn check(config: &Config, places: &Places<'_>, unread: &[Problem]) ->
         line => !unread.iter().any(|problem| problem.line == line),
     };
     let mut others = Vec::new();
-    relations::check(config, &mut |keys: &[&str], message: String| {
+    relations::check(config, &mut |keys: &[&str], mut message: String| {
         // A number that is out of its range says nothing about another one.
         let is_out = |problem: &Problem| {
             problem
@@ -157,6 +166,7 @@ pub(super) fn check(config: &Config, places: &Places<'_>, unread: &[Problem]) ->
                 .is_some_and(|key| keys.contains(&key))
         };
         if let Some(key) = keys.first().filter(|_| !problems.iter().any(is_out)) {
+            message.push_str(&defaults(config, places, keys));
             others.push(problem_at(places, key, message));
         }
     });
@@ -166,6 +176,15 @@ pub(super) fn check(config: &Config, places: &Places<'_>, unread: &[Problem]) ->
     others.extend(without_aircraft(config));
     problems.extend(others.into_iter().filter(|problem| is_read(problem.line)));
     problems
+}
+
+/// The values of these keys that the text does not contain, for the end of a message.
+fn defaults(config: &Config, places: &Places<'_>, keys: &[&str]) -> String {
+    // One key alone contradicts no other.
+    let absent = keys.iter().filter(|key| keys.len() > 1 && !places.has(key));
+    let values = absent.filter_map(|key| Some((key, config.value(key).ok()?)));
+    let texts = values.map(|(key, value)| format!("; {key} = {value} by default, not in the file"));
+    texts.collect()
 }
 
 fn problem_at(places: &Places<'_>, key: &str, message: String) -> Problem {

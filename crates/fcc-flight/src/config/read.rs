@@ -73,13 +73,22 @@ fn syntax(text: &str, error: &Error) -> Problem {
     }
 }
 
+/// Reads the keys of a table as a type's.
+pub(super) trait Keys<'t> {
+    /// Reads a table that is `depth` sections below the text's own; none if
+    /// that is impossible without the keys that are wrong.
+    fn table<T: DeserializeOwned>(&mut self, keys: Spanned<DeTable<'t>>, depth: usize)
+    -> Option<T>;
+}
+
 /// An entry of a list: a kind, and that kind's keys.
 pub(super) trait Entry: Sized {
     /// The kinds as a configuration names them.
     const KINDS: &'static [&'static str];
 
     /// Reads the keys of one of the kinds; none if that is impossible.
-    fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, reader: &mut Reader<'t>) -> Option<Self>;
+    fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, reader: &mut impl Keys<'t>)
+    -> Option<Self>;
 
     /// What stands for an entry that could not be read, so that the following
     /// ones keep their numbers; none if it is left out.
@@ -113,10 +122,8 @@ pub(super) struct Reader<'t> {
     problems: Vec<Problem>,
 }
 
-impl<'t> Reader<'t> {
-    /// Reads a table that is `depth` sections below the text's own; none if
-    /// that is impossible without the keys that are wrong.
-    pub(super) fn table<T: DeserializeOwned>(
+impl<'t> Keys<'t> for Reader<'t> {
+    fn table<T: DeserializeOwned>(
         &mut self,
         mut table: Spanned<DeTable<'t>>,
         depth: usize,
@@ -146,7 +153,9 @@ impl<'t> Reader<'t> {
         }
         None
     }
+}
 
+impl<'t> Reader<'t> {
     /// Takes a list out of a table and reads its entries; none if it is not
     /// given.
     fn list<T: Entry>(&mut self, table: &mut Spanned<DeTable<'t>>, name: &str) -> Option<Vec<T>> {

@@ -23,7 +23,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     }
     if config.watchdog.enabled && config.realtime.priority == HIGHEST_PRIORITY {
         report(
-            &["realtime.priority"],
+            &["realtime.priority", "watchdog.enabled"],
             format!(
                 "is {HIGHEST_PRIORITY}: choose at most {}, so that the watchdog can have a higher \
                  one and interrupt a loop that spins",
@@ -118,11 +118,13 @@ fn paths(config: &Config, report: &mut impl FnMut(&[&str], String)) {
 /// The lowest airspeed over the stalling speed: the margin of certification is
 /// 1.2 to 1.3 (14 CFR 23.73 in force until 2017: approach at 1.3).
 const OVER_STALL: f64 = 1.1;
+const APPROACH_OVER_STALL: f64 = 1.2;
 /// Room between the lowest and the highest airspeed, in margins: two, and one
 /// to hold an airspeed in.
 const MARGINS: f64 = 3.0;
 
-/// Of `[autopilot.envelope]`: an envelope in which an aircraft can fly.
+/// Of `[autopilot.envelope]`: an envelope in which an aircraft can fly, and of the airspeeds
+/// of `[autopilot.runway]`, that they are in it.
 fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&[&str], String)) {
     let envelope = &autopilot.envelope;
     let (stall, least, most, never) = (
@@ -175,39 +177,55 @@ fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&[&str], Strin
             format!("at most never_exceed_airspeed_kt, {never}"),
         );
     }
-    for (keys, value, lowest, highest, range) in [
+    loads(envelope, &mut at);
+    let runway = &autopilot.runway;
+    let over_stall = |times: f64| {
+        let times_of = format!("{times} times ");
+        (times * stall, times_of, "envelope.stall_airspeed_kt")
+    };
+    let slowest = (least, String::new(), "envelope.min_airspeed_kt");
+    let mut approach = over_stall(APPROACH_OVER_STALL);
+    if approach.0 <= least {
+        approach = slowest.clone();
+    }
+    // With flaps an aircraft lifts off below the stalling speed without.
+    let mut lift_off = (stall, String::new(), "envelope.stall_airspeed_kt");
+    if runway.takeoff_flaps > 0.0 {
+        lift_off.0 = 0.0;
+    }
+    let fastest = (most, "envelope.max_airspeed_kt");
+    let never = (never, "envelope.never_exceed_airspeed_kt");
+    let climb = (runway.climb_kt, "runway.climb_kt");
+    let glide = envelope.best_glide_airspeed_kt;
+    let maneuvering = envelope.maneuvering_airspeed_kt;
+    for ((value, key), (lowest, times, of), (highest, to)) in [
         (
-            [
-                "best_glide_airspeed_kt",
-                "stall_airspeed_kt",
-                "max_airspeed_kt",
-            ],
-            envelope.best_glide_airspeed_kt,
-            above_stall,
-            most,
-            format!(
-                "{above_stall:.1} to {most}: {OVER_STALL} times stall_airspeed_kt to max_airspeed_kt"
-            ),
+            (glide, "envelope.best_glide_airspeed_kt"),
+            over_stall(OVER_STALL),
+            fastest,
         ),
         (
-            [
-                "maneuvering_airspeed_kt",
-                "stall_airspeed_kt",
-                "never_exceed_airspeed_kt",
-            ],
-            envelope.maneuvering_airspeed_kt,
-            above_stall,
+            (maneuvering, "envelope.maneuvering_airspeed_kt"),
+            over_stall(OVER_STALL),
             never,
-            format!(
-                "{above_stall:.1} to {never}: {OVER_STALL} times stall_airspeed_kt to never_exceed_airspeed_kt"
-            ),
+        ),
+        ((runway.rotate_kt, "runway.rotate_kt"), lift_off, climb),
+        (climb, slowest, fastest),
+        (
+            (runway.approach_kt, "runway.approach_kt"),
+            approach,
+            fastest,
         ),
     ] {
-        if !(lowest..=highest).contains(&value) {
-            at(&keys, value, range);
+        if lowest <= highest && !(lowest..=highest).contains(&value) {
+            let keys = [key, of, to].map(|key| format!("autopilot.{key}"));
+            let range = format!("{lowest:.1} to {highest}: {times}{of} to {to}");
+            report(
+                &keys.each_ref().map(String::as_str),
+                format!("is {value}: choose {range}"),
+            );
         }
     }
-    loads(envelope, &mut at);
 }
 
 /// Of the load factors in it.

@@ -2,8 +2,7 @@
 
 use std::sync::LazyLock;
 
-use super::Config;
-use super::values::keyed;
+use super::schema;
 
 /// The minimum similarity of a suggestion: 1 means equal (Winkler, 1990).
 const ALIKE: f64 = 0.8;
@@ -23,20 +22,11 @@ pub(super) fn most_alike<'k>(
 }
 
 /// All keys, with their sections.
-static KEYS: LazyLock<Vec<String>> = LazyLock::new(|| {
-    let config = Config {
-        x_plane: Some(super::XPlaneSection::default()),
-        built_in: Some(super::BuiltInSection::default()),
-        servo_board: Some(super::ServoBoardSection::default()),
-        ..Config::default()
-    };
-    let values = config.values().ok();
-    let keyed = values.iter().flat_map(keyed);
-    keyed.map(|(key, _)| key).collect()
-});
+static KEYS: LazyLock<Vec<String>> = LazyLock::new(schema::keys);
 
-/// The key of this name in another section, with its sections.
+/// The keys of this name in other sections, with their sections.
 pub(super) fn elsewhere(name: &str) -> Option<String> {
     let is_it = |key: &&String| key.rsplit('.').next() == Some(name);
-    KEYS.iter().find(is_it).cloned()
+    let keys: Vec<_> = KEYS.iter().filter(is_it).map(String::as_str).collect();
+    (!keys.is_empty()).then(|| keys.join("` or `"))
 }

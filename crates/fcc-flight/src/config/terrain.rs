@@ -190,7 +190,6 @@ impl Config {
                 problems.push(problem);
             }
         }
-        problems.extend(self.runway_problems(plan));
         problems.extend(self.floor_problems(plan));
         problems
     }

@@ -4,6 +4,7 @@
 use toml::Value;
 use toml::map::Entry;
 
+use super::places::indexed;
 use super::wording::renamed;
 use super::{Config, ConfigError, Problem};
 
@@ -39,13 +40,16 @@ impl Config {
         let values = self.values()?;
         let found = key
             .split('.')
-            .try_fold(&values, |section, part| section.get(part));
+            .try_fold(&values, |section, part| match indexed(part) {
+                (name, Some(index)) => section.get(name)?.get(index),
+                (name, None) => section.get(name),
+            });
         found.cloned().ok_or_else(|| unknown(key))
     }
 
     /// The configuration with other values for some keys; a key with a table
-    /// changes the whole section, and another `guidance.mode` drops the keys of the one before.
-    /// Everything is checked like a file.
+    /// changes the whole section, another `guidance.mode` drops the keys of the one before, and
+    /// another `plan.file` the plan that was recorded. Everything is checked like a file.
     ///
     /// # Errors
     /// When there is no such key, or a value is out of its range: the messages
@@ -62,6 +66,11 @@ impl Config {
         if changes.iter().any(is_other) {
             // The other keys of the section are of the mode before.
             put(&mut values, "guidance", Value::Table(toml::Table::new()));
+        }
+        if changes.iter().any(|(key, _)| *key == "plan.file")
+            && let Some(plan) = values.get_mut("plan").and_then(Value::as_table_mut)
+        {
+            plan.retain(|key, _| key != "content" && key != "uploaded_unix_s");
         }
         for (key, value) in changes {
             put(&mut values, key, value).ok_or_else(|| unknown(key))?;

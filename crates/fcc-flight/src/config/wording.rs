@@ -182,7 +182,8 @@ mod tests {
         assert!(guidance[0].starts_with(words), "{guidance:?}");
         let silent = messages("[failsafe]\nall_silent_s = 0.1\n");
         let words = "f:3: failsafe.all_silent_s: is 0.1: choose at least 0.25, which is \
-                     failsafe.sensor_max_age_ms in s";
+                     failsafe.sensor_max_age_ms in s; failsafe.sensor_max_age_ms = 250 by default, \
+                     not in the file";
         assert_eq!(silent, [words]);
         let timer = messages("[loop]\ntimer = 5\n");
         assert!(

@@ -120,7 +120,7 @@ impl PyRecording {
     fn config(&self) -> PyResult<PyConfig> {
         let name = format!("{}: config.toml", self.recording.path().display());
         fcc_flight::config::Config::parse(&self.recording.about().config, &name)
-            .map(|config| PyConfig { config })
+            .and_then(|given| PyConfig::of(given, &name))
             .map_err(|error| refused(&error))
     }
 
