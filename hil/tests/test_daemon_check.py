@@ -194,9 +194,11 @@ def test_speeds_of_the_cessnas_runway_are_refused_in_a_slow_aircraft(
     high, absent = "58: {} to envelope.max_airspeed_kt", "by default, not in the file"
     climb = high.format("envelope.min_airspeed_kt")
     approach = high.format("1.2 times envelope.stall_airspeed_kt")
+    of_climb = f"is 75: choose 28.0 to {climb}; {key}.climb_kt = 75.0 {absent}"
+    of_approach = f"is 68: choose 30.0 to {approach}; {key}.approach_kt = 68.0 {absent}"
     assert {problem["key"]: problem["message"] for problem in problems} == {
-        f"{key}.climb_kt": f"is 75: choose 28.0 to {climb}; {key}.climb_kt = 75.0 {absent}",
-        f"{key}.approach_kt": f"is 68: choose 30.0 to {approach}; {key}.approach_kt = 68.0 {absent}",
+        f"{key}.climb_kt": of_climb,
+        f"{key}.approach_kt": of_approach,
     }
 
 
