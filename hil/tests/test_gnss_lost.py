@@ -43,7 +43,7 @@ def _lands(flight: Flight) -> None:
 def _touches_s() -> float:
     """Return when it touches down with everything, since engagement."""
     flight = _flight()
-    flight.flies(to=500)
+    flight.flies(to=650)
     _lands(flight)
     truth = flight.truth().since(flight.engaged_at_s)
     in_air = np.flatnonzero(truth["on_ground"] == 0.0)
