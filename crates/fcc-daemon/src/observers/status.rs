@@ -70,7 +70,7 @@ impl<C: Controller> StatusLine<C> {
         // Engaged, the plant's part begins with its mode.
         let state = match record.state.state() {
             State::Engaged => String::new(),
-            state => format!("{state:<9} "),
+            state => format!("{:<10}", state.to_string()),
         };
         let mut line = format!(
             "{:8.2} s  {state}{plant}  ≤{:5.0} µs",

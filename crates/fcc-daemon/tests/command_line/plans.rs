@@ -323,7 +323,7 @@ fn the_plan_of_a_configuration_is_checked_with_it() {
         (
             Some(legs(45.0, 0.0)),
             0,
-            "c.toml: plan.file: a.waypoints: item 1: altitude: 0 m above the elevation",
+            "c.toml: remark: plan.file: a.waypoints: item 1: altitude: 0 m above the elevation",
         ),
         (Some(legs(45.0, 300.0)), 0, "c.toml: valid: "),
     ] {

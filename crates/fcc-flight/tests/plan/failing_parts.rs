@@ -115,6 +115,15 @@ fn without_a_receiver_it_rolls_out_along_the_runway() {
             },
         );
         assert_on_runway(&mut flight);
+        // Standing, dead reckoning does not say how the brakes are.
+        for _ in 0..60 * 40 {
+            flight.tick();
+        }
+        let told = &flight.events;
+        assert!(
+            !told.iter().any(|text| text.contains("brakes")),
+            "{told:#?}"
+        );
     }
 }
 

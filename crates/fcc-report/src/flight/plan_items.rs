@@ -226,7 +226,7 @@ fn table_of(items: &[FlownItem]) -> Table {
         "Item",
         "from s",
         "for s",
-        "cross-track RMS m",
+        "path RMS m",
         "max m",
         "altitude RMS ft",
         "airspeed kt",
