@@ -19,12 +19,12 @@ from .loading import Loading
 from .noise import SensorNoise
 from .pattern import TimedPattern
 from .plant import Plant, Weather
-from .quantities import READINGS
+from .quantities import SENSORS
 from .score import Score
 from .state import Controls, State
 from .truth import STEPS_PER_ROW, TRUTH_HZ, Truth, row
 
-_CHANNELS = tuple(channel for channels in READINGS.values() for channel in channels)
+_CHANNELS = tuple(channel for channels in SENSORS.values() for channel in channels)
 _CALM = Weather()
 _THESIS_PATTERN = TimedPattern()
 
@@ -62,6 +62,7 @@ def measurements(state: State) -> fcc.Measurements:
     return fcc.Measurements(
         weight_on_wheels=float(state.on_ground),
         engine_speed_radps=state.engine_speed_radps,
+        battery_voltage_v=state.battery_voltage_v,
         **{channel: getattr(state, channel) for channel in _CHANNELS},
     )
 

@@ -111,7 +111,7 @@ fn doubts_degraded_flight_and_recoveries_do_not_allocate() {
     assert_eq!(calls, 0);
     assert_eq!(records, 10_000);
     for text in [
-        "airspeed of sensor 1 is doubted",
+        "airspeed of sensor 1 is excluded",
         "attitude is missing or too old",
         "altitude is missing or too old",
         "recovering from an upset",
