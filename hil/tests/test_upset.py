@@ -64,7 +64,7 @@ def test_full_aileron_for_seconds(
     script: Callable[[float], Script], for_s: float, conditions: Conditions
 ) -> None:
     flown = fly(script(for_s), conditions)
-    assert abs(math.degrees(flown.begin.roll_rad)) > 100.0
+    assert abs(math.degrees(flown.begin.roll_rad)) > 70.0
     assert flown.before_ft - flown.least_ft < 600.0
     _within_limits(flown, 600.0)
     _flown_on(flown)
