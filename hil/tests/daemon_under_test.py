@@ -152,7 +152,7 @@ class DaemonUnderTest:
 
     def wait_until_ready(self) -> None:
         """Wait for a status line with an aircraft and without engage inhibits."""
-        while NOT_READY in self.wait_for("standby  heading"):
+        while NOT_READY in self.wait_for("standby   hdg"):
             pass
 
     def send(self, number: signal.Signals) -> None:

@@ -132,10 +132,10 @@ def test_fly_as_json(fccd: Path) -> None:
 
 def test_fly_prints_a_status_each_second_unless_quiet(fccd: Path) -> None:
     aloud = run([fccd, "fly", "--seconds", "5", "--lockstep"])
-    lines = [line for line in aloud.stderr.splitlines() if "altitude" in line]
+    lines = [line for line in aloud.stderr.splitlines() if " alt " in line]
     assert len(lines) == 2 + 5 + 1, "2 s before engaging, 5 after, both ends counted"
     quiet = run([fccd, "fly", "--seconds", "5", "--lockstep", "--quiet"])
-    assert "altitude" not in quiet.stderr
+    assert " alt " not in quiet.stderr
 
 
 def test_lockstep_prints_the_score_and_no_timing(fccd: Path) -> None:

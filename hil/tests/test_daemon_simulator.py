@@ -248,15 +248,15 @@ def test_standby_says_what_it_waits_for_and_a_command_engages_without_a_button(
         refused = run(command)
         assert refused.returncode == REFUSED
         assert "switch it on, or configure command_needs_switch = false" in refused.stderr
-        simulator.write(ENGAGE_SWITCH, 1.0)
-        daemon.wait_for("standby -> engaged")
+        switch_on(simulator, daemon)
         run([*command[:2], "disengage", *command[3:]])
         daemon.wait_for("waits for a command, or the engage switch off and on")
         daemon.end(signal.SIGTERM)
     others = f"[engage]\ncommand_needs_switch = false\n{telemetry}"
     with flight(fccd, tmp_path, others=others) as (_, daemon):
         daemon.wait_for("waits for the engage switch or a command")
-        assert run(command).returncode == SUCCESS
+        # On a busy machine readings may be late.
+        wait_until(lambda: run(command).returncode == SUCCESS, "a command engages")
         daemon.wait_for("standby -> engaged")
         daemon.end(signal.SIGTERM)
 

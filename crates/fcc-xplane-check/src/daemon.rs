@@ -28,7 +28,7 @@ pub(crate) struct Line {
 impl Line {
     /// Whether it is the line of each second, and not an event.
     pub(crate) fn is_status(&self) -> bool {
-        self.text.contains(" µs  missed ")
+        self.text.contains("  ≤") && self.text.contains(" µs")
     }
 }
 
