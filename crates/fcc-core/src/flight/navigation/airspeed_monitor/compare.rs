@@ -16,7 +16,7 @@ const DOUBTED_AFTER_S: f64 = 2.5;
 /// So does the younger copy, older than this time, s, by this share of it: what the models
 /// are wrong by grows with the time since the copy.
 const YOUNGER_S: f64 = 6.0;
-const YOUNGER_SHARE: f64 = 0.5;
+const YOUNGER_SHARE: f64 = 0.3;
 /// The forces vote for the sensor if they put the airspeed more than this share
 /// of the way towards it: then the wind has changed, after this time in s.
 const SENSOR_SHARE: f64 = 0.45;
