@@ -1,17 +1,12 @@
 //! Navigation from arrays of raw samples.
 
-mod axes;
-mod clocks;
 mod kind;
 mod magnetism;
 mod mounting;
 mod no_fix;
 mod plausible;
-mod pressures;
-mod repeats;
 mod result;
 mod sources;
-mod turns;
 mod units;
 
 use std::time::Duration;
@@ -43,12 +38,9 @@ const LONGEST_WAIT_S: f64 = 0.05;
 ///
 /// Sources whose times do not meet those of the gyroscope (or the accelerometer), or half a
 /// second and more between its samples, are a `ValueError`; samples mostly at other times,
-/// rates beyond 35 rad/s or by which the field turns in °/s, axes by which the field, gravity or
-/// the receiver's velocities do not agree, one value that is repeated in motion, an airspeed or
-/// altitudes that the receiver or the barometer shows in another unit, a field that is not the
-/// earth's, a force that points down or is not about 9.8 m/s², a negative airspeed, a
-/// velocity that moves otherwise than the position and a source of which less than half agrees
-/// with the others a `UserWarning`.
+/// rates beyond 35 rad/s, a field that is not the earth's, a force that points down or is not
+/// about 9.8 m/s², a negative airspeed, a bias that no sensor has and a source of which less
+/// than half agrees with the others a `UserWarning`.
 #[pyfunction]
 #[pyo3(signature = (
     *,
@@ -119,9 +111,6 @@ pub(crate) fn navigate<'py>(
         delay: Duration::from_secs_f64(sources.delay_s(LONGEST_WAIT_S)),
         earth_field_ut: field,
     };
-    let wrong = py.detach(|| axes::wrong(&sources));
-    let are_axes_right = wrong.is_none();
-    plausible::warn(py, wrong)?;
     let mut run = if is_thesis {
         Run::new(Method::Thesis(ThesisNavigation::new()))
     } else {
@@ -132,10 +121,7 @@ pub(crate) fn navigate<'py>(
         py.check_signals()?;
     }
     plausible::agree(py, &run.innovations)?;
-    // What other axes leave is not the sensors' own.
-    if are_axes_right {
-        plausible::biases(py, &run.solutions)?;
-    }
+    plausible::biases(py, &run.solutions)?;
     result::dict(
         py,
         &sources,

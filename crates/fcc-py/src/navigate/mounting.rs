@@ -1,11 +1,9 @@
 //! How inertial sensors and magnetometers are mounted.
 
-use nalgebra::Vector3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::kind::{Kind, Series};
 use crate::arguments::{numbers, shape_words};
 
 /// What may be mounted otherwise than along the body's axes.
@@ -50,17 +48,6 @@ impl Mounting {
             Some(matrix) => matrix.map(|row| row.iter().zip(vector).map(|(a, b)| a * b).sum()),
             None => vector,
         }
-    }
-
-    /// The possible samples of a source in the body's axes, each with its time.
-    pub(super) fn possible(
-        &self,
-        (kind, series): (&Kind, &Series),
-    ) -> impl Iterator<Item = (f64, Vector3<f64>)> {
-        let samples = series.times_s.iter().zip(&series.rows);
-        samples
-            .filter(|(_, row)| kind.is_possible(row))
-            .map(|(time_s, row)| (*time_s, self.body(kind.name, *row).into()))
     }
 }
 

@@ -133,7 +133,7 @@ impl Sources {
             }
         }
         // After the samples themselves: in a wrong unit they are not possible.
-        plausible::check(py, &series, &delays, mounting)?;
+        plausible::check(py, &series, mounting)?;
         if of("magnetometer").and_then(units::field).is_some() {
             sources.leave_field_out();
         }
