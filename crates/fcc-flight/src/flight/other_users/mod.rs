@@ -7,7 +7,6 @@
 
 mod client;
 mod connect;
-mod crowd;
 mod line;
 mod panel;
 mod server;

@@ -16,7 +16,6 @@ use nix::sys::socket::{Backlog, getsockopt, listen, sockopt::PeerCredentials};
 use nix::unistd::geteuid;
 
 use super::connect::connect_within;
-use super::crowd::Crowd;
 use super::line::{Line, MOST_BYTES};
 use super::own_folder;
 use super::panel::Panel;
@@ -53,7 +52,6 @@ pub(in crate::flight) struct CommandSocket<C: Commandable> {
     listener: Option<UnixListener>,
     peers: Vec<Peer>,
     next_id: u64,
-    crowd: Crowd,
     commands: SentCommands<C>,
     flown: FlownPlan,
 }
@@ -77,7 +75,6 @@ impl<C: Commandable> CommandSocket<C> {
             listener: None,
             peers: Vec::new(),
             next_id: 0,
-            crowd: Crowd::new(),
             commands: SentCommands::new(limits),
             flown: FlownPlan::default(),
         }
@@ -107,7 +104,7 @@ impl<C: Commandable> CommandSocket<C> {
         Ok(())
     }
 
-    fn accept(&mut self, reports: &mut Reports) {
+    fn accept(&mut self) {
         let Some(listener) = &self.listener else {
             return;
         };
@@ -117,10 +114,6 @@ impl<C: Commandable> CommandSocket<C> {
             };
             let peer = getsockopt(&stream, PeerCredentials);
             let user = peer.map_or(u32::MAX, |peer| peer.uid());
-            let process = peer.map_or(0, |peer| peer.pid());
-            if let Some(words) = self.crowd.take(user, process, Instant::now()) {
-                reports.remark(words);
-            }
             let of_user = self.peers.iter().filter(|peer| peer.user == user).count();
             let refusal = match peer {
                 Ok(peer) if !self.panel.permits(user, peer.gid()) => Some(format!(
@@ -231,7 +224,7 @@ impl<C: Commandable + Controller<Setpoints = Setpoints>> Observer<C> for Command
     }
 
     fn poll(&mut self, access: &mut Access<'_, C::Command>) {
-        self.accept(access.reports);
+        self.accept();
         let mut answers = Vec::new();
         for peer in self.peers.iter_mut().filter(|peer| !peer.is_sent) {
             let asked = match peer.line() {
