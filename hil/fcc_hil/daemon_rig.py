@@ -22,7 +22,7 @@ _READY_S = 30.0
 _LOOK_S = 0.05
 
 _LINE = re.compile(r"^ *(?P<time_s>\d+\.\d+) s  (?P<text>.+)$")
-_STATUS = re.compile(r"^(standby|engaged|failsafe|stopped) +(heading|no aircraft|\d)")
+_STATUS = re.compile(r"^\S+(?: \S+)* +(?:hdg +\d|no measurements yet)")
 _NOT_READY = "not ready"
 
 
@@ -104,7 +104,7 @@ class DaemonRig(StandInRig):
         for time_s, text in lines:
             self._offset_s = min(self._offset_s, progress.time_s - time_s)
             if _STATUS.match(text):
-                self._is_ready = text.startswith("standby  heading") and _NOT_READY not in text
+                self._is_ready = text.startswith("standby   hdg") and _NOT_READY not in text
             else:
                 at_s = min(progress.time_s, time_s + self._offset_s)
                 self.events.append(Event(at_s, text))

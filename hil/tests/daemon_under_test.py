@@ -155,6 +155,11 @@ class DaemonUnderTest:
         while NOT_READY in self.wait_for("standby   hdg"):
             pass
 
+    def next_state(self, within_s: float = PATIENCE_S) -> str:
+        """Return the state that the next status line shows. Engaged, it has set points."""
+        line = self.wait_for("  hdg ", within_s)
+        return "engaged" if "→" in line else line.split()[2]
+
     def send(self, number: signal.Signals) -> None:
         """Send a signal to the daemon alone."""
         self._process.send_signal(number)

@@ -65,7 +65,7 @@ def test_data_output_rows_in_and_rows_out(fccd: Path, tmp_path: Path) -> None:
         engage(simulator, daemon)
         engaged_at_s = simulator.progress().time_s
         while simulator.progress().time_s < engaged_at_s + HOLD_S:
-            daemon.wait_for("engaged")
+            daemon.next_state()
         truth = simulator.truth()
         received = simulator.status()["messages"]
         ending = daemon.end(signal.SIGTERM)

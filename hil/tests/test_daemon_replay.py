@@ -48,7 +48,7 @@ def test_a_replay_of_a_flight_is_identical(fccd: Path, tmp_path: Path) -> None:
         with DaemonUnderTest(words, tmp_path) as daemon:
             engage(simulator, daemon)
             for _ in range(7):  # seconds: a status line each
-                daemon.wait_for("heading")
+                daemon.next_state()
             simulator.write(ENGAGE_SWITCH, 0.0)
             daemon.wait_for("engaged -> standby")
             engage(simulator, daemon)

@@ -45,7 +45,7 @@ WARM = '[restart]\nmode = "warm"\n'
 # flight differs clearly from a new capture.
 PATTERN = 'mode = "timed-pattern"\nhold_s = 1.0\nleg_s = 60.0\nturn_deg = 90.0\nclimb_ft = 150.0'
 
-_AIMS = re.compile(r"heading +\d+° → +(\d+)°.*altitude +-?\d+ → +(-?\d+) ft.*→ +([\d.]+) kt")
+_AIMS = re.compile(r"hdg +\d+→ *(\d+)°.*alt +-?\d+→ *(-?\d+) ft.*→ *(\d+) kt")
 
 
 @dataclass(frozen=True)
@@ -90,11 +90,11 @@ class Cockpit:
             captured = self.engage(daemon)
             aims = captured
             while guidance == PATTERN and aims.heading_deg == captured.heading_deg:
-                aims = Aims.of(daemon.wait_for("engaged "))
+                aims = Aims.of(daemon.wait_for("→"))
             wait_until(self.state_file.exists, "the state of the flight is stored")
             # It is kept each second.
-            Aims.of(daemon.wait_for("engaged "))
-            aims = Aims.of(daemon.wait_for("engaged "))
+            Aims.of(daemon.wait_for("→"))
+            aims = Aims.of(daemon.wait_for("→"))
             if with_helper:
                 # Stopped, it does not replace the helper.
                 os.kill(daemon.pid, signal.SIGSTOP)
@@ -105,7 +105,7 @@ class Cockpit:
 
     def engage(self, daemon: DaemonUnderTest) -> Aims:
         engage(self.simulator, daemon)
-        return Aims.of(daemon.wait_for("engaged "))
+        return Aims.of(daemon.wait_for("→"))
 
 
 def first_engaged_ns(ending: Ending) -> int:
@@ -134,7 +134,7 @@ def test_a_warm_restart_continues_the_flight(
     with cockpit.daemon(WARM) as again:
         again.wait_for("recovering it")
         assert "timed-pattern, " in again.wait_for("the flight was recovered")
-        resumed = Aims.of(again.wait_for("engaged "))
+        resumed = Aims.of(again.wait_for("→"))
         assert resumed.heading_deg == aims.heading_deg
         assert resumed.altitude_ft == pytest.approx(aims.altitude_ft, abs=1.0)
         assert resumed.airspeed_kt == pytest.approx(aims.airspeed_kt, abs=0.2)
@@ -172,7 +172,7 @@ def test_a_cold_restart_stays_in_standby_and_reports_it(cockpit: Cockpit) -> Non
         assert "staying in standby" in again.wait_for('restart.mode is "cold"')
         wait_until(lambda: not cockpit.simulator.progress().overridden, "the helper releases")
         again.wait_until_ready()
-        assert "standby" in again.wait_for("heading")
+        assert again.next_state() == "standby"
         assert not cockpit.simulator.progress().overridden
         # It flies after the switch goes on.
         cockpit.simulator.write(ENGAGE_SWITCH, 0.0)
@@ -189,7 +189,7 @@ def test_a_damaged_state_file_is_a_cold_restart(cockpit: Cockpit) -> None:
     with cockpit.daemon(WARM) as again:
         assert "is damaged; staying in standby" in again.wait_for(str(cockpit.state_file))
         again.wait_until_ready()
-        assert "standby" in again.wait_for("heading")
+        assert again.next_state() == "standby"
         assert again.end(signal.SIGTERM).states == ["standby -> stopped"]
 
 

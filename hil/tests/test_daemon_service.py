@@ -45,7 +45,7 @@ def test_a_systemd_that_does_not_read_delays_nothing(fccd: Path, tmp_path: Path)
         engage(simulator, daemon)
         # Long enough to fill all queues.
         for _ in range(5):
-            daemon.wait_for("engaged ")
+            daemon.next_state()
         ending = daemon.end(signal.SIGTERM)
         assert_released(simulator)
     assert ending.exit_code == SUCCESS

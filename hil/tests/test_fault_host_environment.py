@@ -84,7 +84,7 @@ def a_full_disk(fccd: Path, scratch: Path) -> Ending:
         daemon.wait_for("standby -> engaged")
         daemon.wait_for("recording stopped", within_s=60.0)
         for _ in range(2):
-            assert "engaged" in daemon.wait_for("heading")
+            assert daemon.next_state() == "engaged"
         return daemon.end(signal.SIGTERM)
 
 
@@ -97,9 +97,9 @@ def a_changed_configuration(fccd: Path, scratch: Path) -> Flown:
         given = path.read_text()
         path.write_text("[loop]\nrate_hz = 7\n[nonsense")
         for _ in range(2):
-            assert "engaged" in daemon.wait_for("heading")
+            assert daemon.next_state() == "engaged"
         path.unlink()
-        assert "engaged" in daemon.wait_for("heading")
+        assert daemon.next_state() == "engaged"
         flown = Flown.of(daemon.end(signal.SIGTERM), recordings)
     assert attachments(flown.recording)["config-as-given.toml"].decode() == given
     return flown
@@ -122,7 +122,7 @@ def a_hung_watcher(fccd: Path, scratch: Path) -> Flown:
         try:
             # More than fit into its buffer of 1,024 records.
             for _ in range(3):
-                assert "engaged" in daemon.wait_for("heading")
+                assert daemon.next_state() == "engaged"
             # A new watcher still gets the newest record.
             assert fcc.Watcher(instance).info["process_id"] == daemon.pid
             return Flown.of(daemon.end(signal.SIGTERM), recordings)
@@ -266,7 +266,7 @@ def test_a_beacon_does_not_lead_to_a_simulator_under_control(
             assert "engaged" not in refused.log
             assert simulator.progress().overridden
             assert simulator.releases() == []
-            assert "engaged" in flies.wait_for("heading")
+            assert flies.next_state() == "engaged"
             assert flies.end(signal.SIGTERM).exit_code == SUCCESS
         assert_released(simulator)
 
@@ -290,7 +290,7 @@ def test_ctrl_z_does_not_stop_a_flight(fccd: Path, tmp_path: Path) -> None:
             daemon.send(stopping)
         daemon.wait_for("Ctrl-Z does not stop a flight; Ctrl-C ends it")
         for _ in range(2):
-            assert "engaged" in daemon.wait_for("heading")
+            assert daemon.next_state() == "engaged"
         ending = daemon.end(signal.SIGTERM)
     assert ending.exit_code == SUCCESS
     flown = Flown.of(ending, tmp_path / "recordings")

@@ -85,7 +85,7 @@ def test_another_writer_is_named(fccd: Path, tmp_path: Path) -> None:
         engage(simulator, daemon)
         simulator.act("writer:3")
         daemon.wait_for("now: another program writes the controls")
-        assert "engaged" in daemon.wait_for("heading")
+        assert daemon.next_state() == "engaged"
         daemon.wait_for("no longer: another program writes the controls")
         ending = daemon.end(signal.SIGTERM)
         assert_released(simulator)

@@ -209,7 +209,7 @@ def fly(fccd: Path, scratch: Path, name: str) -> Ending:
             flight.put_in(fault)
             began_s = simulator.progress().time_s
             while simulator.progress().time_s < began_s + FLOWN_THROUGH_S:
-                assert "engaged" in daemon.wait_for("heading"), daemon.log
+                assert daemon.next_state() == "engaged", daemon.log
             flight.disengage()
             flight.restore()
         for fault in FAULTS:

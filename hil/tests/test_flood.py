@@ -28,7 +28,7 @@ def test_datagrams_of_another_host_do_not_disturb_a_flight(fccd: Path, tmp_path:
         engage(simulator, daemon)
         with flood(("127.0.0.1", port), PER_SECOND) as sent:
             time.sleep(SECONDS)
-        assert "engaged" in daemon.wait_for("heading")
+        assert daemon.next_state() == "engaged"
         ending = daemon.end(signal.SIGTERM)
         assert_released(simulator)
     assert sent.per_second > AT_LEAST

@@ -6,6 +6,7 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+import fcc
 import numpy as np
 import pytest
 
@@ -13,7 +14,7 @@ from fcc_hil import __main__ as commands
 from fcc_hil.campaign import airspeed
 from fcc_hil.campaign.alarms import Alarm, alarms_of
 from fcc_hil.campaign.draw import Fault, Flight, draw, usual_bounds
-from fcc_hil.campaign.flying import fly
+from fcc_hil.campaign.flying import config_of, fly
 from fcc_hil.campaign.verdict import Flown, judge
 from fcc_hil.plant import Weather
 from fcc_hil.rig import Event
@@ -46,6 +47,11 @@ def test_biases_are_normal_with_the_sigma_of_the_requirement(channel: str, sigma
     assert np.std(biases) == pytest.approx(1.0, abs=4.0 / (2.0 * 600.0) ** 0.5)
     assert np.mean(biases) == pytest.approx(0.0, abs=4.0 / 600.0**0.5)
     assert np.mean(np.abs(biases) < 1.0) == pytest.approx(0.683, abs=0.08)
+
+
+def test_each_configuration_is_accepted() -> None:
+    for flight in DRAWN[:50]:
+        fcc.Config(config_of(flight))
 
 
 def test_conditions_are_those_of_the_requirement() -> None:

@@ -146,7 +146,7 @@ def test_nobody_takes_the_place_of_a_flown_simulator_that_is_silent(
             simulator.set_mode(Mode.RUNNING)
             # It continues as the one that it was.
             daemon.wait_for("the simulator stood still for")
-            assert "engaged" in daemon.wait_for("heading")
+            assert daemon.next_state() == "engaged"
             # Nobody else confirms a release.
             simulator.set_mode(Mode.FROZEN)
             ending = daemon.end(signal.SIGTERM)

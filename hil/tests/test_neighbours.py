@@ -122,7 +122,7 @@ def test_a_run_folder_that_is_removed_in_flight_is_made_anew(fccd: Path, tmp_pat
         config = write_config(tmp_path / "second", simulator.port)
         with start(fccd, tmp_path / "second", config, environment) as second:
             assert second.end().exit_code == TAKEN
-        assert "engaged" in daemon.wait_for("heading")
+        assert daemon.next_state() == "engaged"
         os.kill(helper, signal.SIGSTOP)
         daemon.end(signal.SIGKILL)
         os.kill(helper, signal.SIGKILL)

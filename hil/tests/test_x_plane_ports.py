@@ -69,7 +69,7 @@ def test_forged_values_of_another_port_are_not_read(fccd: Path, tmp_path: Path) 
         try:
             engage(simulator, daemon)
             for _ in range(3):
-                assert "engaged" in daemon.wait_for("heading")
+                assert daemon.next_state() == "engaged"
         finally:
             over.set()
             forging.join()
@@ -94,7 +94,7 @@ def test_one_forged_datagram_changes_nothing(fccd: Path, tmp_path: Path) -> None
         for datagram in (time_ahead, *everything):
             link.send(datagram)
             time.sleep(0.5)
-        assert "engaged" in daemon.wait_for("heading")
+        assert daemon.next_state() == "engaged"
         ending = daemon.end(signal.SIGTERM)
     assert ending.exit_code == SUCCESS
     assert ending.states == ["standby -> engaged", "engaged -> stopped"]
@@ -111,12 +111,12 @@ def test_a_link_that_is_cut_towards_x_plane_is_named_and_its_release_not_confirm
             engage(simulator, daemon)
             # What is written is read back for a second before it is recognised.
             for _ in range(3):
-                daemon.wait_for("heading")
+                daemon.next_state()
             link.cut(to_simulator=True)
             assert "UDP port" in daemon.wait_for("nothing that is written to it arrives any more")
             # Longer than it takes to find another program.
             for _ in range(2):
-                assert "engaged" in daemon.wait_for("heading")
+                assert daemon.next_state() == "engaged"
             ending = daemon.end(signal.SIGTERM)
         assert ending.exit_code == NOT_RELEASED
         assert simulator.progress().overridden
@@ -178,7 +178,7 @@ def test_a_fast_loop_sends_no_more_than_a_frame_takes(fccd: Path, tmp_path: Path
     ) as (simulator, daemon):
         engage(simulator, daemon)
         for _ in range(3):
-            assert "engaged" in daemon.wait_for("heading")
+            assert daemon.next_state() == "engaged"
         status = simulator.status()
         ending = daemon.end(signal.SIGTERM)
     assert ending.report["released"] is True
