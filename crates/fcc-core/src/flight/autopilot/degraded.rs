@@ -278,7 +278,6 @@ impl Autopilot {
             && (self.stale(now) | self.intermittent()).contains(flags::ALTITUDE);
         !lost.intersects(MOTION)
             && !no_altitude
-            && !self.is_on_wheels()
             && !self.navigation.suspects_motion()
     }
 

@@ -86,7 +86,7 @@ impl Autopilot {
         }
         let lost = self.lost(now, measured);
         self.navigation
-            .knows_motion(self.motion_is_known(now, lost));
+            .knows_motion(self.motion_is_known(now, lost), self.is_on_wheels());
         let lost = by_name(lost);
         let replaces = self.degraded.is_failsafe && lost.body_rates && !lost.attitude;
         self.actuation.derives_rates(replaces);

@@ -109,6 +109,7 @@ pub struct Navigation {
     is_flaring: bool,
     /// Whether what the air data monitors compare with is measured.
     motion_is_known: bool,
+    is_on_wheels: bool,
     side_force: LowPass,
     density: Density,
     estimate: Estimate,
@@ -132,6 +133,7 @@ impl Navigation {
             is_engaged: false,
             is_flaring: false,
             motion_is_known: true,
+            is_on_wheels: false,
             side_force: LowPass::new(config.side_force_tau_s),
             density: Density::AT_SEA_LEVEL,
             estimate: Estimate::INITIAL,
@@ -167,9 +169,11 @@ impl Navigation {
 
     /// Whether attitude, body rates and forces are measured from now on, and the
     /// altitude unless it is doubted: otherwise no sensor of air data is doubted,
-    /// and what it is held against begins anew afterwards.
-    pub(crate) const fn knows_motion(&mut self, motion_is_known: bool) {
+    /// and what it is held against begins anew afterwards. On wheels forces say nothing of
+    /// the airspeed.
+    pub(crate) const fn knows_motion(&mut self, motion_is_known: bool, is_on_wheels: bool) {
         self.motion_is_known = motion_is_known;
+        self.is_on_wheels = is_on_wheels;
     }
 
     /// The aircraft flies at about this airspeed, m/s, and its sensor shows one with which it

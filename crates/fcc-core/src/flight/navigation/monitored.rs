@@ -37,7 +37,7 @@ impl Navigation {
             sensor_mps: is_current(&airspeed, now).then_some((airspeed.value, airspeed.source)),
             over_ground: None,
             altimeter_is_doubted: self.altitude_monitor.is_doubted(),
-            motion_is_known: self.motion_is_known && !self.is_flaring,
+            motion_is_known: self.motion_is_known && !self.is_on_wheels && !self.is_flaring,
             may_doubt: self.is_engaged && !self.is_flaring,
         }
     }

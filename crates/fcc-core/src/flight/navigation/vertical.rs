@@ -70,7 +70,7 @@ pub struct VerticalChannel {
     resolution: Resolution,
     /// The vertical acceleration that was integrated last, up, m/s².
     felt_mps2: f64,
-    /// Consecutive samples that are this far above or below, see [`STEPPED_M`].
+    /// Consecutive samples that are this far above or below, see [`JUMPED_M`].
     beyond: i8,
     has_stepped: bool,
     /// By how much those of the second before them differed, m; none after a gap, in which
@@ -80,18 +80,11 @@ pub struct VerticalChannel {
     quiet_s: f64,
 }
 
-/// An altimeter that differs by more than this, m, in so many consecutive samples,
-/// has stepped: no air moves an aircraft so far between samples, and it is
-/// many times a barometer's noise. Its altitude is adopted then: a correction
-/// would find a climb and a bias of the accelerometers that are none.
-const STEPPED_M: f64 = 8.0;
+/// An altimeter has stepped that differs by this more than in the second before, m, and by
+/// so many standard deviations, in so many consecutive samples: what contradicts it otherwise
+/// grows slowly. Its altitude is adopted then: a correction would find a climb and a bias of
+/// the accelerometers that are none.
 const STEPPED_SAMPLES: i8 = 3;
-/// ... beyond so many standard deviations of what is expected: after a time in which
-/// nothing was measured the aircraft may be anywhere.
-const STEPPED_SDS: f64 = 4.0;
-
-/// And so has one that differs by this more than in the second before, m, and by so many
-/// standard deviations: an error of the accelerometers grows slowly.
 const JUMPED_M: f64 = 2.5;
 const JUMPED_SDS: f64 = 3.0;
 const BEFORE_S: f64 = 1.0;
@@ -200,21 +193,16 @@ impl VerticalChannel {
     fn may_have_stepped(&mut self, error_m: f64, gains: &Gains, since_s: f64) -> bool {
         let before_m = self.before_m.unwrap_or(error_m);
         let jump_m = error_m - before_m;
-        let is_beyond = |off_m: f64, most_m: f64, sds: f64| {
-            off_m * off_m > most_m * most_m + sds * sds * gains.variance_m2()
-        };
-        let is_off = is_beyond(error_m, STEPPED_M, STEPPED_SDS)
-            && (self.quiet_s >= QUIET_S || self.beyond != 0);
-        let jumps = is_beyond(jump_m, JUMPED_M, JUMPED_SDS);
+        let jumps = jump_m * jump_m
+            > JUMPED_M * JUMPED_M + JUMPED_SDS * JUMPED_SDS * gains.variance_m2();
         let has_jumped = jumps && (self.quiet_s >= QUIET_S || self.beyond != 0);
         self.quiet_s = if jumps { 0.0 } else { self.quiet_s + since_s };
-        if !is_off && !has_jumped {
+        if !has_jumped {
             self.before_m = Some(before_m + jump_m * (since_s / BEFORE_S).min(1.0));
             self.beyond = 0;
             return false;
         }
-        let off_m = if has_jumped { jump_m } else { error_m };
-        let side = if off_m > 0.0 { 1 } else { -1 };
+        let side = if jump_m > 0.0 { 1 } else { -1 };
         self.beyond = if self.beyond.signum() == side {
             self.beyond + side
         } else {
