@@ -50,6 +50,7 @@ mod items;
 mod list;
 mod listed;
 #[cfg(test)]
+#[path = "tests/locks.rs"]
 mod lock_tests;
 mod lost;
 mod name;

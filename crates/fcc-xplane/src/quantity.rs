@@ -16,6 +16,7 @@
 //! axes, need the angles from these.
 
 #[cfg(test)]
+#[path = "quantity/tests/document.rs"]
 mod document;
 mod table;
 

@@ -8,8 +8,10 @@
 //! run with `-- --live` can be watched with `-- top`.
 
 #[cfg(test)]
+#[path = "tests/conformance.rs"]
 mod conformance;
 #[cfg(test)]
+#[path = "tests/one_more_reading.rs"]
 mod one_more_reading;
 mod recording;
 mod replay;

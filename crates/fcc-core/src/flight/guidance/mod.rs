@@ -9,6 +9,7 @@
 
 mod active;
 #[cfg(test)]
+#[path = "tests/conformance.rs"]
 mod conformance;
 mod hold;
 mod mode;

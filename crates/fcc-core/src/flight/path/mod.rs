@@ -25,6 +25,7 @@ mod local_plane;
 mod npfg;
 mod shape;
 #[cfg(test)]
+#[path = "tests/simulation.rs"]
 pub(super) mod simulation;
 pub mod turn;
 

@@ -25,6 +25,7 @@ mod prepared;
 mod runway;
 mod sequence;
 #[cfg(test)]
+#[path = "tests/simulation.rs"]
 mod simulation;
 mod step;
 

@@ -27,6 +27,7 @@ mod follow;
 mod pattern;
 mod reach;
 #[cfg(test)]
+#[path = "tests/simulation.rs"]
 mod simulation;
 mod site;
 
