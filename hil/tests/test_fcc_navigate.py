@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from typing import Any
 
 import fcc
@@ -144,12 +143,6 @@ def moving(velocity: list[float], unit: float = 1.0) -> dict[str, Any]:
     }
 
 
-def with_impossible(flight: dict[str, Any]) -> dict[str, Any]:
-    fixes_s, velocities = flight["gnss_velocity"]
-    velocities[150] = 1e5
-    return flight | {"gnss_velocity": (fixes_s, velocities)}
-
-
 FLIGHT = moving([30.0, -10.0, 1.0])
 FIXES_S, PLACES = FLIGHT["gnss_position"]
 
@@ -219,7 +212,6 @@ def with_field(per_ut: float) -> dict[str, Any]:
 
 
 UNLIKELY: list[tuple[dict[str, Any], str]] = [
-    (turning(180.0 / math.pi), "the field of the magnetometer turns .* are they in °/s"),
     (with_field(1e-6), "middle sample is 4.5e-5, .* 22 to 67 µT, .* left out: is it in tesla"),
     (with_field(10.0), "middle sample is 447.2, .* is it in milligauss"),
     (with_field(1e-2), "middle sample is 0.4, .* is it in gauss"),
@@ -228,24 +220,9 @@ UNLIKELY: list[tuple[dict[str, Any], str]] = [
         {"gyroscope": GYROSCOPE, "differential_pressure": (TIMES_S, 0.0 * TIMES_S - 500.0)},
         "400 of 400 samples are below -15 Pa",
     ),
-    (
-        tumbling(field_in=(3, -1, 2)),
-        "one of gyroscope -z, x, -y; magnetometer y, -z, -x; magnetometer -y, z, x, and .* tell",
-    ),
-    (tumbling(rates_in=(1, 2, -3)), "gyroscope: .* if its axes are x, y, -z,"),
-    (tumbling(rates_in=(1, -2, 3)), "gyroscope: .* if its axes are x, -y, z,"),
-    (tumbling(rates_in=(2, 1, 3)), "gyroscope: .* if its axes are y, x, z,"),
-    (tumbling(rates_in=(-1, -2, -3)), "gyroscope: .* if its axes are -x, -y, -z,"),
     ({"accelerometer": (TIMES_S, -ACCELEROMETER[1])}, "is 9.2 m/s² downwards, .* sign wrong"),
     ({"accelerometer": (TIMES_S, ACCELEROMETER[1] * 102.0)}, "is 1000.* another unit"),
     ({"accelerometer": (TIMES_S, ACCELEROMETER[1] * 0.0)}, "is 0.0: .* without gravity"),
-    (moving([30.0, -10.0, 1.0], 3.6), "gnss_velocity: .* if it is in km/h"),
-    (moving([30.0, -10.0, 1.0], 3600.0 / 1852.0), "gnss_velocity: .* if it is in kt"),
-    (moving([-10.0, 30.0, -1.0]), "as east, north, up"),
-    (moving([-10.0, 30.0, 1.0]), "north and east swapped"),
-    (moving([30.0, -10.0, -1.0]), "down for up"),
-    (with_impossible(moving([-10.0, 30.0, 1.0])), "north and east swapped"),
-    (FLIGHT | {"gnss_position": (FIXES_S, PLACES[:, [1, 0, 2]])}, "latitude before longitude"),
     ({"gyroscope": (TIMES_S, GYROSCOPE[1] + [40.0, 0.0, 0.0])}, "are they in °/s"),
     ({"gyroscope": (TIMES_S * 12.5, GYROSCOPE[1])}, "0.25 s apart.*milliseconds"),
     (
@@ -292,8 +269,7 @@ def turns(late_s: float = 0.0, rate: Any = TURN_RATE) -> dict[str, Any]:
 
 
 def test_it_is_found_by_how_much_fixes_are_late() -> None:
-    with pytest.warns(UserWarning, match=f"it turns {LATE_S} s later"):
-        found = fcc.navigate(**turns(LATE_S))
+    found = fcc.navigate(**turns(LATE_S))
     assert found["gnss_late_s"][-1] == pytest.approx(LATE_S, abs=0.1)
     assert found["gnss_late_s_sigma"][-1] < 0.1
     roll = np.arctan(SPEED_MPS * TURN_RATE / GRAVITY_MPS2)
@@ -306,19 +282,12 @@ GPS_LESS_UTC_S = 18.0
 
 
 @pytest.mark.parametrize("source", ["gnss_position", "gnss_velocity"])
-@pytest.mark.parametrize(
-    ("late_s", "words"),
-    [(GPS_LESS_UTC_S, "18.0 s later"), (-GPS_LESS_UTC_S, "18.0 s earlier"), (1.0, "1.0 s later")],
-)
-def test_of_another_clock_it_warns(source: str, late_s: float, words: str) -> None:
+@pytest.mark.parametrize("late_s", [GPS_LESS_UTC_S, -GPS_LESS_UTC_S])
+def test_a_receiver_of_another_clock_does_not_agree(source: str, late_s: float) -> None:
     sources = turns(0.0, OTHER_RATE)
-    fcc.navigate(**sources)
     times_s, values = sources[source]
-    with warnings.catch_warnings(record=True) as told:
-        warnings.simplefilter("always")
+    with pytest.warns(UserWarning, match=f"{source}: .* samples that were judged agree"):
         fcc.navigate(**sources | {source: (times_s + late_s, values)})
-    (turned,) = [str(one.message) for one in told if "turns" in str(one.message)]
-    assert turned.startswith(f"{source}: it turns {words} than the gyroscope")
 
 
 def test_a_source_that_does_not_agree_is_named() -> None:
