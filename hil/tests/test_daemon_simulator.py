@@ -122,7 +122,7 @@ def test_a_killed_simulator_and_its_return(fccd: Path, tmp_path: Path) -> None:
         daemon.wait_for("failsafe -> standby")
         daemon.wait_for("release sent to the actuators")
         assert str(simulator.port) in daemon.wait_for("does not answer")
-        assert TOO_OLD in daemon.wait_for("not ready")
+        assert TOO_OLD in daemon.wait_for("not ready: ")
         with StandInProcess(Settings(port=simulator.port)) as again:
             back_ns = time.monotonic_ns()
             daemon.wait_for("works again")
@@ -244,7 +244,7 @@ def test_standby_says_what_it_waits_for_and_a_command_engages_without_a_button(
     telemetry = f'[telemetry]\ninstance = "{name}"\n'
     command: list[str | Path] = [fccd, "command", "engage", "--instance", name]
     with flight(fccd, tmp_path, others=telemetry) as (simulator, daemon):
-        daemon.wait_for("  waits for the engage switch")
+        daemon.wait_for("s  waits for the engage switch")
         refused = run(command)
         assert refused.returncode == REFUSED
         assert "switch it on, or configure command_needs_switch = false" in refused.stderr

@@ -48,7 +48,7 @@ def test_x_planes_own_autopilot_refuses_engaging_and_is_reported_in_flight(
     with flight(fccd, tmp_path) as (simulator, daemon):
         daemon.wait_until_ready()
         simulator.act("autothrottle:1")
-        assert "another autothrottle is on" in daemon.wait_for("not ready")
+        assert "another autothrottle is on" in daemon.wait_for("not ready: ")
         refuse(simulator, daemon, "another autothrottle is on")
         simulator.act("autothrottle:0")
         simulator.act("damper:1")
@@ -63,7 +63,7 @@ def test_x_planes_own_autopilot_refuses_engaging_and_is_reported_in_flight(
         daemon.wait_for("engaged -> standby")
         assert "35 %" in daemon.wait_for("the throttle follows its lever again")
         simulator.act("servos:1")
-        assert "another autopilot is on" in daemon.wait_for("not ready")
+        assert "another autopilot is on" in daemon.wait_for("not ready: ")
         ending = daemon.end(signal.SIGTERM)
         assert_released(simulator)
     assert ending.exit_code == SUCCESS

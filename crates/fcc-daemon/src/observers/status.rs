@@ -1,4 +1,4 @@
-//! A status line each second.
+//! A status line each second, and in standby what engaging needs, when that changes.
 
 use std::fmt::Write as _;
 
@@ -16,6 +16,8 @@ pub(crate) struct StatusLine<C: Controller> {
     /// Whether a command engages although that switch is off.
     by_command: bool,
     printed_s: Option<f64>,
+    /// What engaging needed when it was printed last.
+    needed: Option<String>,
     worst_us: f64,
     missed: u64,
     overloaded: bool,
@@ -33,7 +35,16 @@ impl<C: Controller> Observer<C> for StatusLine<C> {
             .is_none_or(|last| at.time_s - last >= 1.0 - 1e-6)
         {
             self.printed_s = Some(at.time_s);
-            output::message(self.line(record, at));
+            let plant = (self.describe)(record);
+            // Without measurements all of them are missing.
+            let needs = plant.as_ref().and_then(|_| self.needs(record));
+            if needs != self.needed {
+                if let Some(needs) = &needs {
+                    output::message(format!("{:8.2} s  {needs}", at.time_s));
+                }
+                self.needed = needs;
+            }
+            output::message(self.line(plant, record, at));
             self.worst_us = 0.0;
         }
     }
@@ -58,15 +69,34 @@ impl<C: Controller> StatusLine<C> {
             switch,
             by_command,
             printed_s: None,
+            needed: None,
             worst_us: 0.0,
             missed: 0,
             overloaded: false,
         }
     }
 
-    /// Of 80 columns at most while engaged: what a terminal has.
-    fn line(&self, record: &RecordOf<C>, at: &FlightTime) -> String {
-        let plant = (self.describe)(record).unwrap_or_else(|| "no measurements yet".to_owned());
+    /// What engaging needs, in standby.
+    fn needs(&self, record: &RecordOf<C>) -> Option<String> {
+        if record.state != State::Standby {
+            return None;
+        }
+        if !record.engage_inhibits.is_empty() {
+            let names: Vec<&str> = record.engage_inhibits.iter().map(C::flag_name).collect();
+            return Some(format!("not ready: {}", names.join(", ")));
+        }
+        let needs = match ((self.switch)(record), self.by_command) {
+            (None, _) => "waits for a command: no engage switch is read",
+            (Some(Switch::Off), true) => "waits for the engage switch or a command",
+            (Some(Switch::Off), false) => "waits for the engage switch",
+            (Some(Switch::On), _) => "waits for a command, or the engage switch off and on",
+        };
+        Some(needs.to_owned())
+    }
+
+    /// Of 80 columns at most: what a terminal has.
+    fn line(&self, plant: Option<String>, record: &RecordOf<C>, at: &FlightTime) -> String {
+        let plant = plant.unwrap_or_else(|| "no measurements yet".to_owned());
         // Engaged, the plant's part begins with its mode.
         let state = match record.state.state() {
             State::Engaged => String::new(),
@@ -82,17 +112,8 @@ impl<C: Controller> StatusLine<C> {
         if self.overloaded {
             line.push_str("  overload");
         }
-        for (n, bit) in record.engage_inhibits.iter().enumerate() {
-            line.push_str(if n == 0 { "  not ready: " } else { ", " });
-            line.push_str(C::flag_name(bit));
-        }
-        if record.state == State::Standby && record.engage_inhibits.is_empty() {
-            line.push_str(match ((self.switch)(record), self.by_command) {
-                (None, _) => "  waits for a command: no engage switch is read",
-                (Some(Switch::Off), true) => "  waits for the engage switch or a command",
-                (Some(Switch::Off), false) => "  waits for the engage switch",
-                (Some(Switch::On), _) => "  waits for a command, or the engage switch off and on",
-            });
+        if record.state == State::Standby && !record.engage_inhibits.is_empty() {
+            line.push_str("  not ready");
         }
         line
     }
