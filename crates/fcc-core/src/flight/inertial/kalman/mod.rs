@@ -31,6 +31,7 @@ mod history;
 mod in_flight;
 mod innovations;
 mod inputs;
+mod lateness;
 mod magnetic;
 mod motion;
 mod noise;
@@ -177,7 +178,7 @@ impl KalmanNavigation {
 
     /// By how much the fixes of the receiver are later than they say, s.
     pub fn late_fixes_s(&self) -> f64 {
-        self.filter.late_s
+        self.filter.fixes_late_s()
     }
 
     /// Whether the receiver's velocities are not used because its own places, or air and
