@@ -167,7 +167,7 @@ def test_a_wrong_airspeed_is_doubted_and_flown_on_without(
     half_a_second = np.convolve(error_kt, np.full(20, 0.05), "same")
     wrong_s = flown.time_s[half_a_second > 10.0][0]
     doubted_s = flown.time_s[flown.is_doubted][0]
-    # A throttle that is known from engaging on only has been learned for 28 s.
+    # The copies that are compared are 6 s old at least (docs/envelope.md).
     assert doubted_s - wrong_s < 7.0
     later = flown.time_s > _FAULT_S + 15.0
     assert np.abs(flown.used_kt - flown.true_kt)[later].max() < 10.0
@@ -200,7 +200,7 @@ def test_a_static_port_blocked_in_a_climb_or_descent_is_found(
 ) -> None:
     readings = ReceiverReadings(receiver, SEED) if receiver else None
     flown = _fly(_block_static, climb_ft, receiver=readings, end_s=110.0, fault_s=_PORT_S)
-    assert flown.true_kt.min() > _VS_KT
+    assert flown.true_kt.min() > 1.2 * _VS_KT
     assert flown.true_kt.max() < _VNE_KT
     assert np.abs(flown.used_ft - flown.true_ft).max() < 250.0
     assert any(_NO_ALTIMETER in text for text in flown.events)
