@@ -143,7 +143,7 @@ def test_lockstep_prints_the_score_and_no_timing(fccd: Path) -> None:
     assert ended.returncode == 0, ended.stderr
     assert "Missed" not in ended.stdout, "no time passes that could be kept"
     assert "scored by the true values of the simulated aircraft" in ended.stdout
-    for column in ("≤2° s", "overshoot", "hdg RMS", "turn loss", "airspeed", "lateral"):
+    for column in ("≤2°", "over", "RMS", "≤10 ft", "loss", "speed", "side"):
         assert ended.stdout.count(column) >= 2, "in the table, and below it what it means"
     in_real_time = run([fccd, "fly", "--seconds", "1", "--quiet", "--no-recording"])
     assert "Missed" in in_real_time.stdout

@@ -302,7 +302,7 @@ def test_a_source_that_does_not_agree_is_named() -> None:
 
 @pytest.mark.parametrize("shown", ["the last fix", "zeros"])
 def test_what_a_receiver_shows_without_a_fix_is_left_out(shown: str) -> None:
-    """An outsider's: 5 s of it each 30 s cost the attitude, by 12 and 9 degrees RMS."""
+    """5 s of it each 30 s cost the attitude, by 12 and 9 degrees RMS."""
     sources = turns()
     times_s = sources["gnss_position"][0]
     lost = (times_s % 30.0) > 25.0

@@ -60,7 +60,7 @@ def _hash(fccd: Path, path: Path) -> str:
 def test_a_landing_that_is_not_flown_ends_the_command_with_an_error(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """As of an outsider's plan, with three landings that were given up, and exit code 0."""
+    """A plan with three landings that were given up, and exit code 0."""
     circling = PlanScore([], [], [], [], lands=True)
     monkeypatch.setattr(plan_flight, "fly", lambda *_: (circling, None))
     assert main(["plan", "--plan", str(CIRCUIT)]) == 1

@@ -19,7 +19,7 @@ use crate::{Flight, PERIOD};
 /// Half a minute of flight: sensors and actuator have settled, and what the
 /// autopilot learns of the aircraft is known.
 const WARM_UP_TICKS: u32 = 1_200;
-/// The autopilot engages once the gyroscopes can be held against the magnetic field,
+/// The autopilot engages once the gyroscopes can be compared with the magnetic field,
 /// which takes 20 s at most.
 const ENGAGED_AT_TICK: u32 = 800;
 

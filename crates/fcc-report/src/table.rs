@@ -170,34 +170,21 @@ fn or_unknown(text: String) -> String {
     }
 }
 
-/// A row per recording.
+/// A row per recording, of 80 columns: its name has when and of what it is.
 pub fn recordings_table(entries: &[Entry]) -> String {
-    let mut table = table(&[
-        "Recording",
-        "started (UTC)",
-        "plant",
-        "duration",
-        "ticks",
-        "worst late",
-        "end state",
-        "file",
-    ]);
+    let mut table = table(&["Recording", "duration", "worst late", "end"]);
     for entry in entries {
         let name = entry.path.file_name().unwrap_or(entry.path.as_os_str());
         let tenths = (entry.duration_s * 10.0).round() as u64;
         table.add_row(vec![
             name.to_string_lossy().replace('\n', "\\n"),
-            entry.started.replace('T', " ").replace('Z', ""),
-            entry.plant.replace('\n', "\\n"),
             format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10),
-            entry.ticks.to_string(),
             format!("{:.1} µs", entry.worst_lateness_us),
-            entry.state.clone(),
             match entry.file {
                 Wholeness::Whole if entry.not_recorded > 0 => {
-                    format!("whole, {} not recorded", entry.not_recorded)
+                    format!("{}, {} not recorded", entry.state, entry.not_recorded)
                 }
-                Wholeness::Whole => "whole".to_owned(),
+                Wholeness::Whole => entry.state.clone(),
                 Wholeness::Damaged => "damaged: fccd recover".to_owned(),
                 Wholeness::Cut => "cut: fccd recover".to_owned(),
                 Wholeness::BeingWritten => "being written".to_owned(),

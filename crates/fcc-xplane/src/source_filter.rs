@@ -218,7 +218,7 @@ mod tests {
         assert_eq!(permitted([5; 4], Some(&[7, 8])), Some(vec![7, 8]));
     }
 
-    /// As an outsider did: a program that sends before the daemon starts was taken for the
+    /// A program that sends before the daemon starts was taken for the
     /// simulator.
     #[test]
     fn what_came_before_the_simulators_user_was_known_is_dropped() {

@@ -133,7 +133,7 @@ fn after_a_cut_the_estimate_is_that_of_the_aircraft_at_once() {
 }
 
 /// What is measured returns in several datagrams, tick by tick.
-/// As an outsider flew it: control was given back, "the aircraft was moved".
+/// Control was given back, "the aircraft was moved".
 #[test]
 fn what_a_network_held_back_may_come_in_two_parts() {
     for (held_ticks, is_position_late) in [(200, false), (320, true), (800, false), (800, true)] {

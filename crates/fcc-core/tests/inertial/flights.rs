@@ -240,7 +240,7 @@ fn a_slow_take_off_roll_is_no_rest() {
     }
 }
 
-/// As an outsider recorded it: parked, with a heading that nothing tells. Held to the errors
+/// Parked, with a heading that nothing tells. Held to the errors
 /// that are wanted of a phone's sensors (1.5° and 3° RMS), with three times that at most.
 #[test]
 fn what_drives_off_without_a_compass_points_where_it_goes() {
@@ -277,7 +277,7 @@ fn what_drives_off_without_a_compass_points_where_it_goes() {
     }
 }
 
-/// As an outsider flew it: a place that does not move and 0 m/s, each with its noise, at 50
+/// A place that does not move and 0 m/s, each with its noise, at 50
 /// m/s of airspeed; 4 of 4 crashed, and 10 s of it cost 27 to 30° of attitude.
 #[test]
 fn a_receiver_that_stands_in_flight_does_not_cost_the_attitude() {
@@ -298,7 +298,7 @@ fn a_receiver_that_stands_in_flight_does_not_cost_the_attitude() {
     }
 }
 
-/// As an outsider flew it: fixes that come late with the time of now, while the aircraft turns.
+/// Fixes that come late with the time of now, while the aircraft turns.
 /// The horizon stays as it is wanted by airspeed alone on a small aircraft (3°, RMS), and within
 /// three times that.
 #[test]

@@ -20,7 +20,7 @@ fn tilt_deg(truth: &Truth, solution: &Solution) -> f64 {
     cosine.clamp(-1.0, 1.0).acos().to_degrees()
 }
 
-/// Of real flights of an outsider 30 to 47 % were more than 10° off 20 s after such a loss.
+/// Of real flights 30 to 47 % were more than 10° off 20 s after such a loss.
 #[test]
 fn after_a_loss_in_aerobatics_the_attitude_is_found_within_seconds() {
     for (seed, lost_s) in [(1, 2.0), (2, 5.0), (3, 20.0), (4, 2.0), (5, 5.0), (6, 20.0)] {

@@ -18,6 +18,8 @@ pub(crate) struct StatusLine<C: Controller> {
     printed_s: Option<f64>,
     /// What engaging needed when it was printed last.
     needed: Option<String>,
+    /// Whether the switch was on a second before: one that has just gone on engages.
+    was_on: bool,
     worst_us: f64,
     missed: u64,
     overloaded: bool,
@@ -44,6 +46,7 @@ impl<C: Controller> Observer<C> for StatusLine<C> {
                 }
                 self.needed = needs;
             }
+            self.was_on = (self.switch)(record) == Some(Switch::On);
             output::message(self.line(plant, record, at));
             self.worst_us = 0.0;
         }
@@ -70,6 +73,7 @@ impl<C: Controller> StatusLine<C> {
             by_command,
             printed_s: None,
             needed: None,
+            was_on: false,
             worst_us: 0.0,
             missed: 0,
             overloaded: false,
@@ -89,6 +93,7 @@ impl<C: Controller> StatusLine<C> {
             (None, _) => "waits for a command: no engage switch is read",
             (Some(Switch::Off), true) => "waits for the engage switch or a command",
             (Some(Switch::Off), false) => "waits for the engage switch",
+            (Some(Switch::On), _) if !self.was_on => return self.needed.clone(),
             (Some(Switch::On), _) => "waits for a command, or the engage switch off and on",
         };
         Some(needs.to_owned())

@@ -1,4 +1,4 @@
-//! Parts that fail in a take-off or a landing, as an outsider found them: each of these
+//! Parts that fail in a take-off or a landing: each of these
 //! flights ended in a crash, or far off the runway.
 
 use std::sync::{Arc, OnceLock};

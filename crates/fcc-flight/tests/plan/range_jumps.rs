@@ -264,7 +264,7 @@ fn an_altimeter_that_steps_over_the_runway_changes_no_landing() {
 }
 
 /// The range finder is right. Before, 30 of 30 fell in that stuck 12 to 25 m above the
-/// runway: the range was held against the altitude, and left.
+/// runway: the range was compared with the altitude, and left.
 #[test]
 fn an_altimeter_that_sticks_over_the_runway_ends_in_no_crash() {
     let (seed, keys) = documented();

@@ -5,28 +5,28 @@ use fcc_telemetry::{FlightScore, LegScore, ScoredBy};
 
 use crate::table::table;
 
-/// The columns of a leg's figures.
+/// The columns of a leg's figures, with their units: of heading, of altitude, and the others.
 const LEG_COLUMNS: [&str; 10] = [
     "Leg",
-    "≤2° s",
-    "overshoot °",
-    "hdg RMS °",
-    "≤10 ft s",
-    "overshoot ft",
-    "alt RMS ft",
-    "turn loss ft",
-    "airspeed kt",
-    "lateral g",
+    "≤2°\ns",
+    "over\n°",
+    "RMS\n°",
+    "≤10 ft\ns",
+    "over\nft",
+    "RMS\nft",
+    "loss\nft",
+    "speed\nkt",
+    "side\ng",
 ];
 
 /// Meanings of the columns.
 const LEG_LEGEND: &str = "\
-≤2° s, ≤10 ft s  seconds into the leg after which heading and altitude stay that near
-overshoot        how far past the set point, in the direction of the turn or climb
-hdg RMS, alt RMS root mean square of the error in the leg's last 3 s, last 8 s
-turn loss        how far below the lower of the two altitudes that the leg joins
-airspeed         largest error either way
-lateral          largest sideways acceleration";
+≤2°, ≤10 ft  seconds into the leg after which heading and altitude stay that near
+over         how far past the set point, in the direction of the turn or climb
+RMS          root mean square of the error: of the heading in the leg's last 3 s,
+             of the altitude in the last 8 s
+loss         how far below the lower of the two altitudes that the leg joins
+speed, side  largest error of the airspeed either way, sideways acceleration";
 
 /// Source of the score, a row per leg and the worst of each column, and the
 /// meanings of the columns.

@@ -133,7 +133,7 @@ use StatedBy::{ListAndArduPilot, ListAndSimHub};
 const NO_ATTITUDE: &str = "no attitude: not engaged";
 const NO_RATES: &str = "no body rates: not engaged";
 const NO_ACCELERATION: &str = "no acceleration: not engaged";
-const NO_VELOCITY: &str = "no velocity over the ground, so the airspeed is not held against it";
+const NO_VELOCITY: &str = "no velocity over the ground, so the airspeed is not compared with it";
 const UNCONFIRMED: &str = "that the controls take effect is not confirmed";
 const NOT_NOTICED: &str = "not noticed";
 const NO_TAKEOVER: &str = "the stick does not take over";

@@ -269,16 +269,14 @@ impl Autopilot {
         }
     }
 
-    /// Whether all that the air data are held against is measured. A frozen
+    /// Whether all that the air data are compared with is measured. A frozen
     /// altimeter may be one whose static port is blocked.
     pub(super) fn motion_is_known(&self, now: Time, lost: Flags) -> bool {
         const MOTION: Flags =
             Flags::from_bits(flags::ATTITUDE.bits() | flags::SPECIFIC_FORCE.bits());
         let no_altitude = self.navigation.altitude_doubt().is_none()
             && (self.stale(now) | self.intermittent()).contains(flags::ALTITUDE);
-        !lost.intersects(MOTION)
-            && !no_altitude
-            && !self.navigation.suspects_motion()
+        !lost.intersects(MOTION) && !no_altitude && !self.navigation.suspects_motion()
     }
 
     /// What is lost and not replaced by what counts as measured: an airspeed by

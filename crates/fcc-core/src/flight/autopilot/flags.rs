@@ -124,7 +124,7 @@ pub const DOUBTED_GYROSCOPE: Flags = Flags::bit(55);
 pub const REPEATED_FIX: Flags = Flags::bit(56);
 /// The magnetometer only repeats its field, and is not used.
 pub const REPEATED_FIELD: Flags = Flags::bit(57);
-/// The gyroscopes cannot be held against the magnetic field yet.
+/// The gyroscopes cannot be compared with the magnetic field yet.
 pub const UNCHECKED_GYROSCOPE: Flags = Flags::bit(58);
 /// An inertial unit was left for another one.
 pub const LEFT_UNIT: Flags = Flags::bit(59);

@@ -1,4 +1,4 @@
-//! Height above the ground by a range finder that is held against the altitude.
+//! Height above the ground by a range finder that is compared with the altitude.
 
 use libm::fabs;
 

@@ -79,7 +79,7 @@ pub(super) struct GroundMotion {
 }
 
 impl GroundMotion {
-    /// Holds positions against motion, of an aircraft that flies from this airspeed on, m/s.
+    /// Compares positions with motion, of an aircraft that flies from this airspeed on, m/s.
     pub(super) fn judging(flies_mps: f64) -> Self {
         Self {
             place: PlaceMonitor::new(flies_mps),

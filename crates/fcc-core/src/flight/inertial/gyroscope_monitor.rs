@@ -88,7 +88,7 @@ const HEARD_FOR_S: f64 = 2.0;
 /// Slower nothing flies, m/s: on the ground there is iron nearby.
 const FLIES_MPS: f64 = 15.0;
 
-/// Holds the gyroscopes against the magnetic field.
+/// Compares the gyroscopes with the magnetic field.
 #[derive(Clone, Debug)]
 pub(super) struct GyroscopeMonitor {
     turning: FieldTurning,
@@ -162,7 +162,7 @@ impl GyroscopeMonitor {
         !self.accused_since.is_never()
     }
 
-    /// Whether the gyroscopes cannot be held against the field yet, and soon will be.
+    /// Whether the gyroscopes cannot be compared with the field yet, and soon will be.
     pub(super) fn awaits_field(&self, now: Time) -> bool {
         let Awaited {
             since,

@@ -197,7 +197,7 @@ impl RawNavigation {
         !self.doubts_gyroscopes() || self.settled_by_field(self.found.attitude.taken)
     }
 
-    /// Whether the gyroscopes cannot be held against the magnetic field yet, and soon
+    /// Whether the gyroscopes cannot be compared with the magnetic field yet, and soon
     /// will be: some 10 s after the start, 20 s at most.
     pub fn awaits_field(&self) -> bool {
         self.gyroscope.awaits_field(self.latest_inertial())

@@ -33,7 +33,7 @@ const SILENT_S: f64 = 1.0;
 /// Gyroscopes are not integrated over longer gaps, s.
 const GAP_S: f64 = 0.2;
 
-/// Holds the gyroscopes against a receiver.
+/// Compares the gyroscopes with a receiver.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ReceiverWitness {
     innovation: Vector2<f64>,

@@ -75,7 +75,7 @@ pub(super) struct MonitorInput {
     pub(super) may_doubt: bool,
 }
 
-/// Holds the airspeed sensor against forces and motion.
+/// Compares the airspeed sensor with forces and motion.
 ///
 /// A sensor is doubted if it differs from the airspeed of a filter that has not
 /// used it for at least 20 s (a multiple-model test; Willsky 1976), and if the

@@ -62,7 +62,7 @@ struct Doubted {
     error_m: f64,
 }
 
-/// Holds the altimeter against the accelerometers.
+/// Compares the altimeter with the accelerometers.
 ///
 /// Copies of the vertical filter have run without the altimeter for 8 s and
 /// more. What they feel does not depend on the wind: air that rises or sinks

@@ -169,7 +169,7 @@ impl Navigation {
 
     /// Whether attitude, body rates and forces are measured from now on, and the
     /// altitude unless it is doubted: otherwise no sensor of air data is doubted,
-    /// and what it is held against begins anew afterwards. On wheels forces say nothing of
+    /// and what it is compared with begins anew afterwards. On wheels forces say nothing of
     /// the airspeed.
     pub(crate) const fn knows_motion(&mut self, motion_is_known: bool, is_on_wheels: bool) {
         self.motion_is_known = motion_is_known;
@@ -277,7 +277,7 @@ impl Navigation {
         };
     }
 
-    /// Holds the sensors against each other before engaging.
+    /// Compares the sensors with each other before engaging.
     fn compare(&mut self, now: Time, sensed: &Measurements, sqrt_density: f64, dt_s: f64) {
         if self.is_engaged {
             self.agreement = Agreement::new();

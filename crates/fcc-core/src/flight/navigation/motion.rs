@@ -15,7 +15,7 @@ use crate::framework::Time;
 const COMPARED: Duration = Duration::from_millis(200);
 
 impl Navigation {
-    /// Holds attitude and body rates against each other in flight, before the tick's step;
+    /// Compares attitude and body rates with each other in flight, before the tick's step;
     /// `lost` are the quantities that are lost for other reasons, `sigma_rad` is the standard
     /// deviation of an attitude that is computed.
     pub(crate) fn compare_motion(

@@ -77,7 +77,7 @@ struct Suspicion {
     odds: f64,
 }
 
-/// Holds the attitude against the integrated body rates.
+/// Compares the attitude with the integrated body rates.
 ///
 /// The integral follows the attitude so slowly that a step or a drift of either shows as a
 /// difference. Which of the two is wrong is told by what comes from neither, in a

@@ -193,8 +193,8 @@ impl VerticalChannel {
     fn may_have_stepped(&mut self, error_m: f64, gains: &Gains, since_s: f64) -> bool {
         let before_m = self.before_m.unwrap_or(error_m);
         let jump_m = error_m - before_m;
-        let jumps = jump_m * jump_m
-            > JUMPED_M * JUMPED_M + JUMPED_SDS * JUMPED_SDS * gains.variance_m2();
+        let jumps =
+            jump_m * jump_m > JUMPED_M * JUMPED_M + JUMPED_SDS * JUMPED_SDS * gains.variance_m2();
         let has_jumped = jumps && (self.quiet_s >= QUIET_S || self.beyond != 0);
         self.quiet_s = if jumps { 0.0 } else { self.quiet_s + since_s };
         if !has_jumped {

@@ -12,7 +12,7 @@ use super::update::{Corrects, Measurement};
 use crate::flight::inertial::ObservationKind;
 use crate::framework::Time;
 
-/// A heading as certain as this is held against the field, rad.
+/// A heading as certain as this is compared with the field, rad.
 const CERTAIN_HEADING: f64 = 0.1;
 /// A field that is refused for long is another one: variances, µT².
 const OTHER_FIELD: f64 = 100.0;

@@ -86,8 +86,10 @@ impl AirspeedMonitor {
         }
         let limit_mps = self.limit_mps(&bank.older);
         let by_younger = differs + filter_mps - bank.younger.airspeed_mps();
-        let younger_agrees =
-            bank.younger_s > YOUNGER_S && by_younger * differs.signum() < YOUNGER_SHARE * limit_mps;
+        // A static port that is closed is slow: what was copied last has followed it.
+        let younger_agrees = !input.altimeter_is_doubted
+            && bank.younger_s > YOUNGER_S
+            && by_younger * differs.signum() < YOUNGER_SHARE * limit_mps;
         let is_large = holds && differs.abs() > limit_mps && !younger_agrees;
         // The sensor is contradicted if neither force sides with it, and the wind has changed
         // if both do.
@@ -110,7 +112,8 @@ impl AirspeedMonitor {
             } else {
                 self.follow_sensor(bank);
             }
-        } else if bank.younger_s >= ALONE_S && self.differs_s == 0.0 {
+        } else if bank.younger_s >= ALONE_S && self.differs_s == 0.0 && !input.altimeter_is_doubted
+        {
             bank.older = bank.younger;
             bank.younger = bank.believing.kept();
             bank.younger_s = 0.0;

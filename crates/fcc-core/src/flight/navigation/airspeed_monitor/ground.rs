@@ -1,4 +1,4 @@
-//! The airspeed sensor held against the velocity over the ground and the wind.
+//! The airspeed sensor compared with the velocity over the ground and the wind.
 
 use libm::{fabs, hypot};
 

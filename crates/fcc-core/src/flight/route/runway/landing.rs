@@ -29,7 +29,7 @@ const BOUNCES_M: f64 = 1.0;
 /// Before the runway, less than this share of the glide path's height above the ground is
 /// too near.
 const GROUND_SHARE: f64 = 0.3;
-/// The altimeter is held against the receiver below so many decision heights: far above
+/// The altimeter is compared with the receiver below so many decision heights: far above
 /// the ground a warm or cold day sets them apart (30 °C off: 12 m at 122 m).
 const COMPARED_BELOW: f64 = 2.0;
 /// A flare that lasts longer than so many of its time constants, or below this share of

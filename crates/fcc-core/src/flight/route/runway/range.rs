@@ -1,4 +1,4 @@
-//! The height over a runway, by a range finder that is held against the altitude.
+//! The height over a runway, by a range finder that is compared with the altitude.
 
 use super::{RunwayFlight, RunwayPhase};
 use crate::flight::path::Motion;
