@@ -9,7 +9,7 @@ use coming_and_going::{FORGOTTEN_SLOWER, Intermittent, Repeated};
 use super::runway::Low;
 use super::{Autopilot, FailsafeEnd, flags};
 use crate::flight::Measurements;
-use crate::flight::navigation::{AirspeedSource, Lost, MotionDoubt};
+use crate::flight::navigation::{AirspeedSource, KnownMotion, Lost, MotionDoubt};
 use crate::framework::{Flags, Notice, Tick, Time};
 
 /// The kinds of notices.
@@ -271,12 +271,18 @@ impl Autopilot {
 
     /// Whether all that the air data are compared with is measured. A frozen
     /// altimeter may be one whose static port is blocked.
-    pub(super) fn motion_is_known(&self, now: Time, lost: Flags) -> bool {
+    pub(super) fn known_motion(&self, now: Time, lost: Flags) -> KnownMotion {
         const MOTION: Flags =
             Flags::from_bits(flags::ATTITUDE.bits() | flags::SPECIFIC_FORCE.bits());
         let no_altitude = self.navigation.altitude_doubt().is_none()
             && (self.stale(now) | self.intermittent()).contains(flags::ALTITUDE);
-        !lost.intersects(MOTION) && !no_altitude && !self.navigation.suspects_motion()
+        if lost.intersects(MOTION) || no_altitude || self.navigation.suspects_motion() {
+            KnownMotion::Unknown
+        } else if self.is_on_wheels() {
+            KnownMotion::OnWheels
+        } else {
+            KnownMotion::InFlight
+        }
     }
 
     /// What is lost and not replaced by what counts as measured: an airspeed by

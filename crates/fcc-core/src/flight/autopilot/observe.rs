@@ -85,8 +85,7 @@ impl Autopilot {
             self.replacement.forget_offsets();
         }
         let lost = self.lost(now, measured);
-        self.navigation
-            .knows_motion(self.motion_is_known(now, lost), self.is_on_wheels());
+        self.navigation.knows_motion(self.known_motion(now, lost));
         let lost = by_name(lost);
         let replaces = self.degraded.is_failsafe && lost.body_rates && !lost.attitude;
         self.actuation.derives_rates(replaces);

@@ -10,7 +10,7 @@ pub(super) const DIFFERS_M: f64 = 12.0;
 /// accelerometer, m/s², with the wings level and by tan φ: an error of the bank
 /// by 1° is one of the vertical acceleration by 0.017 g tan φ.
 const COPIED_MPS: f64 = 0.3;
-const FELT_MPS2: f64 = 0.1;
+const FELT_MPS2: f64 = 0.15;
 const FELT_BANKED_MPS2: f64 = 0.5;
 /// What the step of a coarse altimeter, m, adds to both: its filter knows climb rate and bias
 /// the less, 1/s and 1/s².

@@ -48,8 +48,8 @@ const PITCHED_RAD: f64 = 0.07;
 /// aircraft that banks or pitches in calm air may stay.
 const FINE_AIRSPEED_MPS: f64 = 0.005;
 /// The change of airspeed that a coarse sensor must show, m/s: an error of the
-/// accelerations by 0.5 m/s² (3° of pitch) never reaches it.
-const ACCELERATED_MPS: f64 = 5.0;
+/// accelerations by 0.75 m/s² (4° of pitch) never reaches it.
+const ACCELERATED_MPS: f64 = 7.5;
 /// A vertical acceleration that a fine airspeed sensor must show, m/s²: a gust that
 /// changes the lift by a fifth has a part along the path, and changes the drag.
 const GUST_MPS2: f64 = 2.0;

@@ -61,6 +61,7 @@ pub use config::NavigationConfig;
 pub use estimate::{AirspeedSource, Estimate};
 pub(crate) use frozen::{Frozen, FrozenDetector, Known};
 pub use lift::{Lift, LiftChannel};
+pub(crate) use motion::KnownMotion;
 pub(crate) use motion_monitor::MotionDoubt;
 pub(crate) use plausibility::{
     ATTITUDE_RAD, ENGAGE_SWITCH, GateLimits, HEADING_RAD, HEIGHT_M, PlausibilityLimit, RATES_RADPS,
@@ -107,9 +108,7 @@ pub struct Navigation {
     throttle: Option<f64>,
     is_engaged: bool,
     is_flaring: bool,
-    /// Whether what the air data monitors compare with is measured.
-    motion_is_known: bool,
-    is_on_wheels: bool,
+    known_motion: KnownMotion,
     side_force: LowPass,
     density: Density,
     estimate: Estimate,
@@ -132,8 +131,7 @@ impl Navigation {
             throttle: None,
             is_engaged: false,
             is_flaring: false,
-            motion_is_known: true,
-            is_on_wheels: false,
+            known_motion: KnownMotion::InFlight,
             side_force: LowPass::new(config.side_force_tau_s),
             density: Density::AT_SEA_LEVEL,
             estimate: Estimate::INITIAL,
@@ -171,9 +169,8 @@ impl Navigation {
     /// altitude unless it is doubted: otherwise no sensor of air data is doubted,
     /// and what it is compared with begins anew afterwards. On wheels forces say nothing of
     /// the airspeed.
-    pub(crate) const fn knows_motion(&mut self, motion_is_known: bool, is_on_wheels: bool) {
-        self.motion_is_known = motion_is_known;
-        self.is_on_wheels = is_on_wheels;
+    pub(crate) const fn knows_motion(&mut self, known_motion: KnownMotion) {
+        self.known_motion = known_motion;
     }
 
     /// The aircraft flies at about this airspeed, m/s, and its sensor shows one with which it

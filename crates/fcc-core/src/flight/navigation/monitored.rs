@@ -3,6 +3,7 @@
 use super::Navigation;
 use super::airspeed_monitor::MonitorInput;
 use super::force_sample::{ForceSample, in_g};
+use super::motion::KnownMotion;
 use super::path::Path;
 use super::sample_tracker::is_current;
 use crate::flight::Measurements;
@@ -37,7 +38,7 @@ impl Navigation {
             sensor_mps: is_current(&airspeed, now).then_some((airspeed.value, airspeed.source)),
             over_ground: None,
             altimeter_is_doubted: self.altitude_monitor.is_doubted(),
-            motion_is_known: self.motion_is_known && !self.is_on_wheels && !self.is_flaring,
+            motion_is_known: self.known_motion == KnownMotion::InFlight && !self.is_flaring,
             may_doubt: self.is_engaged && !self.is_flaring,
         }
     }

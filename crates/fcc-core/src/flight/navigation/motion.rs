@@ -14,6 +14,14 @@ use crate::framework::Time;
 /// longer the integral is too wrong.
 const COMPARED: Duration = Duration::from_millis(200);
 
+/// Whether what the air data are compared with is measured.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum KnownMotion {
+    Unknown,
+    OnWheels,
+    InFlight,
+}
+
 impl Navigation {
     /// Compares attitude and body rates with each other in flight, before the tick's step;
     /// `lost` are the quantities that are lost for other reasons, `sigma_rad` is the standard

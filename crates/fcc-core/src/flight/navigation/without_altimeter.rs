@@ -5,6 +5,7 @@ use libm::tan;
 use super::Navigation;
 use super::altitude_monitor::{self, AltitudeInput, Verdict};
 use super::attitude::Orientation;
+use super::motion::KnownMotion;
 use super::path::Path;
 use super::sample_tracker::is_current;
 use super::upward::Upward;
@@ -65,7 +66,7 @@ impl Navigation {
         }
         let (followed, bias_mps2) = self.vertical.state();
         let is_felt = is_current(&measurements.specific_force, now)
-            && (self.motion_is_known || self.altitude_monitor.is_doubted());
+            && (self.known_motion != KnownMotion::Unknown || self.altitude_monitor.is_doubted());
         let input = AltitudeInput {
             altitude_m: (is_felt && is_current(&altitude, now)).then_some(altitude.value),
             step_m: self.vertical.resolution().step(),

@@ -8,9 +8,10 @@ use super::super::scalar_update::squared;
 use super::{ALONE_S, AirspeedMonitor, DIFFERS_RATIO, MonitorInput, SLOWER_LAG_S};
 use crate::blocks::{LowPass, limit};
 
-/// A difference of that share of the reference airspeed, of 3 standard deviations
+/// A difference of that share of the reference airspeed, of 9 kt, of 3.5 standard deviations
 /// and of 7.5 times the gusts must last for 2.5 s.
-const DIFFERS_SDS: f64 = 3.0;
+const DIFFERS_MPS: f64 = 4.6;
+const DIFFERS_SDS: f64 = 3.5;
 const DIFFERS_GUSTS: f64 = 7.5;
 const DOUBTED_AFTER_S: f64 = 2.5;
 /// So does the younger copy, older than this time, s, by this share of it: what the models
@@ -55,6 +56,7 @@ fn sides_with(vote_mps: f64, differs_mps: f64) -> bool {
 impl AirspeedMonitor {
     pub(super) fn limit_mps(&self, filter: &AirspeedFilter) -> f64 {
         (DIFFERS_RATIO * self.prior.reference_mps)
+            .max(DIFFERS_MPS)
             .max(DIFFERS_SDS * filter.sd_mps())
             .max(DIFFERS_GUSTS * libm::sqrt(self.gusts_mps2))
     }
