@@ -146,7 +146,19 @@ class LockstepRig:
                 return
 
     def set_faults(self, faults: Sequence[SensorFault]) -> None:
-        """Replace the faults of the sensors."""
+        """Replace the faults of the sensors. Raise ValueError for one that is not measured."""
+        conditions, failed = self._conditions, {fault.sensor for fault in faults}
+        measured = {
+            "position": conditions.position or conditions.raw_sensors,
+            "velocity": conditions.position or conditions.raw_sensors or conditions.receiver,
+        }
+        for sensor in sorted(
+            failed & {name for name, is_measured in measured.items() if not is_measured}
+        ):
+            raise ValueError(
+                f"this flight measures no {sensor}, which cannot fail: fly a plan, "
+                '@pytest.mark.autopilot(mode="plan", plan=FILE)'
+            )
         self._sensors.set_faults(faults)
 
     def truth(self) -> Truth:

@@ -180,9 +180,12 @@ def test_a_plan_by_replace_is_flown_as_one_of_a_text() -> None:
     config = fcc.Config.load(CONFIGS / "built-in.toml").replace(plan)
     assert (config["built-in.latitude_deg"], config["built-in.longitude_deg"]) == (45.0, 8.0)
     assert config["built-in.ground_ft"] == pytest.approx(120.0 / FOOT_M)
-    flight = fcc.fly(config, seconds=60.0)
+    flight = fcc.fly(config)
     modes = [event.text for event in flight.events if event.kind == "mode-changed"]
     assert modes[0] == "mode: take-off, was none"
+    assert "mode: land, was plan" in modes
+    # It ends itself when the aircraft stands, 683 s after the begin.
+    assert 600.0 < flight.seconds < 800.0
 
 
 def test_another_plan_by_replace_brings_its_own_begin(tmp_path: Path) -> None:

@@ -14,6 +14,8 @@ from fcc_hil import plan_file, plan_start
 from fcc_hil.flight import Flight
 from fcc_hil.lockstep_rig import Conditions, LockstepRig
 from fcc_hil.marks import aircraft_mark, autopilot_mark
+from fcc_hil.pattern import TimedPattern
+from fcc_hil.plant import Plant
 
 CIRCUIT = Path(__file__).parents[2] / "config/plans/circuit.waypoints"
 LANDS_BY_S = 900.0
@@ -33,6 +35,15 @@ def _flight() -> Flight:
     flight = Flight(rig, None, 1, plan)
     flight.engages(by=3)
     return flight
+
+
+@pytest.mark.parametrize("sensor", GNSS)
+def test_what_is_not_measured_cannot_fail(sensor: str) -> None:
+    plant = Plant("c172p", seed=1)
+    rig = LockstepRig(aircraft_mark("c172p"), plant, fcc.Machine())
+    flight = Flight(rig, TimedPattern(), 1)
+    with pytest.raises(ValueError, match=f"measures no {sensor}"):
+        flight.faults.loss(sensor)
 
 
 def _lands(flight: Flight) -> None:

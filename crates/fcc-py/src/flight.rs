@@ -133,7 +133,7 @@ impl PyFlight {
 /// the machine can, or in real time on the configured timer.
 ///
 /// The flight ends `seconds` after the engage switch goes on (by default as
-/// long as `fccd fly` takes: the hold and 8 legs, or 60 s without a pattern),
+/// long as `fccd fly` takes: to the end of a plan, the hold and 8 legs of a pattern, or 60 s),
 /// when the loop stops, or when the aircraft hits the ground (`Flight.impact`). One that never
 /// engaged is an `EngageError` with the reason. With `keep` False no records and truths are kept: a
 /// row of both is some 730 bytes. The GIL is released meanwhile: several flights
@@ -165,10 +165,11 @@ pub(crate) fn fly(
         ));
     };
     let period_s = config.tick.period().as_secs_f64();
+    let plan_s = config.plan_length_s().filter(|_| seconds.is_none() && config.flies_plan());
     let seconds = match seconds {
         Some(seconds) => within("seconds", seconds, 0.1, LONGEST_S)?,
         // The switch counts from its second reading.
-        None => period_s + config.guidance.default_length_s(),
+        None => period_s + plan_s.unwrap_or_else(|| config.guidance.default_length_s()),
     };
     let ticks = ((section.engages_at_s(config.navigation.method) + seconds) * config.tick.rate_hz)
         .ceil() as u64;
@@ -198,7 +199,7 @@ pub(crate) fn fly(
         } else {
             Pace::Lockstep
         },
-        length: Length::Ticks(ticks),
+        length: plan_s.map_or(Length::Ticks(ticks), Length::Flown),
     };
     let room = if keep { ticks as usize } else { 0 };
     let log = Log {
