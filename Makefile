@@ -47,13 +47,16 @@ endif
 .PHONY: python advisories lock reproducible package-check wheels deb test-attacks test-contingencies test-fences test-glides test-guidance test-landings test-landings-beside test-plan-real-time test-recordings test-raw-edges test-upsets test-android android android-check android-package test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
 
 help: ## Show this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-21s %s\n", $$1, $$2 }' $(MAKEFILE_LIST) | LC_ALL=C sort
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { print $$1 "\t" $$2 }' $(MAKEFILE_LIST) | LC_ALL=C sort | \
+	awk -F '\t' '{ line = sprintf("  make %-21s", $$1); n = split($$2, words, " "); \
+	    for (i = 1; i <= n; i++) { if (length(line) + length(words[i]) > 79) { print line; line = sprintf("%28s", "") } \
+	        line = line " " words[i] } print line }'
 
 # With the features that libraries have in the Python module, which shares them then: `cargo`
 # chooses those of all packages that are named. Of these only the daemon is built.
 BUILD_FCCD := cargo build --locked --release -p fcc-daemon -p fcc-py --bin fccd
 
-build: $(STAMPS)/rust
+build: $(STAMPS)/rust ## Build target/release/fccd
 	$(BUILD_FCCD)
 
 fly: build ## Fly the built-in aircraft through the timed pattern, in real time

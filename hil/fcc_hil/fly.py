@@ -102,8 +102,8 @@ def progress_line(progress: Progress, engaged_at_s: float, where: str) -> str:
     bank_deg = round(now["roll_deg"], 1) + 0.0
     return (
         f"true: {progress.time_s - engaged_at_s:6.1f} s  {where}  "
-        f"altitude {now['altitude_ft']:7.1f} ft  heading {now['heading_deg']:5.1f}°  "
-        f"airspeed {now['airspeed_kt']:5.1f} kt  bank {bank_deg:5.1f}°"
+        f"alt {now['altitude_ft']:7.1f} ft  hdg {now['heading_deg']:5.1f}°  "
+        f"{now['airspeed_kt']:5.1f} kt  bank {bank_deg:5.1f}°"
     )
 
 

