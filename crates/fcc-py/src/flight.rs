@@ -165,7 +165,9 @@ pub(crate) fn fly(
         ));
     };
     let period_s = config.tick.period().as_secs_f64();
-    let plan_s = config.plan_length_s().filter(|_| seconds.is_none() && config.flies_plan());
+    let plan_s = config
+        .plan_length_s()
+        .filter(|_| seconds.is_none() && config.flies_plan());
     let seconds = match seconds {
         Some(seconds) => within("seconds", seconds, 0.1, LONGEST_S)?,
         // The switch counts from its second reading.
