@@ -30,18 +30,25 @@ def _cell(legs: Sequence[LegScore], name: str, digits: int) -> str:
     return f"{sum(known) / len(known):.{digits}f}/{max(known):.{digits}f}"
 
 
+_ABREAST = 2
+"""So many flights are columns, in 80 columns of a terminal; more are rows."""
+
+
 def table(flights: Sequence[tuple[str, Score]]) -> str:
     """Return the flights as a Markdown table; each cell is mean/worst over the legs.
 
     If some leg has no time to settle, the number of legs that have one is given.
     """
-    return markdown(
+    rows = [
         ["mean/worst", *TITLES],
-        [
+        *(
             [name, *(_cell(flight["legs"], column, digits) for column, _, digits in _COLUMNS)]
             for name, flight in flights
-        ],
-    )
+        ),
+    ]
+    if len(flights) <= _ABREAST:
+        rows = [list(column) for column in zip(*rows, strict=True)]
+    return markdown(rows[0], rows[1:])
 
 
 def markdown(head: Sequence[str], rows: Iterable[Iterable[object]]) -> str:
