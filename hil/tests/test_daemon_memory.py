@@ -7,11 +7,11 @@ from pathlib import Path
 
 from daemon_under_test import start
 
-MOST_RESIDENT_KB = 22 << 10
+MOST_RESIDENT_KB = 23 << 10
 """What `docs/timing.md` adds up to, and a little more."""
 
 
-def test_a_flight_takes_less_than_22_mb_and_no_page_fault(fccd: Path, tmp_path: Path) -> None:
+def test_a_flight_takes_less_than_23_mb_and_no_page_fault(fccd: Path, tmp_path: Path) -> None:
     config = tmp_path / "fccd.toml"
     config.write_text(f'[built-in]\n[recording]\nfolder = "{tmp_path}/recordings"\n')
     with start(fccd, tmp_path, config) as daemon:
