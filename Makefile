@@ -373,10 +373,13 @@ $(STAMPS)/rust: rust-toolchain.toml scripts/check-rust
 	@command -v cc >/dev/null || ./scripts/apt-install gcc libc6-dev
 	@mkdir -p $(STAMPS) && touch $@
 
+# Some 200 MB: a terminal shows the progress.
+QUIET := $(shell test -t 2 || echo --quiet)
+
 $(STAMPS)/python: hil/pyproject.toml hil/locked.txt
 	@python3 -c 'import ensurepip, venv' 2>/dev/null || ./scripts/apt-install python3-venv
 	python3 -m venv $(VENV)
-	$(PYTHON) -m pip install --quiet --require-hashes -r hil/locked.txt
+	$(PYTHON) -m pip install $(QUIET) --require-hashes -r hil/locked.txt
 	$(PYTHON) -m pip install --quiet --no-deps --no-build-isolation --editable ./hil
 	@mkdir -p $(STAMPS) && touch $@
 

@@ -82,6 +82,7 @@ def _fly(options: argparse.Namespace) -> int:
             plan.legs,
             f"fccd flies JSBSim's {plan.settings.aircraft} through the timed pattern",
         )
+        say(f"written: {options.plot}")
     for failure in flight.failures:
         say(f"failed: {failure}", to=sys.stderr)
     return 1 if flight.failures else 0
@@ -139,6 +140,7 @@ def _peer(options: argparse.Namespace) -> int:
     if options.plot:
         title = "JSBSim's own c172x autopilot on the timed pattern"
         plot_pattern(options.plot, truth, pattern, 0.0, options.legs, title)
+        say(f"written: {options.plot}")
     return 0
 
 

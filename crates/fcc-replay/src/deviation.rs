@@ -109,22 +109,23 @@ impl Deviation {
         self.compared == 0 && self.only_recorded + self.only_other > 0
     }
 
-    /// The deviation as text.
+    /// The deviation as text, of what differs.
     pub fn to_text(&self) -> String {
-        let names = self.quantities.iter().map(|quantity| quantity.name.len());
-        let width = names.max().unwrap_or(0).max(19);
+        let differs = |quantity: &&QuantityDeviation| quantity.differing > 0;
+        let differing = || self.quantities.iter().filter(differs);
+        let width = differing().map(|quantity| quantity.name.len()).max();
+        let width = width.unwrap_or(0).max(16);
         let mut text = format!(
-            "{:width$} {:>8} {:>12} {:>12} {:>7} {:>9}  {}\n{}",
+            "{:width$} {:>9} {:>9} {:6} {:>8}  {}\n{}",
             "other - recorded",
-            "ticks",
             "rms",
             "largest",
             "",
             "at",
-            "size over the recording",
-            "─".repeat(width + 81)
+            "over time",
+            "─".repeat(width + 53)
         );
-        for quantity in &self.quantities {
+        for quantity in differing() {
             let at = quantity
                 .largest_at_s
                 .map_or(String::new(), |at_s| format!("{at_s:.2} s"));
@@ -132,17 +133,18 @@ impl Deviation {
                 ["-".to_owned(), "-".to_owned()]
             } else {
                 let (rms, largest) = (quantity.rms, quantity.largest);
-                [format!("{rms:.5}"), format!("{largest:+.5}")]
+                [format!("{rms:.4}"), format!("{largest:+.4}")]
             };
             let _ = write!(
                 text,
-                "\n{:width$} {:>8} {rms:>12} {largest:>12} {:7} {at:>9}  {}",
+                "\n{:width$} {rms:>9} {largest:>9} {:6} {at:>8}  {}",
                 quantity.name,
-                quantity.differing,
                 quantity.unit,
                 quantity.profile.line(),
             );
         }
+        let same = self.quantities.len() - differing().count();
+        let _ = write!(text, "\n{same} others do not differ");
         let _ = write!(
             text,
             "\n\n{} ticks compared, in which both command the plant; only the recorded loop did in \

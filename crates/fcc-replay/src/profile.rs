@@ -1,13 +1,13 @@
 //! The profile of a value over a recording of unknown length, as one line of
 //! text.
 
-/// Most columns of a line.
-const COLUMNS: usize = 48;
+/// Most columns of a line: a row of the table has 80.
+const COLUMNS: usize = 16;
 
 /// Eighths of a cell, none to full.
 const BARS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
-/// The largest value in each of up to 48 equal spans of ticks. When the
+/// The largest value in each of up to 16 equal spans of ticks. When the
 /// recording exceeds them, pairs of spans are merged.
 #[derive(Clone, Debug)]
 pub(super) struct Profile {
@@ -78,19 +78,19 @@ mod tests {
 
     #[test]
     fn a_peak_is_where_it_was_however_long_the_flight() {
-        for ticks in [48_u64, 100, 1_000, 123_456] {
+        for ticks in [16_u64, 100, 1_000, 123_456] {
             let mut profile = Profile::default();
             for tick in 0..ticks {
                 profile.push(if tick == ticks / 2 { 8.0 } else { 1.0 });
             }
             let line: Vec<char> = profile.line().chars().collect();
-            assert!((24..=48).contains(&line.len()), "{ticks}: {}", line.len());
+            assert!((8..=16).contains(&line.len()), "{ticks}: {}", line.len());
             let peaks: Vec<_> = (0..line.len()).filter(|n| line[*n] == '█').collect();
             assert_eq!(peaks.len(), 1);
             // At half of the ticks, within a span; the spans may extend beyond
             // the end.
             let place = (peaks[0] as f64 + 0.5) * profile.span as f64 / ticks as f64;
-            assert!((place - 0.5).abs() <= 0.5 / 24.0 + 0.01, "{ticks}: {place}");
+            assert!((place - 0.5).abs() <= 0.5 / 8.0 + 0.01, "{ticks}: {place}");
             assert!(line.iter().all(|c| *c == '█' || *c == '▁'));
         }
     }

@@ -12,8 +12,9 @@ pub struct CommandArgs {
     #[command(subcommand)]
     pub what: CommandChoice,
     /// The daemon's name, as given by --instance or in its configuration
-    #[arg(long, value_name = "NAME", default_value_t = Instance::default(), global = true)]
-    pub instance: Instance,
+    /// [default: that of the only one that runs, or else fccd]
+    #[arg(long, value_name = "NAME", global = true)]
+    pub instance: Option<Instance>,
     /// The user of the daemon, if it is another's and no service; it has to
     /// permit this one in rights.commanders
     #[arg(long, value_name = "USER", global = true)]

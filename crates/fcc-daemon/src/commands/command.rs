@@ -4,10 +4,12 @@ use fcc_core::flight::Autopilot;
 use fcc_core::units::{FOOT_M, HECTOPASCAL_PA, INHG_PA, KNOT_MPS};
 use fcc_flight::flight::{OtherUserError, command_another_users};
 use fcc_live::{Command, CommandError, Commander, PlantLimits, WatchError};
+use fcc_telemetry::Instance;
 use fcc_telemetry::units::{AVIATION, Shown};
 use serde::Serialize;
 
 use super::failure::Failure;
+use super::top::the_one;
 use crate::cli::plan::PlanOrder;
 use crate::cli::{CommandArgs, CommandChoice, SetArgs};
 use crate::exit::Exit;
@@ -25,6 +27,7 @@ struct Sent {
 
 /// Sends a command and prints the result.
 pub(super) fn command(args: &CommandArgs) -> Result<Exit, Failure> {
+    let instance = &args.instance.clone().unwrap_or_else(the_one);
     if let CommandChoice::Plan { what } = &args.what
         && let PlanOrder::Replace { file, .. } = what
         && file.to_str().is_none()
@@ -42,7 +45,7 @@ pub(super) fn command(args: &CommandArgs) -> Result<Exit, Failure> {
             .for_the_loop::<Autopilot>(&PlantLimits::new())
             .map_err(|error| Failure::of(Exit::Usage, error.text_in(&units)))?;
     }
-    let (exit, result) = match send(args, &command) {
+    let (exit, result) = match send(args, instance, &command) {
         Ok(tick) => (Exit::Success, Ok(tick)),
         Err(Refusal::OfAnother(error)) => {
             let exit = match error {
@@ -68,30 +71,30 @@ pub(super) fn command(args: &CommandArgs) -> Result<Exit, Failure> {
                 WatchError::PerhapsAnothers(_) => {
                     ("One of another user".to_owned(), "USER".to_owned())
                 }
-                _ => return print_result(args, Exit::Failure, Err(error.to_string())),
+                _ => return print_result(args, instance, Exit::Failure, Err(error.to_string())),
             };
             let why = format!(
-                "no fccd named '{}' runs here for this user. {which} is commanded with fccd \
+                "no fccd named '{instance}' runs here for this user. {which} is commanded with fccd \
                  command --of {user}, if its configuration names you in rights.commanders, or by \
-                 sudo -u {user} fccd command",
-                args.instance
+                 sudo -u {user} fccd command"
             );
             (Exit::Failure, Err(why))
         }
         Err(Refusal::OfOwn(error)) => (Exit::Failure, Err(error.to_string())),
     };
-    print_result(args, exit, result)
+    print_result(args, instance, exit, result)
 }
 
 /// Prints the tick that carried the command out, or why none did.
 fn print_result(
     args: &CommandArgs,
+    instance: &Instance,
     exit: Exit,
     result: Result<u64, String>,
 ) -> Result<Exit, Failure> {
     if args.json {
         let result = Sent {
-            instance: args.instance.to_string(),
+            instance: instance.to_string(),
             carried_out: result.is_ok(),
             tick: result.as_ref().ok().copied(),
             why: result.err(),
@@ -112,12 +115,12 @@ enum Refusal {
 
 /// To the daemon of this user or, if there is none, of the service; or to that
 /// of the user who is given.
-fn send(args: &CommandArgs, command: &Command) -> Result<u64, Refusal> {
-    let another = |user| command_another_users(&args.instance, user, command);
+fn send(args: &CommandArgs, instance: &Instance, command: &Command) -> Result<u64, Refusal> {
+    let another = |user| command_another_users(instance, user, command);
     if let Some(user) = &args.of {
         return another(Some(user)).map_err(Refusal::OfAnother);
     }
-    let opened = Commander::open(&args.instance);
+    let opened = Commander::open(instance);
     match opened.and_then(|mut daemon| daemon.command(command)) {
         Err(error @ CommandError::Unreachable(_)) => match another(None) {
             Err(OtherUserError::NotThere(..)) => Err(Refusal::OfOwn(error)),

@@ -12,7 +12,7 @@ use crate::output;
 /// Watches a daemon.
 pub(super) fn top(args: &TopArgs) -> Result<Exit, Failure> {
     let instance = args.instance.clone();
-    let instance = instance.unwrap_or_else(|| the_one(&running()));
+    let instance = instance.unwrap_or_else(the_one);
     if args.json {
         let snapshot = Watcher::open(&instance).and_then(fcc_top::snapshot);
         let snapshot = snapshot.map_err(Failure::new)?;
@@ -23,7 +23,11 @@ pub(super) fn top(args: &TopArgs) -> Result<Exit, Failure> {
 }
 
 /// The only daemon that runs, or else the one without another name.
-fn the_one(running: &[Instance]) -> Instance {
+pub(super) fn the_one() -> Instance {
+    one_of(&running())
+}
+
+fn one_of(running: &[Instance]) -> Instance {
     match running {
         [one] => one.clone(),
         _ => Instance::default(),
@@ -35,11 +39,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_only_daemon_is_watched_whatever_its_name() {
+    fn the_only_daemon_is_meant_whatever_its_name() {
         let named = |names: &[&str]| names.iter().map(|name| name.parse().unwrap()).collect();
         let one = |names: &[&str]| -> String {
             let running: Vec<Instance> = named(names);
-            the_one(&running).to_string()
+            one_of(&running).to_string()
         };
         assert_eq!(one(&[]), "fccd");
         assert_eq!(one(&["left"]), "left");

@@ -8,7 +8,7 @@ use super::machine::Machine;
 use super::{Check, Finding};
 
 /// The most devices named for each CPU.
-const MAX_NAMED: usize = 4;
+const MAX_NAMED: usize = 2;
 /// Read at each start of the machine; interrupt numbers stay the same while its
 /// devices do.
 const AT_START: &str = "/etc/tmpfiles.d/fccd.conf";

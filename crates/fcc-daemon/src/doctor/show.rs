@@ -4,6 +4,9 @@ use std::fmt::Write as _;
 
 use super::{Diagnosis, Finding, Grade};
 
+/// Columns of a terminal.
+const TERMINAL: usize = 80;
+
 /// The table, followed by what to do, the worst first.
 pub(super) fn text(diagnosis: &Diagnosis) -> String {
     let mut text = String::new();
@@ -22,6 +25,10 @@ pub(super) fn text(diagnosis: &Diagnosis) -> String {
     for finding in findings {
         let Finding { name, found, .. } = finding;
         let mark = mark(finding.grade);
+        let mut found = found.clone();
+        if width + found.chars().count() > TERMINAL - 5 {
+            found = found.replace("; ", &format!(";\n{:1$}", "", width + 5));
+        }
         let _ = writeln!(text, " {mark} {name:width$}  {found}");
     }
     for (grade, title) in [

@@ -16,8 +16,8 @@ pub(crate) struct StatusLine<C: Controller> {
     /// Whether a command engages although that switch is off.
     by_command: bool,
     printed_s: Option<f64>,
-    /// What engaging needed when it was printed last.
-    needed: Option<String>,
+    /// What engaging needed a second before, and whether that was printed.
+    needed: (Option<String>, bool),
     /// Whether the switch was on a second before: one that has just gone on engages.
     was_on: bool,
     worst_us: f64,
@@ -40,12 +40,13 @@ impl<C: Controller> Observer<C> for StatusLine<C> {
             let plant = (self.describe)(record);
             // Without measurements all of them are missing.
             let needs = plant.as_ref().and_then(|_| self.needs(record));
-            if needs != self.needed {
-                if let Some(needs) = &needs {
-                    output::message(format!("{:8.2} s  {needs}", at.time_s));
-                }
-                self.needed = needs;
+            // What lasts for a second: not the beginning of a flight, which engages by itself.
+            let was_printed = needs == self.needed.0 && self.needed.1;
+            let is_due = needs.is_some() && needs == self.needed.0 && !was_printed;
+            if let Some(needs) = needs.as_ref().filter(|_| is_due) {
+                output::message(format!("{:8.2} s  {needs}", at.time_s));
             }
+            self.needed = (needs, was_printed || is_due);
             self.was_on = (self.switch)(record) == Some(Switch::On);
             output::message(self.line(plant, record, at));
             self.worst_us = 0.0;
@@ -72,7 +73,7 @@ impl<C: Controller> StatusLine<C> {
             switch,
             by_command,
             printed_s: None,
-            needed: None,
+            needed: (None, false),
             was_on: false,
             worst_us: 0.0,
             missed: 0,
@@ -93,7 +94,7 @@ impl<C: Controller> StatusLine<C> {
             (None, _) => "waits for a command: no engage switch is read",
             (Some(Switch::Off), true) => "waits for the engage switch or a command",
             (Some(Switch::Off), false) => "waits for the engage switch",
-            (Some(Switch::On), _) if !self.was_on => return self.needed.clone(),
+            (Some(Switch::On), _) if !self.was_on => return self.needed.0.clone(),
             (Some(Switch::On), _) => "waits for a command, or the engage switch off and on",
         };
         Some(needs.to_owned())

@@ -118,8 +118,8 @@ pub(crate) fn unknown_names(rights: &RightsSection) -> Vec<String> {
     let is_no_group = |name: &&String| !matches!(Group::from_name(name), Ok(Some(_)));
     let own = rights.user.iter().filter(is_no_user).map(|name| {
         format!(
-            "rights.user is {name:?}: there is no such user on this machine: a flight that root \
-             starts here is refused"
+            "rights.user is {name:?}: there is no such user on this machine: `fccd run` as root \
+             is refused here"
         )
     });
     let here = "on this machine: nobody commands by it here";

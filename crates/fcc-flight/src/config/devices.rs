@@ -264,7 +264,10 @@ mod tests {
     fn a_tick_reads_all_datagrams_that_arrive_in_a_period() {
         let few = message("[x-plane]\nrate_hz = 1000\n[loop]\nrate_hz = 20\n");
         assert!(
-            few.starts_with("test:1: x-plane.datagrams_per_tick: is 128: choose at least 200 ="),
+            few.starts_with(
+                "test:2: x-plane.rate_hz: contradicts x-plane.datagrams_per_tick, which is 128: \
+                 choose at least 200 ="
+            ),
             "{few}"
         );
         let one = "[built-in]\n[[sensor]]\nkind = \"x-plane\"\ndatagrams_per_tick = ";
@@ -281,7 +284,7 @@ mod tests {
         let lines: Vec<&str> = all.lines().collect();
         let expected = [
             "test:4: sensor[0].engines: is true: choose a whole number",
-            "test:5: sensor[0].rate: there is no such key, did you mean `rate_hz`: choose",
+            "test:5: sensor[0].rate: there is no such key, did you mean `rate_hz`?",
             "test:6: sensor[0].silent_after_ms: is 1: choose 50 to 60000",
             "test:8: sensor[1].kind: is \"x-plan\", did you mean \"x-plane\": choose",
             "test:10: actuator[0].kind: is a number: choose a text in quotes",
@@ -310,7 +313,7 @@ mod tests {
             ["test:11", "guidance.leg"],
         ];
         assert_eq!(lines, expected.map(Vec::from), "{all}");
-        let section = message("[built-in]\n[lop]\n");
+        let section = message("[built-in]\n[zzzzzz]\n");
         assert!(section.contains("`sensor`, `actuator`"), "{section}");
         let list = message("sensor = 5\n[built-in]\n");
         assert!(

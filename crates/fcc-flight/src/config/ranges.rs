@@ -165,9 +165,14 @@ pub(super) fn check(config: &Config, places: &Places<'_>, unread: &[Problem]) ->
                 .as_deref()
                 .is_some_and(|key| keys.contains(&key))
         };
-        if let Some(key) = keys.first().filter(|_| !problems.iter().any(is_out)) {
+        if let Some(first) = keys.first().filter(|_| !problems.iter().any(is_out)) {
+            // At a key that the text contains, since that is the one to change.
+            let written = keys.iter().find(|key| places.has(key)).unwrap_or(first);
+            if written != first {
+                message = format!("contradicts {first}, which {message}");
+            }
             message.push_str(&defaults(config, places, keys));
-            others.push(problem_at(places, key, message));
+            others.push(problem_at(places, written, message));
         }
     });
     for (at, section) in config.x_planes() {

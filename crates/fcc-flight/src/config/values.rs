@@ -72,12 +72,34 @@ impl Config {
         {
             plan.retain(|key, _| key != "content" && key != "uploaded_unix_s");
         }
+        for (key, value) in &changes {
+            put(&mut values, key, value.clone()).ok_or_else(|| unknown(key))?;
+        }
+        // Messages name a default as such, as they do of a text.
+        let defaults = Self::parse_without_aircraft("", NO_FILE)?.values()?;
+        without_defaults(&mut values, &defaults);
         for (key, value) in changes {
-            put(&mut values, key, value).ok_or_else(|| unknown(key))?;
+            put(&mut values, key, value);
         }
         let text = toml::to_string(&values).map_err(|error| invalid(None, error.to_string()))?;
         Self::parse_without_aircraft(&text, NO_FILE).map_err(without_lines)
     }
+}
+
+/// Removes each value that is the default of its key, but not of a section whose defaults
+/// are those of its mode.
+fn without_defaults(values: &mut Value, defaults: &Value) {
+    let Some(values) = values.as_table_mut() else {
+        return;
+    };
+    values.retain(|key, value| {
+        let default = defaults.get(key).filter(|_| key != "guidance");
+        if let Some(default) = default.filter(|_| value.is_table()) {
+            without_defaults(value, default);
+            return true;
+        }
+        default.is_none_or(|default| default != value)
+    });
 }
 
 /// All sections and values below one, each with its key, in the order of a file.

@@ -50,10 +50,12 @@ fn unknown_key(message: &str) -> Option<String> {
     let meant = most_alike(name, known.map(names).into_iter().flatten())
         .map(str::to_owned)
         .or_else(|| elsewhere(name));
-    let meant = meant.map_or_else(String::new, |name| format!(", did you mean `{name}`"));
+    if let Some(name) = meant {
+        return Some(format!("there is no such key, did you mean `{name}`?"));
+    }
     Some(match known {
-        Some(known) => format!("there is no such key{meant}: choose {known}"),
-        None => format!("there is no such key{meant}: remove it"),
+        Some(known) => format!("there is no such key: choose {known}"),
+        None => "there is no such key: remove it".to_owned(),
     })
 }
 
