@@ -144,7 +144,7 @@ impl Deviation {
             );
         }
         let same = self.quantities.len() - differing().count();
-        let _ = write!(text, "\n{same} others do not differ");
+        let _ = write!(text, "\n{same} of {} do not differ", self.quantities.len());
         let _ = write!(
             text,
             "\n\n{} ticks compared, in which both command the plant; only the recorded loop did in \

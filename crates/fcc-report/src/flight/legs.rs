@@ -21,9 +21,9 @@ const LEG_COLUMNS: [&str; 10] = [
 
 /// Meanings of the columns.
 const LEG_LEGEND: &str = "\
-≤2°, ≤10 ft  seconds into the leg after which heading and altitude stay that near
+≤2°, ≤10 ft  seconds of the leg until heading and altitude stay that near
 over         how far past the set point, in the direction of the turn or climb
-RMS          root mean square of the error: of the heading in the leg's last 3 s,
+RMS          root mean square error: of the heading in the leg's last 3 s,
              of the altitude in the last 8 s
 loss         how far below the lower of the two altitudes that the leg joins
 speed, side  largest error of the airspeed either way, sideways acceleration";

@@ -1,7 +1,7 @@
 //! Whether the airspeed sensor is believed, and the airspeed without it.
 
 use super::airframe::AirframePrior;
-use super::airspeed_reason::{Doubt, Reference};
+use super::airspeed_reason::Doubt;
 use super::filter_bank::FilterBank;
 use super::force_sample::{ForceSample, acceleration_mps2};
 use super::scalar_update::squared;
@@ -15,9 +15,11 @@ mod ground;
 mod path;
 mod sensorless;
 mod step;
+mod trapped;
 
 use ground::Behind;
 use step::StepDetector;
+use trapped::TrappedPressure;
 
 /// The time between two corrections of the filters, s.
 const CORRECTED_S: f64 = 0.1;
@@ -63,6 +65,8 @@ pub(super) struct MonitorInput {
     /// 0..=1, if it is known.
     pub(super) throttle: Option<f64>,
     pub(super) altitude_m: f64,
+    /// The step of a coarse altimeter; 0 of a fine one.
+    pub(super) altitude_step_m: f64,
     /// Indicated, with the number of its sensor; none if it is silent.
     pub(super) sensor_mps: Option<(f64, u8)>,
     /// A new reading of the velocity over the ground.
@@ -99,6 +103,7 @@ pub(super) struct AirspeedMonitor {
     /// By axial force and by lift.
     vote: [LowPass; 2],
     step: StepDetector,
+    trapped: TrappedPressure,
     differs_s: f64,
     wind_s: f64,
     agrees_s: f64,
@@ -112,7 +117,6 @@ pub(super) struct AirspeedMonitor {
     settles_s: f64,
     /// For how long the models have not held, s.
     upset_s: f64,
-    reference: Reference,
     doubt: Option<Doubt>,
     /// The time since the last velocity over the ground, s.
     ground_s: f64,
@@ -144,6 +148,7 @@ impl AirspeedMonitor {
             difference: LowPass::new(DIFFERENCE_LAG_S),
             vote: [LowPass::new(VOTE_LAG_S); 2],
             step: StepDetector::new(prior.reference_mps),
+            trapped: TrappedPressure::new(),
             differs_s: 0.0,
             wind_s: 0.0,
             agrees_s: 0.0,
@@ -152,7 +157,6 @@ impl AirspeedMonitor {
             slower: LowPass::new(SLOWER_LAG_S),
             settles_s: 0.0,
             upset_s: 0.0,
-            reference: Reference::NONE,
             doubt: None,
             ground_s: 0.0,
             behind: Behind::NONE,
@@ -258,6 +262,7 @@ impl AirspeedMonitor {
         for filter in bank.each() {
             filter.accelerate(acceleration, dt_s);
         }
+        let felt_mps = bank.older.airspeed_mps() - now_mps;
         self.add(&sample, input.sensor_mps, dt_s);
         bank.is_by_forces &= input.sensor_mps.is_none();
         let holds = sample.models_hold();
@@ -279,7 +284,10 @@ impl AirspeedMonitor {
             self.follow_sensor(&mut bank);
         }
         let contradicted = self.follow_ground(&mut bank, input, &sample, dt_s);
-        if contradicted || self.doubt_step(&mut bank, input, dt_s) {
+        if contradicted
+            || self.doubt_step(&mut bank, input, dt_s)
+            || self.doubt_blocked(&mut bank, input, felt_mps, dt_s)
+        {
             // Nothing else is compared in this tick.
         } else if settles {
             self.follow_sensor(&mut bank);

@@ -14,7 +14,7 @@
 //! the sensor as well, which is the smallest change that it has ever shown. Of a
 //! coarse airspeed sensor a manoeuvre shows nothing, since an airspeed that is
 //! held stays within its step: what counts is the acceleration. Of a coarse
-//! altimeter it counts, too, since in rising air the pitch alone is wrong.
+//! altimeter it counts, too, since in rising air pitch and lift alone are wrong.
 //!
 //! The motion shown by other quantities is integrated with a leak, so that
 //! their small errors never add up to a motion. A sensor with any noise never
@@ -31,6 +31,7 @@ use evidence::{LeakyIntegrator, StuckDetector};
 
 use super::estimate::Estimate;
 use super::resolution::Resolutions;
+use super::upward::Upward;
 use crate::blocks::wrap_pi;
 use crate::flight::{BodyRates, Measurements};
 use crate::framework::Time;
@@ -62,7 +63,7 @@ const EXACTLY: f64 = 0.0;
 /// small accelerometers.
 const SAME_FORCE_MPS2: f64 = 1e-3;
 /// The age up to which the climb rate is taken from the ground velocity;
-/// otherwise it is computed from the pitch.
+/// otherwise it is that by pitch and lift.
 const CURRENT: Duration = Duration::from_millis(500);
 
 /// Which of the quantities needed by control are frozen.
@@ -113,15 +114,14 @@ pub(crate) struct FrozenDetector {
     /// Rotation by attitude and heading minus that by the gyroscopes, since the
     /// gyroscope of that axis changed.
     unsaid: [LeakyIntegrator; 3],
-    /// Climb since the altitude changed, by the velocity or the pitch, and by the
+    /// Climb since the altitude changed, by the velocity or by pitch and lift, and by the
     /// vertical acceleration.
     climbed: LeakyIntegrator,
     felt_climb: LeakyIntegrator,
     /// The climb rate when the altitude changed, and what was felt since.
     felt_climb_mps: f64,
-    /// Climb rate minus the one computed from the pitch, when the altitude
-    /// changed.
-    climb_at_level_mps: f64,
+    /// Climb rate minus the one by pitch and lift, when the altitude changed.
+    climb_at_change_mps: f64,
     /// The attitude when specific force and airspeed changed.
     force_at: Angles,
     airspeed_at: Angles,
@@ -151,7 +151,7 @@ impl FrozenDetector {
             climbed: LeakyIntegrator::ZERO,
             felt_climb: LeakyIntegrator::ZERO,
             felt_climb_mps: 0.0,
-            climb_at_level_mps: 0.0,
+            climb_at_change_mps: 0.0,
             force_at: [0.0; 3],
             airspeed_at: [0.0; 3],
             accelerated: LeakyIntegrator::ZERO,
@@ -300,7 +300,9 @@ impl FrozenDetector {
         let altitude = measurements.altitude_m;
         let estimate = &navigation.estimate;
         let resolution_m = navigation.resolutions.altitude_m;
-        let by_pitch_mps = estimate.true_airspeed_mps * sin(estimate.pitch_rad);
+        let upward = Upward::of(estimate.roll_rad, estimate.pitch_rad);
+        let by_lift_mps =
+            estimate.true_airspeed_mps * upward.sin_path(estimate.angle_of_attack_rad);
         if self
             .altitude
             .has_changed([altitude.value], EXACTLY, altitude.taken, dt_s)
@@ -308,22 +310,22 @@ impl FrozenDetector {
             self.climbed = LeakyIntegrator::default();
             self.felt_climb = LeakyIntegrator::default();
             self.felt_climb_mps = estimate.climb_rate_mps;
-            self.climb_at_level_mps = estimate.climb_rate_mps - by_pitch_mps;
+            self.climb_at_change_mps = estimate.climb_rate_mps - by_lift_mps;
             return;
         }
         self.felt_climb_mps += navigation.felt_up_mps2 * dt_s;
         let velocity = measurements.velocity.fresh(now, CURRENT);
         let climb_mps = match velocity {
             Some(velocity) => -velocity.down_mps,
-            None => self.climb_at_level_mps + by_pitch_mps,
+            None => self.climb_at_change_mps + by_lift_mps,
         };
         self.climbed
             .add(climb_mps * dt_s, CLIMBED_M, resolution_m, dt_s);
         let felt_m = self.felt_climb_mps * dt_s;
         self.felt_climb.add(felt_m, CLIMBED_M, resolution_m, dt_s);
-        let pitch_suffices = velocity.is_some() || resolution_m < FINE_ALTITUDE_M;
+        let path_suffices = velocity.is_some() || resolution_m < FINE_ALTITUDE_M;
         let must_have_changed = self.climbed.exceeds(CLIMBED_M, resolution_m)
-            && (pitch_suffices || self.felt_climb.exceeds(CLIMBED_M, resolution_m));
+            && (path_suffices || self.felt_climb.exceeds(CLIMBED_M, resolution_m));
         self.altitude.update(must_have_changed, self.after_s);
     }
 

@@ -330,18 +330,14 @@ impl VerticalChannel {
     fn correct_coarse(&mut self, altitude_m: f64, change_m: f64, since_s: f64) {
         let error_m = altitude_m - self.state.altitude_m;
         let beyond_m = self.resolution.beyond(error_m);
-        if change_m == 0.0 && beyond_m == 0.0 {
+        if change_m == 0.0 {
             let gains = self
                 .covariance
                 .correct_by_step(self.resolution.step(), since_s);
-            self.correct(0.0, &gains);
+            self.correct(beyond_m, &gains);
             return;
         }
-        let edge_m = if change_m == 0.0 {
-            beyond_m
-        } else {
-            self.resolution.error_from_edge(error_m, change_m)
-        };
+        let edge_m = self.resolution.error_from_edge(error_m, change_m);
         let climb_rate_mps = self.state.climb_rate_mps;
         let gains = self.covariance.correct_by_edge(climb_rate_mps, since_s);
         self.correct(edge_m, &gains);

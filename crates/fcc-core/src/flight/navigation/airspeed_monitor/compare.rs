@@ -1,10 +1,11 @@
 //! Comparison of the airspeed sensor with forces and motion.
 
 use super::super::airspeed_filter::AirspeedFilter;
-use super::super::airspeed_reason::{Doubt, Reference};
+use super::super::airspeed_reason::{Doubt, DoubtReason};
 use super::super::filter_bank::FilterBank;
 use super::super::force_sample::angle_of_attack_rad;
 use super::super::scalar_update::squared;
+use super::trapped::Shown;
 use super::{ALONE_S, AirspeedMonitor, DIFFERS_RATIO, MonitorInput, SLOWER_LAG_S};
 use crate::blocks::{LowPass, limit};
 
@@ -51,6 +52,14 @@ const LEARNED_FOR_STEP_S: f64 = 5.0;
 /// the filter.
 fn sides_with(vote_mps: f64, differs_mps: f64) -> bool {
     vote_mps * differs_mps.signum() > SENSOR_SHARE * differs_mps.abs()
+}
+
+const fn by_sign(differs_mps: f64) -> DoubtReason {
+    if differs_mps > 0.0 {
+        DoubtReason::TooHigh
+    } else {
+        DoubtReason::TooLow
+    }
 }
 
 impl AirspeedMonitor {
@@ -103,14 +112,11 @@ impl AirspeedMonitor {
             self.differs_s,
         );
         self.wind_s = count(is_large && (sides == [true; 2] || by_ground), self.wind_s);
-        if differs.abs() < 0.3 * limit_mps {
-            self.reference = Reference::new(input.altitude_m, sensor_mps);
-        }
         if self.wind_s > WIND_CHANGED_AFTER_S {
             self.follow_sensor(bank);
         } else if self.differs_s > DOUBTED_AFTER_S {
             if input.may_doubt && bank.learned_s > LEARNED_S {
-                self.begin_doubt(input, (sensor_mps, source), differs);
+                self.begin_doubt(source, by_sign(differs));
             } else {
                 self.follow_sensor(bank);
             }
@@ -122,20 +128,44 @@ impl AirspeedMonitor {
         }
     }
 
-    /// Doubts the sensor, `(m/s, number)`, which differs by this from the older copy.
-    fn begin_doubt(
-        &mut self,
-        input: &MonitorInput,
-        (sensor_mps, source): (f64, u8),
-        differs_mps: f64,
-    ) {
-        let sigma = squared(input.sample.sqrt_density);
-        let reason = self
-            .reference
-            .reason(input.altitude_m, sensor_mps, sigma, differs_mps);
+    /// Doubts the sensor of this number.
+    const fn begin_doubt(&mut self, source: u8, reason: DoubtReason) {
         self.doubt = Some(Doubt { source, reason });
         self.was_doubted = true;
         self.agrees_s = 0.0;
+    }
+
+    /// Doubts a sensor whose tube is blocked: its airspeed before and the forces since are
+    /// known.
+    pub(super) fn doubt_blocked(
+        &mut self,
+        bank: &mut FilterBank,
+        input: &MonitorInput,
+        felt_mps: f64,
+        dt_s: f64,
+    ) -> bool {
+        let is_believed = self.doubt.is_none() && !input.altimeter_is_doubted;
+        let Some((sensor_mps, source)) = input.sensor_mps.filter(|_| is_believed) else {
+            self.trapped.reset();
+            return false;
+        };
+        let shown = Shown {
+            altitude_m: input.altitude_m,
+            altitude_step_m: input.altitude_step_m,
+            density_ratio: squared(input.sample.sqrt_density),
+            sensor_mps,
+            gusts_mps: self.gusts_mps(),
+            felt_mps,
+        };
+        let Some(known_mps) = self.trapped.step(&shown, dt_s) else {
+            return false;
+        };
+        let doubts = input.may_doubt && input.motion_is_known;
+        if doubts {
+            bank.older.adopt_known(known_mps);
+            self.begin_doubt(source, DoubtReason::BlockedTube);
+        }
+        doubts
     }
 
     /// Doubts a sensor that has stepped, whatever else is measured: its airspeed
@@ -163,7 +193,7 @@ impl AirspeedMonitor {
             if !was_wrong {
                 bank.older.adopt_known(before_mps);
             }
-            self.begin_doubt(input, (sensor_mps, source), sensor_mps - before_mps);
+            self.begin_doubt(source, by_sign(sensor_mps - before_mps));
         }
         doubts
     }
