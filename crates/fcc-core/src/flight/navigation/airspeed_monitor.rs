@@ -1,7 +1,7 @@
 //! Whether the airspeed sensor is believed, and the airspeed without it.
 
 use super::airframe::AirframePrior;
-use super::airspeed_reason::Doubt;
+use super::airspeed_reason::{Doubt, Reference};
 use super::filter_bank::FilterBank;
 use super::force_sample::{ForceSample, acceleration_mps2};
 use super::scalar_update::squared;
@@ -117,6 +117,7 @@ pub(super) struct AirspeedMonitor {
     settles_s: f64,
     /// For how long the models have not held, s.
     upset_s: f64,
+    reference: Reference,
     doubt: Option<Doubt>,
     /// The time since the last velocity over the ground, s.
     ground_s: f64,
@@ -157,6 +158,7 @@ impl AirspeedMonitor {
             slower: LowPass::new(SLOWER_LAG_S),
             settles_s: 0.0,
             upset_s: 0.0,
+            reference: Reference::NONE,
             doubt: None,
             ground_s: 0.0,
             behind: Behind::NONE,

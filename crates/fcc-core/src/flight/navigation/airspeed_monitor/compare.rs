@@ -1,7 +1,7 @@
 //! Comparison of the airspeed sensor with forces and motion.
 
 use super::super::airspeed_filter::AirspeedFilter;
-use super::super::airspeed_reason::{Doubt, DoubtReason};
+use super::super::airspeed_reason::{Doubt, DoubtReason, Reference};
 use super::super::filter_bank::FilterBank;
 use super::super::force_sample::angle_of_attack_rad;
 use super::super::scalar_update::squared;
@@ -54,14 +54,6 @@ fn sides_with(vote_mps: f64, differs_mps: f64) -> bool {
     vote_mps * differs_mps.signum() > SENSOR_SHARE * differs_mps.abs()
 }
 
-const fn by_sign(differs_mps: f64) -> DoubtReason {
-    if differs_mps > 0.0 {
-        DoubtReason::TooHigh
-    } else {
-        DoubtReason::TooLow
-    }
-}
-
 impl AirspeedMonitor {
     pub(super) fn limit_mps(&self, filter: &AirspeedFilter) -> f64 {
         (DIFFERS_RATIO * self.prior.reference_mps)
@@ -112,11 +104,14 @@ impl AirspeedMonitor {
             self.differs_s,
         );
         self.wind_s = count(is_large && (sides == [true; 2] || by_ground), self.wind_s);
+        if differs.abs() < 0.3 * limit_mps {
+            self.reference = Reference::new(input.altitude_m, sensor_mps);
+        }
         if self.wind_s > WIND_CHANGED_AFTER_S {
             self.follow_sensor(bank);
         } else if self.differs_s > DOUBTED_AFTER_S {
             if input.may_doubt && bank.learned_s > LEARNED_S {
-                self.begin_doubt(source, by_sign(differs));
+                self.begin_doubt(source, self.reason(input, sensor_mps, differs));
             } else {
                 self.follow_sensor(bank);
             }
@@ -126,6 +121,13 @@ impl AirspeedMonitor {
             bank.younger = bank.believing.kept();
             bank.younger_s = 0.0;
         }
+    }
+
+    /// Why a sensor that differs by this is wrong.
+    fn reason(&self, input: &MonitorInput, sensor_mps: f64, differs_mps: f64) -> DoubtReason {
+        let sigma = squared(input.sample.sqrt_density);
+        self.reference
+            .reason(input.altitude_m, sensor_mps, sigma, differs_mps)
     }
 
     /// Doubts the sensor of this number.
@@ -193,7 +195,8 @@ impl AirspeedMonitor {
             if !was_wrong {
                 bank.older.adopt_known(before_mps);
             }
-            self.begin_doubt(source, by_sign(sensor_mps - before_mps));
+            let reason = self.reason(input, sensor_mps, sensor_mps - before_mps);
+            self.begin_doubt(source, reason);
         }
         doubts
     }
