@@ -264,7 +264,7 @@ mod tests {
         let never = "[built-in]\n[autopilot.envelope]\nnever_exceed_airspeed_kt = 60\n";
         let words = "test:3: autopilot.envelope.never_exceed_airspeed_kt: contradicts \
                      autopilot.envelope.max_airspeed_kt, which is 135: choose at most";
-        assert!(message(never).starts_with(words), "{}", message(never));
+        assert!(message(never).contains(words), "{}", message(never));
     }
 
     /// 1,000 frames a second in 20 ticks a second, and 250 in 40.
