@@ -1,11 +1,10 @@
 //! Whether an airspeed changes with height as that of a blocked pitot tube does.
 
 use super::super::scalar_update::squared;
+use super::DIFFERENCE_LAG_S;
 use crate::blocks::LowPass;
 use crate::units::GRAVITY_MPS2;
 
-/// The lag of the airspeed, s.
-const LAG_S: f64 = 0.5;
 /// How far it may be from that of a trapped pressure, m/s: half a step of 1 kt, and what the
 /// lag makes in a climb of 5 m/s. An altimeter whose half step is more says too little.
 const TOLERANCE_MPS: f64 = 0.7;
@@ -45,7 +44,7 @@ pub(super) struct TrappedPressure {
 impl TrappedPressure {
     pub(super) const fn new() -> Self {
         Self {
-            airspeed: LowPass::new(LAG_S),
+            airspeed: LowPass::new(DIFFERENCE_LAG_S),
             since: None,
             since_s: 0.0,
             felt_mps: 0.0,
