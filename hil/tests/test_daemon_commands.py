@@ -142,7 +142,7 @@ def test_lockstep_prints_the_score_and_no_timing(fccd: Path) -> None:
     ended = run([fccd, "fly", "--seconds", "45", "--lockstep", "--quiet"])
     assert ended.returncode == 0, ended.stderr
     assert "Missed" not in ended.stdout, "no time passes that could be kept"
-    assert "scored by the true values of the simulated aircraft" in ended.stdout
+    assert "scored by the true values" in ended.stdout
     for column in ("≤2°", "over", "RMS", "≤10 ft", "loss", "speed", "side"):
         assert ended.stdout.count(column) >= 2, "in the table, and below it what it means"
     in_real_time = run([fccd, "fly", "--seconds", "1", "--quiet", "--no-recording"])

@@ -83,12 +83,16 @@ fn each(file: &str, problems: &[Problem]) -> String {
 /// ```
 ///
 /// # Errors
-/// All problems, at most [`limits::PROBLEMS`].
+/// All problems, at most [`limits::PROBLEMS`], in the order of the items.
 pub fn read(text: &str) -> Result<Plan, Vec<Problem>> {
-    match Format::of_text(text) {
+    let read = match Format::of_text(text) {
         Format::QgcPlan => qgc_plan::read(text),
         Format::QgcWpl => mavproxy::read(text).unwrap_or_else(|| wpl::read(text)),
-    }
+    };
+    read.map_err(|mut problems| {
+        problems.sort_by_key(|problem| problem.item);
+        problems
+    })
 }
 
 /// Whether a text is meant as a plan: the first line of `QGC WPL` in any version, or the

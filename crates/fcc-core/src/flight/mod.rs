@@ -35,7 +35,7 @@ pub use altimeter::{ALTIMETER_SETTINGS_PA, Altimeter, AltitudeReference};
 pub use autopilot::{
     Autopilot, AutopilotCommand, AutopilotConfig, COMMAND_ANSWER, Contingency, ContingencyAction,
     ContingencyConfig, FailsafeConfig, FailsafeEnd, ITEM_REACHED, PlanReplacement, Resume, Scale,
-    StickTakeover, flags, gives_up_runway, refuses_command, touches_ground,
+    StickTakeover, flags, gives_up_runway, touches_ground, why_refused,
 };
 pub use measurements::{
     Attitude, BodyRates, Measurements, PilotControls, Position, SpecificForce, Suspect, Velocity,

@@ -11,7 +11,8 @@ use crate::exit::Exit;
 use crate::output;
 use crate::process::unknown_names;
 use fcc_flight::calibrate::{CalibrationFileError, apply};
-use fcc_flight::config::{Aircraft, Config, ConfigError, Problem};
+use fcc_flight::config::{Aircraft, Config, ConfigError, CpuChoice, Problem};
+use fcc_timer::realtime::cpus::Cpus;
 
 #[derive(Serialize)]
 struct Checked {
@@ -62,6 +63,7 @@ fn check_file(path: &Path) -> (Checked, Result<String, ConfigError>) {
             let mut remarks = config.remarks(&text);
             remarks.extend(calibrated);
             remarks.extend(unknown_names(&config.rights));
+            remarks.extend(missing_cpu(&config));
             let aircraft = match config.aircraft() {
                 Some(Aircraft::XPlane(_)) => "X-Plane's aircraft",
                 Some(Aircraft::BuiltIn(_)) => "the built-in aircraft",
@@ -91,6 +93,19 @@ fn check_file(path: &Path) -> (Checked, Result<String, ConfigError>) {
             };
             (checked, Err(error))
         }
+    }
+}
+
+/// That this machine lacks the CPU of the loop; the configuration may be another's.
+fn missing_cpu(config: &Config) -> Option<String> {
+    let online = Cpus::read(Path::new("/")).online;
+    let last = online.last()?;
+    match config.realtime.cpu? {
+        CpuChoice::Number(cpu) if !online.contains(&cpu) => Some(format!(
+            "realtime.cpu is {cpu}, and the last CPU of this machine is {last}: here the kernel \
+             refuses it; choose \"auto\" or one that exists"
+        )),
+        _ => None,
     }
 }
 

@@ -72,6 +72,9 @@ pub(super) fn check_controls(args: &CheckControlsArgs) -> Result<Exit, Failure> 
         let printed = json!({"movements": movements, "error": error, "released": released});
         return Ok(output::json(&printed, exit));
     }
+    if movements.is_empty() {
+        return Ok(exit);
+    }
     Ok(output::result(table(&movements), exit))
 }
 

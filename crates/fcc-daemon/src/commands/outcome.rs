@@ -18,8 +18,11 @@ pub(super) fn text(outcome: &Outcome, plan: &FlownPlan) -> String {
         text.push_str("\n\n");
     }
     if !plan.is_empty() {
-        let touched = plan.finding().unwrap_or_default();
-        let _ = writeln!(text, "{}\n\n{touched}\n", plan.text());
+        for part in [plan.text(), plan.finding().unwrap_or_default()] {
+            if !part.is_empty() {
+                let _ = writeln!(text, "{part}\n");
+            }
+        }
     }
     if let Some(why) = &outcome.not_scored {
         let _ = writeln!(text, "no score: {why}\n");

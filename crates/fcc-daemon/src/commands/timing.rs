@@ -89,8 +89,11 @@ struct Progress {
 
 impl Progress {
     fn start(rate_hz: f64, seconds: f64) -> Self {
-        let bar = ProgressBar::new((seconds * 1e3) as u64).with_message(format!("{rate_hz} Hz"));
-        if let Ok(style) = ProgressStyle::with_template("{msg:>8} {wide_bar} {eta:>4} left") {
+        let bar = ProgressBar::new((seconds * 1e3) as u64)
+            .with_message(format!("{rate_hz} Hz"))
+            .with_prefix(format!("{seconds} s"));
+        if let Ok(style) = ProgressStyle::with_template("{msg:>8} {wide_bar} {elapsed} of {prefix}")
+        {
             bar.set_style(style);
         }
         let moving = bar.clone();

@@ -22,7 +22,7 @@ pub(super) fn governor(machine: &Machine, _: &Board) -> Finding {
         }
     }
     if cpus_of.is_empty() {
-        return CHECK.not_known("this machine does not change it");
+        return CHECK.ok("the kernel does not change it");
     }
     let words: Vec<String> = cpus_of
         .iter()
@@ -57,23 +57,24 @@ pub(super) fn isolation(loop_cpu: &LoopCpu, board: &Board) -> Finding {
         (several, Some(cpu)) if cpus.online.contains(&cpu) => {
             let found = format!("none of {several}");
             let finding = CHECK.could_be_better(found);
-            // The first one keeps the kernel's time.
-            let is_first = cpus.online.first() == Some(&cpu);
-            if is_first && loop_cpu.is_configured() {
-                finding.because(format!(
+            match loop_cpu.advised() {
+                // The first one keeps the kernel's time.
+                Some(advised) if advised != cpu => {
+                    let finding = finding.because(format!(
+                        "other programs run on CPU {cpu} too, the loop's CPU, and it cannot be \
+                         isolated: isolate CPU {advised}, and cpu = \"auto\" chooses that one"
+                    ));
+                    let option = isolating(advised, &cpus.online);
+                    loop_cpu.remedy_by_choice(board.kernel_option(finding, &option))
+                }
+                _ if cpus.online.first() == Some(&cpu) => finding.because(format!(
                     "other programs run on CPU {cpu} too, the loop's CPU, and it cannot be \
                      isolated: configure cpu = \"auto\", and fccd doctor shows which one to isolate"
-                ))
-            } else if is_first && let Some(&last) = cpus.online.last() {
-                let finding = finding.because(format!(
-                    "other programs run on CPU {cpu} too, the loop's CPU, and it cannot be \
-                     isolated: isolate CPU {last}, and cpu = \"auto\" chooses that one"
-                ));
-                let finding = board.kernel_option(finding, &isolating(last, &cpus.online));
-                loop_cpu.remedy_by_choice(finding)
-            } else {
-                let finding = finding.because("other programs run on the loop's CPU too");
-                board.kernel_option(finding, &isolating(cpu, &cpus.online))
+                )),
+                _ => {
+                    let finding = finding.because("other programs run on the loop's CPU too");
+                    board.kernel_option(finding, &isolating(cpu, &cpus.online))
+                }
             }
         }
         _ => CHECK.not_known("not reported by the kernel"),

@@ -31,10 +31,12 @@ pub(super) fn interrupts(machine: &Machine, loop_cpu: &LoopCpu) -> Finding {
     }
     let busy = busy_devices(machine, total);
     let found = description(&busy, total);
-    let Some(cpu) = loop_cpu.cpu else {
+    let of_cpu = |cpu: &usize| busy.get(cpu).map_or(&[][..], Vec::as_slice);
+    let quiet = loop_cpu.cpu.filter(|cpu| of_cpu(cpu).is_empty());
+    let Some(cpu) = quiet.or(loop_cpu.advised()) else {
         return CHECK.not_known("not reported by the kernel");
     };
-    let on_it = busy.get(&cpu).map_or(&[][..], Vec::as_slice);
+    let on_it = of_cpu(&cpu);
     if on_it.is_empty() {
         let finding = CHECK
             .ok(found)

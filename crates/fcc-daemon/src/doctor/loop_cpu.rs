@@ -19,8 +19,7 @@ pub(super) struct LoopCpu {
     best: Result<BestCpu, String>,
     /// The machine's CPUs.
     pub(super) cpus: Cpus,
-    /// The CPU for remedies: the loop's, or, if it is not bound, the one with
-    /// the fewest interrupts.
+    /// The loop's CPU, or, if it is not bound, the one with the fewest interrupts.
     pub(super) cpu: Option<usize>,
 }
 
@@ -59,6 +58,18 @@ impl LoopCpu {
         match remedy {
             Some(line) => finding.remedy(CONFIGURATION, line),
             None => finding,
+        }
+    }
+
+    /// The CPU that the loop runs on once the remedies are carried out: its own, unless
+    /// the kernel keeps its time there and another can be isolated.
+    pub(super) fn advised(&self) -> Option<usize> {
+        let cpu = self.cpu?;
+        let online = &self.cpus.online;
+        let isolates = self.cpus.isolated.is_empty() && online.first() == Some(&cpu);
+        match online.last() {
+            Some(&last) if isolates && !self.is_configured() => Some(last),
+            _ => Some(cpu),
         }
     }
 

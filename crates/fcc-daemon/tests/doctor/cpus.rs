@@ -32,6 +32,26 @@ fn a_device_that_interrupts_often_is_named_with_its_cpu() {
     );
 }
 
+/// CPU 0 keeps the kernel's time and cannot be isolated: what is to be isolated and what
+/// is to be left by the devices is the same CPU.
+#[test]
+fn the_cpu_to_isolate_is_the_one_that_devices_are_moved_away_from() {
+    let root = machine(VIRTUAL);
+    let on_both = DISK_ON_CPU_1.replace("        404          0", "     515000          0");
+    put(root.path(), "proc/interrupts", &on_both);
+    let found = check(root.path());
+    let isolation = finding(&found, "isolated_cpus");
+    assert!(isolation.why.contains("isolate CPU 1"), "{}", isolation.why);
+    let interrupts = finding(&found, "interrupts");
+    assert_eq!(
+        lines(interrupts)[0],
+        (
+            "/etc/tmpfiles.d/fccd.conf, for virtio1-req.0",
+            "w /proc/irq/36/smp_affinity_list - - - - 0"
+        )
+    );
+}
+
 /// `smp_affinity_list` is from the kernel's core-api/irq/irq-affinity, the line
 /// from tmpfiles.d(5), the last from irqbalance(1).
 #[test]

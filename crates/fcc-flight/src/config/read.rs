@@ -46,9 +46,17 @@ pub(super) fn read(text: &str) -> Read<'_> {
         places,
         problems,
     };
+    let header = broken_header(text, &reader.problems);
     let sensor = reader.list(&mut table, "sensor");
     let actuator = reader.list(&mut table, "actuator");
     let read = reader.table(table, 0).unwrap_or_default();
+    if let Some(header) = header {
+        // The keys below it are read as if they stood in no section.
+        reader.problems.retain(|problem| {
+            let in_section = problem.key.as_ref().is_none_or(|key| key.contains('.'));
+            in_section || problem.line <= Some(header)
+        });
+    }
     Read {
         config: Config {
             sensor: sensor.unwrap_or_default(),
@@ -58,6 +66,16 @@ pub(super) fn read(text: &str) -> Read<'_> {
         problems: reader.problems,
         places: reader.places,
     }
+}
+
+/// The line of the first section's header with an error in it.
+fn broken_header(text: &str, broken: &[Problem]) -> Option<usize> {
+    let lines: Vec<&str> = text.lines().collect();
+    let mut at = broken.iter().filter_map(|problem| problem.line);
+    at.find(|line| {
+        let text = line.checked_sub(1).and_then(|index| lines.get(index));
+        text.is_some_and(|text| text.trim_start().starts_with('['))
+    })
 }
 
 /// An error of TOML's syntax. The table recovered from such a text is not
@@ -268,6 +286,13 @@ mod tests {
             assert!(first.len() <= MOST_PROBLEMS, "{}", first.len());
             assert_eq!(last.message, "has more problems: correct these first");
         }
+    }
+
+    #[test]
+    fn keys_below_a_broken_header_are_no_second_problem() {
+        let found = problems("[built-in]\nairspeed = 90.0\n[loop\nrate_hz = 40\n");
+        let lines: Vec<_> = found.iter().map(|problem| problem.line).collect();
+        assert_eq!(lines, [Some(2), Some(3)]);
     }
 
     /// The adapter's own checks follow those of the ranges.

@@ -22,6 +22,7 @@ impl Config {
                     .to_owned(),
             );
         }
+        remarks.extend(self.start_airspeed_remark());
         if self.has_board()
             && self.is_without_simulator()
             && self.navigation.method == NavigationMethod::Measured
@@ -43,6 +44,24 @@ impl Config {
             remarks.extend(found.iter().map(|remark| format!("{of}{remark}")));
         }
         remarks
+    }
+
+    /// The airspeed at which the built-in aircraft starts in the air, if it is outside the
+    /// envelope.
+    fn start_airspeed_remark(&self) -> Option<String> {
+        let start = self.built_in.as_ref().filter(|start| !start.on_runway)?;
+        let envelope = &self.autopilot.envelope;
+        let (at, least, most) = (
+            start.airspeed_kt,
+            envelope.min_airspeed_kt,
+            envelope.max_airspeed_kt,
+        );
+        (!(least..=most).contains(&at)).then(|| {
+            format!(
+                "built-in.airspeed_kt is {at}, and the envelope's airspeeds are {least} to {most} \
+                 kt: engaging is refused until the aircraft flies within them"
+            )
+        })
     }
 
     /// The greatest latency for the gains of an aircraft in which nothing measures it, as long
@@ -113,6 +132,21 @@ impl Config {
 #[cfg(test)]
 mod tests {
     use super::Config;
+
+    #[test]
+    fn a_start_outside_the_envelope_is_remarked_on() {
+        let remarks = |keys: &str| {
+            let text = format!("[built-in]\n{keys}\n");
+            Config::parse(&text, "f").unwrap().remarks_at_start()
+        };
+        let [remark] = &remarks("airspeed_kt = 50.0")[..] else {
+            panic!("one remark");
+        };
+        assert!(remark.contains("65 to 135 kt"), "{remark}");
+        for keys in ["airspeed_kt = 66.0", "airspeed_kt = 50.0\non_runway = true"] {
+            assert_eq!(remarks(keys), [""; 0], "{keys}");
+        }
+    }
 
     /// As JSBSim's OV10, which oscillates from 125 ms on, and not with 75.
     #[test]

@@ -32,9 +32,7 @@ speed, side  largest error of the airspeed either way, sideways acceleration";
 /// meanings of the columns.
 pub fn flight_table(score: &FlightScore, by: ScoredBy) -> String {
     let by = match by {
-        ScoredBy::Truth => {
-            "the true values of the simulated aircraft (fccd report: by the measurements)"
-        }
+        ScoredBy::Truth => "the true values (fccd report: by the measurements)",
         ScoredBy::Measurement => "the measurements of the sensors, noise included",
     };
     let table = legs(score);
@@ -62,9 +60,9 @@ fn leg_cells(name: String, leg: &LegScore) -> Vec<String> {
         format!("{:.2}", leg.heading_overshoot_deg),
         format!("{:.2}", leg.heading_rms_deg),
         settle(leg.altitude_settle_s),
-        format!("{:.2}", leg.altitude_overshoot_ft),
-        format!("{:.2}", leg.altitude_rms_ft),
-        format!("{:.2}", leg.turn_loss_ft),
+        format!("{:.1}", leg.altitude_overshoot_ft),
+        format!("{:.1}", leg.altitude_rms_ft),
+        format!("{:.1}", leg.turn_loss_ft),
         format!("{:.2}", leg.airspeed_error_kt),
         format!("{:.3}", leg.lateral_acceleration_g),
     ]

@@ -1,6 +1,6 @@
 //! A flight plan as a page: its table, its map and its height profile.
 
-use comfy_table::Table;
+use comfy_table::{ContentArrangement, Table};
 use maud::{DOCTYPE, PreEscaped, html};
 
 use crate::page::STYLE;
@@ -54,7 +54,11 @@ fn table_of(rows: &[PlanRow]) -> Table {
 
 /// A plan's table as text.
 pub fn plan_table(rows: &[PlanRow]) -> String {
-    table_of(rows).to_string()
+    /// Of a terminal.
+    const COLUMNS: u16 = 80;
+    let mut table = table_of(rows);
+    table.set_content_arrangement(ContentArrangement::Dynamic);
+    table.set_width(COLUMNS).to_string()
 }
 
 /// A line on the ground, (east, north) of the first place, m.

@@ -16,9 +16,9 @@ pub trait Commandable: Telemetry<Command: PartialEq> {
     /// after the set points. None by default.
     const JOINT: &'static [JointSetpoints<Self::Command>] = &[];
 
-    /// Whether a notice says that a command that was read in its tick is refused.
-    fn is_refusal(_: &Notice) -> bool {
-        false
+    /// Why a command that was read in a notice's tick is refused, if the notice says that.
+    fn refusal(_: &Notice) -> Option<&'static str> {
+        None
     }
 }
 
@@ -163,7 +163,7 @@ mod flight {
     };
     use core::f64::consts::{FRAC_PI_2, PI};
 
-    use fcc_core::flight::{Autopilot, AutopilotCommand, Position, refuses_command};
+    use fcc_core::flight::{Autopilot, AutopilotCommand, Position, why_refused};
     use fcc_core::framework::Notice;
 
     use super::{Commandable, CommandableSetpoint, JointSetpoints};
@@ -270,8 +270,8 @@ mod flight {
                          go_to_altitude_m",
         }];
 
-        fn is_refusal(notice: &Notice) -> bool {
-            refuses_command(notice)
+        fn refusal(notice: &Notice) -> Option<&'static str> {
+            why_refused(notice)
         }
     }
 }

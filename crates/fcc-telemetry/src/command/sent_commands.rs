@@ -142,14 +142,17 @@ impl<C: Commandable> SentCommands<C> {
                     waiting.refusal = Some(describe_event::<C>(event, &[], &[]));
                 }
             }
-            EventKind::Noticed(notice) if C::is_refusal(&notice) => {
+            EventKind::Noticed(notice) => {
+                let Some(refusal) = C::refusal(&notice) else {
+                    return;
+                };
                 for waiting in self.waiting.iter_mut().filter(|waiting| {
                     let command = &waiting.asked.command;
                     waiting.read_in == Some(event.tick)
                         && command.needs_control::<C>()
                         && matches!(command, Command::Set(_) | Command::ReplacePlan { .. })
                 }) {
-                    waiting.refusal = Some(describe_event::<C>(event, &[], &[]));
+                    waiting.refusal = Some(refusal.to_owned());
                 }
             }
             _ => {}

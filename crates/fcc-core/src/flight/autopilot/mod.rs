@@ -60,7 +60,7 @@ use pilot_takeover::PilotTakeover;
 pub use pilot_takeover::StickTakeover;
 use plant_clock::PlantClock;
 use reading_age::ReadingAges;
-pub use refusal::{COMMAND_ANSWER, refuses_command};
+pub use refusal::{COMMAND_ANSWER, why_refused};
 use release::Release;
 pub use replacing::PlanReplacement;
 pub use resume::Resume;

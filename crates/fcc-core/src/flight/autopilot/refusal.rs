@@ -106,6 +106,12 @@ impl Refusal {
         }
     }
 
+    /// The refusal of an answer.
+    fn of(answer: &Notice) -> Option<Self> {
+        let number = usize::from(answer.amount_permille / PERMILLE);
+        Self::ALL.get(number.checked_sub(1)?).copied()
+    }
+
     /// Whether a plan is not replaced.
     const fn is_of_plan(self) -> bool {
         self as u16 <= Self::Landing as u16
@@ -216,18 +222,15 @@ impl Autopilot {
     }
 }
 
-/// Whether a notice says that a command is not carried out.
-pub fn refuses_command(notice: &Notice) -> bool {
-    notice.kind == COMMAND_ANSWER && notice.amount_permille > 0
+/// Why a command is not carried out, if a notice says that.
+pub fn why_refused(notice: &Notice) -> Option<&'static str> {
+    let refusal = Refusal::of(notice).filter(|_| notice.kind == COMMAND_ANSWER)?;
+    Some(refusal.words())
 }
 
 /// Writes the answer.
 pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-    let number = usize::from(notice.amount_permille / PERMILLE);
-    let refusal = number
-        .checked_sub(1)
-        .and_then(|index| Refusal::ALL.get(index));
-    match (refusal, notice.item) {
+    match (Refusal::of(notice), notice.item) {
         (Some(refusal), _) if refusal.is_of_plan() => {
             write!(f, "the plan is not replaced: {}", refusal.words())
         }

@@ -71,7 +71,7 @@ schema! {
         pub gust_load: f64,
         /// Angle of attack, rad: measured if a source has it that is not
         /// doubted, otherwise estimated from the lift.
-        #[field(12, column = "estimated_angle_of_attack_rad")]
+        #[field(12)]
         pub angle_of_attack_rad: f64,
         /// Acceleration along the flight path, without gusts, m/s².
         #[field(13)]

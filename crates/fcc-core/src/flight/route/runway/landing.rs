@@ -66,8 +66,14 @@ impl RunwayFlight {
         }
     }
 
-    /// The altitude of the glide path, m above mean sea level.
+    /// The altitude of the glide path, and of the runway behind it, m above mean sea level.
     pub(in crate::flight::route) fn path_altitude_m(&self, motion: &Motion) -> f64 {
+        self.glide_path_m(motion).max(self.runway.elevation_m)
+    }
+
+    /// The altitude of the glide path, m above mean sea level: below the runway behind the
+    /// point that is aimed at.
+    fn glide_path_m(&self, motion: &Motion) -> f64 {
         let above_m = self.slope * self.left_m(motion);
         (self.runway.elevation_m + above_m).min(self.level_m)
     }
@@ -137,7 +143,7 @@ impl RunwayFlight {
     }
 
     fn approach(&mut self, here: &OverGround, motion: &Motion) {
-        let path_m = self.path_altitude_m(motion);
+        let path_m = self.glide_path_m(motion);
         let off_m = path_m - self.runway.elevation_m - self.demand.height_m;
         let descends = if path_m < self.level_m {
             self.sink_mps()
