@@ -65,8 +65,6 @@ pub(super) struct MonitorInput {
     /// 0..=1, if it is known.
     pub(super) throttle: Option<f64>,
     pub(super) altitude_m: f64,
-    /// The step of a coarse altimeter; 0 of a fine one.
-    pub(super) altitude_step_m: f64,
     /// Indicated, with the number of its sensor; none if it is silent.
     pub(super) sensor_mps: Option<(f64, u8)>,
     /// A new reading of the velocity over the ground.

@@ -35,7 +35,6 @@ impl Navigation {
             },
             throttle: self.throttle,
             altitude_m: path.vertical.altitude_m,
-            altitude_step_m: self.vertical.resolution().step(),
             sensor_mps: is_current(&airspeed, now).then_some((airspeed.value, airspeed.source)),
             over_ground: None,
             altimeter_is_doubted: self.altitude_monitor.is_doubted(),

@@ -153,10 +153,8 @@ impl AirspeedMonitor {
         };
         let shown = Shown {
             altitude_m: input.altitude_m,
-            altitude_step_m: input.altitude_step_m,
             density_ratio: squared(input.sample.sqrt_density),
             sensor_mps,
-            gusts_mps: self.gusts_mps(),
             felt_mps,
         };
         let Some(known_mps) = self.trapped.step(&shown, dt_s) else {
