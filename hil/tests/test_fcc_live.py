@@ -95,7 +95,7 @@ def test_commands_are_carried_out_or_refused_with_the_reason(
 
         wait_until(lambda: aims() == pytest.approx((1.0, 950.0)), "the set points are the new ones")
         assert commander.disengage() > tick
-        with pytest.raises(fcc.CommandError, match="set points are accepted only while engaged"):
+        with pytest.raises(fcc.CommandError, match="accepted only while engaged"):
             commander.set(airspeed_mps=50.0)
         # The altimeter can be set in every state.
         assert commander.set(altimeter_setting_pa=102_000.0) > tick
@@ -112,7 +112,7 @@ def test_commands_are_carried_out_or_refused_with_the_reason(
         assert json.loads(printed.stdout)["carried_out"] is True
         refused = command(fccd, instance, "set", "--airspeed-kt", "100")
         assert refused.returncode == REFUSED
-        assert "set points are accepted only while engaged" in refused.stderr
+        assert "accepted only while engaged" in refused.stderr
         wrong = command(fccd, instance, "set", "--airspeed-kt", "-3")
         assert wrong.returncode == USAGE
         assert "airspeed is" in wrong.stderr

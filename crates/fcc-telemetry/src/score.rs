@@ -95,7 +95,10 @@ pub struct FlightScore {
 #[non_exhaustive]
 pub enum ScoreError {
     /// A leg has no samples, or none near its end.
-    #[error("the leg from {start_s:.1} s to {end_s:.1} s was not flown to its end: fly longer")]
+    #[error(
+        "the leg from {start_s:.1} s to {end_s:.1} s has no samples to its end: fly longer, or a \
+         part of the recording is lost"
+    )]
     NotFlown {
         /// The leg's start.
         start_s: f64,

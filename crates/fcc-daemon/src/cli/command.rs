@@ -54,7 +54,7 @@ pub enum CommandChoice {
 #[derive(Args, Debug)]
 #[group(required = true, multiple = true)]
 pub struct SetArgs {
-    /// Magnetic heading, -360 to 360; turns the shorter way
+    /// Magnetic heading, -720 to 720; turns the shorter way
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     pub heading_deg: Option<f64>,
     /// Altitude above sea level by the altimeter setting

@@ -86,21 +86,26 @@ impl<'a> Places<'a> {
         let line = line_of(text, &(offset..offset));
         let found = text.lines().nth(line - 1)?.trim();
         if let Some(section) = found.strip_prefix('[') {
-            let (section, _) = section.trim_start_matches('[').split_once(']')?;
-            return Some(section.trim().to_owned());
+            return section_of(section);
         }
         let (key, _) = found.split_once('=')?;
         let key = key.trim();
         let section = text
             .lines()
             .take(line - 1)
-            .filter_map(|line| line.trim().strip_prefix('[')?.split_once(']'))
+            .filter_map(|line| section_of(line.trim().strip_prefix('[')?))
             .last();
         Some(match section {
-            Some((section, _)) => format!("{}.{key}", section.trim()),
+            Some(section) => format!("{section}.{key}"),
             None => key.to_owned(),
         })
     }
+}
+
+/// The name in a header behind its first bracket.
+fn section_of(header: &str) -> Option<String> {
+    let (section, _) = header.trim_start_matches('[').split_once(']')?;
+    Some(section.trim().to_owned())
 }
 
 /// The parts of `sensor[1]`; no index for a plain name.

@@ -23,6 +23,13 @@ impl Config {
             );
         }
         remarks.extend(self.start_airspeed_remark());
+        if self.built_in.as_ref().is_some_and(|start| start.on_runway) && !self.flies_plan() {
+            remarks.push(
+                "built-in.on_runway is true, and only a plan takes off: nothing will engage; choose \
+                 guidance.mode = \"plan\", or fly with --plan FILE"
+                    .to_owned(),
+            );
+        }
         if self.has_board()
             && self.is_without_simulator()
             && self.navigation.method == NavigationMethod::Measured
@@ -143,9 +150,11 @@ mod tests {
             panic!("one remark");
         };
         assert!(remark.contains("65 to 135 kt"), "{remark}");
-        for keys in ["airspeed_kt = 66.0", "airspeed_kt = 50.0\non_runway = true"] {
-            assert_eq!(remarks(keys), [""; 0], "{keys}");
-        }
+        assert_eq!(remarks("airspeed_kt = 66.0"), [""; 0]);
+        let [remark] = &remarks("airspeed_kt = 50.0\non_runway = true")[..] else {
+            panic!("one remark");
+        };
+        assert!(remark.contains("only a plan takes off"), "{remark}");
     }
 
     /// As JSBSim's OV10, which oscillates from 125 ms on, and not with 75.

@@ -201,7 +201,7 @@ impl<C: Commandable> SentCommands<C> {
 }
 
 fn only_engaged(state: State) -> String {
-    format!("the state is {state}: set points are accepted only while engaged")
+    format!("the state is {state}: this command is accepted only while engaged")
 }
 
 #[cfg(all(test, feature = "flight"))]

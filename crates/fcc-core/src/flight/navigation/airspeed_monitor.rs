@@ -47,8 +47,8 @@ const SLOWER_LAG_S: f64 = 2.0;
 const SETTLED_S: f64 = 10.0;
 /// The same after an upset of this time, s: meanwhile the airspeed was only integrated.
 const LONG_UPSET_S: f64 = 3.0;
-/// A difference of 9 % of the reference airspeed (9 kt of 100 kt) may be a fault.
-const DIFFERS_RATIO: f64 = 0.09;
+/// A difference of 11 % of the reference airspeed (11 kt of 100 kt) may be a fault.
+const DIFFERS_RATIO: f64 = 0.11;
 /// Below this share of the reference airspeed nothing is compared.
 const LEAST_RATIO: f64 = 0.4;
 /// Vertical gusts are the filter's vertical wind, over this time, s; at least

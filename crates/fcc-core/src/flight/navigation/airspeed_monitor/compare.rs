@@ -9,9 +9,9 @@ use super::trapped::Shown;
 use super::{ALONE_S, AirspeedMonitor, DIFFERS_RATIO, MonitorInput, SLOWER_LAG_S};
 use crate::blocks::{LowPass, limit};
 
-/// A difference of that share of the reference airspeed, of 9 kt, of 3.5 standard deviations
+/// A difference of that share of the reference airspeed, of 11 kt, of 3.5 standard deviations
 /// and of 7.5 times the gusts must last for 2.5 s.
-const DIFFERS_MPS: f64 = 4.6;
+const DIFFERS_MPS: f64 = 5.7;
 const DIFFERS_SDS: f64 = 3.5;
 const DIFFERS_GUSTS: f64 = 7.5;
 const DOUBTED_AFTER_S: f64 = 2.5;
