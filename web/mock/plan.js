@@ -34,7 +34,7 @@ export function hashOf(plan) {
     value && typeof value === "object" && !Array.isArray(value)
       ? Object.fromEntries(Object.keys(value).sort().map((key) => [key, sorted(value[key])]))
       : Array.isArray(value) ? value.map(sorted) : value;
-  return createHash("sha256").update(JSON.stringify(sorted(plan))).digest("hex");
+  return createHash("sha256").update(JSON.stringify(sorted(plan))).digest("hex").slice(0, 16);
 }
 
 const RAD = Math.PI / 180;

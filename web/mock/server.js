@@ -21,7 +21,7 @@ const PERIOD_MS = 25;
 const TYPES = { ".html": "text/html; charset=utf-8", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml", ".json": "application/json" };
 const CSP = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; frame-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'self'";
 
-const flight = new SimulatedFlight(CIRCUIT, { hash: BigInt(`0x${hashOf(CIRCUIT).slice(0, 16)}`) });
+const flight = new SimulatedFlight(CIRCUIT, { hash: BigInt(`0x${hashOf(CIRCUIT)}`) });
 const started = Date.now() / 1000;
 let vehicle = { hash: hashOf(CIRCUIT), uploaded_utc_s: started, plan: CIRCUIT };
 const drafts = new Map(DRAFTS && existsSync(DRAFTS) ? JSON.parse(readFileSync(DRAFTS, "utf8")) : []);
@@ -91,7 +91,7 @@ function envelope(body) {
 const ROUTES = [
   ["GET", /^\/status$/, ({ authorized }) => ({
     software: "0.1.0 (mock)", writable: authorized,
-    daemons: [{ instance: "mock", plant: "simulated aircraft", software: "0.1.0", rate_hz: 40, process_id: 1, guidance_mode: "plan",
+    daemons: [{ instance: "mock", plant: "simulated aircraft", software: "0.1.0", rate_hz: 40, process_id: 1, guidance_mode: "plan", plan_upload: "flight",
       setpoints: [{ name: "airspeed_mps", unit: "m/s", lowest: 34, highest: 65 }, { name: "heading_rad", unit: "rad", lowest: 0, highest: 6.2832 }, { name: "altitude_m", unit: "m", lowest: -500, highest: 4000 }],
       aircraft: { stall_mps: 28, min_mps: 33, max_mps: 65, never_exceed_mps: 72 } }],
   })],
@@ -110,8 +110,8 @@ const ROUTES = [
     const errors = check(draft.plan).problems.filter((problem) => problem.level === "error");
     if (errors.length > 0) throw new Answer(409, { refused: `item ${errors[0].item}: ${errors[0].message}` });
     vehicle = { hash: draft.hash, uploaded_utc_s: Date.now() / 1000, plan: draft.plan };
-    flight.load(draft.plan, BigInt(`0x${draft.hash.slice(0, 16)}`));
-    flight.event(`plan ${draft.hash.slice(0, 12)} is flown`, 20);
+    flight.load(draft.plan, BigInt(`0x${draft.hash}`));
+    flight.event(`plan ${draft.hash} is flown`, 20);
     return { hash: draft.hash };
   }],
   ["GET", /^\/drafts$/, () => [...drafts.values()].map(({ plan, ...rest }) => ({ ...rest, items: plan.items.length }))],

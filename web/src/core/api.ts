@@ -17,6 +17,8 @@ export interface Daemon {
   rate_hz: number;
   process_id: number;
   guidance_mode: string | null;
+  /** When a plan can be uploaded. */
+  plan_upload?: "standby" | "flight" | null;
   setpoints: SetPoint[];
   aircraft?: {
     stall_mps?: number | null;
@@ -67,7 +69,8 @@ export interface Check {
 export interface VehiclePlan {
   hash: string;
   uploaded_utc_s: number;
-  plan: Plan;
+  /** Null: its content is not known to the station. */
+  plan: Plan | null;
 }
 
 export interface Flight {

@@ -16,6 +16,16 @@ function read(): Palette {
   return Object.fromEntries(NAMES.map((name) => [name, style.getPropertyValue(`--${name}`).trim()])) as Palette;
 }
 
+/** The names of which an instrument has colours of its own, the same by day and by night. */
+const ON_INSTRUMENTS = ["set", "accent", "good", "caution", "warning", "line"] as const;
+
+/** The colours on an instrument. */
+export function instrumentPalette(): Palette {
+  const style = getComputedStyle(document.documentElement);
+  const own = Object.fromEntries(ON_INSTRUMENTS.map((name) => [name, style.getPropertyValue(`--instrument-${name}`).trim()]));
+  return { ...palette.get(), ...own };
+}
+
 export const palette = watched<Palette>({} as Palette);
 
 const system = matchMedia("(prefers-color-scheme: dark)");

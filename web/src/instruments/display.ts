@@ -4,7 +4,7 @@ import type { Daemon } from "../core/api";
 import { h } from "../core/dom";
 import { onNextFrame, notOnNextFrame } from "../core/frame";
 import { shown, toShown, unitOf, unitSystem, withUnit } from "../core/units";
-import { palette, FONT } from "../design/theme";
+import { instrumentPalette, palette, FONT, type Palette } from "../design/theme";
 import { freshness, type FlightState, type Freshness } from "../live/flight-state";
 import { drawAttitude, type Box } from "./attitude";
 import { drawHeading } from "./heading";
@@ -21,6 +21,7 @@ export class FlightDisplay {
   readonly #canvas = h("canvas", { class: "pfd-canvas", role: "img", "aria-label": "Flight display: no data" });
   #state: FlightState | null = null;
   #limits: TapeLimits = {};
+  #colours: Palette = palette.get();
   #described = 0;
   #width = 0;
   #height = 0;
@@ -36,7 +37,13 @@ export class FlightDisplay {
     this.element = h("div", { class: "pfd" }, this.#canvas);
     this.#observer.observe(this.#canvas);
     const again = () => onNextFrame(this.#draw);
-    this.#stops = [palette.watch(again), unitSystem.watch(again)];
+    this.#stops = [
+      palette.watch(() => {
+        this.#colours = instrumentPalette();
+        again();
+      }),
+      unitSystem.watch(again),
+    ];
   }
 
   setLimits(aircraft: Daemon["aircraft"]): void {
@@ -71,7 +78,7 @@ export class FlightDisplay {
     const context = this.#canvas.getContext("2d");
     if (!context) return;
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    const colours = palette.get();
+    const colours = this.#colours;
     context.fillStyle = colours.instrument;
     context.fillRect(0, 0, width, height);
     const state = this.#state;

@@ -6,7 +6,7 @@ import type { Box } from "./attitude";
 
 const DEGREES = 180 / Math.PI;
 const SHOWN_DEG = 90;
-const POINTS: Record<number, string> = { 0: "N", 45: "NE", 90: "E", 135: "SE", 180: "S", 225: "SW", 270: "W", 315: "NW" };
+const POINTS: Record<number, string> = { 0: "N", 90: "E", 180: "S", 270: "W" };
 
 const wrapped = (degrees: number): number => ((((degrees + 180) % 360) + 360) % 360) - 180;
 
@@ -22,7 +22,7 @@ export interface HeadingState {
 export function drawHeading(context: CanvasRenderingContext2D, box: Box, state: HeadingState, colours: Palette): void {
   const { x, y, width, height } = box;
   const heading = Number.isFinite(state.heading_rad) ? state.heading_rad * DEGREES : 0;
-  const wind_width = 76;
+  const wind_width = 86;
   const tape_width = width - wind_width;
   const cx = x + tape_width / 2;
   const px = tape_width / SHOWN_DEG;
@@ -51,7 +51,7 @@ export function drawHeading(context: CanvasRenderingContext2D, box: Box, state: 
     if (point === undefined && name % 10 !== 0) continue;
     context.fillStyle = point ? "#ffffff" : colours["instrument-text"];
     context.font = `${point ? 700 : 500} 12px ${FONT}`;
-    if (point || name % 30 === 0 || name % 10 === 0) context.fillText(point ?? String(name).padStart(3, "0"), mx, y + 18);
+    context.fillText(point ?? String(name).padStart(3, "0"), mx, y + 18);
   }
   marker(context, cx, px, tape_width, state.set_rad * DEGREES - heading, y, colours.set, "bug");
   marker(context, cx, px, tape_width, state.course_rad * DEGREES - heading, y, colours.good, "diamond");

@@ -178,6 +178,10 @@ export function createChart(label: string): Chart {
       observer.disconnect();
       relief();
       for (const stop of stops) stop();
+      // Before the renderers: a path that is removed after its renderer would draw on nothing.
+      map.eachLayer((layer) => {
+        if (!(layer instanceof L.Renderer)) layer.remove();
+      });
       map.remove();
     },
   };

@@ -77,7 +77,7 @@ export const KIND_NAMES: Record<Kind, string> = {
 };
 
 /** What a page can add; a camera's command is kept as it was read. */
-export const ADDABLE = (Object.keys(KIND_NAMES) as Kind[]).filter((kind) => kind !== "camera");
+export const ADDABLE: readonly Kind[] = (Object.keys(KIND_NAMES) as Kind[]).filter((kind) => kind !== "camera");
 
 export const emptyPlan = (): Plan => ({
   home: null,

@@ -150,7 +150,7 @@ export function openFly(): View {
     const engaged_mode = state.engaged && ["plan", "takeoff", "land"].includes(mode);
     plan.mark(engaged_mode ? record.number("desired_guidance_item") : 0);
     const flown = record.bits("desired_plan_hash");
-    setText(hash, flown === 0n ? "no plan" : flown.toString(16).padStart(16, "0").slice(0, 12));
+    setText(hash, flown === 0n ? "no plan" : flown.toString(16).padStart(16, "0"));
     setText(clock, duration(record.number("tick") / (daemon.get()?.rate_hz || 1)));
   };
 
