@@ -137,7 +137,7 @@ async fn status(State(station): State<Arc<Station>>, headers: HeaderMap) -> Json
             "software": feed.info.software.as_str(),
             "rate_hz": feed.info.rate_hz,
             "process_id": feed.info.process_id,
-            "guidance_mode": config.guidance,
+            "guidance_mode": json!(config.guidance)["mode"],
             "plan_upload": if in_standby { "standby" } else { "flight" },
             "setpoints": daemon_config::setpoints(config),
             "aircraft": daemon_config::aircraft(config),

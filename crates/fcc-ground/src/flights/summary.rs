@@ -21,7 +21,8 @@ const THUMBNAIL_POINTS: usize = 120;
 const VERSION: u32 = 1;
 /// How long a list may take; what is not read by then is in the next one.
 const LIST_WITHIN: Duration = Duration::from_millis(1_500);
-/// A step between two ticks that is longer is none.
+/// A step of a track has at least so much; one that is longer than the most is none.
+const LEAST_STEP_M: f64 = 15.0;
 const MOST_STEP_M: f64 = 2_000.0;
 /// The modes in which a path is followed: plan, loiter, go-to, return.
 const OVER_GROUND: [u64; 4] = [3, 4, 5, 6];
@@ -311,7 +312,7 @@ impl<'a> Reading<'a> {
         self.moved_to(place);
     }
 
-    /// Steps of a metre and more count, so that noise of a standing aircraft does not.
+    /// Only longer steps count, so that noise of a standing aircraft does not.
     fn moved_to(&mut self, place: Place) {
         let is_known = place.latitude_deg != 0.0 || place.longitude_deg != 0.0;
         if !is_known || !place.latitude_deg.is_finite() || !place.longitude_deg.is_finite() {
@@ -322,7 +323,7 @@ impl<'a> Reading<'a> {
             return;
         };
         let step_m = flat_m(*last, place);
-        if step_m >= 5.0 {
+        if step_m >= LEAST_STEP_M {
             if step_m < MOST_STEP_M {
                 self.distance_m += step_m;
             }

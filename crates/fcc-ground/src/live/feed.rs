@@ -19,7 +19,7 @@ use crate::columns::Columns;
 /// How long nothing may come before it is looked whether the daemon lives.
 const SILENT: Duration = Duration::from_millis(500);
 /// How often a thread looks for a new record.
-const LOOK_EVERY: (Duration, Duration) = (Duration::from_millis(1), Duration::from_millis(10));
+const LOOK_EVERY: (Duration, Duration) = (Duration::from_millis(1), Duration::from_millis(5));
 const OPENED_WITHIN: Duration = Duration::from_secs(10);
 
 /// The newest tick: as it is sent, and as it was published.
