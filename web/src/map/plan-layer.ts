@@ -133,7 +133,7 @@ export class PlanLayer {
     const html = h("span", { class: `point ${kind}${chosen ? " selected" : ""}` }, text);
     const marker = L.marker(latLng(place), {
       icon: L.divIcon({ className: "point-box", html, iconSize: [size, size] }),
-      draggable: movable, keyboard: movable, interactive: movable, title: label, alt: label, autoPan: true,
+      draggable: movable, keyboard: movable, interactive: movable, title: label, alt: label, autoPan: true, zIndexOffset: part.of === "item" ? 100 : 0,
     });
     marker.on("click", () => this.options.selected?.(part));
     marker.on("dragstart", () => this.options.selected?.(part));

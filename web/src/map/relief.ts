@@ -10,6 +10,8 @@ interface Elevations {
 }
 
 const CELLS = 160;
+/** The grid below stays visible. */
+const OPACITY = 185;
 const WAIT_MS = 350;
 /** Beyond this the tiles are too many, and a relief shows nothing useful. */
 const WIDEST_DEG = 3;
@@ -85,11 +87,11 @@ function picture({ n, elevations_m }: Elevations, bounds: L.LatLngBounds, dark: 
       const shade = Math.max(-1, Math.min(1, (light - 0.707) * 3));
       const height = (at(row, column) - low) / span;
       const pixel = (row * n + column) * 4;
-      const [red, green, blue] = dark ? [70 + 70 * height, 84 + 34 * height, 78 + 4 * height] : [120 + 50 * height, 140 - 20 * height, 90 - 10 * height];
-      image.data[pixel] = red + shade * 90;
-      image.data[pixel + 1] = green + shade * 90;
-      image.data[pixel + 2] = blue + shade * 90;
-      image.data[pixel + 3] = elevations_m[row * n + column] === null ? 0 : 40 + 70 * height + Math.abs(shade) * 60;
+      const [red, green, blue] = dark ? [34 + 60 * height, 52 + 34 * height, 46 + 10 * height] : [196 + 30 * height, 214 - 22 * height, 178 - 24 * height];
+      image.data[pixel] = red + shade * (dark ? 60 : 70);
+      image.data[pixel + 1] = green + shade * (dark ? 60 : 70);
+      image.data[pixel + 2] = blue + shade * (dark ? 60 : 70);
+      image.data[pixel + 3] = elevations_m[row * n + column] === null ? 0 : OPACITY;
     }
   context.putImageData(image, 0, 0);
   return canvas.toDataURL();
