@@ -16,6 +16,7 @@ pub(crate) struct Failure {
 }
 
 impl Failure {
+    #[expect(clippy::needless_pass_by_value, reason = "`map_err` gives values")]
     pub(crate) fn new(status: StatusCode, what: impl ToString) -> Self {
         Self {
             status,
@@ -36,6 +37,7 @@ impl Failure {
     }
 
     /// What the aircraft, or the station for it, does not carry out.
+    #[expect(clippy::needless_pass_by_value, reason = "`map_err` gives values")]
     pub(crate) fn refused(why: impl ToString) -> Self {
         Self::with(StatusCode::CONFLICT, json!({ "refused": why.to_string() }))
     }

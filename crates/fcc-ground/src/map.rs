@@ -116,7 +116,7 @@ pub(crate) struct Wanted {
     n: usize,
 }
 
-/// One at a time: each may take the memory of terrain.memory_mb.
+/// One at a time: each may take the memory of `terrain.memory_mb`.
 static TURN: Mutex<()> = Mutex::new(());
 
 /// `GET /api/terrain`.

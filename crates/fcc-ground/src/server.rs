@@ -23,7 +23,7 @@ const HEAD_WITHIN: Duration = Duration::from_secs(10);
 const MOST_HEADERS: usize = 64;
 const MOST_HEAD_BYTES: usize = 32 << 10;
 /// What waits in the kernel for a slow client: about a second of records.
-const SEND_BUFFER_BYTES: usize = 64 << 10;
+const SEND_BUFFER_BYTES: usize = 32 << 10;
 /// After too many open files.
 const PAUSE: Duration = Duration::from_millis(100);
 

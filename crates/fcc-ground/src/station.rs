@@ -137,7 +137,7 @@ async fn status(State(station): State<Arc<Station>>, headers: HeaderMap) -> Json
             "software": feed.info.software.as_str(),
             "rate_hz": feed.info.rate_hz,
             "process_id": feed.info.process_id,
-            "guidance_mode": json!(config.guidance)["mode"],
+            "guidance_mode": json!(config.guidance).get("mode"),
             "plan_upload": if in_standby { "standby" } else { "flight" },
             "setpoints": daemon_config::setpoints(config),
             "aircraft": daemon_config::aircraft(config),
@@ -156,7 +156,6 @@ async fn status(State(station): State<Arc<Station>>, headers: HeaderMap) -> Json
 }
 
 /// Everything that requests share, put together.
-#[expect(clippy::too_many_arguments, reason = "each is another part")]
 pub(crate) fn station(
     token: Token,
     hosts: Hosts,

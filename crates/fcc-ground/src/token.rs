@@ -32,7 +32,7 @@ impl Token {
         }
         let mut bytes = [0_u8; BYTES];
         getrandom::fill(&mut bytes).map_err(io::Error::other)?;
-        let text: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+        let text = format!("{:032x}", u128::from_be_bytes(bytes));
         files::replace(&path, text.as_bytes())?;
         Ok(Self(text))
     }

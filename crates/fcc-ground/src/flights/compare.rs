@@ -120,13 +120,12 @@ mod tests {
     use super::*;
 
     fn flight(figures: &[(&str, f64)]) -> Summary {
-        Summary {
-            figures: figures
-                .iter()
-                .map(|(name, value)| ((*name).to_owned(), *value))
-                .collect(),
-            ..Summary::default()
-        }
+        let mut summary = Summary::default();
+        let figures = figures.iter();
+        summary.figures = figures
+            .map(|(name, value)| ((*name).to_owned(), *value))
+            .collect();
+        summary
     }
 
     #[test]

@@ -39,7 +39,7 @@ const REPORT_POLICY: &str = "sandbox allow-scripts; default-src 'none'; style-sr
 /// The path of a recording by its name, which is no path.
 fn path_of(station: &Station, file: &str) -> Result<PathBuf, Failure> {
     let missing = || Failure::missing(format!("there is no recording {file:?}"));
-    let is_name = file.ends_with(".mcap")
+    let is_name = file.strip_suffix(".mcap").is_some()
         && !file.starts_with('.')
         && file.len() <= 200
         && !file.contains(['/', '\\', '\0']);

@@ -6,7 +6,7 @@ use fcc_telemetry::schema::RecordDescription;
 use fcc_telemetry::schema::protobuf::RowDecoder;
 use serde_json::{Value, json};
 
-use crate::columns::Columns;
+use crate::columns::{Columns, PageColumn};
 use crate::failure::Failure;
 
 /// Values of a table in memory, at most: 10 columns of an hour at 1 kHz.
@@ -95,7 +95,7 @@ pub(super) fn table(recording: &Recording, names: &[&str]) -> Result<Table, Fail
     let header = [time]
         .into_iter()
         .chain(described.clone().map(|column| json!(column)));
-    let has_range = described.map(|column| column.has_range());
+    let has_range = described.map(PageColumn::has_range);
     let mut table = Table {
         header: header.collect(),
         has_range: std::iter::once(false).chain(has_range).collect(),

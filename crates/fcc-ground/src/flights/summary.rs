@@ -210,9 +210,12 @@ impl Summary {
     }
 }
 
+/// The value of a column in a row, by its name.
+type ValueOf<'a> = Box<dyn Fn(&str, &[u64]) -> f64 + 'a>;
+
 /// What is collected tick by tick.
 struct Reading<'a> {
-    value: Box<dyn Fn(&str, &[u64]) -> f64 + 'a>,
+    value: ValueOf<'a>,
     first_ns: Option<i64>,
     last_ns: i64,
     distance_m: f64,
