@@ -29,6 +29,7 @@ export interface Daemon {
 }
 
 export interface Status {
+  utc_ms?: number;
   software: string;
   writable: boolean;
   daemons: Daemon[];
@@ -128,14 +129,12 @@ export function takeToken(): void {
   history.replaceState(null, "", `${location.pathname}#/fly`);
 }
 
-/** The station's clock minus this machine's, ms; small differences are the header's resolution. */
+/** The station's clock minus this machine's, ms: a deadline is in the station's time. */
 let clock_offset_ms = 0;
 
-function noteClock(response: Response): void {
-  const date = Date.parse(response.headers.get("date") ?? "");
-  if (!Number.isFinite(date)) return;
-  const offset = date + 500 - Date.now();
-  clock_offset_ms = Math.abs(offset) > 2000 ? offset : 0;
+/** The station says its time; it was on its way for at most so long. */
+export function noteClock(utc_ms: number, round_trip_ms: number): void {
+  if (Number.isFinite(utc_ms)) clock_offset_ms = utc_ms + round_trip_ms / 2 - Date.now();
 }
 
 export const stationNow = (): number => Date.now() + clock_offset_ms;
@@ -179,7 +178,6 @@ export async function request(
     if (signal?.aborted) throw error;
     throw new Refused(0, "The station does not answer. Check that it runs and the network.", null);
   }
-  noteClock(response);
   if (!response.ok) throw await failure(response);
   return response;
 }

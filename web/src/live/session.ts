@@ -1,6 +1,6 @@
 /** What all views share: the chosen daemon, its connection, its events, the link. */
 
-import { getJson, message, writable, type Daemon, type FlightEvent, type Status } from "../core/api";
+import { getJson, message, noteClock, writable, type Daemon, type FlightEvent, type Status } from "../core/api";
 import { watched } from "../core/state";
 import { Connection, type RunStatus } from "./connection";
 import { TrackPoints } from "../map/track-points";
@@ -83,7 +83,9 @@ export function choose(instance: string): void {
 
 async function refresh(): Promise<void> {
   try {
+    const sent = performance.now();
     const status = await getJson<Status>("/status");
+    noteClock(status.utc_ms ?? NaN, performance.now() - sent);
     writable.set(status.writable);
     daemons.set(status.daemons);
     const current = daemon.get();

@@ -24,9 +24,12 @@ export abstract class CanvasLayer extends L.Layer {
   readonly #draw = () => this.#redraw();
   readonly #moved = () => this.invalidate();
 
-  constructor(options: { pane?: string } = {}) {
+  readonly #opaque: boolean;
+
+  constructor(options: { pane: string; opaque: boolean }) {
     super();
-    L.setOptions(this, options);
+    L.setOptions(this, { pane: options.pane });
+    this.#opaque = options.opaque;
   }
 
   abstract draw(context: CanvasRenderingContext2D, view: Projection): void;
@@ -67,7 +70,7 @@ export abstract class CanvasLayer extends L.Layer {
       canvas.style.height = `${size.y}px`;
     }
     L.DomUtil.setPosition(canvas, map.containerPointToLayerPoint([0, 0]));
-    const context = canvas.getContext("2d");
+    const context = canvas.getContext("2d", { alpha: !this.#opaque });
     if (!context) return;
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, size.x, size.y);

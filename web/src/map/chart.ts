@@ -7,7 +7,7 @@ import { button, h, setText } from "../core/dom";
 import { withUnit, unitSystem } from "../core/units";
 import { palette } from "../design/theme";
 import { CanvasLayer, type Projection } from "./canvas-layer";
-import { addRelief } from "./relief";
+import { followRelief, type Relief } from "./relief";
 
 interface Ring {
   /** World pixels at zoom 0, x and y by turns. */
@@ -43,16 +43,20 @@ function gridLabel(degrees: number, step: number, letters: string): string {
   return `${Math.floor(minutes / 60)}°${rest.toFixed(step < 1 / 120 ? 2 : step < 1 / 60 ? 1 : 0).padStart(2, "0")}′${letter}`;
 }
 
+/** Land, relief and grid on one opaque picture, which is cheap to put together with the rest. */
 class BaseLayer extends CanvasLayer {
   rings: Ring[] = [];
-  plain = true;
+  relief: Relief | null = null;
 
   override draw(context: CanvasRenderingContext2D, view: Projection): void {
     const colours = palette.get();
-    if (this.plain) {
-      context.fillStyle = this.rings.length > 0 ? colours.sea : colours.land;
-      context.fillRect(0, 0, view.width, view.height);
-      this.#land(context, view, colours.land, colours.coast);
+    context.fillStyle = this.rings.length > 0 ? colours.sea : colours.land;
+    context.fillRect(0, 0, view.width, view.height);
+    this.#land(context, view, colours.land, colours.coast);
+    if (this.relief) {
+      const { picture, bounds } = this.relief;
+      const west = view.x(bounds.getWest()), north = view.y(bounds.getNorth());
+      context.drawImage(picture, west, north, view.x(bounds.getEast()) - west, view.y(bounds.getSouth()) - north);
     }
     this.#grid(context, view, colours.grid, colours["grid-text"]);
   }
@@ -131,11 +135,10 @@ export function createChart(label: string): Chart {
   const map = L.map(canvas, {
     attributionControl: false, zoomControl: false, zoomAnimation: false, markerZoomAnimation: false, fadeAnimation: false,
     zoomSnap: 0.25, zoomDelta: 1, wheelPxPerZoomLevel: 120, inertia: !matchMedia("(prefers-reduced-motion: reduce)").matches,
-    minZoom: 2, maxZoom: 19, preferCanvas: true, worldCopyJump: false, maxBoundsViscosity: 1, keyboardPanDelta: 60,
+    minZoom: 2, maxZoom: 19, worldCopyJump: false, maxBoundsViscosity: 1, keyboardPanDelta: 60,
   });
   map.setView(INITIAL, 3);
-  const base = new BaseLayer({ pane: "tilePane" });
-  base.addTo(map);
+  const base = new BaseLayer({ pane: "tilePane", opaque: true }).addTo(map);
   controls.append(
     button("Zoom in", () => map.zoomIn(), { icon: "add", bare: true, class: "map-button" }),
     button("Zoom out", () => map.zoomOut(), { icon: "minus", bare: true, class: "map-button" }),
@@ -145,14 +148,16 @@ export function createChart(label: string): Chart {
     base.rings = rings;
     base.invalidate();
   });
-  const relief = addRelief(map);
+  const relief = followRelief(map, (found) => {
+    base.relief = found;
+    base.invalidate();
+  });
   void getJson<{ pmtiles: string | null; attribution: string | null }>("/map").then(async (found) => {
     if (found.attribution) setText(attribution, found.attribution);
     if (!found.pmtiles || closed) return;
     const { detailLayer } = await import("./detail");
     if (!closed) detailLayer(found.pmtiles, document.documentElement.dataset["theme"] === "dark").addTo(map);
-    base.plain = false;
-    base.invalidate();
+    base.remove();
   }, () => undefined);
 
   const measure = () => {
@@ -166,7 +171,10 @@ export function createChart(label: string): Chart {
     setText(scale_text, unitSystem.get() === "aviation" ? `${nice} NM` : wide_m >= 1000 ? withUnit("distance", wide_m).replace(/[.,]0+(?=\D)/, "") : `${nice} m`);
   };
   map.on("move zoom resize", measure);
-  const stops = [palette.watch(() => base.invalidate()), unitSystem.watch(measure)];
+  const stops = [
+    palette.watch(() => base.invalidate()),
+    unitSystem.watch(measure),
+  ];
   const observer = new ResizeObserver(() => map.invalidateSize({ animate: false, pan: false }));
   observer.observe(canvas);
   return {

@@ -1,10 +1,21 @@
 /** Coast lines of Natural Earth at 1:50 million, as rings in world pixels at zoom 0. */
 
-import type { Polygon, MultiPolygon, Feature, FeatureCollection } from "geojson";
+import type { Polygon, MultiPolygon, Feature, FeatureCollection, Position } from "geojson";
 import { feature } from "topojson-client";
 import type { Topology } from "topojson-specification";
 import source from "world-atlas/land-50m.json?url";
 import { worldX, worldY } from "./mercator";
+
+/** Rings that cross the 180th meridian, as the parts on each side of it. */
+function cut(ring: Position[]): Position[][] {
+  const parts: Position[][] = [[]];
+  ring.forEach((point, at) => {
+    const before = ring[at - 1];
+    if (before && Math.abs((point[0] ?? 0) - (before[0] ?? 0)) > 180) parts.push([]);
+    parts.at(-1)?.push(point);
+  });
+  return parts;
+}
 
 export async function rings() {
   const topology = (await (await fetch(source)).json()) as Topology;
@@ -16,6 +27,7 @@ export async function rings() {
     .map((one) => one.geometry as Polygon | MultiPolygon)
     .flatMap((geometry) => (geometry.type === "Polygon" ? [geometry.coordinates] : geometry.coordinates))
     .flat()
+    .flatMap(cut)
     .map((ring) => {
       const points = new Float64Array(ring.length * 2);
       let west = Infinity, east = -Infinity, north = Infinity, south = -Infinity;

@@ -25,6 +25,7 @@ export interface PlanLayerOptions {
   selected?: (part: Part) => void;
 }
 
+const NONE: Set<number> = new Set();
 const MARKER_PX = 28;
 const GLYPHS: Partial<Record<Item["kind"], string>> = { takeoff: "T", land: "L", loiter: "↻", "land-start": "S" };
 
@@ -38,7 +39,7 @@ export class PlanLayer {
   #path: [number, number, number][] | null = null;
   #active = 0;
   #selected: Part | null = null;
-  #wrong = new Set<number>();
+  #wrong = NONE;
   readonly #stop: () => void;
 
   constructor(
@@ -56,13 +57,14 @@ export class PlanLayer {
 
   /** `path` is the checked one, with its turns; without it the items are joined. */
   show(plan: Plan | null, path: [number, number, number][] | null): void {
+    if (plan === this.#plan && path === this.#path) return;
     this.#plan = plan;
     this.#path = path;
     this.#build();
   }
 
-  mark(active: number, selected: Part | null = null, wrong: Set<number> = new Set()): void {
-    if (active === this.#active && selected === this.#selected && wrong === this.#wrong) return;
+  mark(active: number, selected: Part | null = null, wrong: Set<number> = NONE): void {
+    if (active === this.#active && selected === this.#selected && [...wrong].join() === [...this.#wrong].join()) return;
     this.#active = active;
     this.#selected = selected;
     this.#wrong = wrong;

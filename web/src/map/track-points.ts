@@ -1,49 +1,47 @@
-/** Where an aircraft was: a ring of places, thinned out while it flies straight. */
+/** Where an aircraft was, thinned out while it flies straight. */
 
-import { worldX, worldY } from "./mercator";
-
-/** An hour at 2 places a second. */
-export const CAPACITY = 7200;
-/** Closer ones are not kept, m; nor those within this distance of a straight line. */
+/** An hour at 2 places a second; of more, the oldest are left out, several at once. */
+const CAPACITY = 7200;
+const LEFT_OUT = 400;
+/** Closer ones are not kept, m; nor those so close to a straight line, m. */
 const CLOSEST_M = 4;
-/** World pixels of a metre at the equator at zoom 0. */
-const PX_PER_M = 256 / 40_075_017;
+const OFF_LINE_M = 1;
+/** A straight line has a point at least so often, m. */
+const LONGEST_M = 240;
+const M_PER_DEG = 111_195;
+
+type Degrees = [latitude: number, longitude: number];
 
 export class TrackPoints {
-  readonly x = new Float64Array(CAPACITY);
-  readonly y = new Float64Array(CAPACITY);
-  count = 0;
+  readonly places: Degrees[] = [];
+  /** Grows with each change. */
+  changes = 0;
 
   clear(): void {
-    this.count = 0;
+    this.places.length = 0;
+    this.changes += 1;
   }
 
   /** Says whether it is kept. */
   add(latitude_deg: number, longitude_deg: number): boolean {
-    const x = worldX(longitude_deg);
-    const y = worldY(latitude_deg);
-    const last = (this.count - 1 + CAPACITY) % CAPACITY;
-    const before = (this.count - 2 + CAPACITY) % CAPACITY;
-    const close = (CLOSEST_M * PX_PER_M) / Math.max(0.05, Math.cos((latitude_deg * Math.PI) / 180));
-    const from = (at: number) => Math.hypot(x - (this.x[at] ?? 0), y - (this.y[at] ?? 0));
-    if (this.count > 0 && from(last) < close) return false;
-    if (this.count > 2 && this.#onLine(before, last, x, y) < close / 4 && from(before) < close * 60) {
-      this.x[last] = x;
-      this.y[last] = y;
-    } else {
-      this.x[this.count % CAPACITY] = x;
-      this.y[this.count % CAPACITY] = y;
-      this.count += 1;
+    const { places } = this;
+    const east = Math.max(0.05, Math.cos((latitude_deg * Math.PI) / 180)) * M_PER_DEG;
+    const from = (one: Degrees): [number, number] => [(longitude_deg - one[1]) * east, (latitude_deg - one[0]) * M_PER_DEG];
+    const last = places.at(-1);
+    const before = places.at(-2);
+    if (last && Math.hypot(...from(last)) < CLOSEST_M) return false;
+    this.changes += 1;
+    if (last && before) {
+      const [dx, dy] = from(before);
+      const length = Math.hypot(dx, dy);
+      const [lx, ly] = [(last[1] - before[1]) * east, (last[0] - before[0]) * M_PER_DEG];
+      if (length < LONGEST_M && Math.abs(dx * ly - dy * lx) / length < OFF_LINE_M) {
+        places[places.length - 1] = [latitude_deg, longitude_deg];
+        return true;
+      }
     }
+    places.push([latitude_deg, longitude_deg]);
+    if (places.length > CAPACITY) places.splice(0, LEFT_OUT);
     return true;
-  }
-
-  /** Distance of the last place from the line past it. */
-  #onLine(before: number, last: number, x: number, y: number): number {
-    const dx = x - (this.x[before] ?? 0);
-    const dy = y - (this.y[before] ?? 0);
-    const px = (this.x[last] ?? 0) - (this.x[before] ?? 0);
-    const py = (this.y[last] ?? 0) - (this.y[before] ?? 0);
-    return Math.abs(dx * py - dy * px) / (Math.hypot(dx, dy) || 1);
   }
 }

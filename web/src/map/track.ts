@@ -1,42 +1,53 @@
 /** Where an aircraft was, on the map. */
 
+import L from "leaflet";
 import { palette, type Palette } from "../design/theme";
-import { CanvasLayer, type Projection } from "./canvas-layer";
-import { CAPACITY, type TrackPoints } from "./track-points";
+import type { TrackPoints } from "./track-points";
 
-export class TrackLayer extends CanvasLayer {
+const GROWN_EVERY_MS = 400;
+
+export class TrackLayer extends L.LayerGroup {
+  readonly #edge: L.Polyline;
+  readonly #line: L.Polyline;
+  #grown_ms = -Infinity;
+  #drawn = -1;
+  #stop: (() => void) | null = null;
+
   constructor(
     readonly points: TrackPoints,
     private readonly colour: keyof Palette = "track",
-    private readonly dashed = false,
+    dashed = false,
   ) {
-    super({ pane: "overlayPane" });
+    const style: L.PolylineOptions = { interactive: false, smoothFactor: 1, ...(dashed ? { dashArray: "8 6" } : {}) };
+    const edge = L.polyline([], { ...style, weight: 4.5 });
+    const line = L.polyline([], { ...style, weight: 2.2 });
+    super([edge, line]);
+    this.#edge = edge;
+    this.#line = line;
+    this.grow();
   }
 
-  override draw(context: CanvasRenderingContext2D, view: Projection): void {
-    const { points } = this;
-    const first = Math.max(0, points.count - CAPACITY);
-    context.beginPath();
-    let last_x = NaN, last_y = NaN;
-    for (let n = first; n < points.count; n += 1) {
-      const x = (points.x[n % CAPACITY] ?? 0) * view.scale - view.x0;
-      const y = (points.y[n % CAPACITY] ?? 0) * view.scale - view.y0;
-      if (n > first && n < points.count - 1 && Math.abs(x - last_x) < 1 && Math.abs(y - last_y) < 1) continue;
-      if (n === first) context.moveTo(x, y);
-      else context.lineTo(x, y);
-      last_x = x;
-      last_y = y;
-    }
-    const colours = palette.get();
-    context.lineJoin = "round";
-    context.lineCap = "round";
-    if (this.dashed) context.setLineDash([8, 6]);
-    context.strokeStyle = colours.panel;
-    context.lineWidth = 4.5;
-    context.stroke();
-    context.strokeStyle = colours[this.colour];
-    context.lineWidth = 2.2;
-    context.stroke();
-    context.setLineDash([]);
+  override onAdd(map: L.Map): this {
+    super.onAdd(map);
+    this.#stop = palette.watch((colours) => {
+      this.#edge.setStyle({ color: colours.panel });
+      this.#line.setStyle({ color: colours[this.colour] });
+    });
+    return this;
+  }
+
+  override onRemove(map: L.Map): this {
+    this.#stop?.();
+    return super.onRemove(map);
+  }
+
+  /** More places may have been added. */
+  grow(): void {
+    const now = performance.now();
+    if (now - this.#grown_ms < GROWN_EVERY_MS || this.points.changes === this.#drawn) return;
+    this.#grown_ms = now;
+    this.#drawn = this.points.changes;
+    this.#edge.setLatLngs(this.points.places);
+    this.#line.setLatLngs(this.points.places);
   }
 }

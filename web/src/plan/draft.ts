@@ -49,10 +49,11 @@ export class DraftEditor {
     this.history = new History(confirmed);
   }
 
-  static async open(name: string, changed: (editor: DraftEditor) => void): Promise<DraftEditor> {
+  /** `listed`: the board has it; otherwise it is on the board from the first edit on. */
+  static async open(name: string, listed: boolean, changed: (editor: DraftEditor) => void): Promise<DraftEditor> {
     let found: Draft | null = null;
     try {
-      found = await getJson<Draft>(`/drafts/${part(name)}`);
+      if (listed) found = await getJson<Draft>(`/drafts/${part(name)}`);
     } catch (error) {
       const gone = error instanceof Refused && error.status === 404;
       if (!gone && !(error instanceof Refused && error.status === 0 && unconfirmed(name))) throw error;

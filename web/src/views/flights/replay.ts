@@ -30,7 +30,7 @@ export async function openReplay(file: string, other_file: string | undefined): 
   plan.show(recording.plan?.plan ?? null, null);
   new TrackLayer(pointsOf(recording)).addTo(map);
   const aircraft = new AircraftLayer().addTo(map);
-  const ghost = new AircraftLayer("second", false).addTo(map);
+  const ghost = new AircraftLayer(true, false).addTo(map);
   const display = new FlightDisplay();
   display.setLimits(daemons.get()[0]?.aircraft ?? null);
   const values = h("dl", { class: "readouts", "aria-label": "Flight values" });
@@ -70,7 +70,7 @@ export async function openReplay(file: string, other_file: string | undefined): 
     const texts = [
       recording.named("state", time_s),
       item > 0 && engaged ? `${mode}, item ${item}` : mode,
-      engaged ? withUnit("distance", row.number("desired_to_go_m")) : "–",
+      engaged && row.number("desired_to_go_m") > 0 ? withUnit("distance", row.number("desired_to_go_m")) : "–",
       engaged ? withUnit("length", row.number("desired_cross_track_m")) : "–",
       withUnit("speed", state.ground_speed_mps),
       `${shown("heading", state.wind_from_rad)}° ${withUnit("wind", state.wind_mps)}`,

@@ -44,7 +44,7 @@ const READOUTS: readonly Readout[] = [
       return item > 0 && ["plan", "takeoff", "land"].includes(mode) ? `${mode}, item ${item}` : mode;
     },
   },
-  { label: "To go", text: (r) => (r.number("state") === 1 ? withUnit("distance", r.number("desired_to_go_m")) : "–") },
+  { label: "To go", text: (r) => (r.number("state") === 1 && r.number("desired_to_go_m") > 0 ? withUnit("distance", r.number("desired_to_go_m")) : "–") },
   { label: "Off path", text: (r) => (r.number("state") === 1 ? withUnit("length", r.number("desired_cross_track_m")) : "–"), age: (s) => s.ages.position },
   { label: "Ground speed", text: (_, s) => withUnit("speed", s.ground_speed_mps), age: (s) => s.ages.position },
   { label: "Course (true)", text: (_, s) => (s.ground_speed_mps > 2 ? `${shown("heading", s.course_rad)}°` : "–"), age: (s) => s.ages.position },
@@ -144,7 +144,7 @@ export function openFly(): View {
     if (state.position_known) {
       const stale = freshness(state.ages.position) === "lost";
       aircraft.show({ latitude_deg: state.latitude_deg, longitude_deg: state.longitude_deg, heading_rad: state.heading_rad, north_mps: state.north_mps, east_mps: state.east_mps }, stale);
-      track.invalidate();
+      track.grow();
       keepInView(state);
     }
     const engaged_mode = state.engaged && ["plan", "takeoff", "land"].includes(mode);
@@ -192,7 +192,7 @@ export function openFly(): View {
       vehicle_hash = "";
       void fetchPlan();
     }),
-    run_started_utc_s.watch(() => track.invalidate()),
+    run_started_utc_s.watch(() => track.grow()),
   ];
   for (const event of events) list.add(event);
   const timers = [

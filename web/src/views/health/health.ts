@@ -143,10 +143,11 @@ const isGood = (state: string): boolean => /^(good|ok|fine|yes)/i.test(state);
 
 function finding(one: Finding): HTMLElement {
   const good = isGood(one.state);
+  const known = !/not.known/.test(one.state);
   return h(
     "li",
-    { class: good ? "good" : "wrong" },
-    h("span", { class: "finding-state" }, good ? null : icon("warning"), one.state),
+    { class: good ? "good" : known ? "wrong" : "unknown" },
+    h("span", { class: "finding-state" }, good || !known ? null : icon("warning"), one.state.replaceAll("_", " ")),
     h("div", {}, h("strong", {}, one.name), h("span", { class: "note" }, ` ${one.found}`), one.advice ? h("code", { class: "mends" }, one.advice) : null),
   );
 }

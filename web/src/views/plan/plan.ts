@@ -42,11 +42,12 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
   let show_vehicle = false;
   let closed = false;
   let fitted = "";
+  let centred = false;
 
   const vehicle_layer = new PlanLayer(map);
   const pending = L.polyline([], { color: "#3fd58d", dashArray: "4 4", interactive: false }).addTo(map);
   const layer = new PlanLayer(map, { moved: (one, place) => edit(moved(plan(), one, place), `move ${describe(one)}`), selected: (one) => select(one) });
-  const aircraft = new AircraftLayer("accent", false).addTo(map);
+  const aircraft = new AircraftLayer(false, false).addTo(map);
   const table = new ItemTable();
   const zones = new Zones();
   const profile = new Profile((index) => select({ of: "item", index }));
@@ -143,7 +144,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
   };
   const open = async (name: string) => {
     try {
-      const next = await DraftEditor.open(name, (changed) => {
+      const next = await DraftEditor.open(name, entries.some((one) => one.name === name), (changed) => {
         if (changed !== editor) return;
         recheck();
         onNextFrame(draw);
@@ -314,8 +315,8 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
   };
   const drawState = () => {
     const state = editor?.state ?? "saved";
-    setText(save_state, editor ? (state === "saved" ? `${SAVED[state]}, revision ${editor.revision}` : SAVED[state]) : "No draft");
-    save_state.title = editor?.reason ?? "";
+    setText(save_state, editor ? (state === "saved" ? (editor.revision > 0 ? SAVED[state] : "Empty: saved with the first edit") : SAVED[state]) : "No draft");
+    save_state.title = editor?.reason || `Revision ${editor?.revision ?? 0}`;
     save_state.dataset["tone"] = state === "saved" ? "good" : state === "saving" ? "" : "bad";
     undo.disabled = !may() || editor?.history.undoes === null;
     redo.disabled = !may() || editor?.history.redoes === null;
@@ -354,6 +355,10 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
   const position = setInterval(() => {
     const record = newest();
     const state = record ? flightState(record, linkAge()) : null;
+    if (state?.position_known && editor && !centred && layer.bounds() === null) {
+      centred = true;
+      map.setView([state.latitude_deg, state.longitude_deg], 13, { animate: false });
+    }
     aircraft.show(state?.position_known ? { ...state } : null, (state?.ages.position ?? Infinity) > LOST_S);
     vehicle.show(editor, { errors: (check?.problems ?? []).filter((one) => one.level === "error").length, checked_hash: checked === plan() ? (check?.hash ?? null) : null });
   }, 500);
@@ -403,8 +408,8 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
   await listDrafts();
   const last = wanted ?? localStorage.getItem(LAST_DRAFT);
   const first = entries.find((one) => one.name === last)?.name ?? entries[0]?.name ?? (last && localStorage.getItem(`fcc.draft.${last}`) ? last : undefined);
-  if (first) void open(first);
-  else onNextFrame(draw);
+  // Without any, one is begun; it is on the board from the first edit on.
+  void open(first ?? "plan-1");
 
   return {
     element,
