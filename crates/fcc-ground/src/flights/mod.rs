@@ -5,7 +5,7 @@ mod export;
 mod scan;
 mod summary;
 
-use std::fs;
+use std::fs::{self, File};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -22,6 +22,7 @@ use fcc_plan::Item;
 use fcc_record::Recording;
 use fcc_report::{FlightAddition, FlightSurvey, PlanLines};
 use fcc_telemetry::FlightMessage;
+use fcc_telemetry::file_lock::is_locked;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
@@ -227,13 +228,15 @@ pub(crate) async fn delete(
 ) -> Result<StatusCode, Failure> {
     aside(move || {
         let path = path_of(&station, &file)?;
-        let is_written = Recording::open(&path).is_ok_and(|found| found.is_being_written());
+        let failed = |error| Failure::internal(format!("{file}: {error}"));
+        // Also before its description is complete.
+        let is_written = is_locked(&File::open(&path).map_err(failed)?);
         if is_written {
             return Err(Failure::refused(
                 "it is being recorded: end the flight first",
             ));
         }
-        fs::remove_file(&path).map_err(|error| Failure::internal(format!("{file}: {error}")))?;
+        fs::remove_file(&path).map_err(failed)?;
         station.flights.forget(&file);
         Ok(StatusCode::NO_CONTENT)
     })

@@ -42,7 +42,8 @@ pub(super) struct Summary {
     pub(super) plant: String,
     start_utc_s: f64,
     duration_s: f64,
-    distance_m: f64,
+    /// None: it was not read to its end yet.
+    distance_m: Option<f64>,
     whole: bool,
     being_written: bool,
     faults: u64,
@@ -114,21 +115,21 @@ impl Summaries {
         };
         files.reverse();
         let begun = Instant::now();
-        let listed = files.into_iter().filter(|path| !path.is_symlink()).map(|path| {
-            let known = self.kept(&path);
-            if let Some(known) = known {
-                return known.listed();
-            }
-            let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let bytes = path.metadata().map_or(0, |found| found.len());
-            if begun.elapsed() > LIST_WITHIN {
-                return json!({ "file": file, "bytes": bytes, "reading": true });
-            }
-            match self.summary(&path) {
-                Ok(summary) => summary.listed(),
-                Err(_) => json!({ "file": file, "bytes": bytes, "whole": false, "error": "cannot be read" }),
-            }
-        });
+        let listed = files
+            .into_iter()
+            .filter(|path| !path.is_symlink())
+            .map(|path| {
+                let known = self.kept(&path);
+                if let Some(known) = known {
+                    return known.listed();
+                }
+                let read = if begun.elapsed() > LIST_WITHIN {
+                    Summary::begin(&path).map(|(summary, _)| summary)
+                } else {
+                    self.summary(&path)
+                };
+                read.unwrap_or_else(|_| Summary::unread(&path)).listed()
+            });
         Ok(listed.collect())
     }
 }
@@ -176,8 +177,40 @@ impl Summary {
         })
     }
 
-    fn read(path: &Path) -> Result<Self, Failure> {
+    /// Of a file that cannot be read.
+    fn unread(path: &Path) -> Self {
+        let (file, bytes, modified_ms) = stamp(path).unwrap_or_default();
+        Self {
+            version: VERSION,
+            bytes,
+            modified_ms,
+            file,
+            ..Self::default()
+        }
+    }
+
+    /// What the begin and the end of a file say.
+    fn begin(path: &Path) -> Result<(Self, Recording), Failure> {
         let recording = Recording::open(path).map_err(Failure::bad)?;
+        let about = recording.about();
+        let instance = about.parameters.get("telemetry.instance");
+        let end = recording.end();
+        let summary = Self {
+            instance: instance
+                .map_or("fccd", |name| name.trim_matches('"'))
+                .to_owned(),
+            plant: about.plant.clone(),
+            start_utc_s: about.started_unix_ns as f64 * 1e-9,
+            duration_s: end.map_or(0.0, |end| end.duration_ns as f64 * 1e-9),
+            whole: recording.is_whole(),
+            being_written: recording.is_being_written(),
+            ..Self::unread(path)
+        };
+        Ok((summary, recording))
+    }
+
+    fn read(path: &Path) -> Result<Self, Failure> {
+        let (begin, recording) = Self::begin(path)?;
         let scanner = Scanner::of(&recording)?;
         let mut reading = Reading::new(&scanner);
         scanner.read(&recording, |found| {
@@ -186,26 +219,14 @@ impl Summary {
             }
             true
         })?;
-        let (file, bytes, modified_ms) = stamp(path).unwrap_or_default();
-        let about = recording.about();
-        let instance = about.parameters.get("telemetry.instance");
         Ok(Self {
-            version: VERSION,
-            bytes,
-            modified_ms,
-            file,
-            instance: instance
-                .map_or("fccd", |name| name.trim_matches('"'))
-                .to_owned(),
-            plant: about.plant.clone(),
             start_utc_s: utc_s(&recording, reading.first_ns.unwrap_or(0)),
             duration_s: reading.duration_s(),
-            distance_m: reading.distance_m,
-            whole: recording.is_whole(),
-            being_written: recording.is_being_written(),
+            distance_m: Some(reading.distance_m),
             faults: reading.failsafes,
             thumbnail: thumbnail(&reading.places),
             figures: reading.figures(),
+            ..begin
         })
     }
 }

@@ -707,8 +707,8 @@ fn a_page_that_sends_much_or_takes_nothing_disturbs_no_other() {
     loud.write_all(upgrade.as_bytes()).unwrap();
     let frame = [0x82, 0xff, 0, 0, 0, 0, 0x40, 0, 0, 0, 1, 2, 3, 4];
     loud.write_all(&frame).unwrap();
-    let mut sent = 0;
-    while sent < 16 << 20 && loud.write_all(&[0; 65_536]).is_ok() {
+    let (many, mut sent) = (vec![0; 65_536], 0);
+    while sent < 16 << 20 && loud.write_all(&many).is_ok() {
         sent += 65_536;
     }
     assert!(sent < 16 << 20, "it is read to its end");

@@ -142,7 +142,7 @@ impl Ground {
 }
 
 pub(crate) fn request(what: &str, lines: &[&str], body: &str) -> String {
-    let lines: String = lines.iter().map(|line| format!("{line}\r\n")).collect();
+    let lines = [lines, &[""]].concat().join("\r\n");
     let length = if body.is_empty() && what.starts_with("GET") {
         String::new()
     } else {

@@ -4,4 +4,5 @@
 mod attacks;
 mod common;
 mod drafts;
+mod flights;
 mod live;
