@@ -3,13 +3,13 @@
 use fcc_core::flight::Autopilot;
 use fcc_core::framework::Controller as _;
 use fcc_telemetry::schema::{DescribedColumn, RecordDescription};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Columns whose bits are conditions of the autopilot.
 const CONDITIONS: [&str; 3] = ["state_flags", "engage_inhibits", "faults"];
 
 /// What a word of a column is.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Kind {
     F64,
@@ -21,13 +21,14 @@ pub(crate) enum Kind {
 }
 
 /// A column, for the page.
-#[derive(Clone, PartialEq, Debug, Serialize)]
+#[derive(Clone, PartialEq, Debug, Deserialize, Serialize)]
 pub(crate) struct PageColumn {
     pub(crate) name: String,
     unit: String,
     kind: Kind,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     names: Vec<Option<String>>,
+    #[serde(default)]
     meaning: String,
 }
 

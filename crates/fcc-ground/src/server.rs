@@ -22,8 +22,8 @@ pub(crate) const MOST_CONNECTIONS: usize = 512;
 const HEAD_WITHIN: Duration = Duration::from_secs(10);
 const MOST_HEADERS: usize = 64;
 const MOST_HEAD_BYTES: usize = 32 << 10;
-/// What waits in the kernel for a slow client: about a second of records.
-const SEND_BUFFER_BYTES: usize = 32 << 10;
+/// What waits in the kernel to be sent to a slow client: some records.
+const UNSENT_BYTES: u32 = 16 << 10;
 /// After too many open files.
 const PAUSE: Duration = Duration::from_millis(100);
 
@@ -53,7 +53,7 @@ async fn connection(stream: TcpStream, router: Router) {
     };
     // Without them it is served all the same.
     let _ = stream.set_nodelay(true);
-    let _ = SockRef::from(&stream).set_send_buffer_size(SEND_BUFFER_BYTES);
+    let _ = SockRef::from(&stream).set_tcp_notsent_lowat(UNSENT_BYTES);
     let router = TowerToHyperService::new(router);
     let service = service_fn(move |mut request: Request<Incoming>| {
         request.extensions_mut().insert(ArrivedAt(at));

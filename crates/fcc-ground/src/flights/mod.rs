@@ -77,17 +77,17 @@ pub(crate) async fn data(
     Query(wanted): Query<DataWanted>,
 ) -> Result<Response, Failure> {
     aside(move || {
-        let recording = open(&station, &file)?;
-        let names: Vec<&str> = wanted
-            .columns
-            .split(',')
-            .filter(|name| !name.is_empty())
-            .collect();
-        let table = scan::table(&recording, &names)?;
-        let bytes = match wanted.points {
-            Some(points) => table.thinned(points.clamp(2, 100_000)).to_bytes(),
-            None => table.to_bytes(),
+        let path = path_of(&station, &file)?;
+        let names = wanted.columns.split(',').filter(|name| !name.is_empty());
+        let names: Vec<&str> = names.collect();
+        let table = match wanted.points {
+            Some(points) => {
+                let points = points.clamp(2, 100_000);
+                station.flights.table(&path, &names, points)?
+            }
+            None => scan::table(&open(&station, &file)?, &names)?,
         };
+        let bytes = table.to_bytes();
         Ok(([(CONTENT_TYPE, "application/octet-stream")], bytes).into_response())
     })
     .await
@@ -98,7 +98,7 @@ pub(crate) async fn events(
     State(station): State<Arc<Station>>,
     Path(file): Path<String>,
 ) -> Result<Json<Value>, Failure> {
-    aside(move || Ok(Json(scan::events(&open(&station, &file)?)?))).await
+    aside(move || Ok(Json(station.flights.events(&path_of(&station, &file)?)?))).await
 }
 
 /// `GET /api/flights/{file}/plan`.

@@ -80,52 +80,104 @@ pub(super) struct Table {
     start_utc_s: f64,
 }
 
-/// Reads some columns.
+/// Reads some columns, every tick.
 pub(super) fn table(recording: &Recording, names: &[&str]) -> Result<Table, Failure> {
     let scanner = Scanner::of(recording)?;
-    let columns = &scanner.columns;
-    let wanted = names.iter().map(|name| {
-        columns
-            .index(name)
-            .ok_or_else(|| Failure::bad(format!("{name:?}: there is no such column")))
-    });
-    let wanted: Vec<usize> = wanted.collect::<Result<_, _>>()?;
-    let described = wanted.iter().filter_map(|index| columns.all.get(*index));
-    let time = json!({ "name": "time_s", "unit": "s", "kind": "f64" });
-    let header = [time]
-        .into_iter()
-        .chain(described.clone().map(|column| json!(column)));
-    let has_range = described.map(PageColumn::has_range);
-    let mut table = Table {
-        header: header.collect(),
-        has_range: std::iter::once(false).chain(has_range).collect(),
-        values: vec![Vec::new(); wanted.len() + 1],
-        start_utc_s: 0.0,
-    };
-    let most_rows = MOST_VALUES / table.values.len();
-    let mut first_ns = None;
-    let mut rows = 0;
+    let mut reader = TableReader::new(&scanner.columns, names, 1)?;
+    let mut has_room = true;
     scanner.read(recording, |found| {
-        let Found::Row(woke_ns, row) = found else {
-            return true;
+        if let Found::Row(woke_ns, row) = found {
+            has_room = reader.take(woke_ns, row);
+        }
+        has_room
+    })?;
+    if !has_room {
+        let what = "these are too many values at once: give fewer columns";
+        return Err(Failure::bad(what));
+    }
+    Ok(reader.finish(recording))
+}
+
+/// Collects columns tick by tick.
+pub(super) struct TableReader<'a> {
+    columns: &'a Columns,
+    wanted: Vec<usize>,
+    /// So many ticks become two rows; 1: each stays.
+    span: usize,
+    /// The present span.
+    part: Vec<Vec<f64>>,
+    first_ns: Option<i64>,
+    table: Table,
+}
+
+impl<'a> TableReader<'a> {
+    pub(super) fn new(columns: &'a Columns, names: &[&str], span: usize) -> Result<Self, Failure> {
+        let wanted = names.iter().map(|name| {
+            let missing = || Failure::bad(format!("{name:?}: there is no such column"));
+            columns.index(name).ok_or_else(missing)
+        });
+        let wanted: Vec<usize> = wanted.collect::<Result<_, _>>()?;
+        let described = wanted.iter().filter_map(|index| columns.all.get(*index));
+        let time = json!({ "name": "time_s", "unit": "s", "kind": "f64" });
+        let header = described.clone().map(|column| json!(column));
+        let has_range = described.map(PageColumn::has_range);
+        let count = wanted.len() + 1;
+        let table = Table {
+            header: std::iter::once(time).chain(header).collect(),
+            has_range: std::iter::once(false).chain(has_range).collect(),
+            values: vec![Vec::new(); count],
+            start_utc_s: 0.0,
         };
-        let first_ns = *first_ns.get_or_insert(woke_ns);
+        Ok(Self {
+            columns,
+            wanted,
+            span,
+            part: vec![Vec::new(); count],
+            first_ns: None,
+            table,
+        })
+    }
+
+    /// Takes a tick; returns whether there is room for more.
+    pub(super) fn take(&mut self, woke_ns: i64, row: &[u64]) -> bool {
+        let first_ns = *self.first_ns.get_or_insert(woke_ns);
         let time_s = (woke_ns - first_ns) as f64 * 1e-9;
-        let values = wanted.iter().map(|index| columns.value(*index, row));
+        let values = self
+            .wanted
+            .iter()
+            .map(|index| self.columns.value(*index, row));
         let values = std::iter::once(time_s).chain(values);
-        for (column, value) in table.values.iter_mut().zip(values) {
+        for (column, value) in self.part.iter_mut().zip(values) {
             column.push(value);
         }
-        rows += 1;
-        rows < most_rows
-    })?;
-    if rows >= most_rows {
-        return Err(Failure::bad(
-            "these are too many values at once: give fewer columns",
-        ));
+        if self
+            .part
+            .first()
+            .is_some_and(|part| part.len() >= self.span)
+        {
+            self.end_span();
+        }
+        let rows = self.table.values.first().map_or(0, Vec::len);
+        rows * self.table.values.len() < MOST_VALUES
     }
-    table.start_utc_s = utc_s(recording, first_ns.unwrap_or(0));
-    Ok(table)
+
+    fn end_span(&mut self) {
+        let columns = self.table.values.iter_mut().zip(&mut self.part);
+        for ((values, part), has_range) in columns.zip(&self.table.has_range) {
+            match part.len() {
+                0..=2 => values.append(part),
+                _ if *has_range => values.extend(range(part)),
+                _ => values.extend(samples(part)),
+            }
+            part.clear();
+        }
+    }
+
+    pub(super) fn finish(mut self, recording: &Recording) -> Table {
+        self.end_span();
+        self.table.start_utc_s = utc_s(recording, self.first_ns.unwrap_or(0));
+        self.table
+    }
 }
 
 pub(super) fn utc_s(recording: &Recording, time_ns: i64) -> f64 {
@@ -133,6 +185,63 @@ pub(super) fn utc_s(recording: &Recording, time_ns: i64) -> f64 {
 }
 
 impl Table {
+    /// What [`to_bytes`](Self::to_bytes) has made.
+    pub(super) fn of_bytes(bytes: &[u8]) -> Option<Self> {
+        let (length, rest) = bytes.split_first_chunk()?;
+        let length = u32::from_le_bytes(*length) as usize;
+        let header: Value = serde_json::from_slice(rest.get(..length)?).ok()?;
+        let rows = usize::try_from(header.get("rows")?.as_u64()?).ok()?;
+        let described = header.get("columns")?.as_array()?;
+        let words = bytes.get((4 + length).next_multiple_of(8)..)?.as_chunks().0;
+        let values: Vec<f64> = words.iter().map(|word| f64::from_le_bytes(*word)).collect();
+        let columns: Vec<PageColumn> = described
+            .iter()
+            .map(|column| serde_json::from_value(column.clone()).ok())
+            .collect::<Option<_>>()?;
+        let table = Self {
+            header: described.clone(),
+            has_range: columns.iter().map(PageColumn::has_range).collect(),
+            values: values.chunks(rows.max(1)).map(<[f64]>::to_vec).collect(),
+            start_utc_s: header.get("start_utc_s")?.as_f64()?,
+        };
+        (table.values.len() == table.header.len()).then_some(table)
+    }
+
+    fn index(&self, name: &str) -> Option<usize> {
+        let is_it = |column: &Value| column.get("name").is_some_and(|found| found == name);
+        self.header.iter().position(is_it)
+    }
+
+    pub(super) fn has(&self, names: &[&str]) -> bool {
+        names.iter().all(|name| self.index(name).is_some())
+    }
+
+    /// The time and these columns.
+    pub(super) fn select(&self, names: &[&str]) -> Result<Self, Failure> {
+        let all = std::iter::once("time_s").chain(names.iter().copied());
+        let indices = all.map(|name| {
+            let missing = || Failure::bad(format!("{name:?}: there is no such column"));
+            self.index(name).ok_or_else(missing)
+        });
+        let indices: Vec<usize> = indices.collect::<Result<_, _>>()?;
+        let of = |index: &usize| {
+            let parts = (self.header.get(*index)?, self.has_range.get(*index)?);
+            Some((parts.0.clone(), *parts.1, self.values.get(*index)?.clone()))
+        };
+        let mut selected = Self {
+            header: Vec::new(),
+            has_range: Vec::new(),
+            values: Vec::new(),
+            start_utc_s: self.start_utc_s,
+        };
+        for (header, has_range, values) in indices.iter().filter_map(of) {
+            selected.header.push(header);
+            selected.has_range.push(has_range);
+            selected.values.push(values);
+        }
+        Ok(selected)
+    }
+
     /// At most so many rows: two for each of equal spans, in which a curve has its smallest
     /// and its largest value in their order.
     pub(super) fn thinned(self, points: usize) -> Self {
@@ -208,34 +317,53 @@ fn samples(part: &[f64]) -> [f64; 2] {
     [at(0), at(part.len() / 2)]
 }
 
-/// The events and remarks, by their time since the first tick.
-pub(super) fn events(recording: &Recording) -> Result<Value, Failure> {
-    let scanner = Scanner::of(recording)?;
-    let mut found = Vec::new();
-    let mut first_ns = None;
-    let mut tick = 0;
-    let number = scanner.columns.index("tick");
-    scanner.read(recording, |one| {
-        match one {
+/// The events and remarks of a recording.
+pub(super) struct Events {
+    number: Option<usize>,
+    tick: u64,
+    first_ns: Option<i64>,
+    /// Tick, time in ns, code, text.
+    found: Vec<(u64, i64, u32, String)>,
+}
+
+impl Events {
+    pub(super) fn new(columns: &Columns) -> Self {
+        Self {
+            number: columns.index("tick"),
+            tick: 0,
+            first_ns: None,
+            found: Vec::new(),
+        }
+    }
+
+    pub(super) fn take(&mut self, found: &Found<'_>, columns: &Columns) {
+        match *found {
             Found::Row(woke_ns, row) => {
-                first_ns.get_or_insert(woke_ns);
-                let number = number.and_then(|number| scanner.columns.word(number, row));
-                tick = number.unwrap_or(tick);
+                self.first_ns.get_or_insert(woke_ns);
+                let number = self.number.and_then(|number| columns.word(number, row));
+                self.tick = number.unwrap_or(self.tick);
             }
             Found::Event(event, text) => {
-                found.push((event.tick, event.time_ns, event.code, text.to_owned()));
+                let (tick, code) = (event.tick, event.code);
+                self.found
+                    .push((tick, event.time_ns, code, text.to_owned()));
             }
-            Found::Remark(time_ns, text) => found.push((tick, time_ns, 0, text.to_owned())),
+            Found::Remark(time_ns, text) => {
+                self.found.push((self.tick, time_ns, 0, text.to_owned()));
+            }
         }
-        true
-    })?;
-    let first_ns = first_ns.unwrap_or(0);
-    let listed = found.into_iter().map(|(tick, time_ns, code, text)| {
-        let time_s = time_ns.saturating_sub(first_ns) as f64 * 1e-9;
-        // What came before the first tick.
-        json!({ "tick": tick, "time_s": time_s.max(0.0), "code": code, "text": text })
-    });
-    Ok(listed.collect())
+    }
+
+    /// By their time since the first tick.
+    pub(super) fn listed(self) -> Value {
+        let first_ns = self.first_ns.unwrap_or(0);
+        let listed = self.found.into_iter().map(|(tick, time_ns, code, text)| {
+            let time_s = time_ns.saturating_sub(first_ns) as f64 * 1e-9;
+            // What came before the first tick.
+            json!({ "tick": tick, "time_s": time_s.max(0.0), "code": code, "text": text })
+        });
+        listed.collect()
+    }
 }
 
 #[cfg(test)]

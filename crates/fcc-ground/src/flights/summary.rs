@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant, UNIX_EPOCH};
@@ -11,14 +12,19 @@ use fcc_record::Recording;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::scan::{Found, Scanner, utc_s};
+use super::scan::{self, Events, Found, Scanner, Table, TableReader, utc_s};
 use crate::failure::Failure;
 use crate::files;
 
 /// Points of a thumbnail, at most.
 const THUMBNAIL_POINTS: usize = 120;
+/// Rows of the curves that are kept, at most, and what is kept of a recording.
+const KEPT_POINTS: usize = 36_000;
+const SUMMARY: &str = ".json";
+const EVENTS: &str = ".events.json";
+const TABLE: &str = ".curves.zst";
 /// A summary is made again when this changes.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// How long a list may take; what is not read by then is in the next one.
 const LIST_WITHIN: Duration = Duration::from_millis(1_500);
 /// A step of a track has at least so much; one that is longer than the most is none.
@@ -68,19 +74,21 @@ impl Summaries {
         }
     }
 
-    fn kept_file(&self, file: &str) -> PathBuf {
-        self.folder.join(format!("{file}.json"))
+    fn kept_file(&self, file: &str, end: &str) -> PathBuf {
+        self.folder.join(format!("{file}{end}"))
     }
 
     pub(super) fn forget(&self, file: &str) {
         // One that stays is of a file that is not there.
-        let _ = fs::remove_file(self.kept_file(file));
+        for end in [SUMMARY, EVENTS, TABLE] {
+            let _ = fs::remove_file(self.kept_file(file, end));
+        }
     }
 
     /// The summary that was kept, if it is of the file as it is.
     fn kept(&self, path: &Path) -> Option<Summary> {
         let (file, bytes, modified_ms) = stamp(path)?;
-        let text = files::read_limited(&self.kept_file(&file), 1 << 20).ok()?;
+        let text = files::read_limited(&self.kept_file(&file, SUMMARY), 1 << 20).ok()?;
         let kept: Summary = serde_json::from_str(&text).ok()?;
         let is_of_it =
             (kept.version, kept.bytes, kept.modified_ms) == (VERSION, bytes, modified_ms);
@@ -93,15 +101,67 @@ impl Summaries {
         if let Some(kept) = self.kept(path) {
             return Ok(kept);
         }
-        let summary = Summary::read(path)?;
-        if !summary.being_written
-            && let Ok(text) = serde_json::to_vec(&summary)
-        {
-            // Without it it is read again.
-            let _ = fs::create_dir_all(&self.folder);
-            let _ = files::replace(&self.kept_file(&summary.file), &text);
+        let (summary, events, table) = Summary::read(path)?;
+        if !summary.being_written {
+            // Without them it is read again.
+            let _ = self.keep(&summary, &events, table.as_ref());
         }
         Ok(summary)
+    }
+
+    /// The summary last: with it the others are whole.
+    fn keep(&self, summary: &Summary, events: &Value, table: Option<&Table>) -> io::Result<()> {
+        fs::create_dir_all(&self.folder)?;
+        let file = &summary.file;
+        let parts = [
+            (EVENTS, Some(events.to_string().into_bytes())),
+            (TABLE, table.map(compressed).transpose()?),
+            (SUMMARY, Some(serde_json::to_vec(summary)?)),
+        ];
+        for (end, content) in parts {
+            if let Some(content) = content {
+                files::replace(&self.kept_file(file, end), &content)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// A part that is kept of a recording, which is read for it if it was not yet.
+    fn part(&self, path: &Path, end: &str) -> Option<Vec<u8>> {
+        let summary = self.summary(path).ok()?;
+        if summary.being_written {
+            return None;
+        }
+        fs::read(self.kept_file(&summary.file, end)).ok()
+    }
+
+    /// Columns of a recording, thinned to so many rows.
+    pub(super) fn table(
+        &self,
+        path: &Path,
+        names: &[&str],
+        points: usize,
+    ) -> Result<Table, Failure> {
+        let kept = if points <= KEPT_POINTS {
+            self.part(path, TABLE)
+                .and_then(|bytes| decompressed(&bytes))
+        } else {
+            None
+        };
+        let table = match kept {
+            Some(kept) if kept.has(names) => kept.select(names)?,
+            _ => scan::table(&Recording::open(path).map_err(Failure::bad)?, names)?,
+        };
+        Ok(table.thinned(points))
+    }
+
+    /// The events of a recording.
+    pub(super) fn events(&self, path: &Path) -> Result<Value, Failure> {
+        let kept = self.part(path, EVENTS);
+        match kept.and_then(|bytes| serde_json::from_slice(&bytes).ok()) {
+            Some(events) => Ok(events),
+            None => Ok(Summary::read(path)?.1),
+        }
     }
 
     /// All recordings of a folder, the newest first.
@@ -132,6 +192,22 @@ impl Summaries {
             });
         Ok(listed.collect())
     }
+}
+
+fn compressed(table: &Table) -> io::Result<Vec<u8>> {
+    zstd::encode_all(table.to_bytes().as_slice(), 1)
+}
+
+fn decompressed(bytes: &[u8]) -> Option<Table> {
+    Table::of_bytes(&zstd::decode_all(bytes).ok()?)
+}
+
+/// Whether a column is kept: not the times and sources of readings, nor raw ones.
+fn is_kept(name: &str) -> bool {
+    let ends = ["_taken_ns", "_source"];
+    let begins = ["raw_", "gnss_", "magnetic_", "suspect_", "other_", "pilot_"];
+    !ends.iter().any(|end| name.ends_with(end))
+        && !begins.iter().any(|begin| name.starts_with(begin))
 }
 
 /// Name, length and time of a file.
@@ -209,17 +285,30 @@ impl Summary {
         Ok((summary, recording))
     }
 
-    fn read(path: &Path) -> Result<Self, Failure> {
+    /// The summary, the events, and the curves of a file that is finished.
+    fn read(path: &Path) -> Result<(Self, Value, Option<Table>), Failure> {
         let (begin, recording) = Self::begin(path)?;
         let scanner = Scanner::of(&recording)?;
         let mut reading = Reading::new(&scanner);
+        let mut events = Events::new(&scanner.columns);
+        let columns = scanner.columns.all.iter();
+        let names = columns.map(|column| column.name.as_str());
+        let names: Vec<&str> = names.filter(|name| is_kept(name)).collect();
+        let ticks = recording.end().map(|end| end.ticks as usize);
+        let span = ticks.map(|ticks| (2 * ticks).div_ceil(KEPT_POINTS).max(1));
+        let table = span.map(|span| TableReader::new(&scanner.columns, &names, span));
+        let mut table = table.transpose()?;
         scanner.read(&recording, |found| {
+            events.take(&found, &scanner.columns);
             if let Found::Row(woke_ns, row) = found {
                 reading.take(woke_ns, row);
+                if let Some(table) = &mut table {
+                    table.take(woke_ns, row);
+                }
             }
             true
         })?;
-        Ok(Self {
+        let summary = Self {
             start_utc_s: utc_s(&recording, reading.first_ns.unwrap_or(0)),
             duration_s: reading.duration_s(),
             distance_m: Some(reading.distance_m),
@@ -227,7 +316,9 @@ impl Summary {
             thumbnail: thumbnail(&reading.places),
             figures: reading.figures(),
             ..begin
-        })
+        };
+        let table = table.map(|table| table.finish(&recording));
+        Ok((summary, events.listed(), table))
     }
 }
 
