@@ -52,10 +52,17 @@ def test_slide_engages(visit, mock):
 def test_keys_pause_return_land_disengage(visit, mock):
     page = visit().open("fly")
     engage(page)
-    for name, mode in [("Pause", "loiter"), ("Resume", "plan"), ("Return", "return"), ("Land", "land")]:
+    for name, mode in [("Pause", "loiter"), ("Resume", "plan"), ("Return", "return")]:
         page.get_by_role("button", name=name, exact=True).focus()
         page.keyboard.press("Enter")
         page.wait_for_function("mode => document.querySelectorAll('.readout dd')[1].textContent.startsWith(mode)", arg=mode, timeout=4000)
+    page.get_by_role("button", name="Land", exact=True).click()
+    page.wait_for_function("() => document.querySelector('.commands .result').textContent.startsWith('land: carried out')", timeout=4000)
+
+
+def test_slide_disengages(visit, mock):
+    page = visit().open("fly")
+    engage(page)
     page.locator(".slide").focus()
     page.keyboard.down("Enter")
     time.sleep(1.3)

@@ -1,6 +1,7 @@
 """Live values: their age, the link, smoothness, size."""
 
 import gzip
+import os
 import re
 import time
 
@@ -50,14 +51,14 @@ def test_events_are_text(visit, mock):
 
 
 def frames(page, seconds: float) -> tuple[float, float]:
-    """Frames drawn by the page a second, and the part of the main thread that scripts take."""
+    """Frames drawn a second, and the processor time of the page's process in cores."""
     session = page.context.new_cdp_session(page)
     session.send("Performance.enable")
 
-    def task() -> float:
-        return next(one["value"] for one in session.send("Performance.getMetrics")["metrics"] if one["name"] == "TaskDuration")
+    def used() -> float:
+        return next(one["value"] for one in session.send("Performance.getMetrics")["metrics"] if one["name"] == "ProcessTime")
 
-    before = task()
+    before, begin = used(), time.monotonic()
     count = page.evaluate(
         """seconds => new Promise(done => {
             let n = 0; const begin = performance.now();
@@ -66,19 +67,23 @@ def frames(page, seconds: float) -> tuple[float, float]:
         })""",
         seconds,
     )
-    return count, (task() - before) / seconds
+    return count, (used() - before) / (time.monotonic() - begin)
 
 
-def test_frames_at_full_and_slow_speed(visit, mock, record_property):
+def test_frames_at_full_and_slow_speed(visit, mock):
     mock.command("engage")
     page = visit().open("fly")
-    full, load = frames(page, 4)
+    time.sleep(2)
+    full, cores = frames(page, 4)
     session = page.context.new_cdp_session(page)
     session.send("Emulation.setCPUThrottlingRate", {"rate": 6})
     slow, _ = frames(page, 4)
-    print(f"frames: {full:.0f}/s, main thread {load * 100:.0f} %; a sixth of the processor: {slow:.0f}/s")
-    assert full > 40
-    assert slow > 15
+    print(f"frames: {full:.0f}/s with {cores:.2f} cores; at a sixth of the processor: {slow:.0f}/s; load {os.getloadavg()[0]:.1f}")
+    # Of all threads of the page's process; a busy machine changes the frames, not this.
+    assert cores < 0.6
+    if os.getloadavg()[0] < os.cpu_count():
+        assert full >= 55
+        assert slow >= 40
 
 
 def test_ready_and_size(visit, mock):

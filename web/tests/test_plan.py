@@ -36,8 +36,8 @@ def test_tap_adds_drag_moves_table_edits(plan, mock):
     plan.wait_for_function("n => document.querySelectorAll('.items tbody tr:not(.problem)').length === n", arg=before + 1)
     settled(plan)
     tool(plan, "Select")
-    point = plan.locator(".point-box").filter(has_text="3").first
-    box = point.bounding_box()
+    plan.wait_for_timeout(400)
+    box = plan.locator("[aria-label^='Item 3,']").bounding_box()
     old = plan.get_by_label("Latitude of item 3, degrees").input_value()
     plan.mouse.move(box["x"] + 12, box["y"] + 12)
     plan.mouse.down()

@@ -2,27 +2,40 @@
 
 type Drawing = (now: number) => void;
 
-const wanted = new Set<Drawing>();
+let wanted = new Set<Drawing>();
 let scheduled = false;
 
-/** Counts for the tests of smoothness: frames drawn, and the ms spent in them. */
-export const frameCounts = { frames: 0, busy_ms: 0 };
+function schedule(): void {
+  if (scheduled) return;
+  scheduled = true;
+  requestAnimationFrame(run);
+}
 
+/** What a drawing asks for is drawn in the same frame, unless it was drawn in it already. */
 function run(now: number): void {
+  const drawn = new Set<Drawing>();
+  const later = new Set<Drawing>();
+  for (const draw of wanted) {
+    wanted.delete(draw);
+    if (drawn.has(draw)) later.add(draw);
+    else {
+      drawn.add(draw);
+      try {
+        draw(now);
+      } catch (error) {
+        // One view's mistake does not stop the others from being drawn.
+        reportError(error);
+      }
+    }
+  }
+  wanted = later;
   scheduled = false;
-  const due = [...wanted];
-  wanted.clear();
-  const begin = performance.now();
-  for (const draw of due) draw(now);
-  frameCounts.frames += 1;
-  frameCounts.busy_ms += performance.now() - begin;
+  if (later.size > 0) schedule();
 }
 
 export function onNextFrame(draw: Drawing): void {
   wanted.add(draw);
-  if (scheduled) return;
-  scheduled = true;
-  requestAnimationFrame(run);
+  schedule();
 }
 
 export function notOnNextFrame(draw: Drawing): void {

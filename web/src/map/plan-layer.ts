@@ -90,6 +90,7 @@ export class PlanLayer {
       this.#marker({ of: "obstacle", index }, one.centre, "▲", "obstacle", `Obstacle ${index + 1}`);
     }
     this.#lines(plan, colours);
+    if (plan.home) L.circleMarker(latLng(plan.home.place), { radius: 4, color: colours.good, weight: 2, fillOpacity: 1, interactive: false }).addTo(this.group);
     if (plan.home) this.#marker({ of: "home" }, plan.home.place, "H", "home", "Home");
     for (const [index, one] of plan.rally.entries()) this.#marker({ of: "rally", index }, one.place, "R", "rally", `Rally point ${index + 1}`);
     for (const [index, item] of plan.items.entries()) {
@@ -98,7 +99,8 @@ export class PlanLayer {
       const radius = item.kind === "loiter" ? item.radius_m : null;
       if (radius !== null) L.circle(latLng(place), { radius: Math.abs(radius), color: colours.path, weight: 1.5, fill: false, interactive: false }).addTo(this.group);
       const kind = [item.kind, this.#active === index + 1 ? "active" : "", this.#wrong.has(index + 1) ? "wrong" : ""].join(" ");
-      this.#marker({ of: "item", index }, place, `${index + 1}${GLYPHS[item.kind] ?? ""}`, kind, `Item ${index + 1}, ${KIND_NAMES[item.kind]}`);
+      const text = `${index + 1}${GLYPHS[item.kind] ?? ""}`;
+      this.#marker({ of: "item", index }, place, text, kind, `Item ${text}, ${KIND_NAMES[item.kind]}`);
     }
     if (focused) this.map.getContainer().querySelector<HTMLElement>(`[data-part="${CSS.escape(focused)}"]`)?.focus();
   }
@@ -133,8 +135,10 @@ export class PlanLayer {
     const chosen = this.#selected !== null && JSON.stringify(this.#selected) === JSON.stringify(part);
     const size = part.of === "corner" || part.of === "circle" ? 24 : MARKER_PX;
     const html = h("span", { class: `point ${kind}${chosen ? " selected" : ""}` }, text);
+    // The home is below its place: a landing is often at the same one.
+    const anchor: L.PointTuple = part.of === "home" ? [size / 2, -6] : [size / 2, size / 2];
     const marker = L.marker(latLng(place), {
-      icon: L.divIcon({ className: "point-box", html, iconSize: [size, size] }),
+      icon: L.divIcon({ className: "point-box", html, iconSize: [size, size], iconAnchor: anchor }),
       draggable: movable, keyboard: movable, interactive: movable, title: label, alt: label, autoPan: true, zIndexOffset: part.of === "item" ? 100 : 0,
     });
     marker.on("click", () => this.options.selected?.(part));

@@ -23,14 +23,15 @@ export function eventItem(event: FlightEvent): HTMLElement {
 }
 
 export class EventList {
-  readonly list = h("ol", { class: "events", role: "log", "aria-live": "polite", "aria-label": "Events", tabindex: 0 });
+  readonly #list = h("ol", {});
+  readonly element = h("div", { class: "events", role: "log", "aria-live": "polite", "aria-label": "Events", tabindex: 0 }, this.#list);
 
   add(event: FlightEvent | null): void {
     if (event === null) {
-      this.list.replaceChildren();
+      this.#list.replaceChildren();
       return;
     }
-    this.list.prepend(eventItem(event));
-    while (this.list.childElementCount > SHOWN) this.list.lastElementChild?.remove();
+    this.#list.prepend(eventItem(event));
+    while (this.#list.childElementCount > SHOWN) this.#list.lastElementChild?.remove();
   }
 }

@@ -21,6 +21,8 @@ import "../../design/fly.css";
 
 /** Values age also when nothing arrives. */
 const AGED_EVERY_MS = 250;
+/** Faster changes of a text are not readable, and each one is laid out anew. */
+const TEXTS_EVERY_MS = 100;
 const PLAN_EVERY_MS = 5000;
 const FIRST_ZOOM = 13;
 
@@ -117,6 +119,7 @@ export function openFly(): View {
     );
   };
 
+  let texts_ms = -Infinity;
   const draw = () => {
     const record = newest();
     const age = linkAge();
@@ -130,6 +133,15 @@ export function openFly(): View {
     }
     const state = flightState(record, age);
     display.show(state);
+    if (state.position_known) {
+      const lost = freshness(state.ages.position) === "lost";
+      aircraft.show(state, lost);
+      track.grow();
+      keepInView(state);
+    }
+    const now = performance.now();
+    if (now - texts_ms < TEXTS_EVERY_MS) return;
+    texts_ms = now;
     set_points.show(state);
     const mode = record.named("desired_guidance_mode");
     const fresh = freshness(age) !== "lost";
@@ -140,12 +152,6 @@ export function openFly(): View {
       setText(value, one.text(record, state));
       box.dataset["fresh"] = freshness(one.age ? one.age(state) : age);
       box.dataset["tone"] = one.tone?.(record) ?? "";
-    }
-    if (state.position_known) {
-      const stale = freshness(state.ages.position) === "lost";
-      aircraft.show({ latitude_deg: state.latitude_deg, longitude_deg: state.longitude_deg, heading_rad: state.heading_rad, north_mps: state.north_mps, east_mps: state.east_mps }, stale);
-      track.grow();
-      keepInView(state);
     }
     const engaged_mode = state.engaged && ["plan", "takeoff", "land"].includes(mode);
     plan.mark(engaged_mode ? record.number("desired_guidance_item") : 0);
@@ -210,7 +216,7 @@ export function openFly(): View {
     conditions,
     commands.element,
     set_points.element,
-    h("section", { class: "panel event-panel", "aria-label": "Events of this run" }, h("h2", {}, "Events"), list.list),
+    h("section", { class: "panel event-panel", "aria-label": "Events of this run" }, h("h2", {}, "Events"), list.element),
   );
   const caption = h("div", { class: "flown" }, h("span", {}, "Run "), clock, h("span", {}, "Plan "), hash);
   const element = h("div", { class: "fly" }, h("h1", { class: "visually-hidden" }, "Fly"), h("div", { class: "fly-map" }, chart.element, strip, no_data, caption), side);

@@ -124,7 +124,7 @@ export function openHealth(): View {
     panel("Recorder", "recorder", recorder.element, file),
     panel("Sensors", "sensor-panel", sensors.element, calibration),
     h("section", { class: "panel doctor", "aria-label": "Doctor" }, h("div", { class: "row end" }, h("h2", {}, "Doctor"), button("Examine again", () => void examine(), { class: "button small" })), doctor_note, findings),
-    panel("Events", "event-panel", list.list),
+    panel("Events", "event-panel", list.element),
   );
   void examine();
   onNextFrame(draw);
