@@ -111,7 +111,8 @@ WORKERS := $(shell expr $$(nproc) + 1)
 
 test-python: faulty $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/systemd
 	$(BUILD_FCCD) -p thermostat --bin thermostat
-	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) \
+	cargo build --locked --release -p fcc-ground
+	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) FCC_GROUND=$(abspath $(TARGET))/release/fcc-ground \
 	    $(PYTHON) -m pytest hil --numprocesses $(WORKERS) --dist loadfile
 
 test-x-plane: build $(STAMPS)/python-module ## Run all steps of `fccd x-plane check` in full against the stand-in (3 minutes)
