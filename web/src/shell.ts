@@ -5,7 +5,7 @@ import { button, choice, h, icon, replace, setClass, setText, type IconName } fr
 import { unitSystem } from "./core/units";
 import { theme, type Theme } from "./design/theme";
 import { freshness } from "./live/flight-state";
-import { choose, daemon, daemons, linkAge, linkProblem } from "./live/session";
+import { choose, daemon, daemons, linkAge, linkProblem, onRecord } from "./live/session";
 
 export interface View {
   element: HTMLElement;
@@ -37,14 +37,19 @@ function linkBadge(): HTMLElement {
   const dot = h("span", { class: "dot", "aria-hidden": "true" });
   const text = h("span", { class: "link-text" });
   const badge = h("div", { class: "link", role: "status", title: "Age of the newest record" }, dot, text);
-  setInterval(() => {
+  const update = () => {
     const age = linkAge();
     const problem = linkProblem.get();
     const fresh = freshness(problem && age > 1 ? Infinity : age);
     badge.dataset["state"] = fresh;
     setText(text, fresh === "fresh" ? "Live" : age < 100 ? `Link ${age.toFixed(0)} s old` : "No link");
     badge.title = problem || "Newest record less than 1 s old";
-  }, CLOCK_EVERY_MS);
+  };
+  setInterval(update, CLOCK_EVERY_MS);
+  linkProblem.watch(update);
+  onRecord(() => {
+    if (badge.dataset["state"] !== "fresh") update();
+  });
   return badge;
 }
 
@@ -61,10 +66,12 @@ function instancePicker(): HTMLElement {
   const holder = h("div", { class: "instance" }, select);
   const show = () => {
     const found = daemons.get();
-    replace(select, ...found.map((one) => h("option", { value: one.instance }, one.instance)));
-    select.value = daemon.get()?.instance ?? "";
-    setClass(holder, "hidden", found.length === 0);
-    select.disabled = found.length < 2;
+    const current = daemon.get()?.instance ?? "";
+    const gone = current !== "" && !found.some((one) => one.instance === current);
+    replace(select, ...found.map((one) => h("option", { value: one.instance }, one.instance)), gone ? h("option", { value: current }, `${current} (not running)`) : null);
+    select.value = current;
+    setClass(holder, "hidden", select.options.length === 0);
+    select.disabled = select.options.length < 2;
   };
   daemons.watch(show);
   daemon.watch(show);

@@ -59,6 +59,7 @@ function clearEvents(): void {
 export function choose(instance: string): void {
   const chosen = daemons.get().find((one) => one.instance === instance) ?? null;
   daemon.set(chosen);
+  sessionStorage.setItem(CHOSEN, instance);
   if (connection?.instance === instance) return;
   connection?.close();
   connection = null;
@@ -81,6 +82,14 @@ export function choose(instance: string): void {
   });
 }
 
+const CHOSEN = "fcc.instance";
+
+/** The one that was chosen in this tab; else one that the station starts; else the first. */
+function preferred(found: Daemon[]): Daemon | undefined {
+  const chosen = sessionStorage.getItem(CHOSEN);
+  return found.find((one) => one.instance === chosen) ?? found.find((one) => one.plan_upload === "standby") ?? found[0];
+}
+
 async function refresh(): Promise<void> {
   try {
     const sent = performance.now();
@@ -92,8 +101,14 @@ async function refresh(): Promise<void> {
     const again = current && status.daemons.find((one) => one.instance === current.instance);
     if (again) {
       if (JSON.stringify(again) !== JSON.stringify(current)) daemon.set(again);
-    } else if (status.daemons[0]) choose(status.daemons[0].instance);
-    if (status.daemons.length === 0) linkProblem.set("no daemon runs: start one with fccd run or fccd fly");
+    } else if (current) {
+      // Another aircraft is shown only when it is chosen.
+      if (!connection?.connected) linkProblem.set(`${current.instance} does not run`);
+    } else {
+      const first = preferred(status.daemons);
+      if (first) choose(first.instance);
+    }
+    if (status.daemons.length === 0 && !current) linkProblem.set("no daemon runs: start one with fccd run or fccd fly");
   } catch (error) {
     if (!connection?.connected) linkProblem.set(message(error));
   }

@@ -20,9 +20,11 @@ interface Ring {
 
 let coast: Promise<Ring[]> | null = null;
 
+const COAST_AFTER_MS = 400;
+
 /** The coast lines come in a part of their own, after the page is ready. */
 function coastLines(): Promise<Ring[]> {
-  coast ??= import("./coast").then((loaded) => loaded.rings());
+  coast ??= new Promise((done) => setTimeout(done, COAST_AFTER_MS)).then(() => import("./coast")).then((loaded) => loaded.rings());
   return coast;
 }
 

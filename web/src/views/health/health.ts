@@ -80,7 +80,7 @@ export function openHealth(): View {
   const recorder = figures(RECORDER);
   const file = h("p", { class: "note mono" });
   const list = new EventList();
-  const findings = h("ul", { class: "findings" });
+  const findings = h("ul", { class: "findings", tabindex: 0, "aria-label": "Findings of the doctor" });
   const doctor_note = h("p", { class: "note", role: "status" });
   const calibration = h("p", { class: "note" });
 
