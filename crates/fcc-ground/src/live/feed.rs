@@ -55,7 +55,7 @@ impl Feed {
                 Ok(mut watcher) => {
                     let feed = Arc::new(Self::new(&watcher));
                     if send.send(Ok(Arc::clone(&feed))).is_ok() {
-                        let why = feed.follow(&mut watcher, &machine);
+                        let why = Self::follow(&feed, &mut watcher, &machine);
                         feed.finish(&why);
                     }
                 }
@@ -119,19 +119,19 @@ impl Feed {
         }})
     }
 
-    /// Follows the daemon until it has ended; returns why.
-    fn follow(&self, watcher: &mut RowWatcher, machine: &Machine) -> String {
-        let half_period = Duration::try_from_secs_f64(0.5 / self.info.rate_hz);
+    /// Follows the daemon until it has ended, or nobody else has the feed; returns why.
+    fn follow(this: &Arc<Self>, watcher: &mut RowWatcher, machine: &Machine) -> String {
+        let half_period = Duration::try_from_secs_f64(0.5 / this.info.rate_hz);
         let look_every =
             half_period.map_or(LOOK_EVERY.1, |half| half.clamp(LOOK_EVERY.0, LOOK_EVERY.1));
         let mut heard = Instant::now();
-        loop {
-            match self.take(watcher, machine) {
+        while Arc::strong_count(this) > 1 {
+            match this.take(watcher, machine) {
                 Err(error) => return error.to_string(),
                 Ok(true) => heard = Instant::now(),
                 Ok(false) if heard.elapsed() > SILENT => {
                     if !watcher.is_alive() {
-                        return WatchError::Ended(self.instance.clone()).to_string();
+                        return WatchError::Ended(this.instance.clone()).to_string();
                     }
                     heard = Instant::now();
                 }
@@ -139,6 +139,7 @@ impl Feed {
             }
             thread::sleep(look_every);
         }
+        "the station has ended".to_owned()
     }
 
     /// Takes what is new; returns whether there was anything.

@@ -40,15 +40,16 @@ struct Watched {
 }
 
 impl Daemons {
-    /// Watches every daemon of this user, from now on.
+    /// Watches every daemon of this user, from now on, until this is dropped.
     pub(crate) fn start(machine: &Machine) -> Result<Self, String> {
         let daemons = Self::default();
-        let (found, machine) = (daemons.clone(), machine.clone());
+        let (watched, machine) = (Arc::downgrade(&daemons.0), machine.clone());
         thread::Builder::new()
             .name("ground-daemons".to_owned())
             .spawn(move || {
-                loop {
-                    found.look(&machine);
+                // Until the station is dropped.
+                while let Some(watched) = watched.upgrade() {
+                    Self(watched).look(&machine);
                     thread::sleep(LOOK_EVERY);
                 }
             })

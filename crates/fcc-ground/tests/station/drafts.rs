@@ -1,5 +1,7 @@
 //! Drafts: no edit is lost, and none replaces another one unseen.
 
+use std::collections::BTreeMap;
+
 use fcc_plan::{
     Altitude, AltitudeDatum, Circle, Fence, Home, Item, Loiter, LoiterEnd, Obstacle, Place, Plan,
     Polygon, RallyPoint, Speed,
@@ -82,6 +84,86 @@ fn what_was_answered_is_there_after_a_restart() {
     for (name, last) in [("d0", 18.0), ("d1", 19.0), ("d2", 17.0)] {
         let draft = again.get(&format!("/api/drafts/{name}")).json();
         assert_eq!(draft["plan"]["items"][0]["place"]["latitude_deg"], last);
+    }
+}
+
+/// Pages that edit, edit what they have not seen, remove and read, and a station that is
+/// ended between any two of these.
+#[test]
+fn in_any_order_no_edit_is_lost_and_none_is_replaced_unseen() {
+    let mut random = 2026_u64;
+    let mut draw = |below: u64| {
+        // Knuth's MMIX generator.
+        random = random
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (random >> 33) % below
+    };
+    let mut ground = Ground::new();
+    // What was answered: the newest revision and its latitude; and revisions that were.
+    let mut newest: BTreeMap<String, (Value, f64)> = BTreeMap::new();
+    let mut older: Vec<(String, Value)> = Vec::new();
+    let mut refused = 0;
+    for step in 0..1_000 {
+        let name = format!("d{}", draw(4));
+        let path = format!("/api/drafts/{name}");
+        let latitude_deg = f64::from(step) * 0.01;
+        match draw(100) {
+            0..=59 => {
+                let based_on = newest
+                    .get(&name)
+                    .map_or(Value::Null, |(revision, _)| revision.clone());
+                let body = json!({ "based_on": based_on, "plan": plan(latitude_deg) });
+                let saved = ground.change(&format!("PUT {path}"), &body);
+                assert_eq!(saved.status, 200, "{step}: {}", saved.text());
+                older.push((name.clone(), based_on));
+                newest.insert(name, (saved.json()["revision"].clone(), latitude_deg));
+            }
+            60..=79 if !older.is_empty() => {
+                let (name, based_on) = older[draw(older.len() as u64) as usize].clone();
+                let is_new = based_on.is_null() && !newest.contains_key(&name);
+                let body = json!({ "based_on": based_on, "plan": plan(-1.0) });
+                let status = if is_new || !newest.contains_key(&name) {
+                    continue;
+                } else {
+                    ground
+                        .change(&format!("PUT /api/drafts/{name}"), &body)
+                        .status
+                };
+                assert_eq!(status, 409, "{step}: {name} from {based_on}");
+                refused += 1;
+            }
+            80..=84 => {
+                let expected = if newest.remove(&name).is_some() {
+                    204
+                } else {
+                    404
+                };
+                let removed = ground.change(&format!("DELETE {path}"), &Value::Null);
+                assert_eq!(removed.status, expected, "{step}");
+            }
+            85..=86 => ground = Ground::again(ground),
+            _ => {
+                let found = ground.get(&path);
+                let Some((revision, latitude_deg)) = newest.get(&name) else {
+                    assert_eq!(found.status, 404, "{step}");
+                    continue;
+                };
+                let found = found.json();
+                assert_eq!(&found["revision"], revision, "{step}");
+                let place = &found["plan"]["items"][0]["place"];
+                assert_eq!(&place["latitude_deg"], latitude_deg, "{step}");
+            }
+        }
+    }
+    assert!(refused > 50);
+    for (name, (revision, latitude_deg)) in &newest {
+        let found = ground.get(&format!("/api/drafts/{name}")).json();
+        assert_eq!(&found["revision"], revision);
+        assert_eq!(
+            &found["plan"]["items"][0]["place"]["latitude_deg"],
+            latitude_deg
+        );
     }
 }
 

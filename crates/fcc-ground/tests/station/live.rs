@@ -154,3 +154,44 @@ fn a_change_of_a_draft_is_told_to_other_pages() {
         assert_eq!(told["revision"], saved["revision"]);
     });
 }
+
+/// Files of daemons whose name has this in it that this process has open.
+fn open_files(of: &str) -> usize {
+    let files = std::fs::read_dir("/proc/self/fd").unwrap().flatten();
+    let links = files.filter_map(|file| std::fs::read_link(file.path()).ok());
+    let names = links.map(|link| link.display().to_string());
+    names.filter(|name| name.contains(of)).count()
+}
+
+#[test]
+fn pages_and_daemons_that_come_and_go_leave_nothing_open() {
+    let ground = Ground::new();
+    for number in 0..4 {
+        let mut daemon = Daemon::start(&format!("round-{number}"));
+        wait_for(&ground, &daemon);
+        ground.runtime.block_on(async {
+            let path = format!("/api/live/{}", daemon.instance);
+            for _ in 0..20 {
+                let mut socket = connect(&ground, &path).await;
+                next(&mut socket).await;
+            }
+            // Those that have left are not counted any more.
+            let mut socket = connect(&ground, &path).await;
+            loop {
+                let message = next(&mut socket).await;
+                if message.is_text() && json(&message)["status"]["station"]["clients"] == 1 {
+                    break;
+                }
+            }
+        });
+        assert!(open_files("-round-") > 0);
+        daemon.end();
+    }
+    for _ in 0..100 {
+        if open_files("-round-") == 0 {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    panic!("{} files of daemons that have ended", open_files("-round-"));
+}
