@@ -101,12 +101,16 @@ fn sentence(figure: &Figure, a: Option<f64>, b: Option<f64>) -> String {
     } = figure;
     let (Some(a), Some(b)) = (a, b) else {
         let which = if a.is_some() { "first" } else { "second" };
-        return format!("Only the {which} flight has a {what}.");
+        return format!("Only of the {which} flight the {what} is known.");
     };
     let shown = format!("{:.*}", digits, (b - a).abs());
     // As large as what is shown.
     if shown.parse() == Ok(0.0_f64) {
-        return format!("The {what} is the same.");
+        return if unit.is_empty() {
+            format!("Both flights have the same number of {what}.")
+        } else {
+            format!("The {what} is the same.")
+        };
     }
     let word = if b > a { figure.more } else { figure.less };
     if unit.is_empty() {
@@ -151,7 +155,7 @@ mod tests {
         assert_eq!(
             sentences,
             [
-                "Only the second flight has a time engaged.",
+                "Only of the second flight the time engaged is known.",
                 "In the second flight the distance flown is 600 m shorter.",
                 "The distance from the path, RMS is the same.",
                 "The second flight has 2 more missed periods.",

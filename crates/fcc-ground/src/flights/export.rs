@@ -5,7 +5,7 @@ use std::io::{self, BufWriter, Write};
 
 use axum::body::Bytes;
 use fcc_record::{Recording, timestamp};
-use futures_util::Stream;
+use futures_util::{Stream, StreamExt as _};
 use serde::Deserialize;
 use tokio::sync::mpsc;
 
@@ -81,10 +81,12 @@ pub(super) fn stream(recording: Recording, format: Format) -> impl Stream<Item =
             let _ = failed.blocking_send(Err(error));
         }
     });
-    futures_util::stream::unfold(parts, async |mut parts| {
+    let parts = futures_util::stream::unfold(parts, async |mut parts| {
         let part = parts.recv().await?;
         Some((part, parts))
-    })
+    });
+    // Compression asks again after the end.
+    parts.fuse()
 }
 
 fn write(recording: &Recording, format: Format, out: &mut impl Write) -> io::Result<()> {

@@ -221,6 +221,11 @@ fn a_flight_is_downloaded_for_other_programs() {
     assert!(gpx.trim_end().ends_with("</gpx>"));
     let kml = download("kml").text();
     assert_eq!(kml.matches("8.0000000,45.").count(), 101);
+    // A browser asks for it compressed: a gzip ends with the length (RFC 1952).
+    let what = format!("GET /api/flights/{file}/download?format=csv");
+    let packed = ground.send(&what, &["Accept-Encoding: gzip"], "").body;
+    assert!(packed.starts_with(&[0x1f, 0x8b]));
+    assert!(packed.ends_with(&(csv.len() as u32).to_le_bytes()));
     assert_eq!(
         ground
             .get(&format!("/api/flights/{file}/download?format=exe"))
