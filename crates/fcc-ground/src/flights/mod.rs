@@ -3,6 +3,7 @@
 mod compare;
 mod export;
 mod scan;
+mod summaries;
 mod summary;
 
 use std::fs::{self, File};
@@ -29,7 +30,7 @@ use serde_json::{Value, json};
 use crate::failure::{Failure, aside};
 use crate::plans::hash_text;
 use crate::station::Station;
-pub(crate) use summary::Summaries;
+pub(crate) use summaries::Summaries;
 
 /// Of a report: what it may do where it is shown. It has its styles and scripts in itself,
 /// and texts of a recording; it gets nothing of this page.
