@@ -81,9 +81,11 @@ export interface Flight {
   duration_s: number;
   distance_m: number | null;
   whole: boolean;
-  faults: string[] | number;
+  /** It is the daemon's present recording. */
+  being_written?: boolean;
+  faults: string[] | number | null;
   bytes: number;
-  thumbnail: [number, number][];
+  thumbnail?: [number, number][] | null;
 }
 
 export interface FlightEvent {

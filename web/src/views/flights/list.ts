@@ -82,10 +82,12 @@ interface CardActions {
 }
 
 function card(flight: Flight, flights: Flight[], actions: CardActions): HTMLElement {
-  const faults = Array.isArray(flight.faults) ? flight.faults : flight.faults > 0 ? [`${flight.faults} faults`] : [];
+  const count = Array.isArray(flight.faults) ? 0 : (flight.faults ?? 0);
+  const faults = Array.isArray(flight.faults) ? flight.faults : count > 0 ? [`${count} ${count === 1 ? "fault" : "faults"}`] : [];
+  const state = flight.being_written ? "being recorded" : flight.whole ? "no faults" : "unfinished recording";
   const name = utc(flight.start_utc_s);
   const remove = button(`Delete the flight of ${name}`, () => actions.ask(true), { icon: "trash", bare: true, class: "button plain" });
-  remove.disabled = !writable.get();
+  remove.disabled = !writable.get() || flight.being_written === true;
   const compare = button(actions.first === flight.file ? "Chosen" : actions.first === null ? "Compare" : "Compare with this", actions.choose);
   compare.setAttribute("aria-pressed", String(actions.first === flight.file));
   compare.disabled = flights.length < 2;
@@ -93,15 +95,15 @@ function card(flight: Flight, flights: Flight[], actions: CardActions): HTMLElem
   return h(
     "li",
     { class: "flight panel" },
-    thumbnail(flight.thumbnail),
+    thumbnail(flight.thumbnail ?? []),
     h(
       "div",
       { class: "flight-what" },
       h("a", { class: "flight-open", href: `#/flights/${part(flight.file)}` }, name),
       h("span", { class: "note mono" }, flight.file),
-      faults.length > 0 ? h("span", { class: "flight-faults" }, icon("warning"), faults.join("; ")) : h("span", { class: "note" }, flight.whole ? "no faults" : "unfinished recording"),
+      faults.length > 0 ? h("span", { class: "flight-faults" }, icon("warning"), faults.join("; ")) : h("span", { class: "note" }, state),
     ),
-    h("dl", { class: "flight-figures" }, ...[["Aircraft", flight.instance], ["Duration", duration(flight.duration_s)], ["Distance", flight.distance_m === null ? "–" : withUnit("distance", flight.distance_m)], ["Size", bytes(flight.bytes)]].map(([label = "", value = ""]) => h("div", {}, h("dt", {}, label), h("dd", {}, value)))),
+    h("dl", { class: "flight-figures" }, ...[["Aircraft", flight.instance], ["Duration", duration(flight.duration_s)], ["Distance", flight.distance_m === null || flight.distance_m === undefined ? "–" : withUnit("distance", flight.distance_m)], ["Size", bytes(flight.bytes)]].map(([label = "", value = ""]) => h("div", {}, h("dt", {}, label), h("dd", {}, value)))),
     actions.asked
       ? h("div", { class: "row flight-actions", role: "group", "aria-label": "Delete" }, h("span", {}, "Delete this recording for good?"), button("Delete", actions.remove, { class: "button danger", icon: "trash" }), button("Keep", () => actions.ask(false)))
       : h("div", { class: "row flight-actions" }, h("a", { class: "button primary", href: `#/flights/${part(flight.file)}`, "aria-label": `Replay the flight of ${name}` }, icon("play"), "Replay"), compare, h("a", { class: "button", href: `/api/flights/${part(flight.file)}/report`, target: "_blank", rel: "noopener", "aria-label": `Report of ${name}` }, "Report"), h("span", { class: "downloads" }, icon("download"), ...["mcap", "csv", "gpx", "kml"].map(link)), remove),

@@ -8,6 +8,8 @@ import { FONT, palette } from "../../design/theme";
 const LABELS = ["0.1", "0.3", "1", "3", "10", "32", "100", "316", "1 ms", "3", "10", "32", "100", ">"];
 /** From here on a tick is late for a loop of 1 kHz. */
 const LATE_BIN = 8;
+/** Narrower bins have every second label. */
+const NARROW_PX = 28;
 const BOTTOM_PX = 30, TOP_PX = 16;
 
 export class Histogram {
@@ -70,7 +72,7 @@ export class Histogram {
       context.fillStyle = at >= LATE_BIN ? colours.warning : at >= 6 ? colours.caution : colours.accent;
       if (count > 0) context.fillRect(x + 3, y(count), step - 6, height - BOTTOM_PX - y(count));
       context.fillStyle = colours.muted;
-      context.fillText(label, x + step / 2, height - BOTTOM_PX + 13);
+      if (step > NARROW_PX || at % 2 === 0) context.fillText(label, x + step / 2, height - BOTTOM_PX + 13);
       if (count > 0) {
         context.fillStyle = colours.text;
         context.fillText(count >= 10_000 ? `${(count / 1000).toFixed(0)}k` : String(count), x + step / 2, y(count) - 4);
@@ -78,7 +80,7 @@ export class Histogram {
     });
     context.fillStyle = colours.muted;
     context.textAlign = "left";
-    context.fillText("Late by at most, µs; from 1 ms in ms. Counts are on a logarithm.", 2, height - 3);
+    context.fillText(step > NARROW_PX ? "Late by at most, µs; from 1 ms in ms. Counts are on a logarithm." : "µs; from 1 ms in ms", 2, height - 3);
     context.strokeStyle = colours.line;
     context.beginPath();
     context.moveTo(0, height - BOTTOM_PX + 0.5);
