@@ -40,6 +40,7 @@ export class PlanLayer {
   #active = 0;
   #selected: Part | null = null;
   #wrong = NONE;
+  #dragging = false;
   readonly #stop: () => void;
 
   constructor(
@@ -80,6 +81,8 @@ export class PlanLayer {
 
   #build(): void {
     const focused = this.map.getContainer().ownerDocument.activeElement?.getAttribute("data-part") ?? null;
+    // A point that is dragged would be taken out of the hand.
+    if (this.#dragging) return;
     this.group.clearLayers();
     const plan = this.#plan;
     if (!plan) return;
@@ -142,8 +145,15 @@ export class PlanLayer {
       draggable: movable, keyboard: movable, interactive: movable, title: label, alt: label, autoPan: true, zIndexOffset: part.of === "item" ? 100 : 0,
     });
     marker.on("click", () => this.options.selected?.(part));
-    marker.on("dragstart", () => this.options.selected?.(part));
-    marker.on("dragend", () => this.options.moved?.(part, toPlace(marker.getLatLng())));
+    marker.on("dragstart", () => {
+      this.#dragging = true;
+      this.options.selected?.(part);
+    });
+    marker.on("dragend", () => {
+      this.#dragging = false;
+      this.options.moved?.(part, toPlace(marker.getLatLng()));
+      this.#build();
+    });
     marker.addTo(this.group);
     const element = marker.getElement();
     if (!element) return;
