@@ -80,7 +80,7 @@ class Ground:
         return next((one for one in found if one["instance"] == self.instance), None)
 
     def tick(self) -> Any:
-        """The newest tick, by `fccd top`."""
+        """Return the newest tick, as `fccd top` shows it."""
         command = [self.fccd, "top", "--json", "--instance", self.instance]
         return json.loads(subprocess.check_output(command))["tick"]
 
