@@ -44,7 +44,7 @@ endif
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: python advisories lock reproducible package-check wheels deb test-attacks test-contingencies test-fences test-glides test-guidance test-landings test-landings-beside test-plan-real-time test-recordings test-raw-edges test-upsets test-android android android-check android-package test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
+.PHONY: python advisories lock reproducible package-check wheels deb test-attacks test-contingencies test-fences test-glides test-guidance test-landings test-landings-beside test-plan-real-time test-recordings test-raw-edges test-upsets test-android android android-check android-package test-deb test-vm test-cross check-cross help faulty fly ground fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { print $$1 "\t" $$2 }' $(MAKEFILE_LIST) | LC_ALL=C sort | \
@@ -61,6 +61,13 @@ build: $(STAMPS)/rust ## Build target/release/fccd
 
 fly: build ## Fly the built-in aircraft through the timed pattern, in real time
 	$(FCCD) fly
+
+# For ground, such as GROUND_STATION="--listen 0.0.0.0:8460".
+GROUND_STATION ?=
+
+ground: build $(STAMPS)/page ## Draw plans in a browser, fly them with the built-in aircraft, and watch (GROUND_STATION=)
+	cargo build --locked --release -p fcc-ground
+	FCCD=$(FCCD) STATION=$(TARGET)/release/fcc-ground ./scripts/ground $(GROUND_STATION)
 
 python: $(STAMPS)/python-module ## Make .venv, with the Python module and the tools of hil/
 
@@ -104,7 +111,8 @@ WORKERS := $(shell expr $$(nproc) + 1)
 
 test-python: faulty $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/systemd
 	$(BUILD_FCCD) -p thermostat --bin thermostat
-	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) \
+	cargo build --locked --release -p fcc-ground
+	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) FCC_GROUND=$(abspath $(TARGET))/release/fcc-ground \
 	    $(PYTHON) -m pytest hil --numprocesses $(WORKERS) --dist loadfile
 
 test-x-plane: build $(STAMPS)/python-module ## Run all steps of `fccd x-plane check` in full against the stand-in (3 minutes)
@@ -338,7 +346,7 @@ doc: $(STAMPS)/rust ## Build the API documentation
 	cargo doc --locked --workspace --no-deps --all-features
 
 # Crates that are not published: the Python module is published as a wheel.
-PRIVATE := fake-libandroid fcc-android fcc-phone fcc-py pendulum servo-board-firmware thermostat bench-tick
+PRIVATE := fake-libandroid fcc-android fcc-ground fcc-phone fcc-py pendulum servo-board-firmware thermostat bench-tick
 # Where they are built from their packages. cargo takes a package of the same
 # version for the same, so what an earlier run unpacked and built is removed.
 PACKAGED := $(TARGET)/packaged
@@ -381,6 +389,14 @@ $(STAMPS)/python: hil/pyproject.toml hil/locked.txt
 	python3 -m venv $(VENV)
 	$(PYTHON) -m pip install $(QUIET) --require-hashes -r hil/locked.txt
 	$(PYTHON) -m pip install --quiet --no-deps --no-build-isolation --editable ./hil
+	@mkdir -p $(STAMPS) && touch $@
+
+# The page of the ground station, which is put into its program.
+PAGE := $(shell find web -name node_modules -prune -o -name dist -prune -o -type f -print)
+
+$(STAMPS)/page: $(PAGE)
+	@command -v npm >/dev/null || ./scripts/apt-install nodejs npm
+	cd web && npm ci --no-audit --no-fund && npm run build
 	@mkdir -p $(STAMPS) && touch $@
 
 $(STAMPS)/strace:

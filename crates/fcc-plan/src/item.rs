@@ -3,10 +3,10 @@
 use core::fmt;
 
 use fcc_core::units::KNOT_MPS;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A place on the WGS-84 ellipsoid.
-#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+#[derive(Clone, Copy, PartialEq, Debug, Deserialize, Serialize)]
 pub struct Place {
     /// Geodetic latitude in degrees, -90 to 90.
     pub latitude_deg: f64,
@@ -15,7 +15,7 @@ pub struct Place {
 }
 
 /// What an altitude is measured from.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum AltitudeDatum {
     /// Mean sea level.
@@ -27,7 +27,7 @@ pub enum AltitudeDatum {
 }
 
 /// An altitude.
-#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+#[derive(Clone, Copy, PartialEq, Debug, Deserialize, Serialize)]
 pub struct Altitude {
     /// In m, -1,000 to 20,000.
     pub m: f64,
@@ -36,7 +36,7 @@ pub struct Altitude {
 }
 
 /// A demanded speed.
-#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+#[derive(Clone, Copy, PartialEq, Debug, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Speed {
     /// Calibrated airspeed in m/s.
@@ -46,7 +46,7 @@ pub enum Speed {
 }
 
 /// When a loiter ends.
-#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+#[derive(Clone, Copy, PartialEq, Debug, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LoiterEnd {
     /// Never, but by a command.
@@ -60,7 +60,7 @@ pub enum LoiterEnd {
 }
 
 /// A circle around a place.
-#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+#[derive(Clone, Copy, PartialEq, Debug, Deserialize, Serialize)]
 pub struct Loiter {
     /// The centre; none: where the previous item ends.
     pub place: Option<Place>,
@@ -78,7 +78,7 @@ pub struct Loiter {
 
 /// One item of a plan. Items are flown in order; those without a place take
 /// effect when the one before them is done.
-#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+#[derive(Clone, Copy, PartialEq, Debug, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case", tag = "kind")]
 pub enum Item {
     /// Fly to a place (`MAV_CMD_NAV_WAYPOINT`, 16).

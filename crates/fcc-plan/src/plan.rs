@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Write as _};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
 use crate::command;
@@ -27,7 +27,8 @@ pub mod limits {
 }
 
 /// Where the aircraft takes off and returns to.
-#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+#[derive(Clone, Copy, PartialEq, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
 pub struct Home {
     /// Where.
     pub place: Place,
@@ -36,7 +37,8 @@ pub struct Home {
 }
 
 /// A polygon of a fence.
-#[derive(Clone, PartialEq, Debug, Serialize)]
+#[derive(Clone, PartialEq, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
 pub struct Polygon {
     /// Its corners, at least 3, in order; the last is joined to the first. It is
     /// the side that has less than half of the earth.
@@ -44,11 +46,13 @@ pub struct Polygon {
     /// Stay inside; otherwise outside.
     pub inclusion: bool,
     /// The group of an inclusion.
+    #[serde(default)]
     pub group: u16,
 }
 
 /// A circle of a fence.
-#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+#[derive(Clone, Copy, PartialEq, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
 pub struct Circle {
     /// The centre.
     pub centre: Place,
@@ -57,12 +61,14 @@ pub struct Circle {
     /// Stay inside; otherwise outside.
     pub inclusion: bool,
     /// The group of an inclusion.
+    #[serde(default)]
     pub group: u16,
 }
 
 /// Where the aircraft may fly: inside all inclusions of at least one group, if there is any,
 /// and outside all others.
-#[derive(Clone, PartialEq, Debug, Default, Serialize)]
+#[derive(Clone, PartialEq, Debug, Default, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Fence {
     /// Polygons.
     pub polygons: Vec<Polygon>,
@@ -85,7 +91,8 @@ impl Fence {
 }
 
 /// A place to fly to instead of home.
-#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+#[derive(Clone, Copy, PartialEq, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
 pub struct RallyPoint {
     /// Where.
     pub place: Place,
@@ -94,7 +101,8 @@ pub struct RallyPoint {
 }
 
 /// A mast or a building: a cylinder.
-#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+#[derive(Clone, Copy, PartialEq, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
 pub struct Obstacle {
     /// The centre.
     pub centre: Place,
@@ -105,7 +113,8 @@ pub struct Obstacle {
 }
 
 /// A flight plan.
-#[derive(Clone, PartialEq, Debug, Default, Serialize)]
+#[derive(Clone, PartialEq, Debug, Default, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Plan {
     /// Where the aircraft takes off and returns to.
     pub home: Option<Home>,

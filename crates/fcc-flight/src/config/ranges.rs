@@ -101,7 +101,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("built-in.wind_from_deg", 0.0, 360.0),
     ("built-in.wind_kt", 0.0, 60.0),
     ("built-in.delay_ms", 0.0, 1_000.0),
-    ("built-in.engage_at_s", 1.2, 3_600.0),
+    ("built-in.engage_at_s", 1.2, 31_622_400.0),
     ("built-in.engine_stops_at_s", 0.0, 86_400.0),
     ("built-in.alternator_stops_at_s", 0.0, 86_400.0),
     ("built-in.battery_charge_percent", 0.0, 100.0),

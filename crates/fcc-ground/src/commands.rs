@@ -1,0 +1,191 @@
+//! Commands to a daemon: each once, and in time.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use axum::Json;
+use axum::extract::{Path, State};
+use fcc_live::{Command, Commander};
+use fcc_telemetry::Instance;
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use crate::failure::{Failure, Sent, aside};
+use crate::station::{Station, instance_of};
+
+/// A command may be sent so long before its deadline at most.
+const LONGEST_MS: u64 = 60_000;
+/// Numbers that are remembered: those of a minute.
+const MOST_NUMBERS: usize = 10_000;
+
+/// ms since 1970, UTC.
+pub(crate) fn utc_ms() -> u64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH);
+    since.map_or(0, |since| since.as_millis() as u64)
+}
+
+/// The commands of the last minute, and who may send one now.
+#[derive(Debug, Default)]
+pub(crate) struct Orders {
+    numbers: Mutex<BTreeMap<u64, u64>>,
+    /// Held while a command is sent: one at a time.
+    pub(crate) turn: Mutex<()>,
+}
+
+/// A command's number and the time until which it may be carried out.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub(crate) struct Order {
+    pub(crate) number: u64,
+    pub(crate) deadline_ms_utc: u64,
+}
+
+impl Order {
+    /// # Errors
+    /// When the time is over.
+    pub(crate) fn in_time(self, now_ms: u64) -> Result<(), Failure> {
+        if now_ms > self.deadline_ms_utc {
+            let late_ms = now_ms - self.deadline_ms_utc;
+            return Err(Failure::refused(format!(
+                "it arrived {late_ms} ms after its deadline: look at the aircraft, and send it again"
+            )));
+        }
+        Ok(())
+    }
+}
+
+impl Orders {
+    /// Takes a number, which is never taken again.
+    ///
+    /// # Errors
+    /// When it is late, or was taken before.
+    pub(crate) fn take(&self, order: Order, now_ms: u64) -> Result<(), Failure> {
+        order.in_time(now_ms)?;
+        if order.deadline_ms_utc - now_ms > LONGEST_MS {
+            return Err(Failure::refused(format!(
+                "its deadline is more than {} s from now: set the clock of one of both machines",
+                LONGEST_MS / 1_000
+            )));
+        }
+        let mut numbers = self.numbers.lock().unwrap_or_else(PoisonError::into_inner);
+        // A repeated one is late from then on.
+        numbers.retain(|_, deadline_ms| *deadline_ms >= now_ms);
+        if numbers.contains_key(&order.number) {
+            return Err(Failure::refused(
+                "its number was used before: it is not carried out twice",
+            ));
+        }
+        if numbers.len() >= MOST_NUMBERS {
+            return Err(Failure::refused("too many commands in a minute: wait"));
+        }
+        numbers.insert(order.number, order.deadline_ms_utc);
+        Ok(())
+    }
+}
+
+/// The body of a command.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Commanded {
+    number: u64,
+    deadline_ms_utc: u64,
+    command: What,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum What {
+    Engage,
+    Disengage,
+    Pause,
+    Resume,
+    Return,
+    Land,
+    GoAround,
+    Item(u16),
+    Set(BTreeMap<String, f64>),
+    GoTo {
+        latitude_deg: f64,
+        longitude_deg: f64,
+        altitude_m: f64,
+    },
+}
+
+impl From<What> for Command {
+    fn from(what: What) -> Self {
+        match what {
+            What::Engage => Self::Engage,
+            What::Disengage => Self::Disengage,
+            What::Pause => Self::set([("pause", 1.0)]),
+            What::Resume => Self::set([("plan_item", 0.0)]),
+            What::Return => Self::set([("return_home", 1.0)]),
+            What::Land => Self::set([("land", 1.0)]),
+            What::GoAround => Self::set([("go_around", 1.0)]),
+            What::Item(number) => Self::set([("plan_item", f64::from(number))]),
+            What::Set(values) => Self::Set(values.into_iter().collect()),
+            What::GoTo {
+                latitude_deg,
+                longitude_deg,
+                altitude_m,
+            } => Self::set([
+                ("go_to_latitude_rad", latitude_deg.to_radians()),
+                ("go_to_longitude_rad", longitude_deg.to_radians()),
+                ("go_to_altitude_m", altitude_m),
+            ]),
+        }
+    }
+}
+
+/// Sends a command if it is still in time; returns the tick that carried it out.
+pub(crate) fn send(instance: &Instance, command: &Command, order: Order) -> Result<u64, Failure> {
+    let mut commander = Commander::open(instance).map_err(Failure::refused)?;
+    order.in_time(utc_ms())?;
+    commander.command(command).map_err(Failure::refused)
+}
+
+/// `POST /api/live/{instance}/command`.
+pub(crate) async fn command(
+    State(station): State<Arc<Station>>,
+    Path(instance): Path<String>,
+    Sent(commanded): Sent<Commanded>,
+) -> Result<Json<Value>, Failure> {
+    let instance = instance_of(&instance)?;
+    let order = Order {
+        number: commanded.number,
+        deadline_ms_utc: commanded.deadline_ms_utc,
+    };
+    station.orders.take(order, utc_ms())?;
+    let command = Command::from(commanded.command);
+    let tick = aside(move || {
+        let turn = station.orders.turn.lock();
+        let _turn = turn.unwrap_or_else(PoisonError::into_inner);
+        send(&instance, &command, order)
+    })
+    .await?;
+    Ok(Json(json!({ "carried_out": tick })))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_command_is_taken_once_and_in_time() {
+        let orders = Orders::default();
+        let take = |number, deadline_ms_utc, now_ms| {
+            let order = Order {
+                number,
+                deadline_ms_utc,
+            };
+            orders.take(order, now_ms).is_ok()
+        };
+        assert!(take(1, 5_000, 4_000));
+        assert!(!take(1, 5_000, 4_001), "repeated");
+        assert!(!take(1, 6_000, 4_002), "repeated with another deadline");
+        assert!(!take(2, 3_999, 4_003), "late");
+        assert!(!take(3, 70_000, 4_004), "far in the future");
+        assert!(take(4, 64_000, 4_005));
+        // Its first deadline is over, and so is what was recorded of it.
+        assert!(!take(1, 5_000, 5_001), "repeated and late");
+        assert!(take(5, 5_001, 5_001), "at its deadline");
+    }
+}

@@ -1,0 +1,58 @@
+//! The doctor's findings, by `fccd doctor`.
+
+use std::process::Stdio;
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::Json;
+use axum::extract::State;
+use serde_json::{Value, json};
+use tokio::process::Command;
+use tokio::sync::Mutex;
+use tokio::time::timeout;
+
+use crate::failure::Failure;
+use crate::station::Station;
+
+const PATIENCE: Duration = Duration::from_secs(20);
+/// One at a time: it reads the whole machine.
+static TURN: Mutex<()> = Mutex::const_new(());
+
+/// `GET /api/doctor`.
+pub(crate) async fn doctor(State(station): State<Arc<Station>>) -> Result<Json<Value>, Failure> {
+    let _turn = TURN.lock().await;
+    let program = station.fccd.display();
+    let running = Command::new(&station.fccd)
+        .args(["doctor", "--json"])
+        .stdin(Stdio::null())
+        .stderr(Stdio::null())
+        .kill_on_drop(true)
+        .output();
+    let output = timeout(PATIENCE, running).await;
+    let output = output.map_err(|_| Failure::internal(format!("{program} doctor does not end")))?;
+    let output = output.map_err(|error| {
+        Failure::internal(format!(
+            "{program}: cannot be started: {error}: give it with --fccd FILE"
+        ))
+    })?;
+    let found = serde_json::from_slice(&output.stdout);
+    let found: Value = found.map_err(|error| {
+        Failure::internal(format!(
+            "{program} doctor --json: is not understood: {error}"
+        ))
+    })?;
+    let findings = found.get("findings").and_then(Value::as_array);
+    Ok(Json(findings.into_iter().flatten().map(finding).collect()))
+}
+
+/// A finding as the page shows it.
+fn finding(found: &Value) -> Value {
+    let part = |name: &str| found.get(name).cloned().unwrap_or_default();
+    json!({
+        "name": part("name"),
+        "state": part("grade"),
+        "found": part("found"),
+        "advice": part("why"),
+        "remedies": part("remedies"),
+    })
+}

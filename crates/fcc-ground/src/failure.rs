@@ -1,0 +1,79 @@
+//! Answers that are errors: a status and a text that says what, where and what to do.
+
+use axum::Json;
+use axum::body::Bytes;
+use axum::extract::{FromRequest, Request};
+use axum::http::StatusCode;
+use axum::response::{IntoResponse, Response};
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+
+/// Why a request is not answered as asked.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    status: StatusCode,
+    body: Value,
+}
+
+impl Failure {
+    #[expect(clippy::needless_pass_by_value, reason = "`map_err` gives values")]
+    pub(crate) fn new(status: StatusCode, what: impl ToString) -> Self {
+        Self {
+            status,
+            body: json!({ "error": what.to_string() }),
+        }
+    }
+
+    pub(crate) fn bad(what: impl ToString) -> Self {
+        Self::new(StatusCode::BAD_REQUEST, what)
+    }
+
+    pub(crate) fn missing(what: impl ToString) -> Self {
+        Self::new(StatusCode::NOT_FOUND, what)
+    }
+
+    pub(crate) fn internal(what: impl ToString) -> Self {
+        Self::new(StatusCode::INTERNAL_SERVER_ERROR, what)
+    }
+
+    /// What the aircraft, or the station for it, does not carry out.
+    #[expect(clippy::needless_pass_by_value, reason = "`map_err` gives values")]
+    pub(crate) fn refused(why: impl ToString) -> Self {
+        Self::with(StatusCode::CONFLICT, json!({ "refused": why.to_string() }))
+    }
+
+    pub(crate) const fn with(status: StatusCode, body: Value) -> Self {
+        Self { status, body }
+    }
+}
+
+impl IntoResponse for Failure {
+    fn into_response(self) -> Response {
+        (self.status, Json(self.body)).into_response()
+    }
+}
+
+/// Runs what may take long, or waits for a disk, beside the server's threads.
+pub(crate) async fn aside<T: Send + 'static>(
+    work: impl FnOnce() -> Result<T, Failure> + Send + 'static,
+) -> Result<T, Failure> {
+    let done = tokio::task::spawn_blocking(work).await;
+    done.unwrap_or_else(|error| Err(Failure::internal(format!("the station failed: {error}"))))
+}
+
+/// The body of a request, from JSON.
+#[derive(Debug)]
+pub(crate) struct Sent<T>(pub(crate) T);
+
+impl<T: DeserializeOwned, S: Send + Sync> FromRequest<S> for Sent<T> {
+    type Rejection = Failure;
+
+    async fn from_request(request: Request, state: &S) -> Result<Self, Failure> {
+        let bytes = Bytes::from_request(request, state).await;
+        let bytes =
+            bytes.map_err(|error| Failure::bad(format!("the body is not read: {error}")))?;
+        let read = serde_json::from_slice(&bytes);
+        read.map(Self)
+            .map_err(|error| Failure::bad(format!("the body is not as expected: {error}")))
+    }
+}

@@ -1,0 +1,48 @@
+//! Small files that must survive a loss of power whole.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Read as _, Write as _};
+use std::os::unix::fs::OpenOptionsExt as _;
+use std::path::Path;
+
+/// Writes a file in one piece: a reader, and the disk after a loss of power, have the old
+/// content or the new one. It is on the disk when this returns.
+pub(crate) fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or_else(|| Path::new("."));
+    let mut new = path.as_os_str().to_owned();
+    new.push(".new");
+    let mut file = OpenOptions::new()
+        .write(true)
+        .create(true)
+        .truncate(true)
+        .mode(0o600)
+        .open(&new)?;
+    file.write_all(content)?;
+    file.sync_all()?;
+    fs::rename(&new, path)?;
+    File::open(folder)?.sync_all()
+}
+
+/// Removes a file; when this returns it is gone from the disk, too.
+pub(crate) fn remove(path: &Path) -> io::Result<()> {
+    fs::remove_file(path)?;
+    path.parent()
+        .map_or(Ok(()), |folder| File::open(folder)?.sync_all())
+}
+
+/// The text of a file of at most so many bytes.
+pub(crate) fn read_limited(path: &Path, most_bytes: u64) -> io::Result<String> {
+    let mut text = String::new();
+    File::open(path)?
+        .take(most_bytes + 1)
+        .read_to_string(&mut text)?;
+    if text.len() as u64 > most_bytes {
+        return Err(io::Error::other(format!(
+            "is larger than {most_bytes} bytes"
+        )));
+    }
+    Ok(text)
+}

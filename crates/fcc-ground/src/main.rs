@@ -1,0 +1,7 @@
+//! `fcc-ground`: the ground station.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    fcc_ground::run().into()
+}

@@ -1,0 +1,248 @@
+//! Starts the station, prints its link, and ends it.
+
+use std::env;
+use std::fs;
+use std::io::{self, ErrorKind, Write as _};
+use std::net::SocketAddr;
+use std::path::PathBuf;
+
+use clap::Parser as _;
+use fcc_flight::config::ConfigError;
+use serde_json::json;
+use tokio::net::TcpListener;
+use tokio::signal::unix::{SignalKind, signal};
+use tokio::task::JoinHandle;
+
+use crate::cli::Cli;
+use crate::daemon_config::DaemonConfigs;
+use crate::exit::Exit;
+use crate::guard::Hosts;
+use crate::map::MapFile;
+use crate::server;
+use crate::station::{self, router};
+use crate::token::Token;
+
+/// Why the station does not start.
+#[derive(thiserror::Error, Debug)]
+#[non_exhaustive]
+pub enum StartError {
+    /// A configuration is wrong.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// The map cannot be used.
+    #[error("--map {0}")]
+    Map(String),
+    /// No folder was given, and none is known.
+    #[error("--state DIR: give a folder for drafts: neither STATE_DIRECTORY nor HOME is set")]
+    NoState,
+    /// The folder of drafts cannot be used.
+    #[error("{path}: cannot be used: {source}")]
+    State {
+        /// The folder.
+        path: PathBuf,
+        /// The system's error.
+        source: io::Error,
+    },
+    /// Another program uses the port.
+    #[error("{0} is used by another program: end it, or give another address with --listen")]
+    Taken(SocketAddr),
+    /// The address cannot be used.
+    #[error("--listen {address}: {source}")]
+    Listen {
+        /// The address.
+        address: SocketAddr,
+        /// The system's error.
+        source: io::Error,
+    },
+    /// The system does not give what is needed.
+    #[error("{0}")]
+    System(String),
+}
+
+impl StartError {
+    const fn exit(&self) -> Exit {
+        match self {
+            Self::Config(_) | Self::Map(_) | Self::NoState => Exit::Usage,
+            Self::Taken(_) => Exit::Taken,
+            Self::State { .. } | Self::Listen { .. } | Self::System(_) => Exit::Failure,
+        }
+    }
+}
+
+/// A station that serves.
+#[derive(Debug)]
+pub struct Running {
+    /// Where it listens.
+    pub address: SocketAddr,
+    /// What permits changes.
+    pub token: Token,
+    recordings: PathBuf,
+    state: PathBuf,
+    serving: JoinHandle<()>,
+}
+
+impl Running {
+    /// The link that permits changes.
+    pub fn link(&self) -> String {
+        format!("http://{}/#token={}", self.address, self.token.as_str())
+    }
+
+    /// Ends it.
+    pub fn stop(&self) {
+        self.serving.abort();
+    }
+}
+
+fn state_folder(given: Option<PathBuf>) -> Result<PathBuf, StartError> {
+    let of = |name: &str| {
+        env::var_os(name)
+            .filter(|value| !value.is_empty())
+            .map(PathBuf::from)
+    };
+    let by_user = || {
+        of("XDG_STATE_HOME")
+            .or_else(|| Some(of("HOME")?.join(".local/state")))
+            .map(|folder| folder.join("fcc-ground"))
+    };
+    let found = given.or_else(|| of("STATE_DIRECTORY")).or_else(by_user);
+    found.ok_or(StartError::NoState)
+}
+
+/// Starts a station within a runtime of tokio.
+///
+/// # Errors
+/// When a configuration, the map, the folder or the address cannot be used.
+pub async fn start(cli: Cli) -> Result<Running, StartError> {
+    let configs = DaemonConfigs::load(&cli.configs)?;
+    let map = cli
+        .map
+        .as_ref()
+        .map(|path| MapFile::open(path, &cli.map_attribution));
+    let map = map.transpose().map_err(StartError::Map)?;
+    let state = state_folder(cli.state)?;
+    let unusable = |source| StartError::State {
+        path: state.clone(),
+        source,
+    };
+    fs::create_dir_all(&state).map_err(unusable)?;
+    let token = Token::of(&state, cli.new_token).map_err(unusable)?;
+    let recordings = cli.recordings.or_else(|| configs.recordings.clone());
+    let recordings = recordings.unwrap_or_else(|| "recordings".into());
+    let listener = TcpListener::bind(cli.listen).await;
+    let listener = listener.map_err(|source| match source.kind() {
+        ErrorKind::AddrInUse => StartError::Taken(cli.listen),
+        _ => StartError::Listen {
+            address: cli.listen,
+            source,
+        },
+    })?;
+    let address = listener.local_addr();
+    let address = address.map_err(|error| StartError::System(error.to_string()))?;
+    let station = station::station(
+        token.clone(),
+        Hosts::new(&cli.hosts, address.port()),
+        (recordings.clone(), state.clone()),
+        cli.fccd,
+        cli.restarts,
+        map,
+        configs,
+    );
+    let station = station.map_err(StartError::System)?;
+    let serving = tokio::spawn(server::serve(listener, router(station)));
+    Ok(Running {
+        address,
+        token,
+        recordings,
+        state,
+        serving,
+    })
+}
+
+/// Prints where the station is; a reader that has left is no failure.
+fn announce(running: &Running, as_json: bool) -> io::Result<()> {
+    let link = running.link();
+    let line = if as_json {
+        json!({
+            "software": env!("CARGO_PKG_VERSION"),
+            "listen": running.address.to_string(),
+            "link": link,
+            "recordings": running.recordings,
+            "state": running.state,
+        })
+        .to_string()
+    } else {
+        format!("ground station: open {link}")
+    };
+    let mut out = io::stdout().lock();
+    let written = writeln!(out, "{line}").and_then(|()| out.flush());
+    written.or_else(|error| match error.kind() {
+        ErrorKind::BrokenPipe => Ok(()),
+        _ => Err(error),
+    })
+}
+
+fn message(text: impl std::fmt::Display) {
+    // A message that cannot be printed cannot be reported.
+    let _ = writeln!(io::stderr(), "fcc-ground: {text}");
+}
+
+/// The program: until it is interrupted or terminated.
+pub fn run() -> Exit {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            let exit = if error.use_stderr() {
+                Exit::Usage
+            } else {
+                Exit::Success
+            };
+            // As above.
+            let _ = error.print();
+            return exit;
+        }
+    };
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(2)
+        .max_blocking_threads(16)
+        .enable_all()
+        .build();
+    let runtime = match runtime {
+        Ok(runtime) => runtime,
+        Err(error) => {
+            message(error);
+            return Exit::Failure;
+        }
+    };
+    let exit = runtime.block_on(until_ended(cli));
+    // What waits for a disk or a daemon does not keep it.
+    runtime.shutdown_background();
+    exit
+}
+
+async fn until_ended(cli: Cli) -> Exit {
+    let as_json = cli.json;
+    let (Ok(mut interrupted), Ok(mut terminated)) = (
+        signal(SignalKind::interrupt()),
+        signal(SignalKind::terminate()),
+    ) else {
+        message("signals cannot be received");
+        return Exit::Failure;
+    };
+    let running = match start(cli).await {
+        Ok(running) => running,
+        Err(error) => {
+            message(&error);
+            return error.exit();
+        }
+    };
+    if let Err(error) = announce(&running, as_json) {
+        message(format!("the link cannot be printed: {error}"));
+        return Exit::Failure;
+    }
+    tokio::select! {
+        _ = interrupted.recv() => {}
+        _ = terminated.recv() => {}
+    }
+    running.stop();
+    Exit::Success
+}

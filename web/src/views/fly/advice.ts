@@ -1,0 +1,20 @@
+/** What to do about a condition that keeps the autopilot from engaging. */
+
+const ADVICE: readonly (readonly [RegExp, string])[] = [
+  [/engage switch.*silent|engage switch/i, "Switch the engage switch on, and check its sensor in Health."],
+  [/missing|too old|frozen/i, "Check this sensor's age in Health, its cable and its configuration."],
+  [/paused/i, "Continue the simulator."],
+  [/too slow/i, "Speed up, or begin the plan with a take-off."],
+  [/bank or pitch|spin/i, "Level the aircraft first."],
+  [/settling/i, "Wait: navigation settles within 15 s while the aircraft is still."],
+  [/time has stopped|nothing arrives/i, "Check that the simulator runs and reaches this board."],
+  [/replay/i, "End the simulator's replay."],
+  [/another|other program|stability/i, "Switch the other controller off."],
+  [/reverse/i, "Set the thrust lever to forward."],
+  [/contradict|implausible/i, "Compare the sensors in Health; calibrate the one that differs."],
+  [/reloaded|moved|jumped/i, "Wait until the aircraft stands or flies undisturbed."],
+  [/pilot moves/i, "Release the stick and the pedals."],
+];
+
+export const adviceFor = (condition: string): string | null =>
+  ADVICE.find(([pattern]) => pattern.test(condition))?.[1] ?? null;
