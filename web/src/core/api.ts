@@ -108,6 +108,8 @@ export interface Finding {
   state: string;
   found: string;
   advice: string | null;
+  /** Lines that mend it, and where each is written. */
+  remedies?: { place: string; line: string }[] | null;
 }
 
 export class Refused extends Error {

@@ -18,7 +18,8 @@ export class TrackLayer extends L.LayerGroup {
     private readonly colour: keyof Palette = "track",
     dashed = false,
   ) {
-    const style: L.PolylineOptions = { interactive: false, smoothFactor: 1, ...(dashed ? { dashArray: "8 6" } : {}) };
+    // Above the path of the plan, below the points.
+    const style: L.PolylineOptions = { pane: "shadowPane", interactive: false, smoothFactor: 1, ...(dashed ? { dashArray: "8 6" } : {}) };
     const edge = L.polyline([], { ...style, weight: 4.5 });
     const line = L.polyline([], { ...style, weight: 2.2 });
     super([edge, line]);

@@ -148,6 +148,6 @@ function finding(one: Finding): HTMLElement {
     "li",
     { class: good ? "good" : known ? "wrong" : "unknown" },
     h("span", { class: "finding-state" }, good || !known ? null : icon("warning"), one.state.replaceAll("_", " ")),
-    h("div", {}, h("strong", {}, one.name), h("span", { class: "note" }, ` ${one.found}`), one.advice ? h("code", { class: "mends" }, one.advice) : null),
+    h("div", {}, h("strong", {}, one.name), h("span", { class: "note" }, ` ${one.found}`), one.advice ? h("code", { class: "mends" }, one.advice) : null, ...(one.remedies ?? []).map((remedy) => h("code", { class: "mends", title: remedy.place }, `${remedy.place}: ${remedy.line}`))),
   );
 }
