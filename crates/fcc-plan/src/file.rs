@@ -83,14 +83,14 @@ fn each(file: &str, problems: &[Problem]) -> String {
 /// ```
 ///
 /// # Errors
-/// All problems, at most [`limits::PROBLEMS`], in the order of the items.
+/// All problems, at most [`limits::PROBLEMS`], in the order of the items, then the others.
 pub fn read(text: &str) -> Result<Plan, Vec<Problem>> {
     let read = match Format::of_text(text) {
         Format::QgcPlan => qgc_plan::read(text),
         Format::QgcWpl => mavproxy::read(text).unwrap_or_else(|| wpl::read(text)),
     };
     read.map_err(|mut problems| {
-        problems.sort_by_key(|problem| problem.item);
+        problems.sort_by_key(|problem| problem.item.unwrap_or(usize::MAX));
         problems
     })
 }

@@ -114,6 +114,13 @@ impl Reader {
             message,
         };
         let (index, command) = fields(line).map_err(refused)?;
+        if number == 0 && index == 1.0 {
+            // Said once: the other lines are numbered as if it were there.
+            self.count = 2;
+            let what = "1: the line of home, number 0, is missing: put it before this one (place 0, \
+                        0: not set)";
+            return Err(refused(("index".to_owned(), what.to_owned())));
+        }
         if index != number as f64 {
             let what = format!("{index}: this line is number {number}: number the lines from 0");
             return Err(refused(("index".to_owned(), what)));

@@ -29,7 +29,11 @@ pub(super) fn text(outcome: &Outcome, plan: &FlownPlan) -> String {
     }
     let _ = write!(text, "ended: {}", outcome.ending);
     if outcome.failsafes > 0 {
-        let times = if outcome.failsafes == 1 { "time" } else { "times" };
+        let times = if outcome.failsafes == 1 {
+            "time"
+        } else {
+            "times"
+        };
         let _ = write!(text, "; failsafe {} {times}", outcome.failsafes);
     }
     if outcome.overruns > 0 {
