@@ -637,7 +637,7 @@ class Estimate:
         """Standard deviation of the load that gusts cause, g."""
 
     @property
-    def estimated_angle_of_attack_rad(self) -> float:
+    def angle_of_attack_rad(self) -> float:
         """Angle of attack, rad."""
 
     @property

@@ -18,6 +18,9 @@ const LEARNED_OVER_S: f64 = 40.0;
 /// A difference beyond so many standard deviations, and m/s, is learned as that.
 const MOST_LEARNED_SDS: f64 = 3.0;
 const MOST_LEARNED_MPS: f64 = 2.0;
+/// Below this change by the law, m/s, nothing tells for it: in level flight a wind that changes
+/// is felt, too, and not shown.
+const TELLING_MPS: f64 = 0.4;
 /// The logarithms of likelihood ratios: from this sum on a tube is blocked; what a second takes
 /// away without evidence, and adds and takes away at most, for gusts last longer than a second;
 /// from this sum on nothing is learned.
@@ -48,8 +51,9 @@ pub(super) struct TrappedPressure {
     altitude: LowPass,
     felt: LowPass,
     is_begun: bool,
-    /// What changed over the last second beside that law: by the sensor, and by the
+    /// What changed over the last second by that law; and beside it, by the sensor and by the
     /// accelerometers.
+    law_mps: f64,
     shown_mps: f64,
     expected_mps: f64,
     /// The mean of their difference and its variance, learned.
@@ -67,6 +71,7 @@ impl TrappedPressure {
             altitude: LowPass::new(DIFFERENCE_LAG_S),
             felt: LowPass::new(DIFFERENCE_LAG_S),
             is_begun: false,
+            law_mps: 0.0,
             shown_mps: 0.0,
             expected_mps: 0.0,
             bias_mps: 0.0,
@@ -88,7 +93,8 @@ impl TrappedPressure {
             self.airspeed.reset(shown.sensor_mps);
             self.altitude.reset(shown.altitude_m);
             self.felt.reset(shown.felt_mps);
-            (self.shown_mps, self.expected_mps, self.evidence) = (0.0, 0.0, 0.0);
+            (self.law_mps, self.shown_mps, self.expected_mps) = (0.0, 0.0, 0.0);
+            self.evidence = 0.0;
             return None;
         }
         let (from_mps, from_m) = (self.airspeed.output(), self.altitude.output());
@@ -98,6 +104,7 @@ impl TrappedPressure {
         // Of the square of the airspeed, indicated.
         let trapped_mps = GRAVITY_MPS2 * shown.density_ratio * climbed_m / airspeed_mps.max(1.0);
         let forgotten = dt_s / OVER_S;
+        self.law_mps += trapped_mps - forgotten * self.law_mps;
         self.shown_mps += airspeed_mps - from_mps - trapped_mps - forgotten * self.shown_mps;
         self.expected_mps += felt_mps - trapped_mps - forgotten * self.expected_mps;
         let differs_mps = self.shown_mps - self.expected_mps - self.bias_mps;
@@ -105,7 +112,9 @@ impl TrappedPressure {
         let ratio_per_s = 0.5
             * (libm::log(open_mps2 / squared(NOISE_MPS)) + squared(differs_mps) / open_mps2
                 - squared(self.shown_mps / NOISE_MPS));
-        let evidence_per_s = (ratio_per_s - TAKEN_PER_S).clamp(LEAST_PER_S, MOST_PER_S);
+        let is_told = self.law_mps.abs() > TELLING_MPS;
+        let most_per_s = if is_told { MOST_PER_S } else { 0.0 };
+        let evidence_per_s = (ratio_per_s - TAKEN_PER_S).clamp(LEAST_PER_S, most_per_s);
         self.evidence = (self.evidence + evidence_per_s * dt_s).max(0.0);
         self.known_mps = if self.evidence > 0.0 {
             self.known_mps + shown.felt_mps
@@ -179,7 +188,7 @@ mod tests {
             found_s(climb_mps, |mps| -blocked(climb_mps)(mps), 0.0),
             None
         );
-        // Nor one in level flight whose accelerometer is off.
-        assert_eq!(found_s(0.0, |_| 0.0, 0.3), None);
+        // Nor one in level flight while the headwind falls by 2 kt/s.
+        assert_eq!(found_s(0.0, |_| 0.0, 2.0 * KNOT_MPS), None);
     }
 }
