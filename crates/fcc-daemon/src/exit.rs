@@ -42,7 +42,7 @@ exits! {
     HitGround = 16, "the built-in aircraft hit the ground";
     Overloaded = 17, "for too long the loop's ticks left no time to sleep; it released the controls and stopped";
     CalibrationRefused = 18, "a calibration would be poor, and was refused (calibrate)";
-    NotFlown = 19, "the plan was not flown to its end";
+    NotFlown = 19, "the plan was not flown to its end, or engaging was refused";
     ControlsNotChecked = 20, "a control is reversed, has no effect or was not confirmed, or the aircraft moved (check-controls)";
 }
 

@@ -22,7 +22,8 @@ pub struct End {
     pub missed: u64,
     /// Time from the first wake-up to the last, ns.
     pub duration_ns: u64,
-    /// The greatest lateness of a wake-up, ns.
+    /// The greatest lateness of a wake-up for the first period it served, a
+    /// missed one included, ns.
     pub worst_lateness_ns: u64,
     /// The loop's state at the last tick, as text.
     pub state: String,
@@ -91,14 +92,18 @@ impl RunStatistics {
         if end.ticks == 0 {
             end.first_tick = tick.number;
             self.first_woke_ns = woke_ns;
-        } else {
-            end.missed = end.missed.saturating_add(tick.missed);
         }
+        // The periods missed before the first tick belong to the file before.
+        let missed = if end.ticks == 0 { 0 } else { tick.missed };
+        end.missed = end.missed.saturating_add(missed);
         end.ticks += 1;
         end.last_tick = tick.number;
         end.duration_ns =
             u64::try_from(woke_ns.saturating_sub(self.first_woke_ns)).unwrap_or_default();
+        let period_s = tick.dt_s / (tick.missed as f64 + 1.0);
+        let late_by_missed_ns = (missed as f64 * period_s * 1e9).round() as u64;
         let lateness_ns = u64::try_from(tick.woke - tick.scheduled).unwrap_or_default();
+        let lateness_ns = lateness_ns.saturating_add(late_by_missed_ns);
         end.worst_lateness_ns = end.worst_lateness_ns.max(lateness_ns);
         self.last_state = Some(record.state.state());
     }

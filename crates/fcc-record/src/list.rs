@@ -25,7 +25,7 @@ pub struct Entry {
     pub duration_s: f64,
     /// Records in the file.
     pub ticks: u64,
-    /// The greatest lateness of a wake-up, µs.
+    /// The greatest lateness of a wake-up, for a missed period too, µs.
     pub worst_lateness_us: f64,
     /// The loop's state at the last tick in the file.
     pub state: String,

@@ -73,8 +73,14 @@ fn gaps(report: &RunReport) -> Vec<String> {
         ));
     }
     if continuity.lost == 0 {
+        let span = (continuity.last_tick + 1).saturating_sub(continuity.first_tick);
+        let missed = span.saturating_sub(continuity.ticks);
+        let but = match missed {
+            0 => String::new(),
+            _ => format!(", but for {} that the loop missed", ticks(missed)),
+        };
         sentences.push(format!(
-            "Every tick from {} to {} is in the file.",
+            "Every tick from {} to {} is in the file{but}.",
             continuity.first_tick, continuity.last_tick
         ));
     } else {

@@ -51,7 +51,11 @@ pub(crate) fn markup(table: &Table, text_columns: &[usize]) -> Markup {
 /// The table of the thesis (tables 6.1 to 6.3), a column per report, and below
 /// it values that the thesis does not have.
 pub fn timing_table(reports: &[TimingReport]) -> String {
-    let mut text = timing_columns(reports).to_string();
+    // Three fit on a terminal of 80 columns.
+    let tables = reports
+        .chunks(3)
+        .map(|some| timing_columns(some).to_string());
+    let mut text = tables.collect::<Vec<_>>().join("\n\n");
     if let Some(realtime) = reports.first().map(|r| &r.realtime)
         && !realtime.cpu_because.is_empty()
     {
@@ -179,17 +183,25 @@ pub fn recordings_table(entries: &[Entry]) -> String {
         table.add_row(vec![
             name.to_string_lossy().replace('\n', "\\n"),
             format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10),
-            format!("{:.1} µs", entry.worst_lateness_us),
+            if entry.worst_lateness_us < 1e4 {
+                format!("{:.1} µs", entry.worst_lateness_us)
+            } else {
+                format!("{:.1} ms", entry.worst_lateness_us * 1e-3)
+            },
             match entry.file {
                 Wholeness::Whole if entry.not_recorded > 0 => {
                     format!("{}, {} not recorded", entry.state, entry.not_recorded)
                 }
                 Wholeness::Whole => entry.state.clone(),
-                Wholeness::Damaged => "damaged: fccd recover".to_owned(),
-                Wholeness::Cut => "cut: fccd recover".to_owned(),
+                Wholeness::Damaged => "damaged".to_owned(),
+                Wholeness::Cut => "cut".to_owned(),
                 Wholeness::BeingWritten => "being written".to_owned(),
             },
         ]);
+    }
+    let to_recover = |entry: &Entry| matches!(entry.file, Wholeness::Damaged | Wholeness::Cut);
+    if entries.iter().any(to_recover) {
+        return format!("{table}\ncut, damaged: fccd recover FILE");
     }
     table.to_string()
 }

@@ -2,7 +2,7 @@
 
 use fcc_core::flight::guidance::TimedPatternConfig;
 
-use super::score::{FlightScore, Leg, LegScore, ROUNDING_S, Sample, ScoreError, score};
+use super::score::{Leg, LegScore, ROUNDING_S, Sample, ScoreError, score};
 use super::units::M_FT;
 
 /// Scores a flight through the timed pattern, from engagement on. It keeps the
@@ -16,8 +16,12 @@ pub(crate) struct FlightLog {
     step_s: f64,
     /// Samples of the present leg.
     leg: Vec<Sample>,
-    /// Scores of the complete legs, or why one of them has no score.
-    flown: Result<Vec<LegScore>, ScoreError>,
+    /// Legs before the present one.
+    passed: usize,
+    /// Scores of the complete legs.
+    flown: Vec<LegScore>,
+    /// Why the first leg without a score has none.
+    failed: Option<ScoreError>,
 }
 
 impl FlightLog {
@@ -28,7 +32,9 @@ impl FlightLog {
             captured: None,
             step_s: 0.0,
             leg: Vec::new(),
-            flown: Ok(Vec::new()),
+            passed: 0,
+            flown: Vec::new(),
+            failed: None,
         }
     }
 
@@ -38,20 +44,40 @@ impl FlightLog {
         if self.step_s == 0.0 {
             self.step_s = sample.time_s - captured.time_s;
         }
-        while let Ok(flown) = &mut self.flown {
-            let leg = leg(&self.pattern, &captured, flown.len());
-            if sample.time_s < leg.end_s - ROUNDING_S {
-                if sample.time_s >= leg.start_s - ROUNDING_S {
-                    self.leg.push(sample);
-                }
-                break;
-            }
-            match score(&self.leg, &[leg]) {
-                Ok(scored) => flown.extend(scored.legs),
-                Err(error) => self.flown = Err(error),
-            }
-            self.leg.clear();
+        let mut leg = leg(&self.pattern, &captured, self.passed);
+        if sample.time_s >= leg.end_s - ROUNDING_S {
+            self.close(&leg);
+            // Legs without a sample are passed at once.
+            let whole = (sample.time_s + ROUNDING_S - leg.start_s) / self.pattern.leg_s;
+            leg = self.pass((whole as usize).max(1), &captured);
         }
+        if sample.time_s >= leg.start_s - ROUNDING_S {
+            self.leg.push(sample);
+        }
+    }
+
+    /// Scores the present leg.
+    fn close(&mut self, leg: &Leg) {
+        match score(&self.leg, &[*leg]) {
+            Ok(scored) => self
+                .flown
+                .extend(scored.legs.into_iter().map(|scored| LegScore {
+                    number: Some(self.passed + 1),
+                    ..scored
+                })),
+            Err(error) => self.failed = self.failed.take().or(Some(error)),
+        }
+        self.leg.clear();
+    }
+
+    /// Goes on by so many legs; what lies between them was not flown.
+    fn pass(&mut self, legs: usize, captured: &Sample) -> Leg {
+        if legs > 1 {
+            let next = leg(&self.pattern, captured, self.passed + 1);
+            self.failed = self.failed.take().or_else(|| score(&[], &[next]).err());
+        }
+        self.passed += legs;
+        leg(&self.pattern, captured, self.passed)
     }
 
     /// Resets: the next sample begins another flight.
@@ -59,21 +85,18 @@ impl FlightLog {
         *self = Self::new(self.pattern);
     }
 
-    /// The score over all complete legs.
-    ///
-    /// # Errors
-    /// When samples are missing from a leg.
-    pub(crate) fn score(&self) -> Result<FlightScore, ScoreError> {
-        let mut legs = self.flown.clone()?;
+    /// The scores of all complete legs, and why the first of the others has none.
+    pub(crate) fn result(&self) -> (Vec<LegScore>, Option<ScoreError>) {
+        let mut all = self.clone();
         if let (Some(captured), Some(last)) = (self.captured, self.leg.last()) {
-            let leg = leg(&self.pattern, &captured, legs.len());
+            let leg = leg(&self.pattern, &captured, self.passed);
             // The last leg may end up to one sample early.
             let flown_s = last.time_s + self.step_s - leg.start_s;
             if flown_s >= self.pattern.leg_s * (1.0 - 1e-3) {
-                legs.extend(score(&self.leg, &[leg])?.legs);
+                all.close(&leg);
             }
         }
-        Ok(FlightScore::of(legs))
+        (all.flown, all.failed)
     }
 }
 
@@ -101,6 +124,7 @@ fn leg(pattern: &TimedPatternConfig, captured: &Sample, number: usize) -> Leg {
 
 #[cfg(test)]
 mod tests {
+    use super::super::score::FlightScore;
     use super::*;
 
     /// A flight that jumps to each set point after a known time.
@@ -122,7 +146,9 @@ mod tests {
                 lateral_g: 0.0,
             });
         }
-        let score = log.score().unwrap();
+        let (legs, failed) = log.result();
+        assert_eq!(failed, None);
+        let score = FlightScore::of(legs);
         let settled: Vec<_> = score.legs.iter().map(|leg| leg.heading_settle_s).collect();
         assert_eq!(settled.len(), 2, "the third leg is not complete");
         assert!((settled[0].unwrap() - 4.0).abs() < 1e-9);
@@ -135,28 +161,52 @@ mod tests {
     #[test]
     fn without_a_complete_leg_there_is_no_score() {
         let log = FlightLog::new(TimedPatternConfig::default());
-        assert_eq!(log.score().unwrap().worst, None);
+        assert_eq!(log.result(), (Vec::new(), None));
     }
 
-    /// A leg without samples has no score, and the flight has none.
+    /// Legs with samples throughout have scores whatever is missing from others.
     #[test]
-    fn a_gap_in_a_flight_is_an_error() {
-        let mut log = FlightLog::new(TimedPatternConfig::default());
-        for time_s in [0.0, 0.025, 1e9] {
-            log.push(Sample {
-                time_s,
-                heading_deg: 0.0,
-                altitude_ft: 0.0,
-                airspeed_kt: 100.0,
-                lateral_g: 0.0,
-            });
-        }
-        assert_eq!(
-            log.score(),
-            Err(ScoreError::NotFlown {
+    fn a_gap_costs_the_legs_in_it() {
+        let nothing = |from_s, to_s| {
+            Some(ScoreError::NotFlown {
                 start_s: 20.0,
-                end_s: 40.0
+                end_s: 40.0,
+                from_s,
+                to_s,
             })
-        );
+        };
+        // Legs of 20 s after 20 s; 101 s are flown.
+        for (gap_s, scored, why) in [
+            ((0.0, 0.0), &[1, 2, 3, 4][..], None),
+            ((30.0, 32.5), &[1, 2, 3, 4], None),
+            ((30.0, 33.5), &[2, 3, 4], nothing(30.0, 33.5)),
+            ((30.0, 50.0), &[3, 4], nothing(30.0, 40.0)),
+            ((30.0, 70.0), &[4], nothing(30.0, 40.0)),
+            ((15.0, 61.0), &[3, 4], nothing(20.0, 40.0)),
+            ((101.0, 1e9), &[1, 2, 3, 4], None),
+        ] {
+            let mut log = FlightLog::new(TimedPatternConfig::default());
+            let end = (gap_s.1 > 1e6).then_some(gap_s.1);
+            for time_s in (0..404).map(|n| f64::from(n) * 0.25).chain(end) {
+                if time_s > gap_s.0 && time_s < gap_s.1 {
+                    continue;
+                }
+                log.push(Sample {
+                    time_s,
+                    heading_deg: 0.0,
+                    altitude_ft: 0.0,
+                    airspeed_kt: 100.0,
+                    lateral_g: 0.0,
+                });
+            }
+            let (legs, failed) = log.result();
+            let numbers: Vec<_> = legs.iter().filter_map(|leg| leg.number).collect();
+            assert_eq!(numbers, scored, "{gap_s:?}");
+            if end.is_none() {
+                assert_eq!(failed, why, "{gap_s:?}");
+            } else {
+                assert!(failed.is_some());
+            }
+        }
     }
 }

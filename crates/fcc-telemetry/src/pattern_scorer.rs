@@ -61,21 +61,19 @@ impl PatternScorer {
 
     fn close(&mut self) {
         if self.scored.take().is_some() {
-            match self.log.score() {
-                Ok(score) => self.legs.extend(score.legs),
-                Err(error) => self.failed = Some(error),
-            }
+            let (legs, failed) = self.log.result();
+            let before = self.legs.last().and_then(|leg| leg.number).unwrap_or(0);
+            self.legs.extend(legs.into_iter().map(|leg| LegScore {
+                number: leg.number.map(|number| before + number),
+                ..leg
+            }));
+            self.failed = self.failed.take().or(failed);
             self.log.clear();
         }
     }
 
-    /// The score of all patterns; none if a leg of one could not be scored.
-    pub fn score(&self) -> Option<FlightScore> {
-        let (score, failed) = self.result();
-        failed.is_none().then_some(score)
-    }
-
-    /// The complete legs of all patterns, and why one could not be scored.
+    /// The complete legs of all patterns, and why the first of the others could not be
+    /// scored.
     pub fn result(&self) -> (FlightScore, Option<ScoreError>) {
         let mut all = self.clone();
         all.close();

@@ -59,6 +59,9 @@ pub struct Leg {
 /// The score of one leg, or the worst of each value over all legs.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize)]
 pub struct LegScore {
+    /// Number of the leg in its flight, from 1; none for the worst.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub number: Option<usize>,
     /// Time after the leg's start from which the heading stays within 2° until
     /// its end; none if it does not.
     pub heading_settle_s: Option<f64>,
@@ -94,21 +97,26 @@ pub struct FlightScore {
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ScoreError {
-    /// A leg has no samples, or none near its end.
+    /// A part of a leg has no samples.
     #[error(
-        "the leg from {start_s:.1} s to {end_s:.1} s has no samples to its end: fly longer, or a \
-         part of the recording is lost"
+        "the leg from {start_s:.1} s to {end_s:.1} s has no samples from {from_s:.1} s to \
+         {to_s:.1} s: fly longer, or a part of the recording is lost"
     )]
     NotFlown {
         /// The leg's start.
         start_s: f64,
         /// The leg's end.
         end_s: f64,
+        /// The last sample before the part, or the leg's start.
+        from_s: f64,
+        /// The first sample after the part, or the leg's end.
+        to_s: f64,
     },
 }
 
 const HEADING_BAND_DEG: f64 = 2.0;
 const ALTITUDE_BAND_FT: f64 = 10.0;
+/// A leg has a sample in each of its windows of this length.
 const HEADING_WINDOW_S: f64 = 3.0;
 const ALTITUDE_WINDOW_S: f64 = 8.0;
 /// Rounding of sums of periods: a leg's end is met within this.
@@ -121,7 +129,8 @@ pub(crate) const ROUNDING_S: f64 = 1e-6;
 pub fn score(samples: &[Sample], legs: &[Leg]) -> Result<FlightScore, ScoreError> {
     let legs = legs
         .iter()
-        .map(|leg| score_leg(samples, leg))
+        .enumerate()
+        .map(|(index, leg)| score_leg(samples, leg, index + 1))
         .collect::<Result<Vec<_>, _>>()?;
     Ok(FlightScore::of(legs))
 }
@@ -140,6 +149,10 @@ impl FlightScore {
     /// From the scores of legs.
     pub fn of(legs: Vec<LegScore>) -> Self {
         let worst = legs.iter().copied().reduce(LegScore::worst);
+        let worst = worst.map(|worst| LegScore {
+            number: None,
+            ..worst
+        });
         Self { legs, worst }
     }
 }
@@ -148,6 +161,7 @@ impl LegScore {
     fn worst(self, other: Self) -> Self {
         let later = |a: Option<f64>, b: Option<f64>| Some(a?.max(b?));
         Self {
+            number: None,
             heading_settle_s: later(self.heading_settle_s, other.heading_settle_s),
             heading_overshoot_deg: self.heading_overshoot_deg.max(other.heading_overshoot_deg),
             heading_rms_deg: self.heading_rms_deg.max(other.heading_rms_deg),
@@ -163,14 +177,22 @@ impl LegScore {
     }
 }
 
-fn score_leg(samples: &[Sample], leg: &Leg) -> Result<LegScore, ScoreError> {
+fn score_leg(samples: &[Sample], leg: &Leg, number: usize) -> Result<LegScore, ScoreError> {
     let from = samples.partition_point(|s| s.time_s < leg.start_s - ROUNDING_S);
     let to = samples.partition_point(|s| s.time_s < leg.end_s - ROUNDING_S);
     let flown = samples.get(from..to).unwrap_or_default();
-    let not_flown = ScoreError::NotFlown {
-        start_s: leg.start_s,
-        end_s: leg.end_s,
-    };
+    let mut from_s = leg.start_s;
+    for to_s in flown.iter().map(|s| s.time_s).chain([leg.end_s]) {
+        if to_s - from_s >= HEADING_WINDOW_S {
+            return Err(ScoreError::NotFlown {
+                start_s: leg.start_s,
+                end_s: leg.end_s,
+                from_s,
+                to_s,
+            });
+        }
+        from_s = to_s;
+    }
 
     let heading: Vec<(f64, f64)> = flown
         .iter()
@@ -184,15 +206,16 @@ fn score_leg(samples: &[Sample], leg: &Leg) -> Result<LegScore, ScoreError> {
     let largest =
         |of: fn(&Sample, &Leg) -> f64| flown.iter().map(|s| of(s, leg).abs()).fold(0.0, f64::max);
     Ok(LegScore {
+        number: Some(number),
         heading_settle_s: settle(&heading, HEADING_BAND_DEG, leg),
         heading_overshoot_deg: overshoot(
             &heading,
             wrap_degrees(leg.heading_deg - leg.heading_from_deg),
         ),
-        heading_rms_deg: rms_at_end(&heading, HEADING_WINDOW_S, leg).ok_or(not_flown.clone())?,
+        heading_rms_deg: rms_at_end(&heading, HEADING_WINDOW_S, leg),
         altitude_settle_s: settle(&altitude, ALTITUDE_BAND_FT, leg),
         altitude_overshoot_ft: overshoot(&altitude, leg.altitude_ft - leg.altitude_from_ft),
-        altitude_rms_ft: rms_at_end(&altitude, ALTITUDE_WINDOW_S, leg).ok_or(not_flown)?,
+        altitude_rms_ft: rms_at_end(&altitude, ALTITUDE_WINDOW_S, leg),
         turn_loss_ft: flown
             .iter()
             .map(|s| floor_ft - s.altitude_ft)
@@ -227,14 +250,14 @@ fn overshoot(errors: &[(f64, f64)], change: f64) -> f64 {
         .fold(0.0, f64::max)
 }
 
-fn rms_at_end(errors: &[(f64, f64)], window_s: f64, leg: &Leg) -> Option<f64> {
+fn rms_at_end(errors: &[(f64, f64)], window_s: f64, leg: &Leg) -> f64 {
     let last = errors
         .iter()
         .filter(|(time_s, _)| leg.end_s - time_s <= window_s + ROUNDING_S);
     let (count, sum) = last.fold((0_u32, 0.0), |(count, sum), (_, error)| {
         (count + 1, sum + error * error)
     });
-    (count > 0).then(|| (sum / f64::from(count)).sqrt())
+    (sum / f64::from(count)).sqrt()
 }
 
 /// The angle in -180..180.

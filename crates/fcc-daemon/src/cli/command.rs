@@ -27,7 +27,7 @@ pub struct CommandArgs {
 /// Commands to a flight.
 #[derive(Subcommand, Debug)]
 pub enum CommandChoice {
-    /// Take control with the present state as set points
+    /// Take control with the present state as set points; engaged already, nothing changes
     Engage,
     /// Release the controls
     Disengage,

@@ -64,7 +64,7 @@ pub struct XPlaneCheckArgs {
     /// Shortened waits, for a quick look: the report says so
     #[arg(long)]
     pub quick: bool,
-    /// The report, in Markdown; the same as JSON is written beside it
+    /// The report, in Markdown, with the same as JSON beside it; both replace earlier ones
     #[arg(long, value_name = "FILE", default_value = "x-plane-check.md",
           value_parser = output())]
     pub report: PathBuf,

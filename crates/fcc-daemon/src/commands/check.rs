@@ -10,7 +10,7 @@ use crate::cli::CheckArgs;
 use crate::exit::Exit;
 use crate::output;
 use crate::process::unknown_names;
-use fcc_flight::calibrate::{CalibrationFileError, apply};
+use fcc_flight::calibrate::{CalibrationFileError, apply, not_calibrated};
 use fcc_flight::config::{Aircraft, Config, ConfigError, CpuChoice, Problem};
 use fcc_timer::realtime::cpus::Cpus;
 
@@ -62,6 +62,7 @@ fn check_file(path: &Path) -> (Checked, Result<String, ConfigError>) {
         Ok((config, text, calibrated)) => {
             let mut remarks = config.remarks(&text);
             remarks.extend(calibrated);
+            remarks.extend(not_calibrated(&config));
             remarks.extend(unknown_names(&config.rights));
             remarks.extend(missing_cpu(&config));
             let aircraft = match config.aircraft() {

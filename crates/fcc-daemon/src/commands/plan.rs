@@ -136,7 +136,10 @@ fn show(args: &PlanShowArgs) -> Result<Exit, Failure> {
     let hash = plan.hash();
     let name = args.file.display();
     let rows = rows(&plan);
-    let table = plan_table(&rows);
+    let table = match rows.as_slice() {
+        [] => String::new(),
+        rows => format!("\n{}", plan_table(rows)),
+    };
     let mut written = zones(&plan);
     if let Some(out) = &args.html {
         let title = format!("{name}, {hash:.12}");
@@ -165,7 +168,7 @@ fn show(args: &PlanShowArgs) -> Result<Exit, Failure> {
         return Ok(output::json(&shown, Exit::Success));
     }
     let text = format!(
-        "{name}: {} items, {hash:.12}\n{table}{written}",
+        "{name}: {} items, {hash:.12}{table}{written}",
         plan.items.len()
     );
     Ok(output::result(text, Exit::Success))

@@ -20,8 +20,7 @@ pub(super) fn recover(args: &RecoverArgs) -> Result<Exit, Failure> {
         RecoverError::Open(error) => error.into(),
         error => Failure::new(error),
     })?;
-    let is_lost = !recovered.was_whole && recovered.ticks == 0;
-    let exit = if recovered.damages.is_empty() && !is_lost {
+    let exit = if recovered.damages.is_empty() && recovered.ticks > 0 {
         Exit::Success
     } else {
         Exit::Incomplete

@@ -7,7 +7,6 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use fcc_report::timing_table;
-use fcc_telemetry::TimingReport;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::failure::Failure;
@@ -16,14 +15,19 @@ use crate::exit::Exit;
 use crate::output;
 use crate::process::Process;
 use fcc_flight::config::{BuiltInSection, Config, EarlyWakeSection, GuidanceSection, LoopSection};
-use fcc_flight::flight::{Length, Pace, Plan, assemble, fly};
+use fcc_flight::flight::{Length, Outcome, Pace, Plan, assemble, fly};
 
 /// Measures at each rate.
 pub(super) fn timing(args: &TimingArgs) -> Result<Exit, Failure> {
-    let measured = args.rates.iter().map(|rate_hz| measure(args, *rate_hz));
-    let reports = measured
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(Failure::new)?;
+    let mut reports = Vec::new();
+    for rate_hz in &args.rates {
+        let outcome = measure(args, *rate_hz).map_err(Failure::new)?;
+        reports.push(outcome.timing);
+        if outcome.interrupted {
+            eprintln!("{}: the report is of the time until then", outcome.ending);
+            break;
+        }
+    }
     Ok(if args.json {
         output::json(&reports, Exit::Success)
     } else {
@@ -31,7 +35,7 @@ pub(super) fn timing(args: &TimingArgs) -> Result<Exit, Failure> {
     })
 }
 
-fn measure(args: &TimingArgs, rate_hz: f64) -> Result<TimingReport, String> {
+fn measure(args: &TimingArgs, rate_hz: f64) -> Result<Outcome, String> {
     let mut config = Config {
         tick: LoopSection {
             rate_hz,
@@ -61,11 +65,7 @@ fn measure(args: &TimingArgs, rate_hz: f64) -> Result<TimingReport, String> {
     )
     .map_err(|error| error.to_string());
     progress.stop();
-    let outcome = outcome?;
-    if outcome.interrupted {
-        return Err(format!("{}: nothing is reported", outcome.ending));
-    }
-    Ok(outcome.timing)
+    outcome
 }
 
 fn early_wake(args: &TimingArgs) -> EarlyWakeSection {

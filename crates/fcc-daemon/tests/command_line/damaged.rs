@@ -104,7 +104,11 @@ fn every_command_reports_damage_and_continues_after_it() {
     assert_eq!(entry["ticks"], ticks - missing);
     let output = fccd(&["list", text(folder.path())]);
     assert_eq!(output.status.code(), INCOMPLETE);
-    assert!(String::from_utf8_lossy(&output.stdout).contains("damaged: fccd recover"));
+    let listed = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(
+        listed.contains(" damaged") && listed.contains("fccd recover FILE"),
+        "{listed}"
+    );
     let words = format!("ticks {first} to {last} are missing");
     assert!(String::from_utf8_lossy(&output.stderr).contains(&words));
     let quick = fccd(&["list", "--quick", text(folder.path())]);

@@ -209,7 +209,7 @@ impl Outcome {
             }
             (None, Some(Over::Refused)) => {
                 if self.conclusion == Conclusion::Completed {
-                    self.conclusion = Conclusion::Failed;
+                    self.conclusion = Conclusion::NotFlown;
                 }
                 refusal.unwrap_or("engaging was refused").to_owned()
             }

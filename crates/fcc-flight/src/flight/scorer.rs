@@ -69,8 +69,7 @@ impl Observer<Autopilot> for Scorer {
             ),
             None => None,
         };
-        // A flight with a leg that could not be scored has no score.
-        outcome.flight = failed.is_none().then_some(score);
+        outcome.flight = Some(score);
     }
 }
 

@@ -250,6 +250,6 @@ impl Flight {
         while self.machine.record().setpoints.guidance.elapsed_s < seconds {
             self.fly(1.0);
         }
-        self.scorer.score().unwrap().worst.unwrap()
+        self.scorer.result().0.worst.unwrap()
     }
 }

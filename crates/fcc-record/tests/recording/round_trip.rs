@@ -241,6 +241,24 @@ fn a_file_contains_metadata_and_ending() {
     assert_eq!(entry.started, "2026-11-20T04:21:33Z");
 }
 
+/// Stopped for two seconds, the loop serves the 80th period 1,975 ms after the first of them.
+#[test]
+fn an_outage_counts_as_lateness() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut messages = flight(10);
+    let mut late = record(90);
+    late.tick.missed = 79;
+    late.tick.dt_s = 2.0;
+    messages.push(Message::Tick(late));
+    record_all(
+        Recorder::start(about(), settings(folder.path())).unwrap(),
+        &messages,
+    );
+    let entry = fcc_record::entry(&only_file(folder.path())).unwrap();
+    let own_us = (late.tick.woke - late.tick.scheduled) as f64 * 1e-3;
+    assert!((entry.worst_lateness_us - own_us - 1_975_000.0).abs() < 1.0);
+}
+
 #[test]
 fn remarks_have_the_time_of_the_message_before() {
     let folder = tempfile::tempdir().unwrap();

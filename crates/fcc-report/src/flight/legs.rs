@@ -42,8 +42,9 @@ pub fn flight_table(score: &FlightScore, by: ScoredBy) -> String {
 /// A row per leg, and the worst of each column.
 pub(super) fn legs(score: &FlightScore) -> Table {
     let mut table = table(&LEG_COLUMNS);
-    for (index, leg) in score.legs.iter().enumerate() {
-        table.add_row(leg_cells((index + 1).to_string(), leg));
+    for leg in &score.legs {
+        let number = leg.number.map(|number| number.to_string());
+        table.add_row(leg_cells(number.unwrap_or_default(), leg));
     }
     if let Some(worst) = &score.worst {
         table.add_row(leg_cells("worst".to_owned(), worst));
