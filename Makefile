@@ -44,7 +44,7 @@ endif
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: python advisories lock reproducible package-check wheels deb test-attacks test-contingencies test-fences test-glides test-guidance test-landings test-landings-beside test-plan-real-time test-recordings test-raw-edges test-upsets test-android android android-check android-package test-deb test-vm test-cross check-cross help faulty fly ground fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
+.PHONY: python advisories lock reproducible package-check wheels deb test-attacks test-contingencies test-fences test-glides test-guidance test-landings test-landings-beside test-plan-real-time test-recordings test-raw-edges test-upsets test-android android android-check android-package test-deb test-vm test-cross test-page test-ground station check-cross help faulty fly ground fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { print $$1 "\t" $$2 }' $(MAKEFILE_LIST) | LC_ALL=C sort | \
@@ -65,8 +65,11 @@ fly: build ## Fly the built-in aircraft through the timed pattern, in real time
 # For ground, such as GROUND_STATION="--listen 0.0.0.0:8460".
 GROUND_STATION ?=
 
-ground: build $(STAMPS)/page ## Draw plans in a browser, fly them with the built-in aircraft, and watch (GROUND_STATION=)
+# With the page in it.
+station: $(STAMPS)/rust $(STAMPS)/page
 	cargo build --locked --release -p fcc-ground
+
+ground: build station ## Draw plans in a browser, fly them with the built-in aircraft, and watch (GROUND_STATION=)
 	FCCD=$(FCCD) STATION=$(TARGET)/release/fcc-ground ./scripts/ground $(GROUND_STATION)
 
 python: $(STAMPS)/python-module ## Make .venv, with the Python module and the tools of hil/
@@ -96,7 +99,7 @@ fly-plan-jsbsim: build $(STAMPS)/python-module ## Fly a plan with JSBSim over X-
 	$(PYTHON) -m fcc_hil plan --realtime --fccd $(FCCD) --plan $(PLAN) --wind $(WIND) --wind-from $(WIND_FROM) --seed $(SEED) \
 	    $(if $(TERRAIN),--terrain $(TERRAIN)) --json $(if $(filter-out file,$(origin JSON)),$(JSON),target/fly-plan-jsbsim.json) --plot target/fly-plan-jsbsim.png
 
-test: lint check-cross test-rust test-python ## Run every check and every test
+test: lint check-cross test-rust test-python test-page ## Run every check and every test
 
 test-rust: $(STAMPS)/rust $(STAMPS)/gpsd
 	cargo test --locked --workspace --all-features
@@ -109,11 +112,19 @@ test-rust: $(STAMPS)/rust $(STAMPS)/gpsd
 # One more than there are processors: a third of the tests wait for flights in real time.
 WORKERS := $(shell expr $$(nproc) + 1)
 
-test-python: faulty $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/systemd
+test-python: faulty station $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/systemd
 	$(BUILD_FCCD) -p thermostat --bin thermostat
-	cargo build --locked --release -p fcc-ground
 	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) FCC_GROUND=$(abspath $(TARGET))/release/fcc-ground \
 	    $(PYTHON) -m pytest hil --numprocesses $(WORKERS) --dist loadfile
+
+IN_BROWSER := FCCD=$(abspath $(FCCD)) FCC_GROUND=$(abspath $(TARGET))/release/fcc-ground $(PYTHON) -m pytest web/tests --numprocesses $(WORKERS)
+
+test-page: build station $(STAMPS)/python $(STAMPS)/browser ## Check the page, and test it in a browser beside real flights (3 minutes)
+	cd web && npm run check
+	$(IN_BROWSER) --ignore web/tests/mock
+
+test-ground: build station $(STAMPS)/python $(STAMPS)/browser ## Test the page beside real flights, and in flights that are made up (6 minutes)
+	$(IN_BROWSER)
 
 test-x-plane: build $(STAMPS)/python-module ## Run all steps of `fccd x-plane check` in full against the stand-in (3 minutes)
 	FCCD_FULL_CHECK=1 FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil/tests/test_x_plane_check.py
@@ -212,13 +223,14 @@ lint-rust: $(STAMPS)/rust
 	cargo clippy --locked --workspace --all-targets --all-features -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps --all-features
 
-lint-python: $(STAMPS)/python-module
-	$(PYTHON) -m ruff check hil deploy
+lint-python: $(STAMPS)/python-module $(STAMPS)/playwright
+	$(PYTHON) -m ruff check hil deploy web
 	$(PYTHON) -m ruff check --config hil/pyproject.toml crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check
-	$(PYTHON) -m ruff format --check hil deploy
+	$(PYTHON) -m ruff format --check hil deploy web
 	$(PYTHON) -m ruff format --config hil/pyproject.toml --check crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check
 	cd hil && ../$(PYTHON) -m mypy
 	cd deploy/vm && MYPYPATH=../../hil/tests ../../$(PYTHON) -m mypy --config-file ../../hil/pyproject.toml .
+	cd web/tests && MYPYPATH=../../hil/tests ../../$(PYTHON) -m mypy --config-file ../../hil/pyproject.toml *.py
 
 deny: $(STAMPS)/rust
 	@command -v cargo-deny >/dev/null || cargo install --debug --locked --version 0.20.2 cargo-deny
@@ -232,6 +244,7 @@ advisories: $(STAMPS)/rust ## Check the crates against RustSec's advisories; fai
 lock: ## Lock the versions and hashes of the Python packages anew (needs uv)
 	cd hil && $(LOCK) --extra build --extra test pyproject.toml -o locked.txt
 	cd hil && $(LOCK) packaging.in -o locked-packaging.txt
+	cd web/tests && $(LOCK) --constraint ../../hil/locked.txt playwright.in -o locked.txt
 
 # For every Python from 3.10 and every machine.
 LOCK := uv pip compile --quiet --upgrade --universal --generate-hashes --python-version 3.10 --custom-compile-command 'make lock'
@@ -392,12 +405,21 @@ $(STAMPS)/python: hil/pyproject.toml hil/locked.txt
 	@mkdir -p $(STAMPS) && touch $@
 
 # The page of the ground station, which is put into its program.
-PAGE := $(shell find web -name node_modules -prune -o -name dist -prune -o -type f -print)
+PAGE := $(shell find web \( -name node_modules -o -name dist -o -name tests -o -name pictures \) -prune -o -type f -print)
 
 $(STAMPS)/page: $(PAGE)
 	@command -v npm >/dev/null || ./scripts/apt-install nodejs npm
 	cd web && npm ci --no-audit --no-fund && npm run build
 	@mkdir -p $(STAMPS) && touch $@
+
+$(STAMPS)/playwright: $(STAMPS)/python web/tests/locked.txt
+	$(PYTHON) -m pip install $(QUIET) --require-hashes -r web/tests/locked.txt
+	@touch $@
+
+# Debian's browser: that of Playwright is another one.
+$(STAMPS)/browser: $(STAMPS)/playwright
+	@command -v chromium >/dev/null || ./scripts/apt-install chromium
+	@touch $@
 
 $(STAMPS)/strace:
 	@command -v strace >/dev/null || ./scripts/apt-install strace

@@ -5,7 +5,7 @@ import os
 import re
 import time
 
-from conftest import WEB
+from visitor import WEB
 
 HOSTILE = "<img src=x onerror=document.title='owned'><script>document.title='owned'</script>"
 
@@ -28,7 +28,10 @@ def test_one_silent_sensor_ages_alone(visit, mock):
     page = visit().open("fly")
     mock.set(pose={"airspeed_taken_ns": 1})
     page.wait_for_selector(".set-points tr:has-text('Airspeed') td[data-fresh=lost]", timeout=2000)
-    assert page.locator(".set-points tr:has-text('Heading') td").first.get_attribute("data-fresh") == "fresh"
+    assert (
+        page.locator(".set-points tr:has-text('Heading') td").first.get_attribute("data-fresh")
+        == "fresh"
+    )
 
 
 def test_reconnects_after_a_restart(visit, mock):
@@ -44,7 +47,11 @@ def test_events_are_text(visit, mock):
     mock.set(event=HOSTILE)
     entry = page.locator(".events .event-text").first
     entry.wait_for()
-    page.wait_for_function("text => document.querySelector('.event-text').textContent === text", arg=HOSTILE, timeout=3000)
+    page.wait_for_function(
+        "text => document.querySelector('.event-text').textContent === text",
+        arg=HOSTILE,
+        timeout=3000,
+    )
     assert page.locator(".events img, .events script").count() == 0
     assert page.title() != "owned"
     assert page.locator(".events").get_attribute("aria-live") == "polite"
@@ -56,7 +63,11 @@ def frames(page, seconds: float) -> tuple[float, float]:
     session.send("Performance.enable")
 
     def used() -> float:
-        return next(one["value"] for one in session.send("Performance.getMetrics")["metrics"] if one["name"] == "ProcessTime")
+        return next(
+            one["value"]
+            for one in session.send("Performance.getMetrics")["metrics"]
+            if one["name"] == "ProcessTime"
+        )
 
     before, begin = used(), time.monotonic()
     count = page.evaluate(
@@ -78,7 +89,9 @@ def test_frames_at_full_and_slow_speed(visit, mock):
     session = page.context.new_cdp_session(page)
     session.send("Emulation.setCPUThrottlingRate", {"rate": 6})
     slow, _ = frames(page, 4)
-    print(f"frames: {full:.0f}/s with {cores:.2f} cores; at a sixth of the processor: {slow:.0f}/s; load {os.getloadavg()[0]:.1f}")
+    print(
+        f"frames: {full:.0f}/s with {cores:.2f} cores; at a sixth of the processor: {slow:.0f}/s; load {os.getloadavg()[0]:.1f}"
+    )
     # Of all threads of the page's process; a busy machine changes the frames, not this.
     assert cores < 0.6
     if os.getloadavg()[0] < os.cpu_count():
@@ -91,9 +104,13 @@ def test_ready_and_size(visit, mock):
     visitor.page.goto(visitor.link)
     visitor.page.wait_for_selector(".link[data-state=fresh]")
     ready = visitor.page.evaluate("performance.now()")
-    assets = list((WEB / "dist/assets").iterdir()) + [WEB / "dist/index.html"]
+    assets = [*list((WEB / "dist/assets").iterdir()), WEB / "dist/index.html"]
     maps = re.compile(r"land-50m|detail-|coast-")
-    bytes_ = sum(len(gzip.compress(one.read_bytes(), 9)) for one in assets if not maps.search(one.name) and one.suffix != ".png")
+    bytes_ = sum(
+        len(gzip.compress(one.read_bytes(), 9))
+        for one in assets
+        if not maps.search(one.name) and one.suffix != ".png"
+    )
     print(f"live after {ready:.0f} ms; {bytes_} bytes gzip without maps")
     assert bytes_ <= 200_000
     assert ready < 3000
@@ -103,7 +120,11 @@ def test_nothing_inline(visit, mock):
     html = (WEB / "dist/index.html").read_text()
     assert not re.search(r"<style|style=|<script(?![^>]*src=)|javascript:|\son\w+=", html)
     sources = [path.read_text() for path in (WEB / "src").rglob("*.ts")]
-    assert not [one for one in sources if re.search(r"innerHTML|outerHTML|insertAdjacentHTML|\beval\(|document\.write", one)]
+    assert not [
+        one
+        for one in sources
+        if re.search(r"innerHTML|outerHTML|insertAdjacentHTML|\beval\(|document\.write", one)
+    ]
 
 
 def test_token_leaves_the_address(visit, mock):

@@ -12,7 +12,11 @@ def state(page) -> str:
 
 
 def wait_for_state(page, wanted: str) -> None:
-    page.wait_for_function("wanted => document.querySelector('.readout dd').textContent === wanted", arg=wanted, timeout=4000)
+    page.wait_for_function(
+        "wanted => document.querySelector('.readout dd').textContent === wanted",
+        arg=wanted,
+        timeout=4000,
+    )
 
 
 def engage(page) -> None:
@@ -55,9 +59,16 @@ def test_keys_pause_return_land_disengage(visit, mock):
     for name, mode in [("Pause", "loiter"), ("Resume", "plan"), ("Return", "return")]:
         page.get_by_role("button", name=name, exact=True).focus()
         page.keyboard.press("Enter")
-        page.wait_for_function("mode => document.querySelectorAll('.readout dd')[1].textContent.startsWith(mode)", arg=mode, timeout=4000)
+        page.wait_for_function(
+            "mode => document.querySelectorAll('.readout dd')[1].textContent.startsWith(mode)",
+            arg=mode,
+            timeout=4000,
+        )
     page.get_by_role("button", name="Land", exact=True).click()
-    page.wait_for_function("() => document.querySelector('.commands .result').textContent.startsWith('land: carried out')", timeout=4000)
+    page.wait_for_function(
+        "() => document.querySelector('.commands .result').textContent.startsWith('land: carried out')",
+        timeout=4000,
+    )
 
 
 def test_slide_disengages(visit, mock):
@@ -87,8 +98,13 @@ def test_go_to_by_a_tap(visit, mock):
     page.locator(".chart-map").click(position={"x": 400, "y": 500})
     page.get_by_label("Altitude of go-to").fill("333")
     page.get_by_role("button", name="Fly there").click()
-    page.wait_for_function("() => document.querySelectorAll('.readout dd')[1].textContent === 'go to'", timeout=4000)
-    page.wait_for_function("() => document.querySelector('.set-points tr:nth-child(3) .set').textContent === '333'", timeout=4000)
+    page.wait_for_function(
+        "() => document.querySelectorAll('.readout dd')[1].textContent === 'go to'", timeout=4000
+    )
+    page.wait_for_function(
+        "() => document.querySelector('.set-points tr:nth-child(3) .set').textContent === '333'",
+        timeout=4000,
+    )
 
 
 def test_set_points_in_hold_mode(visit, mock):
@@ -100,7 +116,10 @@ def test_set_points_in_hold_mode(visit, mock):
     page.get_by_role("button", name="ft", exact=True).click()
     page.get_by_label("New airspeed").fill("100")
     page.get_by_label("New airspeed").press("Enter")
-    page.wait_for_function("() => document.querySelector('.set-points tr:nth-child(1) .set').textContent === '100.0'", timeout=4000)
+    page.wait_for_function(
+        "() => document.querySelector('.set-points tr:nth-child(1) .set').textContent === '100.0'",
+        timeout=4000,
+    )
     # Beyond the aircraft's limits nothing is sent.
     page.get_by_label("New airspeed").fill("300")
     page.get_by_label("New airspeed").press("Enter")

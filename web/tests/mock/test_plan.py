@@ -3,6 +3,7 @@
 import json
 import random
 import time
+import urllib.request
 
 import pytest
 
@@ -14,11 +15,15 @@ def items(page) -> int:
 
 
 def settled(page) -> None:
-    page.wait_for_function("() => document.querySelector('.save-state').textContent.startsWith('Saved')", timeout=8000)
+    page.wait_for_function(
+        "() => document.querySelector('.save-state').textContent.startsWith('Saved')", timeout=8000
+    )
 
 
 def tool(page, name: str) -> None:
-    page.get_by_role("group", name="What a tap on the map adds").get_by_role("button", name=name, exact=True).click()
+    page.get_by_role("group", name="What a tap on the map adds").get_by_role(
+        "button", name=name, exact=True
+    ).click()
 
 
 @pytest.fixture
@@ -33,7 +38,10 @@ def test_tap_adds_drag_moves_table_edits(plan, mock):
     before = items(plan)
     tool(plan, "Waypoint")
     plan.locator(".chart-map").click(position={"x": 620, "y": 300})
-    plan.wait_for_function("n => document.querySelectorAll('.items tbody tr:not(.problem)').length === n", arg=before + 1)
+    plan.wait_for_function(
+        "n => document.querySelectorAll('.items tbody tr:not(.problem)').length === n",
+        arg=before + 1,
+    )
     settled(plan)
     tool(plan, "Select")
     plan.wait_for_timeout(400)
@@ -43,7 +51,9 @@ def test_tap_adds_drag_moves_table_edits(plan, mock):
     plan.mouse.down()
     plan.mouse.move(box["x"] + 60, box["y"] + 80, steps=6)
     plan.mouse.up()
-    plan.wait_for_function("old => document.querySelector('[data-key=item-2-latitude_deg]').value !== old", arg=old)
+    plan.wait_for_function(
+        "old => document.querySelector('[data-key=item-2-latitude_deg]').value !== old", arg=old
+    )
     altitude = plan.get_by_label("Altitude of item 3, m")
     altitude.fill("275")
     altitude.press("Enter")
@@ -53,7 +63,9 @@ def test_tap_adds_drag_moves_table_edits(plan, mock):
     saved = mock.draft("circuit")["plan"]["items"]
     assert len(saved) == before + 1
     assert saved[2]["altitude"]["m"] == 275
-    assert saved[2]["place"]["latitude_deg"] == pytest.approx(float(plan.get_by_label("Latitude of item 3, degrees").input_value()), abs=1e-6)
+    assert saved[2]["place"]["latitude_deg"] == pytest.approx(
+        float(plan.get_by_label("Latitude of item 3, degrees").input_value()), abs=1e-6
+    )
 
 
 def test_keys_move_a_point(plan, mock):
@@ -70,7 +82,11 @@ def test_keys_move_a_point(plan, mock):
 
 def test_undo_and_redo_of_every_edit(plan, mock):
     first = mock.draft("circuit")["plan"]
-    for label, value in [("Altitude of item 3, m", "260"), ("Longitude of item 4, degrees", "7.95"), ("Speed of item 2, m/s", "50")]:
+    for label, value in [
+        ("Altitude of item 3, m", "260"),
+        ("Longitude of item 4, degrees", "7.95"),
+        ("Speed of item 2, m/s", "50"),
+    ]:
         field = plan.get_by_label(label)
         field.fill(value)
         field.press("Tab")
@@ -102,7 +118,9 @@ def test_draft_survives_reload_and_restart(plan, mock):
     # Without the station: kept in the browser, and sent when it is back.
     plan.get_by_label("Altitude of item 4, m").fill("292")
     plan.keyboard.press("Tab")
-    plan.wait_for_function("() => /Not saved/.test(document.querySelector('.save-state').textContent)", timeout=5000)
+    plan.wait_for_function(
+        "() => /Not saved/.test(document.querySelector('.save-state').textContent)", timeout=5000
+    )
     mock.start()
     settled(plan)
     saved = mock.draft("circuit")["plan"]["items"]
@@ -116,7 +134,9 @@ def test_reload_before_the_station_is_back(plan, visit, mock):
     mock.stop()
     plan.get_by_label("Altitude of item 3, m").fill("293")
     plan.keyboard.press("Tab")
-    plan.wait_for_function("() => /Not saved/.test(document.querySelector('.save-state').textContent)", timeout=5000)
+    plan.wait_for_function(
+        "() => /Not saved/.test(document.querySelector('.save-state').textContent)", timeout=5000
+    )
     mock.start()
     plan.reload()
     plan.wait_for_selector(".items")
@@ -134,10 +154,14 @@ def test_two_pages_share_a_draft(visit, mock):
     two.wait_for_selector(".items")
     one.get_by_label("Altitude of item 3, m").fill("301")
     one.keyboard.press("Tab")
-    two.wait_for_function("() => document.querySelector('[data-key=item-2-altitude]').value === '301'", timeout=4000)
+    two.wait_for_function(
+        "() => document.querySelector('[data-key=item-2-altitude]').value === '301'", timeout=4000
+    )
     two.get_by_label("Altitude of item 3, m").fill("302")
     two.keyboard.press("Tab")
-    one.wait_for_function("() => document.querySelector('[data-key=item-2-altitude]').value === '302'", timeout=4000)
+    one.wait_for_function(
+        "() => document.querySelector('[data-key=item-2-altitude]').value === '302'", timeout=4000
+    )
 
 
 def test_conflict_is_shown_and_resolved(visit, mock):
@@ -146,7 +170,9 @@ def test_conflict_is_shown_and_resolved(visit, mock):
     one.context.set_offline(True)
     one.get_by_label("Altitude of item 3, m").fill("311")
     one.keyboard.press("Tab")
-    one.wait_for_function("() => /Not saved/.test(document.querySelector('.save-state').textContent)", timeout=8000)
+    one.wait_for_function(
+        "() => /Not saved/.test(document.querySelector('.save-state').textContent)", timeout=8000
+    )
     two = visit().open("plan")
     two.wait_for_selector(".items")
     two.get_by_label("Altitude of item 3, m").fill("312")
@@ -155,7 +181,9 @@ def test_conflict_is_shown_and_resolved(visit, mock):
     two.wait_for_timeout(400)
     one.context.set_offline(False)
     one.get_by_role("button", name="Keep mine").click(timeout=10_000)
-    two.wait_for_function("() => document.querySelector('[data-key=item-2-altitude]').value === '311'", timeout=5000)
+    two.wait_for_function(
+        "() => document.querySelector('[data-key=item-2-altitude]').value === '311'", timeout=5000
+    )
 
 
 def test_problems_are_at_their_item(plan, mock):
@@ -164,20 +192,37 @@ def test_problems_are_at_their_item(plan, mock):
     problem = plan.locator("tr.problem.error")
     problem.wait_for()
     assert "choose at most 1500 m" in problem.inner_text()
-    assert problem.evaluate("row => row.previousElementSibling.querySelector('.item-number').textContent") == "4"
+    assert (
+        problem.evaluate(
+            "row => row.previousElementSibling.querySelector('.item-number').textContent"
+        )
+        == "4"
+    )
     assert plan.get_by_role("button", name="Upload to vehicle").is_disabled()
 
 
 def test_vehicle_and_draft_are_compared_and_uploaded(plan, mock):
-    plan.wait_for_function("() => document.querySelector('.differs').textContent === \"Draft is the vehicle's plan\"", timeout=4000)
+    plan.wait_for_function(
+        "() => document.querySelector('.differs').textContent === \"Draft is the vehicle's plan\"",
+        timeout=4000,
+    )
     plan.get_by_label("Altitude of item 4, m").fill("310")
     plan.keyboard.press("Tab")
-    plan.wait_for_function("() => document.querySelector('.differs').textContent === 'Draft differs from vehicle'", timeout=4000)
+    plan.wait_for_function(
+        "() => document.querySelector('.differs').textContent === 'Draft differs from vehicle'",
+        timeout=4000,
+    )
     settled(plan)
     plan.wait_for_timeout(600)
     plan.get_by_role("button", name="Upload to vehicle").click()
-    plan.wait_for_function("() => /read back: the vehicle has plan/.test(document.querySelector('.vehicle .result').textContent)", timeout=4000)
-    plan.wait_for_function("() => document.querySelector('.differs').textContent === \"Draft is the vehicle's plan\"", timeout=4000)
+    plan.wait_for_function(
+        "() => /read back: the vehicle has plan/.test(document.querySelector('.vehicle .result').textContent)",
+        timeout=4000,
+    )
+    plan.wait_for_function(
+        "() => document.querySelector('.differs').textContent === \"Draft is the vehicle's plan\"",
+        timeout=4000,
+    )
 
 
 def test_names_and_problems_are_text(plan, mock):
@@ -185,11 +230,13 @@ def test_names_and_problems_are_text(plan, mock):
     draft = mock.draft("circuit")
     draft["plan"]["items"][2]["kind"] = "camera"
     draft["plan"]["items"][2].update({"command": HOSTILE, "frame": 0, "parameters": []})
-    import urllib.request
-
     body = json.dumps({"based_on": draft["revision"], "plan": draft["plan"]}).encode()
     headers = {"authorization": "Bearer mock", "content-type": "application/json"}
-    urllib.request.urlopen(urllib.request.Request(f"http://127.0.0.1:{mock.port}/api/drafts/circuit", body, headers, method="PUT"))
+    urllib.request.urlopen(
+        urllib.request.Request(
+            f"http://127.0.0.1:{mock.port}/api/drafts/circuit", body, headers, method="PUT"
+        )
+    )
     plan.wait_for_function("() => document.body.textContent.includes('onerror')", timeout=4000)
     assert plan.locator(".items img").count() == 0
     assert plan.title() != "owned"
@@ -205,9 +252,15 @@ def test_import_and_export(plan, mock, tmp_path):
     exported["items"] = exported["items"][:3]
     path.write_text(json.dumps(exported))
     plan.locator("input[type=file]").set_input_files(path)
-    plan.wait_for_function("() => document.querySelectorAll('.items tbody tr:not(.problem)').length === 3", timeout=4000)
+    plan.wait_for_function(
+        "() => document.querySelectorAll('.items tbody tr:not(.problem)').length === 3",
+        timeout=4000,
+    )
     plan.keyboard.press("Control+z")
-    plan.wait_for_function("() => document.querySelectorAll('.items tbody tr:not(.problem)').length === 9", timeout=4000)
+    plan.wait_for_function(
+        "() => document.querySelectorAll('.items tbody tr:not(.problem)').length === 9",
+        timeout=4000,
+    )
 
 
 @pytest.mark.parametrize("seed", [1, 2])
@@ -238,7 +291,11 @@ def test_random_edits_are_never_lost(visit, mock, seed):
             page.context.set_offline(True)
             up = False
         if wanted:
-            page.wait_for_function("wanted => document.querySelector('[data-key=item-2-altitude]')?.value === wanted", arg=wanted, timeout=8000)
+            page.wait_for_function(
+                "wanted => document.querySelector('[data-key=item-2-altitude]')?.value === wanted",
+                arg=wanted,
+                timeout=8000,
+            )
     page.context.set_offline(False)
     settled(page)
     page.wait_for_timeout(300)

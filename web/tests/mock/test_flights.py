@@ -2,7 +2,7 @@
 
 import time
 
-from conftest import first_flight
+from made_up import first_flight
 
 
 def open_replay(visit, mock, count=1):
@@ -44,7 +44,14 @@ def test_events_lead_to_their_time(visit, mock):
     event = page.locator(".events li", has_text="item 3 of the plan is reached")
     minutes, seconds = event.locator(".event-time").inner_text().split(":")
     event.get_by_role("button").click()
-    assert abs(float(page.get_by_label("Time of the flight").input_value()) - int(minutes) * 60 - int(seconds)) < 1
+    assert (
+        abs(
+            float(page.get_by_label("Time of the flight").input_value())
+            - int(minutes) * 60
+            - int(seconds)
+        )
+        < 1
+    )
 
 
 def test_two_flights_over_each_other(visit, mock):
