@@ -188,4 +188,22 @@ mod tests {
         assert!(!take(1, 5_000, 5_001), "repeated and late");
         assert!(take(5, 5_001, 5_001), "at its deadline");
     }
+
+    #[test]
+    fn commands_that_are_remembered_are_not_crowded_out() {
+        let orders = Orders::default();
+        let take = |number, now_ms| {
+            let deadline_ms_utc = now_ms + LONGEST_MS;
+            let order = Order {
+                number,
+                deadline_ms_utc,
+            };
+            orders.take(order, now_ms).is_ok()
+        };
+        let most = MOST_NUMBERS as u64;
+        assert!((0..most).all(|number| take(number, 1_000)));
+        assert!(!take(most, 1_001), "one more than are remembered");
+        assert!(!take(0, 1_002), "the first one again");
+        assert!(take(most, 1_001 + LONGEST_MS), "a minute later");
+    }
 }

@@ -20,7 +20,7 @@ use tokio::sync::broadcast;
 use tokio::time::{Instant, interval, timeout};
 
 use crate::commands::utc_ms;
-use crate::failure::{Failure, Sent, aside};
+use crate::failure::{Failure, Sent, aside, reading};
 use crate::files;
 use crate::live::{PATIENCE, PING_EVERY};
 use crate::plans::{hash_text, within_limits};
@@ -201,7 +201,7 @@ pub(crate) async fn list_or_socket(
     upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
 ) -> Result<Response, Failure> {
     let Ok(upgrade) = upgrade else {
-        let list = aside(move || station.drafts.list()).await?;
+        let list = reading(move || station.drafts.list()).await?;
         return Ok(Json(list).into_response());
     };
     let place = station.socket_place()?;
@@ -242,7 +242,7 @@ pub(crate) async fn get(
     State(station): State<Arc<Station>>,
     Path(name): Path<String>,
 ) -> Result<Json<Value>, Failure> {
-    let draft = aside(move || station.drafts.get(&name)).await?;
+    let draft = reading(move || station.drafts.get(&name)).await?;
     Ok(Json(draft.to_json()))
 }
 

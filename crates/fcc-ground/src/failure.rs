@@ -7,6 +7,10 @@ use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
+use tokio::sync::Semaphore;
+
+/// Threads for what waits for a disk or a daemon.
+pub(crate) const THREADS: usize = 16;
 
 /// Why a request is not answered as asked.
 #[derive(Debug)]
@@ -59,6 +63,24 @@ pub(crate) async fn aside<T: Send + 'static>(
 ) -> Result<T, Failure> {
     let done = tokio::task::spawn_blocking(work).await;
     done.unwrap_or_else(|error| Err(Failure::internal(format!("the station failed: {error}"))))
+}
+
+/// What everybody may ask runs in so many threads; the others are left for commands and
+/// edits.
+const READERS: usize = THREADS / 2;
+static READING: Semaphore = Semaphore::const_new(READERS);
+
+/// As [`aside`], in turn, for what changes nothing.
+pub(crate) async fn reading<T: Send + 'static>(
+    work: impl FnOnce() -> Result<T, Failure> + Send + 'static,
+) -> Result<T, Failure> {
+    let place = READING.acquire().await.map_err(Failure::internal)?;
+    aside(move || {
+        // Also when the one who asked has left.
+        let _place = place;
+        work()
+    })
+    .await
 }
 
 /// The body of a request, from JSON.

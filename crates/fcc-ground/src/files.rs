@@ -5,6 +5,8 @@ use std::io::{self, Read as _, Write as _};
 use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::Path;
 
+use nix::fcntl::OFlag;
+
 /// Writes a file in one piece: a reader, and the disk after a loss of power, have the old
 /// content or the new one. It is on the disk when this returns.
 pub(crate) fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
@@ -33,12 +35,19 @@ pub(crate) fn remove(path: &Path) -> io::Result<()> {
         .map_or(Ok(()), |folder| File::open(folder)?.sync_all())
 }
 
-/// The text of a file of at most so many bytes.
+/// The text of a file of at most so many bytes. A link is not followed, and for a pipe is
+/// not waited.
 pub(crate) fn read_limited(path: &Path, most_bytes: u64) -> io::Result<String> {
     let mut text = String::new();
-    File::open(path)?
-        .take(most_bytes + 1)
-        .read_to_string(&mut text)?;
+    let flags = OFlag::O_NOFOLLOW | OFlag::O_NONBLOCK;
+    let file = OpenOptions::new()
+        .read(true)
+        .custom_flags(flags.bits())
+        .open(path)?;
+    if !file.metadata()?.is_file() {
+        return Err(io::Error::other("is no file"));
+    }
+    file.take(most_bytes + 1).read_to_string(&mut text)?;
     if text.len() as u64 > most_bytes {
         return Err(io::Error::other(format!(
             "is larger than {most_bytes} bytes"

@@ -8,7 +8,7 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
-use axum::body::{Body, to_bytes};
+use axum::body::{Body, HttpBody as _, to_bytes};
 use axum::extract::{Request, State};
 use axum::http::header::{
     ACCEPT, CACHE_CONTROL, CONTENT_SECURITY_POLICY, CONTENT_TYPE, HOST, HeaderName, ORIGIN,
@@ -125,16 +125,21 @@ async fn with_body(request: Request, most_bytes: usize) -> Result<Request, Failu
         ));
     }
     let (parts, body) = request.into_parts();
+    let too_large = || {
+        let what = format!("the request is larger than {most_bytes} bytes");
+        Failure::new(StatusCode::PAYLOAD_TOO_LARGE, what)
+    };
+    // Before it comes.
+    if body.size_hint().lower() > most_bytes as u64 {
+        return Err(too_large());
+    }
     let read = tokio::time::timeout(ARRIVES_WITHIN, to_bytes(body, most_bytes)).await;
     let seconds = ARRIVES_WITHIN.as_secs();
     let read = read.map_err(|_| {
         let what = format!("the request did not arrive within {seconds} s");
         Failure::new(StatusCode::REQUEST_TIMEOUT, what)
     })?;
-    let bytes = read.map_err(|_| {
-        let what = format!("the request is larger than {most_bytes} bytes");
-        Failure::new(StatusCode::PAYLOAD_TOO_LARGE, what)
-    })?;
+    let bytes = read.map_err(|_| too_large())?;
     Ok(Request::from_parts(parts, Body::from(bytes)))
 }
 

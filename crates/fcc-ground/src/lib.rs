@@ -33,4 +33,4 @@ mod upload;
 
 pub use cli::Cli;
 pub use exit::Exit;
-pub use start::{Running, StartError, run, start};
+pub use start::{Running, StartError, run, runtime, start};

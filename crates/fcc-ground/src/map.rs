@@ -14,7 +14,7 @@ use fcc_terrain::{Area, Elevations};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::failure::{Failure, aside};
+use crate::failure::{Failure, reading};
 use crate::station::Station;
 
 /// The longest part of a map that is sent at once.
@@ -79,7 +79,7 @@ pub(crate) async fn tiles(
     State(station): State<Arc<Station>>,
     headers: HeaderMap,
 ) -> Result<Response, Failure> {
-    aside(move || {
+    reading(move || {
         let map = station.map.as_ref();
         let map =
             map.ok_or_else(|| Failure::missing("no map was given: give it with --map FILE"))?;
@@ -140,7 +140,7 @@ pub(crate) async fn terrain(
              {MOST_CELLS}"
         )));
     }
-    aside(move || {
+    reading(move || {
         let section = &station.configs.of(None).terrain;
         let Some(folder) = &section.folder else {
             return Ok(Json(Value::Null));

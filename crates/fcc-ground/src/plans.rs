@@ -16,7 +16,7 @@ use fcc_telemetry::Instance;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::failure::{Failure, Sent, aside};
+use crate::failure::{Failure, Sent, reading};
 use crate::station::Station;
 
 /// Between points of a height profile, m, and how many at most.
@@ -72,7 +72,7 @@ pub(crate) async fn check(
     State(station): State<Arc<Station>>,
     Sent(asked): Sent<ToCheck>,
 ) -> Result<Json<Value>, Failure> {
-    let answer = aside(move || {
+    let answer = reading(move || {
         let config = station.configs.of(asked.instance.as_ref());
         Ok(check_answer(&asked.plan, config))
     });
@@ -250,7 +250,7 @@ pub(crate) struct Imported {
 
 /// `POST /api/plan/import`.
 pub(crate) async fn import(Sent(imported): Sent<Imported>) -> Result<Json<Value>, Failure> {
-    aside(move || {
+    reading(move || {
         if imported.text.len() as u64 > limits::FILE_BYTES {
             return Err(Failure::bad(format!(
                 "{}: is larger than 4 MiB",

@@ -24,6 +24,8 @@ const MOST_HEADERS: usize = 64;
 const MOST_HEAD_BYTES: usize = 32 << 10;
 /// What waits in the kernel to be sent to a slow client: some records.
 const UNSENT_BYTES: u32 = 16 << 10;
+/// A client that takes nothing for so long, or does not answer, is gone.
+const TAKES_WITHIN: Duration = Duration::from_secs(20);
 /// After too many open files.
 const PAUSE: Duration = Duration::from_millis(100);
 
@@ -54,6 +56,7 @@ async fn connection(stream: TcpStream, router: Router) {
     // Without them it is served all the same.
     let _ = stream.set_nodelay(true);
     let _ = SockRef::from(&stream).set_tcp_notsent_lowat(UNSENT_BYTES);
+    let _ = SockRef::from(&stream).set_tcp_user_timeout(Some(TAKES_WITHIN));
     let router = TowerToHyperService::new(router);
     let service = service_fn(move |mut request: Request<Incoming>| {
         request.extensions_mut().insert(ArrivedAt(at));

@@ -10,12 +10,14 @@ use clap::Parser as _;
 use fcc_flight::config::ConfigError;
 use serde_json::json;
 use tokio::net::TcpListener;
+use tokio::runtime::Runtime;
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::task::JoinHandle;
 
 use crate::cli::Cli;
 use crate::daemon_config::DaemonConfigs;
 use crate::exit::Exit;
+use crate::failure::THREADS;
 use crate::guard::Hosts;
 use crate::map::MapFile;
 use crate::server;
@@ -186,6 +188,18 @@ fn message(text: impl std::fmt::Display) {
     let _ = writeln!(io::stderr(), "fcc-ground: {text}");
 }
 
+/// The threads of a station: two for the network, others for disks and daemons.
+///
+/// # Errors
+/// When the system gives none.
+pub fn runtime() -> io::Result<Runtime> {
+    tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(2)
+        .max_blocking_threads(THREADS)
+        .enable_all()
+        .build()
+}
+
 /// The program: until it is interrupted or terminated.
 pub fn run() -> Exit {
     let cli = match Cli::try_parse() {
@@ -201,12 +215,7 @@ pub fn run() -> Exit {
             return exit;
         }
     };
-    let runtime = tokio::runtime::Builder::new_multi_thread()
-        .worker_threads(2)
-        .max_blocking_threads(16)
-        .enable_all()
-        .build();
-    let runtime = match runtime {
+    let runtime = match runtime() {
         Ok(runtime) => runtime,
         Err(error) => {
             message(error);

@@ -26,6 +26,10 @@ use crate::{doctor, flights, map, page, plans, upload};
 /// Pages that are connected by WebSocket at the same time.
 const MOST_SOCKETS: usize = 256;
 
+/// Curves and files that are being sent at the same time: each takes memory, or a thread,
+/// until its client has taken it.
+const MOST_SENDING: usize = 4;
+
 /// What all requests share.
 #[derive(Debug)]
 pub(crate) struct Station {
@@ -44,11 +48,7 @@ pub(crate) struct Station {
     pub(crate) orders: Orders,
     pub(crate) flights: flights::Summaries,
     sockets: Arc<Semaphore>,
-}
-
-/// The sockets that there is room for.
-pub(crate) fn sockets() -> Arc<Semaphore> {
-    Arc::new(Semaphore::new(MOST_SOCKETS))
+    sending: Arc<Semaphore>,
 }
 
 /// The name of a daemon in a path.
@@ -72,11 +72,20 @@ impl Station {
 
     /// A place for one more WebSocket.
     pub(crate) fn socket_place(&self) -> Result<OwnedSemaphorePermit, Failure> {
-        Arc::clone(&self.sockets).try_acquire_owned().map_err(|_| {
-            let what = format!("{MOST_SOCKETS} pages are connected: close one of them");
-            Failure::new(StatusCode::SERVICE_UNAVAILABLE, what)
-        })
+        let what = format!("{MOST_SOCKETS} pages are connected: close one of them");
+        place(&self.sockets, what)
     }
+
+    /// A place to send a part of a recording.
+    pub(crate) fn sending_place(&self) -> Result<OwnedSemaphorePermit, Failure> {
+        let what = "other recordings are being sent: try again when one has arrived";
+        place(&self.sending, what)
+    }
+}
+
+fn place(places: &Arc<Semaphore>, full: impl ToString) -> Result<OwnedSemaphorePermit, Failure> {
+    let place = Arc::clone(places).try_acquire_owned();
+    place.map_err(|_| Failure::new(StatusCode::SERVICE_UNAVAILABLE, full))
 }
 
 /// Answers every request.
@@ -181,6 +190,7 @@ pub(crate) fn station(
         configs,
         machine,
         orders: Orders::default(),
-        sockets: sockets(),
+        sockets: Arc::new(Semaphore::new(MOST_SOCKETS)),
+        sending: Arc::new(Semaphore::new(MOST_SENDING)),
     }))
 }

@@ -89,6 +89,20 @@ mod tests {
     }
 
     #[test]
+    fn a_file_that_has_no_token_permits_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let long = "0123456789abcdef0123456789abcdef0";
+        for text in ["", "\n", "0", " 0123456789abcdef", long, &"z".repeat(32)] {
+            std::fs::write(folder.path().join("token"), text).unwrap();
+            let token = Token::of(folder.path(), false).unwrap();
+            assert!(is_token(token.as_str()), "{text:?}");
+            assert!(token.as_str() != text.trim(), "{text:?}");
+        }
+        std::fs::write(folder.path().join("token"), "0".repeat(2_000)).unwrap();
+        assert!(Token::of(folder.path(), false).is_err());
+    }
+
+    #[test]
     fn only_the_whole_token_is_one() {
         let token = Token("0123456789abcdef0123456789abcdef".to_owned());
         let is_in = |value: &str| {

@@ -21,7 +21,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::commands::{Order, send, utc_ms};
-use crate::failure::{Failure, Sent, aside};
+use crate::failure::{Failure, Sent, aside, reading};
 use crate::files;
 use crate::live::Feed;
 use crate::plans::{checked, hash_text};
@@ -43,7 +43,7 @@ pub(crate) async fn vehicle_plan(
     extract::Path(instance): extract::Path<String>,
 ) -> Result<Json<Value>, Failure> {
     let instance = instance_of(&instance)?;
-    aside(move || {
+    reading(move || {
         let feed = station.feed(&instance)?;
         let Some(hash) = feed.word(HASH).filter(|hash| *hash != 0) else {
             return Ok(Json(Value::Null));

@@ -7,13 +7,13 @@ use axum::body::Bytes;
 use fcc_record::{Recording, timestamp};
 use futures_util::{Stream, StreamExt as _};
 use serde::Deserialize;
-use tokio::sync::mpsc;
+use tokio::sync::{OwnedSemaphorePermit, mpsc};
 
 use super::scan::{Found, Scanner};
 
 /// Parts that wait for the client, and their size.
 const PARTS: usize = 4;
-const PART_BYTES: usize = 64 << 10;
+pub(super) const PART_BYTES: usize = 64 << 10;
 /// A place of a track as often as this.
 const TRACK_EVERY_NS: i64 = 1_000_000_000;
 
@@ -70,9 +70,14 @@ impl Write for Sender {
 }
 
 /// The parts of a file.
-pub(super) fn stream(recording: Recording, format: Format) -> impl Stream<Item = Part> {
+pub(super) fn stream(
+    recording: Recording,
+    format: Format,
+    place: OwnedSemaphorePermit,
+) -> impl Stream<Item = Part> {
     let (send, parts) = mpsc::channel(PARTS);
     tokio::task::spawn_blocking(move || {
+        let _place = place;
         let failed = send.clone();
         let mut out = BufWriter::with_capacity(PART_BYTES, Sender(send));
         let written = write(&recording, format, &mut out).and_then(|()| out.flush());

@@ -6,12 +6,14 @@ mod scan;
 mod summaries;
 mod summary;
 
+use std::collections::BTreeSet;
+use std::convert::Infallible;
 use std::fs::{self, File};
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use axum::Json;
-use axum::body::Body;
+use axum::body::{Body, Bytes};
 use axum::extract::{Path, Query, State};
 use axum::http::StatusCode;
 use axum::http::header::{
@@ -26,10 +28,13 @@ use fcc_telemetry::FlightMessage;
 use fcc_telemetry::file_lock::is_locked;
 use serde::Deserialize;
 use serde_json::{Value, json};
+use tokio::sync::OwnedSemaphorePermit;
 
-use crate::failure::{Failure, aside};
+use crate::failure::{Failure, aside, reading};
 use crate::plans::hash_text;
 use crate::station::Station;
+use export::PART_BYTES;
+use scan::MOST_VALUES;
 pub(crate) use summaries::Summaries;
 
 /// Of a report: what it may do where it is shown. It has its styles and scripts in itself,
@@ -60,7 +65,7 @@ fn open(station: &Station, file: &str) -> Result<Recording, Failure> {
 
 /// `GET /api/flights`.
 pub(crate) async fn list(State(station): State<Arc<Station>>) -> Result<Json<Value>, Failure> {
-    aside(move || Ok(Json(station.flights.list(&station.recordings)?))).await
+    reading(move || Ok(Json(station.flights.list(&station.recordings)?))).await
 }
 
 /// What is wanted of a recording.
@@ -71,27 +76,44 @@ pub(crate) struct DataWanted {
     points: Option<usize>,
 }
 
+/// Sends bytes in parts, and gives the place back after the last one.
+fn sent_in(place: OwnedSemaphorePermit, bytes: Vec<u8>) -> Body {
+    let bytes = Bytes::from(bytes);
+    let parts = (0..bytes.len()).step_by(PART_BYTES).map(move |from| {
+        let _ = &place;
+        let to = bytes.len().min(from + PART_BYTES);
+        Ok::<_, Infallible>(bytes.slice(from..to))
+    });
+    Body::from_stream(futures_util::stream::iter(parts))
+}
+
 /// `GET /api/flights/{file}/data`.
 pub(crate) async fn data(
     State(station): State<Arc<Station>>,
     Path(file): Path<String>,
     Query(wanted): Query<DataWanted>,
 ) -> Result<Response, Failure> {
-    aside(move || {
+    let place = station.sending_place()?;
+    let bytes = reading(move || {
         let path = path_of(&station, &file)?;
         let names = wanted.columns.split(',').filter(|name| !name.is_empty());
         let names: Vec<&str> = names.collect();
+        let mut known = BTreeSet::new();
+        if let Some(again) = names.iter().find(|name| !known.insert(**name)) {
+            return Err(Failure::bad(format!("{again:?}: is wanted twice")));
+        }
         let table = match wanted.points {
             Some(points) => {
-                let points = points.clamp(2, 100_000);
+                let points = points.clamp(2, MOST_VALUES / (names.len() + 1));
                 station.flights.table(&path, &names, points)?
             }
             None => scan::table(&open(&station, &file)?, &names)?,
         };
-        let bytes = table.to_bytes();
-        Ok(([(CONTENT_TYPE, "application/octet-stream")], bytes).into_response())
+        Ok(table.to_bytes())
     })
-    .await
+    .await?;
+    let kind = [(CONTENT_TYPE, "application/octet-stream")];
+    Ok((kind, sent_in(place, bytes)).into_response())
 }
 
 /// `GET /api/flights/{file}/events`.
@@ -99,7 +121,7 @@ pub(crate) async fn events(
     State(station): State<Arc<Station>>,
     Path(file): Path<String>,
 ) -> Result<Json<Value>, Failure> {
-    aside(move || Ok(Json(station.flights.events(&path_of(&station, &file)?)?))).await
+    reading(move || Ok(Json(station.flights.events(&path_of(&station, &file)?)?))).await
 }
 
 /// `GET /api/flights/{file}/plan`.
@@ -107,7 +129,7 @@ pub(crate) async fn plan(
     State(station): State<Arc<Station>>,
     Path(file): Path<String>,
 ) -> Result<Json<Value>, Failure> {
-    aside(move || {
+    reading(move || {
         let recording = open(&station, &file)?;
         let about = recording.about();
         let Some((_, plan)) = recorded_plan(about) else {
@@ -135,7 +157,7 @@ pub(crate) async fn report(
     State(station): State<Arc<Station>>,
     Path(file): Path<String>,
 ) -> Result<Response, Failure> {
-    let page = aside(move || {
+    let page = reading(move || {
         let path = path_of(&station, &file)?;
         let recording = Recording::open_as::<FlightMessage>(path).map_err(Failure::bad)?;
         let about = recording.about();
@@ -188,7 +210,8 @@ pub(crate) async fn download(
     Query(wanted): Query<DownloadWanted>,
 ) -> Result<Response, Failure> {
     let (format, name) = (wanted.format, file.clone());
-    let recording = aside(move || open(&station, &file)).await?;
+    let place = station.sending_place()?;
+    let recording = reading(move || open(&station, &file)).await?;
     let stem = name.strip_suffix(".mcap").unwrap_or_default();
     // Of a name of fccd; others have no quotation marks either.
     let stem: String = stem
@@ -205,7 +228,7 @@ pub(crate) async fn download(
     ];
     Ok((
         headers,
-        Body::from_stream(export::stream(recording, format)),
+        Body::from_stream(export::stream(recording, format, place)),
     )
         .into_response())
 }
@@ -215,7 +238,7 @@ pub(crate) async fn compare(
     State(station): State<Arc<Station>>,
     Path((a, b)): Path<(String, String)>,
 ) -> Result<Json<Value>, Failure> {
-    aside(move || {
+    reading(move || {
         let summary = |file: &str| station.flights.summary(&path_of(&station, file)?);
         Ok(Json(compare::differences(&summary(&a)?, &summary(&b)?)))
     })

@@ -9,8 +9,8 @@ use serde_json::{Value, json};
 use crate::columns::{Columns, PageColumn};
 use crate::failure::Failure;
 
-/// Values of a table in memory, at most: 10 columns of an hour at 1 kHz.
-const MOST_VALUES: usize = 40_000_000;
+/// Values of a table in memory, at most: 27 columns of an hour at 40 Hz.
+pub(super) const MOST_VALUES: usize = 4_000_000;
 
 /// The columns of a recording, and how its rows are read.
 pub(super) struct Scanner {

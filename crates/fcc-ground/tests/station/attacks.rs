@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use crate::common::{Daemon, Ground, read, request, utc_ms, wait_for};
 
-const UPGRADE: [&str; 4] = [
+pub(crate) const UPGRADE: [&str; 4] = [
     "Upgrade: websocket",
     "Connection: Upgrade",
     "Sec-WebSocket-Version: 13",

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use clap::Parser as _;
 use fcc_core::framework::{State, Tick, Time};
-use fcc_ground::{Cli, Running, start};
+use fcc_ground::{Cli, Running, runtime, start};
 use fcc_live::{Command, Info, Publisher, Text, Verdict};
 use fcc_telemetry::{FlightRecord, Instance};
 use serde_json::Value;
@@ -53,32 +53,31 @@ impl Answer {
 
 impl Ground {
     pub(crate) fn new() -> Self {
-        Self::in_folder(tempfile::tempdir().unwrap())
+        Self::with(&[])
+    }
+
+    /// With further options.
+    pub(crate) fn with(options: &[&str]) -> Self {
+        Self::in_folder(tempfile::tempdir().unwrap(), options)
     }
 
     /// Another station that takes up the state of one.
     pub(crate) fn again(before: Self) -> Self {
-        before.running.stop();
-        Self::in_folder(before.folder)
+        Self::again_with(before, &[])
     }
 
-    fn in_folder(folder: TempDir) -> Self {
+    pub(crate) fn again_with(before: Self, options: &[&str]) -> Self {
+        before.running.stop();
+        Self::in_folder(before.folder, options)
+    }
+
+    fn in_folder(folder: TempDir, options: &[&str]) -> Self {
         let path = |name: &str| folder.path().join(name).display().to_string();
         let (state, recordings) = (path("state"), path("recordings"));
-        let cli = Cli::parse_from([
-            "fcc-ground",
-            "--listen",
-            "127.0.0.1:0",
-            "--state",
-            &state,
-            "--recordings",
-            &recordings,
-        ]);
-        let runtime = tokio::runtime::Builder::new_multi_thread()
-            .worker_threads(2)
-            .enable_all()
-            .build()
-            .unwrap();
+        let words = ["fcc-ground", "--listen", "127.0.0.1:0", "--state", &state];
+        let words = words.into_iter().chain(["--recordings", &recordings]);
+        let cli = Cli::parse_from(words.chain(options.iter().copied()));
+        let runtime = runtime().unwrap();
         let running = runtime.block_on(start(cli)).unwrap();
         Self {
             runtime,

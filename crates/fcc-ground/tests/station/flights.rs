@@ -35,7 +35,13 @@ fn record(number: u64) -> FlightRecord {
 }
 
 /// To the north for some seconds, in one failsafe at the end if that is wanted.
-fn fly(ground: &Ground, started_unix_s: u64, seconds: u64, fails: bool, finished: bool) -> PathBuf {
+pub(crate) fn fly(
+    ground: &Ground,
+    started_unix_s: u64,
+    seconds: u64,
+    fails: bool,
+    finished: bool,
+) -> PathBuf {
     let about = About {
         plant: "built-in".to_owned(),
         rate_hz: RATE_HZ as f64,
@@ -81,7 +87,7 @@ fn fly(ground: &Ground, started_unix_s: u64, seconds: u64, fails: bool, finished
     status.files[0].clone()
 }
 
-fn name(path: &Path) -> String {
+pub(crate) fn name(path: &Path) -> String {
     path.file_name().unwrap().to_str().unwrap().to_owned()
 }
 

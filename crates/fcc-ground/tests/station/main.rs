@@ -5,4 +5,7 @@ mod attacks;
 mod common;
 mod drafts;
 mod flights;
+mod hostile_files;
 mod live;
+mod load;
+mod protocol;
