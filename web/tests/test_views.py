@@ -17,6 +17,13 @@ SHOWN = {
 }
 
 
+# Displays that are higher or wider than what is around them shows.
+CUT_OFF = """() => [...document.querySelectorAll('.pfd')].filter(one => {
+    const own = one.getBoundingClientRect(), around = one.parentElement.getBoundingClientRect();
+    return own.bottom > around.bottom + 1 || own.right > around.right + 1;
+}).length"""
+
+
 def landed(air: Air) -> str:
     """Return the name of the flight that has ended."""
     flights = air.station.ask("GET", "/api/flights")[1]
@@ -39,6 +46,7 @@ def test_a_view_has_no_finding_and_fits(cruise: Air, visit: Visit, view: str, si
         assert axe(page) == [], theme
     wide, window = page.evaluate("[document.documentElement.scrollWidth, innerWidth]")
     assert wide <= window
+    assert page.evaluate(CUT_OFF) == 0
     assert visitor.errors == []
 
 
