@@ -12,8 +12,14 @@ use crate::config::{Config, ConfigError, NavigationMethod};
 
 /// The configuration in the recording cannot be read by this version.
 #[derive(thiserror::Error, Debug)]
-#[error("the configuration in the recording cannot be read by this version of fccd:\n{0}")]
-pub struct RecordedConfigError(#[from] ConfigError);
+#[error(
+    "the configuration in the recording cannot be read by this version of fccd: replay it with the \
+     one that recorded it, {by}:\n{error}"
+)]
+pub struct RecordedConfigError {
+    by: String,
+    error: ConfigError,
+}
 
 /// The configuration that was flown, defaults and command line included.
 ///
@@ -21,8 +27,13 @@ pub struct RecordedConfigError(#[from] ConfigError);
 /// When this version cannot read it, or the elevations that it was flown over are gone.
 pub fn recorded_config(chain: &Chain) -> Result<Config, RecordedConfigError> {
     let name = chain.config_name();
-    let config = Config::parse(&chain.about().config, &name)?;
-    Ok(config.with_recorded_terrain(&name)?)
+    let about = chain.about();
+    Config::parse(&about.config, &name)
+        .and_then(|config| config.with_recorded_terrain(&name))
+        .map_err(|error| RecordedConfigError {
+            by: format!("{} ({})", about.software, about.git_hash),
+            error,
+        })
 }
 
 /// The pattern in a recorded configuration; one of another version may be

@@ -4,7 +4,7 @@ use fcc_core::flight::route::LONGEST_LEG_M;
 use fcc_core::units::FOOT_M;
 
 use crate::check::{Conditions, Leg, above_sea_level, legs};
-use crate::item::{AltitudeDatum, Item, Place};
+use crate::item::{AltitudeDatum, Item, Loiter, LoiterEnd, Place};
 use crate::level::Level;
 use crate::plan::{Plan, limits};
 use crate::problem::Problem;
@@ -27,7 +27,7 @@ pub struct Usual {
 
 /// Items that are flown low over the ground or above the ceiling, and legs that are longer
 /// than an aircraft flies, or are so if latitude and longitude are exchanged; heights above
-/// a home at exactly 0 m; jumps that never end; commands of a camera. Take-off and landing may
+/// a home at exactly 0 m; jumps and loiters that never end; commands of a camera. Take-off and landing may
 /// be low.
 pub fn unusual(plan: &Plan, conditions: &Conditions, usual: &Usual) -> Vec<Problem> {
     let altitudes = plan.items.iter().enumerate().filter_map(|(n, item)| {
@@ -41,18 +41,25 @@ pub fn unusual(plan: &Plan, conditions: &Conditions, usual: &Usual) -> Vec<Probl
         Some(Problem::of_item(leg.item, "leg", message))
     });
     let items = plan.items.iter().enumerate();
-    let loops = items.filter(|(_, item)| matches!(item, Item::Jump { times: None, .. }));
-    let loops = loops.map(|(n, _)| {
+    let endless = items.filter_map(|(n, item)| {
+        let what = match item {
+            Item::Jump { times: None, .. } => "jump",
+            Item::Loiter(Loiter {
+                end: LoiterEnd::Never,
+                ..
+            }) if n + 1 < plan.items.len() => "loiter",
+            _ => return None,
+        };
         let message = "for ever: what is behind it is flown by a command only (fccd command plan \
                        land, item N), and the plan has no end";
-        Problem::of_item(n + 1, "jump", message)
+        Some(Problem::of_item(n + 1, what, message))
     });
     let mut found: Vec<_> = home_at_zero(plan)
         .into_iter()
         .chain(camera(plan))
         .chain(altitudes)
         .chain(lengths)
-        .chain(loops)
+        .chain(endless)
         .collect();
     found.sort_by_key(|problem| problem.item);
     found.truncate(limits::PROBLEMS);

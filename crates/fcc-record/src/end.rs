@@ -92,18 +92,14 @@ impl RunStatistics {
         if end.ticks == 0 {
             end.first_tick = tick.number;
             self.first_woke_ns = woke_ns;
+        } else {
+            end.missed = end.missed.saturating_add(tick.missed);
         }
-        // The periods missed before the first tick belong to the file before.
-        let missed = if end.ticks == 0 { 0 } else { tick.missed };
-        end.missed = end.missed.saturating_add(missed);
         end.ticks += 1;
         end.last_tick = tick.number;
         end.duration_ns =
             u64::try_from(woke_ns.saturating_sub(self.first_woke_ns)).unwrap_or_default();
-        let period_s = tick.dt_s / (tick.missed as f64 + 1.0);
-        let late_by_missed_ns = (missed as f64 * period_s * 1e9).round() as u64;
-        let lateness_ns = u64::try_from(tick.woke - tick.scheduled).unwrap_or_default();
-        let lateness_ns = lateness_ns.saturating_add(late_by_missed_ns);
+        let lateness_ns = u64::try_from(tick.lateness().as_nanos()).unwrap_or(u64::MAX);
         end.worst_lateness_ns = end.worst_lateness_ns.max(lateness_ns);
         self.last_state = Some(record.state.state());
     }

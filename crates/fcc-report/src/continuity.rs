@@ -32,6 +32,8 @@ pub struct Continuity {
     pub gap_count: u64,
     /// The first thousand gaps.
     pub gaps: Vec<Gap>,
+    /// Ticks that are known to be missing after the last.
+    pub lost_after: u64,
     /// Ticks out of order, which were left out.
     pub out_of_order: u64,
     #[serde(skip)]

@@ -67,7 +67,8 @@ fn gaps(report: &RunReport) -> Vec<String> {
         ));
     } else if missing_before > 0 {
         sentences.push(format!(
-            "The recording begins late, at tick {}: {} before it are missing.",
+            "The recording begins late, at tick {}: {} before it are missing. Times count from \
+             there.",
             continuity.first_tick,
             ticks(missing_before)
         ));
@@ -99,6 +100,12 @@ fn gaps(report: &RunReport) -> Vec<String> {
             "{} missing from the file, in {}{where_longest}; the plots show gaps there.",
             are(continuity.lost, "tick"),
             plural(continuity.gap_count, "gap"),
+        ));
+    }
+    if continuity.lost_after > 0 {
+        sentences.push(format!(
+            "{} missing after that, at the end.",
+            are(continuity.lost_after, "tick")
         ));
     }
     if continuity.out_of_order > 0 {

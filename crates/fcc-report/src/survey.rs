@@ -40,6 +40,8 @@ pub struct Survey<C: Reported> {
     events: Events,
     damages: Vec<Damage>,
     failsafes: u64,
+    /// The last tick that an event says was not recorded.
+    not_recorded_to: u64,
     plots: Vec<Plot>,
     lateness: Curve,
     values: Leaves,
@@ -64,6 +66,7 @@ impl<C: Reported> Survey<C> {
             events: Events::default(),
             damages: Vec::new(),
             failsafes: 0,
+            not_recorded_to: 0,
             plots: C::plots(&Quantities::of::<RecordOf<C>>()),
             lateness: Curve::default(),
             values: Leaves::default(),
@@ -210,6 +213,9 @@ impl<C: Reported> Survey<C> {
         {
             self.failsafes += 1;
         }
+        if let EventKind::NotRecorded { last, .. } = event.kind {
+            self.not_recorded_to = self.not_recorded_to.max(last);
+        }
         let time_s = self.seconds(event.time);
         self.events.take::<C>(time_s, event, &self.origin);
         C::take_event(&mut self.addition, event);
@@ -222,6 +228,8 @@ impl<C: Reported> Survey<C> {
             .timing
             .map(|stats| timing(&stats, self.page_faults, &self.origin));
         self.addition.finish();
+        let last_tick = self.continuity.last_tick;
+        self.continuity.lost_after = self.not_recorded_to.saturating_sub(last_tick);
         let panels = self.plots.iter().flat_map(|plot| &plot.panels);
         let values = panels
             .filter(|_| C::TABLE_OF_VALUES)

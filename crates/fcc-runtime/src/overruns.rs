@@ -118,11 +118,9 @@ impl Overruns {
             return;
         }
         self.lengthen(tick.missed, tick);
-        // Since the first deadline that was missed.
-        let late_ns = tick.lateness().as_nanos() as u64;
         let overrun = EventKind::Overrun {
             of: Stage::Timer,
-            took_ns: late_ns.saturating_add(tick.missed.saturating_mul(self.period_ns)),
+            took_ns: tick.lateness().as_nanos() as u64,
             budget_ns: self.period_ns,
             longest: Stage::Timer,
         };

@@ -67,8 +67,8 @@ impl<C: Controller> fmt::Display for EventDescription<C> {
             ),
             EventKind::NotRecorded { count, first, last } => write!(
                 f,
-                "{count} messages not recorded, ticks {first} to {last}: the disk was too slow or \
-                 full"
+                "{count} messages not recorded, ticks {first} to {last}: the disk was too slow \
+                 or full, or the recording was damaged"
             ),
             EventKind::Released { ok: true } => f.write_str("release sent to the actuators"),
             EventKind::Released { ok: false } => {

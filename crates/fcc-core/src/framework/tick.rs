@@ -2,6 +2,8 @@
 
 use core::time::Duration;
 
+use libm::round;
+
 use super::Time;
 use crate::schema;
 
@@ -41,14 +43,20 @@ schema! {
         #[field(5)]
         pub dt_s: f64,
     }
-    /// How late the loop woke.
+    /// How late the loop woke for the first period that it served or missed.
     #[field(6)]
-    derived lateness_ns = |tick| (tick.woke - tick.scheduled) as f64;
+    derived lateness_ns = |tick| (tick.woke - tick.scheduled) as f64 + tick.missed_ns();
 }
 
 impl Tick {
-    /// How late the loop woke: `woke - scheduled`.
-    pub const fn lateness(&self) -> Duration {
-        self.woke.since(self.scheduled)
+    /// How late the loop woke: `woke - scheduled`, and the periods missed before.
+    pub fn lateness(&self) -> Duration {
+        let missed = Duration::from_nanos(self.missed_ns() as u64);
+        self.woke.since(self.scheduled).saturating_add(missed)
+    }
+
+    fn missed_ns(&self) -> f64 {
+        let missed = self.missed as f64;
+        round(missed / (missed + 1.0) * self.dt_s * 1e9)
     }
 }

@@ -245,7 +245,9 @@ impl Config {
             .map_err(|problem| invalid(vec![problem]))?;
         let plan = self.checked_plan(plan).map_err(invalid)?;
         let content = fcc_plan::write(&plan, Format::QgcPlan).map_err(invalid)?;
-        self.begin_at(&plan);
+        if self.flies_plan() {
+            self.begin_at(&plan);
+        }
         self.plan.take(plan, uploaded_s).map_err(invalid)?;
         self.plan.content = Some(content);
         self.plan.uploaded_unix_s = Some(uploaded_s);

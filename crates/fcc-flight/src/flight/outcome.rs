@@ -175,7 +175,10 @@ impl Outcome {
         };
         let why = match given_up {
             Some(why) => format!("; {why}"),
-            None => ": give it more time (--seconds), or a shorter plan".to_owned(),
+            None => {
+                ": give it more time (--seconds), a shorter plan, or a command if it is for ever"
+                    .to_owned()
+            }
         };
         let what = match over {
             Over::Time => "the time to fly is over, and the plan is not flown to its end",

@@ -78,6 +78,31 @@ fn a_round_fence_is_not_crossed_in_any_wind() {
     }
 }
 
+/// Engaged outside of a fence, far from it or near, the aircraft flies in and stays in:
+/// around home it is 800 m away.
+#[test]
+fn engaged_outside_of_a_fence_it_comes_home() {
+    for away_m in [5_200.0, 6_500.0, 20_000.0] {
+        for (course_deg, heading_deg) in [(0.0, 180.0), (90.0, 0.0), (200.0, 200.0)] {
+            let place = HOME.ahead(course_deg, away_m);
+            let keys = format!(
+                "[built-in]\nlatitude_deg = {}\nlongitude_deg = {}\nheading_deg = {heading_deg}\n",
+                place.latitude_deg, place.longitude_deg
+            );
+            let mut flight = Flight::new(&fenced(&[], 5_000.0), &keys);
+            let mut was_inside = false;
+            let mut left_m = 0.0_f64;
+            flight.fly_until(900.0, |flight| {
+                let away_m = flight.distance_m(HOME);
+                was_inside |= away_m < 4_900.0;
+                left_m = left_m.max(if was_inside { away_m - 5_000.0 } else { 0.0 });
+                (away_m - 800.0).abs() < 30.0
+            });
+            assert_eq!(left_m, 0.0, "{away_m} m, {course_deg}°");
+        }
+    }
+}
+
 /// The same towards a corner of 60°, where no circle fits long before the corner.
 #[test]
 fn a_corner_of_a_fence_is_not_flown_into() {

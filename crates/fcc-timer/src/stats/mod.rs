@@ -125,7 +125,9 @@ impl TimingStats {
         self.ticks = self.ticks.saturating_add(1);
         self.missed = self.missed.saturating_add(expiry.missed);
 
-        let lateness_ns = expiry.lateness_ns().max(0);
+        // For the first period that it served or missed.
+        let missed_ns = self.period.ns().saturating_mul(expiry.missed as i64);
+        let lateness_ns = expiry.lateness_ns().max(0).saturating_add(missed_ns);
         self.lateness_max_ns = self.lateness_max_ns.max(lateness_ns);
         self.lateness.saturating_record(lateness_ns.unsigned_abs());
         self.early_wake_ns = expiry.early_wake_ns;

@@ -104,6 +104,9 @@ pub(super) struct Contingencies {
     is_battery_met: bool,
     /// Of a fence that is not acted on.
     side: Side,
+    /// Whether it was engaged outside of the fence and has not come in; none before it is
+    /// known.
+    enters_fence: Option<bool>,
     /// Whether this engine failure was acted on.
     is_engine_met: bool,
     /// Within which time commands are promised, and how much of it is left, s.
@@ -150,6 +153,7 @@ impl Contingencies {
             turns: 0,
             is_battery_met: false,
             side: Side::Inside,
+            enters_fence: None,
             is_engine_met: false,
             promised_s,
             kept: None,

@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use libm::{cos, sin};
+use libm::{cos, sin, tan};
 
 use super::attitude::Orientation;
 use super::marked_altitude::MarkedAltitude;
@@ -255,6 +255,10 @@ impl VerticalChannel {
         } else {
             0.0
         };
+        if self.resolution.step() > LEAST_STEP_M {
+            self.covariance
+                .predict_coarse(tan(orientation.roll_rad), dt_s);
+        }
         self.predict(self.felt_mps2, measured, dt_s);
     }
 

@@ -93,6 +93,11 @@ impl KeptCircle {
     }
 }
 
+/// How far inside of the fence the aircraft is, m; negative outside.
+fn inside_m(fence: &Fence<'_>, here: &OverGround) -> f64 {
+    fence.clearance_m(here.latitude_rad, here.longitude_rad, Vector2::zeros())
+}
+
 impl Autopilot {
     /// Turns away from the fence in time.
     pub(super) fn keep_inside_fence(&mut self) {
@@ -148,12 +153,19 @@ impl Autopilot {
         } else {
             margin_m
         };
+        let depth_m = inside_m(&fence, &here);
+        let enters = self.contingencies.enters_fence.unwrap_or(depth_m < 0.0);
         if escape.clearance_m >= needed_m {
+            self.contingencies.enters_fence = Some(false);
             if stage == Stage::Leaving {
                 self.contingencies.stage = Stage::Acting;
             }
             return;
         }
+        // Engaged outside, it flies in on the way home, until there is room for a circle.
+        let enters =
+            enters && (depth_m < 0.0 || depth_m < inside_m(&fence, &here.straight_on(1.0)));
+        self.contingencies.enters_fence = Some(enters);
         // The fence is left behind. Until there is room for a turn at once for the first time,
         // one that begins later stays nearer to it, or inside.
         let waits = escape.clearance_m >= LEAST_SHARE * margin_m || stage == Stage::Leaving;
@@ -162,10 +174,8 @@ impl Autopilot {
         }
         // A command does not make the circle another one while the aircraft is on it.
         let circle = kept.filter(|kept| kept.is_flown(&here, bank.now_rad));
-        let zero = Vector2::zeros();
-        let depth_m = fence.clearance_m(here.latitude_rad, here.longitude_rad, zero);
-        if circle.is_none() && depth_m < -escape.radius_m {
-            // It was engaged far outside: nearer, the circle leads back sooner.
+        if enters || circle.is_none() && depth_m < -escape.radius_m {
+            // Nearer to a fence that was crossed, the circle leads back sooner.
             self.meet(Contingency::Fence, ContingencyAction::Return);
             return;
         }
@@ -251,8 +261,7 @@ impl Autopilot {
         let Some(here) = self.ground.here().filter(|_| !fence.zones.is_empty()) else {
             return;
         };
-        let zero = Vector2::zeros();
-        let is_out = fence.clearance_m(here.latitude_rad, here.longitude_rad, zero) < 0.0;
+        let is_out = inside_m(fence, here) < 0.0;
         let side = if is_out { Side::Outside } else { Side::Inside };
         if (self.contingencies.side, side) == (Side::Inside, Side::Outside) {
             self.contingencies
@@ -320,12 +329,9 @@ impl Autopilot {
             ..self.fastest_bank()
         };
         let least_m = LEAST_SHARE * self.fence_margin_m();
-        let zero = Vector2::zeros();
         (1..=AHEAD_S)
             .map(|s| here.straight_on(f64::from(s)))
-            .take_while(|here| {
-                fence.clearance_m(here.latitude_rad, here.longitude_rad, zero) >= least_m
-            })
+            .take_while(|here| inside_m(fence, here) >= least_m)
             .filter_map(|here| Escape::best(fence, &here, &bank))
             .fold(f64::NEG_INFINITY, |most_m, escape| {
                 most_m.max(escape.clearance_m)
