@@ -115,16 +115,19 @@ impl Deviation {
         let differing = || self.quantities.iter().filter(differs);
         let width = differing().map(|quantity| quantity.name.len()).max();
         let width = width.unwrap_or(0).max(16);
-        let mut text = format!(
-            "{:width$} {:>9} {:>9} {:6} {:>8}  {}\n{}",
-            "other - recorded",
-            "rms",
-            "largest",
-            "",
-            "at",
-            "over time",
-            "─".repeat(width + 53)
-        );
+        let mut text = String::new();
+        if differing().next().is_some() {
+            let _ = writeln!(
+                text,
+                "{:width$} {:>9} {:>9} {:6} {:>8}  over time\n{}",
+                "other - recorded",
+                "rms",
+                "largest",
+                "",
+                "at",
+                "─".repeat(width + 53)
+            );
+        }
         for quantity in differing() {
             let at = quantity
                 .largest_at_s
@@ -137,14 +140,14 @@ impl Deviation {
             };
             let _ = write!(
                 text,
-                "\n{:width$} {rms:>9} {largest:>9} {:6} {at:>8}  {}",
+                "{:width$} {rms:>9} {largest:>9} {:6} {at:>8}  {}\n",
                 quantity.name,
                 quantity.unit,
                 quantity.profile.line(),
             );
         }
         let same = self.quantities.len() - differing().count();
-        let _ = write!(text, "\n{same} of {} do not differ", self.quantities.len());
+        let _ = write!(text, "{same} of {} do not differ", self.quantities.len());
         let _ = write!(
             text,
             "\n\n{} ticks compared, in which both command the plant; only the recorded loop did in \

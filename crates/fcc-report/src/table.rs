@@ -195,13 +195,13 @@ pub fn recordings_table(entries: &[Entry]) -> String {
                 Wholeness::Whole => entry.state.clone(),
                 Wholeness::Damaged => "damaged".to_owned(),
                 Wholeness::Cut => "cut".to_owned(),
-                Wholeness::BeingWritten => "being written".to_owned(),
+                Wholeness::BeingWritten => "writing".to_owned(),
             },
         ]);
     }
     let to_recover = |entry: &Entry| matches!(entry.file, Wholeness::Damaged | Wholeness::Cut);
     if entries.iter().any(to_recover) {
-        return format!("{table}\ncut, damaged: fccd recover FILE");
+        return format!("{table}\nfccd recover FILE finishes a cut or damaged recording");
     }
     table.to_string()
 }

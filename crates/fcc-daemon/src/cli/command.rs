@@ -39,7 +39,7 @@ pub enum CommandChoice {
     /// the configuration says
     Heartbeat {
         /// Within which time, to 3600; 0 ends the promise
-        #[arg(value_name = "SECONDS")]
+        #[arg(value_name = "SECONDS", allow_negative_numbers = true)]
         within_s: f64,
     },
     /// Pause the flight plan, resume it, or leave it

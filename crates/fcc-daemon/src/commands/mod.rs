@@ -68,10 +68,12 @@ fn plain(mut error: clap::Error) -> clap::Error {
     let mut command = Cli::command();
     command.build();
     for word in std::env::args_os().skip(1) {
-        let Some(of_it) = command.find_subcommand(&word) else {
-            break;
-        };
-        command = of_it.clone();
+        match command.find_subcommand(&word) {
+            Some(of_it) => command = of_it.clone(),
+            // The name of an instance or of a user may stand before it.
+            None if command.has_subcommands() => {}
+            None => break,
+        }
     }
     if error.get(ContextKind::Usage).is_some() {
         let usage = ContextValue::StyledStr(command.render_usage());

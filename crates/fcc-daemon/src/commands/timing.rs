@@ -24,7 +24,12 @@ pub(super) fn timing(args: &TimingArgs) -> Result<Exit, Failure> {
         let outcome = measure(args, *rate_hz).map_err(Failure::new)?;
         reports.push(outcome.timing);
         if outcome.interrupted {
-            eprintln!("{}: the report is of the time until then", outcome.ending);
+            output::message(format_args!(
+                "{}: reported until then, at {} of {} rates",
+                outcome.ending,
+                reports.len(),
+                args.rates.len()
+            ));
             break;
         }
     }
