@@ -3,37 +3,19 @@
 from __future__ import annotations
 
 import contextlib
-import itertools
 import os
 import shutil
 import signal
 import subprocess
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from daemon_under_test import DaemonUnderTest
 from ground_station import ROOT, Station, make_ground
 from playwright.sync_api import Browser, sync_playwright
 
+from air import Air, Visit
 from visitor import Visitor, chromium
-
-# Engages by command only. In the air; without a plan.
-AIR = """
-[built-in]
-engage_at_s = 31622400.0
-[engage]
-command_needs_switch = false
-[guidance]
-mode = "hold"
-[telemetry]
-instance = "{instance}"
-[recording]
-folder = "{folder}/recordings"
-"""
-_numbers = itertools.count(1)
-
-Visit = Callable[..., Visitor]
 
 
 def _program(variable: str) -> Path:
@@ -71,28 +53,6 @@ def visit(browser: Browser) -> Iterator[Visit]:
             return visitor
 
         yield make
-
-
-class Air:
-    """The built-in aircraft in the air, in hold mode, and a station beside it."""
-
-    def __init__(self, folder: Path, fccd: Path, program: Path, ends: contextlib.ExitStack) -> None:
-        instance = f"air-{os.getpid()}-{next(_numbers)}"
-        config = folder / "fccd.toml"
-        config.write_text(AIR.format(instance=instance, folder=folder))
-        words: list[str | Path] = [fccd, "run", "--quiet", "--config", config]
-        self.folder = folder
-        self.daemon = ends.enter_context(DaemonUnderTest(words, folder))
-        options: list[str | Path] = [
-            "--config",
-            config,
-            "--state",
-            folder / "state",
-            "--fccd",
-            fccd,
-        ]
-        self.station = Station([program, *options], fccd, instance)
-        ends.callback(self.station.end)
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ import time
 import pytest
 from playwright.sync_api import Page, Route
 
-from conftest import Air, Visit
+from air import Air, Visit
 
 
 def said(page: Page, text: str) -> None:

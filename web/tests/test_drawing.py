@@ -11,7 +11,7 @@ from typing import Any
 from ground_station import Station, waited
 from playwright.sync_api import Page
 
-from conftest import Air, Visit
+from air import Air, Visit
 
 HOSTILE = "<img src=x onerror=document.title='owned'>"
 MANY = "n => document.querySelectorAll('.items tbody tr:not(.problem)').length === n"

@@ -9,7 +9,7 @@ from daemon_under_test import assert_released, flight, wait_until
 from fcc_hil.cockpit import OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES
 from ground_station import Station, waited
 
-from conftest import Visit
+from air import Visit
 from test_commands import said, slide
 from test_numbers import row
 

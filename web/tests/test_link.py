@@ -7,7 +7,7 @@ import time
 
 from playwright.sync_api import Page
 
-from conftest import Air, Visit
+from air import Air, Visit
 
 GREY_S = 1.0
 LOST_S = 3.0

@@ -12,7 +12,7 @@ import pytest
 from ground_station import waited
 from playwright.sync_api import Page
 
-from conftest import Air, Visit
+from air import Air, Visit
 from test_views import landed
 
 M_FT = 1 / 0.3048

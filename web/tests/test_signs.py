@@ -14,7 +14,7 @@ import pytest
 from ground_station import waited
 from playwright.sync_api import Page
 
-from conftest import Air, Visit
+from air import Air, Visit
 from test_numbers import recorded, seek
 from test_views import landed
 

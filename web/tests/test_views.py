@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from conftest import Air, Visit
+from air import Air, Visit
 from visitor import PICTURES, SIZES, THEMES, axe
 
 # What a view has when it shows the flight.

@@ -84,7 +84,10 @@ class Visitor:
         page.goto(self.link)
         if self.aircraft is not None:
             # Others may fly on this machine.
-            page.get_by_label("Aircraft", exact=True).select_option(self.aircraft)
+            page.wait_for_selector(f".instance option[value='{self.aircraft}']", state="attached")
+            picker = page.get_by_label("Aircraft", exact=True)
+            if picker.input_value() != self.aircraft:
+                picker.select_option(self.aircraft)
         page.wait_for_selector(".link[data-state=fresh]")
 
 
