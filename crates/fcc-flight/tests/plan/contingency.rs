@@ -99,6 +99,7 @@ fn engaged_outside_of_a_fence_it_comes_home() {
                 (away_m - 800.0).abs() < 30.0
             });
             assert_eq!(left_m, 0.0, "{away_m} m, {course_deg}°");
+            assert!(flight.happened("outside of the fence: returning"));
         }
     }
 }

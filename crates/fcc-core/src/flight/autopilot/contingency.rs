@@ -313,6 +313,7 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
         Contingency::Fence if notice.item == ContingencyAction::Continue as u16 + 1 => {
             "the fence is crossed"
         }
+        Contingency::Fence if notice.amount_permille == fence::OUTSIDE => "outside of the fence",
         Contingency::Fence => "the fence is near: turning away",
         Contingency::BatteryLow => "the battery is low",
         Contingency::EngineOut if notice.amount_permille == engine_out::ENGINE_RUNS => {

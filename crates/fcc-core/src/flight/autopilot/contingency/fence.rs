@@ -4,7 +4,7 @@ use libm::{atan, tan};
 use nalgebra::Vector2;
 
 use super::super::Autopilot;
-use super::{Contingency, ContingencyAction, Stage};
+use super::{Contingency, ContingencyAction, PERMILLE, Stage};
 use crate::flight::fence::{Bank, Escape, Fence};
 use crate::flight::guidance::{Mode, ModeInput};
 use crate::flight::path::{LocalPlane, Path, length};
@@ -49,6 +49,9 @@ const LEAST_SHARE: f64 = 0.25;
 
 /// Turned away so often, the aircraft stays on its circle.
 const MOST_TURNS: u8 = 3;
+
+/// The amount of the notice that the aircraft is outside.
+pub(super) const OUTSIDE: u16 = Contingency::Fence as u16 * PERMILLE + 1;
 
 /// On which side of the fence the aircraft is known to be.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -177,6 +180,9 @@ impl Autopilot {
         if enters || circle.is_none() && depth_m < -escape.radius_m {
             // Nearer to a fence that was crossed, the circle leads back sooner.
             self.meet(Contingency::Fence, ContingencyAction::Return);
+            if let (false, Some(news)) = (is_met, &mut self.contingencies.news) {
+                news.amount_permille = OUTSIDE;
+            }
             return;
         }
         let circle = circle.unwrap_or_else(|| KeptCircle::of(&escape, &here));
