@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
+import subprocess
 import time
 import urllib.error
 from collections.abc import Iterator
@@ -97,3 +99,22 @@ def test_ctrl_c_ends_both(ground: Station) -> None:
     assert not Path(f"/proc/{process_id}").exists()
     with pytest.raises(urllib.error.URLError):
         ground.ask("GET", "/api/status")
+
+
+def test_a_daemon_prints_the_link_of_the_station_that_runs(tmp_path: Path, fccd: Path) -> None:
+    own = tmp_path / "run"
+    own.mkdir(mode=0o700)
+    environment = {**os.environ, "RUNTIME_DIRECTORY": str(own)}
+
+    def printed() -> str:
+        words = [fccd, "fly", "--seconds", "1", "--quiet", "--no-recording"]
+        return subprocess.run(words, env=environment, stderr=subprocess.PIPE, text=True).stderr
+
+    words = [fccd, "ground", "--json", "--listen", "127.0.0.1:0", "--state", tmp_path / "state"]
+    with subprocess.Popen(words, env=environment, stdout=subprocess.PIPE, text=True) as station:
+        assert station.stdout is not None
+        link = json.loads(station.stdout.readline())["link"]
+        assert f"ground station: {link}" in printed()
+        station.terminate()
+        assert station.wait(PATIENCE_S) == 0
+    assert "ground station" not in printed()

@@ -7,6 +7,7 @@ pub mod plan;
 mod values;
 pub mod x_plane;
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
@@ -32,6 +33,18 @@ pub struct Cli {
     /// The command.
     #[command(subcommand)]
     pub command: Action,
+}
+
+/// `fccd ground`.
+#[derive(Args, Debug)]
+pub struct GroundArgs {
+    /// The options of fcc-ground, see `fccd ground --help`
+    #[arg(
+        value_name = "OPTION",
+        trailing_var_arg = true,
+        allow_hyphen_values = true
+    )]
+    pub options: Vec<OsString>,
 }
 
 /// The commands of `fccd`.
@@ -71,6 +84,9 @@ pub enum Action {
     XPlane(XPlaneArgs),
     /// Report on a recorded flight: tables, and a page with plots
     Report(ReportArgs),
+    /// Start the ground station: plans, flights and health in a browser
+    #[command(disable_help_flag = true)]
+    Ground(GroundArgs),
     /// Release X-Plane's controls if the daemon is killed; started by the
     /// daemon itself
     #[command(hide = true)]

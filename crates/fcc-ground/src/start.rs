@@ -8,6 +8,7 @@ use std::path::PathBuf;
 
 use clap::Parser as _;
 use fcc_flight::config::ConfigError;
+use fcc_telemetry::StationLink;
 use serde_json::json;
 use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
@@ -244,6 +245,8 @@ async fn until_ended(cli: Cli) -> Exit {
             return error.exit();
         }
     };
+    // Told to the daemons of this user until the station ends.
+    let _told = StationLink::tell(&running.link());
     if let Err(error) = announce(&running, as_json) {
         message(format!("the link cannot be printed: {error}"));
         return Exit::Failure;

@@ -23,6 +23,7 @@ mod run_folder;
 pub mod schema;
 #[cfg(feature = "flight")]
 mod score;
+mod station_link;
 mod telemetry;
 mod timing;
 pub mod units;
@@ -45,5 +46,6 @@ pub use quantity::RecordedQuantity;
 pub use run_folder::RunFolder;
 #[cfg(feature = "flight")]
 pub use score::{FlightScore, Leg, LegScore, Sample, ScoreError, ScoredBy, score};
+pub use station_link::StationLink;
 pub use telemetry::Telemetry;
 pub use timing::{Denial, Lateness, Period, Realtime, TimingReport, expiry_of};

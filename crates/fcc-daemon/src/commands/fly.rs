@@ -7,6 +7,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use fcc_report::FlownPlan;
 use fcc_runtime::SpawnError;
+use fcc_telemetry::StationLink;
 use serde::Serialize;
 use signal_hook::consts::{SIGINT, SIGTERM};
 
@@ -93,6 +94,11 @@ pub(super) fn conduct(
     #[cfg(feature = "live")]
     {
         assembly.publisher = Some(Box::new(|| Ok(own_program("publisher"))));
+    }
+    if plan.pace == Pace::RealTime {
+        for link in StationLink::all() {
+            output::message(format_args!("ground station: {link}"));
+        }
     }
     let recording = RecordingRequest::of(config, as_given);
     let mut observers = assembly.observers(config, plan.pace, recording);

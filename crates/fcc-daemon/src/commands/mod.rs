@@ -10,6 +10,7 @@ mod command;
 mod doctor;
 mod failure;
 mod fly;
+mod ground;
 mod list;
 mod lookup;
 mod outcome;
@@ -119,6 +120,7 @@ fn carry_out(command: Action) -> Result<Exit, Failure> {
         Action::Plan(args) => plan::plan(&args)?,
         Action::XPlane(args) => x_plane::x_plane(&args)?,
         Action::Report(args) => report::report(&args)?,
+        Action::Ground(args) => ground::ground(&args)?,
         #[cfg(feature = "live")]
         Action::Publisher => publisher::publisher()?,
         Action::ReleaseHelper => release_helper::release_helper()?,
