@@ -2,13 +2,16 @@
 
 use std::env;
 use std::fs;
-use std::io::{self, ErrorKind, Write as _};
-use std::net::SocketAddr;
+use std::io::{self, ErrorKind, IsTerminal as _, Write as _};
+use std::net::{Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
 
 use clap::Parser as _;
 use fcc_flight::config::ConfigError;
 use fcc_telemetry::StationLink;
+use nix::ifaddrs::getifaddrs;
+use qrcode::QrCode;
+use qrcode::render::unicode::Dense1x2;
 use serde_json::json;
 use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
@@ -87,13 +90,38 @@ pub struct Running {
 impl Running {
     /// The link that permits changes.
     pub fn link(&self) -> String {
-        format!("http://{}/#token={}", self.address, self.token.as_str())
+        format!(
+            "http://{}/#token={}",
+            reachable(self.address),
+            self.token.as_str()
+        )
+    }
+
+    /// The link for the camera of a phone, if another machine can open it.
+    fn picture(&self) -> Option<String> {
+        if reachable(self.address).ip().is_loopback() {
+            return None;
+        }
+        let code = QrCode::new(self.link()).ok()?;
+        Some(code.render::<Dense1x2>().quiet_zone(true).build())
     }
 
     /// Ends it.
     pub fn stop(&self) {
         self.serving.abort();
     }
+}
+
+/// The address by which a browser finds a station that listens on all of them: the first of
+/// a network, or else this machine's own.
+fn reachable(address: SocketAddr) -> SocketAddr {
+    if !address.ip().is_unspecified() {
+        return address;
+    }
+    let all = getifaddrs().into_iter().flatten();
+    let mut v4 = all.filter_map(|one| Some(one.address?.as_sockaddr_in()?.ip()));
+    let ip = v4.find(|ip| !ip.is_loopback() && !ip.is_link_local());
+    (ip.unwrap_or(Ipv4Addr::LOCALHOST), address.port()).into()
 }
 
 fn state_folder(given: Option<PathBuf>) -> Result<PathBuf, StartError> {
@@ -177,7 +205,9 @@ fn announce(running: &Running, as_json: bool) -> io::Result<()> {
         format!("ground station: open {link}")
     };
     let mut out = io::stdout().lock();
-    let written = writeln!(out, "{line}").and_then(|()| out.flush());
+    let picture = running.picture().filter(|_| !as_json && out.is_terminal());
+    let lines = picture.into_iter().chain([line]).collect::<Vec<_>>();
+    let written = writeln!(out, "{}", lines.join("\n")).and_then(|()| out.flush());
     written.or_else(|error| match error.kind() {
         ErrorKind::BrokenPipe => Ok(()),
         _ => Err(error),
