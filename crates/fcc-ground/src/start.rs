@@ -103,7 +103,12 @@ impl Running {
             return None;
         }
         let code = QrCode::new(self.link()).ok()?;
-        Some(code.render::<Dense1x2>().quiet_zone(true).build())
+        let picture = code.render::<Dense1x2>().build();
+        // Black on white, whatever the colours of the terminal.
+        let lines = picture
+            .lines()
+            .map(|line| format!("\x1b[30;107m{line}\x1b[0m"));
+        Some(lines.collect::<Vec<_>>().join("\n"))
     }
 
     /// Ends it.
