@@ -192,7 +192,8 @@ def test_another_plan_by_replace_brings_its_own_begin(tmp_path: Path) -> None:
     other = tmp_path / "other.waypoints"
     lines = (CONFIGS / "plans/circuit.waypoints").read_text()
     other.write_text(lines.replace("\t45.", "\t46."))
-    first = fcc.Config(f'[plan]\nfile = "{CONFIGS}/plans/circuit.waypoints"\n')
+    plan = f'[guidance]\nmode = "plan"\n[plan]\nfile = "{CONFIGS}/plans/circuit.waypoints"\n'
+    first = fcc.Config(plan)
     assert first["built-in.latitude_deg"] == 45.0
     assert first.replace({"plan.file": str(other)})["built-in.latitude_deg"] == 46.0
     with pytest.raises(fcc.ConfigError, match=r"plan\.file: .*cannot be read"):
