@@ -37,7 +37,8 @@ ROWS = {
 
 
 def number(text: str) -> float:
-    return float(text.replace("\u2212", "-"))
+    """Return what is shown; NaN for the dash of a value that is not known yet."""
+    return math.nan if text == "\u2013" else float(text.replace("\u2212", "-"))
 
 
 def row(page: Page, name: str) -> tuple[float, float]:

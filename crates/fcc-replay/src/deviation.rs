@@ -138,9 +138,9 @@ impl Deviation {
                 let (rms, largest) = (quantity.rms, quantity.largest);
                 [format!("{rms:.4}"), format!("{largest:+.4}")]
             };
-            let _ = write!(
+            let _ = writeln!(
                 text,
-                "{:width$} {rms:>9} {largest:>9} {:6} {at:>8}  {}\n",
+                "{:width$} {rms:>9} {largest:>9} {:6} {at:>8}  {}",
                 quantity.name,
                 quantity.unit,
                 quantity.profile.line(),
