@@ -107,10 +107,11 @@ def test_a_daemon_prints_the_link_of_the_station_that_runs(tmp_path: Path, fccd:
     environment = {**os.environ, "RUNTIME_DIRECTORY": str(own)}
 
     def printed() -> str:
-        words = [fccd, "fly", "--seconds", "1", "--quiet", "--no-recording"]
-        return subprocess.run(words, env=environment, stderr=subprocess.PIPE, text=True).stderr
+        words = [str(fccd), "fly", "--seconds", "1", "--quiet", "--no-recording"]
+        done = subprocess.run(words, check=True, env=environment, stderr=subprocess.PIPE, text=True)
+        return done.stderr
 
-    words = [fccd, "ground", "--json", "--listen", "127.0.0.1:0", "--state", tmp_path / "state"]
+    words = [str(fccd), "ground", "--json", "--listen", "127.0.0.1:0", "--state", str(tmp_path)]
     with subprocess.Popen(words, env=environment, stdout=subprocess.PIPE, text=True) as station:
         assert station.stdout is not None
         link = json.loads(station.stdout.readline())["link"]
