@@ -280,8 +280,8 @@ async fn until_ended(cli: Cli) -> Exit {
             return error.exit();
         }
     };
-    // Told to the daemons of this user until the station ends.
-    let _told = StationLink::tell(&running.link());
+    // For the daemons of this user, until the station ends.
+    let _published = StationLink::publish(&running.link());
     if let Err(error) = announce(&running, as_json) {
         message(format!("the link cannot be printed: {error}"));
         return Exit::Failure;

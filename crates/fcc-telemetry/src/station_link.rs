@@ -10,20 +10,20 @@ const FILE: &str = "ground-link";
 /// A longer one is none, bytes.
 const LONGEST: u64 = 400;
 
-/// A link that is told while this exists.
+/// A link that is published while this exists.
 #[derive(Debug)]
 pub struct StationLink {
     _locked: File,
 }
 
 impl StationLink {
-    /// Tells a link; none if another station of this user tells its own, or there is no
+    /// Publishes a link; none if another station of this user has published its own, or there is no
     /// folder for it.
-    pub fn tell(link: &str) -> Option<Self> {
-        Self::tell_in(&RunFolder::of_this_process(&mut drop)?, link).ok()?
+    pub fn publish(link: &str) -> Option<Self> {
+        Self::publish_in(&RunFolder::of_this_process(&mut drop)?, link).ok()?
     }
 
-    fn tell_in(folder: &RunFolder, link: &str) -> io::Result<Option<Self>> {
+    fn publish_in(folder: &RunFolder, link: &str) -> io::Result<Option<Self>> {
         let mut file = folder.open(FILE)?;
         if !try_lock(&file)? {
             return Ok(None);
@@ -36,10 +36,10 @@ impl StationLink {
     /// The links of the stations of this user that run.
     pub fn all() -> Vec<String> {
         let folders = RunFolder::all_of_this_user();
-        folders.iter().filter_map(Self::told_in).collect()
+        folders.iter().filter_map(Self::published_in).collect()
     }
 
-    fn told_in(folder: &RunFolder) -> Option<String> {
+    fn published_in(folder: &RunFolder) -> Option<String> {
         let file = folder.open_existing(FILE).ok()?;
         if !is_locked(&file) {
             return None;
@@ -57,18 +57,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_link_is_told_while_its_station_runs() {
+    fn a_link_is_published_while_its_station_runs() {
         let folder = tempfile::tempdir().unwrap();
         let folder = RunFolder::at(folder.path().join("run")).unwrap();
         let link = "http://127.0.0.1:8460/#token=0123";
-        let told = StationLink::tell_in(&folder, link).unwrap();
-        assert_eq!(StationLink::told_in(&folder).as_deref(), Some(link));
-        let second = StationLink::tell_in(&folder, "http://127.0.0.1:1/").unwrap();
+        let published = StationLink::publish_in(&folder, link).unwrap();
+        assert_eq!(StationLink::published_in(&folder).as_deref(), Some(link));
+        let second = StationLink::publish_in(&folder, "http://127.0.0.1:1/").unwrap();
         assert!(second.is_none());
-        drop(told);
-        assert_eq!(StationLink::told_in(&folder), None);
+        drop(published);
+        assert_eq!(StationLink::published_in(&folder), None);
         // A text that would write to a terminal is no link.
-        let _told = StationLink::tell_in(&folder, "http://a/\u{1b}[2J").unwrap();
-        assert_eq!(StationLink::told_in(&folder), None);
+        let _published = StationLink::publish_in(&folder, "http://a/\u{1b}[2J").unwrap();
+        assert_eq!(StationLink::published_in(&folder), None);
     }
 }
