@@ -1,7 +1,7 @@
 //! Live telemetry as a page receives it.
 
 use std::collections::BTreeMap;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use futures_util::{SinkExt as _, StreamExt as _};
 use serde_json::Value;
@@ -187,7 +187,9 @@ fn pages_and_daemons_that_come_and_go_leave_nothing_open() {
         assert!(open_files("-round-") > 0);
         daemon.end();
     }
-    for _ in 0..100 {
+    // Another publisher of a process that lives, as this one does, is waited for: 5 s.
+    let deadline = Instant::now() + Duration::from_secs(30);
+    while Instant::now() < deadline {
         if open_files("-round-") == 0 {
             return;
         }
