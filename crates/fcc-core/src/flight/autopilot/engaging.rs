@@ -19,7 +19,8 @@ impl Autopilot {
     pub(super) fn inhibits(&self, now: Time, measurements: &Measurements) -> Flags {
         let estimate = self.navigation.estimate();
         let contradictions = self.navigation.contradictions();
-        (self.unsafe_with(self.stale(now), now, measurements)
+        let stale = self.stale(now);
+        (self.unsafe_with(stale, now, measurements)
             | self.not_permitted(now, measurements)
             | self.route_inhibits()
             | self.battery_inhibits(now))
@@ -47,6 +48,7 @@ impl Autopilot {
             flags::TOO_SLOW,
             self.may_not_take_off_here(now)
                 || estimate.airspeed_mps < self.config.envelope.min_airspeed_mps
+                    && !stale.intersects(flags::AIRSPEED)
                     && !self.begins_on_runway()
                     && !(is_far_from_level(estimate) && self.may_engage_in_upset()),
         )
