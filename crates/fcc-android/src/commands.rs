@@ -17,6 +17,9 @@ const MOST_WAITING: usize = 64;
 /// 1 Hz.
 const PATIENCE: Duration = Duration::from_secs(10);
 
+/// Who sends commands, as recorded.
+const SENDER: &str = "the phone's screen";
+
 /// A command, and where its verdict goes.
 struct Asked {
     command: Command,
@@ -99,7 +102,13 @@ impl Observer<Autopilot> for Commands {
                 let sent = access.commands.send(command);
                 sent.map_err(|error| error.to_string())
             };
-            let known = self.sent.send(PendingCommand { id, command }, send);
+            access.reports.commander(SENDER);
+            let asked = PendingCommand {
+                id,
+                sender: SENDER.to_owned(),
+                command,
+            };
+            let known = self.sent.send(asked, send);
             if let Some((id, verdict)) = known {
                 self.answer(id, verdict);
             }

@@ -4,14 +4,15 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use axum::Json;
 use axum::extract::{Path, State};
+use axum::{Extension, Json};
 use fcc_live::{Command, Commander};
 use fcc_telemetry::Instance;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::failure::{Failure, Sent, aside};
+use crate::guard::Peer;
 use crate::station::{Station, instance_of};
 
 /// A command may be sent so long before its deadline at most.
@@ -136,8 +137,14 @@ impl From<What> for Command {
 }
 
 /// Sends a command if it is still in time; returns the tick that carried it out.
-pub(crate) fn send(instance: &Instance, command: &Command, order: Order) -> Result<u64, Failure> {
-    let mut commander = Commander::open(instance).map_err(Failure::refused)?;
+pub(crate) fn send(
+    instance: &Instance,
+    command: &Command,
+    order: Order,
+    peer: Peer,
+) -> Result<u64, Failure> {
+    let opened = Commander::open(instance, &peer.sender());
+    let mut commander = opened.map_err(Failure::refused)?;
     order.in_time(utc_ms())?;
     commander.command(command).map_err(Failure::refused)
 }
@@ -146,6 +153,7 @@ pub(crate) fn send(instance: &Instance, command: &Command, order: Order) -> Resu
 pub(crate) async fn command(
     State(station): State<Arc<Station>>,
     Path(instance): Path<String>,
+    Extension(peer): Extension<Peer>,
     Sent(commanded): Sent<Commanded>,
 ) -> Result<Json<Value>, Failure> {
     let instance = instance_of(&instance)?;
@@ -158,7 +166,7 @@ pub(crate) async fn command(
     let tick = aside(move || {
         let turn = station.orders.turn.lock();
         let _turn = turn.unwrap_or_else(PoisonError::into_inner);
-        send(&instance, &command, order)
+        send(&instance, &command, order, peer)
     })
     .await?;
     Ok(Json(json!({ "carried_out": tick })))

@@ -4,7 +4,7 @@
 //! another `Origin`, or, after rebinding a name to this address, another `Host`; both are
 //! compared exactly. What changes something needs the token, which no other site has.
 
-use std::net::SocketAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -38,6 +38,17 @@ const READ_ONLY: [&str; 3] = ["/api/plan/check", "/api/plan/import", "/api/plan/
 /// The address at which a connection arrived.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ArrivedAt(pub(crate) SocketAddr);
+
+/// Who has sent a request.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Peer(pub(crate) IpAddr);
+
+impl Peer {
+    /// As who sends commands.
+    pub(crate) fn sender(self) -> String {
+        format!("ground station, page at {}", self.0.to_canonical())
+    }
+}
 
 /// The names by which browsers may address the station.
 #[derive(Clone, Debug)]

@@ -14,7 +14,7 @@ use socket2::SockRef;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::Semaphore;
 
-use crate::guard::ArrivedAt;
+use crate::guard::{ArrivedAt, Peer};
 
 /// Connections at the same time; further ones wait.
 pub(crate) const MOST_CONNECTIONS: usize = 512;
@@ -37,10 +37,10 @@ pub(crate) async fn serve(listener: TcpListener, router: Router) {
             return;
         };
         match listener.accept().await {
-            Ok((stream, _)) => {
+            Ok((stream, peer)) => {
                 let router = router.clone();
                 tokio::spawn(async move {
-                    connection(stream, router).await;
+                    connection(stream, Peer(peer.ip()), router).await;
                     drop(place);
                 });
             }
@@ -49,7 +49,7 @@ pub(crate) async fn serve(listener: TcpListener, router: Router) {
     }
 }
 
-async fn connection(stream: TcpStream, router: Router) {
+async fn connection(stream: TcpStream, peer: Peer, router: Router) {
     let Ok(at) = stream.local_addr() else {
         return;
     };
@@ -60,6 +60,7 @@ async fn connection(stream: TcpStream, router: Router) {
     let router = TowerToHyperService::new(router);
     let service = service_fn(move |mut request: Request<Incoming>| {
         request.extensions_mut().insert(ArrivedAt(at));
+        request.extensions_mut().insert(peer);
         router.call(request)
     });
     // What a client has done wrong, or that it has left, concerns nobody else.

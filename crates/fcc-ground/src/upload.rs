@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
-use axum::Json;
 use axum::extract::{self, State};
 use axum::http::StatusCode;
+use axum::{Extension, Json};
 use fcc_flight::replay::recorded_plan;
 use fcc_live::Command;
 use fcc_plan::{Format, Plan};
@@ -23,6 +23,7 @@ use serde_json::{Value, json};
 use crate::commands::{Order, send, utc_ms};
 use crate::failure::{Failure, Sent, aside, reading};
 use crate::files;
+use crate::guard::Peer;
 use crate::live::Feed;
 use crate::plans::{checked, hash_text};
 use crate::station::{Station, instance_of};
@@ -103,6 +104,7 @@ pub(crate) struct Uploaded {
 pub(crate) async fn upload(
     State(station): State<Arc<Station>>,
     extract::Path(instance): extract::Path<String>,
+    Extension(peer): Extension<Peer>,
     Sent(uploaded): Sent<Uploaded>,
 ) -> Result<Json<Value>, Failure> {
     let instance = instance_of(&instance)?;
@@ -114,7 +116,7 @@ pub(crate) async fn upload(
     let plan = aside(move || {
         let turn = station.orders.turn.lock();
         let _turn = turn.unwrap_or_else(PoisonError::into_inner);
-        Upload::new(&station, instance, &uploaded, order)?.carry_out()
+        Upload::new(&station, instance, &uploaded, (order, peer))?.carry_out()
     });
     Ok(Json(plan.await?))
 }
@@ -123,6 +125,7 @@ struct Upload<'a> {
     station: &'a Station,
     instance: Instance,
     order: Order,
+    peer: Peer,
     item: u16,
     text: String,
     /// Of the plan as it is flown.
@@ -135,7 +138,7 @@ impl<'a> Upload<'a> {
         station: &'a Station,
         instance: Instance,
         uploaded: &Uploaded,
-        order: Order,
+        (order, peer): (Order, Peer),
     ) -> Result<Self, Failure> {
         let draft = station.drafts.get(&uploaded.draft)?;
         if draft.revision != uploaded.revision {
@@ -158,6 +161,7 @@ impl<'a> Upload<'a> {
             station,
             instance,
             order,
+            peer,
             item: uploaded.item.unwrap_or(1),
             text: text.map_err(|_| Failure::internal("the plan cannot be written"))?,
             hash: flown.hash().first_64_bits(),
@@ -193,7 +197,7 @@ impl<'a> Upload<'a> {
             file: file.display().to_string(),
             item: self.item,
         };
-        send(&self.instance, &command, self.order)?;
+        send(&self.instance, &command, self.order, self.peer)?;
         let feed = Arc::clone(feed);
         self.shown(SHOWN_WITHIN, move || Some(Arc::clone(&feed)))
             .ok_or_else(|| {
@@ -222,7 +226,7 @@ impl<'a> Upload<'a> {
         // Engaged meanwhile: it keeps its plan.
         let is_in_standby = before.word(STATE) == Some(STANDBY);
         let stopped = if is_in_standby {
-            send(&self.instance, &Command::Stop, self.order)
+            send(&self.instance, &Command::Stop, self.order, self.peer)
         } else {
             Err(Failure::refused("the aircraft was engaged meanwhile"))
         };

@@ -44,5 +44,5 @@ shared!(Status as "fcc.v2.Status":
     time_ns ticks missed lateness_p50_ns lateness_p99_ns lateness_p99_9_ns lateness_max_ns
     lateness_counts not_published cpu_ns watchers recorder_state recorded not_recorded
     recording_bytes recording);
-shared!(CommandRequest as "fcc.v4.Command": version code names values file);
-shared!(Answer as "fcc.v4.CommandAnswer": code version tick value least most name text);
+shared!(CommandRequest as "fcc.v5.Command": version code names values file sender);
+shared!(Answer as "fcc.v5.CommandAnswer": code version tick value least most name text);

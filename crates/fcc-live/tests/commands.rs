@@ -59,12 +59,13 @@ fn a_command_arrives_and_its_answer_returns() {
     let mut publisher = started(&instance);
     let result = thread::scope(|scope| {
         let giver = scope.spawn(|| {
-            let mut commander = Commander::open(&instance).unwrap();
+            let mut commander = Commander::open(&instance, "a test").unwrap();
             let first = commander.command(&heading());
             (first, commander.command(&Command::Engage))
         });
         let asked = next(&mut publisher);
         assert_eq!(asked.command, heading());
+        assert_eq!(asked.sender, "a test");
         publisher.answer(asked.id, Verdict::CarriedOut { tick: 77 });
         let asked = next(&mut publisher);
         assert_eq!(asked.command, Command::Engage);
@@ -82,7 +83,7 @@ fn a_program_that_waits_is_answered_when_the_flight_ends() {
     let mut publisher = started(&instance);
     let result = thread::scope(|scope| {
         let giver = scope.spawn(|| {
-            Commander::open(&instance)
+            Commander::open(&instance, "a test")
                 .unwrap()
                 .command(&Command::Disengage)
         });
@@ -115,7 +116,7 @@ fn a_value_outside_its_limits_returns_with_them() {
     };
     let result = thread::scope(|scope| {
         let giver = scope.spawn(|| {
-            let mut commander = Commander::open(&instance).unwrap();
+            let mut commander = Commander::open(&instance, "a test").unwrap();
             commander.command(&Command::set([("altitude_m", f64::INFINITY)]))
         });
         let asked = next(&mut publisher);
@@ -132,10 +133,14 @@ fn a_value_outside_its_limits_returns_with_them() {
 #[test]
 fn a_daemon_without_commands_is_distinguished_from_none() {
     let instance = instance("none");
-    let words = Commander::open(&instance).unwrap_err().to_string();
+    let words = Commander::open(&instance, "a test")
+        .unwrap_err()
+        .to_string();
     assert!(words.contains(&absent(&instance)), "{words}");
     let _publisher = describe(Publisher::start(&instance, 2_048).unwrap());
-    let words = Commander::open(&instance).unwrap_err().to_string();
+    let words = Commander::open(&instance, "a test")
+        .unwrap_err()
+        .to_string();
     assert!(
         words.contains("version 1.2.3, accepts no commands"),
         "{words}"
@@ -152,6 +157,8 @@ fn a_daemon_with_another_layout_is_refused_with_a_reason() {
         software: Text::new("9.0.0"),
         ..Info::default()
     });
-    let words = Commander::open(&instance).unwrap_err().to_string();
+    let words = Commander::open(&instance, "a test")
+        .unwrap_err()
+        .to_string();
     assert!(words.contains("version 9.0.0"), "{words}");
 }

@@ -25,6 +25,7 @@ fn a_prepared_command_is_answered_by_the_notice_of_its_tick() {
     for (amount_permille, is_refused) in [(0, false), (6_000, true)] {
         let mut commands = SentCommands::<Autopilot>::new(Vec::new());
         let asked = PendingCommand {
+            sender: String::new(),
             id: 1,
             command: replace(),
         };
@@ -50,6 +51,7 @@ fn a_prepared_command_is_answered_by_the_notice_of_its_tick() {
         // Not engaged it is not sent, and never unprepared.
         assert_eq!(commands.verdict(6, State::Standby), None);
         let asked = || PendingCommand {
+            sender: String::new(),
             id: 2,
             command: replace(),
         };
@@ -67,7 +69,11 @@ fn a_refused_mode_is_answered_with_the_reason() {
         let mut commands = SentCommands::<Autopilot>::new(Vec::new());
         let command = Command::set([(name, value)]);
         let parts = command.for_the_loop::<Autopilot>(&Vec::new()).unwrap();
-        let asked = PendingCommand { id: 1, command };
+        let asked = PendingCommand {
+            id: 1,
+            sender: String::new(),
+            command,
+        };
         assert_eq!(commands.send(asked, |_| Ok(())), None);
         for part in parts {
             commands.event(&event(5, EventKind::CommandReceived(part)));

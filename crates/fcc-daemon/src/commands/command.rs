@@ -120,7 +120,7 @@ fn send(args: &CommandArgs, instance: &Instance, command: &Command) -> Result<u6
     if let Some(user) = &args.of {
         return another(Some(user)).map_err(Refusal::OfAnother);
     }
-    let opened = Commander::open(instance);
+    let opened = Commander::open(instance, "fccd command");
     match opened.and_then(|mut daemon| daemon.command(command)) {
         Err(error @ CommandError::Unreachable(_)) => match another(None) {
             Err(OtherUserError::NotThere(..)) => Err(Refusal::OfOwn(error)),

@@ -146,6 +146,9 @@ where
             sent.map_err(|error| error.to_string())
         };
         while let Some(asked) = publisher.next_command() {
+            if let Some(words) = access.reports.commander(&asked.sender) {
+                publisher.event(Event::remark(self.at.tick, self.at.woke_ns, &words));
+            }
             let known = if let Command::ReplacePlan { file, item } = &asked.command {
                 let (file, item) = (PathBuf::from(file), *item);
                 self.plans.begin(asked, file, item)

@@ -108,34 +108,48 @@ pub enum Report {
     Plan(Arc<PreparedPlan>),
 }
 
-/// Collects the reports of an observer.
+/// Collects the reports of observers.
 #[derive(Default, Debug)]
-pub struct Reports(Vec<Report>);
+pub struct Reports {
+    new: Vec<Report>,
+    commander: String,
+}
 
 impl Reports {
     /// Adds a remark that is part of the flight and is recorded.
     pub fn remark(&mut self, words: impl Into<String>) {
-        self.0.push(Report::Remark(words.into()));
+        self.new.push(Report::Remark(words.into()));
+    }
+
+    /// Whose commands come next; the remark, if another one sent those before.
+    pub fn commander(&mut self, who: &str) -> Option<String> {
+        if self.commander == who {
+            return None;
+        }
+        who.clone_into(&mut self.commander);
+        let words = format!("commands come from {who}");
+        self.remark(words.clone());
+        Some(words)
     }
 
     /// Adds a message for the user that is not recorded.
     pub fn mention(&mut self, words: impl Into<String>) {
-        self.0.push(Report::Mention(words.into()));
+        self.new.push(Report::Mention(words.into()));
     }
 
     /// The status of the recording.
     pub fn recording(&mut self, status: RecorderStatus) {
-        self.0.push(Report::Recording(status));
+        self.new.push(Report::Recording(status));
     }
 
     /// A plan that may replace the one that is flown, before its command.
     pub fn plan(&mut self, plan: Arc<PreparedPlan>) {
-        self.0.push(Report::Plan(plan));
+        self.new.push(Report::Plan(plan));
     }
 
     /// All that was reported since the last call.
     pub fn take(&mut self) -> Vec<Report> {
-        std::mem::take(&mut self.0)
+        std::mem::take(&mut self.new)
     }
 }
 

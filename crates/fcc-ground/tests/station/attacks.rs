@@ -317,7 +317,9 @@ fn a_command_that_is_replayed_or_late_is_not_carried_out() {
         "in time for an hour"
     );
     sleep(Duration::from_millis(300));
-    assert_eq!(daemon.commands.try_iter().count(), 1);
+    let sent: Vec<_> = daemon.commands.try_iter().collect();
+    assert_eq!(sent.len(), 1);
+    assert_eq!(sent[0].sender, "ground station, page at 127.0.0.1");
 }
 
 #[test]

@@ -12,7 +12,7 @@ use std::time::Duration;
 use clap::Parser as _;
 use fcc_core::framework::{State, Tick, Time};
 use fcc_ground::{Cli, Running, runtime, start};
-use fcc_live::{Command, Info, Publisher, Text, Verdict};
+use fcc_live::{Info, PendingCommand, Publisher, Text, Verdict};
 use fcc_telemetry::{FlightRecord, Instance};
 use serde_json::Value;
 use tempfile::TempDir;
@@ -191,7 +191,7 @@ fn unchunked(mut body: &[u8]) -> Vec<u8> {
 /// Publishes 40 ticks a second, in each the same flight, and carries out every command.
 pub(crate) struct Daemon {
     pub(crate) instance: Instance,
-    pub(crate) commands: Receiver<Command>,
+    pub(crate) commands: Receiver<PendingCommand>,
     ends: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
@@ -216,7 +216,7 @@ impl Daemon {
                 number += 1;
                 publisher.record(&record(number));
                 while let Some(asked) = publisher.next_command() {
-                    send.send(asked.command).unwrap();
+                    send.send(asked.clone()).unwrap();
                     publisher.answer(asked.id, Verdict::CarriedOut { tick: number });
                 }
                 publisher.flush();

@@ -127,11 +127,12 @@ impl CommandServer {
         };
         let id = self.next_id;
         self.next_id += 1;
-        if self
-            .commands
-            .try_send(PendingCommand { id, command })
-            .is_ok()
-        {
+        let asked = PendingCommand {
+            id,
+            sender: request.sender.as_str().to_owned(),
+            command,
+        };
+        if self.commands.try_send(asked).is_ok() {
             self.waiting.push((id, request));
         } else {
             let words = "too many commands are waiting: send it again".to_owned();

@@ -10,7 +10,7 @@ use super::super::connected::Connected;
 use super::super::place::{FoundPlace, Presence};
 use super::super::row_watcher::{PATIENCE as FOUND_WITHIN, check_layout, read_info};
 use super::super::services::{self, Access, Ipc};
-use super::super::{Info, WatchError};
+use super::super::{Info, Text, WatchError};
 use super::{Answer, CommandRequest};
 use super::{COMMANDS_VERSION, Command, CommandError, InvalidCommand, Verdict, command_server};
 use fcc_telemetry::Instance;
@@ -30,7 +30,7 @@ const LOOK_EVERY: Duration = Duration::from_millis(2);
 /// use fcc_telemetry::Instance;
 /// use fcc_live::{Command, Commander};
 ///
-/// let mut commander = Commander::open(&Instance::default())?;
+/// let mut commander = Commander::open(&Instance::default(), "the tower")?;
 /// commander.command(&Command::Engage)?;
 /// let tick = commander.command(&Command::set([("heading_rad", 1.57)]))?;
 /// println!("carried out in tick {tick}");
@@ -40,6 +40,7 @@ const LOOK_EVERY: Duration = Duration::from_millis(2);
 pub struct Commander {
     instance: Instance,
     info: Info,
+    sender: String,
     connected: Connected<Opened>,
 }
 
@@ -89,16 +90,18 @@ fn client(
 }
 
 impl Commander {
-    /// Connects to a daemon.
+    /// Connects to a daemon. `sender` is who commands, in at most 64 bytes: recorded
+    /// with the flight.
     ///
     /// # Errors
     /// When no daemon of this name runs here, it is another version, or it
     /// accepts no commands.
-    pub fn open(instance: &Instance) -> Result<Self, CommandError> {
+    pub fn open(instance: &Instance, sender: &str) -> Result<Self, CommandError> {
         let connected = Connected::open(instance, |place| Opened::at(place, instance))?;
         Ok(Self {
             instance: instance.clone(),
             info: connected.ports()?.info,
+            sender: sender.to_owned(),
             connected,
         })
     }
@@ -110,7 +113,7 @@ impl Commander {
         if self.connected.place.now() == Presence::Here(self.connected.place.clone()) {
             return Ok(());
         }
-        let again = Self::open(&self.instance)?;
+        let again = Self::open(&self.instance, &self.sender)?;
         if again.info.process_id == self.info.process_id {
             *self = again;
             Ok(())
@@ -130,7 +133,8 @@ impl Commander {
     /// # Errors
     /// When the daemon refuses the command, has ended, or does not answer.
     pub fn command(&mut self, command: &Command) -> Result<u64, CommandError> {
-        let request = CommandRequest::try_from(command)?;
+        let mut request = CommandRequest::try_from(command)?;
+        request.sender = Text::new(&self.sender);
         self.follow()?;
         let gone = || CommandError::Unreachable(WatchError::NotRunning(self.instance.clone()));
         let pending = self

@@ -30,4 +30,4 @@ pub use wire::{read_answer, read_request};
 /// The version of commands and answers, independent of the layouts'. Increase
 /// it, and the version in the types' names, with every change of one of them or
 /// of its meaning.
-pub const COMMANDS_VERSION: u32 = 4;
+pub const COMMANDS_VERSION: u32 = 5;

@@ -12,6 +12,8 @@ const NAME_BYTES: usize = 32;
 const REASON_BYTES: usize = 8_120;
 /// The longest name of a file, in bytes.
 const FILE_BYTES: usize = 1_024;
+/// The longest name of a sender, in bytes.
+const SENDER_BYTES: usize = 64;
 
 /// A command in shared memory.
 #[derive(Clone, Copy, Debug)]
@@ -28,6 +30,8 @@ pub(crate) struct CommandRequest {
     pub(crate) values: [f64; MOST_SETPOINTS],
     /// The plan's file, with its whole path.
     pub(crate) file: Text<FILE_BYTES>,
+    /// Who sends it, in words.
+    pub(crate) sender: Text<SENDER_BYTES>,
 }
 
 /// An answer in shared memory.
@@ -85,6 +89,7 @@ impl TryFrom<&Command> for CommandRequest {
             names: [Text::default(); MOST_SETPOINTS],
             values: [0.0; MOST_SETPOINTS],
             file: Text::new(file),
+            sender: Text::default(),
         };
         if let (Command::ReplacePlan { item, .. }, [first, ..]) = (command, &mut request.values) {
             *first = f64::from(*item);
@@ -194,6 +199,7 @@ pub fn read_request(bytes: &[u8]) -> Result<Command, String> {
         names: std::array::from_fn(|_| Text::of_bytes(next(&mut bytes))),
         values: std::array::from_fn(|_| f64::from_ne_bytes(next(&mut bytes))),
         file: Text::of_bytes(next(&mut bytes)),
+        sender: Text::of_bytes(next(&mut bytes)),
     };
     request.command()
 }
@@ -248,7 +254,8 @@ mod tests {
             };
         }
         let request = rows!(CommandRequest;
-            version: "u32" code: "u32" names: "char[32][8]" values: "f64[8]" file: "char[1024]");
+            version: "u32" code: "u32" names: "char[32][8]" values: "f64[8]" file: "char[1024]"
+            sender: "char[64]");
         let answer = rows!(Answer;
             code: "u32" version: "u32" tick: "u64" value: "f64" least: "f64" most: "f64"
             name: "char[32]" text: "char[8120]");
@@ -298,7 +305,7 @@ mod tests {
         request.version = 1;
         let words = request.command().unwrap_err();
         assert!(
-            words.contains("version 4") && words.contains("version 1"),
+            words.contains("version 5") && words.contains("version 1"),
             "{words}"
         );
     }
@@ -310,7 +317,8 @@ mod tests {
             let values = bits.map(f64::from_bits);
             let name = Text::new(&String::from_utf8_lossy(&bits[0].to_le_bytes()));
             let file = Text::new(&String::from_utf8_lossy(&bits[1].to_le_bytes()));
-            let request = CommandRequest { version, code, names: [name; 8], values, file };
+            let sender = Text::default();
+            let request = CommandRequest { version, code, names: [name; 8], values, file, sender };
             if let Ok(Command::Set(set)) = request.command() {
                 prop_assert!(set.len() <= 8 && set.iter().all(|(name, _)| !name.is_empty()));
             }

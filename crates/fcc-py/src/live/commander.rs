@@ -40,8 +40,9 @@ impl PyCommander {
     #[pyo3(signature = (instance = "fccd"))]
     fn new(py: Python<'_>, instance: &str) -> PyResult<Self> {
         let instance = self::instance(instance)?;
+        let sender = format!("a Python program, process {}", std::process::id());
         let commander = py
-            .detach(|| Commander::open(&instance))
+            .detach(|| Commander::open(&instance, &sender))
             .map_err(|error| refused(&error))?;
         Ok(Self {
             commander: Mutex::new(commander),

@@ -60,6 +60,8 @@ impl Command {
 pub struct PendingCommand {
     /// Its identifier, by which it is answered.
     pub id: u64,
+    /// Who sent it, in words.
+    pub sender: String,
     /// The command.
     pub command: Command,
 }

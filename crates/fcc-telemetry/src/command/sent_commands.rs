@@ -216,7 +216,14 @@ mod tests {
     }
 
     fn waiting(commands: &mut SentCommands<Autopilot>, id: u64, command: Command) {
-        let known = commands.send(PendingCommand { id, command }, |_| Ok(()));
+        let known = commands.send(
+            PendingCommand {
+                id,
+                sender: String::new(),
+                command,
+            },
+            |_| Ok(()),
+        );
         assert_eq!(known, None);
     }
 
@@ -269,9 +276,14 @@ mod tests {
             // It levels and trims.
             assert_eq!(commands.verdict(5, state), None);
             for command in [Command::Engage, heading()] {
-                let sent = commands.send(PendingCommand { id: 2, command }, |_| {
-                    panic!("not to be sent")
-                });
+                let sent = commands.send(
+                    PendingCommand {
+                        id: 2,
+                        sender: String::new(),
+                        command,
+                    },
+                    |_| panic!("not to be sent"),
+                );
                 let refused = Verdict::Refused("it is stopping".to_owned());
                 assert_eq!(sent, Some((2, refused)));
             }
@@ -336,10 +348,17 @@ mod tests {
         assert_eq!(commands.verdict(1, State::Standby), None);
         let mut parts = 0;
         let mut ask = |commands: &mut SentCommands<Autopilot>, id, command| {
-            let sent = commands.send(PendingCommand { id, command }, |_| {
-                parts += 1;
-                Ok(())
-            });
+            let sent = commands.send(
+                PendingCommand {
+                    id,
+                    sender: String::new(),
+                    command,
+                },
+                |_| {
+                    parts += 1;
+                    Ok(())
+                },
+            );
             (sent, parts)
         };
         let (Some((1, Verdict::Refused(words))), 0) = ask(&mut commands, 1, both()) else {
@@ -359,7 +378,14 @@ mod tests {
     fn what_cannot_be_sent_is_refused_at_once() {
         let mut commands = commands();
         let mut known = |command, sent: Result<(), String>| {
-            commands.send(PendingCommand { id: 1, command }, |_| sent.clone())
+            commands.send(
+                PendingCommand {
+                    id: 1,
+                    sender: String::new(),
+                    command,
+                },
+                |_| sent.clone(),
+            )
         };
         let full = Err("full".to_owned());
         let refused = Some((1, Verdict::Refused("full".to_owned())));

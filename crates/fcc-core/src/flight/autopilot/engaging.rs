@@ -20,6 +20,8 @@ impl Autopilot {
         let estimate = self.navigation.estimate();
         let contradictions = self.navigation.contradictions();
         let stale = self.stale(now);
+        let is_slow = estimate.airspeed_mps < self.config.envelope.min_airspeed_mps
+            && !stale.intersects(flags::AIRSPEED);
         (self.unsafe_with(stale, now, measurements)
             | self.not_permitted(now, measurements)
             | self.route_inhibits()
@@ -47,8 +49,7 @@ impl Autopilot {
         .with(
             flags::TOO_SLOW,
             self.may_not_take_off_here(now)
-                || estimate.airspeed_mps < self.config.envelope.min_airspeed_mps
-                    && !stale.intersects(flags::AIRSPEED)
+                || is_slow
                     && !self.begins_on_runway()
                     && !(is_far_from_level(estimate) && self.may_engage_in_upset()),
         )

@@ -244,16 +244,19 @@ impl<C: Commandable + Controller<Setpoints = Setpoints>> Observer<C> for Command
             peer.is_sent = true;
             let verdict = match asked {
                 Err(why) => Some((peer.id, Verdict::Refused(why.to_owned()))),
-                Ok(command) => self.commands.send(
-                    PendingCommand {
+                Ok(command) => {
+                    let sender = format!("user {}", peer.user);
+                    access.reports.commander(&sender);
+                    let asked = PendingCommand {
                         id: peer.id,
+                        sender,
                         command,
-                    },
-                    |command| {
+                    };
+                    self.commands.send(asked, |command| {
                         let sent = access.commands.send(command);
                         sent.map_err(|error| error.to_string())
-                    },
-                ),
+                    })
+                }
             };
             answers.extend(verdict);
         }
