@@ -37,6 +37,9 @@ pub struct Cli {
     /// is uploaded in standby is written into their plan.file, and they are stopped
     #[arg(long)]
     pub restarts: bool,
+    /// Send the newest records to Foxglove, too: the line with the link says where
+    #[arg(long)]
+    pub foxglove: bool,
     /// A map in one file, made by `pmtiles`
     #[arg(long, value_name = "FILE.pmtiles")]
     pub map: Option<PathBuf>,

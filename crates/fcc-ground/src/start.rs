@@ -84,6 +84,7 @@ pub struct Running {
     pub token: Token,
     recordings: PathBuf,
     state: PathBuf,
+    foxglove: bool,
     serving: JoinHandle<()>,
 }
 
@@ -95,6 +96,13 @@ impl Running {
             reachable(self.address),
             self.token.as_str()
         )
+    }
+
+    /// The address for a connection of Foxglove, if it is served.
+    fn foxglove(&self) -> Option<String> {
+        let (address, token) = (reachable(self.address), self.token.as_str());
+        let link = || format!("ws://{address}/foxglove/NAME?token={token}");
+        self.foxglove.then(link)
     }
 
     /// The link for the camera of a phone, if another machine can open it.
@@ -179,7 +187,7 @@ pub async fn start(cli: Cli) -> Result<Running, StartError> {
         Hosts::new(&cli.hosts, address.port()),
         (recordings.clone(), state.clone()),
         cli.fccd,
-        cli.restarts,
+        (cli.restarts, cli.foxglove),
         map,
         configs,
     );
@@ -190,6 +198,7 @@ pub async fn start(cli: Cli) -> Result<Running, StartError> {
         token,
         recordings,
         state,
+        foxglove: cli.foxglove,
         serving,
     })
 }
@@ -204,10 +213,15 @@ fn announce(running: &Running, as_json: bool) -> io::Result<()> {
             "link": link,
             "recordings": running.recordings,
             "state": running.state,
+            "foxglove": running.foxglove(),
         })
         .to_string()
     } else {
-        format!("ground station: open {link}")
+        let mut lines = format!("ground station: open {link}");
+        if let Some(address) = running.foxglove() {
+            lines += &format!("\nFoxglove: connect to {address}, NAME being the daemon's");
+        }
+        lines
     };
     let mut out = io::stdout().lock();
     let picture = running.picture().filter(|_| !as_json && out.is_terminal());

@@ -40,6 +40,7 @@ pub(crate) struct Station {
     pub(crate) fccd: PathBuf,
     /// Daemons that were stopped are started again.
     pub(crate) restarts: bool,
+    pub(crate) foxglove: bool,
     pub(crate) map: Option<map::MapFile>,
     pub(crate) configs: DaemonConfigs,
     pub(crate) daemons: Daemons,
@@ -120,6 +121,7 @@ pub(crate) fn router(station: Arc<Station>) -> Router {
         .route("/api/doctor", get(doctor::doctor))
         .route("/api/terrain", get(map::terrain))
         .route("/api/map", get(map::map))
+        .route("/foxglove/{instance}", get(live::foxglove_socket))
         .route("/map.pmtiles", get(map::tiles))
         .route("/api/{*unknown}", get(unknown))
         .fallback(page::page)
@@ -170,7 +172,7 @@ pub(crate) fn station(
     hosts: Hosts,
     folders: (PathBuf, PathBuf),
     fccd: PathBuf,
-    restarts: bool,
+    (restarts, foxglove): (bool, bool),
     map: Option<map::MapFile>,
     configs: DaemonConfigs,
 ) -> Result<Arc<Station>, String> {
@@ -186,6 +188,7 @@ pub(crate) fn station(
         state,
         fccd,
         restarts,
+        foxglove,
         map,
         configs,
         machine,

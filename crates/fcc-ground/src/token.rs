@@ -47,6 +47,11 @@ impl Token {
         let Some(given) = one.as_bytes().strip_prefix(b"Bearer ") else {
             return false;
         };
+        self.is(given)
+    }
+
+    /// Whether this is it, as [`is_in`](Self::is_in).
+    pub(crate) fn is(&self, given: &[u8]) -> bool {
         given.ct_eq(self.0.as_bytes()).into()
     }
 

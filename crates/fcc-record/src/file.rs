@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
+use std::mem;
 use std::path::{Path, PathBuf};
 
 use fcc_core::framework::{EventOf, Message, MessageOf, RecordOf};
@@ -16,13 +17,13 @@ use super::document::{Document, MEDIA_TYPE};
 use super::end::{END, RunStatistics};
 use super::foxglove;
 use super::outlet::Outlet;
-use super::schema::{self, OWN_TOPICS, Topic, topics};
+use super::record_messages::RecordMessages;
+use super::schema::{self, Topic, topics};
 use super::settings::Compression;
 use super::wire::log::Level;
-use crate::recorded::{Recorded, Views};
+use crate::recorded::Recorded;
 use fcc_telemetry::describe_event;
 use fcc_telemetry::schema::RecordDescription;
-use fcc_telemetry::schema::protobuf::encode;
 
 /// The largest size of a chunk before compression: the memory a reader needs at
 /// once.
@@ -43,11 +44,9 @@ pub(super) struct RecordingFile<C: Recorded> {
     last_log_ns: u64,
     sequence: u32,
     gathered_bytes: u64,
-    views: C::Views,
+    messages: RecordMessages<C>,
     run_statistics: RunStatistics,
     names: Names,
-    /// The buffer of a message, reused.
-    bytes: Vec<u8>,
 }
 
 /// Names of the sensors and actuators, for the text of events.
@@ -81,13 +80,12 @@ impl<C: Recorded> RecordingFile<C> {
             last_log_ns: about.started_unix_ns,
             sequence: 0,
             gathered_bytes: 0,
-            views: C::Views::default(),
+            messages: RecordMessages::default(),
             run_statistics: RunStatistics::default(),
             names: Names {
                 sensors: about.sensors.clone(),
                 actuators: about.actuators.clone(),
             },
-            bytes: Vec::new(),
         })
     }
 
@@ -142,25 +140,23 @@ impl<C: Recorded> RecordingFile<C> {
 
     fn record(&mut self, record: &RecordOf<C>) -> Result<(), McapError> {
         let log_ns = self.log_time(record.tick.woke.as_nanos());
-        self.bytes.clear();
-        encode(record, &mut self.bytes);
-        self.write_bytes(Topic::Record as usize, log_ns)?;
-        self.views.take(record, log_ns);
-        for view in 0..C::Views::TOPICS.len() {
-            self.bytes.clear();
-            if self.views.append(view, &mut self.bytes) {
-                self.write_bytes(OWN_TOPICS + view, log_ns)?;
+        let mut messages = mem::take(&mut self.messages);
+        let mut written = Ok(());
+        messages.record(record, log_ns, |topic, bytes| {
+            if written.is_ok() {
+                written = self.write_bytes(topic, log_ns, bytes);
             }
-        }
-        Ok(())
+        });
+        self.messages = messages;
+        written
     }
 
     fn event(&mut self, event: &EventOf<C>) -> Result<(), McapError> {
         let log_ns = self.log_time(event.time.as_nanos());
         let text = describe_event::<C>(event, &self.names.sensors, &self.names.actuators);
-        self.bytes.clear();
-        schema::encode_event(event, &text, &mut self.bytes);
-        self.write_bytes(Topic::Event as usize, log_ns)?;
+        let mut bytes = Vec::new();
+        schema::encode_event(event, &text, &mut bytes);
+        self.write_bytes(Topic::Event as usize, log_ns, &bytes)?;
         let line = foxglove::line(foxglove::EVENT, text, foxglove::level(event), log_ns);
         self.write(Topic::Log as usize, log_ns, &line)
     }
@@ -186,14 +182,10 @@ impl<C: Recorded> RecordingFile<C> {
         log_time: u64,
         message: &impl prost::Message,
     ) -> Result<(), McapError> {
-        self.bytes.clear();
-        message
-            .encode(&mut self.bytes)
-            .map_err(|error| McapError::Io(io::Error::other(error)))?;
-        self.write_bytes(topic, log_time)
+        self.write_bytes(topic, log_time, &message.encode_to_vec())
     }
 
-    fn write_bytes(&mut self, topic: usize, log_time: u64) -> Result<(), McapError> {
+    fn write_bytes(&mut self, topic: usize, log_time: u64, bytes: &[u8]) -> Result<(), McapError> {
         let header = MessageHeader {
             channel_id: self.channels.get(topic).copied().unwrap_or(0),
             sequence: self.sequence,
@@ -201,8 +193,8 @@ impl<C: Recorded> RecordingFile<C> {
             publish_time: log_time,
         };
         self.sequence = self.sequence.wrapping_add(1);
-        self.gathered_bytes += self.bytes.len() as u64;
-        self.writer.write_to_known_channel(&header, &self.bytes)
+        self.gathered_bytes += bytes.len() as u64;
+        self.writer.write_to_known_channel(&header, bytes)
     }
 
     /// Wall clock at the start plus the loop's time since. It never goes

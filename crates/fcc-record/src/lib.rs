@@ -62,6 +62,7 @@ mod parse;
 mod part;
 mod raw;
 mod reader;
+mod record_messages;
 mod recorded;
 mod recorder;
 mod recover;
@@ -89,7 +90,8 @@ pub use listed::Listed;
 pub use opening::{create_anew, create_folder, open_lock, read_file, read_own_file};
 pub use output::{create_output, may_be_output, write_output, write_plan};
 pub use reader::{OpenError, Recording, Verified};
-pub use recorded::{Recorded, Views};
+pub use record_messages::RecordMessages;
+pub use recorded::{Recorded, TopicOf, Views};
 #[cfg(feature = "flight")]
 pub use recorder::Recorder;
 pub use recorder::RecorderOf;

@@ -38,4 +38,4 @@ impl<C: Controller> Views<C> for () {
 }
 
 /// A topic's name, the type of its messages, and that type's description.
-pub(crate) type TopicOf = (&'static str, String, Cow<'static, [u8]>);
+pub type TopicOf = (&'static str, String, Cow<'static, [u8]>);

@@ -9,7 +9,8 @@ use std::time::{Duration, Instant};
 use axum::body::Bytes;
 use axum::extract::ws::Utf8Bytes;
 use fcc_live::{EVENT_HISTORY, Event, Info, RecorderState, RowWatcher, Status, WatchError};
-use fcc_telemetry::{Instance, not_started};
+use fcc_telemetry::schema::RecordDescription;
+use fcc_telemetry::{FlightRecord, Instance, not_started};
 use serde_json::{Value, json};
 use tokio::sync::{broadcast, watch};
 
@@ -35,6 +36,8 @@ pub(crate) struct Feed {
     pub(crate) instance: Instance,
     pub(crate) info: Info,
     pub(crate) columns: Columns,
+    /// Its records are those of this program's aircraft.
+    pub(super) is_flight: bool,
     record: watch::Sender<Newest>,
     status: watch::Sender<Utf8Bytes>,
     events: broadcast::Sender<Utf8Bytes>,
@@ -70,6 +73,9 @@ impl Feed {
             instance: watcher.instance().clone(),
             info: *watcher.info(),
             columns: Columns::of(watcher.columns()),
+            is_flight: watcher
+                .columns()
+                .has_layout_of(&RecordDescription::of::<FlightRecord>()),
             record: watch::Sender::default(),
             status: watch::Sender::default(),
             events: broadcast::Sender::new(EVENT_HISTORY),

@@ -8,6 +8,7 @@
 //! A page that reads slowly gets the newest record when it has read the one before.
 
 mod feed;
+mod foxglove;
 mod machine;
 mod socket;
 
@@ -19,7 +20,8 @@ use std::time::{Duration, Instant};
 use fcc_live::running;
 use fcc_telemetry::{Instance, not_started};
 
-pub(crate) use feed::Feed;
+pub(crate) use feed::{Feed, Newest};
+pub(crate) use foxglove::socket as foxglove_socket;
 pub(crate) use machine::Machine;
 pub(crate) use socket::{PATIENCE, PING_EVERY, columns, socket};
 

@@ -51,14 +51,14 @@ pub(crate) async fn socket(
 }
 
 /// Why it ended does not matter.
-struct Closed;
+pub(super) struct Closed;
 
-async fn send(socket: &mut WebSocket, message: Message) -> Result<(), Closed> {
+pub(super) async fn send(socket: &mut WebSocket, message: Message) -> Result<(), Closed> {
     let sent = timeout(PATIENCE, socket.send(message)).await;
     sent.map_err(|_| Closed)?.map_err(|_| Closed)
 }
 
-async fn text(socket: &mut WebSocket, text: Utf8Bytes) -> Result<(), Closed> {
+pub(super) async fn text(socket: &mut WebSocket, text: Utf8Bytes) -> Result<(), Closed> {
     send(socket, Message::Text(text)).await
 }
 

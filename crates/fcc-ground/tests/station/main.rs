@@ -5,6 +5,7 @@ mod attacks;
 mod common;
 mod drafts;
 mod flights;
+mod foxglove;
 mod hostile_files;
 mod live;
 mod load;
