@@ -9,6 +9,10 @@ use crate::exit::EXIT_CODES;
 
 /// The ground station: serves a page with map, flight plan, flight and recordings.
 #[derive(Parser, Clone, Debug)]
+#[allow(
+    clippy::struct_excessive_bools,
+    reason = "each is a switch of the command line"
+)]
 #[command(name = "fcc-ground", version, after_help = EXIT_CODES)]
 pub struct Cli {
     /// Address and port to listen on; another one than loopback is reachable by everybody

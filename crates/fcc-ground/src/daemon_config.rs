@@ -14,6 +14,7 @@ use serde_json::{Value, json};
 #[derive(Debug)]
 pub(crate) struct DaemonConfigs {
     by_instance: BTreeMap<Instance, Config>,
+    files: BTreeMap<Instance, PathBuf>,
     other: Config,
     /// The folder of recordings of the first.
     pub(crate) recordings: Option<PathBuf>,
@@ -22,10 +23,12 @@ pub(crate) struct DaemonConfigs {
 impl DaemonConfigs {
     pub(crate) fn load(files: &[PathBuf]) -> Result<Self, ConfigError> {
         let mut by_instance = BTreeMap::new();
+        let mut found = BTreeMap::new();
         let mut recordings = None;
         for file in files {
             let config = Config::load(file)?;
             recordings.get_or_insert_with(|| config.recording.folder.clone());
+            found.insert(config.telemetry.instance.clone(), file.clone());
             by_instance.insert(config.telemetry.instance.clone(), config);
         }
         let other = Config {
@@ -34,6 +37,7 @@ impl DaemonConfigs {
         };
         Ok(Self {
             by_instance,
+            files: found,
             other,
             recordings,
         })
@@ -49,6 +53,16 @@ impl DaemonConfigs {
                     .filter(|_| instance.is_none())
             })
             .unwrap_or(&self.other)
+    }
+
+    /// The configuration's file.
+    pub(crate) fn file(&self, instance: &Instance) -> Option<&Path> {
+        self.files.get(instance).map(PathBuf::as_path)
+    }
+
+    /// The names of the daemons.
+    pub(crate) fn instances(&self) -> impl Iterator<Item = &Instance> {
+        self.files.keys()
     }
 
     /// The file that this daemon reads its plan from when it starts.

@@ -10,6 +10,7 @@
 //! It is a process of its own: it reads what a daemon publishes, and sends commands as
 //! `fccd command` does. Whatever happens to it, the flight goes on.
 
+mod calibration;
 mod cli;
 mod columns;
 mod commands;

@@ -217,11 +217,13 @@ fn announce(running: &Running, as_json: bool) -> io::Result<()> {
         })
         .to_string()
     } else {
-        let mut lines = format!("ground station: open {link}");
-        if let Some(address) = running.foxglove() {
-            lines += &format!("\nFoxglove: connect to {address}, NAME being the daemon's");
-        }
-        lines
+        let foxglove = running
+            .foxglove()
+            .map(|address| format!("\nFoxglove: connect to {address}, NAME being the daemon's"));
+        format!(
+            "ground station: open {link}{}",
+            foxglove.unwrap_or_default()
+        )
     };
     let mut out = io::stdout().lock();
     let picture = running.picture().filter(|_| !as_json && out.is_terminal());

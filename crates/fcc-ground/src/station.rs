@@ -14,6 +14,7 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tower_http::compression::CompressionLayer;
 use tower_http::compression::predicate::{NotForContentType, Predicate as _, SizeAbove};
 
+use crate::calibration::{self, Calibration};
 use crate::commands::{self, Orders};
 use crate::daemon_config::{self, DaemonConfigs};
 use crate::drafts::{self, Drafts};
@@ -47,6 +48,7 @@ pub(crate) struct Station {
     pub(crate) machine: Machine,
     pub(crate) drafts: Drafts,
     pub(crate) orders: Orders,
+    pub(crate) calibration: Calibration,
     pub(crate) flights: flights::Summaries,
     sockets: Arc<Semaphore>,
     sending: Arc<Semaphore>,
@@ -119,6 +121,12 @@ pub(crate) fn router(station: Arc<Station>) -> Router {
         .route("/api/flights/{file}/download", get(flights::download))
         .route("/api/flights/{a}/compare/{b}", get(flights::compare))
         .route("/api/doctor", get(doctor::doctor))
+        .route(
+            "/api/calibration",
+            get(calibration::course)
+                .post(calibration::begin)
+                .delete(calibration::end),
+        )
         .route("/api/terrain", get(map::terrain))
         .route("/api/map", get(map::map))
         .route("/foxglove/{instance}", get(live::foxglove_socket))
@@ -159,6 +167,7 @@ async fn status(State(station): State<Arc<Station>>, headers: HeaderMap) -> Json
         "software": env!("CARGO_PKG_VERSION"),
         "writable": station.token.is_in(&headers),
         "utc_ms": commands::utc_ms(),
+        "configured": station.configs.instances().collect::<Vec<_>>(),
         "daemons": daemons.collect::<Vec<_>>(),
         "not_watched": refused
             .map(|(instance, error)| json!({ "instance": instance, "error": error }))
@@ -193,6 +202,7 @@ pub(crate) fn station(
         configs,
         machine,
         orders: Orders::default(),
+        calibration: Calibration::default(),
         sockets: Arc::new(Semaphore::new(MOST_SOCKETS)),
         sending: Arc::new(Semaphore::new(MOST_SENDING)),
     }))

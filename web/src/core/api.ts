@@ -32,6 +32,8 @@ export interface Status {
   utc_ms?: number;
   software: string;
   writable: boolean;
+  /** Daemons whose configuration the station knows, running or not. */
+  configured: string[];
   daemons: Daemon[];
 }
 

@@ -402,3 +402,45 @@ fn no_answer_of_the_interface_stays_in_a_cache_or_a_cookie() {
     let page = ground.raw(request("GET /", &[&host], "").as_bytes());
     assert_eq!(page.header("cache-control"), Some("no-cache"));
 }
+
+#[test]
+fn a_calibration_is_refused_beside_its_daemon_and_of_what_is_not_known() {
+    let daemon = Daemon::start("calibrated");
+    let folder = tempfile::tempdir().unwrap();
+    let config = folder.path().join("fccd.toml");
+    let named = |name: &str| format!("[built-in]\n[telemetry]\ninstance = \"{name}\"\n");
+    std::fs::write(&config, named(&daemon.instance.to_string())).unwrap();
+    let ground = Ground::with(&["--fccd", "/bin/false", "--config", config.to_str().unwrap()]);
+    wait_for(&ground, &daemon);
+    let begin = |instance: &str, kind: &str| {
+        let body = json!({ "instance": instance, "kind": kind });
+        ground.change("POST /api/calibration", &body).status
+    };
+    assert_eq!(begin(&daemon.instance.to_string(), "airspeed"), 409);
+    assert_eq!(begin("another", "airspeed"), 409);
+    let lines = ["Content-Type: application/json"];
+    let answer = ground.send("POST /api/calibration", &lines, "{}");
+    assert_eq!(answer.status, 401);
+    assert_eq!(
+        ground.change("DELETE /api/calibration", &json!({})).status,
+        404
+    );
+    drop(daemon);
+    // An option is no kind.
+    std::fs::write(&config, named("at-rest")).unwrap();
+    let ground = Ground::with(&["--fccd", "/bin/false", "--config", config.to_str().unwrap()]);
+    let begin = |kind: &str| {
+        let body = json!({ "instance": "at-rest", "kind": kind });
+        ground.change("POST /api/calibration", &body).status
+    };
+    assert_eq!(begin("--help"), 400);
+    assert_eq!(begin("airspeed"), 200);
+    let begun = Instant::now();
+    while ground.get("/api/calibration").json()["exit_code"] != 1 {
+        assert!(
+            begun.elapsed() < Duration::from_secs(30),
+            "it has not ended"
+        );
+        sleep(Duration::from_millis(50));
+    }
+}

@@ -10,6 +10,7 @@ import type { RunStatus } from "../../live/connection";
 import type { LiveRecord } from "../../live/record";
 import type { View } from "../../shell";
 import { EventList } from "../event-list";
+import { CalibrationPanel } from "./calibration";
 import { Histogram } from "./histogram";
 import { SensorTable } from "./sensors";
 import { StageBars } from "./stages";
@@ -82,7 +83,7 @@ export function openHealth(): View {
   const list = new EventList();
   const findings = h("ul", { class: "findings", tabindex: 0, "aria-label": "Findings of the doctor" });
   const doctor_note = h("p", { class: "note", role: "status" });
-  const calibration = h("p", { class: "note" });
+  const calibration = new CalibrationPanel();
 
   const draw = () => {
     const record = newest();
@@ -110,7 +111,7 @@ export function openHealth(): View {
   };
 
   for (const event of events) list.add(event);
-  const stops = [onRecord(() => onNextFrame(draw)), onEvent((event) => list.add(event)), run.watch(() => onNextFrame(draw)), daemon.watch((one) => setText(calibration, one ? `Calibrate a sensor on the board, guided step by step: fccd calibrate --help` : ""))];
+  const stops = [onRecord(() => onNextFrame(draw)), onEvent((event) => list.add(event)), run.watch(() => onNextFrame(draw))];
   const timer = setInterval(() => onNextFrame(draw), AGED_EVERY_MS);
 
   const panel = (title: string, name: string, ...content: HTMLElement[]) => h("section", { class: `panel ${name}`, "aria-label": title }, h("h2", {}, title), ...content);
@@ -122,7 +123,8 @@ export function openHealth(): View {
     panel("Stages of a tick", "stage-panel", stages.element),
     panel("Board", "board", board.element),
     panel("Recorder", "recorder", recorder.element, file),
-    panel("Sensors", "sensor-panel", sensors.element, calibration),
+    panel("Sensors", "sensor-panel", sensors.element),
+    panel("Calibration", "calibration-panel", calibration.element),
     h("section", { class: "panel doctor", "aria-label": "Doctor" }, h("div", { class: "row end" }, h("h2", {}, "Doctor"), button("Examine again", () => void examine(), { class: "button small" })), doctor_note, findings),
     panel("Events", "event-panel", list.element),
   );
@@ -135,6 +137,7 @@ export function openHealth(): View {
       clearInterval(timer);
       notOnNextFrame(draw);
       histogram.close();
+      calibration.close();
     },
   };
 }
