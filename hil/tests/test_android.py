@@ -92,7 +92,7 @@ def test_the_pattern_is_flown_by_the_phones_raw_sensors(
     assert flown.report is not None
     assert flown.report["released"]
     print(json.dumps(flown.figures))
-    # The most of six flights in lockstep by the same sensors (docs/navigation.md).
+    # The most of six flights in lockstep by the same sensors.
     for leg in flown.figures["legs"]:
         assert leg["altitude_rms_ft"] <= 6.2
         assert leg["airspeed_error_kt"] <= 13.9
