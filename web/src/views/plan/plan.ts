@@ -154,6 +154,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
       editor = next;
       selected = null;
       check = null;
+      pose();
       localStorage.setItem(LAST_DRAFT, name);
       await listDrafts();
       recheck();
@@ -334,6 +335,16 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
       );
   };
   const refresh = () => onNextFrame(draw);
+  const pose = () => {
+    const record = newest();
+    const state = record ? flightState(record, linkAge()) : null;
+    // Before anything can be drawn far away from it.
+    if (state?.position_known && editor && !centred && editor.plan.items.length === 0 && layer.bounds() === null) {
+      centred = true;
+      map.setView([state.latitude_deg, state.longitude_deg], 13, { animate: false });
+    }
+    return state;
+  };
 
   // --- keys, lists, end --------------------------------------------------
   const keys = (event: KeyboardEvent) => {
@@ -353,12 +364,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
   document.addEventListener("keydown", keys);
   map.getContainer().addEventListener("keydown", deleteKey);
   const position = setInterval(() => {
-    const record = newest();
-    const state = record ? flightState(record, linkAge()) : null;
-    if (state?.position_known && editor && !centred && layer.bounds() === null) {
-      centred = true;
-      map.setView([state.latitude_deg, state.longitude_deg], 13, { animate: false });
-    }
+    const state = pose();
     aircraft.show(state?.position_known ? { ...state } : null, (state?.ages.position ?? Infinity) > LOST_S);
     vehicle.show(editor, { errors: (check?.problems ?? []).filter((one) => one.level === "error").length, checked_hash: checked === plan() ? (check?.hash ?? null) : null });
   }, 500);
