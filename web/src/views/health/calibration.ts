@@ -3,14 +3,8 @@
 import { getJson, message, postJson, request, writable, type Status } from "../../core/api";
 import { button, h, replace, setText } from "../../core/dom";
 
-interface Course {
-  kind: string;
-  percent: number;
-  now: string;
-  lines: string[];
-  found: string;
-  exit_code: number | null;
-}
+/** How far it is; without a kind there was none. */
+type Course = { kind: string; percent: number; now: string; lines: string[]; found: string; exit_code: number | null };
 
 const KINDS = ["accelerometer", "gyroscope", "mounting", "magnetometer", "airspeed"];
 const ASKED_EVERY_MS = 500;
@@ -41,11 +35,8 @@ export class CalibrationPanel {
   }
 
   async #ask(): Promise<void> {
-    try {
-      this.#show(await getJson<Course>("/calibration"));
-    } catch {
-      // It is asked again.
-    }
+    // What does not answer is asked again.
+    await getJson<Course>("/calibration").then((course) => this.#show(course), () => undefined);
   }
 
   #show({ kind, percent, now, lines, found, exit_code }: Course): void {
@@ -59,7 +50,5 @@ export class CalibrationPanel {
     if (runs) this.#timer = setInterval(() => void this.#ask(), ASKED_EVERY_MS);
   }
 
-  close(): void {
-    clearInterval(this.#timer);
-  }
+  close = (): void => clearInterval(this.#timer);
 }
