@@ -3,7 +3,6 @@
 import { getJson, message, postJson, request, writable, type Status } from "../../core/api";
 import { button, h, replace, setText } from "../../core/dom";
 
-/** How far it is; without a kind there was none. */
 type Course = { kind: string; percent: number; now: string; lines: string[]; found: string; exit_code: number | null };
 
 const KINDS = ["accelerometer", "gyroscope", "mounting", "magnetometer", "airspeed"];

@@ -28,6 +28,7 @@ const TOOLS: readonly (readonly [Tool, string])[] = [
   ["home", "Home"], ["fence", "Fence"], ["rally", "Rally"], ["obstacle", "Obstacle"],
 ];
 const LAST_DRAFT = "fcc.plan.last";
+const NOT_CHECKED = "The plan cannot be checked";
 
 export async function openPlan(wanted: string | undefined): Promise<View> {
   const chart = createChart("Map of the plan");
@@ -240,11 +241,11 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
     try {
       check = await postJson<Check>("/plan/check", { plan: mine, instance: daemon.get()?.instance ?? null }, checking.signal);
       checked = mine;
-      say("");
+      if (notice.textContent.startsWith(NOT_CHECKED)) say("");
     } catch (error) {
       if (checking.signal.aborted && checked !== mine) return;
       check = null;
-      say(`The plan cannot be checked: ${message(error)}`, "bad");
+      say(`${NOT_CHECKED}: ${message(error)}`, "bad");
     }
     onNextFrame(draw);
   };
