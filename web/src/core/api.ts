@@ -3,12 +3,7 @@
 import type { Plan } from "../plan/model";
 import { watched } from "./state";
 
-export interface SetPoint {
-  name: string;
-  unit: string;
-  lowest: number;
-  highest: number;
-}
+export type SetPoint = { name: string; unit: string; lowest: number; highest: number };
 
 export interface Daemon {
   instance: string;

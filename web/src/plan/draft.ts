@@ -11,11 +11,10 @@ import { pauseBefore } from "../live/connection";
 
 export type SaveState = "saved" | "saving" | "not saved" | "conflict" | "read only";
 
-interface Unconfirmed {
-  based_on: number;
-  plan: Plan;
-}
+/** What of `sent` has arrived is not known. */
+type Unconfirmed = { based_on: number; plan: Plan; sent?: Plan[] };
 
+const MOST_SENT = 20;
 const key = (name: string) => `fcc.draft.${name}`;
 
 function unconfirmed(name: string): Unconfirmed | null {
@@ -34,6 +33,8 @@ export class DraftEditor {
   /** The board's newer draft, while there is a conflict. */
   theirs: Draft | null = null;
   hash = "";
+  /** Since the board's last answer. */
+  #sent: Plan[] = [];
   #saving = false;
   #retry: ReturnType<typeof setTimeout> | undefined;
   #attempt = 0;
@@ -63,7 +64,8 @@ export class DraftEditor {
     editor.hash = found?.hash ?? "";
     if (pending && !same(pending.plan, editor.confirmed)) {
       editor.history.edit(pending.plan, "edits that were not saved");
-      if (found && found.revision !== pending.based_on) {
+      editor.#sent = pending.sent ?? [];
+      if (found && found.revision !== pending.based_on && !editor.#isOwn(found.plan)) {
         editor.theirs = found;
         editor.state = "conflict";
       } else editor.#save();
@@ -80,13 +82,11 @@ export class DraftEditor {
     this.#keepAndSave();
   }
 
-  undo(): void {
-    if (this.history.undo() !== null) this.#keepAndSave();
-  }
+  undo = (): void => void (this.history.undo() !== null && this.#keepAndSave());
+  redo = (): void => void (this.history.redo() !== null && this.#keepAndSave());
 
-  redo(): void {
-    if (this.history.redo() !== null) this.#keepAndSave();
-  }
+  /** It was sent from here, and only the answer was lost: not another page's edit. */
+  #isOwn = (found: Plan): boolean => this.#sent.some((sent) => same(found, sent));
 
   #keepAndSave(): void {
     this.#keep();
@@ -96,7 +96,7 @@ export class DraftEditor {
 
   #keep(): void {
     try {
-      const pending: Unconfirmed = { based_on: this.revision, plan: this.plan };
+      const pending: Unconfirmed = { based_on: this.revision, plan: this.plan, sent: this.#sent };
       localStorage.setItem(key(this.name), JSON.stringify(pending));
     } catch {
       // A browser without storage relies on the board alone.
@@ -114,19 +114,22 @@ export class DraftEditor {
     this.state = "saving";
     this.changed(this);
     const plan = this.plan;
+    this.#sent = [...this.#sent.slice(-MOST_SENT), plan];
+    this.#keep();
     try {
       const answer = await request("PUT", `/drafts/${part(this.name)}`, { based_on: this.revision, plan });
       const saved = (await answer.json()) as Draft;
       this.revision = saved.revision;
       this.hash = saved.hash;
       this.confirmed = plan;
+      this.#sent = [];
       this.#attempt = 0;
       this.state = "saved";
       this.reason = "";
       if (this.plan === plan) localStorage.removeItem(key(this.name));
       else this.#keep();
     } catch (error) {
-      await this.#failed(error, plan);
+      await this.#failed(error);
     } finally {
       this.#saving = false;
     }
@@ -134,15 +137,15 @@ export class DraftEditor {
     this.changed(this);
   }
 
-  async #failed(error: unknown, sent: Plan): Promise<void> {
+  async #failed(error: unknown): Promise<void> {
     this.reason = message(error);
     if (error instanceof Refused && error.status === 409) {
       try {
         const theirs = await getJson<Draft>(`/drafts/${part(this.name)}`);
-        // What was sent has arrived, and only its answer was lost.
-        if (same(theirs.plan, sent)) {
+        if (this.#isOwn(theirs.plan)) {
           this.#adopt(theirs);
-          this.state = "saved";
+          this.state = same(theirs.plan, this.plan) ? "saved" : "not saved";
+          if (this.state !== "saved") this.#retry = setTimeout(() => this.#save(), 0);
           return;
         }
         this.theirs = theirs;
@@ -165,6 +168,7 @@ export class DraftEditor {
     this.revision = draft.revision;
     this.hash = draft.hash;
     this.confirmed = draft.plan;
+    this.#sent = [];
   }
 
   /** The board has this revision now, by another page or by this one. */
