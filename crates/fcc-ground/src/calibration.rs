@@ -17,7 +17,7 @@ use tokio::sync::Notify;
 use crate::failure::{Failure, Sent};
 use crate::station::Station;
 
-/// Lines that are kept of what it says.
+/// Lines that are kept of its output.
 const MOST_LINES: usize = 50;
 /// More than it ever prints.
 const MOST_BYTES: u64 = 64 << 10;
@@ -34,7 +34,7 @@ struct Course {
     percent: f64,
     /// What to do next.
     now: String,
-    /// What it has said, oldest first.
+    /// What it has printed, oldest first.
     lines: Vec<String>,
     /// What was found, as text, or nothing.
     found: String,
@@ -57,16 +57,16 @@ impl Calibration {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Follows a child to its end.
-    async fn follow(self, mut child: Child, interrupt: Arc<Notify>) {
-        let (said, printed) = (child.stderr.take(), child.stdout.take());
+    /// Reads what a child prints until it has ended.
+    async fn run_to_end(self, mut child: Child, interrupt: Arc<Notify>) {
+        let (messages, printed) = (child.stderr.take(), child.stdout.take());
         let found = tokio::spawn(all_of(printed));
-        if let Some(said) = said {
-            let mut lines = BufReader::new(said.take(MOST_BYTES)).lines();
+        if let Some(messages) = messages {
+            let mut lines = BufReader::new(messages.take(MOST_BYTES)).lines();
             loop {
                 tokio::select! {
                     line = lines.next_line() => match line {
-                        Ok(Some(line)) => self.locked().say(line),
+                        Ok(Some(line)) => self.locked().add_line(line),
                         _ => break,
                     },
                     () = interrupt.notified() => if let Some(id) = child.id() {
@@ -96,7 +96,7 @@ async fn all_of(printed: Option<impl AsyncRead + Unpin>) -> String {
 
 impl Course {
     /// Takes a line, as ` 67 %  +y+z is up: keep it still`.
-    fn say(&mut self, line: String) {
+    fn add_line(&mut self, line: String) {
         let parts = line.split_once(" %  ");
         let parts = parts.and_then(|(percent, now)| Some((percent.trim().parse().ok()?, now)));
         if let Some((percent, now)) = parts {
@@ -145,19 +145,14 @@ pub(crate) async fn begin(
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn();
-    let child = child.map_err(|error| {
-        let program = station.fccd.display();
-        Failure::internal(format!(
-            "{program}: cannot be started: {error}: give it with --fccd FILE"
-        ))
-    })?;
+    let child = child.map_err(|error| station.without_fccd(&error))?;
     let interrupt = Arc::new(Notify::new());
     *course = Course {
         kind,
         interrupt: Some(Arc::clone(&interrupt)),
         ..Course::default()
     };
-    tokio::spawn(station.calibration.clone().follow(child, interrupt));
+    tokio::spawn(station.calibration.clone().run_to_end(child, interrupt));
     Ok(Json(json!(*course)))
 }
 

@@ -30,11 +30,7 @@ pub(crate) async fn doctor(State(station): State<Arc<Station>>) -> Result<Json<V
         .output();
     let output = timeout(PATIENCE, running).await;
     let output = output.map_err(|_| Failure::internal(format!("{program} doctor does not end")))?;
-    let output = output.map_err(|error| {
-        Failure::internal(format!(
-            "{program}: cannot be started: {error}: give it with --fccd FILE"
-        ))
-    })?;
+    let output = output.map_err(|error| station.without_fccd(&error))?;
     let found = serde_json::from_slice(&output.stdout);
     let found: Value = found.map_err(|error| {
         Failure::internal(format!(

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use axum::Json;
-use axum::extract::{Query, State};
+use axum::extract::State;
 use axum::http::header::{ACCEPT_RANGES, CONTENT_RANGE, CONTENT_TYPE, RANGE};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse as _, Response};
@@ -14,7 +14,7 @@ use fcc_terrain::{Area, Elevations};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::failure::{Failure, reading};
+use crate::failure::{Failure, Given, reading};
 use crate::station::Station;
 
 /// The longest part of a map that is sent at once.
@@ -122,7 +122,7 @@ static TURN: Mutex<()> = Mutex::new(());
 /// `GET /api/terrain`.
 pub(crate) async fn terrain(
     State(station): State<Arc<Station>>,
-    Query(wanted): Query<Wanted>,
+    Given(wanted): Given<Wanted>,
 ) -> Result<Json<Value>, Failure> {
     let Wanted {
         south,

@@ -235,9 +235,13 @@ fn announce(running: &Running, as_json: bool) -> io::Result<()> {
     })
 }
 
-fn message(text: impl std::fmt::Display) {
+/// An error: for a reader, and as JSON where that is the result.
+fn message(as_json: bool, text: impl std::fmt::Display) {
     // A message that cannot be printed cannot be reported.
     let _ = writeln!(io::stderr(), "fcc-ground: {text}");
+    if as_json {
+        let _ = writeln!(io::stdout(), "{}", json!({ "error": text.to_string() }));
+    }
 }
 
 /// The threads of a station: two for the network, others for disks and daemons.
@@ -264,13 +268,16 @@ pub fn run() -> Exit {
             };
             // As above.
             let _ = error.print();
+            if error.use_stderr() && env::args_os().any(|word| word == "--json") {
+                let _ = writeln!(io::stdout(), "{}", json!({ "error": error.to_string() }));
+            }
             return exit;
         }
     };
     let runtime = match runtime() {
         Ok(runtime) => runtime,
         Err(error) => {
-            message(error);
+            message(cli.json, error);
             return Exit::Failure;
         }
     };
@@ -286,20 +293,20 @@ async fn until_ended(cli: Cli) -> Exit {
         signal(SignalKind::interrupt()),
         signal(SignalKind::terminate()),
     ) else {
-        message("signals cannot be received");
+        message(as_json, "signals cannot be received");
         return Exit::Failure;
     };
     let running = match start(cli).await {
         Ok(running) => running,
         Err(error) => {
-            message(&error);
+            message(as_json, &error);
             return error.exit();
         }
     };
     // For the daemons of this user, until the station ends.
     let _published = StationLink::publish(&running.link());
     if let Err(error) = announce(&running, as_json) {
-        message(format!("the link cannot be printed: {error}"));
+        message(as_json, format!("the link cannot be printed: {error}"));
         return Exit::Failure;
     }
     tokio::select! {

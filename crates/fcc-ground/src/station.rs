@@ -1,5 +1,6 @@
 //! What all requests share, and which function answers which.
 
+use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -71,6 +72,14 @@ impl Station {
                 None => format!("no fccd named '{instance}' runs for the user of the station"),
             })
         })
+    }
+
+    /// The program `fccd` cannot be started.
+    pub(crate) fn without_fccd(&self, error: &io::Error) -> Failure {
+        let program = self.fccd.display();
+        Failure::internal(format!(
+            "{program}: cannot be started: {error}: give it with --fccd FILE"
+        ))
     }
 
     /// A place for one more WebSocket.

@@ -23,10 +23,12 @@ pub(crate) fn describe(record: &FlightRecord) -> Option<String> {
     };
     let heading = compass(known(&measured.heading_rad, estimate.heading_rad));
     let shown = ShownAltitude::of(record);
-    let name = match shown.name {
-        "pressure altitude" => "p.alt",
-        "altitude" => "alt",
-        name => name,
+    let name = match (shown.name, shown.setting_hpa) {
+        // As in a METAR, where it is not the standard one.
+        ("altitude", Some(hpa)) => &format!("Q{hpa:.0}"),
+        ("pressure altitude", _) => "p.alt",
+        ("altitude", None) => "alt",
+        (name, _) => name,
     };
     let altitude = if measured.altitude_m.is_never() && !is_raw {
         "   –".to_owned()
@@ -60,4 +62,29 @@ pub(crate) fn switch(record: &FlightRecord) -> Option<Switch> {
 /// Whole degrees, 0 to 359, as on a compass card.
 fn compass(heading_rad: f64) -> f64 {
     heading_rad.to_degrees().round().rem_euclid(360.0) + 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use fcc_core::flight::AltitudeReference;
+    use fcc_core::framework::Time;
+
+    use super::*;
+
+    /// A pressure altitude of 900 m is 984 m with 1023 hPa: 9.8 hPa are 84 m lower
+    /// (ICAO Doc 7488, 8.5 m/hPa near sea level).
+    #[test]
+    fn an_altitude_by_another_setting_names_it() {
+        let mut record = FlightRecord::default();
+        record.measurements.airspeed_mps = Reading::new(50.0, Time::from_nanos(1));
+        record.measurements.altitude_m = Reading::new(900.0, Time::from_nanos(1));
+        record.setpoints.altimeter_setting_pa = 101_325.0;
+        assert!(describe(&record).unwrap().contains("alt 2953 ft"));
+        record.setpoints.altimeter_setting_pa = 102_300.0;
+        record.setpoints.altitude_reference = AltitudeReference::SeaLevel;
+        let line = describe(&record).unwrap();
+        let (_, after) = line.split_once("Q1023 ").unwrap();
+        let shown_ft: f64 = after.split(' ').next().unwrap().parse().unwrap();
+        assert!((shown_ft - 984.0 * M_FT).abs() < 20.0, "{line}");
+    }
 }

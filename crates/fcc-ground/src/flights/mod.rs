@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use axum::Json;
 use axum::body::{Body, Bytes};
-use axum::extract::{Path, Query, State};
+use axum::extract::{Path, State};
 use axum::http::StatusCode;
 use axum::http::header::{
     CONTENT_DISPOSITION, CONTENT_SECURITY_POLICY, CONTENT_TYPE, X_FRAME_OPTIONS,
@@ -30,7 +30,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 use tokio::sync::OwnedSemaphorePermit;
 
-use crate::failure::{Failure, aside, reading};
+use crate::failure::{Failure, Given, aside, reading};
 use crate::plans::hash_text;
 use crate::station::Station;
 use export::PART_BYTES;
@@ -91,7 +91,7 @@ fn sent_in(place: OwnedSemaphorePermit, bytes: Vec<u8>) -> Body {
 pub(crate) async fn data(
     State(station): State<Arc<Station>>,
     Path(file): Path<String>,
-    Query(wanted): Query<DataWanted>,
+    Given(wanted): Given<DataWanted>,
 ) -> Result<Response, Failure> {
     let place = station.sending_place()?;
     let bytes = reading(move || {
@@ -207,7 +207,7 @@ pub(crate) struct DownloadWanted {
 pub(crate) async fn download(
     State(station): State<Arc<Station>>,
     Path(file): Path<String>,
-    Query(wanted): Query<DownloadWanted>,
+    Given(wanted): Given<DownloadWanted>,
 ) -> Result<Response, Failure> {
     let (format, name) = (wanted.format, file.clone());
     let place = station.sending_place()?;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use axum::body::Bytes;
 use axum::extract::ws::{Message, Utf8Bytes, WebSocket, WebSocketUpgrade};
-use axum::extract::{Path, Query, State};
+use axum::extract::{Path, State};
 use axum::http::StatusCode;
 use axum::response::Response;
 use base64::Engine as _;
@@ -20,9 +20,9 @@ use serde_json::{Value, json};
 use tokio::sync::broadcast::error::RecvError;
 use tokio::time::{Instant, interval};
 
-use super::socket::{Closed, PATIENCE, PING_EVERY, send, text};
+use super::socket::{Closed, PATIENCE, PING_EVERY, limited, send, text};
 use super::{Feed, Newest};
-use crate::failure::Failure;
+use crate::failure::{Failure, Given};
 use crate::station::{Station, instance_of};
 
 /// Its first name is that of the SDK, its second that of the older specification.
@@ -36,7 +36,7 @@ type Messages = RecordMessages<Autopilot>;
 
 /// What an address carries: who connects from Foxglove cannot give headers.
 #[derive(Deserialize)]
-pub(crate) struct Given {
+pub(crate) struct Address {
     #[serde(default)]
     token: String,
 }
@@ -45,7 +45,7 @@ pub(crate) struct Given {
 pub(crate) async fn socket(
     State(station): State<Arc<Station>>,
     Path(instance): Path<String>,
-    Query(given): Query<Given>,
+    Given(given): Given<Address>,
     upgrade: WebSocketUpgrade,
 ) -> Result<Response, Failure> {
     if !station.foxglove {
@@ -63,11 +63,7 @@ pub(crate) async fn socket(
     }
     let place = station.socket_place()?;
     let client = station.machine.client();
-    let upgrade = upgrade
-        .protocols(PROTOCOLS)
-        .max_message_size(MOST_BYTES)
-        .write_buffer_size(0)
-        .max_write_buffer_size(1 << 20);
+    let upgrade = limited(upgrade, MOST_BYTES).protocols(PROTOCOLS);
     Ok(upgrade.on_upgrade(async move |mut socket| {
         // A client that has left is no failure.
         let _ = Client::new(&feed).serve(&mut socket).await;
@@ -124,7 +120,7 @@ impl<'a> Client<'a> {
                 received = socket.recv() => {
                     match received {
                         Some(Ok(Message::Close(_)) | Err(_)) | None => return Err(Closed),
-                        Some(Ok(Message::Text(asked))) => self.asked(&asked),
+                        Some(Ok(Message::Text(asked))) => self.update_subscriptions(&asked),
                         Some(Ok(_)) => {}
                     }
                     heard = Instant::now();
@@ -170,7 +166,7 @@ impl<'a> Client<'a> {
     }
 
     /// What is not understood is no fault: later versions ask for more.
-    fn asked(&mut self, asked: &str) {
+    fn update_subscriptions(&mut self, asked: &str) {
         match serde_json::from_str(asked) {
             Ok(Asked::Subscribe { subscriptions }) => {
                 let known = Messages::topics().len();
@@ -213,7 +209,7 @@ impl<'a> Client<'a> {
         to_send
     }
 
-    /// An event as it is told to pages.
+    /// The log line of an event, from the message to pages.
     fn event(&self, told: &Utf8Bytes) -> Option<Bytes> {
         let id = self.subscriptions.get(&Messages::LOG)?;
         let told: Value = serde_json::from_str(told).ok()?;

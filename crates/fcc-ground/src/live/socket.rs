@@ -39,15 +39,20 @@ pub(crate) async fn socket(
     let feed = station.feed(&instance_of(&instance)?)?;
     let place = station.socket_place()?;
     let client = station.machine.client();
-    let upgrade = upgrade
-        .max_message_size(MOST_BYTES)
-        .write_buffer_size(0)
-        .max_write_buffer_size(1 << 20);
+    let upgrade = limited(upgrade, MOST_BYTES);
     Ok(upgrade.on_upgrade(async move |mut socket| {
         // A page that has left is no failure.
         let _ = watch(&mut socket, &feed).await;
         drop((place, client));
     }))
+}
+
+/// What a connection may keep in memory.
+pub(super) fn limited(upgrade: WebSocketUpgrade, most_bytes: usize) -> WebSocketUpgrade {
+    upgrade
+        .max_message_size(most_bytes)
+        .write_buffer_size(0)
+        .max_write_buffer_size(1 << 20)
 }
 
 /// Why it ended does not matter.

@@ -444,3 +444,17 @@ fn a_calibration_is_refused_beside_its_daemon_and_of_what_is_not_known() {
         sleep(Duration::from_millis(50));
     }
 }
+
+#[test]
+fn what_is_behind_a_question_mark_and_is_none_is_refused_as_json() {
+    let ground = Ground::new();
+    for path in [
+        "/api/terrain?south=1",
+        "/api/flights/a.mcap/data?points=abc",
+        "/api/flights/a.mcap/download?format=xyz",
+    ] {
+        let answer = ground.get(path);
+        assert_eq!(answer.status, 400, "{path}");
+        assert!(answer.json()["error"].is_string(), "{path}");
+    }
+}

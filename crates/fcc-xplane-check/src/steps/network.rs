@@ -38,7 +38,7 @@ pub(super) const READY: Step = Step {
     passes: "X-Plane answers, sends every dataref that fccd needs, and fccd reports that it is \
              ready (parked: that only the airspeed is too low).",
     source: "fccd requests everything again each second, and reports a missing value within 6 s",
-    advice: "X-Plane 12: Settings > Network > Accept incoming connections. Check the address in \
+    advice: "Start X-Plane, and load an aircraft. X-Plane 12: Settings > Network > Accept incoming connections. Check the address in \
              the configuration ([x-plane] simulator), and firewalls on both machines for UDP: \
              docs/x-plane.md.",
     run: ready,

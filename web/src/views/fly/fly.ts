@@ -43,7 +43,7 @@ const READOUTS: readonly Readout[] = [
     text: (r) => {
       const mode = r.named("desired_guidance_mode");
       const item = r.number("desired_guidance_item");
-      return item > 0 && ["plan", "takeoff", "land"].includes(mode) ? `${mode}, item ${item}` : mode;
+      return item > 0 && ["plan", "takeoff", "land"].includes(mode) ? `${mode.replace("takeoff", "take-off")}, item ${item}` : mode;
     },
   },
   { label: "To go", text: (r) => (r.number("state") === 1 && r.number("desired_to_go_m") > 0 ? withUnit("distance", r.number("desired_to_go_m")) : "–") },

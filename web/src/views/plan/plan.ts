@@ -307,7 +307,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
         ["Problems", current ? (errors.length > 0 ? `${errors.length} ${errors.length === 1 ? "error" : "errors"}` : problems.length > 0 ? `${problems.length} ${problems.length === 1 ? "remark" : "remarks"}` : "none") : "checking"],
       ].map(([name = "", value = ""]) => h("div", { "data-tone": name === "Problems" && errors.length > 0 ? "bad" : "" }, h("dt", {}, name), h("dd", {}, value))),
     );
-    replace(plan_problems, ...problems.filter((one) => one.item === null || one.item > now.items.length).map((one) => h("li", { class: `notice ${one.level === "error" ? "bad" : "remark"}` }, icon("warning"), " ", one.message)));
+    replace(plan_problems, ...problems.filter((one) => one.item === null || one.item > now.items.length).map((one) => h("li", { class: `notice ${one.level === "error" ? "bad" : "remark"}` }, icon("warning"), " ", one.field ? `${one.field}: ` : null, one.message)));
     drawState();
     const bounds = layer.bounds();
     if (editor && bounds && fitted !== editor.name) {
