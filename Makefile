@@ -288,7 +288,7 @@ test-cross: $(STAMPS)/cross $(STAMPS)/qemu build ## Build for the boards, and ru
 DEB_TARGET ?=
 PACKAGE    := target/package
 
-deb: build $(if $(DEB_TARGET),$(STAMPS)/cross) ## Make a Debian package, and its bill of materials (DEB_TARGET=)
+deb: build station $(if $(DEB_TARGET),$(STAMPS)/cross) ## Make the Debian packages, and their bill of materials (DEB_TARGET=)
 	@command -v cargo-deb >/dev/null || cargo install --locked --version 3.8.0 cargo-deb
 	rm -rf $(PACKAGE) && mkdir -p $(PACKAGE)
 	$(FCCD) man $(PACKAGE)/man
@@ -297,17 +297,19 @@ deb: build $(if $(DEB_TARGET),$(STAMPS)/cross) ## Make a Debian package, and its
 	$(FCCD) completions fish > $(PACKAGE)/fccd.fish
 	$(if $(DEB_TARGET),./scripts/cross $(DEB_TARGET),cargo) deb --locked -p fcc-daemon \
 	    $(if $(DEB_TARGET),--target $(DEB_TARGET)) --output $(PACKAGE)/
+	$(if $(DEB_TARGET),./scripts/cross $(DEB_TARGET),cargo) deb --locked -p fcc-ground \
+	    $(if $(DEB_TARGET),--target $(DEB_TARGET)) --output $(PACKAGE)/
 	./scripts/sbom $(PACKAGE)/fccd.cdx.json $(DEB_TARGET)
 
 test-deb: deb $(STAMPS)/python $(if $(DEB_TARGET),$(STAMPS)/qemu) ## Test the content of the Debian package (DEB_TARGET=)
-	DEB=$$(ls $(abspath $(PACKAGE))/*.deb) $(PYTHON) -m pytest deploy/tests
+	DEB=$$(ls $(abspath $(PACKAGE))/fccd_*.deb) $(PYTHON) -m pytest deploy/tests
 
 # A small Debian, built once. Its tests are in no other goal: without
 # virtualization they take minutes.
 VM_IMAGE := target/vm
 
 test-vm: deb $(VM_IMAGE)/root.img $(STAMPS)/vm $(STAMPS)/python ## Boot a Debian in qemu, install the package there, and fly (8 minutes)
-	DEB=$$(ls $(abspath $(PACKAGE))/*.deb) VM_IMAGE=$(abspath $(VM_IMAGE)) $(PYTHON) -m pytest deploy/vm
+	DEB=$$(ls $(abspath $(PACKAGE))/fccd_*.deb) VM_IMAGE=$(abspath $(VM_IMAGE)) $(PYTHON) -m pytest deploy/vm
 
 $(VM_IMAGE)/root.img: deploy/vm/build-image | $(STAMPS)/vm
 	./deploy/vm/build-image $(VM_IMAGE)
