@@ -44,7 +44,7 @@ endif
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: python advisories lock reproducible package-check wheels deb test-attacks test-contingencies test-fences test-glides test-guidance test-landings test-landings-beside test-plan-real-time test-recordings test-raw-edges test-upsets test-android android android-check android-package test-deb test-vm test-cross test-page test-ground station check-cross help faulty fly ground fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-flood soak doc build clean
+.PHONY: python advisories lock reproducible package-check wheels deb test-attacks test-contingencies test-fences test-glides test-guidance test-landings test-landings-beside test-plan-real-time test-recordings test-raw-edges test-upsets test-android android android-check android-package test-deb test-vm test-cross test-page test-ground station check-cross help faulty fly ground fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-ground bench-flood soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { print $$1 "\t" $$2 }' $(MAKEFILE_LIST) | LC_ALL=C sort | \
@@ -353,6 +353,13 @@ campaign: $(STAMPS)/rust $(STAMPS)/python-module ## Fly 300 healthy flights, the
 bench-live: $(STAMPS)/rust build $(STAMPS)/python ## Fly with and without 1,000 watchers, alternately (50 minutes)
 	cargo build --locked --release -p fcc-live --features flight --example watch
 	$(PYTHON) -m fcc_hil bench-live --fccd $(FCCD) --watcher $(TARGET)/release/examples/watch $(LIVE)
+
+# For bench-ground, such as MEASURE="--soak-minutes 60".
+MEASURE ?=
+
+bench-ground: build station $(STAMPS)/python $(STAMPS)/browser ## Measure the ground station and its page; soak it (50 minutes; MEASURE=)
+	PYTHONPATH=web/tests:hil/tests $(PYTHON) web/tests/measure.py --fccd $(FCCD) \
+	    --station $(TARGET)/release/fcc-ground --results docs/results/ground.md $(MEASURE)
 
 bench-flood: build $(STAMPS)/python ## Fly among 100,000 datagrams a second of another host (1 minute)
 	$(PYTHON) -m fcc_hil bench-flood --fccd $(FCCD)

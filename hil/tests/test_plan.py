@@ -73,7 +73,7 @@ def test_a_landing_that_is_not_flown_ends_the_command_with_an_error(
         # Of 600 m to 55 kt at constant acceleration: 42 s.
         (CIRCUIT, "the take-off is given up: rotate_kt is not reached", 43.0),
         # From 100 kt to 65 kt without power.
-        (TWELVE_LEGS, "too little energy for speed and height", 30.0),
+        (TWELVE_LEGS, "too little energy: speed is held", 30.0),
     ],
 )
 def test_an_engine_that_does_not_run_is_an_event(plan: Path, event: str, within_s: float) -> None:

@@ -25,25 +25,25 @@ macro_rules! exits {
 exits! {
     Success = 0, "success";
     Failure = 1, "the operating system, the network or a part of the program failed";
-    Usage = 2, "the command line is wrong, or a configuration, a plan, a recording or a folder of recordings is wrong or cannot be read";
+    Usage = 2, "the command line, or a configuration, plan, recording or folder is wrong";
     Failsafe = 3, "the flight entered failsafe";
     RealtimeDenied = 4, "a real-time request was denied and realtime.strict is set";
     NotReleased = 5, "the controls may not have been released";
     Panicked = 6, "a part of the loop panicked; the controls were released";
     Differs = 7, "a replay gave other outputs";
-    NotReplayed = 8, "a recording could not be replayed to its end, and the rest does not differ; or no tick of it could be compared";
-    Hung = 9, "the loop hung; the watchdog released the controls and ended the program";
+    NotReplayed = 8, "a recording, or its end, could not be replayed; what could does not differ";
+    Hung = 9, "the loop hung; the watchdog released the controls and ended it";
     MachineLacks = 10, "the machine lacks something that a real-time loop needs (doctor)";
     Refused = 11, "the daemon refused the command";
     Taken = 12, "another program uses the simulator or the local port";
-    Incomplete = 13, "a recording is damaged or unfinished: the result is of the rest, or a part is lost";
+    Incomplete = 13, "a recording is damaged or unfinished: the result is of the rest";
     NotRecorded = 14, "the flight succeeded, but was not recorded completely";
-    StepFailed = 15, "a step of the check against X-Plane failed or was skipped (x-plane check)";
+    StepFailed = 15, "a step failed or was skipped (x-plane check)";
     HitGround = 16, "the built-in aircraft hit the ground";
-    Overloaded = 17, "for too long the loop's ticks left no time to sleep; it released the controls and stopped";
+    Overloaded = 17, "the loop's ticks left no time to sleep; it released the controls and stopped";
     CalibrationRefused = 18, "a calibration would be poor, and was refused (calibrate)";
     NotFlown = 19, "the plan was not flown to its end, or engaging was refused";
-    ControlsNotChecked = 20, "a control is reversed, has no effect or was not confirmed, or the aircraft moved (check-controls)";
+    ControlsNotChecked = 20, "a control is reversed, without effect or not confirmed (check-controls)";
 }
 
 impl From<Exit> for ExitCode {

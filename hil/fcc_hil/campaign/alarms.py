@@ -18,7 +18,7 @@ _HARMLESS = (
     "recovering from an upset",
     "oscillation: gain is reduced",
     "the outputs take effect too late for the gains",
-    "too little energy for speed and height: height is given up",
+    "too little energy: speed is held, height given up",
     "flying on without a lost quantity",
     "the target altitude is limited by the floor or the fence",
     "levelling and trimming before the release",

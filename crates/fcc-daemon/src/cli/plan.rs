@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use super::values::output;
+use super::values::{number, output};
 
 /// `fccd plan`.
 #[derive(Args, Debug)]
@@ -98,13 +98,13 @@ pub enum PlanOrder {
     /// Fly to a place, and circle around it
     GoTo {
         /// Latitude, -90 to 90
-        #[arg(value_name = "LAT", allow_negative_numbers = true)]
+        #[arg(value_name = "LAT", value_parser = number, allow_negative_numbers = true)]
         latitude_deg: f64,
         /// Longitude, -180 to 180
-        #[arg(value_name = "LON", allow_negative_numbers = true)]
+        #[arg(value_name = "LON", value_parser = number, allow_negative_numbers = true)]
         longitude_deg: f64,
         /// Altitude above sea level by the altimeter setting
-        #[arg(value_name = "ALT_FT", allow_negative_numbers = true)]
+        #[arg(value_name = "ALT_FT", value_parser = number, allow_negative_numbers = true)]
         altitude_ft: f64,
     },
     /// Fly to the nearest of home and the rally points, and circle there

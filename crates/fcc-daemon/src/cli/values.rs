@@ -76,6 +76,11 @@ pub(super) fn rate_hz(text: &str) -> Result<f64, String> {
     number_within(text, 1.0, 2_000.0, "Hz")
 }
 
+/// A number, of which the daemon says whether the aircraft permits it.
+pub(super) fn number(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| "give a number".to_owned())
+}
+
 fn number_within(text: &str, least: f64, most: f64, unit: &str) -> Result<f64, String> {
     text.parse::<f64>()
         .ok()

@@ -6,8 +6,9 @@ use fcc_core::flight::terrain::Terrain;
 use fcc_plan::{AltitudeDatum, Item, Place, Plan, Polygon};
 use fcc_report::{GroundLine, PlanFence, PlanLines, PlanPlace, PlanRow};
 
+/// To a metre.
 fn place_text(place: Place) -> String {
-    format!("{:.6}, {:.6}", place.latitude_deg, place.longitude_deg)
+    format!("{:.5}, {:.5}", place.latitude_deg, place.longitude_deg)
 }
 
 /// A row of the table for each item.
@@ -22,11 +23,11 @@ pub(super) fn rows(plan: &Plan) -> Vec<PlanRow> {
         before = place.or(before);
         let altitude = item.altitude().map_or_else(String::new, |altitude| {
             let above = match altitude.above {
-                AltitudeDatum::SeaLevel => "",
-                AltitudeDatum::Home => " above home",
-                AltitudeDatum::Terrain => " above terrain",
+                AltitudeDatum::SeaLevel => "sea",
+                AltitudeDatum::Home => "home",
+                AltitudeDatum::Terrain => "ground",
             };
-            format!("{:.1} m{above}", altitude.m)
+            format!("{:.1} m {above}", altitude.m)
         });
         [
             (n + 1).to_string(),

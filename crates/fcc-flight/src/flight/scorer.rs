@@ -63,8 +63,8 @@ impl Observer<Autopilot> for Scorer {
                 "the flight was never engaged, and the timed pattern begins with that".to_owned(),
             ),
             None if score.legs.is_empty() => Some(
-                "no leg of the timed pattern was flown to its end: fly longer; commanded set points \
-                 end the pattern"
+                "no leg of the timed pattern was flown to its end: fly longer\n\
+                 (commanded set points end the pattern)"
                     .to_owned(),
             ),
             None => None,

@@ -181,8 +181,8 @@ impl FlownPlan {
                 "right"
             };
             format!(
-                "Touched down at {:.1} s: {:.0} ft/min, {:.1} m {side} of the centre line, {:.0} kt, \
-                 {:.1}° of bank, by the estimate.",
+                "Touched down at {:.1} s: {:.0} ft/min, {:.1} m {side} of the centre line,\n\
+                 {:.0} kt, {:.1}° of bank, by the estimate.",
                 touch.time_s,
                 touch.sink_fpm,
                 touch.centre_line_m.abs(),

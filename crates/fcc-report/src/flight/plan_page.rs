@@ -1,6 +1,6 @@
 //! A flight plan as a page: its table, its map and its height profile.
 
-use comfy_table::{ContentArrangement, Table};
+use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Table};
 use maud::{DOCTYPE, PreEscaped, html};
 
 use crate::page::STYLE;
@@ -47,7 +47,7 @@ pub struct PlanPlace {
 pub type PlanRow = [String; 6];
 
 fn table_of(rows: &[PlanRow]) -> Table {
-    let mut table = table(&["Item", "", "Place", "Altitude", "Leg", "Course"]);
+    let mut table = table(&["Item", "", "Place", "Altitude above", "Leg", "Course"]);
     table.add_rows(rows);
     table
 }
@@ -58,6 +58,13 @@ pub fn plan_table(rows: &[PlanRow]) -> String {
     const COLUMNS: u16 = 80;
     let mut table = table_of(rows);
     table.set_content_arrangement(ContentArrangement::Dynamic);
+    for (n, column) in table.column_iter_mut().enumerate() {
+        if n == 1 {
+            column.set_cell_alignment(CellAlignment::Left);
+        } else {
+            column.set_constraint(ColumnConstraint::ContentWidth);
+        }
+    }
     table.set_width(COLUMNS).to_string()
 }
 

@@ -214,7 +214,7 @@ pub(super) const NAMES: [&str; 64] = [
     "oscillation: gain is reduced",
     "the outputs take effect too late for the gains",
     "the outputs do not reach the aircraft",
-    "too little energy for speed and height: height is given up",
+    "too little energy: speed is held, height given up",
     "a reading is from the future",
     "flying on without a lost quantity",
     "the target altitude is limited by the floor or the fence",
