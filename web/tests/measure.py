@@ -72,7 +72,7 @@ def plan_of_a_survey(file: Path) -> None:
     rows = [first[0], first[1]]
     for n in range(ITEMS):
         north = latitude + (0.05 if n // 2 % 2 == n % 2 else -0.05)
-        east = longitude + 0.004 * (n // 2)
+        east = longitude + 0.03 * (n // 2)
         rows.append(f"{n + 1}\t0\t3\t16\t0\t0\t0\t0\t{north:.6f}\t{east:.6f}\t600\t1")
     file.write_text("\n".join(rows) + "\n")
 
@@ -290,7 +290,7 @@ def an_hour(measured: Measured) -> None:
     """Fly the plan for an hour of simulated time, and keep the recording."""
     words = [measured.fccd, "fly", "--lockstep", "--quiet", "--config", measured.config]
     words += ["--seconds", "3600", "--recordings", measured.folder / "recordings"]
-    ended = subprocess.run(words, stdout=subprocess.DEVNULL)
+    ended = subprocess.run(words, capture_output=True)
     if not list((measured.folder / "recordings").glob("*.mcap")):
         sys.exit(f"the flight of an hour ended with {ended.returncode}, without a recording")
 
@@ -344,13 +344,14 @@ def soak(measured: Measured, minutes: float, progress: Progress) -> list[Row]:
             station = ends.enter_context(measured.station())
         process = Process(station.process.pid)
         for _ in range(flights):
+            # Until the station has seen that the one before has ended.
+            time.sleep(3.0)
             with measured.flight() as daemon:
                 while station.daemon() is None:
                     time.sleep(0.1)
                 stops = time.monotonic() + flight_s
                 watch(station, 5, lambda stops=stops: time.monotonic() > stops, churn_s=2.0)
                 daemon.end(signal.SIGINT)
-            time.sleep(3.0)
             states.append((process.resident_mb(), process.descriptors()))
             shutil.rmtree(measured.folder / "recordings", ignore_errors=True)
             progress.advance(task)

@@ -382,7 +382,7 @@ fn a_fence_of_several_zones_is_shown_zone_by_zone_and_checked_as_a_whole() {
         &["plan", "show", "a.txt", "--html", "a.html"],
     );
     assert_eq!(exit, Some(0), "{said}");
-    let zone = "fence: circle of 3000 m around 45.010000, 8.000000: stay inside";
+    let zone = "fence: circle of 3000 m around 45.01000, 8.00000: stay inside";
     assert!(said.contains(zone), "{said}");
     let page = fs::read_to_string(folder.path().join("a.html")).unwrap();
     // A row of squares of 4 px on each side of what is permitted.
