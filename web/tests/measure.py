@@ -129,7 +129,7 @@ class Viewer:
         self.answered = time.monotonic()
 
 
-def watch(station: Station, viewers: int, until: Callable[[], bool], churn_s: float = 0) -> int:
+def watch(station: Station, viewers: int, until: float, churn_s: float = 0) -> int:
     """Keep as many viewers, and return the bytes that they got; each stays `churn_s` at most."""
     chance = random.Random(1)
     waiting = selectors.DefaultSelector()
@@ -147,7 +147,7 @@ def watch(station: Station, viewers: int, until: Callable[[], bool], churn_s: fl
         waiting.unregister(viewer.socket)
         viewer.socket.close()
 
-    while not until():
+    while time.monotonic() < until:
         while len(here) < viewers:
             come()
         for key, _ in waiting.select(0.1):
@@ -191,8 +191,9 @@ class Measured:
 
     @contextlib.contextmanager
     def station(self) -> Iterator[Station]:
-        words = [self.program, "--config", self.config, "--state", self.folder / "state"]
-        station = Station([*words, "--fccd", self.fccd], self.fccd, self.instance)
+        words: list[str | Path] = [self.program, "--config", self.config, "--fccd", self.fccd]
+        state: list[str | Path] = ["--state", self.folder / "state"]
+        station = Station([*words, *state], self.fccd, self.instance)
         try:
             yield station
         finally:
@@ -205,17 +206,17 @@ def lateness(measured: Measured, seconds: float, rounds: int, progress: Progress
     cores, resident_mb, sent_mb = [], [], []
     task = progress.add_task("flights without and with viewers", total=2 * rounds)
     for _ in range(rounds):
-        for viewers in p99_us:
+        for viewers, found_us in p99_us.items():
             with measured.flight() as daemon, measured.station() as station:
                 process = Process(station.process.pid)
                 ends = time.monotonic() + seconds
-                got = watch(station, viewers, lambda: time.monotonic() > ends)
+                got = watch(station, viewers, ends)
                 if viewers:
                     cores.append(process.cores())
                     resident_mb.append(process.resident_mb())
                     sent_mb.append(got / seconds / 1e6)
                 ending = daemon.end(signal.SIGINT)
-            p99_us[viewers].append(ending.report["timing"]["lateness_us"]["p99"])
+            found_us.append(ending.report["timing"]["lateness_us"]["p99"])
             progress.advance(task)
     without, beside = (statistics.median(p99_us[viewers]) for viewers in (0, VIEWERS))
     flights = f"{rounds} flights of {seconds:.0f} s each, in turn"
@@ -288,9 +289,16 @@ def heap_mb(page: Page) -> float:
 
 def an_hour(measured: Measured) -> None:
     """Fly the plan for an hour of simulated time, and keep the recording."""
-    words = [measured.fccd, "fly", "--lockstep", "--quiet", "--config", measured.config]
+    words: list[str | Path] = [
+        measured.fccd,
+        "fly",
+        "--lockstep",
+        "--quiet",
+        "--config",
+        measured.config,
+    ]
     words += ["--seconds", "3600", "--recordings", measured.folder / "recordings"]
-    ended = subprocess.run(words, capture_output=True)
+    ended = subprocess.run(words, check=False, capture_output=True)
     if not list((measured.folder / "recordings").glob("*.mcap")):
         sys.exit(f"the flight of an hour ended with {ended.returncode}, without a recording")
 
@@ -350,16 +358,20 @@ def soak(measured: Measured, minutes: float, progress: Progress) -> list[Row]:
                 while station.daemon() is None:
                     time.sleep(0.1)
                 stops = time.monotonic() + flight_s
-                watch(station, 5, lambda stops=stops: time.monotonic() > stops, churn_s=2.0)
+                watch(station, 5, stops, churn_s=2.0)
                 daemon.end(signal.SIGINT)
             states.append((process.resident_mb(), process.descriptors()))
             shutil.rmtree(measured.folder / "recordings", ignore_errors=True)
             progress.advance(task)
     quarter = max(len(states) // 4, 1)
     first, last = states[quarter - 1], states[-1]
-    what = f"soak: {flights} flights of {flight_s:.0f} s, 5 viewers that stay up to 2 s"
+    what = f"soak: {flights} flights of {flight_s:.0f} s, 5 viewers of up to 2 s"
     return [
-        (f"{what}: memory, MB, after a quarter; at the end", f"{first[0]:.1f}; {last[0]:.1f}", "flat"),
+        (
+            f"{what}: memory, MB, after a quarter; at the end",
+            f"{first[0]:.1f}; {last[0]:.1f}",
+            "flat",
+        ),
         ("the same: descriptors", f"{first[1]}; {last[1]}", "none lost"),
     ]
 

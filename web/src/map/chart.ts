@@ -21,6 +21,7 @@ interface Ring {
 let coast: Promise<Ring[]> | null = null;
 
 const COAST_AFTER_MS = 400;
+Object.assign(L.Browser, { ie3d: true }); // Chromium gives each point that moves in space a layer.
 
 /** The coast lines come in a part of their own, after the page is ready. */
 function coastLines(): Promise<Ring[]> {

@@ -82,8 +82,8 @@ export class Plots {
 
   #mark(): void {
     for (const { chart, now } of this.#plots) {
-      const x = chart.valToPos(this.#now, "x");
-      const inside = x >= 0 && x <= chart.over.clientWidth;
+      const x = Math.round(chart.valToPos(this.#now, "x"));
+      const inside = x >= 0 && x <= chart.bbox.width / devicePixelRatio;
       now.style.transform = `translateX(${inside ? x : -10}px)`;
     }
   }

@@ -33,7 +33,7 @@ export class Timeline {
     private readonly moved: (time_s: number) => void,
   ) {
     this.#time_s = recording.begin_s;
-    this.#slider = h("input", { type: "range", min: recording.begin_s, max: recording.end_s, step: 0.05, value: recording.begin_s, "aria-label": "Time of the flight" });
+    this.#slider = h("input", { type: "range", min: recording.begin_s, max: recording.end_s, step: Math.max(0.05, (recording.end_s - recording.begin_s) / 2000), value: recording.begin_s, "aria-label": "Time of the flight" });
     this.#slider.addEventListener("input", () => this.seek(Number(this.#slider.value)));
     const speed = h("select", { "aria-label": "Speed of the replay" }, ...SPEEDS.map((one) => h("option", { value: one }, `${one}×`)));
     speed.value = "1";
@@ -84,7 +84,7 @@ export class Timeline {
     this.#slider.value = String(this.#time_s);
     const since = this.#time_s - this.recording.begin_s;
     const text = `${duration(since)} of ${duration(this.recording.end_s - this.recording.begin_s)}`;
-    this.#slider.setAttribute("aria-valuetext", text);
+    if (this.#time.textContent !== text) this.#slider.setAttribute("aria-valuetext", text);
     setText(this.#time, text);
     this.moved(this.#time_s);
   }
