@@ -166,8 +166,11 @@ pub(super) fn check(config: &Config, places: &Places<'_>, unread: &[Problem]) ->
                 .is_some_and(|key| keys.contains(&key))
         };
         if let Some(first) = keys.first().filter(|_| !problems.iter().any(is_out)) {
-            // At one that the text contains, since that is the one to change.
-            let written = keys.iter().find(|key| places.has(key)).unwrap_or(first);
+            // Of two, at the one that the text contains, since that is the one to change.
+            let written = match keys {
+                [_, other] if !places.has(first) && places.has(other) => other,
+                _ => first,
+            };
             if written != first {
                 message = format!("contradicts {first}, which {message}");
             }
