@@ -40,7 +40,7 @@ exits! {
     NotRecorded = 14, "the flight succeeded, but was not recorded completely";
     StepFailed = 15, "a step failed or was skipped (x-plane check)";
     HitGround = 16, "the built-in aircraft hit the ground";
-    Overloaded = 17, "the loop's ticks left no time to sleep; it released the controls and stopped";
+    Overloaded = 17, "ticks left no time to sleep; the loop released the controls and stopped";
     CalibrationRefused = 18, "a calibration would be poor, and was refused (calibrate)";
     NotFlown = 19, "the plan was not flown to its end, or engaging was refused";
     ControlsNotChecked = 20, "a control is reversed, without effect or not confirmed (check-controls)";

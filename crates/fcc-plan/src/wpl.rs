@@ -27,7 +27,8 @@ pub(crate) fn read(text: &str) -> Result<Plan, Vec<Problem>> {
         .map(|line| line.trim_start_matches('\u{feff}').trim())
         .enumerate()
         .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-    let first = lines.next().map_or("", |(_, line)| line);
+    let (at, first) = lines.next().unwrap_or_default();
+    let place = format!("line {}", at + 1);
     if let Some(version) = first.strip_prefix("QGC WPL ").filter(|v| *v != "110") {
         // QGroundControl's before it had a home, and MAVROS'.
         let what = if version == "120" {
@@ -42,14 +43,14 @@ pub(crate) fn read(text: &str) -> Result<Plan, Vec<Problem>> {
                 quoted(version)
             )
         };
-        return Err(vec![Problem::of("line 1", what)]);
+        return Err(vec![Problem::of(place, what)]);
     }
     if first.split_whitespace().ne(HEADER.split_whitespace()) {
         let what = format!(
             "\"{}\": the first line has to be {HEADER}, or that of a QGroundControl plan {{",
             quoted(first)
         );
-        return Err(vec![Problem::of("line 1", what)]);
+        return Err(vec![Problem::of(place, what)]);
     }
     let mut reader = Reader::default();
     for (line, content) in lines {

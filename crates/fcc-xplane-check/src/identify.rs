@@ -243,8 +243,7 @@ fn begins(bench: &mut Bench<'_>) -> Result<(), Stop> {
     })?;
     if bench.link.latest().is_none() {
         return failed(format!(
-            "nothing arrives from X-Plane at {}: start it, or check with `fccd x-plane check \
-             --only 1`",
+            "nothing arrives from X-Plane at {}: start it; `fccd run` says why if it runs",
             bench.link.simulator()
         ));
     }

@@ -120,13 +120,7 @@ export function choice<T extends string>(
       item.setAttribute("aria-pressed", String(item.getAttribute("data-value") === current()));
   };
   for (const [value, text] of options)
-    group.append(
-      h(
-        "button",
-        { type: "button", "data-value": value, click: () => (choose(value), mark()) },
-        text,
-      ),
-    );
+    group.append(h("button", { type: "button", "data-value": value, click: () => (choose(value), mark()) }, text));
   mark();
   return group;
 }

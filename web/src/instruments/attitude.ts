@@ -79,17 +79,20 @@ function ladder(context: CanvasRenderingContext2D, box: Box, pitch_deg: number, 
   context.textBaseline = "middle";
   const limit = box.height * 0.36;
   const wide = Math.min(box.width * 0.16, 46);
+  context.beginPath();
   for (let mark = -90; mark <= 90; mark += 2.5) {
     const y = (pitch_deg - mark) * px_per_deg;
     if (mark === 0 || Math.abs(y) > limit) continue;
     const half = mark % 10 === 0 ? wide : mark % 5 === 0 ? wide * 0.55 : wide * 0.25;
-    line(context, -half, y, half, y);
+    context.moveTo(-half, y);
+    context.lineTo(half, y);
     if (mark % 10 !== 0) continue;
     context.textAlign = "left";
     context.fillText(String(Math.abs(mark)), half + 6, y);
     context.textAlign = "right";
     context.fillText(String(Math.abs(mark)), -half - 6, y);
   }
+  context.stroke();
 }
 
 function bankScale(context: CanvasRenderingContext2D, cx: number, cy: number, box: Box, roll_rad: number, colours: Palette): void {
@@ -103,13 +106,13 @@ function bankScale(context: CanvasRenderingContext2D, cx: number, cy: number, bo
   context.rotate(-roll_rad);
   context.beginPath();
   context.arc(0, 0, radius, (-150 * Math.PI) / 180, (-30 * Math.PI) / 180);
-  context.stroke();
   for (const mark of BANK_MARKS_DEG) {
-    context.save();
-    context.rotate((mark * Math.PI) / 180);
-    line(context, 0, -radius, 0, -radius - (mark % 30 === 0 ? 11 : 6));
-    context.restore();
+    const [x, y] = [Math.sin((mark * Math.PI) / 180), -Math.cos((mark * Math.PI) / 180)];
+    const far = radius + (mark % 30 === 0 ? 11 : 6);
+    context.moveTo(radius * x, radius * y);
+    context.lineTo(far * x, far * y);
   }
+  context.stroke();
   triangle(context, 0, -radius, -1);
   context.restore();
   triangle(context, 0, -radius, 1);

@@ -40,19 +40,19 @@ export function drawHeading(context: CanvasRenderingContext2D, box: Box, state: 
   context.lineWidth = 1.2;
   context.textAlign = "center";
   context.textBaseline = "middle";
+  context.beginPath();
   for (let mark = Math.ceil((heading - SHOWN_DEG / 2 - 5) / 5) * 5; mark <= heading + SHOWN_DEG / 2 + 5; mark += 5) {
     const mx = cx + (mark - heading) * px;
     const name = ((mark % 360) + 360) % 360;
-    context.beginPath();
     context.moveTo(mx, y);
     context.lineTo(mx, y + (name % 10 === 0 ? 9 : 5));
-    context.stroke();
     const point = POINTS[name];
     if (point === undefined && name % 10 !== 0) continue;
     context.fillStyle = point ? "#ffffff" : colours["instrument-text"];
     context.font = `${point ? 700 : 500} 12px ${FONT}`;
     context.fillText(point ?? String(name).padStart(3, "0"), mx, y + 18);
   }
+  context.stroke();
   marker(context, cx, px, tape_width, state.set_rad * DEGREES - heading, y, colours.set, "bug");
   marker(context, cx, px, tape_width, state.course_rad * DEGREES - heading, y, colours.good, "diamond");
   context.fillStyle = "#05090d";

@@ -53,15 +53,15 @@ export function drawTape(context: CanvasRenderingContext2D, box: Box, tape: Tape
   context.textBaseline = "middle";
   context.textAlign = left ? "right" : "left";
   const first = Math.ceil((value - tape.span / 2) / tape.step);
+  context.beginPath();
   for (let n = first; n * tape.step <= value + tape.span / 2; n += 1) {
     const mark = n * tape.step;
     const numbered = Math.abs(mark / tape.numbered - Math.round(mark / tape.numbered)) < 1e-6;
-    context.beginPath();
     context.moveTo(edge + inward * 6, at(mark));
     context.lineTo(edge + inward * (numbered ? 16 : 11), at(mark));
-    context.stroke();
     if (numbered) context.fillText(fixed(mark, 0), edge + inward * 20, at(mark));
   }
+  context.stroke();
   bug(context, edge, inward, at(tape.set), box, tape.set, colours);
   pointer(context, box, edge, inward, middle, tape, colours);
   header(context, box, tape, colours);

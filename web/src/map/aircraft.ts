@@ -6,6 +6,7 @@
 
 import L from "leaflet";
 import { h, svg } from "../core/dom";
+import type { FlightState } from "../live/flight-state";
 
 const OUTLINE =
   "0,-17 2.6,-11 2.8,-5 17,1 17,4.2 2.8,2.6 1.9,11 6.5,14 6.5,16.5 0,15 -6.5,16.5 -6.5,14 -1.9,11 -2.8,2.6 -17,4.2 -17,1 -2.8,-5 -2.6,-11";
@@ -13,13 +14,7 @@ const AHEAD_S = 60;
 const MOVING_MPS = 3;
 const EQUATOR_M = 40_075_017;
 
-export interface Pose {
-  latitude_deg: number;
-  longitude_deg: number;
-  heading_rad: number;
-  north_mps: number;
-  east_mps: number;
-}
+export type Pose = Pick<FlightState, "latitude_deg" | "longitude_deg" | "heading_rad" | "north_mps" | "east_mps">;
 
 export class AircraftLayer extends L.Layer {
   #pose: Pose | null = null;
@@ -66,13 +61,13 @@ export class AircraftLayer extends L.Layer {
     if (!pose || !map) return;
     const { x, y } = map.latLngToLayerPoint([pose.latitude_deg, pose.longitude_deg]);
     this.#element.style.transform = `translate(${x}px, ${y}px)`;
-    this.#symbol.style.transform = `rotate(${pose.heading_rad}rad)`;
+    this.#symbol.style.transform = `rotate(${pose.heading_rad.toFixed(2)}rad)`;
     const speed = Math.hypot(pose.north_mps, pose.east_mps);
     const shown = this.ahead && speed > MOVING_MPS;
     this.#ahead.classList.toggle("hidden", !shown);
     if (!shown) return;
     const px_per_m = (256 * 2 ** map.getZoom()) / EQUATOR_M / Math.max(0.05, Math.cos((pose.latitude_deg * Math.PI) / 180));
     this.#ahead.style.width = `${Math.round(speed * AHEAD_S * px_per_m)}px`;
-    this.#ahead.style.transform = `rotate(${Math.atan2(-pose.north_mps, pose.east_mps)}rad)`;
+    this.#ahead.style.transform = `rotate(${Math.atan2(-pose.north_mps, pose.east_mps).toFixed(2)}rad)`;
   }
 }

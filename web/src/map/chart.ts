@@ -159,8 +159,8 @@ export function createChart(label: string): Chart {
     if (found.attribution) setText(attribution, found.attribution);
     if (!found.pmtiles || closed) return;
     const { detailLayer } = await import("./detail");
-    if (!closed) detailLayer(found.pmtiles, document.documentElement.dataset["theme"] === "dark").addTo(map);
-    base.remove();
+    const detail = await detailLayer(found.pmtiles, document.documentElement.dataset["theme"] === "dark");
+    if (!closed) detail.addTo(map);
   }, () => undefined);
 
   const measure = () => {

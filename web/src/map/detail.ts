@@ -1,8 +1,12 @@
-/** The user's own `.pmtiles`, if the station has one: streets, waters, land use. */
+/** The user's own `.pmtiles`, if the station has one: streets and waters, or pictures. */
 
-import { leafletLayer } from "protomaps-leaflet";
 import type L from "leaflet";
+import { leafletRasterLayer, PMTiles, TileType } from "pmtiles";
+import { leafletLayer } from "protomaps-leaflet";
 
-export function detailLayer(url: string, dark: boolean): L.Layer {
+export async function detailLayer(url: string, dark: boolean): Promise<L.Layer> {
+  const archive = new PMTiles(url);
+  const { tileType, maxZoom } = await archive.getHeader();
+  if (tileType !== TileType.Mvt) return leafletRasterLayer(archive, { maxNativeZoom: maxZoom }) as L.Layer;
   return leafletLayer({ url, flavor: dark ? "dark" : "light", lang: "en" }) as unknown as L.Layer;
 }

@@ -29,10 +29,16 @@ pub(super) fn rows(plan: &Plan) -> Vec<PlanRow> {
             };
             format!("{:.1} m {above}", altitude.m)
         });
+        // What an item without a place does stands where the others' places stand.
+        let text = item.to_string();
+        let (what, value) = match text.split_once(": ").filter(|_| place.is_none()) {
+            Some((what, value)) => (what.to_owned(), value.to_owned()),
+            None => (text, place.map_or_else(String::new, place_text)),
+        };
         [
             (n + 1).to_string(),
-            item.to_string(),
-            place.map_or_else(String::new, place_text),
+            what,
+            value,
             altitude,
             leg.map_or_else(String::new, |(length_m, ..)| {
                 format!("{:.2} km", length_m / 1e3)
@@ -42,7 +48,13 @@ pub(super) fn rows(plan: &Plan) -> Vec<PlanRow> {
             }),
         ]
     };
-    plan.items.iter().enumerate().map(row).collect()
+    let home = plan.home.map(|home| {
+        let altitude = format!("{:.1} m sea", home.altitude_m);
+        ["", "home", &place_text(home.place), &altitude, "", ""].map(str::to_owned)
+    });
+    home.into_iter()
+        .chain(plan.items.iter().enumerate().map(row))
+        .collect()
 }
 
 /// The places of a plan for its picture.

@@ -72,9 +72,7 @@ pub enum SessionError {
     )]
     NoAccelerometer,
     /// Nothing arrived.
-    #[error(
-        "no readings of the {0} arrived: check its wiring, and that it is in the configuration"
-    )]
+    #[error("no readings of the {0} arrived: `fccd run` says what each sensor lacks")]
     Silent(&'static str),
 }
 

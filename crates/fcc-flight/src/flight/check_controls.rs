@@ -87,7 +87,7 @@ pub enum Unchecked {
     #[error("the aircraft moves ({0:.0} kt): controls are checked standing still")]
     Moves(f64),
     /// No reading arrives.
-    #[error("nothing arrives from the sensors: is the simulator running, are they connected?")]
+    #[error("nothing arrives from the sensors: `fccd run` says what each one lacks")]
     Silent,
     /// An actuator, by its name, does not take the outputs.
     #[error("{0}: {1}")]

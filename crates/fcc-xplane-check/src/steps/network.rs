@@ -50,7 +50,9 @@ fn ready(bench: &mut Bench<'_>) -> Done {
     if !bench.until("X-Plane answers", ANSWERS_WITHIN, |b| {
         b.link.latest().is_some()
     })? {
-        return failed(format!("nothing arrives from X-Plane at {at}"));
+        return failed(format!(
+            "nothing arrives from X-Plane at {at}: `fccd run` says why"
+        ));
     }
     bench.until("every dataref arrives", ANSWERS_WITHIN, |b| {
         missing(b, Watched::is_needed).is_empty()
