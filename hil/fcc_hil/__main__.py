@@ -52,6 +52,8 @@ def _fly(options: argparse.Namespace) -> int:
         options.legs,
         actions=tuple(sorted(options.at)),
     )
+    if note := altitudes_note(plan.settings):
+        say(note)
     flight = fly(plan, print_progress)
     peer, _ = fly_peer(plan.legs, plan.settings.seed, plan.pattern)
     say(
@@ -63,8 +65,6 @@ def _fly(options: argparse.Namespace) -> int:
             ]
         )
     )
-    if note := altitudes_note(plan.settings):
-        say(note)
     frames = flight.standin["frames"]
     say(
         f"stand-in: {frames['frames']} frames, {frames['slipped']} slipped, "

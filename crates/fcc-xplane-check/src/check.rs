@@ -133,17 +133,22 @@ pub fn check(
     let how = (request.is_short, request.is_unattended);
     let mut bench = open(request, screen, is_flown)?;
     let mut results = Vec::new();
-    let mut has_quit = false;
+    let mut ends: Option<&str> = None;
     for step in &STEPS {
         if !only.is_empty() && !only.contains(&step.number) {
             continue;
         }
-        if has_quit {
-            results.push(not_done(step));
+        if let Some(why) = ends {
+            results.push(not_done(step, why));
             continue;
         }
         let (result, quit) = carry_out(step, &mut bench);
-        has_quit = quit;
+        let is_silent = result.outcome == Outcome::Failed && bench.link.latest().is_none();
+        ends = match (quit, is_silent) {
+            (true, _) => Some(ENDED),
+            (_, true) => Some("X-Plane does not answer"),
+            _ => None,
+        };
         results.push(result);
     }
     bench.daemon.stop();
@@ -151,12 +156,15 @@ pub fn check(
     Ok(Report::new(simulator, results, how, config))
 }
 
-fn not_done(step: &Step) -> StepResult {
+/// Why a step is skipped after a person's end.
+const ENDED: &str = "the check was ended";
+
+fn not_done(step: &Step, why: &str) -> StepResult {
     StepResult {
         number: step.number,
         title: step.title,
         outcome: Outcome::Skipped,
-        why: Some("the check was ended".to_owned()),
+        why: Some(why.to_owned()),
         advice: None,
         duration_s: 0.0,
         figures: Vec::new(),
@@ -200,7 +208,7 @@ fn carry_out(step: &Step, bench: &mut Bench<'_>) -> (StepResult, bool) {
             (Outcome::Failed, Some(all.collect::<Vec<_>>().join("; ")))
         }
         Err(Stop::Skipped(why)) => (Outcome::Skipped, Some(why)),
-        Err(Stop::Quit) => (Outcome::Skipped, Some("the check was ended".to_owned())),
+        Err(Stop::Quit) => (Outcome::Skipped, Some(ENDED.to_owned())),
     };
     bench.daemon.read();
     let lines = bench.daemon.since(began).iter();

@@ -5,15 +5,7 @@ import { kept } from "./state";
 export type UnitSystem = "metric" | "aviation";
 export const unitSystem = kept<UnitSystem>("fcc.units", ["metric", "aviation"], "metric");
 
-export type Quantity =
-  | "altitude"
-  | "speed"
-  | "climb"
-  | "distance"
-  | "wind"
-  | "angle"
-  | "heading"
-  | "length";
+export type Quantity = "altitude" | "speed" | "climb" | "distance" | "wind" | "angle" | "heading" | "length";
 
 interface Unit {
   unit: string;

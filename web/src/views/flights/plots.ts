@@ -113,8 +113,14 @@ export class Plots {
   #data(plot: Plot): uPlot.AlignedData {
     const parts = Math.max(200, Math.min(1200, this.#width()));
     const convert = (line: Line) => (plot.quantity ? toShown(plot.quantity, 1) : (line.factor ?? 1));
-    const scaled = (values: number[], factor: number) => values.map((one) => one * factor);
-    const [time, ...series] = decimate(this.recording.time, plot.lines.map((line) => this.recording.column(line.column)), this.#range[0], this.#range[1], parts);
+    const scaled = (values: number[], factor: number) => values.map((one) => (Number.isFinite(one) ? one * factor : null));
+    const state = this.recording.column("state");
+    // What nothing holds has no set point.
+    const column = (line: Line) => {
+      const values = this.recording.column(line.column);
+      return line.colour === "set" ? Float64Array.from(values, (one, at) => (state[at] === 1 ? one : NaN)) : values;
+    };
+    const [time, ...series] = decimate(this.recording.time, plot.lines.map(column), this.#range[0], this.#range[1], parts);
     const own = series.map((values, at) => scaled(values, convert(plot.lines[at] as Line)));
     const first = plot.lines[0];
     if (!this.#other || !first) return [time, ...own];

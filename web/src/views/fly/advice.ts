@@ -4,7 +4,7 @@ const ADVICE: readonly (readonly [RegExp, string])[] = [
   [/engage switch.*silent|engage switch/i, "Switch the engage switch on, and check its sensor in Health."],
   [/missing|too old|frozen/i, "Check this sensor's age in Health, its cable and its configuration."],
   [/paused/i, "Continue the simulator."],
-  [/too slow/i, "Speed up, or begin the plan with a take-off."],
+  [/too slow|below the floor/i, "Speed up, or upload a plan that takes off from here. An upload puts the built-in aircraft back on its runway."],
   [/bank or pitch|spin/i, "Level the aircraft first."],
   [/settling/i, "Wait: navigation settles within 15 s while the aircraft is still."],
   [/time has stopped|nothing arrives/i, "Check that the simulator runs and reaches this board."],
