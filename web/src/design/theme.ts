@@ -6,7 +6,7 @@ export type Theme = "auto" | "light" | "dark";
 export const theme = kept<Theme>("fcc.theme", ["auto", "light", "dark"], "auto");
 
 const NAMES = [
-  "text", "muted", "panel", "line", "accent", "set", "good", "caution", "warning", "sky", "sky-high", "ground", "ground-low",
+  "text", "muted", "panel", "line", "accent", "set", "good", "caution", "warning", "sky", "ground",
   "horizon", "instrument", "instrument-text", "sea", "land", "coast", "grid", "grid-text", "track", "path", "second", "terrain",
 ] as const;
 export type Palette = Record<(typeof NAMES)[number], string>;

@@ -40,15 +40,9 @@ export function drawAttitude(
   context.translate(cx, cy);
   context.rotate(-roll_rad);
   const horizon = pitch_deg * px_per_deg;
-  const sky = context.createLinearGradient(0, horizon - box.height, 0, horizon);
-  sky.addColorStop(0, colours["sky-high"]);
-  sky.addColorStop(1, colours.sky);
-  context.fillStyle = sky;
+  context.fillStyle = colours.sky;
   context.fillRect(-reach, horizon - 4 * reach, 2 * reach, 4 * reach);
-  const ground = context.createLinearGradient(0, horizon, 0, horizon + box.height);
-  ground.addColorStop(0, colours.ground);
-  ground.addColorStop(1, colours["ground-low"]);
-  context.fillStyle = ground;
+  context.fillStyle = colours.ground;
   context.fillRect(-reach, horizon, 2 * reach, 4 * reach);
   context.strokeStyle = colours.horizon;
   context.lineWidth = 2;

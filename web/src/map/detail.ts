@@ -6,7 +6,9 @@ import { leafletLayer } from "protomaps-leaflet";
 
 export async function detailLayer(url: string, dark: boolean): Promise<L.Layer> {
   const archive = new PMTiles(url);
-  const { tileType, maxZoom } = await archive.getHeader();
-  if (tileType !== TileType.Mvt) return leafletRasterLayer(archive, { maxNativeZoom: maxZoom }) as L.Layer;
-  return leafletLayer({ url, flavor: dark ? "dark" : "light", lang: "en" }) as unknown as L.Layer;
+  const { tileType, minZoom, maxZoom } = await archive.getHeader();
+  // Above the canvas of coast lines, which Leaflet's style puts at 100.
+  const zIndex = 200;
+  if (tileType !== TileType.Mvt) return leafletRasterLayer(archive, { zIndex, minZoom, maxNativeZoom: maxZoom }) as L.Layer;
+  return leafletLayer({ url, zIndex, flavor: dark ? "dark" : "light", lang: "en" }) as unknown as L.Layer;
 }
