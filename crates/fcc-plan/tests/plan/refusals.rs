@@ -163,6 +163,9 @@ fn a_first_item_in_line_0_is_not_taken_for_home() {
     let old = said("QGC WPL 120\n0 1 3 22 0 0 0 0 47 8 300 1\n");
     let expected = "line 1: version 120 has no home: write QGC WPL 110, put home before the items";
     assert!(old.starts_with(expected), "{old}");
+    // Lines without content are counted, too.
+    let third = said("# of a field\n\nQGC WPL 100\n");
+    assert!(third.starts_with("line 3: version 100"), "{third}");
     let first = said("QGC WPL 100\n");
     assert!(
         first.starts_with("line 1: version 100: only QGC WPL 110 is read"),
