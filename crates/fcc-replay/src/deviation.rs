@@ -147,12 +147,16 @@ impl Deviation {
             );
         }
         let same = self.quantities.len() - differing().count();
-        let _ = write!(text, "{same} of {} do not differ", self.quantities.len());
         let _ = write!(
             text,
-            "\n\n{} ticks compared, in which both command the plant; only the recorded loop did in \
-             {}, only the other configuration would have in {}.\n\
-             The measurements are as recorded: the plant did not react to the other \
+            "{same} of {} outputs and set points do not differ",
+            self.quantities.len()
+        );
+        let _ = write!(
+            text,
+            "\n\n{} ticks compared, in which both command the plant. Only the recorded loop did in \
+             {},\nonly the other configuration would have in {}.\n\
+             The measurements are as recorded: the plant did not react to the other\n\
              configuration, so differences may accumulate.",
             self.compared, self.only_recorded, self.only_other
         );

@@ -100,11 +100,15 @@ class BaseLayer extends CanvasLayer {
     context.font = "10px ui-monospace, monospace";
     context.textBaseline = "bottom";
     context.beginPath();
+    let free = 0;
     for (let n = Math.ceil(corner.lng / step); n * step < other.lng; n += 1) {
       const x = Math.round(view.x(n * step)) + 0.5;
       context.moveTo(x, 0);
       context.lineTo(x, view.height);
-      context.fillText(gridLabel(n * step, step, "EW"), x + 4, view.height - 4);
+      if (x < free) continue;
+      const label = gridLabel(n * step, step, "EW");
+      context.fillText(label, x + 4, view.height - 4);
+      free = x + context.measureText(label).width + 12;
     }
     for (let n = Math.ceil(other.lat / step); n * step < corner.lat; n += 1) {
       const y = Math.round(view.y(n * step)) + 0.5;

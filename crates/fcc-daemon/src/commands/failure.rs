@@ -44,7 +44,7 @@ impl Failure {
         }
         output::message(self.message.trim_end());
         if json {
-            let error = self.message.trim();
+            let error = self.message.trim().trim_start_matches("fccd: ");
             return output::json(&Printed { error }, self.exit);
         }
         self.exit

@@ -95,7 +95,7 @@ export function openFly(): View {
       const bounds = plan.bounds();
       if (!bounds) return;
       setFollowing(false);
-      map.fitBounds(bounds, { animate: false });
+      map.fitBounds(bounds, { animate: false, paddingTopLeft: [20, 110], paddingBottomRight: [64, 20] });
     }, { icon: "fit", bare: true, class: "map-button" }),
   );
   map.on("dragstart", () => setFollowing(false));

@@ -67,7 +67,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
   const centre = (): Place => toPlace(map.getCenter());
   const showWhole = () => {
     const bounds = layer.bounds();
-    if (bounds) map.fitBounds(bounds, { animate: false });
+    if (bounds) map.fitBounds(bounds, { animate: false, paddingTopLeft: [20, 64], paddingBottomRight: [64, 20] });
     else centred = false;
   };
   const chosenIndex = (): number | null => (selected?.of === "item" ? selected.index : null);
