@@ -545,7 +545,7 @@ class Setpoints:
 
     @property
     def to_go_m(self) -> float:
-        """How far it is to the leg's end, in a turn to its item, on a circle to its centre, m."""
+        """How far it is to the leg's end."""
 
     @property
     def plan_hash(self) -> int:

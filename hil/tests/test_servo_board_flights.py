@@ -139,7 +139,8 @@ class Flight:
 
     def await_control(self, control: Control, within_s: float = 15.0) -> Change:
         """Wait until control is last changed to this, and return the change."""
-        wait_until(lambda: self._last() is control, f"the board is {control.value}", within_s)
+        what = f"the board is {control.value}"
+        wait_until(lambda: self._last() is control, what, within_s, daemons=[self.daemon])
         return self.aircraft.board_changes()[-1]
 
     def _last(self) -> Control:
