@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from daemon_under_test import DaemonUnderTest, start, wait_until
+from daemon_under_test import DaemonUnderTest, start, switch_on, wait_until
 
 from fcc_hil.board_link import Change
 from fcc_hil.cockpit import ENGAGE_SWITCH
@@ -133,8 +133,7 @@ class Flight:
         self.aircraft.stop()
 
     def engage(self) -> None:
-        self.daemon.wait_until_ready()
-        self.aircraft.write(ENGAGE_SWITCH, 1.0)
+        switch_on(self.aircraft, self.daemon)
         self.await_control(Control.HELD)
 
     def await_control(self, control: Control, within_s: float = 15.0) -> Change:
