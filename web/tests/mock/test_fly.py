@@ -87,7 +87,7 @@ def test_inhibits_are_shown_with_what_to_do(visit, mock):
     panel = page.locator(".conditions")
     panel.wait_for(state="visible")
     assert "too slow" in panel.inner_text()
-    assert "begin the plan with a take-off" in panel.inner_text()
+    assert "upload a plan that takes off from here" in panel.inner_text()
     assert page.locator(".slide").is_disabled()
 
 

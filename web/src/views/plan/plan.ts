@@ -65,11 +65,6 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
     onNextFrame(draw);
   };
   const centre = (): Place => toPlace(map.getCenter());
-  const showWhole = () => {
-    const bounds = layer.bounds();
-    if (bounds) map.fitBounds(bounds, { animate: false, paddingTopLeft: [20, 64], paddingBottomRight: [64, 20] });
-    else centred = false;
-  };
   const chosenIndex = (): number | null => (selected?.of === "item" ? selected.index : null);
 
   /** The first point needs a home: where the aircraft is, or the point itself. */
@@ -314,10 +309,10 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
     );
     replace(plan_problems, ...problems.filter((one) => one.item === null || one.item > now.items.length).map((one) => h("li", { class: `notice ${one.level === "error" ? "bad" : "remark"}` }, icon("warning"), " ", one.field ? `${one.field}: ` : null, one.message)));
     drawState();
-    // Only as it was opened: what is drawn into it moves no map.
-    if (editor && fitted !== editor.name && map.getSize().x > 0) {
+    const bounds = layer.bounds();
+    if (editor && bounds && fitted !== editor.name) {
       fitted = editor.name;
-      showWhole();
+      map.fitBounds(bounds, { animate: false });
     }
   };
   const drawState = () => {
@@ -341,12 +336,11 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
       );
   };
   const refresh = () => onNextFrame(draw);
-  map.on("resize", refresh);
   const pose = () => {
     const record = newest();
     const state = record ? flightState(record, linkAge()) : null;
-    // Before anything can be drawn far away from it, and not of a map without a size.
-    if (state?.position_known && map.getSize().x > 0 && editor && !centred && editor.plan.items.length === 0 && layer.bounds() === null) {
+    // Before anything can be drawn far away from it.
+    if (state?.position_known && editor && !centred && editor.plan.items.length === 0 && layer.bounds() === null) {
       centred = true;
       map.setView([state.latitude_deg, state.longitude_deg], 13, { animate: false });
     }
@@ -391,7 +385,10 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
     ),
   ];
 
-  chart.controls.append(button("Show the whole plan", showWhole, { icon: "fit", bare: true, class: "map-button" }));
+  chart.controls.append(button("Show the whole plan", () => {
+    const bounds = layer.bounds();
+    if (bounds) map.fitBounds(bounds, { animate: false });
+  }, { icon: "fit", bare: true, class: "map-button" }));
   const overlay = button("Show vehicle's plan", () => {
     show_vehicle = !show_vehicle;
     overlay.setAttribute("aria-pressed", String(show_vehicle));
