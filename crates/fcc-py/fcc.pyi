@@ -545,7 +545,7 @@ class Setpoints:
 
     @property
     def to_go_m(self) -> float:
-        """How far it is to the leg's end."""
+        """How far it is to the leg's end, a turn's item or a circle's centre, m."""
 
     @property
     def plan_hash(self) -> int:

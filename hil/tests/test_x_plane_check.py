@@ -244,6 +244,17 @@ def test_identification_without_x_plane_says_so(fccd: Path, tmp_path: Path) -> N
     assert f"nothing arrives from X-Plane at 127.0.0.1:{port}" in done.stderr
 
 
+def test_a_check_without_x_plane_ends_with_its_first_step(fccd: Path, tmp_path: Path) -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as nobody:
+        nobody.bind(("127.0.0.1", 0))
+        config = write_config(tmp_path, nobody.getsockname()[1])
+        words = ["--yes", "--json", "--only", "1,2,3", "--config", str(config)]
+        done = run_alone(fccd, tmp_path, "check", *words)
+    steps = json.loads(done.stdout)["steps"]
+    assert [step["outcome"] for step in steps] == ["failed", "skipped", "skipped"]
+    assert {step["why"] for step in steps[1:]} == {"X-Plane does not answer"}
+
+
 def run_alone(fccd: Path, scratch: Path, *words: str) -> subprocess.CompletedProcess[str]:
     """Run `fccd x-plane` with these words and without a terminal."""
     return subprocess.run(

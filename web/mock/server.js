@@ -90,7 +90,7 @@ function envelope(body) {
 
 const ROUTES = [
   ["GET", /^\/status$/, ({ authorized }) => ({
-    software: "0.1.0 (mock)", writable: authorized,
+    software: "0.1.0 (mock)", writable: authorized, configured: ["mock"],
     daemons: [{ instance: "mock", plant: "simulated aircraft", software: "0.1.0", rate_hz: 40, process_id: 1, guidance_mode: "plan", plan_upload: "flight",
       setpoints: [{ name: "airspeed_mps", unit: "m/s", lowest: 34, highest: 65 }, { name: "heading_rad", unit: "rad", lowest: 0, highest: 6.2832 }, { name: "altitude_m", unit: "m", lowest: -500, highest: 4000 }],
       aircraft: { stall_mps: 28, min_mps: 33, max_mps: 65, never_exceed_mps: 72 } }],
@@ -147,6 +147,7 @@ const ROUTES = [
     { what: "lateness p99", a: 0.05, b: 0.05, unit: "µs", sentence: "The loop is as punctual in both flights." },
   ]],
   ["DELETE", /^\/flights\/([^/]+)$/, ({ match }) => { need(flights.get(match[1])); flights.delete(match[1]); return null; }],
+  ["GET", /^\/calibration$/, () => ({ kind: "", percent: 0, now: "", lines: [], found: "", exit_code: null })],
   ["GET", /^\/doctor$/, () => [
     { name: "real-time priority", state: "good", found: "SCHED_FIFO 80", advice: null },
     { name: "memory lock", state: "good", found: "allowed", advice: null },

@@ -62,6 +62,9 @@ def test_a_plan_drawn_by_taps_is_read_back_by_its_hash(
         "waypoint",
         "loiter",
     ]
+    # What is tapped at one height of the picture is at one latitude: the map has not moved.
+    north = [item["place"]["latitude_deg"] for item in draft["plan"]["items"]]
+    assert abs(north[0] - north[1]) < 1e-3 < north[1] - north[2]
     # Home is on the runway, as the vehicle's plan has it.
     drawn, flown = draft["plan"]["home"], ground.vehicle()["plan"]["home"]
     assert abs(drawn["altitude_m"] - flown["altitude_m"]) <= 2

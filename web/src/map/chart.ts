@@ -182,7 +182,7 @@ export function createChart(label: string): Chart {
     palette.watch(() => base.invalidate()),
     unitSystem.watch(measure),
   ];
-  const observer = new ResizeObserver(() => map.invalidateSize({ animate: false, pan: false }));
+  const observer = new ResizeObserver(() => map.invalidateSize({ animate: false, pan: map.getSize().x === 0 }));
   observer.observe(canvas);
   return {
     map,

@@ -61,7 +61,7 @@ schema! {
         /// How far the aircraft is to the right of the path, m.
         #[field(12)]
         pub cross_track_m: f64,
-        /// How far it is to the leg's end, in a turn to its item, on a circle to its centre, m.
+        /// How far it is to the leg's end, a turn's item or a circle's centre, m.
         #[field(13)]
         pub to_go_m: f64,
         /// The first 64 bits of the SHA-256 of the flight plan; 0 without one.

@@ -309,10 +309,11 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
     );
     replace(plan_problems, ...problems.filter((one) => one.item === null || one.item > now.items.length).map((one) => h("li", { class: `notice ${one.level === "error" ? "bad" : "remark"}` }, icon("warning"), " ", one.field ? `${one.field}: ` : null, one.message)));
     drawState();
-    const bounds = layer.bounds();
-    if (editor && bounds && fitted !== editor.name) {
+    // As it was opened: what is drawn into it moves no map.
+    if (editor && fitted !== editor.name) {
       fitted = editor.name;
-      map.fitBounds(bounds, { animate: false });
+      const bounds = layer.bounds();
+      if (bounds) map.fitBounds(bounds, { animate: false });
     }
   };
   const drawState = () => {

@@ -82,7 +82,7 @@ pub struct Track {
     pub course_rad: f64,
     /// How far the aircraft is to the right of the path, m.
     pub cross_track_m: f64,
-    /// How far it is to the leg's end, in a turn to its item, on a circle to its centre, m.
+    /// How far it is to the leg's end, a turn's item or a circle's centre, m.
     pub to_go_m: f64,
 }
 
