@@ -15,7 +15,7 @@ import pytest
 from fcc_hil import airspeed, altitude, heading
 from fcc_hil.lockstep_rig import LockstepRig
 from fcc_hil.plant import Plant, Weather
-from fcc_hil.quantities import SENSORS, Quantity, Samples
+from fcc_hil.quantities import SENSORS, Samples
 from fcc_hil.sensor_faults import Faults
 from fcc_hil.standin import Settings
 
@@ -105,12 +105,8 @@ def test_an_altimeter_of_100_ft_does_not_move_the_nose_with_each_step() -> None:
     assert fastest(coarse["pitch_deg"]) < fastest(fine["pitch_deg"]) + 2.0
 
 
-@pytest.mark.parametrize(
-    ("sensor", "words"),
-    [(altitude, "altitude is frozen"), (heading, "heading is frozen")],
-)
-def test_a_coarse_sensor_that_freezes_is_found(sensor: Quantity, words: str) -> None:
+def test_a_coarse_heading_that_freezes_is_found() -> None:
     rig, faults = _fly(_all, 0, seconds=12.0)
-    faults.freeze(sensor)
+    faults.freeze(heading)
     rig.fly_to(rig.time_s + 60.0, until=lambda: not rig.holds_control)
-    assert any(words in event.text for event in rig.events), rig.events
+    assert any("heading is frozen" in event.text for event in rig.events), rig.events

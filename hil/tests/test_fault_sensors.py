@@ -56,7 +56,7 @@ class Sensor:
 
     missing: str
     """The daemon's message without valid readings."""
-    frozen: str
+    frozen: str | None
     value: Callable[[Any], tuple[float, ...]]
     """Of a record."""
     impossible: Mapping[str, float]
@@ -123,7 +123,7 @@ SENSED: dict[str, Sensor] = {
     ),
     "altitude": Sensor(
         "altitude is missing or too old",
-        "altitude is frozen",
+        None,  # One that stands is one that differs: `test_air_data.py`.
         _one("altitude_m"),
         {"sim/cockpit2/gauges/indicators/altitude_ft_pilot": 2e6},
         {"sim/cockpit2/gauges/indicators/altitude_ft_pilot": math.inf},
@@ -132,7 +132,7 @@ SENSED: dict[str, Sensor] = {
 }
 HARMLESS = ("reordered", "a little late", "a short jump")
 LOSSES = ("silent", "nan", "infinite", "out of range", "jumping", "late")
-FAULTS = (*LOSSES, "frozen")
+FAULTS = {name: (*LOSSES, *(["frozen"] if one.frozen else [])) for name, one in SENSED.items()}
 
 
 def test_the_sensors_are_those_that_control_needs() -> None:
@@ -212,13 +212,13 @@ def fly(fccd: Path, scratch: Path, name: str) -> Ending:
                 assert daemon.next_state() == "engaged", daemon.log
             flight.disengage()
             flight.restore()
-        for fault in FAULTS:
+        for fault in FAULTS[name]:
             flight.engage()
             flight.put_in(fault)
             words = SENSED[name].frozen if fault == "frozen" else SENSED[name].missing
             log = daemon.wait_for("engaged -> ", within_s=40.0)
             assert "failsafe" in log, log
-            assert words in log, f"{fault}: {log}"
+            assert str(words) in log, f"{fault}: {log}"
             if fault == "silent":
                 daemon.wait_for("now: flying on without a lost quantity")
             flight.restore()
@@ -238,16 +238,16 @@ def flown(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Flo
     }
 
 
-def failsafe_of(flown: Flown, fault: str) -> int:
+def failsafe_of(flown: Flown, name: str, fault: str) -> int:
     """Return where in the records a fault led to failsafe."""
-    assert len(flown.failsafes) == len(FAULTS), flown.texts()
-    return flown.failsafes[FAULTS.index(fault)]
+    assert len(flown.failsafes) == len(FAULTS[name]), flown.texts()
+    return flown.failsafes[FAULTS[name].index(fault)]
 
 
 def last_good_ns(flown: Flown, name: str, fault: str) -> int:
     """Return when the last valid value before a fault was taken."""
     sensor = SENSED[name]
-    place = failsafe_of(flown, fault)
+    place = failsafe_of(flown, name, fault)
     present = sensor.value(flown.records[place])
     # What jumped is in the records, and only what was there before is valid.
     while fault == "jumping" and not any(
@@ -270,18 +270,18 @@ def test_a_loss_is_failsafe_when_it_is_too_old(
     flown: dict[str, Flown], name: str, fault: str
 ) -> None:
     flight = flown[name]
-    record = flight.records[failsafe_of(flight, fault)]
+    record = flight.records[failsafe_of(flight, name, fault)]
     after_s = (record.tick.woke_ns - last_good_ns(flight, name, fault)) * NS
     # As soon as the last good one is too old, within a tick or two that may be missed.
     assert MAX_AGE_S < after_s < 2 * MAX_AGE_S
 
 
-@pytest.mark.parametrize("name", SENSED)
+@pytest.mark.parametrize("name", [name for name in SENSED if "frozen" in FAULTS[name]])
 def test_a_frozen_sensor_is_failsafe_once_the_aircraft_moves(
     flown: dict[str, Flown], name: str
 ) -> None:
     flight, sensor = flown[name], SENSED[name]
-    place = failsafe_of(flight, "frozen")
+    place = failsafe_of(flight, name, "frozen")
     last = flight.records[place]
     present = sensor.value(last)
     while sensor.value(flight.records[place - 1]) == pytest.approx(
@@ -290,7 +290,7 @@ def test_a_frozen_sensor_is_failsafe_once_the_aircraft_moves(
         place -= 1
     after_s = seconds(last, flight.records[place])
     assert after_s + 0.1 >= FROZEN_S or name == "body_rates"
-    # A second of hold, a bank within three, a climb within ten.
+    # A second of hold, a bank within three.
     assert after_s < 15.0
     # Its readings arrived all the time: its age is fine.
     assert (last.tick.woke_ns - _taken_ns(last, name)) * 1e-9 < MAX_AGE_S
@@ -334,7 +334,7 @@ def _steps(values: Sequence[tuple[float, ...]]) -> list[float]:
 @pytest.mark.parametrize("name", SENSED)
 def test_what_is_good_again_is_flown_on(flown: dict[str, Flown], name: str) -> None:
     flight = flown[name]
-    lost = failsafe_of(flight, "silent")
+    lost = failsafe_of(flight, name, "silent")
     records = flight.records[lost:]
     back = next(place for place, record in enumerate(records) if record.state.phase == ENGAGED)
     good = max(

@@ -160,7 +160,7 @@ impl Autopilot {
     /// The gains for the present airspeed and latency.
     pub(super) fn schedule(&self) -> Schedule {
         let airspeed_mps = self.navigation.estimate().airspeed_mps;
-        self.schedule_at(airspeed_mps - 0.5 * self.navigation.may_be_slower_by_mps())
+        self.schedule_at(airspeed_mps)
     }
 
     /// The gains for an airspeed and the present latency.

@@ -126,9 +126,8 @@ impl Autopilot {
         airspeed.is_never() || self.navigation.permits_airspeed(airspeed.value)
     }
 
-    /// The envelope, with the distance that the airspeed's uncertainty needs, above the
-    /// lowest airspeeds by a doubted sensor, which may be right, and with the stalling
-    /// speed that was found in this flight. Its lowest airspeed permits the
+    /// The envelope, with the distance that the airspeed's uncertainty needs, and with the
+    /// stalling speed that was found in this flight. Its lowest airspeed permits the
     /// bank that the turn needs: one that is limited for want of speed would
     /// otherwise stay limited.
     pub(super) fn envelope(&self) -> Envelope {
@@ -147,10 +146,9 @@ impl Autopilot {
         };
         let bank_rad = self.heading.needed_bank_rad();
         let floor_mps = envelope.floor_in_turn_mps(bank_rad, estimate.gust_load);
-        let slower_mps = self.navigation.may_be_slower_by_mps();
         let middle_mps = 0.5 * (floor_mps + envelope.max_airspeed_mps);
         Envelope {
-            min_airspeed_mps: (floor_mps + slower_mps).min(middle_mps),
+            min_airspeed_mps: floor_mps.min(middle_mps),
             ..envelope
         }
     }

@@ -40,8 +40,6 @@ pub const FROZEN_BODY_RATES: Flags = Flags::bit(15);
 pub const FROZEN_SPECIFIC_FORCE: Flags = Flags::bit(16);
 /// The airspeed does not change although the aircraft banks or pitches.
 pub const FROZEN_AIRSPEED: Flags = Flags::bit(17);
-/// The altitude does not change although the aircraft climbs or descends.
-pub const FROZEN_ALTITUDE: Flags = Flags::bit(18);
 /// One of the readings that are too old does arrive, but is implausible: out of
 /// range, or too far from the last.
 pub const REJECTED: Flags = Flags::bit(19);
@@ -172,7 +170,6 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
         .with(FROZEN_BODY_RATES, frozen.body_rates)
         .with(FROZEN_SPECIFIC_FORCE, frozen.specific_force)
         .with(FROZEN_AIRSPEED, frozen.airspeed)
-        .with(FROZEN_ALTITUDE, frozen.altitude)
 }
 
 /// The text of each bit, lowest first.
@@ -195,7 +192,7 @@ pub(super) const NAMES: [&str; 64] = [
     "body rates are frozen",
     "acceleration is frozen",
     "airspeed is frozen",
-    "altitude is frozen",
+    "not used (bit 18)",
     "measured values are implausible",
     "nothing arrives from the simulator",
     "the simulator was reloaded",
@@ -255,7 +252,6 @@ mod tests {
             (BODY_RATES, FROZEN_BODY_RATES),
             (SPECIFIC_FORCE, FROZEN_SPECIFIC_FORCE),
             (AIRSPEED, FROZEN_AIRSPEED),
-            (ALTITUDE, FROZEN_ALTITUDE),
         ];
         for (stale, frozen) in pairs {
             assert_eq!(unusable(Flags::NONE, frozen), stale);

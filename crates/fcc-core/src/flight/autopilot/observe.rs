@@ -60,7 +60,7 @@ impl Autopilot {
         self.follow_engine(now, step_s);
         self.note_doubt(doubted);
         let known = self.navigation.known();
-        self.frozen.step(now, &self.accepted, &known, step_s);
+        self.frozen.step(&self.accepted, &known, step_s);
         self.take_over_after_loss(now);
         self.take_over_unless_followed(now, self.config.max_age);
         self.follow_failsafe(tick, measured);

@@ -123,16 +123,10 @@ impl Autopilot {
         if is_slow && (!self.pilot.is_engaged() || self.is_on_runway()) {
             Flags::NONE
         } else {
-            let doubted = self.doubted();
-            flags::frozen(self.frozen.frozen())
-                .keeping(
-                    flags::FROZEN_AIRSPEED,
-                    !doubted.contains(flags::DOUBTED_AIRSPEED),
-                )
-                .keeping(
-                    flags::FROZEN_ALTITUDE,
-                    !doubted.contains(flags::DOUBTED_ALTITUDE),
-                )
+            flags::frozen(self.frozen.frozen()).keeping(
+                flags::FROZEN_AIRSPEED,
+                !self.doubted().contains(flags::DOUBTED_AIRSPEED),
+            )
         }
     }
 

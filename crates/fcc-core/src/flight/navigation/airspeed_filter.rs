@@ -157,12 +157,6 @@ impl AirspeedFilter {
         self.at_mps() / sample.sqrt_density * sample.upward.sin_path(alpha)
     }
 
-    /// The angle of attack that the lift needs at an airspeed, rad.
-    pub(super) fn lift_angle_rad(&self, sample: &ForceSample, airspeed_mps: f64) -> f64 {
-        let slower = self.prior.reference_mps / airspeed_mps.max(MIN_AIRSPEED_MPS);
-        self.x[4] + self.x[5] * sample.up * squared(slower)
-    }
-
     /// Standard deviation of the airspeed, m/s.
     pub(super) fn sd_mps(&self) -> f64 {
         libm::sqrt(self.covariance[0][0].max(0.0))

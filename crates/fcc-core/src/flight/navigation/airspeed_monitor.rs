@@ -40,8 +40,6 @@ const ALONE_S: f64 = 20.0;
 /// The lags of the forces' vote and of the sensor's difference, s.
 const VOTE_LAG_S: f64 = 2.0;
 const DIFFERENCE_LAG_S: f64 = 0.5;
-/// The lag of how much lower a doubted sensor is than the forces, s.
-const SLOWER_LAG_S: f64 = 2.0;
 /// After attitude, rates, forces or altitude were not measured, the models learn
 /// for this time, s, before they are compared again.
 const SETTLED_S: f64 = 10.0;
@@ -105,12 +103,6 @@ pub(super) struct AirspeedMonitor {
     differs_s: f64,
     wind_s: f64,
     agrees_s: f64,
-    /// For how long a doubted sensor has been lower than the forces, near the stall, s.
-    near_stall_s: f64,
-    /// It was believed for that, and has not agreed since.
-    was_near_stall: bool,
-    /// How much slower the aircraft is if the doubted sensor is right, m/s.
-    slower: LowPass,
     /// For how long the models still learn before they are compared, s.
     settles_s: f64,
     /// For how long the models have not held, s.
@@ -151,9 +143,6 @@ impl AirspeedMonitor {
             differs_s: 0.0,
             wind_s: 0.0,
             agrees_s: 0.0,
-            near_stall_s: 0.0,
-            was_near_stall: false,
-            slower: LowPass::new(SLOWER_LAG_S),
             settles_s: 0.0,
             upset_s: 0.0,
             reference: Reference::NONE,
@@ -175,13 +164,6 @@ impl AirspeedMonitor {
     /// The doubt of the sensor, while it lasts.
     pub(super) const fn doubt(&self) -> Option<Doubt> {
         self.doubt
-    }
-
-    /// How much slower than by the forces the aircraft is if a doubted sensor that is
-    /// lower is right, m/s; 0 if it cannot be, or is
-    /// silent.
-    pub(super) fn slower_mps(&self) -> f64 {
-        self.slower.output()
     }
 
     /// Whether an airspeed may be used beside others: until one was doubted,
@@ -253,9 +235,6 @@ impl AirspeedMonitor {
             };
             return;
         };
-        if self.doubt.is_some() && input.sensor_mps.is_none() {
-            self.slower.step(0.0, dt_s);
-        }
         let settles = self.settle(&mut bank, input, dt_s);
         let now_mps = bank.older.airspeed_mps();
         let acceleration = acceleration_mps2(&sample, now_mps);

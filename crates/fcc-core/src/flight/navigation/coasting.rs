@@ -19,6 +19,8 @@ const FELT_PER_STEP: f64 = 0.006;
 /// The share of a climb by which geometric and pressure altitude differ: the
 /// air's temperature, 30 K off the standard (ISO 2533).
 const TEMPERATURE_SHARE: f64 = 0.12;
+/// In a gust beyond the loads of its models the path goes on as before, for this time, s.
+const PATH_HELD_S: f64 = 2.0;
 /// What must agree that the aircraft moves as the accelerometers say, by this
 /// share: the path by pitch and lift, or the ground velocity.
 const PATH_SHARE: f64 = 0.4;
@@ -37,6 +39,9 @@ pub(super) struct Coasting {
     began_m: f64,
     /// Climbed by the path, and by the ground velocity, m.
     path_m: Option<f64>,
+    /// The latest climb rate by the path, m/s, and for how long there is none, s.
+    path_mps: Option<f64>,
+    no_path_s: f64,
     ground_m: Option<f64>,
     /// As they were with the first range.
     first: Option<Heights>,
@@ -61,6 +66,8 @@ impl Coasting {
             bias_mps2: input.bias_mps2,
             began_m: input.followed.altitude_m,
             path_m: Some(0.0),
+            path_mps: None,
+            no_path_s: 0.0,
             ground_m: Some(0.0),
             first: None,
             error_mps: COPIED_MPS + COPIED_PER_STEP * input.step_m,
@@ -73,7 +80,10 @@ impl Coasting {
         self.state.climb_rate_mps += (input.felt_mps2 - self.bias_mps2) * dt_s;
         self.state.altitude_m += self.state.climb_rate_mps * dt_s;
         let add = |sum: Option<f64>, per_s: Option<f64>| Some(sum? + per_s? * dt_s);
-        self.path_m = add(self.path_m, input.path_mps);
+        self.no_path_s = input.path_mps.map_or(self.no_path_s + dt_s, |_| 0.0);
+        self.path_mps = input.path_mps.or(self.path_mps);
+        let path_mps = self.path_mps.filter(|_| self.no_path_s < PATH_HELD_S);
+        self.path_m = add(self.path_m, path_mps);
         self.ground_m = add(self.ground_m, input.ground_mps);
         let felt_mps2 =
             FELT_MPS2 + FELT_BANKED_MPS2 * input.tan_bank.abs() + FELT_PER_STEP * input.step_m;

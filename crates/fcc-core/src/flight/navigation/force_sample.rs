@@ -73,13 +73,6 @@ pub(super) fn acceleration_mps2(sample: &ForceSample, airspeed_mps: f64) -> f64 
     GRAVITY_MPS2 * along * sample.sqrt_density
 }
 
-/// The angle between the body and the path at an airspeed, rad; without vertical wind.
-pub(super) fn angle_of_attack_rad(sample: &ForceSample, airspeed_mps: f64) -> f64 {
-    sample
-        .upward
-        .angle_of_attack_rad(sin_path(sample, airspeed_mps))
-}
-
 fn sin_path(sample: &ForceSample, airspeed_mps: f64) -> f64 {
     let true_mps = airspeed_mps.max(MIN_AIRSPEED_MPS) / sample.sqrt_density;
     limit_abs(sample.climb_rate_mps / true_mps, 1.0)

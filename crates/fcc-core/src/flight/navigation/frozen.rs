@@ -5,16 +5,15 @@
 //! resolution may give the same value for long. So a quantity is frozen when
 //! its bits have stayed the same for some time *and* other quantities show a
 //! motion by which it must have changed: the gyroscopes for the attitude and
-//! the heading, attitude and heading for the gyroscopes, the climb for the
-//! altitude, a change of bank or pitch for airspeed and accelerometers, and for the
-//! airspeed an acceleration along the path or a gust, too. While
-//! nothing moves, a frozen sensor is not detected, and has no effect.
+//! the heading, attitude and heading for the gyroscopes, a change of bank or pitch for
+//! airspeed and accelerometers, and for the airspeed an acceleration along the path or
+//! a gust, too. While nothing moves, a frozen sensor is not detected, and has no effect.
+//! An altimeter that stands is one that differs (`altitude_monitor`).
 //!
 //! The motion counts from the last change on, and must exceed the resolution of
 //! the sensor as well, which is the smallest change that it has ever shown. Of a
 //! coarse airspeed sensor a manoeuvre shows nothing, since an airspeed that is
-//! held stays within its step: what counts is the acceleration. Of a coarse
-//! altimeter it counts, too, since in rising air pitch and lift alone are wrong.
+//! held stays within its step: what counts is the acceleration.
 //!
 //! The motion shown by other quantities is integrated with a leak, so that
 //! their small errors never add up to a motion. A sensor with any noise never
@@ -22,16 +21,12 @@
 
 mod evidence;
 
-use core::time::Duration;
-
 use libm::{cos, sin};
 
 use super::attitude::MIN_COS_PITCH;
 use evidence::{LeakyIntegrator, StuckDetector};
 
-use super::estimate::Estimate;
 use super::resolution::Resolutions;
-use super::upward::Upward;
 use crate::blocks::wrap_pi;
 use crate::flight::{BodyRates, Measurements};
 use crate::framework::Time;
@@ -39,8 +34,6 @@ use crate::framework::Time;
 /// The rotation that attitude, heading or gyroscopes must show, rad (5°): ten
 /// times the resolution of a coarse attitude sensor.
 const TURNED_RAD: f64 = 0.087;
-/// The climb that a barometer must show, m.
-const CLIMBED_M: f64 = 15.0;
 /// Changes of bank and pitch that change load and drag, rad (10°, 4°): well
 /// beyond those of a trimmed aircraft in calm air.
 const BANKED_RAD: f64 = 0.175;
@@ -54,23 +47,18 @@ const ACCELERATED_MPS: f64 = 7.5;
 /// A vertical acceleration that a fine airspeed sensor must show, m/s²: a gust that
 /// changes the lift by a fifth has a part along the path, and changes the drag.
 const GUST_MPS2: f64 = 2.0;
-/// Steps of a fine altimeter, m: less than the barometer's noise.
-const FINE_ALTITUDE_M: f64 = 0.5;
 /// Unchanged means the same to the last bit, ...
 const EXACTLY: f64 = 0.0;
 /// ... except for a specific force computed from an acceleration over the
 /// ground, which involves rounding, m/s²: a tenth of the noise of the best
 /// small accelerometers.
 const SAME_FORCE_MPS2: f64 = 1e-3;
-/// The age up to which the climb rate is taken from the ground velocity;
-/// otherwise it is that by pitch and lift.
-const CURRENT: Duration = Duration::from_millis(500);
 
 /// Which of the quantities needed by control are frozen.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[expect(
     clippy::struct_excessive_bools,
-    reason = "six quantities, each frozen or not"
+    reason = "five quantities, each frozen or not"
 )]
 pub(crate) struct Frozen {
     pub(crate) attitude: bool,
@@ -78,13 +66,11 @@ pub(crate) struct Frozen {
     pub(crate) body_rates: bool,
     pub(crate) specific_force: bool,
     pub(crate) airspeed: bool,
-    pub(crate) altitude: bool,
 }
 
 /// What navigation knows that the evidence needs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Known {
-    pub(crate) estimate: Estimate,
     /// The acceleration along the flight path, of the indicated airspeed, m/s².
     pub(crate) felt_mps2: f64,
     /// The vertical acceleration, up, m/s².
@@ -97,7 +83,7 @@ pub(crate) struct Known {
 /// Roll, pitch and heading, rad, or their rates.
 type Angles = [f64; 3];
 
-/// Monitors the six quantities needed by control.
+/// Monitors the quantities needed by control, but the altitude.
 #[derive(Clone, Debug)]
 pub(crate) struct FrozenDetector {
     /// 0 switches the check off.
@@ -108,20 +94,11 @@ pub(crate) struct FrozenDetector {
     rates: [StuckDetector<1>; 3],
     force: StuckDetector<3>,
     airspeed: StuckDetector<1>,
-    altitude: StuckDetector<1>,
     /// Rotation by the gyroscopes since roll, pitch and heading changed.
     turned: [LeakyIntegrator; 3],
     /// Rotation by attitude and heading minus that by the gyroscopes, since the
     /// gyroscope of that axis changed.
     unsaid: [LeakyIntegrator; 3],
-    /// Climb since the altitude changed, by the velocity or by pitch and lift, and by the
-    /// vertical acceleration.
-    climbed: LeakyIntegrator,
-    felt_climb: LeakyIntegrator,
-    /// The climb rate when the altitude changed, and what was felt since.
-    felt_climb_mps: f64,
-    /// Climb rate minus the one by pitch and lift, when the altitude changed.
-    climb_at_change_mps: f64,
     /// The attitude when specific force and airspeed changed.
     force_at: Angles,
     airspeed_at: Angles,
@@ -145,13 +122,8 @@ impl FrozenDetector {
             rates: [StuckDetector::new([0.0], Time::NEVER); 3],
             force: StuckDetector::new([0.0; 3], Time::NEVER),
             airspeed: StuckDetector::new([0.0], Time::NEVER),
-            altitude: StuckDetector::new([0.0], Time::NEVER),
             turned: [LeakyIntegrator::ZERO; 3],
             unsaid: [LeakyIntegrator::ZERO; 3],
-            climbed: LeakyIntegrator::ZERO,
-            felt_climb: LeakyIntegrator::ZERO,
-            felt_climb_mps: 0.0,
-            climb_at_change_mps: 0.0,
             force_at: [0.0; 3],
             airspeed_at: [0.0; 3],
             accelerated: LeakyIntegrator::ZERO,
@@ -160,15 +132,9 @@ impl FrozenDetector {
         }
     }
 
-    /// Processes the measurements at `now`, `dt_s` seconds of the plant's time
-    /// after the last, and what navigation knows.
-    pub(crate) fn step(
-        &mut self,
-        now: Time,
-        measurements: &Measurements,
-        navigation: &Known,
-        dt_s: f64,
-    ) {
+    /// Processes the measurements `dt_s` seconds of the plant's time after the last, and what
+    /// navigation knows.
+    pub(crate) fn step(&mut self, measurements: &Measurements, navigation: &Known, dt_s: f64) {
         let resolutions = &navigation.resolutions;
         if self.after_s <= 0.0 || dt_s <= 0.0 {
             return;
@@ -186,7 +152,6 @@ impl FrozenDetector {
         let steps = [0.0, 0.0, resolutions.heading_rad];
         self.step_angles(attitude.taken, heading.taken, angles, said, steps, dt_s);
         self.step_rates(measurements, angles, before, said, dt_s);
-        self.step_altitude(now, measurements, navigation, dt_s);
         self.step_airspeed(measurements, angles, navigation, dt_s);
 
         let force = measurements.specific_force;
@@ -290,45 +255,6 @@ impl FrozenDetector {
         }
     }
 
-    fn step_altitude(
-        &mut self,
-        now: Time,
-        measurements: &Measurements,
-        navigation: &Known,
-        dt_s: f64,
-    ) {
-        let altitude = measurements.altitude_m;
-        let estimate = &navigation.estimate;
-        let resolution_m = navigation.resolutions.altitude_m;
-        let upward = Upward::of(estimate.roll_rad, estimate.pitch_rad);
-        let by_lift_mps =
-            estimate.true_airspeed_mps * upward.sin_path(estimate.angle_of_attack_rad);
-        if self
-            .altitude
-            .has_changed([altitude.value], EXACTLY, altitude.taken, dt_s)
-        {
-            self.climbed = LeakyIntegrator::default();
-            self.felt_climb = LeakyIntegrator::default();
-            self.felt_climb_mps = estimate.climb_rate_mps;
-            self.climb_at_change_mps = estimate.climb_rate_mps - by_lift_mps;
-            return;
-        }
-        self.felt_climb_mps += navigation.felt_up_mps2 * dt_s;
-        let velocity = measurements.velocity.fresh(now, CURRENT);
-        let climb_mps = match velocity {
-            Some(velocity) => -velocity.down_mps,
-            None => self.climb_at_change_mps + by_lift_mps,
-        };
-        self.climbed
-            .add(climb_mps * dt_s, CLIMBED_M, resolution_m, dt_s);
-        let felt_m = self.felt_climb_mps * dt_s;
-        self.felt_climb.add(felt_m, CLIMBED_M, resolution_m, dt_s);
-        let path_suffices = velocity.is_some() || resolution_m < FINE_ALTITUDE_M;
-        let must_have_changed = self.climbed.exceeds(CLIMBED_M, resolution_m)
-            && (path_suffices || self.felt_climb.exceeds(CLIMBED_M, resolution_m));
-        self.altitude.update(must_have_changed, self.after_s);
-    }
-
     /// Which quantities are frozen.
     pub(crate) const fn frozen(&self) -> Frozen {
         Frozen {
@@ -340,7 +266,6 @@ impl FrozenDetector {
             },
             specific_force: self.force.is_frozen,
             airspeed: self.airspeed.is_frozen,
-            altitude: self.altitude.is_frozen,
         }
     }
 }

@@ -190,11 +190,6 @@ impl Navigation {
         self.monitor.wind()
     }
 
-    /// How much slower the aircraft is than estimated if a doubted sensor is right, m/s.
-    pub(crate) fn may_be_slower_by_mps(&self) -> f64 {
-        self.monitor.slower_mps()
-    }
-
     /// Whether the altimeter is doubted, and the altitude without it known.
     pub(crate) fn altitude_doubt(&self) -> Option<bool> {
         let monitor = &self.altitude_monitor;
@@ -355,7 +350,6 @@ impl Navigation {
         Resolutions {
             heading_rad: self.attitude.heading_resolution().smallest(),
             airspeed_mps: self.airspeed.resolution().smallest(),
-            altitude_m: self.vertical.resolution().smallest(),
             altitude_step_m: self.vertical.resolution().step(),
         }
     }
@@ -363,7 +357,6 @@ impl Navigation {
     /// What evidence of frozen sensors needs.
     pub(crate) const fn known(&self) -> Known {
         Known {
-            estimate: self.estimate,
             felt_mps2: self.airspeed.felt_mps2(),
             felt_up_mps2: self.vertical.felt_mps2(),
             resolutions: self.resolutions(),

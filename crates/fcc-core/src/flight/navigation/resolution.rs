@@ -89,8 +89,6 @@ pub(crate) struct Resolutions {
     pub(crate) heading_rad: f64,
     /// The smallest change of the airspeed, m/s.
     pub(crate) airspeed_mps: f64,
-    /// The smallest change of the altitude, m.
-    pub(crate) altitude_m: f64,
     /// By how much the altitude of a coarse sensor changes at once, m; 0 of a
     /// fine one.
     pub(crate) altitude_step_m: f64,

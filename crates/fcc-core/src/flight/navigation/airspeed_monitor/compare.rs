@@ -3,11 +3,9 @@
 use super::super::airspeed_filter::AirspeedFilter;
 use super::super::airspeed_reason::{Doubt, DoubtReason, Reference};
 use super::super::filter_bank::FilterBank;
-use super::super::force_sample::angle_of_attack_rad;
 use super::super::scalar_update::squared;
 use super::trapped::Shown;
-use super::{ALONE_S, AirspeedMonitor, DIFFERS_RATIO, MonitorInput, SLOWER_LAG_S};
-use crate::blocks::{LowPass, limit};
+use super::{ALONE_S, AirspeedMonitor, DIFFERS_RATIO, MonitorInput};
 
 /// A difference of that share of the reference airspeed, of 11 kt, of 3.5 standard deviations
 /// and of 7.5 times the gusts must last for 2.5 s.
@@ -31,18 +29,6 @@ const AGREES_SDS: f64 = 2.0;
 const AGREES_GUSTS: f64 = 3.0;
 const BELIEVED_AFTER_S: f64 = 10.0;
 const ANOTHER_BELIEVED_AFTER_S: f64 = 1.0;
-/// A doubted sensor that is lower than the forces is believed at once if the aircraft
-/// meets the air at this angle or more by its attitude and the path at the airspeed of the
-/// forces, rad (14°: less than a wing stalls at, more than 1.2 times the stalling speed needs),
-/// for this time, s: in a stall the models do not hold, and too slow is more dangerous than too fast.
-const NEAR_STALL_RAD: f64 = 0.25;
-const NEAR_STALL_AFTER_S: f64 = 1.0;
-/// ... but once only until it has agreed, and with at least this load, g, for which the lift
-/// needs no more than this angle at the sensor's airspeed, rad (24°): no wing has more.
-const NEAR_STALL_LOAD: f64 = 0.5;
-const NO_WING_RAD: f64 = 0.42;
-/// The most that a doubted sensor raises the lowest airspeeds by, of the reference airspeed.
-const MOST_SLOWER_RATIO: f64 = 0.25;
 /// Doubt needs models that have learned the aircraft for this time, s; for this
 /// one if the sensor has stepped, which they need not tell.
 const LEARNED_S: f64 = 15.0;
@@ -84,7 +70,7 @@ impl AirspeedMonitor {
         }
         if let Some(doubt) = self.doubt {
             let sensor = (sensor_mps, source, differs);
-            self.compare_doubted(bank, input, doubt, sensor, vote, dt_s);
+            self.compare_doubted(bank, doubt, sensor, vote, dt_s);
             return;
         }
         let limit_mps = self.limit_mps(&bank.older);
@@ -203,13 +189,11 @@ impl AirspeedMonitor {
     fn compare_doubted(
         &mut self,
         bank: &mut FilterBank,
-        input: &MonitorInput,
         doubt: Doubt,
         (sensor_mps, source, differs): (f64, u8, f64),
         votes: [f64; 2],
         dt_s: f64,
     ) {
-        let filter_mps = bank.older.airspeed_mps();
         // Models that were begun anew for the sensor's sake say little against it.
         let (sd_mps, learned) = (bank.older.sd_mps(), bank.older.is_copy());
         let uncertain_mps = if learned {
@@ -227,32 +211,12 @@ impl AirspeedMonitor {
         } else {
             ANOTHER_BELIEVED_AFTER_S
         };
-        let carries = bank.older.lift_angle_rad(&input.sample, sensor_mps) < NO_WING_RAD;
-        let is_near_stall = differs < 0.0
-            && !self.was_near_stall
-            && input.sample.up > NEAR_STALL_LOAD
-            && angle_of_attack_rad(&input.sample, filter_mps) > NEAR_STALL_RAD
-            && carries;
-        let slower_mps = if carries {
-            limit(-differs, 0.0, MOST_SLOWER_RATIO * self.prior.reference_mps)
-        } else {
-            0.0
-        };
-        self.slower.step(slower_mps, dt_s);
-        self.near_stall_s = if is_near_stall {
-            self.near_stall_s + dt_s
-        } else {
-            0.0
-        };
-        let agrees = self.agrees_s > needed_s;
-        if agrees || self.near_stall_s > NEAR_STALL_AFTER_S {
-            self.was_near_stall = !agrees;
+        if self.agrees_s > needed_s {
             bank.believing = bank.older;
             bank.believing.adopt(sensor_mps);
             bank.believing.wind.trust_sensor();
             self.follow_sensor(bank);
             self.doubt = None;
-            self.slower = LowPass::new(SLOWER_LAG_S);
         }
     }
 
