@@ -78,9 +78,10 @@ export interface Flight {
   duration_s: number;
   distance_m: number | null;
   whole: boolean;
+  ending?: string;
   /** It is the daemon's present recording. */
   being_written?: boolean;
-  faults: string[] | number | null;
+  faults: number | null;
   bytes: number;
   thumbnail?: [number, number][] | null;
 }

@@ -75,7 +75,10 @@ export function choose(instance: string): void {
     event: addEvent,
     status: (status) => run.set(status),
     hello: (started) => {
-      if (started !== run_started_utc_s.get() && run_started_utc_s.get() !== 0) clearEvents();
+      if (started !== run_started_utc_s.get() && run_started_utc_s.get() !== 0) {
+        clearEvents();
+        addEvent({ tick: 0, time_s: 0, code: 17, text: "The daemon was started again: how its last run ended is in Flights." });
+      }
       run_started_utc_s.set(started);
     },
     link: (connected, reason) => linkProblem.set(connected ? "" : reason),

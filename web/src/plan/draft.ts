@@ -211,7 +211,7 @@ export class DraftEditor {
 }
 
 /** Follows the changes of all drafts; returns what ends it. */
-export function watchDrafts(changed: (name: string, revision: number) => void, reconnected: () => void): () => void {
+export function watchDrafts(changed: (name: string, revision: number | null) => void, reconnected: () => void): () => void {
   let socket: WebSocket | null = null;
   let timer: ReturnType<typeof setTimeout> | undefined;
   let attempt = 0;
@@ -224,7 +224,7 @@ export function watchDrafts(changed: (name: string, revision: number) => void, r
     };
     socket.onmessage = (event) => {
       try {
-        const change = JSON.parse(String(event.data)) as { name: string; revision: number };
+        const change = JSON.parse(String(event.data)) as { name: string; revision: number | null };
         changed(change.name, change.revision);
       } catch {
         // Not a change: ignored.

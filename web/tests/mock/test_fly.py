@@ -110,7 +110,7 @@ def test_go_to_by_a_tap(visit, mock):
 def test_set_points_in_hold_mode(visit, mock):
     page = visit().open("fly")
     engage(page)
-    assert page.get_by_label("New airspeed").is_hidden()
+    assert "A set point ends mode" in page.get_by_label("Set points").inner_text()
     mock.command({"set": {"altitude_m": 400}})
     page.get_by_label("New airspeed").wait_for(state="visible")
     page.get_by_role("button", name="ft", exact=True).click()

@@ -17,7 +17,7 @@ const THUMBNAIL_POINTS: usize = 120;
 /// Rows of the curves that are kept, at most.
 pub(super) const KEPT_POINTS: usize = 36_000;
 /// A summary is made again when this changes.
-pub(super) const VERSION: u32 = 2;
+pub(super) const VERSION: u32 = 3;
 /// A step of a track has at least so much; one that is longer than the most is none.
 const LEAST_STEP_M: f64 = 15.0;
 const MOST_STEP_M: f64 = 2_000.0;
@@ -42,6 +42,8 @@ pub(super) struct Summary {
     /// None: it was not read to its end yet.
     distance_m: Option<f64>,
     whole: bool,
+    /// Why it ended.
+    ending: String,
     pub(super) being_written: bool,
     faults: u64,
     thumbnail: Vec<[f64; 2]>,
@@ -93,6 +95,7 @@ impl Summary {
             "duration_s": self.duration_s,
             "distance_m": self.distance_m,
             "whole": self.whole,
+            "ending": self.ending,
             "being_written": self.being_written,
             "faults": self.faults,
             "bytes": self.bytes,
@@ -125,6 +128,7 @@ impl Summary {
             plant: about.plant.clone(),
             start_utc_s: about.started_unix_ns as f64 * 1e-9,
             duration_s: end.map_or(0.0, |end| end.duration_ns as f64 * 1e-9),
+            ending: end.map_or_else(String::new, |end| end.ending.clone()),
             whole: recording.is_whole(),
             being_written: recording.is_being_written(),
             ..Self::unread(path)

@@ -82,9 +82,8 @@ interface CardActions {
 }
 
 function card(flight: Flight, flights: Flight[], actions: CardActions): HTMLElement {
-  const count = Array.isArray(flight.faults) ? 0 : (flight.faults ?? 0);
-  const faults = Array.isArray(flight.faults) ? flight.faults : count > 0 ? [`${count} ${count === 1 ? "fault" : "faults"}`] : [];
-  const state = flight.being_written ? "being recorded" : flight.whole ? "no faults" : "unfinished recording";
+  const faults = flight.faults ? `${flight.faults} ${flight.faults === 1 ? "fault" : "faults"}` : "";
+  const state = flight.being_written ? "being recorded" : flight.whole ? `no faults${flight.ending ? `; ${flight.ending}` : ""}` : "unfinished recording";
   const name = utc(flight.start_utc_s);
   const remove = button(`Delete the flight of ${name}`, () => actions.ask(true), { icon: "trash", bare: true, class: "button plain" });
   remove.disabled = !writable.get() || flight.being_written === true;
@@ -101,7 +100,7 @@ function card(flight: Flight, flights: Flight[], actions: CardActions): HTMLElem
       { class: "flight-what" },
       h("a", { class: "flight-open", href: `#/flights/${part(flight.file)}` }, name),
       h("span", { class: "note mono" }, flight.file),
-      faults.length > 0 ? h("span", { class: "flight-faults" }, icon("warning"), faults.join("; ")) : h("span", { class: "note" }, state),
+      faults ? h("span", { class: "flight-faults" }, icon("warning"), faults) : h("span", { class: "note" }, state),
     ),
     h("dl", { class: "flight-figures" }, ...[["Aircraft", flight.instance], ["Duration", duration(flight.duration_s)], ["Distance", flight.distance_m === null || flight.distance_m === undefined ? "–" : withUnit("distance", flight.distance_m)], ["Size", bytes(flight.bytes)]].map(([label = "", value = ""]) => h("div", {}, h("dt", {}, label), h("dd", {}, value)))),
     actions.asked

@@ -63,12 +63,8 @@ export class Recording {
     return this.#columns.get(name) ?? new Float64Array(0);
   }
 
-  get begin_s(): number {
-    return this.time[0] ?? 0;
-  }
-  get end_s(): number {
-    return this.time.at(-1) ?? 0;
-  }
+  get begin_s(): number { return this.time[0] ?? 0; }
+  get end_s(): number { return this.time.at(-1) ?? 0; }
 
   /** The last row at or before a time. */
   index(time_s: number): number {

@@ -145,7 +145,7 @@ export function openFly(): View {
     set_points.show(state);
     const mode = record.named("desired_guidance_mode");
     const fresh = freshness(age) !== "lost";
-    set_points.setEditable(state.engaged && mode === "hold" && fresh, state.engaged ? `Mode ${mode.replace("takeoff", "take-off")} gives the set points; they can be changed if guidance.mode is "hold".` : "Nothing is held: not engaged.");
+    set_points.setEditable(state.engaged && fresh, !state.engaged ? "Nothing is held: not engaged." : mode === "hold" ? "" : `A set point ends mode ${mode.replace("takeoff", "take-off")}, and is held.`);
     commands.show({ engaged: state.engaged, mode, inhibits: record.flags("engage_inhibits"), fresh, altitude_m: state.altitude_m });
     showConditions(record, state.engaged);
     for (const { one, value, box } of cells) {

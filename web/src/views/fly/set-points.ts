@@ -70,11 +70,11 @@ export class SetPoints {
     unitSystem.get();
   }
 
-  /** In hold mode alone the set points are the pilot's; otherwise the plan gives them. */
+  /** The reason is why they are not, or what a change ends. */
   setEditable(editable: boolean, reason: string): void {
     this.#editable = editable;
     setClass(this.element, "editable", editable);
-    setText(this.#note, editable ? "" : reason);
+    setText(this.#note, reason);
     this.#send.disabled = !editable;
     for (const { input } of this.#rows) if (input) input.disabled = !editable;
   }

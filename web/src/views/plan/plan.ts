@@ -43,6 +43,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
   let show_vehicle = false;
   let closed = false;
   let fitted = "";
+  let deleting = "";
   let centred = false;
 
   const vehicle_layer = new PlanLayer(map);
@@ -186,6 +187,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
     if (!name) return;
     ask(h("span", {}, `Delete the draft ${name}? This cannot be undone. `), button(`Delete ${name}`, () => {
       setClass(asking, "hidden", true);
+      deleting = name;
       void request("DELETE", `/drafts/${part(name)}`).then(async () => {
         editor?.close();
         editor = null;
@@ -309,13 +311,19 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
     );
     replace(plan_problems, ...problems.filter((one) => one.item === null || one.item > now.items.length).map((one) => h("li", { class: `notice ${one.level === "error" ? "bad" : "remark"}` }, icon("warning"), " ", one.field ? `${one.field}: ` : null, one.message)));
     drawState();
-    // As it was opened: what is drawn into it moves no map.
-    if (editor && fitted !== editor.name) {
-      fitted = editor.name;
-      const bounds = layer.bounds();
-      if (bounds) map.fitBounds(bounds, { animate: false });
-    }
+    fitOnce();
   };
+  const fit = () => {
+    const bounds = layer.bounds();
+    if (bounds) map.fitBounds(bounds, { animate: false });
+  };
+  // As it was opened: what is drawn into it moves no map.
+  const fitOnce = () => {
+    if (!editor || fitted === editor.name || map.getSize().x === 0) return;
+    fitted = editor.name;
+    fit();
+  };
+  map.on("resize", fitOnce);
   const drawState = () => {
     const state = editor?.state ?? "saved";
     setText(save_state, editor ? (state === "saved" ? (editor.revision > 0 ? SAVED[state] : "Empty: saved with the first edit") : SAVED[state]) : "No draft");
@@ -376,7 +384,8 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
     daemon.watch(() => void vehicle.refresh()),
     watchDrafts(
       (name, revision) => {
-        if (editor?.name === name) void editor.follow(revision).catch(() => undefined);
+        if (editor?.name === name && revision === null && deleting !== name) say(`${name} was deleted by another page: the next edit saves it again.`, "bad");
+        else if (editor?.name === name) void editor.follow(revision ?? 0).catch(() => undefined);
         if (!entries.some((one) => one.name === name)) void listDrafts();
       },
       () => {
@@ -386,10 +395,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
     ),
   ];
 
-  chart.controls.append(button("Show the whole plan", () => {
-    const bounds = layer.bounds();
-    if (bounds) map.fitBounds(bounds, { animate: false });
-  }, { icon: "fit", bare: true, class: "map-button" }));
+  chart.controls.append(button("Show the whole plan", fit, { icon: "fit", bare: true, class: "map-button" }));
   const overlay = button("Show vehicle's plan", () => {
     show_vehicle = !show_vehicle;
     overlay.setAttribute("aria-pressed", String(show_vehicle));
