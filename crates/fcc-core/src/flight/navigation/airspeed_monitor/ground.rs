@@ -6,9 +6,11 @@ use super::super::airspeed_filter::AirspeedFilter;
 use super::super::airspeed_reason::{Doubt, DoubtReason};
 use super::super::filter_bank::FilterBank;
 use super::super::force_sample::ForceSample;
+use super::super::scalar_update::squared;
 use super::super::wind::OverGround;
 use super::sensorless::UNKNOWN_WIND_MPS;
 use super::{AirspeedMonitor, CORRECTED_S, MonitorInput};
+use crate::blocks::smoothing_factor;
 
 /// Later than this, s, a velocity over the ground does not count any more.
 const LOST_S: f64 = 1.5;
@@ -18,6 +20,14 @@ const LOST_S: f64 = 1.5;
 /// airspeed, within this time, s.
 const SHEAR_MPS: f64 = 12.0;
 const LAGS_FOR_S: f64 = 1.0;
+/// One that stands still while the aircraft becomes faster or slower by more than this
+/// share of the reference airspeed and so many times the gusts, over this lag, s, moves by
+/// less than this share of that, for this time, s: shorter is a gust of turbulence 4 and 5.
+const STILL_RATIO: f64 = 0.14;
+const STILL_GUSTS: f64 = 3.0;
+const STILL_FOR_S: f64 = 2.0;
+const STILL_LAG_S: f64 = 10.0;
+const STILL_SHARE: f64 = 0.2;
 const AT_FIRST_S: f64 = 60.0;
 const SLOW_RATIO: f64 = 0.6;
 const FIRST_READ_S: f64 = 1.5;
@@ -34,12 +44,18 @@ pub(super) struct Behind {
     /// m/s, and for how long it has been more, s.
     began_tail_mps: Option<f64>,
     lags_s: f64,
+    /// The sensor's airspeed and that by the ground velocity, with a lag, m/s, and for how
+    /// long only the latter has changed, s.
+    slow_mps: Option<(f64, f64)>,
+    still_s: f64,
 }
 
 impl Behind {
     pub(super) const NONE: Self = Self {
         began_tail_mps: None,
         lags_s: 0.0,
+        slow_mps: None,
+        still_s: 0.0,
     };
 }
 
@@ -95,7 +111,9 @@ impl AirspeedMonitor {
             }
             return false;
         };
-        let right_mps = self.lags_ground(bank, read, sensor_mps, passed_s);
+        let right_mps = self
+            .lags_ground(bank, read, sensor_mps, passed_s)
+            .or_else(|| self.stands_still(bank, sensor_mps, passed_s));
         let Some(right_mps) = right_mps.filter(|_| input.may_doubt) else {
             return false;
         };
@@ -132,6 +150,37 @@ impl AirspeedMonitor {
             0.0
         };
         (self.behind.lags_s > LAGS_FOR_S).then_some(sensor_mps + lags_mps * read.sqrt_density)
+    }
+
+    /// The right airspeed, m/s, if the sensor shows the same while the aircraft becomes
+    /// faster or slower, by the velocity over the ground with the wind as it was, and by
+    /// the accelerometers. A gust moves the sensor, and not the others.
+    fn stands_still(&mut self, bank: &FilterBank, sensor_mps: f64, passed_s: f64) -> Option<f64> {
+        let Some((by_ground_mps, _)) = self.by_ground else {
+            self.behind.slow_mps = None;
+            return None;
+        };
+        let (slow_sensor_mps, slow_ground_mps) = self
+            .behind
+            .slow_mps
+            .get_or_insert((sensor_mps, by_ground_mps));
+        let share = smoothing_factor(passed_s, STILL_LAG_S);
+        *slow_sensor_mps += share * (sensor_mps - *slow_sensor_mps);
+        *slow_ground_mps += share * (by_ground_mps - *slow_ground_mps);
+        let moved_mps = by_ground_mps - *slow_ground_mps;
+        let shown_mps = sensor_mps - *slow_sensor_mps;
+        let (off_mps, forces_mps) = (by_ground_mps - sensor_mps, bank.older.airspeed_mps());
+        let gusts_mps = STILL_GUSTS * self.gusts_mps();
+        let is_still = fabs(moved_mps) > (STILL_RATIO * self.prior.reference_mps).max(gusts_mps)
+            && fabs(shown_mps) < STILL_SHARE * fabs(moved_mps)
+            && off_mps * moved_mps > 0.5 * squared(moved_mps)
+            && (forces_mps - sensor_mps) * off_mps > 0.5 * squared(off_mps);
+        self.behind.still_s = if is_still {
+            self.behind.still_s + passed_s
+        } else {
+            0.0
+        };
+        (self.behind.still_s > STILL_FOR_S).then_some(by_ground_mps)
     }
 
     /// The sensor is to be left for an airspeed, m/s.
