@@ -5,7 +5,8 @@
 //! last of which may be missing.
 #![no_main]
 
-use fcc_core::flight::{ALTIMETER_SETTINGS_PA, Autopilot, AutopilotCommand};
+use fcc_core::flight::ALTIMETER_SETTINGS_PA;
+use fcc_fixed_wing::{Autopilot, AutopilotCommand};
 use fcc_core::framework::{Cause, Event, EventKind, LoopCommand, State, Time};
 use fcc_live::{PendingCommand, SentCommands, Verdict, read_answer, read_request};
 use fcc_telemetry::units::AVIATION;

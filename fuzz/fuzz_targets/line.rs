@@ -4,7 +4,7 @@
 //! The first byte is the size of the parts.
 #![no_main]
 
-use fcc_core::flight::Autopilot;
+use fcc_fixed_wing::Autopilot;
 use fcc_flight::flight::{answer_as_received, command_of, line_of_parts};
 use fcc_live::{InvalidCommand, PlantLimits, Verdict};
 

@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use fcc_core::flight::{Autopilot, AutopilotConfig};
 use fcc_core::framework::State;
+use fcc_fixed_wing::{Autopilot, AutopilotConfig};
 use fcc_runtime::{Link, LoopConfig, Machine, Parts};
 use fcc_timer::{Expiry, ManualTimer, Timer, TimerError};
 use fcc_xplane::XPlane;

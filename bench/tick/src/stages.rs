@@ -5,9 +5,10 @@ use std::hint::black_box;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use fcc_core::flight::inertial::{MagneticNorth, RawNavigationConfig, RawNavigationMethod};
-use fcc_core::flight::{Autopilot, AutopilotConfig, Measurements, Surfaces};
+use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Actuator, Controller, Message, MessageOf, RecordOf, Sensor, Tick};
+use fcc_fixed_wing::{Autopilot, AutopilotConfig};
+use fcc_navigation::inertial::{MagneticNorth, RawNavigationConfig, RawNavigationMethod};
 use fcc_sim::{Channels, RawSensorSet, SensorConfig, Severity, SimConfig, Simulation};
 use fcc_xplane::{Errno, Port, XPlane, XPlaneActuator, XPlaneSensor};
 use rtrb::{Consumer, Producer, RingBuffer};

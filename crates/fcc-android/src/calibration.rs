@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use fcc_core::flight::calibration::{Coverage, GuidedCalibration, Place};
+use fcc_calibration::{Coverage, GuidedCalibration, Place};
 use fcc_core::framework::Tick;
 use fcc_device::monotonic;
 use fcc_flight::calibrate::{

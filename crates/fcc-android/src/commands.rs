@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::time::Duration;
 
-use fcc_core::flight::{Autopilot, AutopilotCommand, AutopilotConfig};
+use fcc_fixed_wing::{Autopilot, AutopilotCommand, AutopilotConfig};
 use fcc_flight::flight::{Access, FlightTime, Observer, Outcome, Reports, setpoint_limits};
 use fcc_telemetry::{Command, FlightEvent, FlightRecord, PendingCommand, SentCommands, Verdict};
 

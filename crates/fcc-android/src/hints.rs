@@ -7,7 +7,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use fcc_core::flight::{Autopilot, AutopilotCommand};
+use fcc_fixed_wing::{Autopilot, AutopilotCommand};
 use fcc_flight::flight::{Access, Facts, FlightTime, Observer, Reports};
 use fcc_phone::HintSession;
 use fcc_telemetry::FlightRecord;

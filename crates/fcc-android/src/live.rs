@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use fcc_core::flight::{Autopilot, AutopilotCommand};
 use fcc_core::framework::{EventKind, State};
+use fcc_fixed_wing::{Autopilot, AutopilotCommand};
 use fcc_flight::flight::{
     Access, Conclusion, EventEntry, Facts, Flapping, FlightTime, Observer, Outcome, Report, Reports,
 };

@@ -1,7 +1,8 @@
 //! A tick as the screens show it, from its record.
 
-use fcc_core::flight::{Autopilot, Measurements, flags};
+use fcc_core::flight::Measurements;
 use fcc_core::framework::{Controller, Flags, Reading, Readings as _, Time};
+use fcc_fixed_wing::{Autopilot, flags};
 use fcc_flight::flight::FlightTime;
 use fcc_telemetry::{FlightRecord, ShownAltitude};
 use serde::Serialize;

@@ -69,7 +69,6 @@
 pub mod actuator;
 mod allocations;
 pub mod authority;
-#[cfg(feature = "flight")]
 mod flight;
 mod gpsd;
 pub mod sensor;
@@ -79,7 +78,6 @@ mod waiting;
 pub use actuator::{ActuatorBench, VanishingPlant};
 pub use allocations::{allocator_calls, allocator_calls_so_far};
 pub use authority::AuthorityBench;
-#[cfg(feature = "flight")]
 pub use flight::flight_times;
 pub use gpsd::RealGpsd;
 pub use sensor::{SensorBench, VanishingSource};

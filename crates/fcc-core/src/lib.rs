@@ -12,7 +12,7 @@
 //! | [`framework`] | ticks, readings, sensors, actuators, controllers, the loop's states: any plant |
 //! | [`blocks`] | PID, filters, limiters: any plant |
 //! | [`units`] | feet, knots and gravity in SI |
-//! | [`flight`] | measurements, navigation, guidance, control of an aircraft (feature `flight`) |
+//! | [`flight`] | measurements, surfaces, the earth and the air |
 //!
 //! Internally everything is in SI units and radians; feet, knots and degrees
 //! are used only at the interfaces to users and simulators. Body axes are x
@@ -24,7 +24,6 @@
 extern crate std;
 
 pub mod blocks;
-#[cfg(feature = "flight")]
 pub mod flight;
 pub mod framework;
 pub mod units;

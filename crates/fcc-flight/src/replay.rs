@@ -1,9 +1,9 @@
 //! What a replay of a flight needs: the autopilot of the recorded configuration.
 //! How it is replayed and compared is in [`fcc_replay`].
 
-use fcc_core::flight::Autopilot;
-use fcc_core::flight::guidance::{GuidanceConfig, TimedPatternConfig};
-use fcc_core::flight::inertial::RawNavigationConfig;
+use fcc_fixed_wing::Autopilot;
+use fcc_guidance::{GuidanceConfig, TimedPatternConfig};
+use fcc_navigation::inertial::RawNavigationConfig;
 use fcc_record::About;
 use fcc_replay::{Chain, Replay};
 use fcc_timer::TimerError;

@@ -7,13 +7,14 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use fcc_conformance::allocator_calls;
-use fcc_core::flight::inertial::MagneticNorth;
-use fcc_core::flight::{Autopilot, Measurements, Surfaces};
+use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Actuator, ActuatorFault, Reading, Sensor, SensorFault, State, Tick};
+use fcc_fixed_wing::Autopilot;
 use fcc_flight::config::{
     BuiltInSection, Config, GustsChoice, NavigationMethod, NavigationSection, RawSensorsChoice,
 };
 use fcc_flight::flight::assemble;
+use fcc_navigation::inertial::MagneticNorth;
 use fcc_runtime::{Machine, Message, Parts};
 use fcc_timer::ManualTimer;
 

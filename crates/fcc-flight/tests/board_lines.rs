@@ -14,8 +14,8 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use fcc_conformance::RealGpsd;
-use fcc_core::flight::Autopilot;
 use fcc_core::framework::{Controller, LoopCommand, RecordOf, State, Tick, Time};
+use fcc_fixed_wing::Autopilot;
 use fcc_flight::calibrate::{CalibrationKind, CalibrationSession, Extent};
 use fcc_flight::config::Config;
 use fcc_flight::flight::{Access, FlightTime, Length, Observer, Pace, Plan, Report, assemble, fly};

@@ -6,8 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
-use fcc_core::flight::Autopilot;
 use fcc_core::framework::{LoopCommand, RecordOf, Time};
+use fcc_fixed_wing::Autopilot;
 use fcc_flight::config::Config;
 use fcc_flight::flight::{Access, FlightTime, Length, Observer, Pace, Plan, Report, assemble, fly};
 use tempfile::TempDir;

@@ -5,11 +5,12 @@
 use std::time::Duration;
 
 use fcc_conformance::allocator_calls;
-use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{Autopilot, Measurements};
+use fcc_core::flight::Measurements;
 use fcc_core::framework::{Reading, Sensor, SensorFault, State, Tick};
+use fcc_fixed_wing::Autopilot;
 use fcc_flight::config::Config;
 use fcc_flight::flight::assemble;
+use fcc_guidance::Mode;
 use fcc_runtime::{Machine, Message, Parts};
 use fcc_sim::{SimConfig, SimSensor, Simulation, Truth};
 use fcc_telemetry::FlightRecord;

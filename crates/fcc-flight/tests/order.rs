@@ -4,8 +4,8 @@
 use std::io;
 use std::sync::{Arc, Mutex};
 
-use fcc_core::flight::Autopilot;
 use fcc_core::framework::ControlAuthority;
+use fcc_fixed_wing::Autopilot;
 use fcc_flight::config::Config;
 use fcc_flight::flight::{Host, Length, Observer, Pace, Plan, Reports, assemble, fly};
 

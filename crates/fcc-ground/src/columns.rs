@@ -1,7 +1,7 @@
 //! Records as the page reads them: one word of 8 bytes for each column.
 
-use fcc_core::flight::Autopilot;
 use fcc_core::framework::Controller as _;
+use fcc_fixed_wing::Autopilot;
 use fcc_telemetry::schema::{DescribedColumn, RecordDescription};
 use serde::{Deserialize, Serialize};
 

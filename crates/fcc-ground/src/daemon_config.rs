@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use fcc_core::flight::Autopilot;
+use fcc_fixed_wing::Autopilot;
 use fcc_flight::config::{BuiltInSection, Config, ConfigError};
 use fcc_flight::flight::setpoint_limits;
 use fcc_live::Commandable as _;

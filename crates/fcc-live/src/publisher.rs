@@ -18,7 +18,7 @@ const STATUS_EVERY: Duration = Duration::from_secs(1);
 
 /// Publishes a flight.
 #[cfg(feature = "flight")]
-pub type Publisher = PublisherOf<fcc_core::flight::Autopilot>;
+pub type Publisher = PublisherOf<fcc_fixed_wing::Autopilot>;
 
 /// Publishes the messages of a loop.
 ///

@@ -12,7 +12,7 @@ use fcc_telemetry::{Instance, Telemetry};
 
 /// Watches a flight on this machine.
 #[cfg(feature = "flight")]
-pub type Watcher = WatcherOf<fcc_core::flight::Autopilot>;
+pub type Watcher = WatcherOf<fcc_fixed_wing::Autopilot>;
 
 /// Watches a loop on this machine, from this or another process: events, status
 /// and end as [`RowWatcher`], its records as structs.

@@ -4,8 +4,8 @@
 //! not for the leg that it makes. Turns are those between places; where a loiter
 //! begins or ends there is none.
 
-use fcc_core::flight::path::turn::{Turn, smallest_circle_m};
-use fcc_core::flight::route::PLANNED_SHARE;
+use fcc_guidance::path::turn::{Turn, smallest_circle_m};
+use fcc_guidance::route::PLANNED_SHARE;
 
 use crate::flyable::{airspeed_problem, polar_problem, polar_problems, speed_problem};
 use crate::ground::obstacle_problems;

@@ -3,7 +3,7 @@
 
 use std::sync::LazyLock;
 
-use fcc_core::flight::path::LocalPlane;
+use fcc_guidance::path::LocalPlane;
 use geographiclib_rs::{DirectGeodesic as _, Geodesic, InverseGeodesic as _};
 
 use crate::item::Place;

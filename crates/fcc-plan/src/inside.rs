@@ -1,8 +1,8 @@
 //! Whether a leg stays inside the fence and clear of obstacles.
 
-use fcc_core::flight::fence::{Bank, Escape, Fence, Shape, Zone};
-use fcc_core::flight::path::turn::smallest_circle_m;
-use fcc_core::flight::route::{OverGround, PLANNED_SHARE, ROLL_LAG_S, RouteConfig};
+use fcc_guidance::fence::{Bank, Escape, Fence, Shape, Zone};
+use fcc_guidance::path::turn::smallest_circle_m;
+use fcc_guidance::route::{OverGround, PLANNED_SHARE, ROLL_LAG_S, RouteConfig};
 use nalgebra::Vector2;
 
 use crate::check::{Conditions, Leg, above_sea_level};

@@ -1,8 +1,8 @@
-//! The fence of a plan as a tick reads it: [`fcc_core::flight::fence`].
+//! The fence of a plan as a tick reads it: [`fcc_guidance::fence`].
 
-use fcc_core::flight::fence;
-use fcc_core::flight::path::LocalPlane;
-use fcc_core::flight::route::Destination;
+use fcc_guidance::fence;
+use fcc_guidance::path::LocalPlane;
+use fcc_guidance::route::Destination;
 use nalgebra::Vector2;
 
 use crate::item::Place;

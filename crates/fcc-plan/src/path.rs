@@ -1,8 +1,8 @@
 //! The path of a plan over the ground in all winds that it is checked for, in pieces so
 //! short that nothing between them is missed.
 
-use fcc_core::flight::path::turn::{Turn, smallest_circle_m};
-use fcc_core::flight::route::PLANNED_SHARE;
+use fcc_guidance::path::turn::{Turn, smallest_circle_m};
+use fcc_guidance::route::PLANNED_SHARE;
 
 use crate::check::{Conditions, Leg, above_sea_level, legs};
 use crate::item::{Item, Loiter, Place};

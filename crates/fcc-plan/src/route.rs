@@ -1,9 +1,7 @@
-//! A plan as a tick reads it: [`fcc_core::flight::route`].
+//! A plan as a tick reads it: [`fcc_guidance::route`].
 
-use fcc_core::flight::route::{
-    Destination, FOR_EVER, JUMPS, Route, RouteConfig, Runway, Step, Until,
-};
 use fcc_core::flight::terrain::Obstacle;
+use fcc_guidance::route::{Destination, FOR_EVER, JUMPS, Route, RouteConfig, Runway, Step, Until};
 
 use crate::check::above_sea_level;
 use crate::item::{Altitude, Item, Loiter, LoiterEnd, Place, Speed};
@@ -29,7 +27,7 @@ impl Steps {
     /// Every item that is not flown, with what to do.
     ///
     /// ```
-    /// use fcc_core::flight::route::RouteConfig;
+    /// use fcc_guidance::route::RouteConfig;
     ///
     /// let text = "QGC WPL 110\n\
     ///     0 1 0 16 0 0 0 0 47.4 8.5 430 1\n\

@@ -1,7 +1,7 @@
 //! What is accepted in a plan, and seldom meant.
 
-use fcc_core::flight::route::LONGEST_LEG_M;
 use fcc_core::units::FOOT_M;
+use fcc_guidance::route::LONGEST_LEG_M;
 
 use crate::check::{Conditions, Leg, above_sea_level, legs};
 use crate::item::{AltitudeDatum, Item, Loiter, LoiterEnd, Place};

@@ -3,7 +3,7 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use fcc_core::flight::calibration::Calibration;
+use fcc_calibration::Calibration;
 use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Actuator, Reading, Sensor, Switch, Tick, Time};
 use fcc_flight::config::Aircraft;

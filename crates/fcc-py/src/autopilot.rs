@@ -2,8 +2,9 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use fcc_core::flight::{Autopilot, Surfaces};
+use fcc_core::flight::Surfaces;
 use fcc_core::framework::Controller;
+use fcc_fixed_wing::Autopilot;
 use numpy::{PyArray2, PyArrayMethods, ToPyArray};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
@@ -164,7 +165,7 @@ impl PyAutopilot {
         let commands = commands(setpoints, stepped.autopilot.config())?;
         if commands
             .iter()
-            .any(fcc_core::flight::AutopilotCommand::is_of_mode)
+            .any(fcc_fixed_wing::AutopilotCommand::is_of_mode)
         {
             stepped.must_be_engaged()?;
         }

@@ -1,11 +1,11 @@
 //! The calibration of a sensor of three axes, from arrays.
 
-use fcc_core::flight::calibration::{
-    self, Axes, AxesCalibration, GuidedCalibration, GuidedKind, Rotation, Values, fit_strength,
+use fcc_calibration::{
+    Axes, AxesCalibration, GuidedCalibration, GuidedKind, Rotation, Values, fit_strength,
 };
-use fcc_core::flight::inertial::Observation;
 use fcc_core::flight::{BodyRates, Measurements, SpecificForce};
 use fcc_core::framework::Reading;
+use fcc_navigation::inertial::Observation;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -129,7 +129,7 @@ fn of_axes<'py>(py: Python<'py>, axes: &Axes) -> PyResult<Bound<'py, PyDict>> {
 #[pyfunction]
 pub(crate) fn levelled(force_mps2: &Bound<'_, PyAny>) -> PyResult<[[f64; 3]; 3]> {
     let force = vector("force_mps2", force_mps2)?;
-    let Some(Rotation(rows)) = calibration::levelled(force) else {
+    let Some(Rotation(rows)) = fcc_calibration::levelled(force) else {
         return Err(PyValueError::new_err(
             "force_mps2 does not point up: the sensor is mounted in another way",
         ));
@@ -147,7 +147,7 @@ pub(crate) fn level_and_nose_up(
 ) -> PyResult<[[f64; 3]; 3]> {
     let level = vector("level_mps2", level_mps2)?;
     let nose_up = vector("nose_up_mps2", nose_up_mps2)?;
-    let Some(Rotation(rows)) = calibration::level_and_nose_up(level, nose_up) else {
+    let Some(Rotation(rows)) = fcc_calibration::level_and_nose_up(level, nose_up) else {
         return Err(PyValueError::new_err(
             "level_mps2 and nose_up_mps2 are parallel: raise the nose by 20° or more",
         ));
@@ -171,7 +171,7 @@ pub(crate) fn constant_dip(
             field.len()
         )));
     }
-    let fit = calibration::constant_dip(down.into_iter().zip(field)).ok_or_else(|| {
+    let fit = fcc_calibration::constant_dip(down.into_iter().zip(field)).ok_or_else(|| {
         PyValueError::new_err(
             "down and field do not determine a rotation: give 12 attitudes or more, in all \
              directions",

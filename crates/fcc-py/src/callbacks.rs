@@ -4,8 +4,9 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use fcc_core::flight::{Autopilot, Measurements, Surfaces};
+use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Controller as _, Sensor, SensorFault, Tick};
+use fcc_fixed_wing::Autopilot;
 use fcc_flight::flight::ControlOverride;
 use pyo3::prelude::*;
 

@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use fcc_core::flight::{Autopilot, AutopilotCommand, AutopilotConfig};
 use fcc_core::framework::LoopCommand;
+use fcc_fixed_wing::{Autopilot, AutopilotCommand, AutopilotConfig};
 use fcc_flight::flight::setpoint_limits;
 use fcc_telemetry::{Command, InvalidCommand};
 use pyo3::exceptions::PyValueError;

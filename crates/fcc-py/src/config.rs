@@ -3,7 +3,7 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use fcc_core::flight::AutopilotConfig;
+use fcc_fixed_wing::AutopilotConfig;
 use fcc_flight::config::{Config, ConfigError, keyed};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;

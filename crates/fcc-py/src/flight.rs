@@ -4,8 +4,8 @@ use std::ffi::CStr;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-use fcc_core::flight::Autopilot;
 use fcc_core::framework::State;
+use fcc_fixed_wing::Autopilot;
 use fcc_flight::config::{Aircraft, Config};
 use fcc_flight::flight::{
     Access, Assembly, FlightTime, FlyError, Host, Impact, Length, Observer, Outcome, Pace, Plan,
@@ -308,7 +308,7 @@ impl Observer<Autopilot> for PythonObserver {
         lock(&self.log).events.push(event);
     }
 
-    fn poll(&mut self, _: &mut Access<'_, fcc_core::flight::AutopilotCommand>) {
+    fn poll(&mut self, _: &mut Access<'_, fcc_fixed_wing::AutopilotCommand>) {
         self.polls += 1;
         if self.polls.is_multiple_of(POLLS_PER_LOOK) || self.looked.elapsed() > LOOK_EVERY {
             self.looked = Instant::now();

@@ -2,8 +2,9 @@
 
 use std::time::Duration;
 
-use fcc_core::flight::{Autopilot, AutopilotCommand, AutopilotConfig, Measurements, Surfaces};
+use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Controller, Flags, Tick, Time};
+use fcc_fixed_wing::{Autopilot, AutopilotCommand, AutopilotConfig};
 use pyo3::prelude::*;
 
 use crate::errors;

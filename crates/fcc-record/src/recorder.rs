@@ -30,7 +30,7 @@ const POLL: Duration = Duration::from_millis(2);
 
 /// Writes a flight's recording.
 #[cfg(feature = "flight")]
-pub type Recorder = RecorderOf<fcc_core::flight::Autopilot>;
+pub type Recorder = RecorderOf<fcc_fixed_wing::Autopilot>;
 
 /// Writes the recording of a loop in its own thread.
 ///

@@ -94,7 +94,7 @@ pub(super) fn undeclared(channel: u16, message: &[u8]) -> Option<TopicOf> {
     let own = Topic::of_channel(channel);
     #[cfg(feature = "flight")]
     {
-        use fcc_core::flight::Autopilot;
+        use fcc_fixed_wing::Autopilot;
         use fcc_telemetry::schema::protobuf::decode;
         let is_flight = match own {
             Some(Topic::Record) => decode::<RecordOf<Autopilot>>(message).is_ok(),

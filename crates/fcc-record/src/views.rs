@@ -5,9 +5,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use fcc_core::flight::Autopilot;
 use fcc_core::flight::{Attitude, Position};
 use fcc_core::framework::Reading;
+use fcc_fixed_wing::Autopilot;
 use prost::Message as _;
 
 use super::foxglove::timestamp;

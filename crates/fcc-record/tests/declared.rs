@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::{env, fs};
 
-use fcc_core::flight::Autopilot;
+use fcc_fixed_wing::Autopilot;
 use fcc_record::{PACKAGE, messages};
 use fcc_telemetry::FlightRecord;
 use fcc_telemetry::schema::layout_table;

@@ -1,11 +1,11 @@
 //! Guided calibration of the simulated raw sensors, against their true errors.
 #![cfg(test)]
 
-use fcc_core::flight::Measurements;
-use fcc_core::flight::calibration::{
+use fcc_calibration::{
     Axes, AxesCalibration, EarthField, Found, GuidedCalibration, GuidedKind, MountingWay, Refusal,
     Rotation, Values,
 };
+use fcc_core::flight::Measurements;
 use fcc_core::framework::{Sensor as _, Tick, Time};
 use fcc_sim::units::DEGREE_RAD;
 use fcc_sim::{HandledSensors, HandlingFault, HandlingTask, RawSensorSet, SimConfig, TrueErrors};

@@ -1,6 +1,7 @@
 //! The altitude as people read it: above what the set point refers to.
 
-use fcc_core::flight::{Altimeter, AltitudeReference, Setpoints};
+use fcc_core::flight::{Altimeter, AltitudeReference};
+use fcc_fixed_wing::Setpoints;
 
 use crate::FlightRecord;
 use crate::units::PA_HPA;

@@ -1,6 +1,6 @@
 //! Scores a flight while it is flown.
 
-use fcc_core::flight::guidance::TimedPatternConfig;
+use fcc_guidance::TimedPatternConfig;
 
 use super::score::{Leg, LegScore, ROUNDING_S, Sample, ScoreError, score};
 use super::units::M_FT;

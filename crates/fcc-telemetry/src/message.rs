@@ -7,8 +7,8 @@ pub use of_flights::{FlightEvent, FlightMessage, FlightRecord};
 
 #[cfg(feature = "flight")]
 mod of_flights {
-    use fcc_core::flight::Autopilot;
     use fcc_core::framework::{EventOf, MessageOf, RecordOf};
+    use fcc_fixed_wing::Autopilot;
 
     use crate::telemetry::Telemetry;
     use crate::units::{AVIATION, Shown};

@@ -1,7 +1,7 @@
 //! Scores the timed patterns of a flight, by the mode of guidance in its records.
 
-use fcc_core::flight::guidance::{Mode, Progress, TimedPatternConfig};
 use fcc_core::framework::State;
+use fcc_guidance::{Mode, Progress, TimedPatternConfig};
 
 use super::flight::FlightLog;
 use super::score::{FlightScore, LegScore, Sample, ScoreError};
@@ -92,7 +92,7 @@ fn continues(before: &Progress, now: &Progress) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use fcc_core::flight::guidance::Targets;
+    use fcc_guidance::Targets;
 
     use super::*;
 

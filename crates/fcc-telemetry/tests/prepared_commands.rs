@@ -1,8 +1,8 @@
 //! Commands that are prepared before they are sent: another flight plan.
 #![cfg(all(test, feature = "flight"))]
 
-use fcc_core::flight::{Autopilot, AutopilotCommand, COMMAND_ANSWER, PlanReplacement};
 use fcc_core::framework::{Event, EventKind, EventOf, LoopCommand, Notice, State, Time};
+use fcc_fixed_wing::{Autopilot, AutopilotCommand, COMMAND_ANSWER, PlanReplacement};
 use fcc_telemetry::{Command, PendingCommand, SentCommands, Verdict};
 
 fn event(tick: u64, kind: EventKind<AutopilotCommand>) -> EventOf<Autopilot> {

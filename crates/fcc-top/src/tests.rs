@@ -1,8 +1,9 @@
 //! The whole screen, drawn from a fixed picture.
 
-use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{AltitudeReference, Attitude, Autopilot, Surfaces};
+use fcc_core::flight::{AltitudeReference, Attitude, Surfaces};
 use fcc_core::framework::{Flags, Reading, RecordOf, State, Tick, Time};
+use fcc_fixed_wing::Autopilot;
+use fcc_guidance::Mode;
 use fcc_live::{Event, EventCode, Info, RecorderState, Status, Text};
 use fcc_telemetry::Instance;
 use ratatui::Terminal;

@@ -40,8 +40,7 @@ impl HighPass {
 
     /// The same with a [`smoothing_factor`](super::smoothing_factor) that several
     /// filters of one time constant share.
-    #[cfg(feature = "flight")]
-    pub(crate) fn step_by(&mut self, input: f64, factor: f64) -> f64 {
+    pub fn step_by(&mut self, input: f64, factor: f64) -> f64 {
         input - self.low.step_by(input, factor)
     }
 }

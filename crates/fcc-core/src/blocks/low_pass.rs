@@ -74,7 +74,7 @@ impl LowPass {
 
     /// The same with a [`smoothing_factor`] that several filters of one time
     /// constant share.
-    pub(crate) fn step_by(&mut self, input: f64, factor: f64) -> f64 {
+    pub fn step_by(&mut self, input: f64, factor: f64) -> f64 {
         let output = match self.output {
             None => input,
             Some(output) => output + factor * (input - output),

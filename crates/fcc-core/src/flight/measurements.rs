@@ -155,12 +155,7 @@ const RANGE_AGE: Duration = Duration::from_millis(250);
 impl Measurements {
     /// The height above the ground by a range that is current, m, at an attitude in rad: the
     /// range is measured along the body's z axis.
-    pub(crate) fn height_by_range_m(
-        &self,
-        now: Time,
-        roll_rad: f64,
-        pitch_rad: f64,
-    ) -> Option<f64> {
+    pub fn height_by_range_m(&self, now: Time, roll_rad: f64, pitch_rad: f64) -> Option<f64> {
         let range_m = self.range_m.fresh(now, RANGE_AGE)?;
         Some(range_m * cos(roll_rad) * cos(pitch_rad))
     }
@@ -262,6 +257,13 @@ schema! {
         /// Above mean sea level, m.
         #[field(3, column = "position_altitude_m")]
         pub altitude_m: f64,
+    }
+}
+
+impl Position {
+    /// Whether it is a position on the Earth; false for NaN.
+    pub fn is_on_earth(&self) -> bool {
+        self.latitude_rad.abs() <= FRAC_PI_2 && self.longitude_rad.abs() <= TAU
     }
 }
 

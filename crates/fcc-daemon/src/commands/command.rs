@@ -1,7 +1,7 @@
 //! `fccd command`: commands to a daemon on this machine.
 
-use fcc_core::flight::Autopilot;
 use fcc_core::units::{FOOT_M, HECTOPASCAL_PA, INHG_PA, KNOT_MPS};
+use fcc_fixed_wing::Autopilot;
 use fcc_flight::flight::{OtherUserError, command_another_users};
 use fcc_live::{Command, CommandError, Commander, PlantLimits, WatchError};
 use fcc_telemetry::Instance;

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use fcc_core::flight::Autopilot;
+use fcc_fixed_wing::Autopilot;
 
 use super::failure::Failure;
 use crate::exit::Exit;

@@ -4,7 +4,7 @@ use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use fcc_core::flight::Autopilot;
+use fcc_fixed_wing::Autopilot;
 use fcc_flight::config::{AirframeSection, Config};
 use fcc_flight::replay::{recorded_config, replay as replay_of};
 use fcc_record::{OpenError, create_output, unless_left};

@@ -1,7 +1,7 @@
 //! `fccd replay --navigation METHOD FILE`: runs the raw readings of a recording
 //! through navigation.
 
-use fcc_core::flight::Autopilot;
+use fcc_fixed_wing::Autopilot;
 use fcc_flight::replay::{navigation_by, recorded_config, recorded_pattern};
 use fcc_record::Recording;
 use fcc_replay::Chain;

@@ -1,6 +1,6 @@
 //! `fccd top`: a flight on this machine, live.
 
-use fcc_core::flight::Autopilot;
+use fcc_fixed_wing::Autopilot;
 use fcc_live::{Watcher, running};
 use fcc_telemetry::Instance;
 

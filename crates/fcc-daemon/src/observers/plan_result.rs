@@ -3,8 +3,8 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use fcc_core::flight::Autopilot;
 use fcc_core::framework::{EventKind, EventOf};
+use fcc_fixed_wing::Autopilot;
 use fcc_flight::flight::{FlightTime, Observer};
 use fcc_report::FlownPlan;
 use fcc_telemetry::FlightRecord;

@@ -2,9 +2,9 @@
 //! configuration is measured.
 
 use fcc_core::blocks::wrap_two_pi;
-use fcc_core::flight::Autopilot;
 use fcc_core::framework::Message;
 use fcc_core::framework::State::Engaged;
+use fcc_fixed_wing::Autopilot;
 use fcc_flight::config::{Config, GuidanceSection};
 use fcc_replay::Identity;
 use fcc_telemetry::FlightRecord;

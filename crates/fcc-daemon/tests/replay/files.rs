@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command as Process, Output};
 use std::time::Duration;
 
-use fcc_core::flight::AutopilotCommand;
 use fcc_core::framework::LoopCommand;
+use fcc_fixed_wing::AutopilotCommand;
 use fcc_flight::config::Config;
 use fcc_record::{About, Recorder, RecorderSettings, RecordingPace};
 use fcc_telemetry::FlightMessage;

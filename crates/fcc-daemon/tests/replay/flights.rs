@@ -4,8 +4,9 @@ use std::ops::RangeInclusive;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements};
+use fcc_core::flight::Measurements;
 use fcc_core::framework::{LoopCommand, Message, Record, Sensor, SensorFault, State, Tick};
+use fcc_fixed_wing::{Autopilot, AutopilotCommand};
 use fcc_flight::config::{BuiltInSection, Config, FailsafeSection, GustsChoice};
 use fcc_flight::flight::assemble;
 use fcc_flight::replay::replay;

@@ -3,11 +3,11 @@
 use std::f64::consts::FRAC_PI_2;
 use std::time::Duration;
 
-use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{Autopilot, AutopilotCommand};
 use fcc_core::framework::State::{Engaged, Standby, Stopped};
 use fcc_core::framework::{EventKind, LoopCommand, Message};
+use fcc_fixed_wing::{Autopilot, AutopilotCommand};
 use fcc_flight::config::{Config, Then};
+use fcc_guidance::Mode;
 
 use super::assert_identical;
 use super::flights::{Happenings, again, fly, records, rough};

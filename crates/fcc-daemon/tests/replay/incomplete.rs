@@ -1,7 +1,7 @@
 //! Missing or invalid messages end a replay with a reason.
 
-use fcc_core::flight::AutopilotCommand;
 use fcc_core::framework::{EventKind, LoopCommand, Message, Reading, Time};
+use fcc_fixed_wing::AutopilotCommand;
 use fcc_flight::config::Then;
 use fcc_telemetry::FlightMessage;
 

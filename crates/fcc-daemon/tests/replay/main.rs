@@ -8,8 +8,8 @@ mod identical;
 mod incomplete;
 mod sources;
 
-use fcc_core::flight::Autopilot;
 use fcc_core::framework::State;
+use fcc_fixed_wing::Autopilot;
 use fcc_flight::config::Config;
 use fcc_flight::replay::replay;
 use fcc_replay::{Deviation, run};

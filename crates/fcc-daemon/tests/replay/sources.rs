@@ -4,8 +4,8 @@
 
 use std::ops::RangeInclusive;
 
-use fcc_core::flight::Autopilot;
 use fcc_core::framework::{EventKind, Flags, Message, SourceChange, State};
+use fcc_fixed_wing::Autopilot;
 use fcc_flight::config::{Config, NavigationMethod, RawSensorsChoice};
 use fcc_flight::replay::replay;
 use fcc_replay::run;

@@ -5,9 +5,9 @@
 mod command;
 mod flown;
 
-use fcc_core::flight::Autopilot;
-use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_core::framework::{Reading, RecordOf, Time};
+use fcc_fixed_wing::Autopilot;
+use fcc_guidance::TimedPatternConfig;
 use fcc_report::{FileEnd, FlightAddition, FlightReport, FlightSurvey, Origin};
 use fcc_telemetry::FlightMessage;
 use flown::Plan;

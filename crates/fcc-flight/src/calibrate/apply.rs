@@ -7,7 +7,7 @@ use toml::{Table, Value};
 use super::entry::{given_of, over, turn};
 use super::{CalibrationFile, CalibrationFileError, CalibrationKind, Entry};
 use crate::config::{CalibrationSection, Config};
-use fcc_core::flight::calibration::Axes;
+use fcc_calibration::Axes;
 
 const DAY_S: f64 = 86_400.0;
 

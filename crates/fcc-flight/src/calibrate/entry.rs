@@ -1,6 +1,6 @@
 //! What was found of one sensor.
 
-use fcc_core::flight::calibration::{Axes, Found, Mounting, Rotation, Values};
+use fcc_calibration::{Axes, Found, Mounting, Rotation, Values};
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 

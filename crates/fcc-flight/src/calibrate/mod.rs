@@ -3,7 +3,7 @@
 //!
 //! A [`CalibrationSession`] opens the sensors as a flight does, but none of their
 //! calibrations and no actuator, and passes what they give to
-//! [`GuidedCalibration`](fcc_core::flight::calibration::GuidedCalibration). What
+//! [`GuidedCalibration`](fcc_calibration::GuidedCalibration). What
 //! it finds is an [`Entry`] of the [`CalibrationFile`], in the configuration's own
 //! keys; [`apply`] puts the entries over the configuration of a flight.
 

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use fcc_core::flight::Measurements;
-use fcc_core::flight::calibration::{
+use fcc_calibration::{
     Axes, EarthField, GuidedCalibration, GuidedKind, MountingWay, Refusal, Rotation,
 };
+use fcc_core::flight::Measurements;
 use fcc_core::framework::{Reading, Sensor, Tick};
 use fcc_sim::HandlingFault;
 

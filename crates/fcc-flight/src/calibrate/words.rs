@@ -1,6 +1,6 @@
 //! What the person is to do, in words.
 
-use fcc_core::flight::calibration::Next;
+use fcc_calibration::Next;
 
 use super::{CalibrationKind, Extent};
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use fcc_core::flight::navigation::LearnedAirframe;
+use fcc_navigation::LearnedAirframe;
 use serde::{Deserialize, Serialize};
 
 /// One degree in rad.
@@ -69,7 +69,7 @@ impl AirframeSection {
 
 #[cfg(test)]
 mod tests {
-    use fcc_core::flight::navigation::LearnedAirframe;
+    use fcc_navigation::LearnedAirframe;
 
     use super::AirframeSection;
     use crate::config::Config;

@@ -2,12 +2,12 @@
 
 use std::time::Duration;
 
-use fcc_core::flight::control::{AirspeedConfig, AltitudeConfig, Envelope, HeadingConfig};
-use fcc_core::flight::guidance::GuidanceConfig;
-use fcc_core::flight::navigation::NavigationConfig;
-use fcc_core::flight::route::RunwayConfig;
-use fcc_core::flight::{AutopilotConfig, Scale};
 use fcc_core::units::{FOOT_M, GRAVITY_MPS2, KNOT_MPS};
+use fcc_fixed_wing::control::{AirspeedConfig, AltitudeConfig, Envelope, HeadingConfig};
+use fcc_fixed_wing::{AutopilotConfig, Scale};
+use fcc_guidance::GuidanceConfig;
+use fcc_guidance::route::RunwayConfig;
+use fcc_navigation::NavigationConfig;
 use serde::{Deserialize, Serialize};
 
 use super::{AirframeSection, GuidanceSection};

@@ -2,9 +2,7 @@
 
 use std::time::Duration;
 
-use fcc_core::flight::calibration::{
-    Axes, AxesCalibration, Calibration, Mounting, Rotation, ScalarCalibration,
-};
+use fcc_calibration::{Axes, AxesCalibration, Calibration, Mounting, Rotation, ScalarCalibration};
 use fcc_core::flight::orientation::EulerAngles;
 use serde::{Deserialize, Serialize};
 

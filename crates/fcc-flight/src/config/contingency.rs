@@ -1,7 +1,7 @@
 //! `[contingency]`: what the autopilot does by itself.
 
-use fcc_core::flight::{ContingencyAction, ContingencyConfig};
 use fcc_core::units::FOOT_M;
+use fcc_fixed_wing::{ContingencyAction, ContingencyConfig};
 use serde::{Deserialize, Serialize};
 
 use super::Config;

@@ -1,7 +1,7 @@
 //! `[guidance]`: the mode after engaging.
 
-use fcc_core::flight::guidance::{GuidanceConfig, TimedPatternConfig};
 use fcc_core::units::FOOT_M;
+use fcc_guidance::{GuidanceConfig, TimedPatternConfig};
 use serde::{Deserialize, Serialize};
 
 const HOLD_S: f64 = 20.0;

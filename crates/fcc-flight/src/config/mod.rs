@@ -55,7 +55,7 @@ mod x_plane;
 use std::path::Path;
 use std::time::Duration;
 
-use fcc_core::flight::AutopilotConfig;
+use fcc_fixed_wing::AutopilotConfig;
 use fcc_runtime::{Budget, LoopConfig, Overload};
 use fcc_sim::SimConfig;
 use fcc_timer::RealtimeRequest;

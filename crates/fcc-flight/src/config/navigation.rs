@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use fcc_core::flight::inertial::{MagneticNorth, RawNavigationConfig, RawNavigationMethod};
+use fcc_navigation::inertial::{MagneticNorth, RawNavigationConfig, RawNavigationMethod};
 use serde::{Deserialize, Serialize};
 
 use super::{Config, DeviceEntry, RawSensorsChoice, SensorEntry};
@@ -158,7 +158,7 @@ impl NavigationSection {
 mod tests {
     use std::time::Duration;
 
-    use fcc_core::flight::inertial::{MagneticNorth, RawNavigationMethod};
+    use fcc_navigation::inertial::{MagneticNorth, RawNavigationMethod};
 
     use crate::config::Config;
 

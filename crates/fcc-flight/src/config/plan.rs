@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use fcc_core::flight::path::{L1Config, NpfgConfig};
-use fcc_core::flight::route::{LawConfig, Route, RouteConfig};
 use fcc_core::units::{FOOT_M, KNOT_MPS};
+use fcc_guidance::path::{L1Config, NpfgConfig};
+use fcc_guidance::route::{LawConfig, Route, RouteConfig};
 use fcc_plan::{Conditions, FileError, Format, Identity, Item, Place, Problem, Steps};
 use serde::{Deserialize, Serialize};
 

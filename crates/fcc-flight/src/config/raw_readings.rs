@@ -1,6 +1,6 @@
 //! What belongs together in a calibration and `[navigation]`.
 
-use fcc_core::flight::calibration::Axes;
+use fcc_calibration::Axes;
 
 use super::places::Places;
 use super::{CalibrationSection, Config, NavigationMethod, RawSource};

@@ -1,6 +1,6 @@
 //! Constraints between the values of a configuration, and on its lists.
 
-use fcc_core::flight::control::Envelope;
+use fcc_fixed_wing::control::Envelope;
 
 use super::autopilot::{self, EnvelopeSection};
 use super::{

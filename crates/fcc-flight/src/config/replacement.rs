@@ -5,8 +5,8 @@ use std::path::Path;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use fcc_core::flight::route::{PreparedRoutes, Route, RouteConfig, RouteSource};
-use fcc_core::flight::{AutopilotCommand, PlanReplacement};
+use fcc_fixed_wing::{AutopilotCommand, PlanReplacement};
+use fcc_guidance::route::{PreparedRoutes, Route, RouteConfig, RouteSource};
 use fcc_plan::{FileError, Format, Identity, Plan, Problem, Steps};
 use fcc_record::Document;
 

@@ -3,8 +3,8 @@
 
 use std::time::Duration;
 
-use fcc_core::flight::{AutopilotConfig, FailsafeConfig, FailsafeEnd, StickTakeover, flags};
 use fcc_core::framework::{AfterRelease, Flags};
+use fcc_fixed_wing::{AutopilotConfig, FailsafeConfig, FailsafeEnd, StickTakeover, flags};
 use fcc_timer::{CpuRequest, EarlyWake, RealtimeRequest, Strictness, Timer, TimerError, TimerKind};
 use serde::{Deserialize, Serialize};
 

@@ -1,6 +1,6 @@
 //! What a user should know before a flight begins.
 
-use fcc_core::flight::AutopilotConfig;
+use fcc_fixed_wing::AutopilotConfig;
 
 use super::x_plane::InputChoice;
 use super::{Config, NavigationMethod, RawSensorsChoice};

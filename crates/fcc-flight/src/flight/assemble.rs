@@ -3,8 +3,9 @@
 use std::io::{self, ErrorKind};
 use std::sync::Arc;
 
-use fcc_core::flight::{Autopilot, Measurements, Surfaces};
+use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Actuator, ControlAuthority, Sensor};
+use fcc_fixed_wing::Autopilot;
 #[cfg(feature = "live")]
 use fcc_live::{SentCommands, StartPublisher};
 use fcc_runtime::LoopConfig;

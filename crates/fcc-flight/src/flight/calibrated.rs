@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
+use fcc_calibration::Calibration;
 use fcc_core::flight::Measurements;
-use fcc_core::flight::calibration::Calibration;
 use fcc_core::framework::{Sensor, SensorFault, Tick};
 
 use crate::config::CalibrationSection;
@@ -58,7 +58,7 @@ impl Sensor<Measurements> for Calibrated {
 
 #[cfg(test)]
 mod tests {
-    use fcc_core::flight::calibration::ScalarCalibration;
+    use fcc_calibration::ScalarCalibration;
     use fcc_core::framework::{Reading, Time};
 
     use super::*;

@@ -10,11 +10,11 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use fcc_core::flight::{Autopilot, AutopilotConfig};
 use fcc_core::framework::{
     ActuatorFault, Cause, Event, EventKind, Flags, LoopCommand, Reading, Record, RecordOf,
     SensorFault, State, Tick, Time,
 };
+use fcc_fixed_wing::{Autopilot, AutopilotConfig};
 use fcc_record::RecorderStatus;
 use fcc_runtime::{Link, LoopConfig, Machine, Parts};
 use fcc_timer::{ManualTimer, RealtimeGranted};

@@ -1,7 +1,8 @@
 //! What may replace the outputs of the autopilot: an experiment, or a test.
 
-use fcc_core::flight::{Autopilot, Measurements, Surfaces};
+use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::Tick;
+use fcc_fixed_wing::Autopilot;
 
 /// Replaces the outputs of the autopilot while it is engaged. Navigation,
 /// guidance, states and failsafe remain the autopilot's.

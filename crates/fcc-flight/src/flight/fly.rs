@@ -4,9 +4,9 @@ use std::io;
 use std::sync::Arc;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use fcc_core::flight::Autopilot;
-use fcc_core::flight::guidance::Mode;
 use fcc_core::framework::{ActuatorFault, ControlAuthority, PlantId, Released, State};
+use fcc_fixed_wing::Autopilot;
+use fcc_guidance::Mode;
 use fcc_runtime::{Ending, Link, Loop, LoopReport, Machine, Parts, SpawnError, WatchdogConfig};
 use fcc_timer::{ManualTimer, RealtimeGranted, Timer, TimerError};
 

@@ -23,8 +23,9 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use fcc_conformance::allocator_calls_so_far;
-use fcc_core::flight::{Autopilot, Measurements, Surfaces};
+use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Sensor, SensorFault, Tick, Time};
+use fcc_fixed_wing::Autopilot;
 
 use super::control_override::ControlOverride;
 

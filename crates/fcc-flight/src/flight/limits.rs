@@ -2,9 +2,9 @@
 
 use std::ops::RangeInclusive;
 
-use fcc_core::flight::AutopilotConfig;
+use fcc_fixed_wing::AutopilotConfig;
 #[cfg(feature = "live")]
-use fcc_core::flight::Setpoints;
+use fcc_fixed_wing::Setpoints;
 #[cfg(feature = "live")]
 use fcc_live::{Commandable, SentCommands};
 use fcc_telemetry::PlantLimits;

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use fcc_core::flight::{AutopilotCommand, Setpoints};
 use fcc_core::framework::{Controller, EventOf, RecordOf};
+use fcc_fixed_wing::{AutopilotCommand, Setpoints};
 use fcc_live::{
     Command, Commandable, Event, Info, PublisherOf, RecorderState, RecorderStatus, SentCommands,
     StartPublisher, Text, Verdict,

@@ -1,10 +1,8 @@
 //! All observers of a flight.
 
-use fcc_core::flight::guidance::{Mode, Progress};
-use fcc_core::flight::{
-    Autopilot, AutopilotCommand, ITEM_REACHED, gives_up_runway, touches_ground,
-};
 use fcc_core::framework::{EventKind, Message, Notice};
+use fcc_fixed_wing::{Autopilot, AutopilotCommand, ITEM_REACHED, gives_up_runway, touches_ground};
+use fcc_guidance::{Mode, Progress};
 use fcc_runtime::CommandSender;
 use fcc_telemetry::{FlightMessage, describe_event};
 
@@ -216,7 +214,7 @@ mod tests {
     use super::super::scorer::Scorer;
     use super::Names;
     use crate::config::Config;
-    use fcc_core::flight::Autopilot;
+    use fcc_fixed_wing::Autopilot;
     #[cfg(feature = "live")]
     use fcc_live::SentCommands;
 

@@ -1,6 +1,6 @@
 //! The outcome of a flight, for users and tools.
 
-use fcc_core::flight::guidance::{Mode, Progress};
+use fcc_guidance::{Mode, Progress};
 use fcc_runtime::{Ending, LoopReport};
 use fcc_telemetry::{FlightScore, Realtime, ScoredBy, TimingReport};
 use fcc_timer::RealtimeGranted;

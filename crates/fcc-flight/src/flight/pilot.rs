@@ -3,9 +3,10 @@
 
 use std::fmt;
 
-use fcc_core::flight::navigation::Estimate;
-use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Setpoints, Surfaces};
+use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Controller, Flags, Notice, Reading, Switch, Tick};
+use fcc_fixed_wing::{Autopilot, AutopilotCommand, Setpoints};
+use fcc_navigation::Estimate;
 
 use super::control_override::ControlOverride;
 

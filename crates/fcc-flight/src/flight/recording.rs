@@ -222,7 +222,7 @@ fn pass_on(notice: Notice, reports: &mut Reports) {
 mod tests {
     use std::fs::{self, File};
 
-    use fcc_core::flight::Autopilot;
+    use fcc_fixed_wing::Autopilot;
     use fcc_record::Recorder;
 
     use super::*;

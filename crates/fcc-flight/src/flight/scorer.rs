@@ -1,7 +1,7 @@
 //! Scores the flown pattern.
 
-use fcc_core::flight::Autopilot;
-use fcc_core::flight::guidance::GuidanceConfig;
+use fcc_fixed_wing::Autopilot;
+use fcc_guidance::GuidanceConfig;
 use fcc_sim::Truth;
 use fcc_telemetry::units::{G_MPS2, M_FT, MPS_KT};
 use fcc_telemetry::{FlightRecord, PatternScorer, Sample, ScoredBy};

@@ -3,10 +3,10 @@
 
 use std::fmt::Write as _;
 
-use fcc_core::flight::guidance::{Mode, Progress};
-use fcc_core::flight::route::TookOff;
-use fcc_core::flight::{AutopilotCommand, Resume};
 use fcc_core::framework::State;
+use fcc_fixed_wing::{AutopilotCommand, Resume};
+use fcc_guidance::route::TookOff;
+use fcc_guidance::{Mode, Progress};
 use fcc_sim::Truth;
 
 use crate::flight::{Flight, HOME, legs};

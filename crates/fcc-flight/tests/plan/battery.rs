@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{AutopilotCommand, Contingency};
 use fcc_core::framework::{Reading, State};
+use fcc_fixed_wing::{AutopilotCommand, Contingency};
+use fcc_guidance::Mode;
 
 use crate::contingency::{fenced, go_to};
 use crate::flight::{Flight, HOME, Without, legs};

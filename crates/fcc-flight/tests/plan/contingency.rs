@@ -4,9 +4,10 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{AutopilotCommand, Contingency, Measurements, Position};
+use fcc_core::flight::{Measurements, Position};
 use fcc_core::framework::{Sensor, SensorFault, State, Tick};
+use fcc_fixed_wing::{AutopilotCommand, Contingency};
+use fcc_guidance::Mode;
 use fcc_plan::Place;
 
 use crate::flight::{ALTITUDE_M, Flight, HOME, legs, line};

@@ -1,11 +1,11 @@
 //! Fences that are drawn, with a wind, a place outside of them, and a commander that
 //! may insist.
 
-use fcc_core::flight::fence::{Fence, Shape, Zone};
-use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::path::LocalPlane;
-use fcc_core::flight::{AutopilotCommand, Contingency};
 use fcc_core::framework::State;
+use fcc_fixed_wing::{AutopilotCommand, Contingency};
+use fcc_guidance::Mode;
+use fcc_guidance::fence::{Fence, Shape, Zone};
+use fcc_guidance::path::LocalPlane;
 use fcc_plan::Place;
 use nalgebra::Vector2;
 

@@ -3,12 +3,13 @@
 use std::fmt::Write as _;
 use std::time::Duration;
 
-use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::inertial::metres_per_radian;
-use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Surfaces};
+use fcc_core::flight::earth::metres_per_radian;
+use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Actuator, LoopCommand, Sensor, SensorFault, Tick};
+use fcc_fixed_wing::{Autopilot, AutopilotCommand};
 use fcc_flight::config::{Config, PreparedPlan};
 use fcc_flight::flight::assemble;
+use fcc_guidance::Mode;
 use fcc_plan::{Home, Item, Place, Plan};
 use fcc_runtime::{Link, Machine, Message, Parts};
 use fcc_sim::TruthHandle;

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use fcc_core::flight::AutopilotCommand;
-use fcc_core::flight::guidance::Mode;
+use fcc_fixed_wing::AutopilotCommand;
+use fcc_guidance::Mode;
 
 use crate::flight::{Flight, HOME};
 

@@ -5,9 +5,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use fcc_conformance::allocator_calls;
-use fcc_core::flight::guidance::{Mode, Progress};
-use fcc_core::flight::{AutopilotCommand, Contingency, Measurements, Resume, Surfaces};
+use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Actuator, ActuatorFault, Reading, Sensor, SensorFault, State, Tick};
+use fcc_fixed_wing::{AutopilotCommand, Contingency, Resume};
+use fcc_guidance::{Mode, Progress};
 use fcc_plan::Place;
 use fcc_runtime::Message;
 

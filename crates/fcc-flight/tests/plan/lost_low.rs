@@ -3,9 +3,10 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{AutopilotCommand, Measurements};
+use fcc_core::flight::Measurements;
 use fcc_core::framework::{Sensor, SensorFault, State, Tick};
+use fcc_fixed_wing::AutopilotCommand;
+use fcc_guidance::Mode;
 
 use crate::battery::there_and_back;
 use crate::flight::Flight;

@@ -20,9 +20,10 @@ mod terrain;
 mod terrain_ahead;
 
 use fcc_conformance::allocator_calls;
-use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{AutopilotCommand, Position};
+use fcc_core::flight::Position;
 use fcc_core::framework::State;
+use fcc_fixed_wing::AutopilotCommand;
+use fcc_guidance::Mode;
 use fcc_runtime::Message;
 use fcc_telemetry::FlightRecord;
 

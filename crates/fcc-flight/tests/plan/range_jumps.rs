@@ -3,9 +3,10 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
-use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{AutopilotCommand, Measurements};
+use fcc_core::flight::Measurements;
 use fcc_core::framework::{Reading, Sensor, SensorFault, Tick, Time};
+use fcc_fixed_wing::AutopilotCommand;
+use fcc_guidance::Mode;
 use fcc_sim::TruthHandle;
 
 use crate::battery::there_and_back;

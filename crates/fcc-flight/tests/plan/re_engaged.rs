@@ -1,8 +1,8 @@
 //! Disengaged on the wheels after a landing, and engaged again, by a plan that begins with
 //! a take-off.
 
-use fcc_core::flight::guidance::Mode;
 use fcc_core::framework::{LoopCommand, State};
+use fcc_guidance::Mode;
 
 use crate::flight::Flight;
 
@@ -17,7 +17,7 @@ fn speed_mps(flight: &Flight) -> f64 {
     velocity.north_mps.hypot(velocity.east_mps)
 }
 
-fn send(flight: &mut Flight, command: LoopCommand<fcc_core::flight::AutopilotCommand>) {
+fn send(flight: &mut Flight, command: LoopCommand<fcc_fixed_wing::AutopilotCommand>) {
     flight.link.commands.send(command).unwrap();
     flight.tick();
     flight.tick();

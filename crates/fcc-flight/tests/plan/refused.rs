@@ -1,8 +1,9 @@
 //! Commands that are not carried out: their sender is told why.
 
-use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{AutopilotCommand, Position};
+use fcc_core::flight::Position;
 use fcc_core::framework::State;
+use fcc_fixed_wing::AutopilotCommand;
+use fcc_guidance::Mode;
 
 use crate::flight::{ALTITUDE_M, Flight, HOME, legs};
 

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{AutopilotCommand, Measurements, Position, Velocity};
+use fcc_core::flight::{Measurements, Position, Velocity};
 use fcc_core::framework::{Sensor, SensorFault, State, Tick};
+use fcc_fixed_wing::AutopilotCommand;
+use fcc_guidance::Mode;
 use fcc_plan::Place;
 
 use crate::contingency::fenced;

@@ -1,12 +1,12 @@
 //! The plan is replaced in flight.
 
 use fcc_conformance::allocator_calls;
-use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{Autopilot, AutopilotCommand, PlanReplacement};
 use fcc_core::framework::{EventKind, LoopCommand, Message, State};
+use fcc_fixed_wing::{Autopilot, AutopilotCommand, PlanReplacement};
 use fcc_flight::config::PreparedPlan;
 use fcc_flight::flight::about;
 use fcc_flight::replay::{recorded_config, replay};
+use fcc_guidance::Mode;
 use fcc_plan::{Item, Place, Plan};
 use fcc_record::{Recorder, RecorderSettings, RecordingPace};
 use fcc_replay::{Chain, Identity};

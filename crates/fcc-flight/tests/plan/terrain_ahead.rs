@@ -2,9 +2,9 @@
 //! on the same.
 
 use fcc_conformance::allocator_calls;
-use fcc_core::flight::Contingency;
-use fcc_core::flight::guidance::Mode;
 use fcc_core::framework::State;
+use fcc_fixed_wing::Contingency;
+use fcc_guidance::Mode;
 
 use crate::contingency::{fenced, go_to};
 use crate::flight::{ALTITUDE_M, Flight, HOME};

@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use fcc_core::flight::guidance::{GuidanceConfig, TimedPatternConfig};
-use fcc_core::flight::{Autopilot, AutopilotConfig, StickTakeover};
 use fcc_core::framework::{Event, EventKind, LoopCommand, Message, State};
+use fcc_fixed_wing::{Autopilot, AutopilotConfig, StickTakeover};
 use fcc_flight::flight::true_sample;
+use fcc_guidance::{GuidanceConfig, TimedPatternConfig};
 use fcc_runtime::{Link, LoopConfig, Machine, Parts};
 use fcc_sim::{Severity, SimConfig};
 use fcc_telemetry::{LegScore, PatternScorer};
@@ -16,7 +16,7 @@ use crate::world::{Manner, Wire};
 
 pub(crate) const PERIOD_NS: i64 = 25_000_000;
 
-type Kind = EventKind<fcc_core::flight::AutopilotCommand>;
+type Kind = EventKind<fcc_fixed_wing::AutopilotCommand>;
 
 pub(crate) struct Flight {
     pub(crate) wire: Wire,
@@ -24,7 +24,7 @@ pub(crate) struct Flight {
     link: Link<Autopilot>,
     scorer: PatternScorer,
     tick: i64,
-    events: Vec<Event<fcc_core::flight::AutopilotCommand>>,
+    events: Vec<Event<fcc_fixed_wing::AutopilotCommand>>,
     seen: usize,
     /// The bank commanded in the last tick.
     commanded_rad: Option<f64>,

@@ -6,9 +6,9 @@ mod datarefs;
 mod flight;
 mod world;
 
-use fcc_core::flight::flags::{NOT_FOLLOWED, SOURCE_CLOCK};
 use fcc_core::framework::State::{Engaged, Failsafe, Standby};
 use fcc_core::framework::{EventKind, Notice};
+use fcc_fixed_wing::flags::{NOT_FOLLOWED, SOURCE_CLOCK};
 use flight::{Flight, PERIOD_NS};
 use world::Manner;
 

@@ -11,7 +11,7 @@ use axum::http::StatusCode;
 use axum::response::Response;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use fcc_core::flight::Autopilot;
+use fcc_fixed_wing::Autopilot;
 use fcc_record::RecordMessages;
 use fcc_telemetry::FlightRecord;
 use fcc_telemetry::schema::read_words;

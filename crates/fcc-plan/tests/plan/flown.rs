@@ -3,8 +3,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use fcc_core::flight::path::{BankCommand, L1Config, LocalPlane, NpfgConfig};
-use fcc_core::flight::route::{
+use fcc_guidance::path::{BankCommand, L1Config, LocalPlane, NpfgConfig};
+use fcc_guidance::route::{
     Destination, Follower, LawConfig, OverGround, Route, RouteConfig, Step, Until,
 };
 use nalgebra::{Vector2, Vector3};

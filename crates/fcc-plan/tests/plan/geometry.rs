@@ -1,6 +1,6 @@
 //! The plane that a tick uses against geodesics, anywhere on the earth.
 
-use fcc_core::flight::path::LocalPlane;
+use fcc_guidance::path::LocalPlane;
 use fcc_plan::Place;
 use proptest::prelude::*;
 

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use std::sync::Mutex;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use fcc_core::flight::{Autopilot, Surfaces};
+use fcc_core::flight::Surfaces;
 use fcc_core::framework::{LoopCommand, Switch};
+use fcc_fixed_wing::Autopilot;
 use fcc_flight::config::{AirframeSection, Config};
 use fcc_flight::flight::about;
 use fcc_plan::FileError;

@@ -2,7 +2,7 @@
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use fcc_core::flight::inertial::{self, GeodeticPosition, MAGNETIC_MODEL_YEARS};
+use fcc_navigation::inertial::{self, GeodeticPosition, MAGNETIC_MODEL_YEARS};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

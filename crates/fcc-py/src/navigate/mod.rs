@@ -11,11 +11,11 @@ mod units;
 
 use std::time::Duration;
 
-use fcc_core::flight::inertial::{
+use fcc_core::framework::Time;
+use fcc_navigation::inertial::{
     InertialNavigation, Innovation, KalmanConfig, KalmanNavigation, Observation, Solution,
     ThesisNavigation,
 };
-use fcc_core::framework::Time;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -3,7 +3,7 @@
 
 use std::ffi::CString;
 
-use fcc_core::flight::inertial::{Innovation, Solution};
+use fcc_navigation::inertial::{Innovation, Solution};
 use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 

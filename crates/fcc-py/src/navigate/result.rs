@@ -1,7 +1,7 @@
 //! Estimates as a dict of arrays.
 
-use fcc_core::flight::inertial::{Innovation, ObservationKind, Solution};
 use fcc_core::flight::orientation::euler_from_quaternion;
+use fcc_navigation::inertial::{Innovation, ObservationKind, Solution};
 use numpy::{PyArrayMethods, ToPyArray};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

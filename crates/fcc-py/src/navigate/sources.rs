@@ -2,8 +2,8 @@
 
 use std::collections::HashSet;
 
-use fcc_core::flight::inertial::{GeodeticPosition, Observation, Spikes};
 use fcc_core::framework::Time;
+use fcc_navigation::inertial::{GeodeticPosition, Observation, Spikes};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

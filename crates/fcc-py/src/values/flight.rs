@@ -1,8 +1,9 @@
 //! The values of a flight.
 
-use fcc_core::flight::navigation::Estimate;
-use fcc_core::flight::{Measurements, Plant, PlantState, Setpoints, Surfaces};
+use fcc_core::flight::{Measurements, Plant, PlantState, Surfaces};
 use fcc_core::framework::{Reading, Switch, Time};
+use fcc_fixed_wing::Setpoints;
+use fcc_navigation::Estimate;
 use fcc_sim::{RawTruth, Truth};
 use numpy::PyArray1;
 use pyo3::prelude::*;

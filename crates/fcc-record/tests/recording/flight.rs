@@ -88,7 +88,7 @@ pub(crate) fn record(number: u64) -> FlightRecord {
 
 pub(crate) fn event(
     record: &FlightRecord,
-    kind: EventKind<fcc_core::flight::AutopilotCommand>,
+    kind: EventKind<fcc_fixed_wing::AutopilotCommand>,
 ) -> FlightMessage {
     Message::Event(Event {
         tick: record.tick.number,

@@ -1,12 +1,13 @@
 //! What is recorded is read back bit for bit.
 
-use fcc_core::flight::guidance::{Mode, Progress, Targets};
-use fcc_core::flight::route::TookOff;
-use fcc_core::flight::{AltitudeReference, AutopilotCommand, Position, Resume, Surfaces};
+use fcc_core::flight::{AltitudeReference, Position, Surfaces};
 use fcc_core::framework::{
     ActuatorFault, Cause, EventKind, Flags, LoopCommand, Message, Notice, SensorFault, Stage,
     State, Time,
 };
+use fcc_fixed_wing::{AutopilotCommand, Resume};
+use fcc_guidance::route::TookOff;
+use fcc_guidance::{Mode, Progress, Targets};
 use fcc_record::{Compression, Item, Recorder, RecorderSettings, Recording};
 use fcc_telemetry::FlightMessage;
 use proptest::prelude::*;

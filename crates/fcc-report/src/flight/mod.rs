@@ -11,9 +11,9 @@ mod replaced_plans;
 mod track;
 
 use comfy_table::Table;
-use fcc_core::flight::Autopilot;
-use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_core::framework::{EventKind, EventOf, RecordOf};
+use fcc_fixed_wing::Autopilot;
+use fcc_guidance::TimedPatternConfig;
 use fcc_telemetry::units::{AVIATION, M_FT, MPS_KT, PA_HPA};
 use fcc_telemetry::{FlightScore, PatternScorer, Sample, ScoredBy};
 use serde::Serialize;

@@ -1,9 +1,9 @@
 //! The items of a flight plan as they were flown, and the landing, by what was recorded.
 
 use comfy_table::Table;
-use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{Autopilot, ITEM_REACHED};
 use fcc_core::framework::{Notice, RecordOf, State};
+use fcc_fixed_wing::{Autopilot, ITEM_REACHED};
+use fcc_guidance::Mode;
 use fcc_telemetry::units::{M_FT, MPS_KT};
 use serde::Serialize;
 

@@ -1,6 +1,6 @@
 //! The plans that replaced the first one in flight.
 
-use fcc_core::flight::Setpoints;
+use fcc_fixed_wing::Setpoints;
 use fcc_record::timestamp;
 use serde::Serialize;
 

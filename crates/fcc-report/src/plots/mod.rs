@@ -129,7 +129,7 @@ fn title_of<C: Telemetry>(path: &str) -> String {
 
 #[cfg(all(test, feature = "flight"))]
 mod tests {
-    use fcc_core::flight::Autopilot;
+    use fcc_fixed_wing::Autopilot;
 
     use super::*;
 

@@ -163,8 +163,9 @@ mod flight {
     };
     use core::f64::consts::{FRAC_PI_2, PI};
 
-    use fcc_core::flight::{Autopilot, AutopilotCommand, Position, why_refused};
+    use fcc_core::flight::Position;
     use fcc_core::framework::Notice;
+    use fcc_fixed_wing::{Autopilot, AutopilotCommand, why_refused};
 
     use super::{Commandable, CommandableSetpoint, JointSetpoints};
 
@@ -279,7 +280,8 @@ mod flight {
 #[cfg(all(test, feature = "flight"))]
 mod tests {
     use crate::units::AVIATION;
-    use fcc_core::flight::{ALTIMETER_SETTINGS_PA, Autopilot, AutopilotCommand};
+    use fcc_core::flight::ALTIMETER_SETTINGS_PA;
+    use fcc_fixed_wing::{Autopilot, AutopilotCommand};
 
     use super::*;
 

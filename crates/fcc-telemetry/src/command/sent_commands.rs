@@ -206,8 +206,8 @@ fn only_engaged(state: State) -> String {
 
 #[cfg(all(test, feature = "flight"))]
 mod tests {
-    use fcc_core::flight::{Autopilot, AutopilotCommand, flags};
     use fcc_core::framework::{Cause, Controller, Event, Time};
+    use fcc_fixed_wing::{Autopilot, AutopilotCommand, flags};
 
     use super::*;
 

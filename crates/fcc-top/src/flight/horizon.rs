@@ -1,6 +1,6 @@
 //! The artificial horizon.
 
-use fcc_core::flight::Autopilot;
+use fcc_fixed_wing::Autopilot;
 use ratatui::Frame;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};

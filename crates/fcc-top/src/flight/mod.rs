@@ -4,8 +4,8 @@
 mod horizon;
 mod table;
 
-use fcc_core::flight::Autopilot;
 use fcc_core::framework::{RecordOf, State};
+use fcc_fixed_wing::Autopilot;
 use fcc_telemetry::ShownAltitude;
 use fcc_telemetry::units::PA_HPA;
 use serde_json::{Map, Value, json};

@@ -1,7 +1,7 @@
 //! Actual values, set points, and the positions of the controls.
 
-use fcc_core::flight::Autopilot;
 use fcc_core::framework::{Reading, RecordOf, State};
+use fcc_fixed_wing::Autopilot;
 use fcc_telemetry::ShownAltitude;
 use fcc_telemetry::units::{M_FT, MPS_KT};
 use ratatui::Frame;

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use fcc_core::flight::calibration::{GuidedCalibration, Next};
+use fcc_calibration::{GuidedCalibration, Next};
 use fcc_core::framework::{Tick, Time};
 use fcc_flight::calibrate::{
     CalibrationFileError, CalibrationKind, CalibrationSession, Entry, Extent,

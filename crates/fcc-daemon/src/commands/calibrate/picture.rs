@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
+use fcc_calibration::{CELLS, CELLS_OF_BANDS, Coverage, GuidedCalibration, Place};
 use fcc_core::flight::Measurements;
-use fcc_core::flight::calibration::{CELLS, CELLS_OF_BANDS, Coverage, GuidedCalibration, Place};
 use fcc_flight::calibrate::{CalibrationKind, words};
 
 /// Characters of the bar.

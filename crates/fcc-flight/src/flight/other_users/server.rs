@@ -8,8 +8,8 @@ use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use fcc_core::flight::Setpoints;
 use fcc_core::framework::{Controller, EventOf, RecordOf};
+use fcc_fixed_wing::Setpoints;
 use fcc_live::{Commandable, PendingCommand, PlantLimits, SentCommands, Verdict};
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::socket::{Backlog, getsockopt, listen, sockopt::PeerCredentials};

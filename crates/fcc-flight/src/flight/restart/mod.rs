@@ -22,9 +22,9 @@ use std::fs::File;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use fcc_core::flight::guidance::{Progress, Targets};
-use fcc_core::flight::{AutopilotCommand, Resume};
 use fcc_core::framework::{EventKind, LoopCommand, Message, State, Switch};
+use fcc_fixed_wing::{AutopilotCommand, Resume};
+use fcc_guidance::{Progress, Targets};
 use fcc_runtime::{CommandSender, SwitchOwner};
 use fcc_telemetry::{FlightEvent, FlightMessage};
 

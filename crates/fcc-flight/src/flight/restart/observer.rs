@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use fcc_core::flight::{Autopilot, AutopilotCommand};
 use fcc_core::framework::{ControlAuthority, Message};
+use fcc_fixed_wing::{Autopilot, AutopilotCommand};
 use fcc_telemetry::{FlightEvent, FlightRecord};
 
 use super::super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use fcc_core::flight::{Measurements, Plant, PlantState, Position};
 use fcc_core::framework::{Reading, Time};
+use fcc_fixed_wing::can_be_reached;
 
 /// Readings older than this are not stored: the aircraft has flown on.
 const MAX_AGE: Duration = Duration::from_secs(1);
@@ -96,7 +97,7 @@ impl PresentPlace {
         };
         let [latest, before] = self.positions.map(|is| {
             let near =
-                is.source != was.source || is.value.can_be_reached(&was.value, age.as_secs_f64());
+                is.source != was.source || can_be_reached(&is.value, &was.value, age.as_secs_f64());
             (!is.is_never()).then_some(near)
         });
         match (latest, before) {

@@ -10,11 +10,11 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use fcc_core::flight::guidance::Targets;
-use fcc_core::flight::{AutopilotCommand, Resume};
 use fcc_core::framework::{
     Controller, EventKind, Flags, LoopCommand, Message, State, Switch, Time,
 };
+use fcc_fixed_wing::{AutopilotCommand, Resume};
+use fcc_guidance::Targets;
 use fcc_runtime::CommandSender;
 use fcc_telemetry::FlightMessage;
 use fcc_telemetry::units::{M_FT, MPS_KT};
@@ -205,8 +205,9 @@ fn recovered(resume: &Resume, age: Duration) -> String {
 
 #[cfg(test)]
 mod tests {
-    use fcc_core::flight::guidance::{Mode, Progress};
-    use fcc_core::flight::{Autopilot, Position};
+    use fcc_core::flight::Position;
+    use fcc_fixed_wing::Autopilot;
+    use fcc_guidance::{Mode, Progress};
     use fcc_runtime::{LoopConfig, Machine, Parts};
     use fcc_timer::ManualTimer;
 

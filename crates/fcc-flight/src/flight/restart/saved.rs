@@ -1,7 +1,8 @@
 //! The state of a flight that is stored, so that it can be continued.
 
-use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{AutopilotCommand, Position, Resume};
+use fcc_core::flight::Position;
+use fcc_fixed_wing::{AutopilotCommand, Resume};
+use fcc_guidance::Mode;
 
 use super::boot_clock::BootInstant;
 use super::kept_plan::SavedPlan;

@@ -87,9 +87,10 @@ pub fn read_state(body: &[u8]) -> Option<bool> {
 
 #[cfg(test)]
 mod tests {
-    use fcc_core::flight::guidance::{Mode, Progress, Targets};
-    use fcc_core::flight::route::TookOff;
-    use fcc_core::flight::{AltitudeReference, Position, Resume, Surfaces};
+    use fcc_core::flight::{AltitudeReference, Position, Surfaces};
+    use fcc_fixed_wing::Resume;
+    use fcc_guidance::route::TookOff;
+    use fcc_guidance::{Mode, Progress, Targets};
     use proptest::prelude::*;
 
     use super::super::boot_clock::BootInstant;

@@ -4,9 +4,10 @@
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
-use fcc_core::flight::guidance::{Mode, Progress, Targets};
-use fcc_core::flight::route::TookOff;
-use fcc_core::flight::{AltitudeReference, Position, Resume, Surfaces};
+use fcc_core::flight::{AltitudeReference, Position, Surfaces};
+use fcc_fixed_wing::Resume;
+use fcc_guidance::route::TookOff;
+use fcc_guidance::{Mode, Progress, Targets};
 use fcc_telemetry::units::{COMMANDED_ALTIMETER_SETTING_PA, COMMANDED_HEADING_RAD};
 use serde::{Deserialize, Serialize};
 

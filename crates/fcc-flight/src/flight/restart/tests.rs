@@ -4,11 +4,12 @@ use std::fs;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, AtomicU32, Ordering};
 
-use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{Autopilot, Measurements, Setpoints};
+use fcc_core::flight::Measurements;
 use fcc_core::framework::{
     ActuatorFault, ControlAuthority, Event, PlantId, Reading, Record, Released, Tick, Time,
 };
+use fcc_fixed_wing::{Autopilot, Setpoints};
+use fcc_guidance::Mode;
 use fcc_runtime::{LoopConfig, Machine, Parts};
 use fcc_timer::ManualTimer;
 use tempfile::TempDir;

@@ -1,10 +1,10 @@
 //! One method on a recorded flight.
 
-use fcc_core::flight::Autopilot;
-use fcc_core::flight::inertial::{
+use fcc_core::framework::{RecordOf, Time};
+use fcc_fixed_wing::Autopilot;
+use fcc_navigation::inertial::{
     Innovation, ObservationKind, RawNavigation, RawNavigationConfig, RawNavigationMethod,
 };
-use fcc_core::framework::{RecordOf, Time};
 use serde::Serialize;
 
 use super::quantities::{self, ALL, HEADING, Values};

@@ -7,9 +7,9 @@ mod quantities;
 
 use std::fmt::Write as _;
 
-use fcc_core::flight::Autopilot;
-use fcc_core::flight::inertial::RawNavigationConfig;
 use fcc_core::framework::RecordOf;
+use fcc_fixed_wing::Autopilot;
+use fcc_navigation::inertial::RawNavigationConfig;
 use serde::Serialize;
 
 use crate::plot::{Detail, Figure, figure};

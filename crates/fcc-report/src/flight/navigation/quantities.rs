@@ -1,8 +1,9 @@
 //! What navigation by different methods is compared in, in display units.
 
-use fcc_core::flight::inertial::Solution;
-use fcc_core::flight::{Autopilot, Measurements};
+use fcc_core::flight::Measurements;
 use fcc_core::framework::{Reading, RecordOf, Time};
+use fcc_fixed_wing::Autopilot;
+use fcc_navigation::inertial::Solution;
 use fcc_telemetry::units::M_FT;
 
 use crate::plots::{Panel, Plot, Scale};

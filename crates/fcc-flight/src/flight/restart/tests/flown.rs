@@ -1,8 +1,9 @@
 //! What the interrupted flight flew.
 
-use fcc_core::flight::guidance::{Mode, Progress, Targets};
-use fcc_core::flight::route::TookOff;
-use fcc_core::flight::{AltitudeReference, Resume, Surfaces};
+use fcc_core::flight::{AltitudeReference, Surfaces};
+use fcc_fixed_wing::Resume;
+use fcc_guidance::route::TookOff;
+use fcc_guidance::{Mode, Progress, Targets};
 
 pub(super) const FLOWN: Resume = Resume {
     progress: Progress {

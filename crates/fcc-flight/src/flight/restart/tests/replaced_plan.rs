@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use fcc_core::flight::PlanReplacement;
+use fcc_fixed_wing::PlanReplacement;
 
 use super::*;
 use crate::config::PreparedPlan;

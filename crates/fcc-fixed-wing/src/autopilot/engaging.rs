@@ -1,0 +1,135 @@
+//! When the autopilot may engage, and how it begins.
+
+use super::capture::Capture;
+use super::degraded::Degraded;
+use super::ground_contact::ToldOnce;
+use super::upset::is_far_from_level;
+use super::{Autopilot, flags};
+use crate::control::ElevatorTrim;
+use fcc_core::flight::{AltitudeReference, Measurements, PlantState, Surfaces};
+use fcc_core::framework::{Flags, Time};
+use fcc_guidance::{ActiveMode, Mode, ModeInput, Targets};
+use fcc_navigation::inertial::RawNavigation;
+
+/// Of a sum of the plant's steps, s.
+const ROUNDING_S: f64 = 1e-6;
+
+impl Autopilot {
+    /// Why the autopilot does not engage.
+    pub(super) fn inhibits(&self, now: Time, measurements: &Measurements) -> Flags {
+        let estimate = self.navigation.estimate();
+        let contradictions = self.navigation.contradictions();
+        let stale = self.stale(now);
+        let is_slow = estimate.airspeed_mps < self.config.envelope.min_airspeed_mps
+            && !stale.intersects(flags::AIRSPEED);
+        (self.unsafe_with(stale, now, measurements)
+            | self.not_permitted(now, measurements)
+            | self.route_inhibits()
+            | self.battery_inhibits(now))
+        .with(
+            flags::ATTITUDE_AGAINST_RATES,
+            contradictions.attitude_and_rates,
+        )
+        .with(flags::LOAD_AGAINST_GRAVITY, contradictions.load)
+        .with(flags::PITCH_AGAINST_FORCE, contradictions.pitch_and_force)
+        .with(flags::PLANT_REPLAYING, self.plant_is(PlantState::Replaying))
+        .with(flags::PILOT_TAKES_OVER, self.pilot.is_moved())
+        .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))
+        .with(flags::PLANT_STALLED, self.clock.has_stopped())
+        .with(
+            flags::SETTLING,
+            self.settled_s.is_none_or(|settled_s| {
+                settled_s + ROUNDING_S < self.config.settling.as_secs_f64()
+            }),
+        )
+        .with(
+            flags::UNCHECKED_GYROSCOPE,
+            self.raw.as_ref().is_some_and(RawNavigation::awaits_field),
+        )
+        .with(
+            flags::TOO_SLOW,
+            self.may_not_take_off_here(now)
+                || is_slow
+                    && !self.begins_on_runway()
+                    && !(is_far_from_level(estimate) && self.may_engage_in_upset()),
+        )
+        .with(
+            flags::UPSET,
+            is_far_from_level(estimate) && !self.may_engage_in_upset(),
+        )
+    }
+
+    /// Engages: what is flown now is held, or the pattern begins.
+    pub(super) fn begin_flight(&mut self, now: Time) {
+        self.distrusted = Flags::NONE;
+        self.told_once = ToldOnce::default();
+        self.contingencies.reset();
+        self.pilot.set_engaged(true);
+        self.degraded = Degraded::default();
+        let estimate = *self.navigation.estimate();
+        self.targets = Targets {
+            airspeed_mps: self.config.envelope.allowed_airspeed(estimate.airspeed_mps),
+            heading_rad: estimate.heading_rad,
+            altitude_m: estimate.altitude_m,
+        };
+        self.reference = AltitudeReference::PressureLevel;
+        self.navigation.mark_altitude();
+        self.capture = Some(Capture::of(estimate.altitude_m));
+        self.change_mode(ModeInput::Engage);
+        let standing = self
+            .accepted
+            .surfaces
+            .fresh(now, self.config.max_age)
+            .unwrap_or(Surfaces {
+                throttle: self.config.airspeed.trim_throttle,
+                ..Surfaces::default()
+            });
+        let trim = standing.elevator_trim.filter(|_| self.config.trims);
+        self.trim = ElevatorTrim::new(trim);
+        self.release = None;
+        self.actuation.engage(&standing);
+        self.take_over(&standing);
+        self.begin_straight_trims();
+        self.begin_watching_for_upsets();
+    }
+
+    /// Engages the loops with the present throttle and surfaces.
+    pub(super) fn take_over(&mut self, standing: &Surfaces) {
+        self.last = *standing;
+        self.trim.take_over(standing.elevator_trim);
+        let estimate = *self.navigation.estimate();
+        self.bank.reset(estimate.roll_rad);
+        let schedule = self.schedule();
+        self.heading
+            .engage(standing.aileron, standing.rudder, &estimate, schedule);
+        self.altitude.engage(standing.elevator, &estimate, schedule);
+        let demand = self.throttle_demand(estimate.climb_rate_mps);
+        self.airspeed.engage(standing.throttle, &demand, &estimate);
+        self.keep_trims();
+    }
+
+    /// Starts the loops at the present state with the trims that they have found, after
+    /// a time in which nobody else flew: the surfaces stood at these trims, so what is
+    /// off now is none of them.
+    pub(super) fn rejoin(&mut self) {
+        let estimate = *self.navigation.estimate();
+        self.bank.reset(estimate.roll_rad);
+        self.heading.restart(&estimate);
+        self.altitude.restart(&estimate);
+        self.airspeed.restart(&estimate);
+    }
+
+    /// Enters the mode given by the transition table, with the present targets.
+    pub(super) fn change_mode(&mut self, input: ModeInput) {
+        let (config, plan) = (self.config.guidance, self.config.plan);
+        let Some(mode) = self.guidance.mode().after(input, config.mode()) else {
+            return;
+        };
+        if let (Mode::Plan, Some(plan)) = (mode, plan) {
+            self.begin_plan(&plan, 0);
+        } else {
+            self.leave();
+            self.guidance = ActiveMode::enter(mode, &config, self.targets);
+        }
+    }
+}

@@ -1,0 +1,310 @@
+//! The outputs of the failsafe, its configuration, and the way back.
+
+use core::time::Duration;
+
+use super::degraded::{Lateral, Power, Vertical, held_without};
+use super::{Autopilot, flags};
+use crate::control::Envelope;
+use fcc_core::blocks::{limit_abs, wrap_two_pi};
+use fcc_core::flight::atmosphere::true_airspeed_mps;
+use fcc_core::flight::{Attitude, BodyRates, Measurements, Surfaces};
+use fcc_core::framework::{Flags, Time};
+use fcc_navigation::{Estimate, Receiver, ReturningAltitude};
+
+/// What ends a failsafe in which nothing sound can be held.
+///
+/// ```
+/// use fcc_fixed_wing::{FailsafeConfig, FailsafeEnd};
+///
+/// assert_eq!(FailsafeConfig::default().end, FailsafeEnd::Release);
+/// ```
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum FailsafeEnd {
+    /// The controls are given back: a pilot is there.
+    #[default]
+    Release,
+    /// None is there: a glide in a gentle turn, with idle throttle, as far as
+    /// the attitude is known.
+    Glide,
+}
+
+/// The failsafe of lost sensors.
+///
+/// ```
+/// use core::time::Duration;
+/// use fcc_fixed_wing::{FailsafeConfig, FailsafeEnd};
+///
+/// // Without a pilot.
+/// let config = FailsafeConfig { end: FailsafeEnd::Glide, ..FailsafeConfig::default() };
+/// assert_eq!(config.recovered_after, Duration::from_secs(2));
+/// ```
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct FailsafeConfig {
+    /// What ends it.
+    pub end: FailsafeEnd,
+    /// A glide begins when nothing sound could be held for so long.
+    pub hold: Duration,
+    /// How long at most is flown without a quantity.
+    pub degraded: Duration,
+    /// What was flown before is continued when all has been good for so long;
+    /// zero for never.
+    pub recovered_after: Duration,
+    /// The ratio of distance to height of the best glide.
+    pub glide_ratio: f64,
+    /// The bank of the glide, rad.
+    pub glide_bank_rad: f64,
+}
+
+impl Default for FailsafeConfig {
+    /// A Cessna 172: its best glide is 1.5 nautical miles for 1,000 ft (handbook
+    /// of the 172P, 1981, section 3).
+    fn default() -> Self {
+        Self {
+            end: FailsafeEnd::Release,
+            hold: Duration::from_secs(5),
+            degraded: Duration::from_secs(600),
+            recovered_after: Duration::from_secs(2),
+            glide_ratio: 9.1,
+            glide_bank_rad: 0.261_799, // 15°
+        }
+    }
+}
+
+/// Sink rate above that of the glide per airspeed below it, m/s per m/s: the
+/// airspeed error decays with g/V times it, in 3 s.
+const GLIDE_GAIN: f64 = 1.2;
+
+/// The most that the lowest and the stalling airspeed are of an airspeed that is only
+/// assumed.
+const LOWEST_OF_ASSUMED: f64 = 0.8;
+const STALL_OF_ASSUMED: f64 = 0.6;
+
+/// Flight path per height below the altitude that is to be kept by pitch, rad/m:
+/// a bandwidth of 0.1 rad/s at 100 kt, a tenth of the flight path's. At most 2°:
+/// the power stays.
+const PATH_PER_M: f64 = 0.002;
+const MOST_PATH_RAD: f64 = 0.035;
+
+/// The trims that the loops had found when the body rates last changed: with
+/// rates that no longer change, the loops' integrals run away.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct KeptTrims {
+    pub(super) found_with: BodyRates,
+    trims: Surfaces,
+}
+
+impl Autopilot {
+    /// Keeps the present trims.
+    pub(super) fn keep_trims(&mut self) {
+        self.kept_trims = KeptTrims {
+            found_with: self.accepted.body_rates.value,
+            trims: self.trims(),
+        };
+    }
+
+    /// What the table of [degraded flight](super::degraded) holds without the
+    /// lost quantities; idle throttle while thrust is reversed. A silent plant
+    /// keeps its throttle: it may return with another aircraft. What was
+    /// rejected as implausible is not believed again while the failsafe lasts,
+    /// unless it agrees with the estimate, or is an altitude that
+    /// [returns](ReturningAltitude).
+    pub(super) fn safest(&mut self, now: Time, measured: &Measurements) -> Surfaces {
+        // One that was frozen stood still: what comes after it is no jump.
+        self.degraded.frozen |= flags::unusable(Flags::NONE, self.frozen());
+        let jumped = self.rejected(measured).bits() & !self.degraded.frozen.bits();
+        let distrusted = self.distrusted | Flags::from_bits(jumped);
+        if distrusted.contains(flags::ALTITUDE) && !self.distrusted.contains(flags::ALTITUDE) {
+            self.returning_altitude = ReturningAltitude::after(self.accepted.altitude_m);
+        }
+        self.distrusted = distrusted;
+        if !self.degraded.is_failsafe {
+            self.degraded.begin(self.navigation.estimate().altitude_m);
+            self.begin_low();
+            if self.frozen().contains(flags::FROZEN_BODY_RATES) {
+                let trims = Surfaces {
+                    throttle: self.last.throttle,
+                    ..self.kept_trims.trims
+                };
+                self.take_over(&trims);
+            }
+        }
+        let lost = self.unreplaced(now, self.lost(now, measured));
+        let held = held_without(lost);
+        let glides = self.degraded.glides;
+        self.setpoints.roll_rad = 0.0;
+        self.setpoints.climb_rate_mps = 0.0;
+        let silent = self.is_silent(now);
+        let idle = glides && !silent || measured.other_control.value.reverse_thrust;
+        if held.lateral == Lateral::Trims {
+            self.setpoints.pitch_rad = 0.0;
+            self.recovery.end();
+            if silent {
+                return self.silent_trims();
+            }
+            let throttle = if idle { 0.0 } else { self.airspeed.trim() };
+            return Surfaces {
+                throttle,
+                ..self.trims()
+            };
+        }
+        let config = self.config.failsafe;
+        let estimate = self.estimate_without(lost);
+        if let Some(recovering) = self.recover_degraded(now, lost, &estimate, idle) {
+            return recovering;
+        }
+        let (schedule, dt_s) = (self.schedule_at(estimate.airspeed_mps), self.clock.step_s());
+        if !idle && let Some(low) = self.fly_low(lost, &estimate, dt_s) {
+            return low;
+        }
+        let envelope = self.envelope_without(lost, &estimate);
+        // A constant pitch: one that follows the airspeed lets it diverge.
+        let trimmed = self.schedule_at(if glides {
+            self.config.envelope.best_glide_airspeed_mps
+        } else {
+            self.trimmed_mps()
+        });
+        let roll_rad = if glides { config.glide_bank_rad } else { 0.0 };
+        let lateral = self.heading.hold_bank(roll_rad, &estimate, schedule, dt_s);
+        let glide_mps = estimate.true_airspeed_mps / config.glide_ratio;
+        let (kept_m, kept_mps) = (self.kept_altitude_m(), self.kept_climb_rate_mps());
+        let altitude = &mut self.altitude;
+        let vertical = match held.vertical {
+            Vertical::Level if glides => {
+                let fast_mps = estimate.airspeed_mps - self.config.envelope.best_glide_airspeed_mps;
+                let climb_rate_mps = GLIDE_GAIN * fast_mps - glide_mps;
+                altitude.hold_climb_rate(climb_rate_mps, &estimate, &envelope, schedule, dt_s)
+            }
+            Vertical::Level => {
+                altitude.hold_climb_rate(kept_mps, &estimate, &envelope, schedule, dt_s)
+            }
+            Vertical::Pitch | Vertical::Trim => {
+                let low_m = kept_m - estimate.altitude_m;
+                let path_rad = if glides {
+                    -1.0 / config.glide_ratio
+                } else if lost.contains(flags::ALTITUDE) {
+                    0.0
+                } else {
+                    limit_abs(PATH_PER_M * low_m, MOST_PATH_RAD)
+                };
+                altitude.hold_path_pitch(path_rad, trimmed, &estimate, &envelope, schedule, dt_s)
+            }
+        };
+        self.setpoints.roll_rad = lateral.roll_rad;
+        self.setpoints.climb_rate_mps = vertical.climb_rate_mps;
+        self.setpoints.pitch_rad = vertical.pitch_rad;
+        let throttle = if idle {
+            0.0
+        } else if held.power == Power::Airspeed {
+            let demand = self.throttle_demand(vertical.climb_rate_mps);
+            self.airspeed.step(&demand, &estimate, dt_s)
+        } else {
+            self.airspeed.trim()
+        };
+        Surfaces {
+            throttle,
+            elevator: self.actuation.elevator(vertical.elevator),
+            aileron: lateral.aileron,
+            rudder: lateral.rudder,
+            ..Surfaces::IDLE
+        }
+    }
+
+    /// The estimate, with what takes the place of the lost quantities.
+    fn estimate_without(&self, lost: Flags) -> Estimate {
+        let mut estimate = *self.navigation.estimate();
+        if lost.contains(flags::SPECIFIC_FORCE) {
+            estimate.side_force_mps2 = 0.0;
+        }
+        if lost.contains(flags::AIRSPEED) {
+            // That of the pitch and power that are held.
+            estimate.airspeed_mps = if self.degraded.glides {
+                self.config.envelope.best_glide_airspeed_mps
+            } else {
+                self.trimmed_mps()
+            };
+            estimate.true_airspeed_mps =
+                true_airspeed_mps(estimate.airspeed_mps, estimate.altitude_m);
+        }
+        estimate
+    }
+
+    /// The airspeed of the pitch and the power that are held, m/s.
+    fn trimmed_mps(&self) -> f64 {
+        let other_mps = self.degraded.trimmed_mps;
+        other_mps.unwrap_or(self.targets.airspeed_mps)
+    }
+
+    /// The envelope. An airspeed that is not known, but assumed, is inside of it: no
+    /// change of pitch would change it.
+    fn envelope_without(&self, lost: Flags, estimate: &Estimate) -> Envelope {
+        let envelope = self.config.envelope;
+        if !lost.contains(flags::AIRSPEED) {
+            return envelope;
+        }
+        Envelope {
+            min_airspeed_mps: envelope
+                .min_airspeed_mps
+                .min(LOWEST_OF_ASSUMED * estimate.airspeed_mps),
+            stall_airspeed_mps: envelope
+                .stall_airspeed_mps
+                .min(STALL_OF_ASSUMED * estimate.airspeed_mps),
+            ..envelope
+        }
+    }
+
+    /// Continues what was flown before the failsafe: targets, mode and progress
+    /// are as they were.
+    pub(super) fn fly_on(&mut self) {
+        self.distrusted = Flags::NONE;
+        self.degraded = self.degraded.recovered();
+        self.end_release_of_failsafe();
+        let last = self.last;
+        self.take_over(&last);
+        self.heading.lead_from(self.setpoints.roll_rad);
+    }
+
+    /// A value that was rejected is believed again when it agrees with what the
+    /// others tell about it: the last good one is moved with the estimate. An altitude is
+    /// also when it is that of an aircraft again: the estimate without it drifts.
+    pub(super) fn move_distrusted(&mut self, now: Time, measured: &Measurements) {
+        if self.distrusted.is_empty() {
+            return;
+        }
+        let (estimate, distrusted) = (*self.navigation.estimate(), self.distrusted);
+        let last = &mut self.accepted;
+        if distrusted.contains(flags::ATTITUDE) {
+            last.attitude.value = Attitude {
+                pitch_rad: estimate.pitch_rad,
+                roll_rad: estimate.roll_rad,
+            };
+        }
+        if distrusted.contains(flags::HEADING) {
+            last.heading_rad.value = wrap_two_pi(estimate.heading_rad);
+        }
+        if distrusted.contains(flags::BODY_RATES) {
+            last.body_rates.value = estimate.body_rates;
+        }
+        if distrusted.contains(flags::ALTITUDE) {
+            let (new, receiver) = (measured.altitude_m, Receiver::of(measured, now));
+            if self.returning_altitude.step(&new, receiver) {
+                last.altitude_m = new;
+                self.distrusted = distrusted.keeping(flags::ALTITUDE, false);
+            } else {
+                last.altitude_m.value = estimate.altitude_m;
+            }
+        }
+    }
+
+    /// The trims that the loops have found, and the last throttle: an aircraft
+    /// that is not measured does not roll on.
+    pub(super) fn trims(&self) -> Surfaces {
+        Surfaces {
+            throttle: self.last.throttle,
+            elevator: self.altitude.trim(),
+            aileron: self.heading.aileron_trim(),
+            rudder: self.heading.rudder_trim(),
+            elevator_trim: self.trim.position(),
+            ..Surfaces::IDLE
+        }
+    }
+}

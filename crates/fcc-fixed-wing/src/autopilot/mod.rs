@@ -1,0 +1,416 @@
+//! The autopilot: navigation, guidance and control as one [`Controller`].
+
+mod actuation;
+mod airspeed_doubt;
+mod assembly;
+mod capture;
+mod command;
+mod config;
+mod contingency;
+mod degraded;
+mod engaging;
+mod failsafe;
+pub mod flags;
+mod floor;
+mod flying;
+mod following;
+mod future;
+mod gliding;
+mod ground_below;
+mod ground_contact;
+mod ground_motion;
+mod notices;
+mod observe;
+mod other_control;
+mod pilot_takeover;
+mod place_monitor;
+mod plant_clock;
+mod reading_age;
+mod receiver;
+mod refusal;
+mod release;
+mod replacing;
+mod resume;
+mod routing;
+mod runway;
+mod scale;
+mod sensor_health;
+mod silence;
+mod throttle_demand;
+mod upset;
+mod whereabouts;
+mod wrong_sensors;
+
+use core::fmt;
+use core::hint::black_box;
+
+use actuation::Actuation;
+use capture::Capture;
+pub use command::AutopilotCommand;
+pub use config::AutopilotConfig;
+use contingency::{Contingencies, Delayed, Engine};
+pub use contingency::{Contingency, ContingencyAction, ContingencyConfig};
+use degraded::Degraded;
+use failsafe::KeptTrims;
+pub use failsafe::{FailsafeConfig, FailsafeEnd};
+use following::Following;
+use ground_contact::ToldOnce;
+use ground_motion::GroundMotion;
+use pilot_takeover::PilotTakeover;
+pub use pilot_takeover::StickTakeover;
+use plant_clock::PlantClock;
+use reading_age::ReadingAges;
+pub use refusal::{COMMAND_ANSWER, why_refused};
+use release::Release;
+pub use replacing::PlanReplacement;
+pub use resume::Resume;
+pub use routing::ITEM_REACHED;
+use runway::RunwayControl;
+pub use runway::{gives_up_runway, touches_ground};
+pub use scale::Scale;
+use silence::StraightTrims;
+use whereabouts::Whereabouts;
+pub use whereabouts::can_be_reached;
+
+use crate::Setpoints;
+use crate::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop, Recovery};
+use fcc_core::blocks::wrap_two_pi;
+use fcc_core::flight::{Altimeter, AltitudeReference, Measurements, Surfaces};
+use fcc_core::framework::{Controller, Flags, Notice, Reading, Switch, Tick, Time};
+use fcc_guidance::path::BankCommand;
+use fcc_guidance::route::TookOff;
+use fcc_guidance::{ActiveMode, Mode, ModeInput, OverGroundMode, Targets};
+use fcc_navigation::inertial::RawNavigation;
+use fcc_navigation::{
+    ENGAGE_SWITCH, Estimate, FrozenDetector, Navigation, Replacement, ReturningAltitude,
+    plausibility_gate,
+};
+
+/// Navigation, guidance and control as one [`Controller`].
+///
+/// ```
+/// use fcc_guidance::GuidanceConfig;
+/// use fcc_core::flight::{Attitude, BodyRates, Measurements, SpecificForce};
+/// use fcc_fixed_wing::{Autopilot, AutopilotConfig};
+/// use fcc_core::framework::{Controller, Reading, Tick, Time};
+///
+/// let mut autopilot = Autopilot::new(AutopilotConfig {
+///     guidance: GuidanceConfig::Hold,
+///     ..AutopilotConfig::default()
+/// });
+/// // Two seconds of level flight at 100 kt and 3,000 ft, heading 30°.
+/// let mut tick = Tick { dt_s: 0.025, ..Tick::default() };
+/// let mut measured = Measurements::default();
+/// for n in 1..=80 {
+///     let now = Time::from_nanos(n * 25_000_000);
+///     (tick.scheduled, tick.woke) = (now, now);
+///     let force = SpecificForce { z_mps2: -9.806_65, ..SpecificForce::default() };
+///     measured = Measurements {
+///         attitude: Reading::new(Attitude::default(), now),
+///         heading_rad: Reading::new(30.0_f64.to_radians(), now),
+///         body_rates: Reading::new(BodyRates::default(), now),
+///         specific_force: Reading::new(force, now),
+///         airspeed_mps: Reading::new(51.444, now),
+///         altitude_m: Reading::new(914.4, now),
+///         ..Measurements::default()
+///     };
+///     autopilot.estimate(&tick, &measured);
+/// }
+/// assert!(autopilot.engage_inhibits(&tick, &measured).is_empty());
+/// autopilot.engage(&tick, &measured);
+/// autopilot.guide(&tick, &measured);
+/// assert!(autopilot.control(&tick, &measured).is_valid());
+/// assert!((autopilot.setpoints().heading_rad.to_degrees() - 30.0).abs() < 1e-6);
+/// ```
+#[derive(Clone, Debug)]
+pub struct Autopilot {
+    config: AutopilotConfig,
+    /// Navigation from raw readings, if it is flown by them.
+    raw: Option<RawNavigation>,
+    /// The last plausible measurements.
+    accepted: Measurements,
+    navigation: Navigation,
+    replacement: Replacement,
+    frozen: FrozenDetector,
+    guidance: ActiveMode,
+    /// Where it is over the ground, and the bank that a mode there commands.
+    ground: GroundMotion,
+    bank: BankCommand,
+    on_runway: RunwayControl,
+    /// The plan that was left for another mode.
+    left_plan: Option<OverGroundMode>,
+    took_off: Option<TookOff>,
+    told_once: ToldOnce,
+    contingencies: Contingencies,
+    /// Whether the battery is low, and the engine out.
+    battery: Delayed,
+    engine: Engine,
+    /// Whether the controls are those of a glide.
+    glides: bool,
+    /// What guidance has to tell, and as it is told, a tick later.
+    news: Option<Notice>,
+    told: Option<Notice>,
+    /// What became of a plan that was commanded, and as it is told in this tick.
+    answer: Option<Notice>,
+    answered: Option<Notice>,
+    targets: Targets,
+    capture: Option<Capture>,
+    altimeter: Altimeter,
+    /// What the target altitude refers to.
+    reference: AltitudeReference,
+    heading: HeadingLoop,
+    altitude: AltitudeLoop,
+    airspeed: AirspeedLoop,
+    actuation: Actuation,
+    recovery: Recovery,
+    trim: ElevatorTrim,
+    pilot: PilotTakeover,
+    /// A release that is being prepared.
+    release: Option<Release>,
+    setpoints: Setpoints,
+    clock: PlantClock,
+    ages: ReadingAges,
+    whereabouts: Whereabouts,
+    /// The previous tick.
+    before: Time,
+    /// For how long of the plant's time all that control needs has been good, s;
+    /// none while it is not.
+    settled_s: Option<f64>,
+    /// When a plant that was not heard returned, until all that control needs
+    /// has been measured since.
+    renewed_since: Time,
+    /// The last outputs.
+    last: Surfaces,
+    kept_trims: KeptTrims,
+    straight: StraightTrims,
+    degraded: Degraded,
+    following: Following,
+    /// The quantities that were rejected as implausible in this failsafe.
+    distrusted: Flags,
+    returning_altitude: ReturningAltitude,
+    /// That the airspeed has just been doubted.
+    doubt_notice: Option<Notice>,
+    /// Whether the target altitude is limited by the floor.
+    is_at_floor: bool,
+}
+
+impl Controller for Autopilot {
+    type Measurements = Measurements;
+    type Estimate = Estimate;
+    type Setpoints = Setpoints;
+    type Outputs = Surfaces;
+    type Command = AutopilotCommand;
+
+    fn estimate(&mut self, tick: &Tick, measurements: &Measurements) {
+        match &mut self.raw {
+            Some(raw) => {
+                let found = *raw.step(tick.woke, measurements);
+                self.observe(tick, &found);
+            }
+            None => self.observe(tick, measurements),
+        }
+    }
+
+    fn engage_inhibits(&self, tick: &Tick, measurements: &Measurements) -> Flags {
+        self.inhibits(tick.woke, self.seen(measurements))
+    }
+
+    fn faults(&self, tick: &Tick, measurements: &Measurements) -> Flags {
+        let seen = self.seen(measurements);
+        self.unsafe_to_fly(tick.woke, seen) | self.not_flyable(tick.woke, seen)
+    }
+
+    fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
+        let of_parts = self.actuation.conditions() | self.doubted() | self.trim_conditions();
+        let unused = self.unused_sensors(measurements) | self.route_conditions();
+        (self.external(tick.woke, self.seen(measurements)) | of_parts | unused)
+            .with(flags::RECOVERING, self.recovery.is_active())
+            .with(
+                flags::UNDERSPEED,
+                self.altitude.gives_up_height() && self.runway().is_none(),
+            )
+            .with(flags::STALLS_FASTER, self.recovery.found_stall_mps() > 0.0)
+            .with(flags::AT_FLOOR, self.is_at_floor)
+            .with(flags::RELEASING, self.release.is_some())
+    }
+
+    fn failsafe_goes_on(&self) -> bool {
+        self.goes_on()
+    }
+
+    fn is_unattended(&self) -> bool {
+        self.config.failsafe.end == FailsafeEnd::Glide
+    }
+
+    fn has_recovered(&self) -> bool {
+        self.is_good_again()
+    }
+
+    fn recover(&mut self, _tick: &Tick, _measurements: &Measurements) {
+        self.fly_on();
+    }
+
+    fn must_release(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {
+        self.is_elsewhere()
+    }
+
+    fn is_taken_over(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {
+        Flags::NONE.with(flags::PILOT_TAKES_OVER, self.pilot.is_moved())
+    }
+
+    fn prepare_release(&mut self, tick: &Tick, measurements: &Measurements) -> bool {
+        let seen = *self.seen(measurements);
+        self.begin_to_release(false, tick.woke, &seen)
+    }
+
+    fn is_ready_for_release(&self) -> bool {
+        self.is_trimmed_for_release()
+    }
+
+    fn withholds_outputs(&self, tick: &Tick, _measurements: &Measurements) -> bool {
+        self.withholds(tick.woke)
+    }
+
+    fn notice(&self) -> Option<Notice> {
+        self.urgent_notice().or(self.told)
+    }
+
+    fn write_notice(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        notices::write(notice, f)
+    }
+
+    fn flag_name(bit: u32) -> &'static str {
+        flags::NAMES
+            .get(bit as usize)
+            .copied()
+            .unwrap_or("unknown condition")
+    }
+
+    /// In the units in which commands are given: knots, degrees, feet.
+    fn write_command(command: &AutopilotCommand, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{command}")
+    }
+
+    /// The mode of guidance.
+    fn mode(&self) -> u8 {
+        self.guidance.mode() as u8
+    }
+
+    fn mode_name(mode: u8) -> &'static str {
+        Mode::from_number(mode).map_or("unknown", Mode::name)
+    }
+
+    fn engage(&mut self, tick: &Tick, _measurements: &Measurements) {
+        self.begin_flight(tick.woke);
+    }
+
+    fn warm_up(&self, tick: &Tick, measurements: &Measurements) {
+        let mut scratch = self.clone();
+        scratch.estimate(tick, measurements);
+        let _ = black_box(scratch.faults(tick, measurements));
+        scratch.guide(tick, measurements);
+        black_box(scratch.control(tick, measurements));
+    }
+
+    fn guide(&mut self, _tick: &Tick, _measurements: &Measurements) {
+        self.meet_contingencies();
+        self.set_targets();
+    }
+
+    fn control(&mut self, tick: &Tick, _measurements: &Measurements) -> Surfaces {
+        let outputs = self.fly(tick.woke);
+        self.last = self.with_gear(outputs);
+        self.last
+    }
+
+    fn failsafe(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
+        let seen = *self.seen(measurements);
+        self.prepare_end_of_failsafe(tick.woke, &seen);
+        let lost = self.lost(tick.woke, &seen);
+        let estimate = *self.navigation.estimate();
+        if !lost.intersects(flags::BODY_RATES | flags::ATTITUDE) {
+            self.follow_outputs(&estimate);
+        } else if !lost.contains(flags::ATTITUDE) {
+            self.actuation
+                .watch(&self.last, &estimate, self.clock.step_s());
+        }
+        let held = self.safest(tick.woke, &seen);
+        let stops = self.stop_on_wheels(lost);
+        let outputs = Surfaces {
+            gear: self.gear_in_failsafe(stops.is_some()),
+            ..stops.unwrap_or(held)
+        };
+        self.last = self.with_trim(tick.woke, outputs, lost);
+        self.last
+    }
+
+    fn disengage(&mut self) {
+        self.distrusted = Flags::NONE;
+        self.degraded = Degraded::default();
+        self.pilot.set_engaged(false);
+        self.change_mode(ModeInput::Disengage);
+        self.left_plan = None;
+        self.contingencies.reset();
+        self.is_at_floor = false;
+        self.capture = None;
+        self.recovery = Recovery::new();
+        self.release = None;
+        self.trim = ElevatorTrim::new(None);
+        self.setpoints = Setpoints::default();
+    }
+
+    fn command(&mut self, command: &AutopilotCommand) {
+        self.execute(command);
+    }
+
+    fn estimated(&self) -> Estimate {
+        let estimate = self.ages.shown_in(self.navigation.estimate());
+        let estimate = self.ground.shown_in(&estimate);
+        Estimate {
+            heading_rad: wrap_two_pi(estimate.heading_rad),
+            ..self.actuation.shown_in(&estimate)
+        }
+    }
+
+    fn setpoints(&self) -> Setpoints {
+        let mut guidance = self.guidance.progress();
+        guidance.captured.heading_rad = wrap_two_pi(guidance.captured.heading_rad);
+        Setpoints {
+            guidance,
+            altimeter_setting_pa: self.altimeter.setting_pa,
+            ..self.with_track(self.setpoints)
+        }
+    }
+
+    fn outputs_are_valid(&self, outputs: &Surfaces) -> bool {
+        outputs.is_valid()
+    }
+
+    fn observe_sensor(&mut self, sensor: u8, measurements: &Measurements) {
+        if let Some(raw) = &mut self.raw {
+            raw.observe_sensor(sensor, measurements);
+        }
+    }
+
+    fn plausible(&self, sensor: u8, measurements: &Measurements) -> Flags {
+        let plausible = plausibility_gate(
+            &mut self.accepted.clone(),
+            measurements,
+            &self.gate_limits(),
+        );
+        let plausible = plausible.keeping(flags::AIRSPEED, self.permits_airspeed(measurements));
+        match &self.raw {
+            Some(raw) => raw.permitted(sensor, plausible),
+            None => plausible,
+        }
+    }
+
+    fn of_one_sensor(&self) -> Flags {
+        // The difference between two sensors' switches is no movement of either.
+        ENGAGE_SWITCH
+    }
+
+    fn switch(&self, measurements: &Measurements) -> Reading<Switch> {
+        measurements.engage_switch
+    }
+}

@@ -1,0 +1,16 @@
+//! The autopilot seen from outside: scripted measurements in, surfaces out.
+#![cfg(test)]
+
+mod altimeter;
+mod clocks;
+mod cockpit;
+mod event_texts;
+mod faults;
+mod flying;
+mod future;
+mod gate;
+mod link_loss;
+mod lost_altitude;
+mod other_control;
+mod resuming;
+mod silence;
