@@ -260,8 +260,8 @@ impl<C: Controller> Machine<C> {
         self.record.stages.sensors_ns = stopwatch.lap(&*self.timer);
 
         self.controller.estimate(tick, &self.measurements);
-        if let Some(notice) = self.controller.notice() {
-            let kind = EventKind::Noticed(notice);
+        for notice in self.controller.notices() {
+            let kind = EventKind::Noticed(*notice);
             self.telemetry.events.push(tick, kind);
         }
         self.record.stages.estimate_ns = stopwatch.lap(&*self.timer);

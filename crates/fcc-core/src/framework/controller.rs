@@ -169,10 +169,10 @@ pub trait Controller: Send {
         false
     }
 
-    /// What the controller noticed in this tick's
-    /// [`estimate`](Self::estimate), for an event; by default nothing.
-    fn notice(&self) -> Option<Notice> {
-        None
+    /// What the controller noticed up to this tick's [`estimate`](Self::estimate), since
+    /// that of the tick before, in its order: each is an event. By default nothing.
+    fn notices(&self) -> &[Notice] {
+        &[]
     }
 
     /// A notice of this controller, as text for users.

@@ -78,11 +78,11 @@ impl Autopilot {
         }
     }
 
-    /// Prepares the notice of a doubt that has begun, or whose reason is another.
+    /// Reports a doubt that has begun, or whose reason is another.
     pub(super) fn note_doubt(&mut self, before: Option<Doubt>) {
         let now = self.navigation.airspeed_doubt();
         let begun = now.filter(|doubt| before != Some(*doubt));
-        self.doubt_notice = begun.and_then(|doubt| {
+        let event = begun.and_then(|doubt| {
             let known = REASONS
                 .iter()
                 .find(|(_, reason, _)| *reason == doubt.reason);
@@ -91,6 +91,9 @@ impl Autopilot {
                 ..Notice::default()
             })
         });
+        if let Some(event) = event {
+            self.journal.add(event);
+        }
     }
 
     /// The conditions that airspeed and altitude are excluded.

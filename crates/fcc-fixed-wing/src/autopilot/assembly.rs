@@ -2,9 +2,9 @@
 
 use super::{
     ActiveMode, Actuation, AltitudeReference, Autopilot, AutopilotConfig, BankCommand,
-    Contingencies, Degraded, Delayed, Engine, Following, GroundMotion, KeptTrims, Measurements,
-    PilotTakeover, PlantClock, ReadingAges, Recovery, RunwayControl, Setpoints, StraightTrims,
-    Surfaces, Targets, Time, ToldOnce, Whereabouts,
+    Contingencies, Degraded, Delayed, Engine, Following, GroundMotion, Journal, KeptTrims,
+    Measurements, PilotTakeover, PlantClock, ReadingAges, Recovery, RunwayControl, Setpoints,
+    StraightTrims, Surfaces, Targets, Time, ToldOnce, Whereabouts,
 };
 use crate::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop};
 use fcc_core::framework::Flags;
@@ -41,10 +41,7 @@ impl Autopilot {
             battery: Delayed::default(),
             engine: Engine::new(),
             glides: false,
-            news: None,
-            told: None,
-            answer: None,
-            answered: None,
+            journal: Journal::NEW,
             targets: Targets::default(),
             capture: None,
             altimeter: config.altimeter,
@@ -71,7 +68,6 @@ impl Autopilot {
             following: Following::default(),
             distrusted: Flags::NONE,
             returning_altitude: ReturningAltitude::default(),
-            doubt_notice: None,
             is_at_floor: false,
             config,
         }

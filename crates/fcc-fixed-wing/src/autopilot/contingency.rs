@@ -113,8 +113,6 @@ pub(super) struct Contingencies {
     promised_s: Option<(f64, f64)>,
     /// The circle at the fence that was turned onto, until it is left behind.
     kept: Option<KeptCircle>,
-    /// That it has begun or ended.
-    news: Option<Notice>,
     /// The ground ahead.
     terrain: TerrainWatch,
     /// The share of the turns' bank that low airspeed and gusts have not allowed of late.
@@ -135,11 +133,6 @@ impl Contingencies {
         self.terrain.lowest_m()
     }
 
-    /// What begins or ends in this tick.
-    pub(super) const fn take_news(&mut self) -> Option<Notice> {
-        self.news.take()
-    }
-
     /// A new engagement begins. What a commander has promised begins anew.
     pub(super) const fn reset(&mut self) {
         let promised_s = self.promised_s;
@@ -157,7 +150,6 @@ impl Contingencies {
             is_engine_met: false,
             promised_s,
             kept: None,
-            news: None,
             terrain: TerrainWatch::NONE,
             bank_missing: 0.0,
         };
@@ -181,14 +173,15 @@ impl Contingencies {
         self.active = Contingency::None;
         self.stage = Stage::Acting;
     }
+}
 
-    fn announce(&mut self, which: Contingency, action: ContingencyAction) {
-        self.news = Some(Notice {
-            kind: CONTINGENCY,
-            amount_permille: which as u16 * PERMILLE,
-            item: action as u16 + 1,
-            ..Notice::default()
-        });
+/// The notice of a contingency and of what is done.
+fn notice(which: Contingency, action: ContingencyAction) -> Notice {
+    Notice {
+        kind: CONTINGENCY,
+        amount_permille: which as u16 * PERMILLE,
+        item: action as u16 + 1,
+        ..Notice::default()
     }
 }
 
@@ -217,23 +210,41 @@ impl Autopilot {
     /// Acts on a contingency, unless a worse one is dealt with. A take-off or a landing is
     /// ended before; whether it is acted on.
     fn meet(&mut self, contingency: Contingency, action: ContingencyAction) -> bool {
+        self.meet_as(contingency, action, contingency as u16 * PERMILLE)
+    }
+
+    /// The same, reported with another amount.
+    fn meet_as(
+        &mut self,
+        contingency: Contingency,
+        action: ContingencyAction,
+        amount_permille: u16,
+    ) -> bool {
         if self.runway().is_some() {
             return false;
         }
         if self.contingencies.active as u8 >= contingency as u8 {
             return true;
         }
-        self.begin_contingency(contingency, action);
+        self.begin_contingency(contingency, action, amount_permille);
         true
     }
 
-    fn begin_contingency(&mut self, contingency: Contingency, action: ContingencyAction) {
+    fn begin_contingency(
+        &mut self,
+        contingency: Contingency,
+        action: ContingencyAction,
+        amount_permille: u16,
+    ) {
         self.contingencies.active = contingency;
         self.contingencies.stage = Stage::Acting;
         self.contingencies.before = self.guidance.mode();
         let action = self.act(action);
         self.contingencies.mode = self.guidance.mode();
-        self.contingencies.announce(contingency, action);
+        self.journal.add(Notice {
+            amount_permille,
+            ..notice(contingency, action)
+        });
     }
 
     /// Begins what an action says; what was begun.
@@ -260,8 +271,8 @@ impl Autopilot {
                     && self.guidance.mode() == self.contingencies.mode
                     && self.guidance.mode() != Mode::Plan;
                 self.contingencies.end();
-                self.contingencies
-                    .announce(Contingency::None, ContingencyAction::Continue);
+                let found = notice(Contingency::None, ContingencyAction::Continue);
+                self.journal.add(found);
                 if is_left {
                     self.fly_plan(0);
                 }
@@ -296,8 +307,8 @@ impl Autopilot {
         let is_met = left_s <= 0.0 && self.meet(Contingency::CommanderLost, action);
         if !is_met && left_s <= 0.0 && before_s > 0.0 {
             // A take-off or a landing is ended before.
-            self.contingencies
-                .announce(Contingency::CommanderLost, ContingencyAction::Continue);
+            let lost = notice(Contingency::CommanderLost, ContingencyAction::Continue);
+            self.journal.add(lost);
         }
         self.contingencies.promised_s = (!is_met).then_some((within_s, left_s));
     }

@@ -23,6 +23,15 @@ pub(super) mod otherwise {
     pub(in super::super) const VELOCITY_USED: u16 = 3;
 }
 
+/// The notice of what has lasted for so long, s.
+fn lasted(kind: u8, lasted_s: f64) -> Notice {
+    Notice {
+        kind,
+        lasted_ns: (lasted_s * 1e9) as u64,
+        ..Notice::default()
+    }
+}
+
 /// The notice with one of these items.
 pub(super) fn flown_otherwise(item: u16) -> Notice {
     Notice {
@@ -194,8 +203,6 @@ pub(super) struct Degraded {
     is_sound: bool,
     pub(super) glides: bool,
     intermittent: Intermittent,
-    /// What happened in this tick, by the number of a notice, after how long, s.
-    news: Option<(u8, f64)>,
     /// How long the failsafe lasted that the loop ended in the last tick because
     /// all was good again, s.
     recovered_s: Option<f64>,
@@ -312,8 +319,9 @@ impl Autopilot {
     /// Follows a failsafe: for how long it has lasted, and whether all is good
     /// again.
     pub(super) fn follow_failsafe(&mut self, tick: &Tick, measured: &Measurements) {
-        let recovered_s = self.degraded.recovered_s.take();
-        self.degraded.news = recovered_s.map(|lasted_s| (GOOD_AGAIN, lasted_s));
+        if let Some(lasted_s) = self.degraded.recovered_s.take() {
+            self.journal.add(lasted(GOOD_AGAIN, lasted_s));
+        }
         if !self.degraded.is_failsafe {
             self.degraded.repeated.flown_on(tick.dt_s);
             self.degraded.forget_unsound(tick.dt_s);
@@ -341,7 +349,7 @@ impl Autopilot {
         let glides = degraded.glides
             || config.end == FailsafeEnd::Glide && degraded.unsound_s > config.hold.as_secs_f64();
         if glides && !degraded.glides {
-            degraded.news = Some((FLOWN_OTHERWISE, degraded.lasted_s));
+            self.journal.add(lasted(FLOWN_OTHERWISE, degraded.lasted_s));
         }
         degraded.glides = glides;
     }
@@ -361,16 +369,6 @@ impl Autopilot {
         let after = self.config.failsafe.recovered_after * self.degraded.repeated.factor();
         let good = Duration::from_secs_f64(self.degraded.good_s);
         self.degraded.is_failsafe && after > Duration::ZERO && good >= after
-    }
-
-    /// What happened in this tick.
-    pub(super) fn degraded_notice(&self) -> Option<Notice> {
-        let (kind, lasted_s) = self.degraded.news?;
-        Some(Notice {
-            kind,
-            lasted_ns: (lasted_s * 1e9) as u64,
-            ..Notice::default()
-        })
     }
 
     /// Whether it flies on without a quantity.

@@ -1,6 +1,6 @@
 //! The wheels on the ground where neither a take-off nor a landing is flown.
 
-use super::Autopilot;
+use super::{Autopilot, runway};
 use fcc_guidance::Mode;
 use fcc_guidance::route::RunwayReason;
 
@@ -94,7 +94,7 @@ impl Autopilot {
             let off_ground_m = self.told_once.touched.off_ground_m(altitude_m);
             self.targets.altitude_m = self.targets.altitude_m.max(off_ground_m);
             if self.told_once.has_flown && self.told_once.touch.is_due() {
-                self.on_runway.announce(RunwayReason::Touched);
+                self.journal.add(runway::notice(RunwayReason::Touched));
             }
         }
         self.told_once.has_flown = false;

@@ -19,6 +19,7 @@ mod gliding;
 mod ground_below;
 mod ground_contact;
 mod ground_motion;
+mod journal;
 mod notices;
 mod observe;
 mod other_control;
@@ -56,6 +57,7 @@ pub use failsafe::{FailsafeConfig, FailsafeEnd};
 use following::Following;
 use ground_contact::ToldOnce;
 use ground_motion::GroundMotion;
+use journal::Journal;
 use pilot_takeover::PilotTakeover;
 pub use pilot_takeover::StickTakeover;
 use plant_clock::PlantClock;
@@ -147,12 +149,7 @@ pub struct Autopilot {
     engine: Engine,
     /// Whether the controls are those of a glide.
     glides: bool,
-    /// What guidance has to tell, and as it is told, a tick later.
-    news: Option<Notice>,
-    told: Option<Notice>,
-    /// What became of a plan that was commanded, and as it is told in this tick.
-    answer: Option<Notice>,
-    answered: Option<Notice>,
+    journal: Journal,
     targets: Targets,
     capture: Option<Capture>,
     altimeter: Altimeter,
@@ -188,8 +185,6 @@ pub struct Autopilot {
     /// The quantities that were rejected as implausible in this failsafe.
     distrusted: Flags,
     returning_altitude: ReturningAltitude,
-    /// That the airspeed has just been doubted.
-    doubt_notice: Option<Notice>,
     /// Whether the target altitude is limited by the floor.
     is_at_floor: bool,
 }
@@ -202,6 +197,7 @@ impl Controller for Autopilot {
     type Command = AutopilotCommand;
 
     fn estimate(&mut self, tick: &Tick, measurements: &Measurements) {
+        self.journal.begin();
         match &mut self.raw {
             Some(raw) => {
                 let found = *raw.step(tick.woke, measurements);
@@ -209,6 +205,7 @@ impl Controller for Autopilot {
             }
             None => self.observe(tick, measurements),
         }
+        self.journal.report();
     }
 
     fn engage_inhibits(&self, tick: &Tick, measurements: &Measurements) -> Flags {
@@ -271,8 +268,8 @@ impl Controller for Autopilot {
         self.withholds(tick.woke)
     }
 
-    fn notice(&self) -> Option<Notice> {
-        self.urgent_notice().or(self.told)
+    fn notices(&self) -> &[Notice] {
+        self.journal.reported()
     }
 
     fn write_notice(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {

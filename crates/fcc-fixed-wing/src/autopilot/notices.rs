@@ -3,8 +3,8 @@
 use core::fmt;
 
 use super::{
-    airspeed_doubt, contingency, degraded, pilot_takeover, plant_clock, receiver, refusal, routing,
-    runway, wrong_sensors,
+    airspeed_doubt, contingency, degraded, journal, pilot_takeover, plant_clock, receiver, refusal,
+    routing, runway, wrong_sensors,
 };
 use fcc_core::framework::Notice;
 
@@ -42,6 +42,7 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
         contingency::CONTINGENCY => contingency::write(notice, f),
         refusal::COMMAND_ANSWER => refusal::write(notice, f),
         runway::RUNWAY => runway::write(notice, f),
+        journal::LEFT_OUT => journal::write(notice, f),
         kind => match pilot_takeover::axis_of(kind) {
             Some(axis) => {
                 let deflection = f64::from(notice.amount_permille) / 1_000.0;

@@ -17,7 +17,6 @@ impl Autopilot {
     /// Processes a tick's measurements.
     pub(super) fn observe(&mut self, tick: &Tick, measured: &Measurements) {
         let now = tick.woke;
-        self.answered = self.answer.take();
         if is_from_the_future(measured, now) {
             self.observe_present(tick, &without_future(*measured, now));
         } else {
@@ -28,6 +27,7 @@ impl Autopilot {
     fn observe_present(&mut self, tick: &Tick, measured: &Measurements) {
         let now = tick.woke;
         self.clock.step(tick, measured);
+        self.report_clock_and_sensors();
         if self.clock.waiting() == Waiting::Replaying {
             // What is measured is not the aircraft's state.
             self.whereabouts.skip(now);
@@ -62,9 +62,6 @@ impl Autopilot {
         self.take_over_after_loss(now);
         self.take_over_unless_followed(now, self.config.max_age);
         self.follow_failsafe(tick, measured);
-        // One thing is told in a tick: what can wait does.
-        let is_waiting = self.urgent_notice().is_some();
-        self.told = self.news.take_if(|_| !is_waiting);
         // After an outage everything settles anew before it may engage.
         let unusable = flags::unusable(self.stale(now), self.frozen());
         let settled_s = self.settled_s.map_or(0.0, |settled_s| settled_s + step_s);

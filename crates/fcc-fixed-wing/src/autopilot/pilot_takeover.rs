@@ -106,7 +106,6 @@ pub(super) struct PilotTakeover {
     last: Time,
     sampled: Time,
     is_engaged: bool,
-    notice: Option<Notice>,
 }
 
 impl PilotTakeover {
@@ -132,24 +131,22 @@ impl PilotTakeover {
         self.axes.iter().any(|axis| axis.is_moved)
     }
 
-    /// That it has just taken over.
-    pub(super) const fn notice(&self) -> Option<Notice> {
-        self.notice
-    }
-
-    /// Follows the readings. One that is not valid has not arrived.
-    pub(super) fn step(&mut self, reading: &Reading<PilotControls>, now: Time, max_age: Duration) {
-        self.notice = None;
-        let Some(takeover) = self.takeover else {
-            return;
-        };
+    /// Follows the readings; that the pilot has just taken over. One that is not valid has
+    /// not arrived.
+    pub(super) fn step(
+        &mut self,
+        reading: &Reading<PilotControls>,
+        now: Time,
+        max_age: Duration,
+    ) -> Option<Notice> {
+        let takeover = self.takeover?;
         let fresh = reading.fresh(now, max_age);
         let new = fresh.filter(|controls| controls.is_valid() && reading.taken > self.last);
         let Some(controls) = new else {
             if now.since(self.last) > max_age {
                 self.axes.iter_mut().for_each(Axis::forget_deflection);
             }
-            return;
+            return None;
         };
         self.last = reading.taken;
         let was_moved = self.is_moved();
@@ -157,10 +154,10 @@ impl PilotTakeover {
         for (axis, value) in self.axes.iter_mut().zip(values) {
             axis.follow(value, reading.taken, &takeover);
         }
-        if self.is_engaged && !was_moved {
-            self.notice = self.moved_notice();
-        }
+        let takes_over = self.is_engaged && !was_moved;
+        let event = self.moved_notice().filter(|_| takes_over);
         self.learn_rest(values, reading.taken);
+        event
     }
 
     /// Samples where the controls rest: not while engaged, once that is known.
@@ -193,7 +190,10 @@ impl Autopilot {
     /// Follows the pilot's controls.
     pub(super) fn follow_pilot(&mut self, now: Time, measured: &Measurements) {
         let max_age = self.config.max_age;
-        self.pilot.step(&measured.pilot_controls, now, max_age);
+        let event = self.pilot.step(&measured.pilot_controls, now, max_age);
+        if let Some(event) = event {
+            self.journal.add(event);
+        }
     }
 }
 
@@ -206,12 +206,14 @@ pub(super) fn axis_of(kind: u8) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::vec::Vec;
 
     const MS: i64 = 1_000_000;
 
     struct Stick {
         pilot: PilotTakeover,
         tick: i64,
+        events: Vec<Notice>,
     }
 
     impl Stick {
@@ -221,7 +223,11 @@ mod tests {
                 after: Duration::from_millis(200),
             };
             let pilot = PilotTakeover::new(Some(takeover));
-            Self { pilot, tick: 0 }
+            Self {
+                pilot,
+                tick: 0,
+                events: Vec::new(),
+            }
         }
 
         fn at(&mut self, roll: f64) -> bool {
@@ -232,7 +238,8 @@ mod tests {
                 ..PilotControls::default()
             };
             let reading = Reading::new(controls, now);
-            self.pilot.step(&reading, now, Duration::from_millis(250));
+            let event = self.pilot.step(&reading, now, Duration::from_millis(250));
+            self.events.extend(event);
             self.pilot.is_moved()
         }
 
@@ -255,17 +262,14 @@ mod tests {
     #[test]
     fn the_notice_names_axis_and_deflection_once() {
         let mut stick = Stick::engaged_at(0.1);
-        let notices = (0..40).filter_map(|_| {
+        (0..40).for_each(|_| {
             stick.at(0.6);
-            stick.pilot.notice()
         });
-        let mut count = 0;
-        for notice in notices {
-            assert_eq!(axis_of(notice.kind), Some("roll"));
-            assert_eq!(notice.amount_permille, 500);
-            count += 1;
-        }
-        assert_eq!(count, 1);
+        let [notice] = stick.events[..] else {
+            panic!("{:?}", stick.events);
+        };
+        assert_eq!(axis_of(notice.kind), Some("roll"));
+        assert_eq!(notice.amount_permille, 500);
     }
 
     #[test]

@@ -126,7 +126,7 @@ impl Autopilot {
 
     /// Tells the sender what became of its command: a refusal's number, or 0.
     pub(super) fn answer(&mut self, refusal: u16, item: u16) {
-        self.answer = Some(Notice {
+        self.journal.add(Notice {
             kind: COMMAND_ANSWER,
             amount_permille: refusal * PERMILLE,
             item,

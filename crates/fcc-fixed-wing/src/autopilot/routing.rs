@@ -1,7 +1,7 @@
 //! Guidance in a tick, and the modes that fly over the ground.
 
 use super::place_monitor::PlaceDoubt;
-use super::{Autopilot, flags};
+use super::{Autopilot, flags, runway};
 use crate::Setpoints;
 use crate::control::{Envelope, Lateral, Schedule};
 use fcc_core::flight::{AltitudeReference, Position};
@@ -61,7 +61,7 @@ impl Autopilot {
             .over_ground()
             .is_some_and(OverGroundMode::is_plan);
         if let Some((item, off_m)) = reached.filter(|_| is_plan) {
-            self.news = Some(Notice {
+            self.journal.add(Notice {
                 kind: ITEM_REACHED,
                 item,
                 amount_permille: if off_m > OFF_ALTITUDE_M {
@@ -72,20 +72,16 @@ impl Autopilot {
                 ..Notice::default()
             });
         }
-        self.announce_end(is_plan && reached.is_some());
+        self.announce_end();
         self.watch_ground_contact();
-        let others = [self.contingencies.take_news(), self.on_runway.take_news()];
-        if let Some(news) = others.into_iter().flatten().last() {
-            self.news = Some(news);
-        }
     }
 
-    /// Announces once that a plan is flown to its end, in a tick that has no other news of it.
-    fn announce_end(&mut self, has_news: bool) {
+    /// Announces once that a plan is flown to its end.
+    fn announce_end(&mut self) {
         let mode = self.guidance.over_ground();
         let has_ended = mode.is_some_and(OverGroundMode::has_ended);
-        if has_ended && !self.told_once.end && !has_news {
-            self.news = Some(Notice {
+        if has_ended && !self.told_once.end {
+            self.journal.add(Notice {
                 kind: ITEM_REACHED,
                 ..Notice::default()
             });
@@ -158,8 +154,9 @@ impl Autopilot {
         let on_wheels_m = self.config.route.runway.height_on_wheels_m;
         self.told_once.touch.pass(dt_s);
         self.told_once.range.pass(dt_s);
-        if self.ground.check_range(on_wheels_m) && self.told_once.range.is_due() {
-            self.on_runway.announce(RunwayReason::RangeFinder);
+        let is_wrong = self.ground.check_range(on_wheels_m) && self.pilot.is_engaged();
+        if is_wrong && self.told_once.range.is_due() {
+            self.journal.add(runway::notice(RunwayReason::RangeFinder));
         }
     }
 

@@ -24,13 +24,12 @@ use super::Autopilot;
 use crate::control::{Lateral, ThrottleDemand};
 use fcc_core::blocks::{limit, limit_abs, wrap_pi};
 use fcc_core::flight::Surfaces;
-use fcc_core::framework::Notice;
 use fcc_core::units::GRAVITY_MPS2;
 use fcc_guidance::OverGroundMode;
 use fcc_guidance::route::{HELD_MPS, RunwayDemand, RunwayPhase, RunwayReason};
 use fcc_navigation::Estimate;
 pub(super) use in_failsafe::Low;
-pub(super) use notices::{RUNWAY, write};
+pub(super) use notices::{RUNWAY, notice, write};
 pub use notices::{gives_up_runway, touches_ground};
 
 /// Rudder per heading error, 1/rad, per its integral, 1/(rad s), and per yaw rate, s, at
@@ -72,8 +71,6 @@ pub(super) const LOWEST_SHARE: f64 = 0.88;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct RunwayControl {
     phase: Option<RunwayPhase>,
-    /// What is to be told.
-    news: Option<Notice>,
     /// Integrated rudder.
     rudder: f64,
     brake: f64,
@@ -130,23 +127,23 @@ impl Autopilot {
             if self.on_runway.phase == Some(RunwayPhase::GoAround)
                 && mode.is_some_and(OverGroundMode::has_no_more_landings)
             {
-                self.on_runway.announce(RunwayReason::NoMore);
+                self.journal.add(notice(RunwayReason::NoMore));
             }
-            let news = self.on_runway.news;
-            self.on_runway = RunwayControl {
-                news,
-                ..RunwayControl::default()
-            };
+            self.on_runway = RunwayControl::default();
             return None;
         };
         self.enter_phase(&demand, estimate);
         if demand.lacks_power && !self.on_runway.lacks_power {
-            self.on_runway.announce(RunwayReason::NoClimb);
+            self.journal.add(notice(RunwayReason::NoClimb));
         }
         self.on_runway.lacks_power = demand.lacks_power;
         let approaches = demand.phase == RunwayPhase::Approach && !demand.is_powerless;
-        self.on_runway
-            .watch_tail_wind(approaches, demand.head_wind_mps);
+        if let Some(event) = self
+            .on_runway
+            .watch_tail_wind(approaches, demand.head_wind_mps)
+        {
+            self.journal.add(event);
+        }
         let lateral = match demand.phase {
             RunwayPhase::Hand => Lateral::default(),
             phase if phase.is_on_wheels() => self.steer(&demand, estimate, dt_s),
@@ -173,7 +170,7 @@ impl Autopilot {
             return;
         }
         if demand.reason != RunwayReason::None {
-            self.on_runway.announce(demand.reason);
+            self.journal.add(notice(demand.reason));
         }
         if demand.reason == RunwayReason::LongFlare {
             self.ground.expect_no_range();

@@ -7,7 +7,7 @@ use super::plant_clock::Waiting;
 use super::reading_age::taken_of_needed;
 use super::{Autopilot, flags, receiver, wrong_sensors};
 use fcc_core::flight::{Measurements, PlantState};
-use fcc_core::framework::{Flags, Notice, Reading, Time};
+use fcc_core::framework::{Flags, Reading, Time};
 use fcc_navigation::inertial::RawNavigation;
 use fcc_navigation::is_possible_fix;
 
@@ -41,25 +41,24 @@ impl Autopilot {
             .with(flags::WRONG_SENSOR, is(RawNavigation::has_wrong_sensor))
     }
 
-    /// The notice of a sensor that is not used any more, or otherwise than before, since this
-    /// tick.
-    pub(super) fn wrong_sensor_notice(&self) -> Option<Notice> {
-        let raw = self.raw.as_ref()?;
-        let wrong = raw.wrong_sensor().map(wrong_sensors::notice);
-        wrong
-            .or_else(|| raw.late_fixes_s().map(receiver::late_fixes))
-            .or_else(|| raw.refuses_velocity().map(receiver::velocity))
-    }
-
-    /// What is told in this tick and in no other.
-    pub(super) fn urgent_notice(&self) -> Option<Notice> {
-        // The sender of a command waits for it.
-        self.answered
-            .or_else(|| self.pilot.notice())
-            .or_else(|| self.clock.notice())
-            .or_else(|| self.degraded_notice())
-            .or_else(|| self.wrong_sensor_notice())
-            .or(self.doubt_notice)
+    /// Reports what the plant's clock shows, and the sensors that are not used any more, or
+    /// otherwise than before, since this tick.
+    pub(super) fn report_clock_and_sensors(&mut self) {
+        let by_clock = self.clock.notice();
+        let raw = self.raw.as_ref();
+        let events = [
+            by_clock,
+            raw.and_then(RawNavigation::wrong_sensor)
+                .map(wrong_sensors::notice),
+            raw.and_then(RawNavigation::late_fixes_s)
+                .map(receiver::late_fixes),
+            raw.and_then(RawNavigation::refuses_velocity)
+                .map(receiver::velocity),
+        ];
+        events
+            .into_iter()
+            .flatten()
+            .for_each(|event| self.journal.add(event));
     }
 
     /// Whether the gyroscopes are not flown by, because the magnetic field contradicts them;

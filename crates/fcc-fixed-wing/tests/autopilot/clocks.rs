@@ -191,7 +191,8 @@ fn a_clock_that_alone_is_missing_has_not_stopped() {
                 }
             });
             cockpit.act();
-            noticed_kinds.extend(cockpit.autopilot.notice().map(|notice| (tick, notice.kind)));
+            let noticed = cockpit.autopilot.notices().iter();
+            noticed_kinds.extend(noticed.map(|notice| (tick, notice.kind)));
             assert_eq!(cockpit.faults(), Flags::NONE);
             assert!(!cockpit.engage_inhibits().contains(flags::PLANT_STALLED));
         }

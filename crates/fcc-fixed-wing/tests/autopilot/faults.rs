@@ -362,7 +362,7 @@ fn that_all_is_good_again_is_said_once_when_the_loop_continues() {
     for _ in 0..160 {
         cockpit.observe();
         cockpit.failsafe();
-        said.extend(cockpit.autopilot.notice());
+        said.extend(cockpit.autopilot.notices().iter().copied());
     }
     assert_eq!(said, []);
     assert!(cockpit.autopilot.has_recovered());
@@ -370,7 +370,7 @@ fn that_all_is_good_again_is_said_once_when_the_loop_continues() {
     cockpit.autopilot.recover(&tick, &measurements);
     for _ in 0..40 {
         cockpit.step();
-        said.extend(cockpit.autopilot.notice());
+        said.extend(cockpit.autopilot.notices().iter().copied());
     }
     let [notice] = said[..] else {
         panic!("{said:?}");

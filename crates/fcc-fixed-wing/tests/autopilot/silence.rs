@@ -57,7 +57,7 @@ pub(crate) fn silence(cockpit: &mut Cockpit, ticks: u32, flies_on: bool) {
 }
 
 pub(crate) fn noticed(cockpit: &Cockpit) -> Option<(u8, f64)> {
-    let notice = cockpit.autopilot.notice()?;
+    let notice = cockpit.autopilot.notices().first()?;
     Some((notice.kind, notice.lasted_s()))
 }
 

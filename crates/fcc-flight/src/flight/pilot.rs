@@ -91,8 +91,8 @@ impl Controller for Pilot {
         self.autopilot.recover(tick, measurements);
     }
 
-    fn notice(&self) -> Option<Notice> {
-        self.autopilot.notice()
+    fn notices(&self) -> &[Notice] {
+        self.autopilot.notices()
     }
 
     fn write_notice(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {

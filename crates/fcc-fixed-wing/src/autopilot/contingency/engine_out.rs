@@ -8,7 +8,7 @@ use core::time::Duration;
 use libm::cos;
 
 use super::super::Autopilot;
-use super::{CONTINGENCY, Contingencies, Contingency, ContingencyAction, Delayed, PERMILLE};
+use super::{CONTINGENCY, Contingency, ContingencyAction, Delayed, PERMILLE, notice};
 use fcc_core::blocks::LowPass;
 use fcc_core::framework::{Notice, Time};
 use fcc_core::units::GRAVITY_MPS2;
@@ -94,16 +94,6 @@ fn specific_power(path_rad: f64, acceleration_mps2: f64) -> f64 {
     libm::sin(path_rad) + acceleration_mps2 / GRAVITY_MPS2
 }
 
-impl Contingencies {
-    fn doubt_engine_speed(&mut self) {
-        self.news = Some(Notice {
-            kind: CONTINGENCY,
-            amount_permille: SPEED_DOUBTED,
-            ..Notice::default()
-        });
-    }
-}
-
 impl Autopilot {
     /// Whether the engine is out by the speed of its shaft; none if it is not known.
     fn engine_stands(&mut self, now: Time, dt_s: f64) -> Option<bool> {
@@ -114,7 +104,11 @@ impl Autopilot {
         let flies = airspeed_mps > self.config.envelope.stall_airspeed_mps && !self.is_on_wheels();
         if self.engine.falls_to_nothing(speed_radps, below_radps) && flies {
             if !self.engine.doubt.is_on {
-                self.contingencies.doubt_engine_speed();
+                self.journal.add(Notice {
+                    kind: CONTINGENCY,
+                    amount_permille: SPEED_DOUBTED,
+                    ..Notice::default()
+                });
             }
             self.engine.doubt.begin();
         }
@@ -183,7 +177,12 @@ impl Autopilot {
         }
         self.contingencies.is_engine_met = true;
         self.engine.glides_s = 0.0;
-        self.begin_contingency(Contingency::EngineOut, self.config.contingency.engine);
+        self.meet_engine(self.config.contingency.engine);
+    }
+
+    fn meet_engine(&mut self, action: ContingencyAction) {
+        let amount_permille = Contingency::EngineOut as u16 * PERMILLE;
+        self.begin_contingency(Contingency::EngineOut, action, amount_permille);
     }
 
     /// Whether a glide opens the throttle, because the engine may give thrust again.
@@ -216,10 +215,9 @@ impl Autopilot {
                 _ => self.pause(),
             }
         }
-        self.contingencies.announce(Contingency::EngineOut, action);
-        self.contingencies.news = self.contingencies.news.map(|notice| Notice {
+        self.journal.add(Notice {
             amount_permille: ENGINE_RUNS,
-            ..notice
+            ..notice(Contingency::EngineOut, action)
         });
     }
 
@@ -239,7 +237,7 @@ impl Autopilot {
     pub(in super::super) fn resume_glide(&mut self) {
         self.engine.out.begin();
         self.contingencies.is_engine_met = true;
-        self.begin_contingency(Contingency::EngineOut, ContingencyAction::Glide);
+        self.meet_engine(ContingencyAction::Glide);
     }
 }
 

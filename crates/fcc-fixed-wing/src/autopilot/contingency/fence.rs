@@ -4,7 +4,7 @@ use libm::{atan, tan};
 use nalgebra::Vector2;
 
 use super::super::Autopilot;
-use super::{Contingency, ContingencyAction, PERMILLE, Stage};
+use super::{Contingency, ContingencyAction, PERMILLE, Stage, notice};
 use fcc_core::units::GRAVITY_MPS2;
 use fcc_guidance::fence::{Bank, Escape, Fence};
 use fcc_guidance::path::{LocalPlane, Path, length};
@@ -179,10 +179,7 @@ impl Autopilot {
         let circle = kept.filter(|kept| kept.is_flown(&here, bank.now_rad));
         if enters || circle.is_none() && depth_m < -escape.radius_m {
             // Nearer to a fence that was crossed, the circle leads back sooner.
-            self.meet(Contingency::Fence, ContingencyAction::Return);
-            if let (false, Some(news)) = (is_met, &mut self.contingencies.news) {
-                news.amount_permille = OUTSIDE;
-            }
+            self.meet_as(Contingency::Fence, ContingencyAction::Return, OUTSIDE);
             return;
         }
         let circle = circle.unwrap_or_else(|| KeptCircle::of(&escape, &here));
@@ -207,7 +204,7 @@ impl Autopilot {
             circle.radius_m,
             circle.clockwise,
         );
-        self.contingencies.announce(Contingency::Fence, action);
+        self.journal.add(notice(Contingency::Fence, action));
     }
 
     /// Whether a command may end the turn away from the fence. Each one that the aircraft
@@ -270,8 +267,8 @@ impl Autopilot {
         let is_out = inside_m(fence, here) < 0.0;
         let side = if is_out { Side::Outside } else { Side::Inside };
         if (self.contingencies.side, side) == (Side::Inside, Side::Outside) {
-            self.contingencies
-                .announce(Contingency::Fence, ContingencyAction::Continue);
+            let crossed = notice(Contingency::Fence, ContingencyAction::Continue);
+            self.journal.add(crossed);
         }
         self.contingencies.side = side;
     }

@@ -10,7 +10,7 @@ use nalgebra::Vector2;
 
 use super::super::Autopilot;
 use super::surface::Surface;
-use super::{CONTINGENCY, Contingency, ContingencyAction, PERMILLE, Stage};
+use super::{CONTINGENCY, Contingency, ContingencyAction, PERMILLE, Stage, notice};
 use fcc_core::framework::Notice;
 use fcc_core::units::GRAVITY_MPS2;
 use fcc_guidance::fence::{Escape, Fence};
@@ -288,8 +288,8 @@ impl Autopilot {
             circle.radius_m,
             circle.clockwise,
         );
-        self.contingencies
-            .announce(Contingency::Terrain, config.terrain);
+        self.journal
+            .add(notice(Contingency::Terrain, config.terrain));
     }
 
     /// Tells of a climb when it begins and when it is over.
@@ -318,7 +318,7 @@ impl Autopilot {
             (None, false) => None,
         };
         if let Some(item) = said {
-            self.contingencies.news = Some(Notice {
+            self.journal.add(Notice {
                 kind: CONTINGENCY,
                 amount_permille: Contingency::Terrain as u16 * PERMILLE,
                 item,

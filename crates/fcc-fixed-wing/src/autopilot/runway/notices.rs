@@ -15,30 +15,28 @@ pub(in super::super) const RUNWAY: u8 = 29;
 const MOST_TAIL_WIND_KT: f64 = 10.0;
 
 impl RunwayControl {
-    /// Tells once of a landing that there is much tail wind, unless it has other news.
-    pub(super) fn watch_tail_wind(&mut self, approaches: bool, head_wind_mps: f64) {
+    /// That a landing has much tail wind, once.
+    pub(super) fn watch_tail_wind(
+        &mut self,
+        approaches: bool,
+        head_wind_mps: f64,
+    ) -> Option<Notice> {
         let tail_kt = -head_wind_mps / KNOT_MPS;
-        if approaches && tail_kt > MOST_TAIL_WIND_KT && !self.told_wind && self.news.is_none() {
-            self.told_wind = true;
-            self.news = Some(Notice {
-                kind: RUNWAY,
-                item: RunwayReason::TailWind as u16,
-                amount_permille: (tail_kt + 0.5) as u16,
-                ..Notice::default()
-            });
-        }
+        let is_new = approaches && tail_kt > MOST_TAIL_WIND_KT && !self.told_wind;
+        self.told_wind |= is_new;
+        is_new.then(|| Notice {
+            amount_permille: (tail_kt + 0.5) as u16,
+            ..notice(RunwayReason::TailWind)
+        })
     }
+}
 
-    pub(in super::super) fn announce(&mut self, reason: RunwayReason) {
-        self.news = Some(Notice {
-            kind: RUNWAY,
-            item: reason as u16,
-            ..Notice::default()
-        });
-    }
-
-    pub(in super::super) const fn take_news(&mut self) -> Option<Notice> {
-        self.news.take()
+/// The notice of a reason.
+pub(in super::super) fn notice(reason: RunwayReason) -> Notice {
+    Notice {
+        kind: RUNWAY,
+        item: reason as u16,
+        ..Notice::default()
     }
 }
 
@@ -81,8 +79,7 @@ mod tests {
     fn tail_wind_is_told_once_with_its_figure() {
         let mut control = RunwayControl::default();
         let mut told = |approaches, head_kt: f64| {
-            control.watch_tail_wind(approaches, head_kt * 1_852.0 / 3_600.0);
-            control.take_news()
+            control.watch_tail_wind(approaches, head_kt * 1_852.0 / 3_600.0)
         };
         assert_eq!(told(true, -9.9), None);
         assert_eq!(told(false, -15.2), None);

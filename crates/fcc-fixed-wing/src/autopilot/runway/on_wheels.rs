@@ -2,7 +2,7 @@
 
 use super::super::ground_motion::STANDS_MPS;
 use super::super::{Autopilot, flags};
-use super::{CLOSES_PER_S, RUDDER_PER_RADPS};
+use super::{CLOSES_PER_S, RUDDER_PER_RADPS, notice};
 use crate::control::Lateral;
 use fcc_core::blocks::{limit, limit_abs};
 use fcc_core::flight::Surfaces;
@@ -149,7 +149,7 @@ impl Autopilot {
         let control = &mut self.on_runway;
         if strays && !control.strayed {
             control.strayed = true;
-            control.announce(RunwayReason::Strays);
+            self.journal.add(notice(RunwayReason::Strays));
         }
         let share = if control.strayed && rolls {
             STRAYED_SHARE
