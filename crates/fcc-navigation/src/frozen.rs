@@ -26,6 +26,7 @@ use libm::{cos, sin};
 use super::attitude::MIN_COS_PITCH;
 use evidence::{LeakyIntegrator, StuckDetector};
 
+use super::quantity::{Quantities, Quantity};
 use super::resolution::Resolutions;
 use fcc_core::blocks::wrap_pi;
 use fcc_core::flight::{BodyRates, Measurements};
@@ -53,25 +54,6 @@ const EXACTLY: f64 = 0.0;
 /// ground, which involves rounding, m/s²: a tenth of the noise of the best
 /// small accelerometers.
 const SAME_FORCE_MPS2: f64 = 1e-3;
-
-/// Which of the quantities needed by control are frozen.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "five quantities, each frozen or not"
-)]
-pub struct Frozen {
-    /// Roll and pitch.
-    pub attitude: bool,
-    /// The heading.
-    pub heading: bool,
-    /// The rates about the axes.
-    pub body_rates: bool,
-    /// The specific force.
-    pub specific_force: bool,
-    /// The airspeed.
-    pub airspeed: bool,
-}
 
 /// What navigation knows that the evidence needs.
 #[derive(Clone, Copy, Debug)]
@@ -262,17 +244,18 @@ impl FrozenDetector {
     }
 
     /// Which quantities are frozen.
-    pub const fn frozen(&self) -> Frozen {
-        Frozen {
-            attitude: self.roll.is_frozen || self.pitch.is_frozen,
-            heading: self.heading.is_frozen,
-            body_rates: {
-                let [roll, pitch, yaw] = &self.rates;
-                roll.is_frozen || pitch.is_frozen || yaw.is_frozen
-            },
-            specific_force: self.force.is_frozen,
-            airspeed: self.airspeed.is_frozen,
-        }
+    pub const fn frozen(&self) -> Quantities {
+        let [roll, pitch, yaw] = &self.rates;
+        let rates = roll.is_frozen || pitch.is_frozen || yaw.is_frozen;
+        Quantities::NONE
+            .with(
+                Quantity::Attitude,
+                self.roll.is_frozen || self.pitch.is_frozen,
+            )
+            .with(Quantity::Heading, self.heading.is_frozen)
+            .with(Quantity::BodyRates, rates)
+            .with(Quantity::SpecificForce, self.force.is_frozen)
+            .with(Quantity::Airspeed, self.airspeed.is_frozen)
     }
 }
 

@@ -33,6 +33,7 @@ mod motion_monitor;
 mod motion_witness;
 mod path;
 mod plausibility;
+mod quantity;
 mod replacement;
 mod resolution;
 mod returning_altitude;
@@ -65,16 +66,17 @@ pub use airspeed_reason::{Doubt, DoubtReason};
 pub use attitude::AttitudeChannel;
 pub use config::NavigationConfig;
 pub use estimate::{AirspeedSource, Estimate};
-pub use frozen::{Frozen, FrozenDetector, Known};
+pub use frozen::{FrozenDetector, Known};
 pub use lift::{Lift, LiftChannel};
 pub use motion::KnownMotion;
 pub use motion_monitor::MotionDoubt;
 pub use plausibility::{
-    ATTITUDE_RAD, ENGAGE_SWITCH, GateLimits, HEADING_RAD, HEIGHT_M, PlausibilityLimit, RATES_RADPS,
-    SPECIFIC_FORCE_MPS2, airspeed_can_follow, airspeed_is_suspect, is_possible_fix,
+    AIRSPEED, ATTITUDE_RAD, ENGAGE_SWITCH, GateLimits, HEADING_RAD, HEIGHT_M, PlausibilityLimit,
+    RATES_RADPS, SPECIFIC_FORCE_MPS2, airspeed_can_follow, airspeed_is_suspect, is_possible_fix,
     plausibility_gate,
 };
-pub use replacement::{DERIVED_RATES_LATE_S, Lost, Replacement};
+pub use quantity::{Quantities, Quantity};
+pub use replacement::{DERIVED_RATES_LATE_S, Replacement};
 pub use resolution::Resolutions;
 pub use returning_altitude::{Receiver, ReturningAltitude};
 use upward::Upward;

@@ -4,7 +4,7 @@ use core::time::Duration;
 
 use super::motion_monitor::{MotionDoubt, MotionInput};
 use super::motion_witness::WitnessInput;
-use super::{Lost, Navigation};
+use super::{Navigation, Quantities, Quantity};
 use fcc_core::flight::Measurements;
 use fcc_core::flight::atmosphere::true_airspeed_mps;
 use fcc_core::flight::orientation::EulerAngles;
@@ -33,19 +33,20 @@ impl Navigation {
         &mut self,
         now: Time,
         sensed: &Measurements,
-        lost: Lost,
+        lost: Quantities,
         sigma_rad: f64,
         dt_s: f64,
     ) {
         let estimate = &self.estimate;
-        let airspeed_mps = (!lost.airspeed && self.monitor.doubt().is_none()).then_some(
-            true_airspeed_mps(sensed.airspeed_mps.value, estimate.altitude_m),
-        );
-        let is_measured = !lost.attitude
-            && !lost.body_rates
+        let airspeed_mps =
+            (!lost.contains(Quantity::Airspeed) && self.monitor.doubt().is_none()).then_some(
+                true_airspeed_mps(sensed.airspeed_mps.value, estimate.altitude_m),
+            );
+        let is_measured = !lost.contains(Quantity::Attitude)
+            && !lost.contains(Quantity::BodyRates)
             && sensed.attitude.is_fresh(now, COMPARED)
             && sensed.body_rates.is_fresh(now, COMPARED);
-        let knows_climb = !lost.altitude && !self.altitude_monitor.is_doubted();
+        let knows_climb = !lost.contains(Quantity::Altitude) && !self.altitude_monitor.is_doubted();
         let input = MotionInput {
             measured: is_measured.then_some((sensed.attitude.value, sensed.body_rates.value)),
             flown: EulerAngles {
@@ -54,8 +55,10 @@ impl Navigation {
                 heading_rad: estimate.heading_rad,
             },
             witness: WitnessInput {
-                forward_mps2: (!lost.specific_force).then_some(sensed.specific_force.value.x_mps2),
-                heading_rad: (!lost.heading).then_some(sensed.heading_rad.value),
+                forward_mps2: (!lost.contains(Quantity::SpecificForce))
+                    .then_some(sensed.specific_force.value.x_mps2),
+                heading_rad: (!lost.contains(Quantity::Heading))
+                    .then_some(sensed.heading_rad.value),
                 airspeed_mps,
                 climb_rate_mps: knows_climb.then_some(estimate.climb_rate_mps),
                 angle_of_attack_rad: estimate.angle_of_attack_rad,

@@ -11,6 +11,7 @@ use core::time::Duration;
 
 use libm::{asin, cos, sin, sqrt};
 
+use super::quantity::{Quantities, Quantity};
 use fcc_core::blocks::wrap_pi;
 use fcc_core::flight::{
     Attitude, Battery, BodyRates, GnssFix, Measurements, PilotControls, Plant, Position,
@@ -124,14 +125,15 @@ impl PlausibilityLimit {
 pub struct GateLimits {
     /// Readings older than this are too old.
     pub max_age: Duration,
-    /// The quantities, by the bits of the measurements, of which only a value is
-    /// accepted that can follow the last good one, however long that was ago.
-    pub distrusted: Flags,
+    /// The quantities of which only a value is accepted that can follow the last good one, however long that was ago.
+    pub distrusted: Quantities,
     /// By how much the altitude of a coarse sensor changes at once, m.
     pub altitude_step_m: f64,
 }
 
-/// The bit of the engage switch in the measurements.
+/// The bits of airspeed and engage switch in the order of the measurements.
+pub const AIRSPEED: Flags = Flags::bit(4);
+/// See there.
 pub const ENGAGE_SWITCH: Flags = Flags::bit(10);
 
 /// Copies the plausible values from `new` into `good`, and returns which they
@@ -146,8 +148,8 @@ pub fn plausibility_gate(
         distrusted,
         altitude_step_m,
     } = *limits;
-    let convinced = |bit: u32| {
-        if distrusted.contains(Flags::bit(bit)) {
+    let convinced = |quantity: Quantity| {
+        if distrusted.contains(quantity) {
             Duration::MAX
         } else {
             ACCEPTED_AFTER * max_age
@@ -156,7 +158,7 @@ pub fn plausibility_gate(
     let attitude = take(
         &mut good.attitude,
         &new.attitude,
-        convinced(0),
+        convinced(Quantity::Attitude),
         |a: &Attitude| within(a.pitch_rad, MAX_ANGLE_RAD) && within(a.roll_rad, MAX_ANGLE_RAD),
         |a, b, gap_s| {
             // Gravity turns by no more than both angles together.
@@ -168,7 +170,7 @@ pub fn plausibility_gate(
     let heading = take(
         &mut good.heading_rad,
         &new.heading_rad,
-        convinced(1),
+        convinced(Quantity::Heading),
         |rad| within(*rad, MAX_ANGLE_RAD),
         // Near the vertical a small rotation is a large change of the heading.
         |a, b, gap_s| {
@@ -179,14 +181,14 @@ pub fn plausibility_gate(
     let rates = take(
         &mut good.body_rates,
         &new.body_rates,
-        convinced(2),
+        convinced(Quantity::BodyRates),
         |r| turning(r).iter().all(|rate| within(*rate, MAX_RATE_RADPS)),
         |a, b, gap_s| RATES_RADPS.holds_each(turning(a), turning(b), gap_s),
     );
     let force = take(
         &mut good.specific_force,
         &new.specific_force,
-        convinced(3),
+        convinced(Quantity::SpecificForce),
         |f| {
             let within = |force: &f64| within(*force, MAX_SPECIFIC_FORCE_MPS2);
             forces(f).iter().all(within)
@@ -196,7 +198,7 @@ pub fn plausibility_gate(
     let airspeed = take(
         &mut good.airspeed_mps,
         &new.airspeed_mps,
-        convinced(4),
+        convinced(Quantity::Airspeed),
         |mps| within(*mps, MAX_AIRSPEED_MPS) && !airspeed_is_suspect(new),
         |a, b, gap_s| {
             AIRSPEED_MPS.holds(b - a, gap_s)
@@ -206,7 +208,7 @@ pub fn plausibility_gate(
     let altitude = take(
         &mut good.altitude_m,
         &new.altitude_m,
-        convinced(5),
+        convinced(Quantity::Altitude),
         |m| is_possible_altitude(*m),
         |a, b, gap_s| {
             let beyond_m = ((b - a).abs() - altitude_step_m).max(0.0);

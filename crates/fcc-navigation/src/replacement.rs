@@ -5,6 +5,7 @@ use core::time::Duration;
 use libm::{asin, atan2, cos, exp, sin};
 
 use super::estimate::Estimate;
+use super::quantity::{Quantities, Quantity};
 use fcc_core::blocks::{LowPass, limit_abs, wrap_pi};
 use fcc_core::flight::{Attitude, BodyRates, Measurements};
 use fcc_core::framework::{Reading, Time};
@@ -70,27 +71,6 @@ impl Slope {
     }
 }
 
-/// The quantities that are lost.
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "one for each quantity, independent of the others"
-)]
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub struct Lost {
-    /// Roll and pitch.
-    pub attitude: bool,
-    /// The heading.
-    pub heading: bool,
-    /// The rates about the axes.
-    pub body_rates: bool,
-    /// The specific force.
-    pub specific_force: bool,
-    /// The airspeed.
-    pub airspeed: bool,
-    /// The altitude.
-    pub altitude: bool,
-}
-
 /// Replaces a lost gyroscope by the derivative of attitude and heading, and a
 /// lost attitude by gravity, with which the integrated gyroscope is corrected:
 /// gravity is the acceleration, which airspeed and turn rates tell, without the
@@ -125,22 +105,28 @@ impl Replacement {
 
     /// Follows the measurements, before the estimate of this tick; of those that
     /// are lost nothing is taken.
-    pub fn follow(&mut self, measured: &Measurements, lost: Lost, estimate: &Estimate, dt_s: f64) {
+    pub fn follow(
+        &mut self,
+        measured: &Measurements,
+        lost: Quantities,
+        estimate: &Estimate,
+        dt_s: f64,
+    ) {
         let minus = |a: f64, b: f64| a - b;
-        if !lost.attitude {
+        if !lost.contains(Quantity::Attitude) {
             let Reading { value, taken, .. } = measured.attitude;
             self.roll.step(taken, value.roll_rad, |a, b| wrap_pi(a - b));
             self.pitch.step(taken, value.pitch_rad, minus);
         }
-        if !lost.heading {
+        if !lost.contains(Quantity::Heading) {
             let Reading { value, taken, .. } = measured.heading_rad;
             self.heading.step(taken, value, |a, b| wrap_pi(a - b));
         }
-        if !lost.airspeed {
+        if !lost.contains(Quantity::Airspeed) {
             let Reading { value, taken, .. } = measured.airspeed_mps;
             self.path.step(taken, value, minus);
         }
-        if lost == Lost::default() {
+        if lost.is_empty() {
             let upright = self.by_gravity(measured, estimate, false);
             let attitude = measured.attitude.value;
             let roll_rad = wrap_pi(attitude.roll_rad - upright.roll_rad);
@@ -170,15 +156,16 @@ impl Replacement {
     pub fn without(
         &self,
         measured: &Measurements,
-        lost: Lost,
+        lost: Quantities,
         estimate: &Estimate,
         now: Time,
     ) -> Measurements {
         let mut left = *measured;
-        if lost.attitude {
+        if lost.contains(Quantity::Attitude) {
             left.attitude.taken = Time::NEVER;
-            if !lost.body_rates && !lost.specific_force {
-                let upright = self.by_gravity(measured, estimate, lost.airspeed);
+            if !lost.contains(Quantity::BodyRates) && !lost.contains(Quantity::SpecificForce) {
+                let upright =
+                    self.by_gravity(measured, estimate, lost.contains(Quantity::Airspeed));
                 let toward =
                     |is_rad: f64, to_rad: f64| is_rad + self.share * wrap_pi(to_rad - is_rad);
                 let attitude = Attitude {
@@ -194,22 +181,22 @@ impl Replacement {
                 left.attitude = Reading::new(attitude, now);
             }
         }
-        if lost.body_rates {
+        if lost.contains(Quantity::BodyRates) {
             left.body_rates.taken = Time::NEVER;
-            if !lost.attitude {
+            if !lost.contains(Quantity::Attitude) {
                 left.body_rates = Reading::new(self.rates(lost, estimate), now);
             }
         }
-        if lost.heading {
+        if lost.contains(Quantity::Heading) {
             left.heading_rad.taken = Time::NEVER;
         }
-        if lost.specific_force {
+        if lost.contains(Quantity::SpecificForce) {
             left.specific_force.taken = Time::NEVER;
         }
-        if lost.airspeed {
+        if lost.contains(Quantity::Airspeed) {
             left.airspeed_mps.taken = Time::NEVER;
         }
-        if lost.altitude {
+        if lost.contains(Quantity::Altitude) {
             left.altitude_m.taken = Time::NEVER;
         }
         left
@@ -217,10 +204,10 @@ impl Replacement {
 
     /// Body rates from the rates of the angles (Stevens, Lewis and Johnson 2016,
     /// equation 1.4-4); without a heading those of a coordinated turn.
-    fn rates(&self, lost: Lost, estimate: &Estimate) -> BodyRates {
+    fn rates(&self, lost: Quantities, estimate: &Estimate) -> BodyRates {
         let (sin_roll, cos_roll) = (sin(self.roll.value), cos(self.roll.value));
         let (sin_pitch, cos_pitch) = (sin(self.pitch.value), cos(self.pitch.value));
-        let heading_radps = if lost.heading {
+        let heading_radps = if lost.contains(Quantity::Heading) {
             let speed = estimate.true_airspeed_mps.max(LEAST_AIRSPEED_MPS);
             GRAVITY_MPS2 / speed * sin_roll / cos_roll.max(0.5)
         } else {
@@ -314,12 +301,9 @@ mod tests {
             measured.attitude = Reading::new(attitude, now);
             let north = (3.0 * (passed_s - 1.0)).to_radians();
             measured.heading_rad = Reading::new(fcc_core::blocks::wrap_two_pi(north), now);
-            replacement.follow(&measured, Lost::default(), &estimate, DT_S);
+            replacement.follow(&measured, Quantities::NONE, &estimate, DT_S);
         }
-        let lost = Lost {
-            body_rates: true,
-            ..Lost::default()
-        };
+        let lost = Quantity::BodyRates.alone();
         let now = Time::from_nanos(2_000_000_000);
         let rates = replacement
             .without(&measured, lost, &estimate, now)

@@ -195,17 +195,19 @@ fn outputs_that_are_withheld_are_recorded_and_not_sent() {
 }
 
 #[test]
-fn a_notice_is_an_event() {
-    let mut bench = Bench::new();
-    let notice = Notice {
+fn each_notice_of_a_tick_is_an_event() {
+    const FIRST: Notice = Notice {
         kind: 3,
         lasted_ns: 7,
         amount_permille: 0,
         item: 2,
     };
-    bench.tick(|s| s.notice = Some(notice));
-    bench.tick(|s| s.notice = None);
-    assert_eq!(bench.events(), [EventKind::Noticed(notice)]);
+    const SECOND: Notice = Notice { item: 3, ..FIRST };
+    let mut bench = Bench::new();
+    bench.tick(|s| s.notices = &[FIRST, SECOND]);
+    bench.tick(|s| s.notices = &[]);
+    let expected = [FIRST, SECOND].map(EventKind::Noticed);
+    assert_eq!(bench.events(), expected);
 }
 
 #[test]

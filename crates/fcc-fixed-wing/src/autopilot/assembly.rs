@@ -7,9 +7,10 @@ use super::{
     StraightTrims, Surfaces, Targets, Time, ToldOnce, Whereabouts,
 };
 use crate::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop};
-use fcc_core::framework::Flags;
 use fcc_navigation::inertial::RawNavigation;
-use fcc_navigation::{FrozenDetector, LearnedAirframe, Navigation, Replacement, ReturningAltitude};
+use fcc_navigation::{
+    FrozenDetector, LearnedAirframe, Navigation, Quantities, Replacement, ReturningAltitude,
+};
 
 impl Autopilot {
     /// An autopilot that is not engaged.
@@ -66,7 +67,7 @@ impl Autopilot {
             straight: StraightTrims::default(),
             degraded: Degraded::default(),
             following: Following::default(),
-            distrusted: Flags::NONE,
+            distrusted: Quantities::NONE,
             returning_altitude: ReturningAltitude::default(),
             is_at_floor: false,
             config,

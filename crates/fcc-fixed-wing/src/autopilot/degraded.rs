@@ -9,8 +9,8 @@ use coming_and_going::{FORGOTTEN_SLOWER, Intermittent, Repeated};
 use super::runway::Low;
 use super::{Autopilot, FailsafeEnd, flags};
 use fcc_core::flight::Measurements;
-use fcc_core::framework::{Flags, Notice, Tick, Time};
-use fcc_navigation::{AirspeedSource, KnownMotion, Lost, MotionDoubt};
+use fcc_core::framework::{Notice, Tick, Time};
+use fcc_navigation::{AirspeedSource, KnownMotion, MotionDoubt, Quantities, Quantity};
 
 /// The kinds of notices.
 pub(super) const GOOD_AGAIN: u8 = 3;
@@ -82,16 +82,22 @@ pub(super) struct Held {
 }
 
 /// A row of the table: what is held without these quantities.
-struct Row(Flags, Held);
+struct Row(Quantities, Held);
 
-const fn row(lost: Flags, lateral: Lateral, vertical: Vertical, power: Power, for_s: f64) -> Row {
+const fn row(
+    lost: &[Quantity],
+    lateral: Lateral,
+    vertical: Vertical,
+    power: Power,
+    for_s: f64,
+) -> Row {
     let held = Held {
         lateral,
         vertical,
         power,
         for_s,
     };
-    Row(lost, held)
+    Row(Quantities::of(lost), held)
 }
 
 /// A limit only by `failsafe.degraded_s`: its error does not grow.
@@ -104,26 +110,41 @@ const INTEGRATED_S: f64 = 30.0;
 /// same table for users is in `docs/faults.md`.
 const TABLE: [Row; 8] = {
     use {Lateral as L, Power as P, Vertical as V};
-    const fn both(a: Flags, b: Flags) -> Flags {
-        Flags::from_bits(a.bits() | b.bits())
-    }
     [
-        row(flags::HEADING, L::WingsLevel, V::Level, P::Airspeed, SOUND),
+        row(
+            &[Quantity::Heading],
+            L::WingsLevel,
+            V::Level,
+            P::Airspeed,
+            SOUND,
+        ),
         // The rudder follows the aileron, and damps the yaw; the climb rate of
         // the barometer alone is too late for the loop.
         row(
-            flags::SPECIFIC_FORCE,
+            &[Quantity::SpecificForce],
             L::WingsLevel,
             V::Pitch,
             P::Airspeed,
             SOUND,
         ),
         // Pitch and power determine the airspeed, unless forces and motion do.
-        row(flags::AIRSPEED, L::WingsLevel, V::Pitch, P::Trim, SOUND),
-        row(flags::ALTITUDE, L::WingsLevel, V::Pitch, P::Trim, SOUND),
+        row(
+            &[Quantity::Airspeed],
+            L::WingsLevel,
+            V::Pitch,
+            P::Trim,
+            SOUND,
+        ),
+        row(
+            &[Quantity::Altitude],
+            L::WingsLevel,
+            V::Pitch,
+            P::Trim,
+            SOUND,
+        ),
         // The derivative of attitude and heading replaces the gyroscope.
         row(
-            flags::BODY_RATES,
+            &[Quantity::BodyRates],
             L::WingsLevel,
             V::Level,
             P::Airspeed,
@@ -131,9 +152,15 @@ const TABLE: [Row; 8] = {
         ),
         // The integrated gyroscope replaces the attitude, corrected by gravity:
         // its error is some 10 s of the gyroscope's drift.
-        row(flags::ATTITUDE, L::WingsLevel, V::Level, P::Airspeed, SOUND),
         row(
-            both(flags::ATTITUDE, flags::SPECIFIC_FORCE),
+            &[Quantity::Attitude],
+            L::WingsLevel,
+            V::Level,
+            P::Airspeed,
+            SOUND,
+        ),
+        row(
+            &[Quantity::Attitude, Quantity::SpecificForce],
             L::WingsLevel,
             V::Pitch,
             P::Trim,
@@ -141,7 +168,7 @@ const TABLE: [Row; 8] = {
         ),
         // An outage is flown through; then `failsafe.hold_s` ends it.
         row(
-            both(flags::ATTITUDE, flags::BODY_RATES),
+            &[Quantity::Attitude, Quantity::BodyRates],
             L::Trims,
             V::Trim,
             P::Trim,
@@ -153,16 +180,18 @@ const TABLE: [Row; 8] = {
 /// What an airspeed by forces and motion needs, and the standard deviation up to
 /// which it counts as known, by the reference airspeed: 5 kt of 100 kt, so that
 /// three of them lie between cruise and the lowest airspeed of a Cessna 172.
-const FORCES_NEED: Flags = Flags::from_bits(
-    flags::ATTITUDE.bits() | flags::SPECIFIC_FORCE.bits() | flags::ALTITUDE.bits(),
-);
+const FORCES_NEED: Quantities = Quantities::of(&[
+    Quantity::Attitude,
+    Quantity::SpecificForce,
+    Quantity::Altitude,
+]);
 const ACCURATE_RATIO: f64 = 0.05;
 /// ... and where there never was a sensor, so that the limits have been that much narrower
 /// from the beginning.
 const FLYABLE_RATIO: f64 = 0.1;
 
 /// What is held without these quantities.
-pub(super) fn held_without(lost: Flags) -> Held {
+pub(super) fn held_without(lost: Quantities) -> Held {
     let all = Held {
         lateral: Lateral::WingsLevel,
         vertical: Vertical::Level,
@@ -171,7 +200,7 @@ pub(super) fn held_without(lost: Flags) -> Held {
     };
     let rows = TABLE
         .iter()
-        .filter(|Row(missing, _)| lost.contains(*missing));
+        .filter(|Row(missing, _)| lost.contains_all(*missing));
     rows.fold(all, |weakest, Row(_, held)| Held {
         lateral: weakest.lateral.min(held.lateral),
         vertical: weakest.vertical.min(held.vertical),
@@ -192,7 +221,7 @@ pub(super) struct Degraded {
     pub(super) low: Low,
     pub(super) trimmed_mps: Option<f64>,
     /// The quantities that were frozen in it.
-    pub(super) frozen: Flags,
+    pub(super) frozen: Quantities,
     /// How long it has lasted, s.
     lasted_s: f64,
     /// For how long nothing sound could be held, as far as it is not forgotten, and all
@@ -244,7 +273,7 @@ impl Degraded {
 
 impl Autopilot {
     /// The quantities that control cannot use: too old, frozen, or contradicted.
-    pub(super) fn lost(&self, now: Time, measured: &Measurements) -> Flags {
+    pub(super) fn lost(&self, now: Time, measured: &Measurements) -> Quantities {
         let contradicted = self
             .external(now, measured)
             .contains(flags::SUSPECT_AIRSPEED)
@@ -252,19 +281,19 @@ impl Autopilot {
         let doubt = self.navigation.motion_doubt();
         let unusable = self
             .silent_or_frozen(now)
-            .with(flags::ATTITUDE, doubt == Some(MotionDoubt::Attitude))
-            .with(flags::BODY_RATES, doubt == Some(MotionDoubt::BodyRates));
+            .with(Quantity::Attitude, doubt == Some(MotionDoubt::Attitude))
+            .with(Quantity::BodyRates, doubt == Some(MotionDoubt::BodyRates));
         let left_out = self.degraded.intermittent.left_out_with(unusable);
-        (unusable | left_out).with(flags::AIRSPEED, contradicted)
+        (unusable | left_out).with(Quantity::Airspeed, contradicted)
     }
 
     /// The quantities that are too old or frozen.
-    pub(super) fn silent_or_frozen(&self, now: Time) -> Flags {
-        flags::unusable(self.stale(now), self.frozen())
+    pub(super) fn silent_or_frozen(&self, now: Time) -> Quantities {
+        self.stale(now) | self.frozen()
     }
 
     /// The quantities that come and go in a failsafe.
-    pub(super) const fn intermittent(&self) -> Flags {
+    pub(super) const fn intermittent(&self) -> Quantities {
         self.degraded.intermittent.left_out
     }
 
@@ -278,11 +307,10 @@ impl Autopilot {
 
     /// Whether all that the air data are compared with is measured. A frozen
     /// altimeter may be one whose static port is blocked.
-    pub(super) fn known_motion(&self, now: Time, lost: Flags) -> KnownMotion {
-        const MOTION: Flags =
-            Flags::from_bits(flags::ATTITUDE.bits() | flags::SPECIFIC_FORCE.bits());
+    pub(super) fn known_motion(&self, now: Time, lost: Quantities) -> KnownMotion {
+        const MOTION: Quantities = Quantities::of(&[Quantity::Attitude, Quantity::SpecificForce]);
         let no_altitude = self.navigation.altitude_doubt().is_none()
-            && (self.stale(now) | self.intermittent()).contains(flags::ALTITUDE);
+            && (self.stale(now) | self.intermittent()).contains(Quantity::Altitude);
         if lost.intersects(MOTION) || no_altitude || self.navigation.suspects_motion() {
             KnownMotion::Unknown
         } else if self.is_on_wheels() {
@@ -295,11 +323,11 @@ impl Autopilot {
     /// What is lost and not replaced by what counts as measured: an airspeed by
     /// forces and motion does while it is accurate, and nothing is lost that it
     /// comes from; so does the climb by a satellite receiver in place of an altitude.
-    pub(super) fn unreplaced(&self, now: Time, lost: Flags) -> Flags {
+    pub(super) fn unreplaced(&self, now: Time, lost: Quantities) -> Quantities {
         let is_known = self.is_accurate(ACCURATE_RATIO) && !lost.intersects(FORCES_NEED);
         let climb_is_known = self.accepted.velocity.is_fresh(now, self.config.max_age);
-        lost.keeping(flags::AIRSPEED, !is_known)
-            .keeping(flags::ALTITUDE, !climb_is_known)
+        lost.keeping(Quantity::Airspeed, !is_known)
+            .keeping(Quantity::Altitude, !climb_is_known)
     }
 
     fn is_accurate(&self, ratio: f64) -> bool {
@@ -375,17 +403,5 @@ impl Autopilot {
     pub(super) const fn is_degraded(&self) -> bool {
         let degraded = &self.degraded;
         degraded.is_sound && (degraded.good_s == 0.0 || !degraded.intermittent.left_out.is_empty())
-    }
-}
-
-/// The lost quantities by name, for navigation.
-pub(super) const fn by_name(lost: Flags) -> Lost {
-    Lost {
-        attitude: lost.contains(flags::ATTITUDE),
-        heading: lost.contains(flags::HEADING),
-        body_rates: lost.contains(flags::BODY_RATES),
-        specific_force: lost.contains(flags::SPECIFIC_FORCE),
-        airspeed: lost.contains(flags::AIRSPEED),
-        altitude: lost.contains(flags::ALTITUDE),
     }
 }

@@ -10,6 +10,7 @@ use fcc_core::flight::{AltitudeReference, Measurements, PlantState, Surfaces};
 use fcc_core::framework::{Flags, Time};
 use fcc_guidance::{ActiveMode, Mode, ModeInput, Targets};
 use fcc_navigation::inertial::RawNavigation;
+use fcc_navigation::{Quantities, Quantity};
 
 /// Of a sum of the plant's steps, s.
 const ROUNDING_S: f64 = 1e-6;
@@ -21,7 +22,7 @@ impl Autopilot {
         let contradictions = self.navigation.contradictions();
         let stale = self.stale(now);
         let is_slow = estimate.airspeed_mps < self.config.envelope.min_airspeed_mps
-            && !stale.intersects(flags::AIRSPEED);
+            && !stale.contains(Quantity::Airspeed);
         (self.unsafe_with(stale, now, measurements)
             | self.not_permitted(now, measurements)
             | self.route_inhibits()
@@ -61,7 +62,7 @@ impl Autopilot {
 
     /// Engages: what is flown now is held, or the pattern begins.
     pub(super) fn begin_flight(&mut self, now: Time) {
-        self.distrusted = Flags::NONE;
+        self.distrusted = Quantities::NONE;
         self.told_once = ToldOnce::default();
         self.contingencies.reset();
         self.pilot.set_engaged(true);

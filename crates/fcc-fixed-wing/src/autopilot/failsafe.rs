@@ -2,14 +2,14 @@
 
 use core::time::Duration;
 
+use super::Autopilot;
 use super::degraded::{Lateral, Power, Vertical, held_without};
-use super::{Autopilot, flags};
 use crate::control::Envelope;
 use fcc_core::blocks::{limit_abs, wrap_two_pi};
 use fcc_core::flight::atmosphere::true_airspeed_mps;
 use fcc_core::flight::{Attitude, BodyRates, Measurements, Surfaces};
-use fcc_core::framework::{Flags, Time};
-use fcc_navigation::{Estimate, Receiver, ReturningAltitude};
+use fcc_core::framework::Time;
+use fcc_navigation::{Estimate, Quantities, Quantity, Receiver, ReturningAltitude};
 
 /// What ends a failsafe in which nothing sound can be held.
 ///
@@ -110,17 +110,18 @@ impl Autopilot {
     /// [returns](ReturningAltitude).
     pub(super) fn safest(&mut self, now: Time, measured: &Measurements) -> Surfaces {
         // One that was frozen stood still: what comes after it is no jump.
-        self.degraded.frozen |= flags::unusable(Flags::NONE, self.frozen());
-        let jumped = self.rejected(measured).bits() & !self.degraded.frozen.bits();
-        let distrusted = self.distrusted | Flags::from_bits(jumped);
-        if distrusted.contains(flags::ALTITUDE) && !self.distrusted.contains(flags::ALTITUDE) {
+        self.degraded.frozen |= self.frozen();
+        let jumped = self.rejected(measured) & !self.degraded.frozen;
+        let distrusted = self.distrusted | jumped;
+        if distrusted.contains(Quantity::Altitude) && !self.distrusted.contains(Quantity::Altitude)
+        {
             self.returning_altitude = ReturningAltitude::after(self.accepted.altitude_m);
         }
         self.distrusted = distrusted;
         if !self.degraded.is_failsafe {
             self.degraded.begin(self.navigation.estimate().altitude_m);
             self.begin_low();
-            if self.frozen().contains(flags::FROZEN_BODY_RATES) {
+            if self.frozen().contains(Quantity::BodyRates) {
                 let trims = Surfaces {
                     throttle: self.last.throttle,
                     ..self.kept_trims.trims
@@ -181,7 +182,7 @@ impl Autopilot {
                 let low_m = kept_m - estimate.altitude_m;
                 let path_rad = if glides {
                     -1.0 / config.glide_ratio
-                } else if lost.contains(flags::ALTITUDE) {
+                } else if lost.contains(Quantity::Altitude) {
                     0.0
                 } else {
                     limit_abs(PATH_PER_M * low_m, MOST_PATH_RAD)
@@ -210,12 +211,12 @@ impl Autopilot {
     }
 
     /// The estimate, with what takes the place of the lost quantities.
-    fn estimate_without(&self, lost: Flags) -> Estimate {
+    fn estimate_without(&self, lost: Quantities) -> Estimate {
         let mut estimate = *self.navigation.estimate();
-        if lost.contains(flags::SPECIFIC_FORCE) {
+        if lost.contains(Quantity::SpecificForce) {
             estimate.side_force_mps2 = 0.0;
         }
-        if lost.contains(flags::AIRSPEED) {
+        if lost.contains(Quantity::Airspeed) {
             // That of the pitch and power that are held.
             estimate.airspeed_mps = if self.degraded.glides {
                 self.config.envelope.best_glide_airspeed_mps
@@ -236,9 +237,9 @@ impl Autopilot {
 
     /// The envelope. An airspeed that is not known, but assumed, is inside of it: no
     /// change of pitch would change it.
-    fn envelope_without(&self, lost: Flags, estimate: &Estimate) -> Envelope {
+    fn envelope_without(&self, lost: Quantities, estimate: &Estimate) -> Envelope {
         let envelope = self.config.envelope;
-        if !lost.contains(flags::AIRSPEED) {
+        if !lost.contains(Quantity::Airspeed) {
             return envelope;
         }
         Envelope {
@@ -255,7 +256,7 @@ impl Autopilot {
     /// Continues what was flown before the failsafe: targets, mode and progress
     /// are as they were.
     pub(super) fn fly_on(&mut self) {
-        self.distrusted = Flags::NONE;
+        self.distrusted = Quantities::NONE;
         self.degraded = self.degraded.recovered();
         self.end_release_of_failsafe();
         let last = self.last;
@@ -272,23 +273,23 @@ impl Autopilot {
         }
         let (estimate, distrusted) = (*self.navigation.estimate(), self.distrusted);
         let last = &mut self.accepted;
-        if distrusted.contains(flags::ATTITUDE) {
+        if distrusted.contains(Quantity::Attitude) {
             last.attitude.value = Attitude {
                 pitch_rad: estimate.pitch_rad,
                 roll_rad: estimate.roll_rad,
             };
         }
-        if distrusted.contains(flags::HEADING) {
+        if distrusted.contains(Quantity::Heading) {
             last.heading_rad.value = wrap_two_pi(estimate.heading_rad);
         }
-        if distrusted.contains(flags::BODY_RATES) {
+        if distrusted.contains(Quantity::BodyRates) {
             last.body_rates.value = estimate.body_rates;
         }
-        if distrusted.contains(flags::ALTITUDE) {
+        if distrusted.contains(Quantity::Altitude) {
             let (new, receiver) = (measured.altitude_m, Receiver::of(measured, now));
             if self.returning_altitude.step(&new, receiver) {
                 last.altitude_m = new;
-                self.distrusted = distrusted.keeping(flags::ALTITUDE, false);
+                self.distrusted = distrusted.keeping(Quantity::Altitude, false);
             } else {
                 last.altitude_m.value = estimate.altitude_m;
             }

@@ -1,7 +1,7 @@
 //! Engage inhibits and faults, as bits of [`Flags`].
 
 use fcc_core::framework::Flags;
-use fcc_navigation::Frozen;
+use fcc_navigation::{Quantities, Quantity};
 
 /// Pitch and roll are too old.
 pub const ATTITUDE: Flags = Flags::bit(0);
@@ -53,8 +53,6 @@ pub const RELOCATED: Flags = Flags::bit(22);
 /// The simulator shows a recorded flight.
 pub const PLANT_REPLAYING: Flags = Flags::bit(23);
 
-/// The quantities that control needs.
-pub(super) const NEEDED: Flags = Flags::from_bits(0x3f);
 /// Another autopilot's servos move the controls.
 pub const OTHER_AUTOPILOT: Flags = Flags::bit(24);
 /// Another autothrottle moves the throttles.
@@ -138,20 +136,52 @@ pub const BATTERY: Flags = Flags::bit(63);
 pub(super) const DOUBTED_MOTION: Flags =
     Flags::from_bits(DOUBTED_ATTITUDE.bits() | DOUBTED_BODY_RATES.bits());
 
-/// The shift from the bit of a quantity that is too old to the bit of the same
-/// quantity being frozen.
-const FROZEN_SHIFT: u32 = 13;
+/// The conditions that a quantity is too old, and that it is frozen.
+const OF_QUANTITIES: [(Quantity, Flags, Flags); Quantity::COUNT] = [
+    (Quantity::Attitude, ATTITUDE, FROZEN_ATTITUDE),
+    (Quantity::Heading, HEADING, FROZEN_HEADING),
+    (Quantity::BodyRates, BODY_RATES, FROZEN_BODY_RATES),
+    (
+        Quantity::SpecificForce,
+        SPECIFIC_FORCE,
+        FROZEN_SPECIFIC_FORCE,
+    ),
+    (Quantity::Airspeed, AIRSPEED, FROZEN_AIRSPEED),
+    // No altimeter is called frozen: other monitors find one that stands still.
+    (Quantity::Altitude, ALTITUDE, Flags::NONE),
+];
 
-/// A set in which frozen quantities also count as too old: neither can be used
-/// for control.
-pub(super) const fn unusable(stale: Flags, frozen: Flags) -> Flags {
-    Flags::from_bits(stale.bits() | frozen.bits() >> FROZEN_SHIFT)
+/// The conditions that these are too old.
+pub(super) fn too_old(quantities: Quantities) -> Flags {
+    OF_QUANTITIES
+        .into_iter()
+        .fold(Flags::NONE, |all, (quantity, too_old, _)| {
+            all.with(too_old, quantities.contains(quantity))
+        })
+}
+
+/// The conditions that these are frozen.
+pub(super) fn frozen(quantities: Quantities) -> Flags {
+    OF_QUANTITIES
+        .into_iter()
+        .fold(Flags::NONE, |all, (quantity, _, frozen)| {
+            all.with(frozen, quantities.contains(quantity))
+        })
 }
 
 /// What is not about a quantity that control needs: nothing is held without it.
 pub(super) const NOT_SENSED: Flags = Flags::from_bits(
-    !(NEEDED.bits()
-        | NEEDED.bits() << FROZEN_SHIFT
+    !(ATTITUDE.bits()
+        | HEADING.bits()
+        | BODY_RATES.bits()
+        | SPECIFIC_FORCE.bits()
+        | AIRSPEED.bits()
+        | ALTITUDE.bits()
+        | FROZEN_ATTITUDE.bits()
+        | FROZEN_HEADING.bits()
+        | FROZEN_BODY_RATES.bits()
+        | FROZEN_SPECIFIC_FORCE.bits()
+        | FROZEN_AIRSPEED.bits()
         | REJECTED.bits()
         | SUSPECT_AIRSPEED.bits()
         | DOUBTED_AIRSPEED.bits()
@@ -161,16 +191,6 @@ pub(super) const NOT_SENSED: Flags = Flags::from_bits(
         | FROM_THE_FUTURE.bits()
         | SOURCE_CLOCK.bits()),
 );
-
-/// The bits of the frozen quantities.
-pub(super) const fn frozen(frozen: Frozen) -> Flags {
-    Flags::NONE
-        .with(FROZEN_ATTITUDE, frozen.attitude)
-        .with(FROZEN_HEADING, frozen.heading)
-        .with(FROZEN_BODY_RATES, frozen.body_rates)
-        .with(FROZEN_SPECIFIC_FORCE, frozen.specific_force)
-        .with(FROZEN_AIRSPEED, frozen.airspeed)
-}
 
 /// The text of each bit, lowest first.
 pub(super) const NAMES: [&str; 64] = [
@@ -239,22 +259,3 @@ pub(super) const NAMES: [&str; 64] = [
     "position is by dead reckoning: satellite navigation is silent",
     "the battery is low, or what limits it in [contingency] is not measured",
 ];
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_frozen_quantity_is_unusable_and_keeps_its_bit() {
-        let pairs = [
-            (ATTITUDE, FROZEN_ATTITUDE),
-            (HEADING, FROZEN_HEADING),
-            (BODY_RATES, FROZEN_BODY_RATES),
-            (SPECIFIC_FORCE, FROZEN_SPECIFIC_FORCE),
-            (AIRSPEED, FROZEN_AIRSPEED),
-        ];
-        for (stale, frozen) in pairs {
-            assert_eq!(unusable(Flags::NONE, frozen), stale);
-        }
-    }
-}

@@ -5,8 +5,8 @@ use crate::Setpoints;
 use crate::control::{Envelope, Schedule};
 use fcc_core::blocks::wrap_two_pi;
 use fcc_core::flight::Surfaces;
-use fcc_core::framework::{Flags, Time};
-use fcc_navigation::Estimate;
+use fcc_core::framework::Time;
+use fcc_navigation::{Estimate, Quantities};
 
 impl Autopilot {
     /// The outputs of a tick.
@@ -26,7 +26,7 @@ impl Autopilot {
         }
         self.learn_straight_trims(&estimate, dt_s);
         let outputs = self.flown(now, &estimate, &envelope, schedule, dt_s);
-        self.with_trim(now, outputs, Flags::NONE)
+        self.with_trim(now, outputs, Quantities::NONE)
     }
 
     /// The outputs of the law that flies.

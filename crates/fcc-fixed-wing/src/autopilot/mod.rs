@@ -84,8 +84,8 @@ use fcc_guidance::route::TookOff;
 use fcc_guidance::{ActiveMode, Mode, ModeInput, OverGroundMode, Targets};
 use fcc_navigation::inertial::RawNavigation;
 use fcc_navigation::{
-    ENGAGE_SWITCH, Estimate, FrozenDetector, Navigation, Replacement, ReturningAltitude,
-    plausibility_gate,
+    AIRSPEED, ENGAGE_SWITCH, Estimate, FrozenDetector, Navigation, Quantities, Quantity,
+    Replacement, ReturningAltitude, plausibility_gate,
 };
 
 /// Navigation, guidance and control as one [`Controller`].
@@ -183,7 +183,7 @@ pub struct Autopilot {
     degraded: Degraded,
     following: Following,
     /// The quantities that were rejected as implausible in this failsafe.
-    distrusted: Flags,
+    distrusted: Quantities,
     returning_altitude: ReturningAltitude,
     /// Whether the target altitude is limited by the floor.
     is_at_floor: bool,
@@ -325,9 +325,9 @@ impl Controller for Autopilot {
         self.prepare_end_of_failsafe(tick.woke, &seen);
         let lost = self.lost(tick.woke, &seen);
         let estimate = *self.navigation.estimate();
-        if !lost.intersects(flags::BODY_RATES | flags::ATTITUDE) {
+        if !lost.intersects(Quantity::BodyRates | Quantity::Attitude) {
             self.follow_outputs(&estimate);
-        } else if !lost.contains(flags::ATTITUDE) {
+        } else if !lost.contains(Quantity::Attitude) {
             self.actuation
                 .watch(&self.last, &estimate, self.clock.step_s());
         }
@@ -342,7 +342,7 @@ impl Controller for Autopilot {
     }
 
     fn disengage(&mut self) {
-        self.distrusted = Flags::NONE;
+        self.distrusted = Quantities::NONE;
         self.degraded = Degraded::default();
         self.pilot.set_engaged(false);
         self.change_mode(ModeInput::Disengage);
@@ -395,7 +395,7 @@ impl Controller for Autopilot {
             measurements,
             &self.gate_limits(),
         );
-        let plausible = plausible.keeping(flags::AIRSPEED, self.permits_airspeed(measurements));
+        let plausible = plausible.keeping(AIRSPEED, self.permits_airspeed(measurements));
         match &self.raw {
             Some(raw) => raw.permitted(sensor, plausible),
             None => plausible,

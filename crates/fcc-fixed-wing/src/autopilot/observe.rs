@@ -1,17 +1,17 @@
 //! From a tick's measurements to the estimate, also after a gap in which a
 //! simulated plant was not heard.
 
-use super::degraded::by_name;
+use super::Autopilot;
 use super::future::{is_from_the_future, without_future};
 use super::place_monitor::PlaceDoubt;
 use super::plant_clock::Waiting;
-use super::reading_age::taken_of_needed;
 use super::whereabouts::Whereabouts;
-use super::{Autopilot, flags};
 use fcc_core::flight::{Measurements, PlantState};
-use fcc_core::framework::{Flags, Reading, Readings, Tick, Time};
+use fcc_core::framework::{Reading, Readings, Tick, Time};
 use fcc_navigation::inertial::RawNavigation;
-use fcc_navigation::{FrozenDetector, GateLimits, Lost, airspeed_can_follow, plausibility_gate};
+use fcc_navigation::{
+    FrozenDetector, GateLimits, Quantities, Quantity, airspeed_can_follow, plausibility_gate,
+};
 
 impl Autopilot {
     /// Processes a tick's measurements.
@@ -63,7 +63,7 @@ impl Autopilot {
         self.take_over_unless_followed(now, self.config.max_age);
         self.follow_failsafe(tick, measured);
         // After an outage everything settles anew before it may engage.
-        let unusable = flags::unusable(self.stale(now), self.frozen());
+        let unusable = self.silent_or_frozen(now);
         let settled_s = self.settled_s.map_or(0.0, |settled_s| settled_s + step_s);
         self.settled_s = unusable.is_empty().then_some(settled_s);
         self.before = now;
@@ -71,7 +71,7 @@ impl Autopilot {
 
     /// Estimates the aircraft's state, in failsafe without what is lost.
     fn navigate(&mut self, now: Time, measured: &Measurements, step_s: f64) {
-        let silent = by_name(self.silent_or_frozen(now));
+        let silent = self.silent_or_frozen(now);
         let sigma_rad = self.raw.as_ref().map_or(0.0, RawNavigation::tilt_sigma_rad);
         let doubt = self.navigation.motion_doubt();
         self.navigation
@@ -81,13 +81,14 @@ impl Autopilot {
         }
         let lost = self.lost(now, measured);
         self.navigation.knows_motion(self.known_motion(now, lost));
-        let lost = by_name(lost);
-        let replaces = self.degraded.is_failsafe && lost.body_rates && !lost.attitude;
+        let replaces = self.degraded.is_failsafe
+            && lost.contains(Quantity::BodyRates)
+            && !lost.contains(Quantity::Attitude);
         self.actuation.derives_rates(replaces);
         let estimate = *self.navigation.estimate();
         self.replacement
             .follow(&self.accepted, lost, &estimate, step_s);
-        if self.degraded.is_failsafe && lost != Lost::default() {
+        if self.degraded.is_failsafe && !lost.is_empty() {
             let mut left = self
                 .replacement
                 .without(&self.accepted, lost, &estimate, now);
@@ -147,8 +148,7 @@ impl Autopilot {
             let passed_s = self.clock.passed_s();
             if !airspeed_can_follow(&airspeed, &self.accepted.airspeed_mps, passed_s) {
                 self.accepted.airspeed_mps = airspeed;
-                let was_distrusted = distrusted.contains(flags::AIRSPEED);
-                self.distrusted = Flags::NONE.with(flags::AIRSPEED, was_distrusted);
+                self.distrusted = distrusted & Quantity::Airspeed.alone();
             }
         }
         self.accepted
@@ -170,8 +170,8 @@ impl Autopilot {
         self.accepted.heading_rad = Reading::default();
         self.replacement.forget_angles();
         self.navigation.adopt_next_attitude();
-        let by_gyroscopes = flags::ATTITUDE | flags::HEADING;
-        self.distrusted = self.distrusted.keeping(by_gyroscopes, false);
+        let by_gyroscopes = Quantity::Attitude | Quantity::Heading;
+        self.distrusted = self.distrusted & !by_gyroscopes;
     }
 
     /// Accepts the plausible ones of a tick's measurements.
@@ -206,9 +206,9 @@ impl Autopilot {
         }
         self.rejoin();
         self.heading.lead_from(self.setpoints.roll_rad);
-        let renewed = taken_of_needed(&self.accepted)
+        let renewed = Quantity::ALL
             .into_iter()
-            .all(|(_, taken)| taken >= self.renewed_since);
+            .all(|quantity| quantity.taken(&self.accepted) >= self.renewed_since);
         // What has not arrived by then is lost.
         if renewed || now.since(self.renewed_since) > self.config.max_age {
             self.renewed_since = Time::NEVER;
@@ -218,7 +218,7 @@ impl Autopilot {
     /// Starts anew with a plant that is another, or elsewhere.
     fn start_anew(&mut self, measured: &Measurements) {
         self.accepted = Measurements::default();
-        self.distrusted = Flags::NONE;
+        self.distrusted = Quantities::NONE;
         self.pass_gate(measured);
         self.ground.forget_place();
         self.navigation.reset(&self.config.navigation);

@@ -6,10 +6,10 @@
 
 use core::time::Duration;
 
-use super::{Autopilot, flags};
+use super::Autopilot;
 use fcc_core::flight::Measurements;
-use fcc_core::framework::{Flags, Time};
-use fcc_navigation::Estimate;
+use fcc_core::framework::Time;
+use fcc_navigation::{Estimate, Quantities, Quantity};
 
 /// The age of the body rates is averaged over this time, s: the mean age of
 /// readings that are held between two samples is the delay of that hold.
@@ -25,14 +25,14 @@ const JITTER_SHARE: f64 = 1.0 / 16.0;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ReadingAges {
     /// The newest of each quantity that control needs.
-    newest: [Time; 6],
+    newest: [Time; Quantity::COUNT],
     /// The age of the newest reading when it arrived, s, and its jitter.
     arrival_s: f64,
     jitter_s: f64,
     /// The mean age of the body rates, s.
     rates_s: f64,
     /// The quantities whose newest reading was too old when it arrived.
-    late: Flags,
+    late: Quantities,
 }
 
 impl ReadingAges {
@@ -47,13 +47,13 @@ impl ReadingAges {
         dt_s: f64,
     ) {
         let mut newest = Time::NEVER;
-        let taken_of = taken_of_needed(measured);
-        for (last, (flag, taken)) in self.newest.iter_mut().zip(taken_of) {
+        for (last, quantity) in self.newest.iter_mut().zip(Quantity::ALL) {
+            let taken = quantity.taken(measured);
             if taken > *last {
                 *last = taken;
                 newest = newest.max(taken);
-                let others = Flags::from_bits(self.late.bits() & !flag.bits());
-                self.late = others.with(flag, now.since(taken) > max_age);
+                let others = self.late.keeping(quantity, false);
+                self.late = others.with(quantity, now.since(taken) > max_age);
             }
         }
         if !newest.is_never() {
@@ -71,7 +71,7 @@ impl ReadingAges {
 
     /// The quantities that control needs and whose newest reading arrived older
     /// than it may be.
-    pub(super) const fn late(&self) -> Flags {
+    pub(super) const fn late(&self) -> Quantities {
         self.late
     }
 
@@ -90,24 +90,14 @@ impl ReadingAges {
     }
 }
 
-/// When the readings that control needs were taken.
-pub(super) fn taken_of_needed(measured: &Measurements) -> [(Flags, Time); 6] {
-    [
-        (flags::ATTITUDE, measured.attitude.taken),
-        (flags::HEADING, measured.heading_rad.taken),
-        (flags::BODY_RATES, measured.body_rates.taken),
-        (flags::SPECIFIC_FORCE, measured.specific_force.taken),
-        (flags::AIRSPEED, measured.airspeed_mps.taken),
-        (flags::ALTITUDE, measured.altitude_m.taken),
-    ]
-}
-
 /// When the newest of the readings was taken that control needs or that are the
 /// plant's own.
 pub(super) fn newest(measured: &Measurements) -> Time {
-    taken_of_needed(measured)
+    Quantity::ALL
         .into_iter()
-        .fold(measured.plant.taken, |newest, (_, taken)| newest.max(taken))
+        .fold(measured.plant.taken, |newest, quantity| {
+            newest.max(quantity.taken(measured))
+        })
 }
 
 impl Autopilot {

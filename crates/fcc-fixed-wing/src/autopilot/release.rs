@@ -10,7 +10,7 @@ use crate::control::Trimming;
 use fcc_core::blocks::LowPass;
 use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Flags, Time};
-use fcc_navigation::Estimate;
+use fcc_navigation::{Estimate, Quantities};
 
 /// In flight the trim moves within this bank, rad, pitch rate, rad/s, and
 /// difference from the commanded airspeed, m/s.
@@ -126,7 +126,7 @@ impl Autopilot {
 
     /// The outputs with the trim, after one step of it: quick before a release,
     /// slow in steady flight, none where the climb rate is not held.
-    pub(super) fn with_trim(&mut self, now: Time, outputs: Surfaces, lost: Flags) -> Surfaces {
+    pub(super) fn with_trim(&mut self, now: Time, outputs: Surfaces, lost: Quantities) -> Surfaces {
         let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
         let is_known = held_without(lost).vertical == Vertical::Level;
         let trimming = if !is_known || self.recovery.is_active() {

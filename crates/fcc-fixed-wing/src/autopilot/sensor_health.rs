@@ -4,12 +4,11 @@ use core::time::Duration;
 
 use super::future::is_from_the_future;
 use super::plant_clock::Waiting;
-use super::reading_age::taken_of_needed;
 use super::{Autopilot, flags, receiver, wrong_sensors};
 use fcc_core::flight::{Measurements, PlantState};
 use fcc_core::framework::{Flags, Reading, Time};
 use fcc_navigation::inertial::RawNavigation;
-use fcc_navigation::is_possible_fix;
+use fcc_navigation::{Quantities, Quantity, is_possible_fix};
 
 /// A switch that was read before and is silent for longer than this counts as
 /// lost, since it could not be switched off.
@@ -79,9 +78,9 @@ impl Autopilot {
 
     /// The needed quantities whose readings are too old to be used; all of them
     /// while a simulated plant is silent.
-    pub(super) fn stale(&self, now: Time) -> Flags {
+    pub(super) fn stale(&self, now: Time) -> Quantities {
         if self.is_silent(now) {
-            flags::NEEDED
+            Quantities::ALL
         } else {
             self.too_old(&self.accepted)
         }
@@ -116,73 +115,76 @@ impl Autopilot {
 
     /// The frozen quantities; none on the ground: with an airspeed below the
     /// floor, and not engaged. A glide may be slower.
-    pub(super) fn frozen(&self) -> Flags {
+    pub(super) fn frozen(&self) -> Quantities {
         let airspeed_mps = self.navigation.estimate().airspeed_mps;
         let is_slow = airspeed_mps < self.config.envelope.min_airspeed_mps;
         if is_slow && (!self.pilot.is_engaged() || self.is_on_runway()) {
-            Flags::NONE
+            Quantities::NONE
         } else {
-            flags::frozen(self.frozen.frozen()).keeping(
-                flags::FROZEN_AIRSPEED,
-                !self.doubted().contains(flags::DOUBTED_AIRSPEED),
-            )
+            let is_excluded = self.navigation.airspeed_doubt().is_some();
+            let frozen = self.frozen.frozen();
+            frozen.keeping(Quantity::Airspeed, !is_excluded)
         }
     }
 
     /// The readings that are too old, by the plant's time. Of a doubted sensor
     /// none is used: the airspeed and, for a time, the altitude are known without.
-    pub(super) fn too_old(&self, measurements: &Measurements) -> Flags {
+    pub(super) fn too_old(&self, measurements: &Measurements) -> Quantities {
         let judged = self.clock.judged();
-        let taken = taken_of_needed(measurements);
-        let by_gyroscopes = Flags::NONE
-            .with(flags::BODY_RATES, self.doubts_gyroscopes())
-            .with(flags::ATTITUDE | flags::HEADING, !self.knows_attitude());
-        taken.into_iter().fold(by_gyroscopes, |old, (flag, taken)| {
-            let reading = Reading::new((), taken);
-            let is_known = match flag {
-                flags::AIRSPEED => self
-                    .navigation
-                    .airspeed_doubt()
-                    .map(|_| true)
-                    .or_else(|| self.knows_airspeed_by_forces()),
-                flags::ALTITUDE => self.navigation.altitude_doubt(),
-                _ => None,
-            };
-            let is_fresh = || {
-                reading.is_fresh(judged, self.config.max_age) && !self.ages.late().contains(flag)
-            };
-            old.with(flag, !is_known.unwrap_or_else(is_fresh))
-        })
+        let knows_attitude = self.knows_attitude();
+        let by_gyroscopes = Quantities::NONE
+            .with(Quantity::BodyRates, self.doubts_gyroscopes())
+            .with(Quantity::Attitude, !knows_attitude)
+            .with(Quantity::Heading, !knows_attitude);
+        Quantity::ALL
+            .into_iter()
+            .fold(by_gyroscopes, |old, quantity| {
+                let reading = Reading::new((), quantity.taken(measurements));
+                let is_known = match quantity {
+                    Quantity::Airspeed => self
+                        .navigation
+                        .airspeed_doubt()
+                        .map(|_| true)
+                        .or_else(|| self.knows_airspeed_by_forces()),
+                    Quantity::Altitude => self.navigation.altitude_doubt(),
+                    _ => None,
+                };
+                let is_fresh = || {
+                    reading.is_fresh(judged, self.config.max_age)
+                        && !self.ages.late().contains(quantity)
+                };
+                old.with(quantity, !is_known.unwrap_or_else(is_fresh))
+            })
     }
 
     /// The quantities rejected as implausible for so long that the accepted
     /// readings are too old although the raw ones are not.
-    pub(super) fn rejected(&self, measurements: &Measurements) -> Flags {
-        let raw = self.too_old(measurements);
-        Flags::from_bits(self.too_old(&self.accepted).bits() & !raw.bits())
+    pub(super) fn rejected(&self, measurements: &Measurements) -> Quantities {
+        self.too_old(&self.accepted) & !self.too_old(measurements)
     }
 
     /// The faults of an engaged flight, and what comes and goes in a failsafe.
     pub(super) fn unsafe_to_fly(&self, now: Time, measurements: &Measurements) -> Flags {
-        self.unsafe_now(now, measurements) | self.intermittent()
+        self.unsafe_now(now, measurements) | flags::too_old(self.intermittent())
     }
 
     /// The faults of this tick. A silent plant is waited for.
     pub(super) fn unsafe_now(&self, now: Time, measurements: &Measurements) -> Flags {
         let lost = self.silence(now) > self.max_silence();
         let stale = if lost {
-            flags::NEEDED | flags::PLANT_SILENT
+            Quantities::ALL
         } else {
             self.too_old(&self.accepted)
         };
         self.unsafe_with(stale, now, measurements)
+            .with(flags::PLANT_SILENT, lost)
     }
 
     /// What prevents both engaging and staying engaged, with these readings too
     /// old.
     pub(super) fn unsafe_with(
         &self,
-        stale: Flags,
+        stale: Quantities,
         now: Time,
         measurements: &Measurements,
     ) -> Flags {
@@ -190,7 +192,8 @@ impl Autopilot {
         let rejected = !self.rejected(measurements).is_empty();
         let is_lost_to_the_future = !stale.is_empty() && is_from_the_future(measurements, now);
         let is_lost_on_the_way = !stale.is_empty() && !self.ages.late().is_empty();
-        (stale | self.frozen() | self.is_elsewhere() | self.doubted_motion())
+        let unusable = flags::too_old(stale) | flags::frozen(self.frozen());
+        (unusable | self.is_elsewhere() | self.doubted_motion())
             .with(flags::DOUBTED_GYROSCOPE, self.doubts_gyroscopes())
             .with(flags::REJECTED, rejected)
             .with(flags::FROM_THE_FUTURE, is_lost_to_the_future)

@@ -6,8 +6,8 @@ use super::{Autopilot, flags};
 use crate::Setpoints;
 use crate::control::{Change, Envelope, Recovery, RecoveryInputs};
 use fcc_core::flight::Surfaces;
-use fcc_core::framework::{Flags, Time};
-use fcc_navigation::Estimate;
+use fcc_core::framework::Time;
+use fcc_navigation::{Estimate, Quantities, Quantity};
 
 /// The surfaces follow the outputs if they differ by no more than this.
 const FOLLOWS: f64 = 0.15;
@@ -121,17 +121,17 @@ impl Autopilot {
     pub(super) fn recover_degraded(
         &mut self,
         now: Time,
-        lost: Flags,
+        lost: Quantities,
         estimate: &Estimate,
         idle: bool,
     ) -> Option<Surfaces> {
-        let no_motion = lost.contains(flags::ATTITUDE) && lost.contains(flags::BODY_RATES);
-        if no_motion || lost.contains(flags::SPECIFIC_FORCE) {
+        let no_motion = lost.contains(Quantity::Attitude) && lost.contains(Quantity::BodyRates);
+        if no_motion || lost.contains(Quantity::SpecificForce) {
             self.recovery.end();
             return None;
         }
         let mut estimate = *estimate;
-        if lost.contains(flags::ALTITUDE) {
+        if lost.contains(Quantity::Altitude) {
             estimate.climb_rate_mps = estimate.true_airspeed_mps * sin(estimate.pitch_rad);
         }
         let recovering = self.recover_from_upset(now, &estimate)?;

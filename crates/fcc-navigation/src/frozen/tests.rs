@@ -1,4 +1,4 @@
-//! Frozen sensors, and good ones that may look frozen.
+//! Quantities sensors, and good ones that may look frozen.
 
 use std::vec::Vec;
 
@@ -59,7 +59,7 @@ fn flying(tick: i64) -> Measurements {
 }
 
 /// The times, in s, at which each quantity is reported as frozen over 20 s.
-fn watch(mut measured: impl FnMut(i64) -> Measurements) -> Vec<(f64, Frozen)> {
+fn watch(mut measured: impl FnMut(i64) -> Measurements) -> Vec<(f64, Quantities)> {
     let mut watch = FrozenDetector::new(AFTER_S);
     let known = Known {
         felt_mps2: 0.0,
@@ -80,7 +80,7 @@ fn watch(mut measured: impl FnMut(i64) -> Measurements) -> Vec<(f64, Frozen)> {
 }
 
 /// The flight with one quantity frozen at its first value, with new times.
-fn with_frozen(freeze: fn(&mut Measurements, &Measurements)) -> Vec<(f64, Frozen)> {
+fn with_frozen(freeze: fn(&mut Measurements, &Measurements)) -> Vec<(f64, Quantities)> {
     let start = flying(0);
     watch(|tick| {
         let mut measurements = flying(tick);
@@ -91,7 +91,7 @@ fn with_frozen(freeze: fn(&mut Measurements, &Measurements)) -> Vec<(f64, Frozen
 
 #[test]
 fn changing_values_are_not_frozen() {
-    assert_eq!(watch(flying), [(0.0, Frozen::default())]);
+    assert_eq!(watch(flying), [(0.0, Quantities::NONE)]);
 }
 
 /// The others live: it shows 10 °/s where the aircraft does not roll.
@@ -100,10 +100,7 @@ fn a_single_gyroscope_is_detected() {
     let seen = with_frozen(|m, start| {
         m.body_rates.value.roll_radps = start.body_rates.value.roll_radps;
     });
-    let expected = Frozen {
-        body_rates: true,
-        ..Frozen::default()
-    };
+    let expected = Quantity::BodyRates.alone();
     assert!(
         matches!(seen[..], [_, (3.0..4.0, frozen)] if frozen == expected),
         "{seen:?}"
@@ -112,51 +109,35 @@ fn a_single_gyroscope_is_detected() {
 
 #[test]
 fn each_is_detected_when_the_aircraft_moves_and_no_other() {
-    type Case = (fn(&mut Measurements, &Measurements), Frozen, f64);
-    let none = Frozen::default();
+    type Case = (fn(&mut Measurements, &Measurements), Quantities, f64);
     let cases: [Case; 5] = [
         // A roll of 5° takes half a second; the least time is 2 s.
         (
             |m, start| m.attitude.value = start.attitude.value,
-            Frozen {
-                attitude: true,
-                ..none
-            },
+            Quantity::Attitude.alone(),
             2.0,
         ),
         // 5 °/s from 3 s on: 5° at 4 s, minus a small leak.
         (
             |m, start| m.heading_rad.value = start.heading_rad.value,
-            Frozen {
-                heading: true,
-                ..none
-            },
+            Quantity::Heading.alone(),
             4.05,
         ),
         // They still show 10 °/s from 3 s on, where it does not roll.
         (
             |m, start| m.body_rates.value = start.body_rates.value,
-            Frozen {
-                body_rates: true,
-                ..none
-            },
+            Quantity::BodyRates.alone(),
             3.5,
         ),
         // 10° of bank are reached after a second.
         (
             |m, start| m.specific_force.value = start.specific_force.value,
-            Frozen {
-                specific_force: true,
-                ..none
-            },
+            Quantity::SpecificForce.alone(),
             2.0,
         ),
         (
             |m, start| m.airspeed_mps.value = start.airspeed_mps.value,
-            Frozen {
-                airspeed: true,
-                ..none
-            },
+            Quantity::Airspeed.alone(),
             2.0,
         ),
     ];
@@ -185,7 +166,7 @@ fn in_calm_air_unchanged_values_are_not_frozen() {
         measurements.specific_force.taken = at;
         measurements
     });
-    assert_eq!(seen, [(0.0, Frozen::default())]);
+    assert_eq!(seen, [(0.0, Quantities::NONE)]);
 }
 
 #[test]
@@ -199,12 +180,12 @@ fn a_value_that_changes_again_is_no_longer_frozen() {
         measurements
     });
     assert_eq!(seen.len(), 3, "{seen:?}");
-    assert_eq!(seen[2], (10.0, Frozen::default()));
+    assert_eq!(seen[2], (10.0, Quantities::NONE));
 }
 
 /// The flight by coarse sensors, good until `frozen_at_s`; when each quantity is
 /// reported as frozen. `felt_mps2` is what the accelerometers feel.
-fn watch_coarse(frozen_at_s: f64, felt_mps2: f64) -> Vec<(f64, Frozen)> {
+fn watch_coarse(frozen_at_s: f64, felt_mps2: f64) -> Vec<(f64, Quantities)> {
     const STEP_M: f64 = 30.48;
     const STEP_MPS: f64 = 0.514_444;
     const STEP_RAD: f64 = 0.017_453;
@@ -242,8 +223,8 @@ fn watch_coarse(frozen_at_s: f64, felt_mps2: f64) -> Vec<(f64, Frozen)> {
 /// A roll, a turn and a climb by 5 m/s, in which the airspeed never changes.
 #[test]
 fn good_coarse_sensors_are_not_frozen() {
-    assert_eq!(watch_coarse(60.0, 0.0), [(0.0, Frozen::default())]);
-    assert_eq!(watch_coarse(60.0, 0.3), [(0.0, Frozen::default())]);
+    assert_eq!(watch_coarse(60.0, 0.0), [(0.0, Quantities::NONE)]);
+    assert_eq!(watch_coarse(60.0, 0.3), [(0.0, Quantities::NONE)]);
 }
 
 /// 6° at 5 °/s take 1.2 s,
@@ -251,10 +232,13 @@ fn good_coarse_sensors_are_not_frozen() {
 #[test]
 fn frozen_coarse_sensors_are_found() {
     let seen = watch_coarse(20.0, 1.0);
-    let at_s = |of: fn(&Frozen) -> bool| {
-        let (at_s, _) = seen.iter().find(|(_, frozen)| of(frozen)).unwrap();
+    let at_s = |quantity: Quantity| {
+        let (at_s, _) = seen
+            .iter()
+            .find(|(_, frozen)| frozen.contains(quantity))
+            .unwrap();
         at_s - 20.0
     };
-    assert!((1.0..2.1).contains(&at_s(|frozen| frozen.heading)));
-    assert!((8.0..15.0).contains(&at_s(|frozen| frozen.airspeed)));
+    assert!((1.0..2.1).contains(&at_s(Quantity::Heading)));
+    assert!((8.0..15.0).contains(&at_s(Quantity::Airspeed)));
 }

@@ -60,7 +60,8 @@ pub(crate) struct Script {
     pub(crate) withholds: bool,
     /// Whether the controller prepares a release, and is ready for it.
     pub(crate) prepares_release: Option<bool>,
-    pub(crate) notice: Option<Notice>,
+    /// What the controller notices in each tick.
+    pub(crate) notices: &'static [Notice],
     pub(crate) conditions: Flags,
     pub(crate) output: f64,
     pub(crate) failsafe_output: f64,
@@ -92,7 +93,7 @@ impl Default for Script {
             taken_over: Flags::NONE,
             withholds: false,
             prepares_release: None,
-            notice: None,
+            notices: &[],
             conditions: Flags::NONE,
             output: 0.5,
             failsafe_output: -0.25,

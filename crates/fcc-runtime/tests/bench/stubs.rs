@@ -93,8 +93,8 @@ impl Controller for Stub {
         self.stage.script().withholds
     }
 
-    fn notice(&self) -> Option<Notice> {
-        self.stage.script().notice
+    fn notices(&self) -> &[Notice] {
+        self.stage.script().notices
     }
 
     fn conditions(&self, _: &Tick, _: &Measured) -> Flags {

@@ -1,7 +1,6 @@
 //! Faults that come and go: quantities in one failsafe, and failsafes that follow each other.
 
-use super::super::flags;
-use fcc_core::framework::Flags;
+use fcc_navigation::{Quantities, Quantity};
 
 /// A quantity that comes and goes is used again when it has been good for this
 /// time without interruption, s.
@@ -13,35 +12,37 @@ const STEADY_S: f64 = 1.0;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Intermittent {
     /// Lost at present; lost before, and good since.
-    lost: Flags,
-    returned: Flags,
-    pub(super) left_out: Flags,
+    lost: Quantities,
+    returned: Quantities,
+    pub(super) left_out: Quantities,
     /// For how long each has been good, s.
-    good_s: [f64; 6],
+    good_s: [f64; Quantity::COUNT],
 }
 
 impl Intermittent {
-    pub(super) fn step(&mut self, old: Flags, dt_s: f64) {
-        self.returned |= self.lost.keeping(old, false);
-        self.left_out |= Flags::from_bits(old.bits() & self.returned.bits());
+    pub(super) fn step(&mut self, old: Quantities, dt_s: f64) {
+        self.returned |= self.lost & !old;
+        self.left_out |= old & self.returned;
         self.lost = old;
-        for (bit, good_s) in self.good_s.iter_mut().enumerate() {
-            let flag = Flags::bit(bit as u32);
-            *good_s = if old.contains(flag) {
+        for (good_s, quantity) in self.good_s.iter_mut().zip(Quantity::ALL) {
+            *good_s = if old.contains(quantity) {
                 0.0
             } else {
                 *good_s + dt_s
             };
-            self.left_out = self.left_out.keeping(flag, *good_s < STEADY_S);
+            self.left_out = self.left_out.keeping(quantity, *good_s < STEADY_S);
         }
     }
 
     /// What is left out while these are lost: what is flown without attitude and
     /// body rates is worse than what comes and goes.
-    pub(super) fn left_out_with(&self, lost: Flags) -> Flags {
-        const LAST: Flags = Flags::from_bits(flags::ATTITUDE.bits() | flags::BODY_RATES.bits());
-        let both = (self.left_out | lost).contains(LAST);
-        self.left_out.keeping(LAST, !both)
+    pub(super) fn left_out_with(&self, lost: Quantities) -> Quantities {
+        const LAST: Quantities = Quantities::of(&[Quantity::Attitude, Quantity::BodyRates]);
+        if (self.left_out | lost).contains_all(LAST) {
+            self.left_out & !LAST
+        } else {
+            self.left_out
+        }
     }
 }
 

@@ -5,15 +5,14 @@
 //! throttle and the climb's pitch, as a pilot does without an airspeed; the flare is flown
 //! to the ground with the throttle closed.
 
+use super::super::Autopilot;
 use super::super::degraded::{Lateral, held_without};
-use super::super::{Autopilot, flags};
 use super::CLOSES_PER_S;
 use crate::control::ThrottleDemand;
 use fcc_core::blocks::limit;
 use fcc_core::flight::Surfaces;
-use fcc_core::framework::Flags;
 use fcc_guidance::route::RunwayPhase;
-use fcc_navigation::Estimate;
+use fcc_navigation::{Estimate, Quantities, Quantity};
 
 /// For how long it climbs, s: a Cessna 172 to more than 100 m at its 700 ft/min (handbook
 /// of the 172P, 1981, section 5).
@@ -69,7 +68,7 @@ impl Autopilot {
     /// longer), or the attitude is not known.
     pub(in super::super) fn fly_low(
         &mut self,
-        lost: Flags,
+        lost: Quantities,
         estimate: &Estimate,
         dt_s: f64,
     ) -> Option<Surfaces> {
@@ -79,7 +78,7 @@ impl Autopilot {
         }
         let demand = self.runway()?;
         let mut envelope = self.runway_envelope(&demand);
-        if lost.contains(flags::AIRSPEED) {
+        if lost.contains(Quantity::Airspeed) {
             // No change of pitch would change an airspeed that is assumed.
             envelope.min_airspeed_mps = 1.0;
             envelope.stall_airspeed_mps = 1.0;
@@ -125,10 +124,10 @@ impl Autopilot {
     }
 
     /// The altitude that it has is kept from now on.
-    fn level_off(&mut self, lost: Flags, estimate: &Estimate) {
+    fn level_off(&mut self, lost: Quantities, estimate: &Estimate) {
         self.degraded.low = Low::No;
         self.degraded.altitude_m = estimate.altitude_m;
-        if !lost.contains(flags::ALTITUDE) {
+        if !lost.contains(Quantity::Altitude) {
             let schedule = self.schedule_at(estimate.airspeed_mps);
             self.altitude.engage(self.last.elevator, estimate, schedule);
         }

@@ -1,14 +1,13 @@
 //! The controls on the wheels.
 
+use super::super::Autopilot;
 use super::super::ground_motion::STANDS_MPS;
-use super::super::{Autopilot, flags};
 use super::{CLOSES_PER_S, RUDDER_PER_RADPS, notice};
 use crate::control::Lateral;
 use fcc_core::blocks::{limit, limit_abs};
 use fcc_core::flight::Surfaces;
-use fcc_core::framework::Flags;
 use fcc_guidance::route::{RunwayConfig, RunwayDemand, RunwayPhase, RunwayReason};
-use fcc_navigation::Estimate;
+use fcc_navigation::{Estimate, Quantities, Quantity};
 
 /// Heading towards the centre line per metre off it, rad/m, per m/s, and at most, rad.
 const STEERS_RAD_PER_M: f64 = 0.02;
@@ -58,7 +57,7 @@ fn strays(cross_track_m: f64, cross_track_mps: f64) -> bool {
 
 impl Autopilot {
     /// In a failsafe on the wheels: to a stop, straight on as far as the yaw rate is known.
-    pub(in super::super) fn stop_on_wheels(&mut self, lost: Flags) -> Option<Surfaces> {
+    pub(in super::super) fn stop_on_wheels(&mut self, lost: Quantities) -> Option<Surfaces> {
         let phase = self.runway()?.phase;
         let rolls = match self.ground.on_wheels() {
             _ if phase == RunwayPhase::Hand => true,
@@ -72,7 +71,7 @@ impl Autopilot {
             self.guidance.go_around(RunwayReason::Failsafe);
         }
         let (config, dt_s) = (self.config.route.runway, self.clock.step_s());
-        let yaw_radps = if lost.contains(flags::BODY_RATES) {
+        let yaw_radps = if lost.contains(Quantity::BodyRates) {
             0.0
         } else {
             self.navigation.estimate().body_rates.yaw_radps
