@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use fcc_core::framework::{
-    Flags, Preference, Preferred, Reading, Readings, SourceChange, Sources, Time,
+    Preference, Preferred, Reading, ReadingSet, Readings, SourceChange, Sources, Time,
 };
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,7 +32,7 @@ fn taken(millis: i64) -> Reading<f64> {
 const fn fresh_for(millis: u64) -> Preferred {
     Preferred {
         fresh_for: Duration::from_millis(millis),
-        plausible: Flags::ALL,
+        plausible: ReadingSet::ALL,
     }
 }
 
@@ -43,7 +43,7 @@ const fn at_ten_seconds(sensors: &[Preferred; 3]) -> Preference<'_> {
         now: at(10_000),
         sensors,
         reading: 0,
-        of_one_sensor: Flags::NONE,
+        of_one_sensor: ReadingSet::NONE,
     }
 }
 
@@ -74,7 +74,7 @@ fn the_first_fresh_reading_is_taken() {
 #[test]
 fn a_reading_of_one_sensor_is_the_first_ones_that_has_ever_delivered_it() {
     let by = Preference {
-        of_one_sensor: Flags::bit(0),
+        of_one_sensor: ReadingSet::one(0),
         ..at_ten_seconds(&SENSORS)
     };
     let mut boat = Boat::default();
@@ -133,7 +133,7 @@ fn an_implausible_reading_is_taken_only_if_no_fresh_one_is_plausible() {
     let chosen = |ages: [i64; 2], plausible: [u64; 2]| {
         let mut sensors = SENSORS;
         for (sensor, bits) in sensors.iter_mut().zip(plausible) {
-            sensor.plausible = Flags::from_bits(bits);
+            sensor.plausible = ReadingSet::from_bits(bits);
         }
         let [mut boat, other] = ages.map(|age| Boat {
             depth_m: taken(10_000 - age),
@@ -179,5 +179,8 @@ fn changes_are_reported_once_and_together() {
         watched(&mut sources, [a, c, a]),
         [(0b101, 1, 0), (0b010, 1, 2)]
     );
-    assert_eq!(Flags::from_bits(0b101).iter().collect::<Vec<_>>(), [0, 2]);
+    assert_eq!(
+        ReadingSet::from_bits(0b101).iter().collect::<Vec<_>>(),
+        [0, 2]
+    );
 }

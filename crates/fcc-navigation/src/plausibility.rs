@@ -18,7 +18,7 @@ use fcc_core::flight::{
     SpecificForce, Surfaces, Velocity,
 };
 use fcc_core::framework::schema::{Schema, in_range};
-use fcc_core::framework::{Flags, Reading};
+use fcc_core::framework::{Reading, ReadingSet, Readings};
 
 /// The largest plausible speed, that of sound, m/s.
 const MAX_AIRSPEED_MPS: f64 = 340.0;
@@ -131,18 +131,17 @@ pub struct GateLimits {
     pub altitude_step_m: f64,
 }
 
-/// The bits of airspeed and engage switch in the order of the measurements.
-pub const AIRSPEED: Flags = Flags::bit(4);
-/// See there.
-pub const ENGAGE_SWITCH: Flags = Flags::bit(10);
+/// The reading of the airspeed.
+pub const AIRSPEED: ReadingSet = ReadingSet::named(Measurements::NAMES, &["airspeed"]);
+/// The reading of the engage switch.
+pub const ENGAGE_SWITCH: ReadingSet = ReadingSet::named(Measurements::NAMES, &["engage switch"]);
 
-/// Copies the plausible values from `new` into `good`, and returns which they
-/// are: a bit for each, in the order of the measurements.
+/// Copies the plausible values from `new` into `good`, and returns which they are.
 pub fn plausibility_gate(
     good: &mut Measurements,
     new: &Measurements,
     limits: &GateLimits,
-) -> Flags {
+) -> ReadingSet {
     let GateLimits {
         max_age,
         distrusted,
@@ -223,8 +222,8 @@ pub fn plausibility_gate(
     .into_iter()
     .chain(take_raw(good, new))
     .zip(0..)
-    .fold(Flags::NONE, |all, (plausible, bit)| {
-        all.with(Flags::bit(bit), plausible)
+    .fold(ReadingSet::NONE, |all, (plausible, bit)| {
+        all.with(ReadingSet::one(bit), plausible)
     })
 }
 

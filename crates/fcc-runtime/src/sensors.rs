@@ -1,8 +1,8 @@
 //! The loop's sensors: sampled, watched, and of several the best chosen.
 
 use fcc_core::framework::{
-    Controller, EventKind, Flags, Preference, Preferred, Readings, Sensor, SensorFault, Sources,
-    Tick,
+    Controller, EventKind, Preference, Preferred, ReadingSet, Readings, Sensor, SensorFault,
+    Sources, Tick,
 };
 
 use crate::faults::{Change, Health};
@@ -35,7 +35,7 @@ impl<M: Readings + Copy + Default> Sensors<M> {
                 .iter()
                 .map(|sensor| Preferred {
                     fresh_for: sensor.fallback_after(),
-                    plausible: Flags::ALL,
+                    plausible: ReadingSet::ALL,
                 })
                 .collect(),
             all: sensors.into_iter().map(watched).collect(),

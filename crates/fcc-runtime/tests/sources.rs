@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use fcc_conformance::allocator_calls;
 use fcc_core::framework::{
-    Controller, Flags, Reading, Sensor, SensorFault, SourceChange, Tick, Time,
+    Controller, Flags, Reading, ReadingSet, Sensor, SensorFault, SourceChange, Tick, Time,
 };
 use fcc_runtime::{EventKind, Link, LoopConfig, Machine, Message, Parts};
 use fcc_timer::ManualTimer;
@@ -166,7 +166,7 @@ impl Bench {
 
 fn changed(readings: u64, from: u8, to: u8) -> EventKind<u32> {
     EventKind::SourceChanged(SourceChange {
-        readings: Flags::from_bits(readings),
+        readings: ReadingSet::from_bits(readings),
         from,
         to,
     })

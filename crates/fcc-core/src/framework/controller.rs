@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::schema::Schema;
-use super::{Flags, Notice, Reading, Readings, Tick, Time};
+use super::{Flags, Notice, Reading, ReadingSet, Readings, Tick, Time};
 use crate::schema;
 
 schema! {
@@ -267,18 +267,17 @@ pub trait Controller: Send {
     /// sensor.
     fn observe_sensor(&mut self, _sensor: u8, _measurements: &Self::Measurements) {}
 
-    /// The plausible readings of one of several sensors, by its number in the loop: a
-    /// bit for each, in the order of the measurements. Another is used only if no
-    /// sensor has a fresh plausible one. All of them by default.
-    fn plausible(&self, _sensor: u8, _measurements: &Self::Measurements) -> Flags {
-        Flags::ALL
+    /// The plausible readings of one of several sensors, by its number in the loop.
+    /// Another is used only if no sensor has a fresh plausible one. All of them by default.
+    fn plausible(&self, _sensor: u8, _measurements: &Self::Measurements) -> ReadingSet {
+        ReadingSet::ALL
     }
 
     /// The readings that belong to the first sensor, by the order of preference, that has
-    /// ever delivered them: a bit for each, in the order of the measurements. Another
-    /// sensor's is never used in its place, however old it is. None by default.
-    fn of_one_sensor(&self) -> Flags {
-        Flags::NONE
+    /// ever delivered them. Another sensor's is never used in its place, however old it
+    /// is. None by default.
+    fn of_one_sensor(&self) -> ReadingSet {
+        ReadingSet::NONE
     }
 
     /// The engage switch as measured; never taken where there is none.

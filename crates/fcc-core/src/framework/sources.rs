@@ -10,7 +10,7 @@
 
 use core::time::Duration;
 
-use super::{Flags, Reading, Time};
+use super::{Reading, ReadingSet, Time};
 use crate::schema;
 
 /// Measurements as a collection of readings.
@@ -84,7 +84,7 @@ impl<T: Copy> Readings for Reading<T> {
     const NAMES: &'static [&'static str] = &["reading"];
 
     fn choose(&mut self, other: &Self, sensor: u8, by: &Preference<'_>) {
-        let is_preferred = if by.of_one_sensor.contains(Flags::bit(by.reading)) {
+        let is_preferred = if by.of_one_sensor.contains(ReadingSet::one(by.reading)) {
             self.taken.is_never()
         } else {
             by.rank(other, sensor) > by.rank(self, self.source)
@@ -116,9 +116,8 @@ pub struct Preference<'a> {
     pub sensors: &'a [Preferred],
     /// The index of the first reading that is chosen, 0 for all measurements.
     pub reading: u32,
-    /// The readings that belong to the first sensor that has ever delivered them: a bit
-    /// for each, in the order of the measurements.
-    pub of_one_sensor: Flags,
+    /// The readings that belong to the first sensor that has ever delivered them.
+    pub of_one_sensor: ReadingSet,
 }
 
 /// The criteria that concern one sensor.
@@ -126,9 +125,8 @@ pub struct Preference<'a> {
 pub struct Preferred {
     /// The age up to which its readings are fresh.
     pub fresh_for: Duration,
-    /// Its plausible readings: a bit for each, in the order of the
-    /// measurements.
-    pub plausible: Flags,
+    /// Its plausible readings.
+    pub plausible: ReadingSet,
 }
 
 impl Preference<'_> {
@@ -142,14 +140,14 @@ impl Preference<'_> {
         match sensor.filter(|sensor| reading.is_fresh(self.now, sensor.fresh_for)) {
             None => (false, false, reading.taken),
             Some(sensor) => {
-                let plausible = sensor.plausible.contains(Flags::bit(self.reading));
+                let plausible = sensor.plausible.contains(ReadingSet::one(self.reading));
                 (plausible, true, Time::NEVER)
             }
         }
     }
 }
 
-/// The maximum number of readings: the number of [`Flags`].
+/// The maximum number of readings: that of a [`ReadingSet`] at most.
 const MOST: usize = 32;
 
 /// Stores which sensor each reading came from.
@@ -165,7 +163,7 @@ schema! {
     pub struct SourceChange {
         /// The readings: a bit for each, in the order of the measurements.
         #[field(1)]
-        pub readings: Flags,
+        pub readings: ReadingSet,
         /// The index of the previous sensor.
         #[field(2)]
         pub from: u8,
@@ -196,14 +194,15 @@ impl Sources {
             let at = |of: &[Option<u8>; MOST]| of.get(bit as usize).copied().flatten();
             Some((at(&before)?, at(&self.known)?)).filter(|(from, to)| from != to)
         };
-        let mut reported = Flags::NONE;
+        let mut reported = ReadingSet::NONE;
         for first in 0..MOST as u32 {
-            let Some((from, to)) = way(first).filter(|_| !reported.contains(Flags::bit(first)))
+            let Some((from, to)) =
+                way(first).filter(|_| !reported.contains(ReadingSet::one(first)))
             else {
                 continue;
             };
-            let readings = (first..MOST as u32).fold(Flags::NONE, |all, bit| {
-                all.with(Flags::bit(bit), way(bit) == Some((from, to)))
+            let readings = (first..MOST as u32).fold(ReadingSet::NONE, |all, bit| {
+                all.with(ReadingSet::one(bit), way(bit) == Some((from, to)))
             });
             reported |= readings;
             changed(SourceChange { readings, from, to });

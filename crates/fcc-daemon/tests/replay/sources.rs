@@ -4,7 +4,7 @@
 
 use std::ops::RangeInclusive;
 
-use fcc_core::framework::{EventKind, Flags, Message, SourceChange, State};
+use fcc_core::framework::{EventKind, Message, ReadingSet, SourceChange, State};
 use fcc_fixed_wing::Autopilot;
 use fcc_flight::config::{Config, NavigationMethod, RawSensorsChoice};
 use fcc_flight::replay::replay;
@@ -66,7 +66,7 @@ fn a_loss_that_is_failsafe_with_one_sensor_is_flown_through_with_two() {
     assert_eq!(states, [State::Standby, State::Engaged]);
     // The first twelve readings but the switch, which is of one sensor, weight on wheels,
     // engine speed and battery.
-    let all = Flags::from_bits(0b1011_1111_1111 | 0b111 << 23);
+    let all = ReadingSet::from_bits(0b1011_1111_1111 | 0b111 << 23);
     let (to, back) = ((0, 1), (1, 0));
     let change = |(from, to)| SourceChange {
         readings: all,
@@ -94,7 +94,7 @@ fn without_the_switch_that_engaged_for_a_second_it_is_failsafe() {
     assert!(!is_failsafe(1_030));
     assert!(is_failsafe(1_042));
     let moved = changes(&messages);
-    let switch = Flags::bit(10);
+    let switch = ReadingSet::one(10);
     assert!(
         moved
             .iter()
@@ -141,7 +141,7 @@ fn a_replay_reproduces_that_an_inertial_unit_was_left() {
         panic!("{:?}", changes(&messages))
     };
     // Raw acceleration and raw body rates.
-    assert_eq!(change.readings, Flags::from_bits(0b11 << 15));
+    assert_eq!(change.readings, ReadingSet::from_bits(0b11 << 15));
     assert_eq!((change.from, change.to), (0, 1));
     assert!((1_200..1_400).contains(&left_at), "{left_at}");
     let events = messages.iter().filter_map(|message| match message {

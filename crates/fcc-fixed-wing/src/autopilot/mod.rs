@@ -78,7 +78,7 @@ use crate::Setpoints;
 use crate::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop, Recovery};
 use fcc_core::blocks::wrap_two_pi;
 use fcc_core::flight::{Altimeter, AltitudeReference, Measurements, Surfaces};
-use fcc_core::framework::{Controller, Flags, Notice, Reading, Switch, Tick, Time};
+use fcc_core::framework::{Controller, Flags, Notice, Reading, ReadingSet, Switch, Tick, Time};
 use fcc_guidance::path::BankCommand;
 use fcc_guidance::route::TookOff;
 use fcc_guidance::{ActiveMode, Mode, ModeInput, OverGroundMode, Targets};
@@ -389,7 +389,7 @@ impl Controller for Autopilot {
         }
     }
 
-    fn plausible(&self, sensor: u8, measurements: &Measurements) -> Flags {
+    fn plausible(&self, sensor: u8, measurements: &Measurements) -> ReadingSet {
         let plausible = plausibility_gate(
             &mut self.accepted.clone(),
             measurements,
@@ -402,7 +402,7 @@ impl Controller for Autopilot {
         }
     }
 
-    fn of_one_sensor(&self) -> Flags {
+    fn of_one_sensor(&self) -> ReadingSet {
         // The difference between two sensors' switches is no movement of either.
         ENGAGE_SWITCH
     }

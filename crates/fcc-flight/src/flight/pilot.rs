@@ -4,7 +4,7 @@
 use std::fmt;
 
 use fcc_core::flight::{Measurements, Surfaces};
-use fcc_core::framework::{Controller, Flags, Notice, Reading, Switch, Tick};
+use fcc_core::framework::{Controller, Flags, Notice, Reading, ReadingSet, Switch, Tick};
 use fcc_fixed_wing::{Autopilot, AutopilotCommand, Setpoints};
 use fcc_navigation::Estimate;
 
@@ -166,11 +166,11 @@ impl Controller for Pilot {
         self.autopilot.observe_sensor(sensor, measurements);
     }
 
-    fn plausible(&self, sensor: u8, measurements: &Measurements) -> Flags {
+    fn plausible(&self, sensor: u8, measurements: &Measurements) -> ReadingSet {
         self.autopilot.plausible(sensor, measurements)
     }
 
-    fn of_one_sensor(&self) -> Flags {
+    fn of_one_sensor(&self) -> ReadingSet {
         self.autopilot.of_one_sensor()
     }
 

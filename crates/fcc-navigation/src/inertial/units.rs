@@ -1,7 +1,7 @@
 //! Several sensors of one kind: one that is used no more is left for good.
 
 use super::FoundBy;
-use fcc_core::framework::Flags;
+use fcc_core::framework::SensorSet;
 
 /// Which sensors of one kind are not used any more, by their number in the loop. The loop
 /// takes the first that is not left; so the order of the configuration says which is the
@@ -13,7 +13,7 @@ use fcc_core::framework::Flags;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Units {
     used: Option<u8>,
-    left: Flags,
+    left: SensorSet,
     /// Why the one that is used is left.
     why: Option<FoundBy>,
 }
@@ -54,6 +54,6 @@ impl Units {
 }
 
 /// A loop has fewer sensors than there are bits.
-const fn bit(sensor: u8) -> Flags {
-    Flags::bit(sensor as u32)
+const fn bit(sensor: u8) -> SensorSet {
+    SensorSet::one(sensor as u32)
 }

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use fcc_core::flight::Measurements;
-use fcc_core::framework::{Flags, Preference, Preferred, Readings, Time};
+use fcc_core::framework::{Preference, Preferred, ReadingSet, Readings, Time};
 use fcc_navigation::inertial::RawNavigation;
 
 /// What is chosen of what the sets give, each fresh for so long.
@@ -19,7 +19,7 @@ pub(crate) fn chosen(
             navigation.observe_sensor(set, measured);
             Preferred {
                 fresh_for,
-                plausible: navigation.permitted(set, Flags::ALL),
+                plausible: navigation.permitted(set, ReadingSet::ALL),
             }
         })
         .collect();
@@ -27,7 +27,7 @@ pub(crate) fn chosen(
         now,
         sensors: &preferred,
         reading: 0,
-        of_one_sensor: Flags::NONE,
+        of_one_sensor: ReadingSet::NONE,
     };
     let mut measured = given[0];
     for (set, own) in (1_u8..).zip(&given[1..]) {

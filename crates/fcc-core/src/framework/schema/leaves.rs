@@ -3,7 +3,7 @@
 use core::mem::{offset_of, size_of};
 
 use super::{Field, Kind, Schema, Sink, Source, Structure, Type, Unknown, Value};
-use crate::framework::{Flags, Reading, Time};
+use crate::framework::{Flags, Reading, ReadingSet, Time};
 
 /// Implements a type that is a single value: its conversion to a [`Value`] and
 /// back.
@@ -45,6 +45,7 @@ macro_rules! leaf {
 
 leaf!(bool, Kind::Bool, v => Value::Bool(v), Value::Bool(v) => Some(v));
 leaf!(Flags, Kind::Flags, v => Value::Flags(v.bits()), Value::Flags(v) => Some(Self::from_bits(v)));
+leaf!(ReadingSet, Kind::Flags, v => Value::Flags(v.bits()), Value::Flags(v) => Some(Self::from_bits(v)));
 leaf!(u8, Kind::Count(1), v => Value::Count(v.into()), Value::Count(v) => Self::try_from(v).ok());
 leaf!(u16, Kind::Count(2), v => Value::Count(v.into()), Value::Count(v) => Self::try_from(v).ok());
 leaf!(u32, Kind::Count(4), v => Value::Count(v.into()), Value::Count(v) => Self::try_from(v).ok());

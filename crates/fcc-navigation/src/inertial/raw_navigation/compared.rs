@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::sensor_kind::{Samples, difference};
 use fcc_core::blocks::smoothing_factor;
-use fcc_core::framework::{Flags, Time};
+use fcc_core::framework::{SensorSet, Time};
 
 /// So many sensors of a kind are compared with the one that is used.
 const OTHERS: usize = 3;
@@ -52,7 +52,7 @@ pub(super) struct Compared {
     used: Samples,
     others: [Option<Other>; OTHERS],
     outvoted_since: Time,
-    wrong: Flags,
+    wrong: SensorSet,
 }
 
 impl Compared {
@@ -191,6 +191,6 @@ impl Compared {
 }
 
 /// A loop has fewer sensors than there are bits.
-const fn bit(sensor: u8) -> Flags {
-    Flags::bit(sensor as u32)
+const fn bit(sensor: u8) -> SensorSet {
+    SensorSet::one(sensor as u32)
 }

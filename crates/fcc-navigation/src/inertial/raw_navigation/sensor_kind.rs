@@ -10,7 +10,7 @@ use fcc_core::blocks::wrap_pi;
 use fcc_core::flight::Measurements;
 use fcc_core::flight::atmosphere::pressure_altitude_m;
 use fcc_core::flight::earth::metres_per_radian;
-use fcc_core::framework::{Flags, Reading, Time};
+use fcc_core::framework::{Reading, ReadingSet, Readings, Time};
 
 /// Two sound sensors differ by less: rates, rad/s (3 °/s); specific force, m/s²; magnetic
 /// field, µT; altitude by static pressure, m; a receiver's position, m, and velocity, m/s.
@@ -86,14 +86,21 @@ impl SensorKind {
         })
     }
 
-    /// Its readings, by their places among the measurements.
-    pub(super) const fn readings(self) -> Flags {
-        Flags::from_bits(match self {
-            Self::InertialUnit => 1 << 15 | 1 << 16,
-            Self::Magnetometer => 1 << 17,
-            Self::Barometer => 1 << 18,
-            Self::Receiver => 1 << 21,
-        })
+    /// Its readings.
+    pub(super) const fn readings(self) -> ReadingSet {
+        const fn named(names: &[&str]) -> ReadingSet {
+            ReadingSet::named(Measurements::NAMES, names)
+        }
+        const UNIT: ReadingSet = named(&["raw acceleration", "raw body rates"]);
+        const MAGNETOMETER: ReadingSet = named(&["magnetic field"]);
+        const BAROMETER: ReadingSet = named(&["static pressure"]);
+        const RECEIVER: ReadingSet = named(&["satellite navigation"]);
+        match self {
+            Self::InertialUnit => UNIT,
+            Self::Magnetometer => MAGNETOMETER,
+            Self::Barometer => BAROMETER,
+            Self::Receiver => RECEIVER,
+        }
     }
 
     /// Its samples among the measurements.

@@ -13,7 +13,7 @@ use super::compared::Compared;
 use super::sensor_kind::{Sample, SensorKind};
 use super::trial::{Trial, Wrong};
 use fcc_core::flight::Measurements;
-use fcc_core::framework::{Flags, Time};
+use fcc_core::framework::{ReadingSet, Time};
 
 /// A trial that finds nothing ends after so long, s: the next pair is tried.
 const TRIAL_S: f64 = 15.0;
@@ -56,7 +56,7 @@ pub(super) struct SensorMonitor {
 
 impl SensorMonitor {
     /// Of a sensor's readings those that may be used.
-    pub(super) fn permitted(&self, sensor: u8, readings: Flags) -> Flags {
+    pub(super) fn permitted(&self, sensor: u8, readings: ReadingSet) -> ReadingSet {
         let each = SensorKind::ALL.into_iter().zip(&self.compared);
         each.fold(readings, |all, (kind, compared)| {
             all.keeping(kind.readings(), !compared.is_wrong(sensor))

@@ -5,11 +5,11 @@ use nalgebra::Vector3;
 use super::readings::{force_in, rates_in};
 use super::{FoundBy, Method, RawNavigation, Units, WrongSensor};
 use fcc_core::flight::{MagneticField, Measurements};
-use fcc_core::framework::{Flags, Reading, Time};
+use fcc_core::framework::{Reading, ReadingSet, Readings, Time};
 
-/// The readings of an inertial unit, by their places among the measurements.
-const FORCE: Flags = Flags::bit(15);
-const RATES: Flags = Flags::bit(16);
+/// The readings of an inertial unit.
+const FORCE: ReadingSet = ReadingSet::named(Measurements::NAMES, &["raw acceleration"]);
+const RATES: ReadingSet = ReadingSet::named(Measurements::NAMES, &["raw body rates"]);
 
 /// Gyroscopes that are left after such a rate, rad/s (290 °/s), have ruined the attitude: an
 /// aircraft that really spins would have to be found anew, too.
@@ -28,7 +28,7 @@ impl RawNavigation {
     /// field contradicts are left for those of the next sensor, with the accelerometers of
     /// the same unit, and so are those that repeat themselves, and any sensor that is wrong
     /// where another of its kind is not.
-    pub fn permitted(&self, sensor: u8, plausible: Flags) -> Flags {
+    pub fn permitted(&self, sensor: u8, plausible: ReadingSet) -> ReadingSet {
         self.sensors
             .permitted(sensor, plausible)
             .keeping(FORCE, !self.accelerometers.is_left(sensor))
