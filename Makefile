@@ -219,14 +219,15 @@ lint: lint-rust lint-python deny ## Check formatting, lints, licences
 
 lint-rust: $(STAMPS)/rust
 	cargo fmt --all --check
+	./scripts/structure
 	cargo clippy --locked --workspace --all-targets --all-features -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps --all-features
 
 lint-python: $(STAMPS)/python-module $(STAMPS)/playwright
 	$(PYTHON) -m ruff check hil deploy web
-	$(PYTHON) -m ruff check --config hil/pyproject.toml crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check
+	$(PYTHON) -m ruff check --config hil/pyproject.toml crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check scripts/structure
 	$(PYTHON) -m ruff format --check hil deploy web
-	$(PYTHON) -m ruff format --config hil/pyproject.toml --check crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check
+	$(PYTHON) -m ruff format --config hil/pyproject.toml --check crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check scripts/structure
 	cd hil && ../$(PYTHON) -m mypy
 	cd deploy/vm && MYPYPATH=../../hil/tests ../../$(PYTHON) -m mypy --config-file ../../hil/pyproject.toml .
 	cd web/tests && MYPYPATH=../../hil/tests ../../$(PYTHON) -m mypy --config-file ../../hil/pyproject.toml *.py
