@@ -8,7 +8,7 @@ heading_settle_s
 heading_overshoot_deg
     The farthest the heading goes past its set point in the direction of the turn,
     at least 0. On a leg with no turn: the largest error either way. A turn that
-    goes the wrong way round passes 180 degrees from the set point and scores near 180.
+    goes the wrong way round, or is more than 180 degrees behind, scores near 180.
 heading_rms_deg
     Root mean square of the heading error in the last 3 s.
 altitude_settle_s, altitude_overshoot_ft, altitude_rms_ft

@@ -212,8 +212,12 @@ fn from_python(key: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
     if let Ok(number) = value.extract::<f64>() {
         return Ok(Value::Float(number));
     }
+    if let Ok(list) = value.try_iter() {
+        let entries = list.map(|entry| from_python(key, &entry?));
+        return Ok(Value::Array(entries.collect::<PyResult<_>>()?));
+    }
     Err(PyTypeError::new_err(format!(
-        "{key} is of type {}: give a number, a text, True or False, or a dict for a section",
+        "{key} is of type {}: give a number, a text, True or False, a list, or a dict for a section",
         value.get_type().name()?
     )))
 }

@@ -25,8 +25,9 @@ const WRITE_EVERY: Duration = Duration::from_millis(15);
 /// How long the controls are held before a deflection.
 const REST: Duration = Duration::from_millis(300);
 /// How long the daemon makes sure of its release: an override that is set
-/// meanwhile is taken for its own, and cleared.
-const RELEASED: Duration = Duration::from_millis(500);
+/// meanwhile is taken for its own, and cleared. Twice the time for which it wants them
+/// to be clear, for what a network or a busy machine delays.
+const RELEASED: Duration = Duration::from_secs(1);
 /// The interval between two releases.
 const RELEASE_AGAIN_AFTER: Duration = Duration::from_millis(250);
 /// How long X-Plane's first answer may take.

@@ -98,7 +98,10 @@ fn wrong_type(message: &str, range: Option<&str>) -> Option<String> {
         "i8" | "i16" | "i32" | "i64" | "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number",
         "a boolean" => "true or false",
         "a string" | "path string" | "variant identifier" => "a text in quotes",
-        "a sequence" => "a list, each entry below double square brackets such as [[sensor]]",
+        "a sequence" => {
+            "a list such as [1.0, 2.0]; of sections: each below double square brackets such as \
+             [[sensor]]"
+        },
         section if section.starts_with("struct ") => "a section in square brackets",
         other => other,
     };
