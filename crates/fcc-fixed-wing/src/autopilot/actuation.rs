@@ -151,21 +151,23 @@ impl Actuation {
 impl Autopilot {
     /// Follows how the aircraft responds to the last outputs.
     pub(super) fn follow_outputs(&mut self, estimate: &Estimate) {
-        self.actuation.knows_age(self.ages.rates_s());
-        let dt_s = self.clock.step_s();
-        let load_mps2 = -self.accepted.specific_force.value.z_mps2;
-        self.actuation.follow(&self.last, estimate, load_mps2, dt_s);
+        self.loops.actuation.knows_age(self.intake.ages.rates_s());
+        let dt_s = self.intake.clock.step_s();
+        let load_mps2 = -self.intake.accepted.specific_force.value.z_mps2;
+        self.loops
+            .actuation
+            .follow(&self.loops.last, estimate, load_mps2, dt_s);
     }
 
     /// The gains for the present airspeed and latency.
     pub(super) fn schedule(&self) -> Schedule {
-        let airspeed_mps = self.navigation.estimate().airspeed_mps;
+        let airspeed_mps = self.estimator.navigation.estimate().airspeed_mps;
         self.schedule_at(airspeed_mps)
     }
 
     /// The gains for an airspeed and the present latency.
     pub(super) fn schedule_at(&self, airspeed_mps: f64) -> Schedule {
         let schedule = Schedule::at(airspeed_mps, self.config.reference_airspeed_mps);
-        self.actuation.slowed(schedule)
+        self.loops.actuation.slowed(schedule)
     }
 }

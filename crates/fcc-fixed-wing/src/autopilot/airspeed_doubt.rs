@@ -62,25 +62,30 @@ pub(super) fn write(kind: u8, f: &mut fmt::Formatter<'_>) -> fmt::Result {
 impl Autopilot {
     /// The throttle that drives the aircraft: as measured, or as it was put.
     pub(super) fn note_throttle(&mut self, now: Time) {
-        let is_engaged = self.guidance.mode() != Mode::None;
-        let measured = self.accepted.surfaces.fresh(now, self.config.max_age);
+        let is_engaged = self.guidance.mode.mode() != Mode::None;
+        let measured = self
+            .intake
+            .accepted
+            .surfaces
+            .fresh(now, self.config.max_age);
         let throttle = match measured {
             Some(surfaces) => Some(surfaces.throttle),
-            None if is_engaged => Some(self.last.throttle),
+            None if is_engaged => Some(self.loops.last.throttle),
             None => None,
         };
         // On the wheels forces and motion say nothing of the air.
         let is_flying = is_engaged && !self.is_on_wheels();
-        self.navigation
+        self.estimator
+            .navigation
             .flown_with(throttle, is_flying, self.is_on_runway());
-        if let Some(airspeed_mps) = self.on_runway.flies_at_mps.take() {
-            self.navigation.leave_airspeed(airspeed_mps);
+        if let Some(airspeed_mps) = self.guidance.on_runway.flies_at_mps.take() {
+            self.estimator.navigation.leave_airspeed(airspeed_mps);
         }
     }
 
     /// Reports a doubt that has begun, or whose reason is another.
     pub(super) fn note_doubt(&mut self, before: Option<Doubt>) {
-        let now = self.navigation.airspeed_doubt();
+        let now = self.estimator.navigation.airspeed_doubt();
         let begun = now.filter(|doubt| before != Some(*doubt));
         let event = begun.and_then(|doubt| {
             let known = REASONS
@@ -101,17 +106,17 @@ impl Autopilot {
         Flags::NONE
             .with(
                 flags::DOUBTED_AIRSPEED,
-                self.navigation.airspeed_doubt().is_some(),
+                self.estimator.navigation.airspeed_doubt().is_some(),
             )
             .with(
                 flags::DOUBTED_ALTITUDE,
-                self.navigation.altitude_doubt().is_some(),
+                self.estimator.navigation.altitude_doubt().is_some(),
             )
     }
 
     /// The faults that attitude or body rates are doubted.
     pub(super) fn doubted_motion(&self) -> Flags {
-        let doubt = self.navigation.motion_doubt();
+        let doubt = self.estimator.navigation.motion_doubt();
         Flags::NONE
             .with(
                 flags::DOUBTED_ATTITUDE,
@@ -126,7 +131,7 @@ impl Autopilot {
     /// Whether a sensor's airspeed may be used beside others'.
     pub(super) fn permits_airspeed(&self, measurements: &Measurements) -> bool {
         let airspeed = measurements.airspeed_mps;
-        airspeed.is_never() || self.navigation.permits_airspeed(airspeed.value)
+        airspeed.is_never() || self.estimator.navigation.permits_airspeed(airspeed.value)
     }
 
     /// The envelope, with the distance that the airspeed's uncertainty needs, and with the
@@ -134,10 +139,10 @@ impl Autopilot {
     /// bank that the turn needs: one that is limited for want of speed would
     /// otherwise stay limited.
     pub(super) fn envelope(&self) -> Envelope {
-        let (envelope, estimate) = (self.config.envelope, self.navigation.estimate());
+        let (envelope, estimate) = (self.config.envelope, self.estimator.navigation.estimate());
         let range_mps = envelope.max_airspeed_mps - envelope.min_airspeed_mps;
         let by_mps = (KEPT_SDS * estimate.airspeed_uncertainty_mps).min(MOST_SHARE * range_mps);
-        let found_mps = self.recovery.found_stall_mps();
+        let found_mps = self.loops.recovery.found_stall_mps();
         let envelope = Envelope {
             min_airspeed_mps: envelope.min_airspeed_mps + by_mps,
             max_airspeed_mps: envelope.max_airspeed_mps - by_mps,
@@ -147,7 +152,7 @@ impl Autopilot {
                 .max(LEAST_GLIDE * found_mps),
             ..envelope
         };
-        let bank_rad = self.heading.needed_bank_rad();
+        let bank_rad = self.loops.heading.needed_bank_rad();
         let floor_mps = envelope.floor_in_turn_mps(bank_rad, estimate.gust_load);
         let middle_mps = 0.5 * (floor_mps + envelope.max_airspeed_mps);
         Envelope {
@@ -159,7 +164,13 @@ impl Autopilot {
     /// A commanded airspeed, inside of that envelope while the airspeed is not a
     /// sensor's.
     pub(super) fn flyable_airspeed_mps(&self, commanded_mps: f64) -> f64 {
-        if self.navigation.estimate().airspeed_uncertainty_mps > 0.0 {
+        if self
+            .estimator
+            .navigation
+            .estimate()
+            .airspeed_uncertainty_mps
+            > 0.0
+        {
             self.envelope().allowed_airspeed(commanded_mps)
         } else {
             commanded_mps

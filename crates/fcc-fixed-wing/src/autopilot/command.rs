@@ -147,28 +147,30 @@ impl Autopilot {
     /// Executes a command; one that is not applicable now is refused, or without being
     /// engaged ignored.
     pub(super) fn execute(&mut self, command: &AutopilotCommand) {
-        self.contingencies.renew_promise();
+        self.supervisor.contingencies.renew_promise();
         if let AutopilotCommand::ReplacePlan(replacement) = command {
             return self.replace_plan(replacement);
         }
-        if self.guidance.mode() != Mode::None {
+        if self.guidance.mode.mode() != Mode::None {
             if let Err(refusal) = self.may_carry_out(command) {
                 self.refuse(refusal);
                 return;
             }
             if command.is_of_mode() {
-                self.contingencies.end();
+                self.supervisor.contingencies.end();
             }
         }
         match *command {
-            AutopilotCommand::Heartbeat(within_s) => self.contingencies.promise(within_s),
+            AutopilotCommand::Heartbeat(within_s) => {
+                self.supervisor.contingencies.promise(within_s)
+            }
             AutopilotCommand::Airspeed(mps) if mps.is_finite() => {
-                self.targets.airspeed_mps = self.config.envelope.allowed_airspeed(mps);
+                self.guidance.targets.airspeed_mps = self.config.envelope.allowed_airspeed(mps);
                 self.change_mode(ModeInput::SetPoint);
             }
             AutopilotCommand::Heading(rad) if rad.is_finite() => {
-                let now_rad = self.navigation.estimate().heading_rad;
-                self.targets.heading_rad = now_rad + wrap_pi(rad - now_rad);
+                let now_rad = self.estimator.navigation.estimate().heading_rad;
+                self.guidance.targets.heading_rad = now_rad + wrap_pi(rad - now_rad);
                 self.change_mode(ModeInput::SetPoint);
             }
             AutopilotCommand::Altitude(m) => self.fly_to(AltitudeReference::SeaLevel, m),
@@ -197,17 +199,20 @@ impl Autopilot {
     /// The pressure altitude of what the target altitude refers to, m.
     pub(super) fn datum_m(&self) -> f64 {
         // Only a field whose elevation is known is referred to.
-        self.altimeter.datum_m(self.reference).unwrap_or(0.0)
+        self.guidance
+            .altimeter
+            .datum_m(self.guidance.reference)
+            .unwrap_or(0.0)
     }
 
     /// Flies to an altitude above a reference, m.
     fn fly_to(&mut self, reference: AltitudeReference, altitude_m: f64) {
-        if let Some(datum_m) = self.altimeter.datum_m(reference)
+        if let Some(datum_m) = self.guidance.altimeter.datum_m(reference)
             && altitude_m.is_finite()
         {
-            self.reference = reference;
-            self.targets.altitude_m = altitude_m + datum_m;
-            self.capture = None;
+            self.guidance.reference = reference;
+            self.guidance.targets.altitude_m = altitude_m + datum_m;
+            self.guidance.capture = None;
             self.change_mode(ModeInput::SetPoint);
         }
     }
@@ -217,8 +222,8 @@ impl Autopilot {
     fn set_altimeter(&mut self, setting_pa: f64) {
         if ALTIMETER_SETTINGS_PA.contains(&setting_pa) {
             let before_m = self.datum_m();
-            self.altimeter.setting_pa = setting_pa;
-            self.guidance.shift_altitude(self.datum_m() - before_m);
+            self.guidance.altimeter.setting_pa = setting_pa;
+            self.guidance.mode.shift_altitude(self.datum_m() - before_m);
         }
     }
 }

@@ -194,7 +194,7 @@ impl Autopilot {
 
     /// Finds contingencies, and acts on the worst.
     pub(super) fn meet_contingencies(&mut self) {
-        let dt_s = self.clock.passed_s();
+        let dt_s = self.intake.clock.passed_s();
         if dt_s <= 0.0 {
             return;
         }
@@ -223,7 +223,7 @@ impl Autopilot {
         if self.runway().is_some() {
             return false;
         }
-        if self.contingencies.active as u8 >= contingency as u8 {
+        if self.supervisor.contingencies.active as u8 >= contingency as u8 {
             return true;
         }
         self.begin_contingency(contingency, action, amount_permille);
@@ -236,11 +236,11 @@ impl Autopilot {
         action: ContingencyAction,
         amount_permille: u16,
     ) {
-        self.contingencies.active = contingency;
-        self.contingencies.stage = Stage::Acting;
-        self.contingencies.before = self.guidance.mode();
+        self.supervisor.contingencies.active = contingency;
+        self.supervisor.contingencies.stage = Stage::Acting;
+        self.supervisor.contingencies.before = self.guidance.mode.mode();
         let action = self.act(action);
-        self.contingencies.mode = self.guidance.mode();
+        self.supervisor.contingencies.mode = self.guidance.mode.mode();
         self.journal.add(Notice {
             amount_permille,
             ..notice(contingency, action)
@@ -264,13 +264,13 @@ impl Autopilot {
 
     fn watch_position(&mut self) {
         let config = self.config.contingency;
-        if self.ground.is_measured() {
-            self.contingencies.is_loss_met = false;
-            if self.contingencies.active == Contingency::PositionLost {
-                let is_left = self.contingencies.before == Mode::Plan
-                    && self.guidance.mode() == self.contingencies.mode
-                    && self.guidance.mode() != Mode::Plan;
-                self.contingencies.end();
+        if self.estimator.ground.is_measured() {
+            self.supervisor.contingencies.is_loss_met = false;
+            if self.supervisor.contingencies.active == Contingency::PositionLost {
+                let is_left = self.supervisor.contingencies.before == Mode::Plan
+                    && self.guidance.mode.mode() == self.supervisor.contingencies.mode
+                    && self.guidance.mode.mode() != Mode::Plan;
+                self.supervisor.contingencies.end();
                 let found = notice(Contingency::None, ContingencyAction::Continue);
                 self.journal.add(found);
                 if is_left {
@@ -279,27 +279,27 @@ impl Autopilot {
             }
             return;
         }
-        if self.contingencies.is_loss_met
-            || self.ground.here().is_none()
-            || self.ground.lost_s() < config.position_after_s
+        if self.supervisor.contingencies.is_loss_met
+            || self.estimator.ground.here().is_none()
+            || self.estimator.ground.lost_s() < config.position_after_s
         {
             return;
         }
         // Headings and altitudes are flown without one.
-        let action = if self.guidance.over_ground().is_some() {
+        let action = if self.guidance.mode.over_ground().is_some() {
             config.position
         } else {
             ContingencyAction::Continue
         };
         // Where the runway is, is not known well enough.
         if action != ContingencyAction::Continue {
-            self.guidance.go_around(RunwayReason::NoPosition);
+            self.guidance.mode.go_around(RunwayReason::NoPosition);
         }
-        self.contingencies.is_loss_met = self.meet(Contingency::PositionLost, action);
+        self.supervisor.contingencies.is_loss_met = self.meet(Contingency::PositionLost, action);
     }
 
     fn watch_commander(&mut self, dt_s: f64) {
-        let Some((within_s, left_s)) = self.contingencies.promised_s else {
+        let Some((within_s, left_s)) = self.supervisor.contingencies.promised_s else {
             return;
         };
         let (before_s, left_s) = (left_s, left_s - dt_s);
@@ -310,7 +310,7 @@ impl Autopilot {
             let lost = notice(Contingency::CommanderLost, ContingencyAction::Continue);
             self.journal.add(lost);
         }
-        self.contingencies.promised_s = (!is_met).then_some((within_s, left_s));
+        self.supervisor.contingencies.promised_s = (!is_met).then_some((within_s, left_s));
     }
 }
 

@@ -277,13 +277,17 @@ impl Autopilot {
         let contradicted = self
             .external(now, measured)
             .contains(flags::SUSPECT_AIRSPEED)
-            || self.navigation.airspeed_doubt().is_some();
-        let doubt = self.navigation.motion_doubt();
+            || self.estimator.navigation.airspeed_doubt().is_some();
+        let doubt = self.estimator.navigation.motion_doubt();
         let unusable = self
             .silent_or_frozen(now)
             .with(Quantity::Attitude, doubt == Some(MotionDoubt::Attitude))
             .with(Quantity::BodyRates, doubt == Some(MotionDoubt::BodyRates));
-        let left_out = self.degraded.intermittent.left_out_with(unusable);
+        let left_out = self
+            .supervisor
+            .degraded
+            .intermittent
+            .left_out_with(unusable);
         (unusable | left_out).with(Quantity::Airspeed, contradicted)
     }
 
@@ -294,14 +298,14 @@ impl Autopilot {
 
     /// The quantities that come and go in a failsafe.
     pub(super) const fn intermittent(&self) -> Quantities {
-        self.degraded.intermittent.left_out
+        self.supervisor.degraded.intermittent.left_out
     }
 
     /// Follows which quantities come and go in a failsafe.
     pub(super) fn follow_intermittent(&mut self, dt_s: f64) {
-        if self.degraded.is_failsafe {
-            let old = self.too_old(&self.accepted);
-            self.degraded.intermittent.step(old, dt_s);
+        if self.supervisor.degraded.is_failsafe {
+            let old = self.too_old(&self.intake.accepted);
+            self.supervisor.degraded.intermittent.step(old, dt_s);
         }
     }
 
@@ -309,9 +313,9 @@ impl Autopilot {
     /// altimeter may be one whose static port is blocked.
     pub(super) fn known_motion(&self, now: Time, lost: Quantities) -> KnownMotion {
         const MOTION: Quantities = Quantities::of(&[Quantity::Attitude, Quantity::SpecificForce]);
-        let no_altitude = self.navigation.altitude_doubt().is_none()
+        let no_altitude = self.estimator.navigation.altitude_doubt().is_none()
             && (self.stale(now) | self.intermittent()).contains(Quantity::Altitude);
-        if lost.intersects(MOTION) || no_altitude || self.navigation.suspects_motion() {
+        if lost.intersects(MOTION) || no_altitude || self.estimator.navigation.suspects_motion() {
             KnownMotion::Unknown
         } else if self.is_on_wheels() {
             KnownMotion::OnWheels
@@ -325,13 +329,17 @@ impl Autopilot {
     /// comes from; so does the climb by a satellite receiver in place of an altitude.
     pub(super) fn unreplaced(&self, now: Time, lost: Quantities) -> Quantities {
         let is_known = self.is_accurate(ACCURATE_RATIO) && !lost.intersects(FORCES_NEED);
-        let climb_is_known = self.accepted.velocity.is_fresh(now, self.config.max_age);
+        let climb_is_known = self
+            .intake
+            .accepted
+            .velocity
+            .is_fresh(now, self.config.max_age);
         lost.keeping(Quantity::Airspeed, !is_known)
             .keeping(Quantity::Altitude, !climb_is_known)
     }
 
     fn is_accurate(&self, ratio: f64) -> bool {
-        let estimate = self.navigation.estimate();
+        let estimate = self.estimator.navigation.estimate();
         let accurate_mps = ratio * self.config.reference_airspeed_mps;
         estimate.airspeed_source == AirspeedSource::Forces
             && estimate.airspeed_uncertainty_mps < accurate_mps
@@ -340,25 +348,26 @@ impl Autopilot {
     /// Whether the airspeed is known by forces and motion, of an aircraft that is learned
     /// and has no sensor of it; none of any other.
     pub(super) fn knows_airspeed_by_forces(&self) -> Option<bool> {
-        let has_none = self.config.airframe.is_some() && self.accepted.airspeed_mps.is_never();
+        let has_none =
+            self.config.airframe.is_some() && self.intake.accepted.airspeed_mps.is_never();
         has_none.then(|| self.is_accurate(FLYABLE_RATIO))
     }
 
     /// Follows a failsafe: for how long it has lasted, and whether all is good
     /// again.
     pub(super) fn follow_failsafe(&mut self, tick: &Tick, measured: &Measurements) {
-        if let Some(lasted_s) = self.degraded.recovered_s.take() {
+        if let Some(lasted_s) = self.supervisor.degraded.recovered_s.take() {
             self.journal.add(lasted(GOOD_AGAIN, lasted_s));
         }
-        if !self.degraded.is_failsafe {
-            self.degraded.repeated.flown_on(tick.dt_s);
-            self.degraded.forget_unsound(tick.dt_s);
+        if !self.supervisor.degraded.is_failsafe {
+            self.supervisor.degraded.repeated.flown_on(tick.dt_s);
+            self.supervisor.degraded.forget_unsound(tick.dt_s);
             return;
         }
         let faults = self.unsafe_now(tick.woke, measured) | self.not_flyable(tick.woke, measured);
         let held = held_without(self.unreplaced(tick.woke, self.lost(tick.woke, measured)));
         let config = &self.config.failsafe;
-        let degraded = &mut self.degraded;
+        let degraded = &mut self.supervisor.degraded;
         degraded.lasted_s += tick.dt_s;
         let limit_s = held.for_s.min(config.degraded.as_secs_f64());
         degraded.is_sound = !faults.contains(flags::DOUBTED_GYROSCOPE)
@@ -370,7 +379,7 @@ impl Autopilot {
             degraded.unsound_s += tick.dt_s;
         }
         degraded.good_s = if faults.is_empty() {
-            degraded.good_s + self.clock.passed_s()
+            degraded.good_s + self.intake.clock.passed_s()
         } else {
             0.0
         };
@@ -385,7 +394,7 @@ impl Autopilot {
     /// Whether the failsafe goes on: what it holds is sound, or nobody is there
     /// to take over.
     pub(super) fn goes_on(&self) -> bool {
-        let degraded = &self.degraded;
+        let degraded = &self.supervisor.degraded;
         let is_sound = degraded.is_sound && !degraded.is_worn_out(self.config.failsafe.hold);
         is_sound || self.config.failsafe.end == FailsafeEnd::Glide
     }
@@ -394,14 +403,15 @@ impl Autopilot {
     /// ends then is for the loop to decide: one because of overruns goes on until
     /// these are over.
     pub(super) fn is_good_again(&self) -> bool {
-        let after = self.config.failsafe.recovered_after * self.degraded.repeated.factor();
-        let good = Duration::from_secs_f64(self.degraded.good_s);
-        self.degraded.is_failsafe && after > Duration::ZERO && good >= after
+        let after =
+            self.config.failsafe.recovered_after * self.supervisor.degraded.repeated.factor();
+        let good = Duration::from_secs_f64(self.supervisor.degraded.good_s);
+        self.supervisor.degraded.is_failsafe && after > Duration::ZERO && good >= after
     }
 
     /// Whether it flies on without a quantity.
     pub(super) const fn is_degraded(&self) -> bool {
-        let degraded = &self.degraded;
+        let degraded = &self.supervisor.degraded;
         degraded.is_sound && (degraded.good_s == 0.0 || !degraded.intermittent.left_out.is_empty())
     }
 }

@@ -18,8 +18,8 @@ const ROUNDING_S: f64 = 1e-6;
 impl Autopilot {
     /// Why the autopilot does not engage.
     pub(super) fn inhibits(&self, now: Time, measurements: &Measurements) -> Flags {
-        let estimate = self.navigation.estimate();
-        let contradictions = self.navigation.contradictions();
+        let estimate = self.estimator.navigation.estimate();
+        let contradictions = self.estimator.navigation.contradictions();
         let stale = self.stale(now);
         let is_slow = estimate.airspeed_mps < self.config.envelope.min_airspeed_mps
             && !stale.contains(Quantity::Airspeed);
@@ -34,18 +34,21 @@ impl Autopilot {
         .with(flags::LOAD_AGAINST_GRAVITY, contradictions.load)
         .with(flags::PITCH_AGAINST_FORCE, contradictions.pitch_and_force)
         .with(flags::PLANT_REPLAYING, self.plant_is(PlantState::Replaying))
-        .with(flags::PILOT_TAKES_OVER, self.pilot.is_moved())
+        .with(flags::PILOT_TAKES_OVER, self.supervisor.pilot.is_moved())
         .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))
-        .with(flags::PLANT_STALLED, self.clock.has_stopped())
+        .with(flags::PLANT_STALLED, self.intake.clock.has_stopped())
         .with(
             flags::SETTLING,
-            self.settled_s.is_none_or(|settled_s| {
+            self.intake.settled_s.is_none_or(|settled_s| {
                 settled_s + ROUNDING_S < self.config.settling.as_secs_f64()
             }),
         )
         .with(
             flags::UNCHECKED_GYROSCOPE,
-            self.raw.as_ref().is_some_and(RawNavigation::awaits_field),
+            self.estimator
+                .raw
+                .as_ref()
+                .is_some_and(RawNavigation::awaits_field),
         )
         .with(
             flags::TOO_SLOW,
@@ -62,22 +65,23 @@ impl Autopilot {
 
     /// Engages: what is flown now is held, or the pattern begins.
     pub(super) fn begin_flight(&mut self, now: Time) {
-        self.distrusted = Quantities::NONE;
-        self.told_once = ToldOnce::default();
-        self.contingencies.reset();
-        self.pilot.set_engaged(true);
-        self.degraded = Degraded::default();
-        let estimate = *self.navigation.estimate();
-        self.targets = Targets {
+        self.intake.distrusted = Quantities::NONE;
+        self.supervisor.told_once = ToldOnce::default();
+        self.supervisor.contingencies.reset();
+        self.supervisor.pilot.set_engaged(true);
+        self.supervisor.degraded = Degraded::default();
+        let estimate = *self.estimator.navigation.estimate();
+        self.guidance.targets = Targets {
             airspeed_mps: self.config.envelope.allowed_airspeed(estimate.airspeed_mps),
             heading_rad: estimate.heading_rad,
             altitude_m: estimate.altitude_m,
         };
-        self.reference = AltitudeReference::PressureLevel;
-        self.navigation.mark_altitude();
-        self.capture = Some(Capture::of(estimate.altitude_m));
+        self.guidance.reference = AltitudeReference::PressureLevel;
+        self.estimator.navigation.mark_altitude();
+        self.guidance.capture = Some(Capture::of(estimate.altitude_m));
         self.change_mode(ModeInput::Engage);
         let standing = self
+            .intake
             .accepted
             .surfaces
             .fresh(now, self.config.max_age)
@@ -86,9 +90,9 @@ impl Autopilot {
                 ..Surfaces::default()
             });
         let trim = standing.elevator_trim.filter(|_| self.config.trims);
-        self.trim = ElevatorTrim::new(trim);
-        self.release = None;
-        self.actuation.engage(&standing);
+        self.loops.trim = ElevatorTrim::new(trim);
+        self.supervisor.release = None;
+        self.loops.actuation.engage(&standing);
         self.take_over(&standing);
         self.begin_straight_trims();
         self.begin_watching_for_upsets();
@@ -96,16 +100,21 @@ impl Autopilot {
 
     /// Engages the loops with the present throttle and surfaces.
     pub(super) fn take_over(&mut self, standing: &Surfaces) {
-        self.last = *standing;
-        self.trim.take_over(standing.elevator_trim);
-        let estimate = *self.navigation.estimate();
-        self.bank.reset(estimate.roll_rad);
+        self.loops.last = *standing;
+        self.loops.trim.take_over(standing.elevator_trim);
+        let estimate = *self.estimator.navigation.estimate();
+        self.loops.bank.reset(estimate.roll_rad);
         let schedule = self.schedule();
-        self.heading
+        self.loops
+            .heading
             .engage(standing.aileron, standing.rudder, &estimate, schedule);
-        self.altitude.engage(standing.elevator, &estimate, schedule);
+        self.loops
+            .altitude
+            .engage(standing.elevator, &estimate, schedule);
         let demand = self.throttle_demand(estimate.climb_rate_mps);
-        self.airspeed.engage(standing.throttle, &demand, &estimate);
+        self.loops
+            .airspeed
+            .engage(standing.throttle, &demand, &estimate);
         self.keep_trims();
     }
 
@@ -113,24 +122,24 @@ impl Autopilot {
     /// a time in which nobody else flew: the surfaces stood at these trims, so what is
     /// off now is none of them.
     pub(super) fn rejoin(&mut self) {
-        let estimate = *self.navigation.estimate();
-        self.bank.reset(estimate.roll_rad);
-        self.heading.restart(&estimate);
-        self.altitude.restart(&estimate);
-        self.airspeed.restart(&estimate);
+        let estimate = *self.estimator.navigation.estimate();
+        self.loops.bank.reset(estimate.roll_rad);
+        self.loops.heading.restart(&estimate);
+        self.loops.altitude.restart(&estimate);
+        self.loops.airspeed.restart(&estimate);
     }
 
     /// Enters the mode given by the transition table, with the present targets.
     pub(super) fn change_mode(&mut self, input: ModeInput) {
         let (config, plan) = (self.config.guidance, self.config.plan);
-        let Some(mode) = self.guidance.mode().after(input, config.mode()) else {
+        let Some(mode) = self.guidance.mode.mode().after(input, config.mode()) else {
             return;
         };
         if let (Mode::Plan, Some(plan)) = (mode, plan) {
             self.begin_plan(&plan, 0);
         } else {
             self.leave();
-            self.guidance = ActiveMode::enter(mode, &config, self.targets);
+            self.guidance.mode = ActiveMode::enter(mode, &config, self.guidance.targets);
         }
     }
 }

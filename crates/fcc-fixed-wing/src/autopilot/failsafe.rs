@@ -96,8 +96,8 @@ pub(super) struct KeptTrims {
 impl Autopilot {
     /// Keeps the present trims.
     pub(super) fn keep_trims(&mut self) {
-        self.kept_trims = KeptTrims {
-            found_with: self.accepted.body_rates.value,
+        self.loops.kept_trims = KeptTrims {
+            found_with: self.intake.accepted.body_rates.value,
             trims: self.trims(),
         };
     }
@@ -110,39 +110,47 @@ impl Autopilot {
     /// [returns](ReturningAltitude).
     pub(super) fn safest(&mut self, now: Time, measured: &Measurements) -> Surfaces {
         // One that was frozen stood still: what comes after it is no jump.
-        self.degraded.frozen |= self.frozen();
-        let jumped = self.rejected(measured) & !self.degraded.frozen;
-        let distrusted = self.distrusted | jumped;
-        if distrusted.contains(Quantity::Altitude) && !self.distrusted.contains(Quantity::Altitude)
+        self.supervisor.degraded.frozen |= self.frozen();
+        let jumped = self.rejected(measured) & !self.supervisor.degraded.frozen;
+        let distrusted = self.intake.distrusted | jumped;
+        if distrusted.contains(Quantity::Altitude)
+            && !self.intake.distrusted.contains(Quantity::Altitude)
         {
-            self.returning_altitude = ReturningAltitude::after(self.accepted.altitude_m);
+            self.intake.returning_altitude =
+                ReturningAltitude::after(self.intake.accepted.altitude_m);
         }
-        self.distrusted = distrusted;
-        if !self.degraded.is_failsafe {
-            self.degraded.begin(self.navigation.estimate().altitude_m);
+        self.intake.distrusted = distrusted;
+        if !self.supervisor.degraded.is_failsafe {
+            self.supervisor
+                .degraded
+                .begin(self.estimator.navigation.estimate().altitude_m);
             self.begin_low();
             if self.frozen().contains(Quantity::BodyRates) {
                 let trims = Surfaces {
-                    throttle: self.last.throttle,
-                    ..self.kept_trims.trims
+                    throttle: self.loops.last.throttle,
+                    ..self.loops.kept_trims.trims
                 };
                 self.take_over(&trims);
             }
         }
         let lost = self.unreplaced(now, self.lost(now, measured));
         let held = held_without(lost);
-        let glides = self.degraded.glides;
-        self.setpoints.roll_rad = 0.0;
-        self.setpoints.climb_rate_mps = 0.0;
+        let glides = self.supervisor.degraded.glides;
+        self.guidance.setpoints.roll_rad = 0.0;
+        self.guidance.setpoints.climb_rate_mps = 0.0;
         let silent = self.is_silent(now);
         let idle = glides && !silent || measured.other_control.value.reverse_thrust;
         if held.lateral == Lateral::Trims {
-            self.setpoints.pitch_rad = 0.0;
-            self.recovery.end();
+            self.guidance.setpoints.pitch_rad = 0.0;
+            self.loops.recovery.end();
             if silent {
                 return self.silent_trims();
             }
-            let throttle = if idle { 0.0 } else { self.airspeed.trim() };
+            let throttle = if idle {
+                0.0
+            } else {
+                self.loops.airspeed.trim()
+            };
             return Surfaces {
                 throttle,
                 ..self.trims()
@@ -153,7 +161,10 @@ impl Autopilot {
         if let Some(recovering) = self.recover_degraded(now, lost, &estimate, idle) {
             return recovering;
         }
-        let (schedule, dt_s) = (self.schedule_at(estimate.airspeed_mps), self.clock.step_s());
+        let (schedule, dt_s) = (
+            self.schedule_at(estimate.airspeed_mps),
+            self.intake.clock.step_s(),
+        );
         if !idle && let Some(low) = self.fly_low(lost, &estimate, dt_s) {
             return low;
         }
@@ -165,10 +176,13 @@ impl Autopilot {
             self.trimmed_mps()
         });
         let roll_rad = if glides { config.glide_bank_rad } else { 0.0 };
-        let lateral = self.heading.hold_bank(roll_rad, &estimate, schedule, dt_s);
+        let lateral = self
+            .loops
+            .heading
+            .hold_bank(roll_rad, &estimate, schedule, dt_s);
         let glide_mps = estimate.true_airspeed_mps / config.glide_ratio;
         let (kept_m, kept_mps) = (self.kept_altitude_m(), self.kept_climb_rate_mps());
-        let altitude = &mut self.altitude;
+        let altitude = &mut self.loops.altitude;
         let vertical = match held.vertical {
             Vertical::Level if glides => {
                 let fast_mps = estimate.airspeed_mps - self.config.envelope.best_glide_airspeed_mps;
@@ -190,20 +204,20 @@ impl Autopilot {
                 altitude.hold_path_pitch(path_rad, trimmed, &estimate, &envelope, schedule, dt_s)
             }
         };
-        self.setpoints.roll_rad = lateral.roll_rad;
-        self.setpoints.climb_rate_mps = vertical.climb_rate_mps;
-        self.setpoints.pitch_rad = vertical.pitch_rad;
+        self.guidance.setpoints.roll_rad = lateral.roll_rad;
+        self.guidance.setpoints.climb_rate_mps = vertical.climb_rate_mps;
+        self.guidance.setpoints.pitch_rad = vertical.pitch_rad;
         let throttle = if idle {
             0.0
         } else if held.power == Power::Airspeed {
             let demand = self.throttle_demand(vertical.climb_rate_mps);
-            self.airspeed.step(&demand, &estimate, dt_s)
+            self.loops.airspeed.step(&demand, &estimate, dt_s)
         } else {
-            self.airspeed.trim()
+            self.loops.airspeed.trim()
         };
         Surfaces {
             throttle,
-            elevator: self.actuation.elevator(vertical.elevator),
+            elevator: self.loops.actuation.elevator(vertical.elevator),
             aileron: lateral.aileron,
             rudder: lateral.rudder,
             ..Surfaces::IDLE
@@ -212,13 +226,13 @@ impl Autopilot {
 
     /// The estimate, with what takes the place of the lost quantities.
     fn estimate_without(&self, lost: Quantities) -> Estimate {
-        let mut estimate = *self.navigation.estimate();
+        let mut estimate = *self.estimator.navigation.estimate();
         if lost.contains(Quantity::SpecificForce) {
             estimate.side_force_mps2 = 0.0;
         }
         if lost.contains(Quantity::Airspeed) {
             // That of the pitch and power that are held.
-            estimate.airspeed_mps = if self.degraded.glides {
+            estimate.airspeed_mps = if self.supervisor.degraded.glides {
                 self.config.envelope.best_glide_airspeed_mps
             } else {
                 self.trimmed_mps()
@@ -231,8 +245,8 @@ impl Autopilot {
 
     /// The airspeed of the pitch and the power that are held, m/s.
     fn trimmed_mps(&self) -> f64 {
-        let other_mps = self.degraded.trimmed_mps;
-        other_mps.unwrap_or(self.targets.airspeed_mps)
+        let other_mps = self.supervisor.degraded.trimmed_mps;
+        other_mps.unwrap_or(self.guidance.targets.airspeed_mps)
     }
 
     /// The envelope. An airspeed that is not known, but assumed, is inside of it: no
@@ -256,23 +270,28 @@ impl Autopilot {
     /// Continues what was flown before the failsafe: targets, mode and progress
     /// are as they were.
     pub(super) fn fly_on(&mut self) {
-        self.distrusted = Quantities::NONE;
-        self.degraded = self.degraded.recovered();
+        self.intake.distrusted = Quantities::NONE;
+        self.supervisor.degraded = self.supervisor.degraded.recovered();
         self.end_release_of_failsafe();
-        let last = self.last;
+        let last = self.loops.last;
         self.take_over(&last);
-        self.heading.lead_from(self.setpoints.roll_rad);
+        self.loops
+            .heading
+            .lead_from(self.guidance.setpoints.roll_rad);
     }
 
     /// A value that was rejected is believed again when it agrees with what the
     /// others tell about it: the last good one is moved with the estimate. An altitude is
     /// also when it is that of an aircraft again: the estimate without it drifts.
     pub(super) fn move_distrusted(&mut self, now: Time, measured: &Measurements) {
-        if self.distrusted.is_empty() {
+        if self.intake.distrusted.is_empty() {
             return;
         }
-        let (estimate, distrusted) = (*self.navigation.estimate(), self.distrusted);
-        let last = &mut self.accepted;
+        let (estimate, distrusted) = (
+            *self.estimator.navigation.estimate(),
+            self.intake.distrusted,
+        );
+        let last = &mut self.intake.accepted;
         if distrusted.contains(Quantity::Attitude) {
             last.attitude.value = Attitude {
                 pitch_rad: estimate.pitch_rad,
@@ -287,9 +306,9 @@ impl Autopilot {
         }
         if distrusted.contains(Quantity::Altitude) {
             let (new, receiver) = (measured.altitude_m, Receiver::of(measured, now));
-            if self.returning_altitude.step(&new, receiver) {
+            if self.intake.returning_altitude.step(&new, receiver) {
                 last.altitude_m = new;
-                self.distrusted = distrusted.keeping(Quantity::Altitude, false);
+                self.intake.distrusted = distrusted.keeping(Quantity::Altitude, false);
             } else {
                 last.altitude_m.value = estimate.altitude_m;
             }
@@ -300,11 +319,11 @@ impl Autopilot {
     /// that is not measured does not roll on.
     pub(super) fn trims(&self) -> Surfaces {
         Surfaces {
-            throttle: self.last.throttle,
-            elevator: self.altitude.trim(),
-            aileron: self.heading.aileron_trim(),
-            rudder: self.heading.rudder_trim(),
-            elevator_trim: self.trim.position(),
+            throttle: self.loops.last.throttle,
+            elevator: self.loops.altitude.trim(),
+            aileron: self.loops.heading.aileron_trim(),
+            rudder: self.loops.heading.rudder_trim(),
+            elevator_trim: self.loops.trim.position(),
             ..Surfaces::IDLE
         }
     }

@@ -30,7 +30,7 @@ impl Autopilot {
     fn lowest_m(&self) -> f64 {
         let margin_m = self.config.contingency.fence_height_margin_m;
         let fence_m = self.fence().floor_m.map(|floor_m| floor_m + margin_m);
-        let terrain_m = self.contingencies.lowest_over_terrain_m();
+        let terrain_m = self.supervisor.contingencies.lowest_over_terrain_m();
         let envelope_m = self.config.envelope.lowest_altitude_m();
         let lowest_m = [envelope_m, fence_m, terrain_m]
             .into_iter()
@@ -49,22 +49,23 @@ impl Autopilot {
     /// Raises the target altitude to the lowest one, and lowers it to the highest.
     pub(super) fn keep_above_floor(&mut self) {
         if self.runway().is_some() || self.is_on_runway() {
-            self.is_at_floor = false;
-            self.altitude.pull_out(0.0);
+            self.guidance.is_at_floor = false;
+            self.loops.altitude.pull_out(0.0);
             return;
         }
-        let (lowest_m, demanded_m) = (self.lowest_m(), self.targets.altitude_m);
-        self.targets.altitude_m = demanded_m.min(self.highest_m()).max(lowest_m);
-        self.is_at_floor = (self.targets.altitude_m - demanded_m).abs() > ROUNDING_M;
+        let (lowest_m, demanded_m) = (self.lowest_m(), self.guidance.targets.altitude_m);
+        self.guidance.targets.altitude_m = demanded_m.min(self.highest_m()).max(lowest_m);
+        self.guidance.is_at_floor =
+            (self.guidance.targets.altitude_m - demanded_m).abs() > ROUNDING_M;
         let pull_out_mps2 = self.pull_out_mps2(lowest_m);
-        self.altitude.pull_out(pull_out_mps2);
+        self.loops.altitude.pull_out(pull_out_mps2);
     }
 
     /// The vertical acceleration with which the present descent ends at an
     /// altitude (m), a = v²/2h, up to that of the largest load; 0 if it does not
     /// descend, m/s².
     fn pull_out_mps2(&self, lowest_m: f64) -> f64 {
-        let estimate = self.navigation.estimate();
+        let estimate = self.estimator.navigation.estimate();
         let sink_mps = (-estimate.climb_rate_mps).max(0.0);
         let height_m = estimate.altitude_m - lowest_m - REACTION_S * sink_mps;
         let most_mps2 = GRAVITY_MPS2 * (self.config.envelope.max_load_factor - 1.0);
@@ -80,12 +81,15 @@ impl Autopilot {
     /// The altitude for a failsafe to keep by pitch, m: that at its beginning, or
     /// as much above the lowest one as it is kept worse.
     pub(super) fn kept_altitude_m(&self) -> f64 {
-        self.degraded.altitude_m.max(self.lowest_m() + BY_PITCH_M)
+        self.supervisor
+            .degraded
+            .altitude_m
+            .max(self.lowest_m() + BY_PITCH_M)
     }
 
     /// The climb rate for a failsafe to hold, m/s: none, or that to the floor.
     pub(super) fn kept_climb_rate_mps(&self) -> f64 {
-        let low_m = self.lowest_m() - self.navigation.estimate().altitude_m;
+        let low_m = self.lowest_m() - self.estimator.navigation.estimate().altitude_m;
         (GAIN_PER_S * low_m).max(0.0)
     }
 }

@@ -14,14 +14,17 @@ impl Autopilot {
         if self.is_silent(now) {
             return self.silent_trims();
         }
-        if !self.renewed_since.is_never() {
+        if !self.intake.renewed_since.is_never() {
             // Some of the estimate is from before the loss.
-            return self.last;
+            return self.loops.last;
         }
-        let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
+        let (estimate, dt_s) = (
+            *self.estimator.navigation.estimate(),
+            self.intake.clock.step_s(),
+        );
         self.follow_outputs(&estimate);
         let (schedule, envelope) = (self.schedule(), self.envelope());
-        if self.accepted.body_rates.value != self.kept_trims.found_with {
+        if self.intake.accepted.body_rates.value != self.loops.kept_trims.found_with {
             self.keep_trims();
         }
         self.learn_straight_trims(&estimate, dt_s);
@@ -50,14 +53,14 @@ impl Autopilot {
         if let Some(outputs) = by_phase.or_else(|| self.control_in_glide(estimate, dt_s)) {
             return outputs;
         }
-        let to = self.targets;
+        let to = self.guidance.targets;
         let ordered_mps = self.flyable_airspeed_mps(to.airspeed_mps);
-        self.altitude.order_airspeed(ordered_mps);
+        self.loops.altitude.order_airspeed(ordered_mps);
         let lateral = self.step_lateral(estimate, envelope, schedule, dt_s);
-        let altitude = &mut self.altitude;
+        let altitude = &mut self.loops.altitude;
         let vertical = altitude.step(to.altitude_m, estimate, envelope, schedule, dt_s);
         let demand = self.throttle_demand(vertical.climb_rate_mps);
-        let throttle = self.airspeed.step(&demand, estimate, dt_s);
+        let throttle = self.loops.airspeed.step(&demand, estimate, dt_s);
         self.show(
             lateral.roll_rad,
             vertical.climb_rate_mps,
@@ -65,7 +68,7 @@ impl Autopilot {
         );
         Surfaces {
             throttle,
-            elevator: self.actuation.elevator(vertical.elevator),
+            elevator: self.loops.actuation.elevator(vertical.elevator),
             aileron: lateral.aileron,
             rudder: lateral.rudder,
             ..Surfaces::IDLE
@@ -74,16 +77,16 @@ impl Autopilot {
 
     /// The set points of this tick: the targets, and what the loops make of them.
     pub(super) fn show(&mut self, roll_rad: f64, climb_rate_mps: f64, pitch_rad: f64) {
-        self.setpoints = Setpoints {
-            airspeed_mps: self.targets.airspeed_mps,
-            heading_rad: wrap_two_pi(self.targets.heading_rad),
-            altitude_m: self.targets.altitude_m,
-            altitude_reference: self.reference,
-            altitude_above_reference_m: self.targets.altitude_m - self.datum_m(),
+        self.guidance.setpoints = Setpoints {
+            airspeed_mps: self.guidance.targets.airspeed_mps,
+            heading_rad: wrap_two_pi(self.guidance.targets.heading_rad),
+            altitude_m: self.guidance.targets.altitude_m,
+            altitude_reference: self.guidance.reference,
+            altitude_above_reference_m: self.guidance.targets.altitude_m - self.datum_m(),
             roll_rad,
             climb_rate_mps,
             pitch_rad,
-            ..self.setpoints
+            ..self.guidance.setpoints
         };
     }
 }

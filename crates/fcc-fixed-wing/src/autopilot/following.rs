@@ -145,11 +145,14 @@ impl Autopilot {
     /// measured controls, tick by tick: they do not integrate what has no
     /// effect.
     pub(super) fn take_over_unless_followed(&mut self, now: Time, max_age: Duration) {
-        let measured = self.accepted.surfaces.fresh(now, max_age);
-        let is_flown = self.guidance.mode() != Mode::None && !self.withholds(now);
+        let measured = self.intake.accepted.surfaces.fresh(now, max_age);
+        let is_flown = self.guidance.mode.mode() != Mode::None && !self.withholds(now);
         let measured = measured.filter(|_| is_flown);
-        let passed_s = self.clock.passed_s();
-        if self.following.step(measured, &self.last, passed_s)
+        let passed_s = self.intake.clock.passed_s();
+        if self
+            .supervisor
+            .following
+            .step(measured, &self.loops.last, passed_s)
             && let Some(controls) = measured
         {
             self.take_over(&controls);
@@ -158,7 +161,7 @@ impl Autopilot {
 
     /// Whether the outputs do not reach the aircraft.
     pub(super) const fn is_not_followed(&self) -> bool {
-        self.following.is_lost
+        self.supervisor.following.is_lost
     }
 }
 

@@ -11,16 +11,18 @@ use fcc_navigation::Estimate;
 impl Autopilot {
     /// The outputs of a glide above its final; none while another mode is flown.
     pub(super) fn control_in_glide(&mut self, estimate: &Estimate, dt_s: f64) -> Option<Surfaces> {
-        if self.guidance.mode() != Mode::Glide {
-            if core::mem::take(&mut self.glides) {
+        if self.guidance.mode.mode() != Mode::Glide {
+            if core::mem::take(&mut self.loops.glides) {
                 // Throttle and pitch were not the loops'.
-                let last = self.last;
+                let last = self.loops.last;
                 self.take_over(&last);
-                self.heading.lead_from(self.setpoints.roll_rad);
+                self.loops
+                    .heading
+                    .lead_from(self.guidance.setpoints.roll_rad);
             }
             return None;
         }
-        self.glides = true;
+        self.loops.glides = true;
         let (envelope, schedule) = (self.glide_envelope(), self.schedule());
         let lateral = self.step_lateral(estimate, &envelope, schedule, dt_s);
         let vertical = self.hold_glide(&envelope, estimate, dt_s);
@@ -35,8 +37,8 @@ impl Autopilot {
             -CLOSES_PER_S
         };
         Some(Surfaces {
-            throttle: (self.last.throttle + by * dt_s).clamp(0.0, 1.0),
-            elevator: self.actuation.elevator(vertical.elevator),
+            throttle: (self.loops.last.throttle + by * dt_s).clamp(0.0, 1.0),
+            elevator: self.loops.actuation.elevator(vertical.elevator),
             aileron: lateral.aileron,
             rudder: lateral.rudder,
             ..Surfaces::IDLE
@@ -51,9 +53,14 @@ impl Autopilot {
         estimate: &Estimate,
         dt_s: f64,
     ) -> PitchCommand {
-        let airspeed_mps = self.targets.airspeed_mps.max(envelope.floor_mps(estimate));
+        let airspeed_mps = self
+            .guidance
+            .targets
+            .airspeed_mps
+            .max(envelope.floor_mps(estimate));
         let schedule = self.schedule();
-        self.altitude
+        self.loops
+            .altitude
             .hold_airspeed(airspeed_mps, estimate, envelope, schedule, dt_s)
     }
 

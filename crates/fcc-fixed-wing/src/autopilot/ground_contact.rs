@@ -77,27 +77,30 @@ impl Autopilot {
     /// An aircraft that is on its wheels, and is not to be, climbs; that it has flown before is
     /// announced. Where nothing measures the weight on the wheels nothing is known of it.
     pub(super) fn watch_ground_contact(&mut self) {
-        let Some(on_wheels) = self.ground.on_wheels() else {
+        let Some(on_wheels) = self.estimator.ground.on_wheels() else {
             return;
         };
-        let is_clear = self.ground.here().and_then(|here| here.height_m);
+        let is_clear = self.estimator.ground.here().and_then(|here| here.height_m);
         let on_wheels_m = self.config.route.runway.height_on_wheels_m;
         let is_clear = is_clear.is_some_and(|height_m| height_m > on_wheels_m + CLEAR_M);
         if !on_wheels || is_clear {
-            self.told_once.has_flown = true;
-            self.told_once.touched.is_clear_for(self.clock.passed_s());
+            self.supervisor.told_once.has_flown = true;
+            self.supervisor
+                .told_once
+                .touched
+                .is_clear_for(self.intake.clock.passed_s());
             return;
         }
-        let is_expected = self.runway().is_some() || self.guidance.mode() == Mode::Glide;
+        let is_expected = self.runway().is_some() || self.guidance.mode.mode() == Mode::Glide;
         if !is_expected {
-            let altitude_m = self.navigation.estimate().altitude_m;
-            let off_ground_m = self.told_once.touched.off_ground_m(altitude_m);
-            self.targets.altitude_m = self.targets.altitude_m.max(off_ground_m);
-            if self.told_once.has_flown && self.told_once.touch.is_due() {
+            let altitude_m = self.estimator.navigation.estimate().altitude_m;
+            let off_ground_m = self.supervisor.told_once.touched.off_ground_m(altitude_m);
+            self.guidance.targets.altitude_m = self.guidance.targets.altitude_m.max(off_ground_m);
+            if self.supervisor.told_once.has_flown && self.supervisor.told_once.touch.is_due() {
                 self.journal.add(runway::notice(RunwayReason::Touched));
             }
         }
-        self.told_once.has_flown = false;
+        self.supervisor.told_once.has_flown = false;
     }
 }
 

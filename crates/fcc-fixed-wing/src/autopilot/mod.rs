@@ -19,7 +19,9 @@ mod gliding;
 mod ground_below;
 mod ground_contact;
 mod ground_motion;
+mod intake;
 mod journal;
+mod loops;
 mod notices;
 mod observe;
 mod other_control;
@@ -45,48 +47,32 @@ mod wrong_sensors;
 use core::fmt;
 use core::hint::black_box;
 
-use actuation::Actuation;
+use assembly::{Estimator, GuidanceState, Supervisor};
 use capture::Capture;
 pub use command::AutopilotCommand;
 pub use config::AutopilotConfig;
-use contingency::{Contingencies, Delayed, Engine};
 pub use contingency::{Contingency, ContingencyAction, ContingencyConfig};
 use degraded::Degraded;
-use failsafe::KeptTrims;
 pub use failsafe::{FailsafeConfig, FailsafeEnd};
-use following::Following;
-use ground_contact::ToldOnce;
-use ground_motion::GroundMotion;
+use intake::Intake;
 use journal::Journal;
-use pilot_takeover::PilotTakeover;
+use loops::Loops;
 pub use pilot_takeover::StickTakeover;
-use plant_clock::PlantClock;
-use reading_age::ReadingAges;
 pub use refusal::{COMMAND_ANSWER, why_refused};
-use release::Release;
 pub use replacing::PlanReplacement;
 pub use resume::Resume;
 pub use routing::ITEM_REACHED;
-use runway::RunwayControl;
 pub use runway::{gives_up_runway, touches_ground};
 pub use scale::Scale;
-use silence::StraightTrims;
-use whereabouts::Whereabouts;
 pub use whereabouts::can_be_reached;
 
 use crate::Setpoints;
-use crate::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop, Recovery};
+use crate::control::{ElevatorTrim, Recovery};
 use fcc_core::blocks::wrap_two_pi;
-use fcc_core::flight::{Altimeter, AltitudeReference, Measurements, Surfaces};
-use fcc_core::framework::{Controller, Flags, Notice, Reading, ReadingSet, Switch, Tick, Time};
-use fcc_guidance::path::BankCommand;
-use fcc_guidance::route::TookOff;
-use fcc_guidance::{ActiveMode, Mode, ModeInput, OverGroundMode, Targets};
-use fcc_navigation::inertial::RawNavigation;
-use fcc_navigation::{
-    AIRSPEED, ENGAGE_SWITCH, Estimate, FrozenDetector, Navigation, Quantities, Quantity,
-    Replacement, ReturningAltitude, plausibility_gate,
-};
+use fcc_core::flight::{Measurements, Surfaces};
+use fcc_core::framework::{Controller, Flags, Notice, Reading, ReadingSet, Switch, Tick};
+use fcc_guidance::{Mode, ModeInput};
+use fcc_navigation::{AIRSPEED, ENGAGE_SWITCH, Estimate, Quantities, Quantity, plausibility_gate};
 
 /// Navigation, guidance and control as one [`Controller`].
 ///
@@ -127,66 +113,12 @@ use fcc_navigation::{
 #[derive(Clone, Debug)]
 pub struct Autopilot {
     config: AutopilotConfig,
-    /// Navigation from raw readings, if it is flown by them.
-    raw: Option<RawNavigation>,
-    /// The last plausible measurements.
-    accepted: Measurements,
-    navigation: Navigation,
-    replacement: Replacement,
-    frozen: FrozenDetector,
-    guidance: ActiveMode,
-    /// Where it is over the ground, and the bank that a mode there commands.
-    ground: GroundMotion,
-    bank: BankCommand,
-    on_runway: RunwayControl,
-    /// The plan that was left for another mode.
-    left_plan: Option<OverGroundMode>,
-    took_off: Option<TookOff>,
-    told_once: ToldOnce,
-    contingencies: Contingencies,
-    /// Whether the battery is low, and the engine out.
-    battery: Delayed,
-    engine: Engine,
-    /// Whether the controls are those of a glide.
-    glides: bool,
+    intake: Intake,
+    estimator: Estimator,
+    supervisor: Supervisor,
+    guidance: GuidanceState,
+    loops: Loops,
     journal: Journal,
-    targets: Targets,
-    capture: Option<Capture>,
-    altimeter: Altimeter,
-    /// What the target altitude refers to.
-    reference: AltitudeReference,
-    heading: HeadingLoop,
-    altitude: AltitudeLoop,
-    airspeed: AirspeedLoop,
-    actuation: Actuation,
-    recovery: Recovery,
-    trim: ElevatorTrim,
-    pilot: PilotTakeover,
-    /// A release that is being prepared.
-    release: Option<Release>,
-    setpoints: Setpoints,
-    clock: PlantClock,
-    ages: ReadingAges,
-    whereabouts: Whereabouts,
-    /// The previous tick.
-    before: Time,
-    /// For how long of the plant's time all that control needs has been good, s;
-    /// none while it is not.
-    settled_s: Option<f64>,
-    /// When a plant that was not heard returned, until all that control needs
-    /// has been measured since.
-    renewed_since: Time,
-    /// The last outputs.
-    last: Surfaces,
-    kept_trims: KeptTrims,
-    straight: StraightTrims,
-    degraded: Degraded,
-    following: Following,
-    /// The quantities that were rejected as implausible in this failsafe.
-    distrusted: Quantities,
-    returning_altitude: ReturningAltitude,
-    /// Whether the target altitude is limited by the floor.
-    is_at_floor: bool,
 }
 
 impl Controller for Autopilot {
@@ -198,7 +130,7 @@ impl Controller for Autopilot {
 
     fn estimate(&mut self, tick: &Tick, measurements: &Measurements) {
         self.journal.begin();
-        match &mut self.raw {
+        match &mut self.estimator.raw {
             Some(raw) => {
                 let found = *raw.step(tick.woke, measurements);
                 self.observe(tick, &found);
@@ -218,17 +150,20 @@ impl Controller for Autopilot {
     }
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        let of_parts = self.actuation.conditions() | self.doubted() | self.trim_conditions();
+        let of_parts = self.loops.actuation.conditions() | self.doubted() | self.trim_conditions();
         let unused = self.unused_sensors(measurements) | self.route_conditions();
         (self.external(tick.woke, self.seen(measurements)) | of_parts | unused)
-            .with(flags::RECOVERING, self.recovery.is_active())
+            .with(flags::RECOVERING, self.loops.recovery.is_active())
             .with(
                 flags::UNDERSPEED,
-                self.altitude.gives_up_height() && self.runway().is_none(),
+                self.loops.altitude.gives_up_height() && self.runway().is_none(),
             )
-            .with(flags::STALLS_FASTER, self.recovery.found_stall_mps() > 0.0)
-            .with(flags::AT_FLOOR, self.is_at_floor)
-            .with(flags::RELEASING, self.release.is_some())
+            .with(
+                flags::STALLS_FASTER,
+                self.loops.recovery.found_stall_mps() > 0.0,
+            )
+            .with(flags::AT_FLOOR, self.guidance.is_at_floor)
+            .with(flags::RELEASING, self.supervisor.release.is_some())
     }
 
     fn failsafe_goes_on(&self) -> bool {
@@ -252,7 +187,7 @@ impl Controller for Autopilot {
     }
 
     fn is_taken_over(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {
-        Flags::NONE.with(flags::PILOT_TAKES_OVER, self.pilot.is_moved())
+        Flags::NONE.with(flags::PILOT_TAKES_OVER, self.supervisor.pilot.is_moved())
     }
 
     fn prepare_release(&mut self, tick: &Tick, measurements: &Measurements) -> bool {
@@ -290,7 +225,7 @@ impl Controller for Autopilot {
 
     /// The mode of guidance.
     fn mode(&self) -> u8 {
-        self.guidance.mode() as u8
+        self.guidance.mode.mode() as u8
     }
 
     fn mode_name(mode: u8) -> &'static str {
@@ -316,20 +251,21 @@ impl Controller for Autopilot {
 
     fn control(&mut self, tick: &Tick, _measurements: &Measurements) -> Surfaces {
         let outputs = self.fly(tick.woke);
-        self.last = self.with_gear(outputs);
-        self.last
+        self.loops.last = self.with_gear(outputs);
+        self.loops.last
     }
 
     fn failsafe(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
         let seen = *self.seen(measurements);
         self.prepare_end_of_failsafe(tick.woke, &seen);
         let lost = self.lost(tick.woke, &seen);
-        let estimate = *self.navigation.estimate();
+        let estimate = *self.estimator.navigation.estimate();
         if !lost.intersects(Quantity::BodyRates | Quantity::Attitude) {
             self.follow_outputs(&estimate);
         } else if !lost.contains(Quantity::Attitude) {
-            self.actuation
-                .watch(&self.last, &estimate, self.clock.step_s());
+            self.loops
+                .actuation
+                .watch(&self.loops.last, &estimate, self.intake.clock.step_s());
         }
         let held = self.safest(tick.woke, &seen);
         let stops = self.stop_on_wheels(lost);
@@ -337,23 +273,23 @@ impl Controller for Autopilot {
             gear: self.gear_in_failsafe(stops.is_some()),
             ..stops.unwrap_or(held)
         };
-        self.last = self.with_trim(tick.woke, outputs, lost);
-        self.last
+        self.loops.last = self.with_trim(tick.woke, outputs, lost);
+        self.loops.last
     }
 
     fn disengage(&mut self) {
-        self.distrusted = Quantities::NONE;
-        self.degraded = Degraded::default();
-        self.pilot.set_engaged(false);
+        self.intake.distrusted = Quantities::NONE;
+        self.supervisor.degraded = Degraded::default();
+        self.supervisor.pilot.set_engaged(false);
         self.change_mode(ModeInput::Disengage);
-        self.left_plan = None;
-        self.contingencies.reset();
-        self.is_at_floor = false;
-        self.capture = None;
-        self.recovery = Recovery::new();
-        self.release = None;
-        self.trim = ElevatorTrim::new(None);
-        self.setpoints = Setpoints::default();
+        self.supervisor.left_plan = None;
+        self.supervisor.contingencies.reset();
+        self.guidance.is_at_floor = false;
+        self.guidance.capture = None;
+        self.loops.recovery = Recovery::new();
+        self.supervisor.release = None;
+        self.loops.trim = ElevatorTrim::new(None);
+        self.guidance.setpoints = Setpoints::default();
     }
 
     fn command(&mut self, command: &AutopilotCommand) {
@@ -361,21 +297,24 @@ impl Controller for Autopilot {
     }
 
     fn estimated(&self) -> Estimate {
-        let estimate = self.ages.shown_in(self.navigation.estimate());
-        let estimate = self.ground.shown_in(&estimate);
+        let estimate = self
+            .intake
+            .ages
+            .shown_in(self.estimator.navigation.estimate());
+        let estimate = self.estimator.ground.shown_in(&estimate);
         Estimate {
             heading_rad: wrap_two_pi(estimate.heading_rad),
-            ..self.actuation.shown_in(&estimate)
+            ..self.loops.actuation.shown_in(&estimate)
         }
     }
 
     fn setpoints(&self) -> Setpoints {
-        let mut guidance = self.guidance.progress();
+        let mut guidance = self.guidance.mode.progress();
         guidance.captured.heading_rad = wrap_two_pi(guidance.captured.heading_rad);
         Setpoints {
             guidance,
-            altimeter_setting_pa: self.altimeter.setting_pa,
-            ..self.with_track(self.setpoints)
+            altimeter_setting_pa: self.guidance.altimeter.setting_pa,
+            ..self.with_track(self.guidance.setpoints)
         }
     }
 
@@ -384,19 +323,19 @@ impl Controller for Autopilot {
     }
 
     fn observe_sensor(&mut self, sensor: u8, measurements: &Measurements) {
-        if let Some(raw) = &mut self.raw {
+        if let Some(raw) = &mut self.estimator.raw {
             raw.observe_sensor(sensor, measurements);
         }
     }
 
     fn plausible(&self, sensor: u8, measurements: &Measurements) -> ReadingSet {
         let plausible = plausibility_gate(
-            &mut self.accepted.clone(),
+            &mut self.intake.accepted.clone(),
             measurements,
             &self.gate_limits(),
         );
         let plausible = plausible.keeping(AIRSPEED, self.permits_airspeed(measurements));
-        match &self.raw {
+        match &self.estimator.raw {
             Some(raw) => raw.permitted(sensor, plausible),
             None => plausible,
         }

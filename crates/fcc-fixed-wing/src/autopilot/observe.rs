@@ -26,12 +26,12 @@ impl Autopilot {
 
     fn observe_present(&mut self, tick: &Tick, measured: &Measurements) {
         let now = tick.woke;
-        self.clock.step(tick, measured);
+        self.intake.clock.step(tick, measured);
         self.report_clock_and_sensors();
-        if self.clock.waiting() == Waiting::Replaying {
+        if self.intake.clock.waiting() == Waiting::Replaying {
             // What is measured is not the aircraft's state.
-            self.whereabouts.skip(now);
-            self.before = now;
+            self.intake.whereabouts.skip(now);
+            self.intake.before = now;
             return;
         }
         self.follow(measured);
@@ -41,85 +41,108 @@ impl Autopilot {
         } else {
             self.start_anew(measured);
         }
-        if self.clock.waiting() == Waiting::Stopped && self.whereabouts.is_left(&self.accepted) {
-            self.clock.ignore(tick);
+        if self.intake.clock.waiting() == Waiting::Stopped
+            && self.intake.whereabouts.is_left(&self.intake.accepted)
+        {
+            self.intake.clock.ignore(tick);
         }
-        if self.clock.advances(now) {
-            self.whereabouts.keep(&self.accepted);
+        if self.intake.clock.advances(now) {
+            self.intake.whereabouts.keep(&self.intake.accepted);
         }
         self.follow_ages(now, measured);
-        let step_s = self.clock.step_s();
+        let step_s = self.intake.clock.step_s();
         self.note_throttle(now);
         self.follow_intermittent(step_s);
-        let doubted = self.navigation.airspeed_doubt();
+        let doubted = self.estimator.navigation.airspeed_doubt();
         self.navigate(now, measured, step_s);
         self.follow_ground(now, step_s);
         self.follow_battery(now, step_s);
         self.follow_engine(now, step_s);
         self.note_doubt(doubted);
-        let known = self.navigation.known();
-        self.frozen.step(&self.accepted, &known, step_s);
+        let known = self.estimator.navigation.known();
+        self.estimator
+            .frozen
+            .step(&self.intake.accepted, &known, step_s);
         self.take_over_after_loss(now);
         self.take_over_unless_followed(now, self.config.max_age);
         self.follow_failsafe(tick, measured);
         // After an outage everything settles anew before it may engage.
         let unusable = self.silent_or_frozen(now);
-        let settled_s = self.settled_s.map_or(0.0, |settled_s| settled_s + step_s);
-        self.settled_s = unusable.is_empty().then_some(settled_s);
-        self.before = now;
+        let settled_s = self
+            .intake
+            .settled_s
+            .map_or(0.0, |settled_s| settled_s + step_s);
+        self.intake.settled_s = unusable.is_empty().then_some(settled_s);
+        self.intake.before = now;
     }
 
     /// Estimates the aircraft's state, in failsafe without what is lost.
     fn navigate(&mut self, now: Time, measured: &Measurements, step_s: f64) {
         let silent = self.silent_or_frozen(now);
-        let sigma_rad = self.raw.as_ref().map_or(0.0, RawNavigation::tilt_sigma_rad);
-        let doubt = self.navigation.motion_doubt();
-        self.navigation
-            .compare_motion(now, &self.accepted, silent, sigma_rad, step_s);
-        if doubt != self.navigation.motion_doubt() {
-            self.replacement.forget_offsets();
+        let sigma_rad = self
+            .estimator
+            .raw
+            .as_ref()
+            .map_or(0.0, RawNavigation::tilt_sigma_rad);
+        let doubt = self.estimator.navigation.motion_doubt();
+        self.estimator.navigation.compare_motion(
+            now,
+            &self.intake.accepted,
+            silent,
+            sigma_rad,
+            step_s,
+        );
+        if doubt != self.estimator.navigation.motion_doubt() {
+            self.estimator.replacement.forget_offsets();
         }
         let lost = self.lost(now, measured);
-        self.navigation.knows_motion(self.known_motion(now, lost));
-        let replaces = self.degraded.is_failsafe
+        self.estimator
+            .navigation
+            .knows_motion(self.known_motion(now, lost));
+        let replaces = self.supervisor.degraded.is_failsafe
             && lost.contains(Quantity::BodyRates)
             && !lost.contains(Quantity::Attitude);
-        self.actuation.derives_rates(replaces);
-        let estimate = *self.navigation.estimate();
-        self.replacement
-            .follow(&self.accepted, lost, &estimate, step_s);
-        if self.degraded.is_failsafe && !lost.is_empty() {
-            let mut left = self
-                .replacement
-                .without(&self.accepted, lost, &estimate, now);
+        self.loops.actuation.derives_rates(replaces);
+        let estimate = *self.estimator.navigation.estimate();
+        self.estimator
+            .replacement
+            .follow(&self.intake.accepted, lost, &estimate, step_s);
+        if self.supervisor.degraded.is_failsafe && !lost.is_empty() {
+            let mut left =
+                self.estimator
+                    .replacement
+                    .without(&self.intake.accepted, lost, &estimate, now);
             // Navigation leaves doubted ones out by itself, and sees that they
             // agree again.
-            if self.navigation.airspeed_doubt().is_some() {
-                left.airspeed_mps = self.accepted.airspeed_mps;
+            if self.estimator.navigation.airspeed_doubt().is_some() {
+                left.airspeed_mps = self.intake.accepted.airspeed_mps;
             }
-            if self.navigation.altitude_doubt().is_some() {
-                left.altitude_m = self.accepted.altitude_m;
+            if self.estimator.navigation.altitude_doubt().is_some() {
+                left.altitude_m = self.intake.accepted.altitude_m;
             }
-            self.navigation.step(now, &left, step_s);
+            self.estimator.navigation.step(now, &left, step_s);
         } else {
-            self.navigation.step(now, &self.accepted, step_s);
+            self.estimator
+                .navigation
+                .step(now, &self.intake.accepted, step_s);
         }
     }
 
     /// Follows where the aircraft is.
     fn follow(&mut self, measured: &Measurements) {
         if self.plant_is(PlantState::Jumped) || self.plant_is(PlantState::Reloaded) {
-            self.whereabouts = Whereabouts::default();
-        } else if self.clock.state().is_some() {
-            let was_long = self.clock.gap().is_some_and(|gap| gap.was_long);
+            self.intake.whereabouts = Whereabouts::default();
+        } else if self.intake.clock.state().is_some() {
+            let was_long = self.intake.clock.gap().is_some_and(|gap| gap.was_long);
             // A place that stands still says nothing, and the next one is far away.
-            let by_receiver = self.raw.is_some() && !measured.gnss.is_never()
+            let by_receiver = self.estimator.raw.is_some() && !measured.gnss.is_never()
                 || matches!(
-                    self.ground.place_doubt(),
+                    self.estimator.ground.place_doubt(),
                     Some(PlaceDoubt::Repeats | PlaceDoubt::Moves)
                 );
-            let passed_s = self.clock.passed_s();
-            self.whereabouts
+            let passed_s = self.intake.clock.passed_s();
+            self.intake
+                .whereabouts
                 .step(measured, passed_s, was_long, by_receiver);
         }
     }
@@ -131,27 +154,28 @@ impl Autopilot {
             self.forget_attitude();
         }
         self.move_distrusted(tick.woke, measured);
-        let Some(gap) = self.clock.gap() else {
+        let Some(gap) = self.intake.clock.gap() else {
             self.pass_gate(measured);
             return;
         };
         // What arrives in this tick is later than all before.
-        let latest = self.before;
-        self.navigation.postpone(gap.excused, latest);
+        let latest = self.intake.before;
+        self.estimator.navigation.postpone(gap.excused, latest);
         if gap.settles_anew {
             // Nothing that was measured before says where the aircraft is now,
             // but how fast it can be.
-            let airspeed = self.accepted.airspeed_mps;
-            self.accepted = Measurements::default();
-            let distrusted = core::mem::take(&mut self.distrusted);
+            let airspeed = self.intake.accepted.airspeed_mps;
+            self.intake.accepted = Measurements::default();
+            let distrusted = core::mem::take(&mut self.intake.distrusted);
             self.pass_gate(measured);
-            let passed_s = self.clock.passed_s();
-            if !airspeed_can_follow(&airspeed, &self.accepted.airspeed_mps, passed_s) {
-                self.accepted.airspeed_mps = airspeed;
-                self.distrusted = distrusted & Quantity::Airspeed.alone();
+            let passed_s = self.intake.clock.passed_s();
+            if !airspeed_can_follow(&airspeed, &self.intake.accepted.airspeed_mps, passed_s) {
+                self.intake.accepted.airspeed_mps = airspeed;
+                self.intake.distrusted = distrusted & Quantity::Airspeed.alone();
             }
         }
-        self.accepted
+        self.intake
+            .accepted
             .each_time(&mut |taken| *taken = taken.postponed(gap.excused, latest));
         if gap.settles_anew {
             self.settle_anew(tick);
@@ -159,71 +183,77 @@ impl Autopilot {
             self.pass_gate(measured);
         }
         if gap.ran_on {
-            self.heading.lead_from(self.setpoints.roll_rad);
+            self.loops
+                .heading
+                .lead_from(self.guidance.setpoints.roll_rad);
         }
     }
 
     /// The attitude so far came from gyroscopes that were wrong: the next one is no jump
     /// from it.
     fn forget_attitude(&mut self) {
-        self.accepted.attitude = Reading::default();
-        self.accepted.heading_rad = Reading::default();
-        self.replacement.forget_angles();
-        self.navigation.adopt_next_attitude();
+        self.intake.accepted.attitude = Reading::default();
+        self.intake.accepted.heading_rad = Reading::default();
+        self.estimator.replacement.forget_angles();
+        self.estimator.navigation.adopt_next_attitude();
         let by_gyroscopes = Quantity::Attitude | Quantity::Heading;
-        self.distrusted = self.distrusted & !by_gyroscopes;
+        self.intake.distrusted = self.intake.distrusted & !by_gyroscopes;
     }
 
     /// Accepts the plausible ones of a tick's measurements.
     fn pass_gate(&mut self, measured: &Measurements) {
         let limits = self.gate_limits();
-        plausibility_gate(&mut self.accepted, measured, &limits);
+        plausibility_gate(&mut self.intake.accepted, measured, &limits);
     }
 
     /// By what measurements are judged at present.
     pub(super) const fn gate_limits(&self) -> GateLimits {
         GateLimits {
             max_age: self.config.max_age,
-            distrusted: self.distrusted,
-            altitude_step_m: self.navigation.resolutions().altitude_step_m,
+            distrusted: self.intake.distrusted,
+            altitude_step_m: self.estimator.navigation.resolutions().altitude_step_m,
         }
     }
 
     /// Restarts what was estimated, after the aircraft flew on unheard. Targets
     /// and guidance are kept.
     fn settle_anew(&mut self, tick: &Tick) {
-        self.navigation.resume(self.clock.passed_s());
-        self.frozen = FrozenDetector::new(self.config.frozen_after.as_secs_f64());
-        self.settled_s = None;
-        self.renewed_since = tick.woke;
+        self.estimator
+            .navigation
+            .resume(self.intake.clock.passed_s());
+        self.estimator.frozen = FrozenDetector::new(self.config.frozen_after.as_secs_f64());
+        self.intake.settled_s = None;
+        self.intake.renewed_since = tick.woke;
     }
 
     /// Starts the loops anew, tick by tick, until all that control needs has been
     /// measured anew: it may arrive in several datagrams.
     fn take_over_after_loss(&mut self, now: Time) {
-        if self.renewed_since.is_never() {
+        if self.intake.renewed_since.is_never() {
             return;
         }
         self.rejoin();
-        self.heading.lead_from(self.setpoints.roll_rad);
+        self.loops
+            .heading
+            .lead_from(self.guidance.setpoints.roll_rad);
         let renewed = Quantity::ALL
             .into_iter()
-            .all(|quantity| quantity.taken(&self.accepted) >= self.renewed_since);
+            .all(|quantity| quantity.taken(&self.intake.accepted) >= self.intake.renewed_since);
         // What has not arrived by then is lost.
-        if renewed || now.since(self.renewed_since) > self.config.max_age {
-            self.renewed_since = Time::NEVER;
+        if renewed || now.since(self.intake.renewed_since) > self.config.max_age {
+            self.intake.renewed_since = Time::NEVER;
         }
     }
 
     /// Starts anew with a plant that is another, or elsewhere.
     fn start_anew(&mut self, measured: &Measurements) {
-        self.accepted = Measurements::default();
-        self.distrusted = Quantities::NONE;
+        self.intake.accepted = Measurements::default();
+        self.intake.distrusted = Quantities::NONE;
         self.pass_gate(measured);
-        self.ground.forget_place();
-        self.navigation.reset(&self.config.navigation);
-        self.frozen = FrozenDetector::new(self.config.frozen_after.as_secs_f64());
-        self.settled_s = None;
-        self.renewed_since = Time::NEVER;
+        self.estimator.ground.forget_place();
+        self.estimator.navigation.reset(&self.config.navigation);
+        self.estimator.frozen = FrozenDetector::new(self.config.frozen_after.as_secs_f64());
+        self.intake.settled_s = None;
+        self.intake.renewed_since = Time::NEVER;
     }
 }

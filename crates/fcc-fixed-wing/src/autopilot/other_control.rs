@@ -30,10 +30,11 @@ impl Autopilot {
             .with(flags::PLANT_FAST, self.plant_is(PlantState::Fast))
             .with(
                 flags::SUSPECT_AIRSPEED,
-                airspeed_is_suspect(measurements) && self.navigation.airspeed_doubt().is_none(),
+                airspeed_is_suspect(measurements)
+                    && self.estimator.navigation.airspeed_doubt().is_none(),
             )
-            .with(flags::PLANT_STALLED, self.clock.has_stopped())
-            .with(flags::SOURCE_CLOCK, !self.ages.late().is_empty())
+            .with(flags::PLANT_STALLED, self.intake.clock.has_stopped())
+            .with(flags::SOURCE_CLOCK, !self.intake.ages.late().is_empty())
             .with(flags::NOT_FOLLOWED, self.is_not_followed())
             .with(flags::DEGRADED, self.is_degraded())
             .with(

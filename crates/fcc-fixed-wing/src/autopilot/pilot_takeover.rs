@@ -190,7 +190,10 @@ impl Autopilot {
     /// Follows the pilot's controls.
     pub(super) fn follow_pilot(&mut self, now: Time, measured: &Measurements) {
         let max_age = self.config.max_age;
-        let event = self.pilot.step(&measured.pilot_controls, now, max_age);
+        let event = self
+            .supervisor
+            .pilot
+            .step(&measured.pilot_controls, now, max_age);
         if let Some(event) = event {
             self.journal.add(event);
         }

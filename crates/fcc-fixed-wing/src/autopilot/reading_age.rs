@@ -103,9 +103,9 @@ pub(super) fn newest(measured: &Measurements) -> Time {
 impl Autopilot {
     /// Follows the ages of a tick's readings.
     pub(super) fn follow_ages(&mut self, now: Time, measured: &Measurements) {
-        let judged = self.clock.judged();
+        let judged = self.intake.clock.judged();
         let flyable = FLYABLE.div_f64(self.config.pace.clamp(0.1, 1.0));
-        let (max_age, dt_s) = (self.config.max_age.min(flyable), self.clock.step_s());
-        self.ages.step(now, judged, measured, max_age, dt_s);
+        let (max_age, dt_s) = (self.config.max_age.min(flyable), self.intake.clock.step_s());
+        self.intake.ages.step(now, judged, measured, max_age, dt_s);
     }
 }

@@ -155,7 +155,7 @@ impl Autopilot {
                 return Err(Refusal::OnWheels);
             }
             if demand.height_m < COMMANDED_M {
-                self.guidance.go_around(RunwayReason::Commanded);
+                self.guidance.mode.go_around(RunwayReason::Commanded);
                 return Err(Refusal::LowOverRunway);
             }
         }
@@ -169,17 +169,22 @@ impl Autopilot {
                 plan.step(index).map(drop).ok_or(Refusal::NoItem)
             }
             AutopilotCommand::Pause | AutopilotCommand::ReturnHome => {
-                let here = self.ground.here();
+                let here = self.estimator.ground.here();
                 here.map(drop).ok_or(Refusal::NowhereKnown)
             }
             AutopilotCommand::GoTo(place) => {
-                let here = self.ground.here().ok_or(Refusal::NowhereKnown)?.plane();
+                let here = self
+                    .estimator
+                    .ground
+                    .here()
+                    .ok_or(Refusal::NowhereKnown)?
+                    .plane();
                 let way_m = here.position_m(place.latitude_rad, place.longitude_rad);
                 let is_near = hypot(way_m.x, way_m.y) <= LONGEST_LEG_M;
                 is_near.then_some(()).ok_or(Refusal::TooFar)
             }
             AutopilotCommand::Land => {
-                self.ground.here().ok_or(Refusal::NowhereKnown)?;
+                self.estimator.ground.here().ok_or(Refusal::NowhereKnown)?;
                 self.has_landing().then_some(()).ok_or(Refusal::NoLanding)
             }
             _ => Ok(()),
@@ -200,7 +205,7 @@ impl Autopilot {
         if runway.as_ref().is_some_and(moves) {
             return Err(Refusal::NotBeforeItIsHigher);
         }
-        let here = self.ground.here();
+        let here = self.estimator.ground.here();
         let Some((off_m, altitude_m)) = here.and_then(|here| {
             let off_m = here.above_receiver_m?;
             Some((off_m, here.altitude_m - off_m))
@@ -210,8 +215,8 @@ impl Autopilot {
         // Cold air makes the altimeter show more by a share of the height above the place whose
         // setting it has.
         let height_m = runway.map_or(altitude_m, |demand| demand.height_m - off_m);
-        let lower_m =
-            pressure_altitude_m(setting_pa) - pressure_altitude_m(self.altimeter.setting_pa);
+        let lower_m = pressure_altitude_m(setting_pa)
+            - pressure_altitude_m(self.guidance.altimeter.setting_pa);
         let would_be_m = fabs(off_m - lower_m);
         let allowed_m = (AIR_SHARE * height_m).max(0.0) + ALTIMETER_OFF_M;
         let is_worse = would_be_m - fabs(off_m) > ALTIMETER_OFF_M;

@@ -49,18 +49,18 @@ impl Autopilot {
         now: Time,
         measured: &Measurements,
     ) -> bool {
-        let estimate = self.navigation.estimate();
+        let estimate = self.estimator.navigation.estimate();
         let unsafe_now = self.unsafe_to_fly(now, measured) | self.not_flyable(now, measured);
         let is_flyable = !unsafe_now.intersects(flags::NOT_SENSED)
             && held_without(self.lost(now, measured)).vertical != Vertical::Trim
             && !is_far_from_level(estimate)
-            && !self.recovery.is_active()
+            && !self.loops.recovery.is_active()
             && !self.is_silent(now)
             && !self.withholds(now);
         if !is_flyable || self.config.level_and_trim.is_zero() {
             return false;
         }
-        self.release = Some(Release {
+        self.supervisor.release = Some(Release {
             in_failsafe,
             airspeed_mps: self.config.envelope.allowed_airspeed(estimate.airspeed_mps),
             throttle: LowPass::new(THROTTLE_MEAN_S),
@@ -73,25 +73,29 @@ impl Autopilot {
 
     /// Ends what began in a failsafe that is over.
     pub(super) fn end_release_of_failsafe(&mut self) {
-        self.release.take_if(|release| release.in_failsafe);
+        self.supervisor
+            .release
+            .take_if(|release| release.in_failsafe);
     }
 
     /// Trims in the last seconds of a failsafe, when nothing is held any longer:
     /// not in its first tick, before what can be held is known.
     pub(super) fn prepare_end_of_failsafe(&mut self, now: Time, measured: &Measurements) {
-        if !self.degraded.is_failsafe {
+        if !self.supervisor.degraded.is_failsafe {
             return;
         }
-        if self.degraded.is_sound() {
+        if self.supervisor.degraded.is_sound() {
             self.end_release_of_failsafe();
-        } else if self.release.is_none() && self.config.failsafe.end == FailsafeEnd::Release {
+        } else if self.supervisor.release.is_none()
+            && self.config.failsafe.end == FailsafeEnd::Release
+        {
             self.begin_to_release(true, now, measured);
         }
     }
 
     /// Whether the aircraft is trimmed, or the time for it is over.
     pub(super) fn is_trimmed_for_release(&self) -> bool {
-        self.release.as_ref().is_none_or(|release| {
+        self.supervisor.release.as_ref().is_none_or(|release| {
             release.settled_s >= SETTLED_S
                 || release.lasted_s >= self.config.level_and_trim.as_secs_f64()
         })
@@ -100,24 +104,24 @@ impl Autopilot {
     /// Wings level, no climb, and the airspeed of its beginning, if a release is
     /// being prepared.
     pub(super) fn fly_to_release(&mut self, estimate: &Estimate, dt_s: f64) -> Option<Surfaces> {
-        let airspeed_mps = self.release.as_ref()?.airspeed_mps;
+        let airspeed_mps = self.supervisor.release.as_ref()?.airspeed_mps;
         let (schedule, envelope) = (self.schedule(), self.envelope());
-        let lateral = self.heading.hold_bank(0.0, estimate, schedule, dt_s);
-        let altitude = &mut self.altitude;
+        let lateral = self.loops.heading.hold_bank(0.0, estimate, schedule, dt_s);
+        let altitude = &mut self.loops.altitude;
         let vertical = altitude.hold_climb_rate(0.0, estimate, &envelope, schedule, dt_s);
         let mut demand = self.throttle_demand(vertical.climb_rate_mps);
         demand.airspeed_mps = self.envelope().least_target_mps(estimate).max(airspeed_mps);
-        let throttle = self.airspeed.step(&demand, estimate, dt_s);
-        self.setpoints = Setpoints {
+        let throttle = self.loops.airspeed.step(&demand, estimate, dt_s);
+        self.guidance.setpoints = Setpoints {
             airspeed_mps: demand.airspeed_mps,
             roll_rad: lateral.roll_rad,
             climb_rate_mps: vertical.climb_rate_mps,
             pitch_rad: vertical.pitch_rad,
-            ..self.setpoints
+            ..self.guidance.setpoints
         };
         Some(Surfaces {
             throttle,
-            elevator: self.actuation.elevator(vertical.elevator),
+            elevator: self.loops.actuation.elevator(vertical.elevator),
             aileron: lateral.aileron,
             rudder: lateral.rudder,
             ..Surfaces::IDLE
@@ -127,27 +131,36 @@ impl Autopilot {
     /// The outputs with the trim, after one step of it: quick before a release,
     /// slow in steady flight, none where the climb rate is not held.
     pub(super) fn with_trim(&mut self, now: Time, outputs: Surfaces, lost: Quantities) -> Surfaces {
-        let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
+        let (estimate, dt_s) = (
+            *self.estimator.navigation.estimate(),
+            self.intake.clock.step_s(),
+        );
         let is_known = held_without(lost).vertical == Vertical::Level;
-        let trimming = if !is_known || self.recovery.is_active() {
+        let trimming = if !is_known || self.loops.recovery.is_active() {
             Trimming::Held
-        } else if self.release.is_some() {
+        } else if self.supervisor.release.is_some() {
             Trimming::Quick
         } else if self.is_steady(&estimate) {
             Trimming::Steady
         } else {
             Trimming::Held
         };
-        let controls = self.accepted.surfaces.fresh(now, self.config.max_age);
+        let controls = self
+            .intake
+            .accepted
+            .surfaces
+            .fresh(now, self.config.max_age);
         let measured = controls.and_then(|controls| controls.elevator_trim);
-        self.trim.step(outputs.elevator, measured, trimming, dt_s);
+        self.loops
+            .trim
+            .step(outputs.elevator, measured, trimming, dt_s);
         let mut outputs = Surfaces {
-            elevator_trim: self.trim.position(),
+            elevator_trim: self.loops.trim.position(),
             ..outputs
         };
-        let (held, is_trimmable) = (self.trim.held(), self.trim.position().is_some());
+        let (held, is_trimmable) = (self.loops.trim.held(), self.loops.trim.position().is_some());
         let limit_s = self.config.level_and_trim.as_secs_f64();
-        if let Some(release) = &mut self.release {
+        if let Some(release) = &mut self.supervisor.release {
             let (bank, climb, acceleration, elevator) = SETTLED;
             let mean_mps2 = release.acceleration.step(estimate.acceleration_mps2, dt_s);
             let is_settled = estimate.roll_rad.abs() < bank
@@ -171,16 +184,17 @@ impl Autopilot {
 
     /// What is reported of the trim.
     pub(super) fn trim_conditions(&self) -> Flags {
-        let is_lost = self.trim.does_not_follow();
-        Flags::NONE
-            .with(flags::TRIM_NOT_FOLLOWED, is_lost)
-            .with(flags::UNTRIMMED, is_lost && self.release.is_some())
+        let is_lost = self.loops.trim.does_not_follow();
+        Flags::NONE.with(flags::TRIM_NOT_FOLLOWED, is_lost).with(
+            flags::UNTRIMMED,
+            is_lost && self.supervisor.release.is_some(),
+        )
     }
 
     fn is_steady(&self, estimate: &Estimate) -> bool {
         let (bank, pitch_rate, airspeed) = STEADY;
         estimate.roll_rad.abs() < bank
             && estimate.body_rates.pitch_radps.abs() < pitch_rate
-            && (estimate.airspeed_mps - self.targets.airspeed_mps).abs() < airspeed
+            && (estimate.airspeed_mps - self.guidance.targets.airspeed_mps).abs() < airspeed
     }
 }

@@ -34,12 +34,12 @@ impl Autopilot {
     pub(super) fn replace_plan(&mut self, replacement: &PlanReplacement) {
         let answer = match self.replaced_by(replacement) {
             Ok(route) => {
-                self.contingencies.end();
+                self.supervisor.contingencies.end();
                 self.config.plan = Some(route);
                 let index = usize::from(replacement.item.saturating_sub(1));
                 self.begin_plan(&route, index);
                 // Nothing leads back to the plan before.
-                self.left_plan = None;
+                self.supervisor.left_plan = None;
                 0
             }
             Err(refusal) => refusal as u16,
@@ -48,7 +48,7 @@ impl Autopilot {
     }
 
     fn replaced_by(&self, replacement: &PlanReplacement) -> Result<Route<'static>, Refusal> {
-        if self.guidance.mode() == Mode::None {
+        if self.guidance.mode.mode() == Mode::None {
             return Err(Refusal::NotEngaged);
         }
         let config = &self.config;
@@ -58,7 +58,7 @@ impl Autopilot {
         route.step(index).ok_or(Refusal::NoSuchItem)?;
         // After a restart the mode that is resumed says what is flown.
         if replacement.item > 0 {
-            self.ground.here().ok_or(Refusal::NoPosition)?;
+            self.estimator.ground.here().ok_or(Refusal::NoPosition)?;
             self.may_leave_runway()?;
         }
         Ok(Route {

@@ -59,10 +59,16 @@ impl Autopilot {
             return;
         }
         let input = ModeInput::Resume(progress.mode);
-        if self.guidance.mode().after(input, config.mode()).is_none() {
+        if self
+            .guidance
+            .mode
+            .mode()
+            .after(input, config.mode())
+            .is_none()
+        {
             return;
         }
-        self.took_off = resume.took_off.known().or(self.took_off);
+        self.supervisor.took_off = resume.took_off.known().or(self.supervisor.took_off);
         if self.resume_over_ground(progress.mode, progress.item) {
             self.resume_altimeter(resume);
             self.take_over(&resume.surfaces);
@@ -71,29 +77,29 @@ impl Autopilot {
         let Some(aimed) = ActiveMode::resume(&config, &progress).targets() else {
             return;
         };
-        let off_rad = self.navigation.estimate().heading_rad - aimed.heading_rad;
+        let off_rad = self.estimator.navigation.estimate().heading_rad - aimed.heading_rad;
         progress.captured.heading_rad += round(off_rad / TAU) * TAU;
         let airspeed_mps = progress.captured.airspeed_mps;
         progress.captured.airspeed_mps = self.config.envelope.allowed_airspeed(airspeed_mps);
-        self.guidance = ActiveMode::resume(&config, &progress);
-        self.targets = self.guidance.targets().unwrap_or(aimed);
+        self.guidance.mode = ActiveMode::resume(&config, &progress);
+        self.guidance.targets = self.guidance.mode.targets().unwrap_or(aimed);
         self.resume_altimeter(resume);
         let reference = resume.altitude_reference;
-        let is_known = self.altimeter.datum_m(reference).is_some();
-        self.reference = if is_known {
+        let is_known = self.guidance.altimeter.datum_m(reference).is_some();
+        self.guidance.reference = if is_known {
             reference
         } else {
             AltitudeReference::PressureLevel
         };
         // The captured altitude is not refined any further.
-        self.capture = None;
+        self.guidance.capture = None;
         self.take_over(&resume.surfaces);
     }
 
     fn resume_altimeter(&mut self, resume: &Resume) {
         let setting_pa = resume.altimeter_setting_pa;
         if let Some(pa) = setting_pa.filter(|pa| ALTIMETER_SETTINGS_PA.contains(pa)) {
-            self.altimeter.setting_pa = pa;
+            self.guidance.altimeter.setting_pa = pa;
         }
     }
 }

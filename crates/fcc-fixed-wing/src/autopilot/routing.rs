@@ -27,37 +27,39 @@ const LARGEST_OFF_M: f64 = u16::MAX as f64;
 impl Autopilot {
     /// Computes the targets.
     pub(super) fn set_targets(&mut self) {
-        let marked = self.navigation.marked_altitude_m();
-        let shift_m = match (&mut self.capture, marked) {
+        let marked = self.estimator.navigation.marked_altitude_m();
+        let shift_m = match (&mut self.guidance.capture, marked) {
             (Some(capture), Some(altitude_m)) => capture.shift_m(altitude_m),
             _ => 0.0,
         };
-        self.guidance.shift_altitude(shift_m);
-        if let Some(targets) = self.guidance.targets() {
-            self.targets = targets;
+        self.guidance.mode.shift_altitude(shift_m);
+        if let Some(targets) = self.guidance.mode.targets() {
+            self.guidance.targets = targets;
         }
         let is_limited = |mode: &OverGroundMode| mode.runway().is_none() && !mode.is_glide();
-        if self.guidance.over_ground().is_some_and(is_limited) {
-            let demanded_mps = self.targets.airspeed_mps;
-            self.targets.airspeed_mps = self.config.envelope.allowed_airspeed(demanded_mps);
+        if self.guidance.mode.over_ground().is_some_and(is_limited) {
+            let demanded_mps = self.guidance.targets.airspeed_mps;
+            self.guidance.targets.airspeed_mps =
+                self.config.envelope.allowed_airspeed(demanded_mps);
         }
         self.keep_above_floor();
         let sea_level_m = self.sea_level_m();
-        self.guidance.advance(
-            self.navigation.estimate(),
-            self.ground.here(),
+        self.guidance.mode.advance(
+            self.estimator.navigation.estimate(),
+            self.estimator.ground.here(),
             sea_level_m,
-            self.clock.passed_s(),
+            self.intake.clock.passed_s(),
         );
-        let took_off = self.guidance.over_ground();
+        let took_off = self.guidance.mode.over_ground();
         let took_off = took_off.and_then(OverGroundMode::took_off);
-        self.took_off = took_off.or(self.took_off);
-        let reached = self.guidance.over_ground().and_then(|mode| {
+        self.supervisor.took_off = took_off.or(self.supervisor.took_off);
+        let reached = self.guidance.mode.over_ground().and_then(|mode| {
             let off_m = mode.reached_off_m().abs();
             mode.reached().map(|item| (item, off_m))
         });
         let is_plan = self
             .guidance
+            .mode
             .over_ground()
             .is_some_and(OverGroundMode::is_plan);
         if let Some((item, off_m)) = reached.filter(|_| is_plan) {
@@ -78,22 +80,22 @@ impl Autopilot {
 
     /// Announces once that a plan is flown to its end.
     fn announce_end(&mut self) {
-        let mode = self.guidance.over_ground();
+        let mode = self.guidance.mode.over_ground();
         let has_ended = mode.is_some_and(OverGroundMode::has_ended);
-        if has_ended && !self.told_once.end {
+        if has_ended && !self.supervisor.told_once.end {
             self.journal.add(Notice {
                 kind: ITEM_REACHED,
                 ..Notice::default()
             });
-            self.told_once.end = true;
+            self.supervisor.told_once.end = true;
         }
-        self.told_once.end &= has_ended;
+        self.supervisor.told_once.end &= has_ended;
     }
 
     /// The pressure altitude of mean sea level, m.
     pub(super) fn sea_level_m(&self) -> f64 {
         // At sea level there is always a datum.
-        let datum_m = self.altimeter.datum_m(AltitudeReference::SeaLevel);
+        let datum_m = self.guidance.altimeter.datum_m(AltitudeReference::SeaLevel);
         datum_m.unwrap_or(0.0)
     }
 
@@ -105,14 +107,16 @@ impl Autopilot {
         schedule: Schedule,
         dt_s: f64,
     ) -> Lateral {
-        let heading_rad = self.targets.heading_rad;
-        match self.guidance.over_ground() {
+        let heading_rad = self.guidance.targets.heading_rad;
+        match self.guidance.mode.over_ground() {
             None => self
+                .loops
                 .heading
                 .step(heading_rad, estimate, envelope, schedule, dt_s),
             Some(mode) => {
-                let bank_rad = self.bank.step(mode.acceleration_mps2(), dt_s);
-                self.heading
+                let bank_rad = self.loops.bank.step(mode.acceleration_mps2(), dt_s);
+                self.loops
+                    .heading
                     .bank_to(bank_rad, estimate, envelope, schedule, dt_s)
             }
         }
@@ -120,14 +124,14 @@ impl Autopilot {
 
     /// The set points with how the path is flown.
     pub(super) fn with_track(&self, setpoints: Setpoints) -> Setpoints {
-        let track = self.guidance.over_ground().map(OverGroundMode::track);
+        let track = self.guidance.mode.over_ground().map(OverGroundMode::track);
         let track = track.unwrap_or_default();
         let plan = self.config.plan.unwrap_or_default();
         Setpoints {
             plan_hash: plan.hash,
             plan_uploaded_unix_s: plan.uploaded_unix_s,
-            contingency: self.contingencies.active(),
-            took_off: self.took_off.unwrap_or_default(),
+            contingency: self.supervisor.contingencies.active(),
+            took_off: self.supervisor.took_off.unwrap_or_default(),
             course_rad: track.course_rad,
             cross_track_m: track.cross_track_m,
             to_go_m: track.to_go_m,
@@ -138,24 +142,26 @@ impl Autopilot {
     /// Follows where the aircraft is.
     pub(super) fn follow_ground(&mut self, now: fcc_core::framework::Time, dt_s: f64) {
         let sea_level_m = self.sea_level_m();
-        self.ground
-            .doubt_altimeter(self.navigation.altitude_doubt().is_some());
-        self.ground.step(
+        self.estimator
+            .ground
+            .doubt_altimeter(self.estimator.navigation.altitude_doubt().is_some());
+        self.estimator.ground.step(
             now,
-            &self.accepted,
-            self.navigation.estimate(),
-            self.navigation.wind(),
+            &self.intake.accepted,
+            self.estimator.navigation.estimate(),
+            self.estimator.navigation.wind(),
             sea_level_m,
             dt_s,
         );
-        if let Some(raw) = &self.raw {
-            self.ground.take(raw.solution(), dt_s);
+        if let Some(raw) = &self.estimator.raw {
+            self.estimator.ground.take(raw.solution(), dt_s);
         }
         let on_wheels_m = self.config.route.runway.height_on_wheels_m;
-        self.told_once.touch.pass(dt_s);
-        self.told_once.range.pass(dt_s);
-        let is_wrong = self.ground.check_range(on_wheels_m) && self.pilot.is_engaged();
-        if is_wrong && self.told_once.range.is_due() {
+        self.supervisor.told_once.touch.pass(dt_s);
+        self.supervisor.told_once.range.pass(dt_s);
+        let is_wrong =
+            self.estimator.ground.check_range(on_wheels_m) && self.supervisor.pilot.is_engaged();
+        if is_wrong && self.supervisor.told_once.range.is_due() {
             self.journal.add(runway::notice(RunwayReason::RangeFinder));
         }
     }
@@ -164,19 +170,19 @@ impl Autopilot {
     pub(super) fn route_inhibits(&self) -> Flags {
         let needs = self.config.guidance.mode() == Mode::Plan;
         // A configuration that flies a plan has one.
-        let lacks = !self.ground.is_measured() || self.config.plan.is_none();
+        let lacks = !self.estimator.ground.is_measured() || self.config.plan.is_none();
         Flags::NONE.with(flags::POSITION, needs && lacks)
     }
 
     /// What is reported of the position while it is flown by.
     pub(super) fn route_conditions(&self) -> Flags {
-        let is_flown = self.guidance.over_ground().is_some();
-        let doubt = self.ground.place_doubt().filter(|_| is_flown);
+        let is_flown = self.guidance.mode.over_ground().is_some();
+        let doubt = self.estimator.ground.place_doubt().filter(|_| is_flown);
         let repeats = doubt == Some(PlaceDoubt::Repeats);
         Flags::NONE
             .with(
                 flags::DEAD_RECKONING,
-                is_flown && !self.ground.is_measured(),
+                is_flown && !self.estimator.ground.is_measured(),
             )
             .with(flags::REPEATED_FIX, repeats)
             .with(flags::IMPOSSIBLE_FIX, doubt.is_some() && !repeats)
@@ -188,13 +194,13 @@ impl Autopilot {
         let Some(plan) = self.config.plan else {
             return;
         };
-        let left = self.left_plan.filter(|_| item == 0);
+        let left = self.supervisor.left_plan.filter(|_| item == 0);
         let index = usize::from(item.saturating_sub(1));
         if plan.step(index).is_none() || self.after(ModeInput::Plan).is_none() {
             return;
         }
         if let Some(left) = left {
-            self.enter(&left.again(self.targets));
+            self.enter(&left.again(self.guidance.targets));
         } else {
             self.begin_plan(&plan, index);
         }
@@ -204,33 +210,37 @@ impl Autopilot {
     /// to where it took off; one that is flown already goes on. Whether there is one.
     pub(super) fn fly_landing(&mut self) -> bool {
         let plan = self.config.plan;
-        let found = plan.zip(self.ground.here());
+        let found = plan.zip(self.estimator.ground.here());
         let Some((begin, land)) = found.and_then(|(plan, here)| plan.nearest_landing(here)) else {
             return self.land_back();
         };
-        let flown = self.guidance.over_ground().filter(|mode| mode.is_plan());
+        let flown = self
+            .guidance
+            .mode
+            .over_ground()
+            .filter(|mode| mode.is_plan());
         if flown.is_some_and(|mode| (begin..=land).contains(&mode.index())) {
             return true;
         }
         self.fly_plan(u16::try_from(begin + 1).unwrap_or(u16::MAX));
-        self.guidance.mode() == Mode::Plan
+        self.guidance.mode.mode() == Mode::Plan
     }
 
     /// Whether there is somewhere to land.
     pub(super) fn has_landing(&self) -> bool {
-        let found = self.config.plan.zip(self.ground.here());
+        let found = self.config.plan.zip(self.estimator.ground.here());
         let planned = found.and_then(|(plan, here)| plan.nearest_landing(here));
-        planned.is_some() || self.took_off.is_some()
+        planned.is_some() || self.supervisor.took_off.is_some()
     }
 
     /// Lands where it took off, if that is known; whether it does.
     fn land_back(&mut self) -> bool {
-        let lands = self.guidance.over_ground();
+        let lands = self.guidance.mode.over_ground();
         if lands.is_some_and(OverGroundMode::lands_back) {
             return true;
         }
         let height_m = self.config.route.return_height_m;
-        self.took_off.is_some()
+        self.supervisor.took_off.is_some()
             && self.after(ModeInput::Return).is_some()
             && self.fly_step(Mode::Land, Step::LandBack { height_m })
     }
@@ -241,11 +251,15 @@ impl Autopilot {
         let airspeed_mps = if self.waits_for_takeoff() {
             self.config.reference_airspeed_mps
         } else {
-            self.targets.airspeed_mps
+            self.guidance.targets.airspeed_mps
         };
         let follower = Follower::along(*plan, index, self.config.route, airspeed_mps);
-        let follower = follower.after(self.took_off);
-        self.enter(&OverGroundMode::new(Mode::Plan, follower, self.targets));
+        let follower = follower.after(self.supervisor.took_off);
+        self.enter(&OverGroundMode::new(
+            Mode::Plan,
+            follower,
+            self.guidance.targets,
+        ));
     }
 
     /// Circles beside where the aircraft is.
@@ -266,7 +280,7 @@ impl Autopilot {
         radius_m: f64,
         clockwise: bool,
     ) {
-        let altitude_m = self.targets.altitude_m - self.sea_level_m();
+        let altitude_m = self.guidance.targets.altitude_m - self.sea_level_m();
         self.change_to(input, loiter(at, altitude_m, radius_m, clockwise));
     }
 
@@ -305,14 +319,14 @@ impl Autopilot {
 
     /// Flies one step; whether it can be flown now.
     fn fly_step(&mut self, mode: Mode, step: Step) -> bool {
-        if self.ground.here().is_none() {
+        if self.estimator.ground.here().is_none() {
             return false;
         }
         let returns = self.config.plan.map_or(&[][..], |plan| plan.returns);
-        let airspeed_mps = self.targets.airspeed_mps;
+        let airspeed_mps = self.guidance.targets.airspeed_mps;
         let follower = Follower::to(step, returns, self.config.route, airspeed_mps);
-        let follower = follower.after(self.took_off);
-        self.enter(&OverGroundMode::new(mode, follower, self.targets));
+        let follower = follower.after(self.supervisor.took_off);
+        self.enter(&OverGroundMode::new(mode, follower, self.guidance.targets));
         true
     }
 
@@ -338,7 +352,7 @@ impl Autopilot {
     /// Gives a landing up.
     pub(super) fn go_around(&mut self) {
         if self.after(ModeInput::GoAround).is_some() {
-            self.guidance.go_around(RunwayReason::Commanded);
+            self.guidance.mode.go_around(RunwayReason::Commanded);
         }
     }
 
@@ -350,31 +364,35 @@ impl Autopilot {
             return None;
         }
         let configured = self.config.guidance.mode();
-        self.guidance.mode().after(input, configured)
+        self.guidance.mode.mode().after(input, configured)
     }
 
     /// Enters a mode over the ground.
     pub(super) fn enter(&mut self, mode: &OverGroundMode) {
         self.leave();
-        if self.guidance.over_ground().is_none() {
+        if self.guidance.mode.over_ground().is_none() {
             // The others command a bank at once: the aircraft has not reached it yet.
-            self.bank.reset(self.navigation.estimate().roll_rad);
+            self.loops
+                .bank
+                .reset(self.estimator.navigation.estimate().roll_rad);
         }
-        self.reference = AltitudeReference::SeaLevel;
-        self.capture = None;
-        self.guidance = ActiveMode::OverGround(*mode);
+        self.guidance.reference = AltitudeReference::SeaLevel;
+        self.guidance.capture = None;
+        self.guidance.mode = ActiveMode::OverGround(*mode);
     }
 
     /// Remembers a plan that is left for another mode, and leads from the bank of a
     /// mode over the ground to that of another.
     pub(super) fn leave(&mut self) {
-        let Some(mode) = self.guidance.over_ground().copied() else {
+        let Some(mode) = self.guidance.mode.over_ground().copied() else {
             return;
         };
         if mode.is_plan() {
-            self.left_plan = Some(mode);
+            self.supervisor.left_plan = Some(mode);
         }
-        self.heading.lead_from(self.setpoints.roll_rad);
+        self.loops
+            .heading
+            .lead_from(self.guidance.setpoints.roll_rad);
     }
 }
 

@@ -87,7 +87,10 @@ pub(super) struct RunwayControl {
 impl Autopilot {
     /// The take-off or landing that is flown.
     pub(super) fn runway(&self) -> Option<RunwayDemand> {
-        self.guidance.over_ground().and_then(OverGroundMode::runway)
+        self.guidance
+            .mode
+            .over_ground()
+            .and_then(OverGroundMode::runway)
     }
 
     /// Whether it is on the glide path of a landing, or beyond.
@@ -105,40 +108,44 @@ impl Autopilot {
     /// Whether it stands or rolls.
     pub(super) fn is_on_wheels(&self) -> bool {
         let rolls = |demand: RunwayDemand| demand.phase.is_on_wheels();
-        self.ground.stands_on_wheels() || self.runway().is_some_and(rolls)
+        self.estimator.ground.stands_on_wheels() || self.runway().is_some_and(rolls)
     }
 
     /// Whether it stands on its wheels, or is held in a hand that throws it.
     pub(super) fn waits_for_takeoff(&self) -> bool {
-        let is_held = self.config.route.runway.is_thrown() && self.ground.speed_mps() < HELD_MPS;
-        self.ground.stands_on_wheels() || is_held
+        let is_held =
+            self.config.route.runway.is_thrown() && self.estimator.ground.speed_mps() < HELD_MPS;
+        self.estimator.ground.stands_on_wheels() || is_held
     }
 
     /// The outputs of a take-off or a landing; none while neither is flown.
     pub(super) fn control_on_runway(&mut self, estimate: &Estimate, dt_s: f64) -> Option<Surfaces> {
         let Some(demand) = self.runway() else {
-            if self.on_runway.phase.is_some() {
+            if self.guidance.on_runway.phase.is_some() {
                 // The throttle was not the airspeed loop's.
-                let last = self.last;
+                let last = self.loops.last;
                 self.take_over(&last);
-                self.heading.lead_from(self.setpoints.roll_rad);
+                self.loops
+                    .heading
+                    .lead_from(self.guidance.setpoints.roll_rad);
             }
-            let mode = self.guidance.over_ground();
-            if self.on_runway.phase == Some(RunwayPhase::GoAround)
+            let mode = self.guidance.mode.over_ground();
+            if self.guidance.on_runway.phase == Some(RunwayPhase::GoAround)
                 && mode.is_some_and(OverGroundMode::has_no_more_landings)
             {
                 self.journal.add(notice(RunwayReason::NoMore));
             }
-            self.on_runway = RunwayControl::default();
+            self.guidance.on_runway = RunwayControl::default();
             return None;
         };
         self.enter_phase(&demand, estimate);
-        if demand.lacks_power && !self.on_runway.lacks_power {
+        if demand.lacks_power && !self.guidance.on_runway.lacks_power {
             self.journal.add(notice(RunwayReason::NoClimb));
         }
-        self.on_runway.lacks_power = demand.lacks_power;
+        self.guidance.on_runway.lacks_power = demand.lacks_power;
         let approaches = demand.phase == RunwayPhase::Approach && !demand.is_powerless;
         if let Some(event) = self
+            .guidance
             .on_runway
             .watch_tail_wind(approaches, demand.head_wind_mps)
         {
@@ -165,7 +172,7 @@ impl Autopilot {
 
     /// The loops take over at a phase's begin.
     fn enter_phase(&mut self, demand: &RunwayDemand, estimate: &Estimate) {
-        let before = self.on_runway.phase.replace(demand.phase);
+        let before = self.guidance.on_runway.phase.replace(demand.phase);
         if before == Some(demand.phase) {
             return;
         }
@@ -173,39 +180,48 @@ impl Autopilot {
             self.journal.add(notice(demand.reason));
         }
         if demand.reason == RunwayReason::LongFlare {
-            self.ground.expect_no_range();
+            self.estimator.ground.expect_no_range();
         }
         if demand.reason == RunwayReason::RangeJump {
-            self.ground.leave_range();
+            self.estimator.ground.leave_range();
         }
-        let (last, schedule) = (self.last, self.schedule());
+        let (last, schedule) = (self.loops.last, self.schedule());
         match demand.phase {
-            RunwayPhase::Rotate => self.altitude.engage(last.elevator, estimate, schedule),
+            RunwayPhase::Rotate => self
+                .loops
+                .altitude
+                .engage(last.elevator, estimate, schedule),
             RunwayPhase::Climb | RunwayPhase::Approach
                 if before.is_some_and(RunwayPhase::is_on_wheels) =>
             {
                 if demand.phase == RunwayPhase::Climb && before != Some(RunwayPhase::Rotate) {
                     // No pitch was held on the wheels.
-                    self.altitude.engage(last.elevator, estimate, schedule);
+                    self.loops
+                        .altitude
+                        .engage(last.elevator, estimate, schedule);
                 }
                 if demand.airspeed_is_wrong {
                     self.leave_airspeed(demand, estimate);
                 }
-                self.heading
+                self.loops
+                    .heading
                     .engage(last.aileron, last.rudder, estimate, schedule);
-                self.bank.reset(estimate.roll_rad);
+                self.loops.bank.reset(estimate.roll_rad);
             }
             RunwayPhase::Flare => {
-                self.on_runway.rudder = last.rudder;
+                self.guidance.on_runway.rudder = last.rudder;
                 if demand.is_powerless {
                     // The pitch was not that of a climb rate.
-                    self.altitude.engage(last.elevator, estimate, schedule);
+                    self.loops
+                        .altitude
+                        .engage(last.elevator, estimate, schedule);
                 }
             }
             RunwayPhase::GoAround if before == Some(RunwayPhase::Flare) => {
-                self.heading
+                self.loops
+                    .heading
                     .engage(last.aileron, last.rudder, estimate, schedule);
-                self.bank.reset(estimate.roll_rad);
+                self.loops.bank.reset(estimate.roll_rad);
             }
             _ => {}
         }
@@ -216,12 +232,17 @@ impl Autopilot {
     fn leave_airspeed(&mut self, demand: &RunwayDemand, estimate: &Estimate) {
         let sqrt_density = estimate.airspeed_mps / estimate.true_airspeed_mps.max(1e-3);
         let calm_mps = demand.ground_speed_mps * limit(sqrt_density, 0.5, 1.1);
-        self.on_runway.flies_at_mps = Some(calm_mps.max(self.config.route.runway.rotate_mps));
+        self.guidance.on_runway.flies_at_mps =
+            Some(calm_mps.max(self.config.route.runway.rotate_mps));
     }
 
     /// How far the heading is to the left of that of the runway, rad.
     fn off_heading_rad(&self, demand: &RunwayDemand) -> f64 {
-        let heading_rad = self.ground.here().map_or(0.0, |here| here.heading_rad);
+        let heading_rad = self
+            .estimator
+            .ground
+            .here()
+            .map_or(0.0, |here| here.heading_rad);
         wrap_pi(demand.course_rad - heading_rad)
     }
 
@@ -229,12 +250,12 @@ impl Autopilot {
     fn rudder_towards(&mut self, off_rad: f64, estimate: &Estimate, dt_s: f64) -> f64 {
         let moment = self.schedule().moment;
         // On the wheels it is forgotten: the nose wheel steers, too.
-        let forgets = if self.ground.stands_on_wheels() {
-            self.on_runway.rudder / FORGETS_S
+        let forgets = if self.estimator.ground.stands_on_wheels() {
+            self.guidance.on_runway.rudder / FORGETS_S
         } else {
             0.0
         };
-        let integral = &mut self.on_runway.rudder;
+        let integral = &mut self.guidance.on_runway.rudder;
         let rate = moment * RUDDER_PER_RAD_S * off_rad - forgets;
         *integral = limit_abs(*integral + rate * dt_s, MOST_INTEGRAL);
         let yaw_radps = estimate.body_rates.yaw_radps;
@@ -250,10 +271,13 @@ impl Autopilot {
         // The side force of the slip accelerates it, too.
         let by_bank_mps2 = wanted_mps2 - estimate.side_force_mps2;
         let roll_rad = limit_abs(atan(by_bank_mps2 / GRAVITY_MPS2), MOST_FLARE_BANK_RAD);
-        let roll_rad = self.heading.led(roll_rad, dt_s);
-        let held = self.heading.hold_bank(roll_rad, estimate, schedule, dt_s);
+        let roll_rad = self.loops.heading.led(roll_rad, dt_s);
+        let held = self
+            .loops
+            .heading
+            .hold_bank(roll_rad, estimate, schedule, dt_s);
         if demand.height_m > ALIGNS_M + demand.uncertainty_m {
-            self.on_runway.rudder = held.rudder;
+            self.guidance.on_runway.rudder = held.rudder;
             return held;
         }
         let off_rad = self.off_heading_rad(demand);
@@ -270,16 +294,17 @@ impl Autopilot {
         estimate: &Estimate,
         dt_s: f64,
     ) -> Lateral {
-        let acceleration = self.guidance.over_ground();
+        let acceleration = self.guidance.mode.over_ground();
         let acceleration = acceleration.map_or(0.0, OverGroundMode::acceleration_mps2);
-        let bank_rad = self.bank.step(acceleration, dt_s);
+        let bank_rad = self.loops.bank.step(acceleration, dt_s);
         let bank_rad = if demand.height_m < LOW_M && demand.phase.is_climb() {
             limit_abs(bank_rad, MOST_FLARE_BANK_RAD)
         } else {
             bank_rad
         };
         let (envelope, schedule) = (self.runway_envelope(demand), self.schedule());
-        self.heading
+        self.loops
+            .heading
             .bank_to(bank_rad, estimate, &envelope, schedule, dt_s)
     }
 
@@ -291,7 +316,7 @@ impl Autopilot {
         dt_s: f64,
     ) -> (f64, f64, f64, f64) {
         let (envelope, schedule) = (self.runway_envelope(demand), self.schedule());
-        let closing = (self.last.throttle - CLOSES_PER_S * dt_s).max(0.0);
+        let closing = (self.loops.last.throttle - CLOSES_PER_S * dt_s).max(0.0);
         let opens_per_s = if self.is_thrown(demand) {
             THROWN_OPENS_PER_S
         } else if demand.phase == RunwayPhase::GoAround {
@@ -299,7 +324,7 @@ impl Autopilot {
         } else {
             CLOSES_PER_S
         };
-        let opening = (self.last.throttle + opens_per_s * dt_s).min(1.0);
+        let opening = (self.loops.last.throttle + opens_per_s * dt_s).min(1.0);
         match demand.phase {
             RunwayPhase::Hand => (0.0, 0.0, 0.0, 0.0),
             RunwayPhase::Roll => (opening, 0.0, 0.0, 0.0),
@@ -318,7 +343,7 @@ impl Autopilot {
             }
             RunwayPhase::Approach if demand.is_powerless => {
                 let vertical = self.hold_glide(&envelope, estimate, dt_s);
-                let elevator = self.actuation.elevator(vertical.elevator);
+                let elevator = self.loops.actuation.elevator(vertical.elevator);
                 let tries = demand.height_m > TRIES_ABOVE_M && self.tries_engine(dt_s);
                 (
                     if tries { opening } else { closing },
@@ -329,7 +354,7 @@ impl Autopilot {
             }
             RunwayPhase::Approach | RunwayPhase::Flare => {
                 let flares = demand.phase == RunwayPhase::Flare;
-                let altitude = &mut self.altitude;
+                let altitude = &mut self.loops.altitude;
                 let vertical = altitude.hold_climb_rate(
                     demand.climb_rate_mps,
                     estimate,
@@ -341,7 +366,7 @@ impl Autopilot {
                 let airspeed = ThrottleDemand {
                     airspeed_mps: envelope
                         .floor_mps(estimate)
-                        .max(share * self.targets.airspeed_mps),
+                        .max(share * self.guidance.targets.airspeed_mps),
                     climb_rate_mps: vertical.climb_rate_mps,
                     load_factor: 1.0,
                     least_throttle: envelope.least_throttle(estimate.airspeed_mps),
@@ -349,9 +374,9 @@ impl Autopilot {
                 let throttle = if flares && demand.uncertainty_m == 0.0 {
                     closing
                 } else {
-                    self.airspeed.step(&airspeed, estimate, dt_s)
+                    self.loops.airspeed.step(&airspeed, estimate, dt_s)
                 };
-                let elevator = self.actuation.elevator(vertical.elevator);
+                let elevator = self.loops.actuation.elevator(vertical.elevator);
                 (
                     throttle,
                     vertical.climb_rate_mps,
@@ -362,9 +387,10 @@ impl Autopilot {
             RunwayPhase::Rotate | RunwayPhase::Climb | RunwayPhase::GoAround => {
                 let pitch_rad = self.climb_pitch_rad(demand, estimate);
                 let vertical = self
+                    .loops
                     .altitude
                     .hold_pitch(pitch_rad, estimate, &envelope, schedule, dt_s);
-                let elevator = self.actuation.elevator(vertical.elevator);
+                let elevator = self.loops.actuation.elevator(vertical.elevator);
                 (
                     opening,
                     vertical.climb_rate_mps,

@@ -22,13 +22,16 @@ const SENT_FOR: Duration = Duration::from_millis(250);
 impl Autopilot {
     /// The measurements of this tick, as they are flown by.
     pub(super) fn seen<'a>(&'a self, measured: &'a Measurements) -> &'a Measurements {
-        self.raw.as_ref().map_or(measured, RawNavigation::found)
+        self.estimator
+            .raw
+            .as_ref()
+            .map_or(measured, RawNavigation::found)
     }
 
     /// The raw sensors that are not used, and that control does not need.
     pub(super) fn unused_sensors(&self, measured: &Measurements) -> Flags {
         let has_fix = !measured.gnss.is_never();
-        let is = |what: fn(&RawNavigation) -> bool| self.raw.as_ref().is_some_and(what);
+        let is = |what: fn(&RawNavigation) -> bool| self.estimator.raw.as_ref().is_some_and(what);
         Flags::NONE
             .with(
                 flags::IMPOSSIBLE_FIX,
@@ -43,8 +46,8 @@ impl Autopilot {
     /// Reports what the plant's clock shows, and the sensors that are not used any more, or
     /// otherwise than before, since this tick.
     pub(super) fn report_clock_and_sensors(&mut self) {
-        let by_clock = self.clock.notice();
-        let raw = self.raw.as_ref();
+        let by_clock = self.intake.clock.notice();
+        let raw = self.estimator.raw.as_ref();
         let events = [
             by_clock,
             raw.and_then(RawNavigation::wrong_sensor)
@@ -64,14 +67,16 @@ impl Autopilot {
     /// not by the attitude either until it is known which of the two is wrong: an aircraft
     /// that follows wrong gyroscopes rolls over meanwhile.
     pub(super) fn doubts_gyroscopes(&self) -> bool {
-        self.raw
+        self.estimator
+            .raw
             .as_ref()
             .is_some_and(|raw| raw.doubts_gyroscopes() || raw.questions_gyroscopes())
     }
 
     /// Whether what comes from raw sensors has an attitude, if it is flown by them.
     pub(super) fn knows_attitude(&self) -> bool {
-        self.raw
+        self.estimator
+            .raw
             .as_ref()
             .is_none_or(|raw| raw.knows_attitude() && !raw.questions_gyroscopes())
     }
@@ -82,7 +87,7 @@ impl Autopilot {
         if self.is_silent(now) {
             Quantities::ALL
         } else {
-            self.too_old(&self.accepted)
+            self.too_old(&self.intake.accepted)
         }
     }
 
@@ -103,26 +108,26 @@ impl Autopilot {
         if self.plant_is(PlantState::Paused) {
             Duration::ZERO
         } else {
-            self.clock.silent_for(now)
+            self.intake.clock.silent_for(now)
         }
     }
 
     /// Whether this tick's outputs are not to be sent.
     pub(super) fn withholds(&self, now: Time) -> bool {
-        self.clock.waiting() == Waiting::Replaying
-            || self.clock.silent_for(now) > self.config.max_age + SENT_FOR
+        self.intake.clock.waiting() == Waiting::Replaying
+            || self.intake.clock.silent_for(now) > self.config.max_age + SENT_FOR
     }
 
     /// The frozen quantities; none on the ground: with an airspeed below the
     /// floor, and not engaged. A glide may be slower.
     pub(super) fn frozen(&self) -> Quantities {
-        let airspeed_mps = self.navigation.estimate().airspeed_mps;
+        let airspeed_mps = self.estimator.navigation.estimate().airspeed_mps;
         let is_slow = airspeed_mps < self.config.envelope.min_airspeed_mps;
-        if is_slow && (!self.pilot.is_engaged() || self.is_on_runway()) {
+        if is_slow && (!self.supervisor.pilot.is_engaged() || self.is_on_runway()) {
             Quantities::NONE
         } else {
-            let is_excluded = self.navigation.airspeed_doubt().is_some();
-            let frozen = self.frozen.frozen();
+            let is_excluded = self.estimator.navigation.airspeed_doubt().is_some();
+            let frozen = self.estimator.frozen.frozen();
             frozen.keeping(Quantity::Airspeed, !is_excluded)
         }
     }
@@ -130,7 +135,7 @@ impl Autopilot {
     /// The readings that are too old, by the plant's time. Of a doubted sensor
     /// none is used: the airspeed and, for a time, the altitude are known without.
     pub(super) fn too_old(&self, measurements: &Measurements) -> Quantities {
-        let judged = self.clock.judged();
+        let judged = self.intake.clock.judged();
         let knows_attitude = self.knows_attitude();
         let by_gyroscopes = Quantities::NONE
             .with(Quantity::BodyRates, self.doubts_gyroscopes())
@@ -142,16 +147,17 @@ impl Autopilot {
                 let reading = Reading::new((), quantity.taken(measurements));
                 let is_known = match quantity {
                     Quantity::Airspeed => self
+                        .estimator
                         .navigation
                         .airspeed_doubt()
                         .map(|_| true)
                         .or_else(|| self.knows_airspeed_by_forces()),
-                    Quantity::Altitude => self.navigation.altitude_doubt(),
+                    Quantity::Altitude => self.estimator.navigation.altitude_doubt(),
                     _ => None,
                 };
                 let is_fresh = || {
                     reading.is_fresh(judged, self.config.max_age)
-                        && !self.ages.late().contains(quantity)
+                        && !self.intake.ages.late().contains(quantity)
                 };
                 old.with(quantity, !is_known.unwrap_or_else(is_fresh))
             })
@@ -160,7 +166,7 @@ impl Autopilot {
     /// The quantities rejected as implausible for so long that the accepted
     /// readings are too old although the raw ones are not.
     pub(super) fn rejected(&self, measurements: &Measurements) -> Quantities {
-        self.too_old(&self.accepted) & !self.too_old(measurements)
+        self.too_old(&self.intake.accepted) & !self.too_old(measurements)
     }
 
     /// The faults of an engaged flight, and what comes and goes in a failsafe.
@@ -174,7 +180,7 @@ impl Autopilot {
         let stale = if lost {
             Quantities::ALL
         } else {
-            self.too_old(&self.accepted)
+            self.too_old(&self.intake.accepted)
         };
         self.unsafe_with(stale, now, measurements)
             .with(flags::PLANT_SILENT, lost)
@@ -188,10 +194,10 @@ impl Autopilot {
         now: Time,
         measurements: &Measurements,
     ) -> Flags {
-        let switch = self.accepted.engage_switch;
+        let switch = self.intake.accepted.engage_switch;
         let rejected = !self.rejected(measurements).is_empty();
         let is_lost_to_the_future = !stale.is_empty() && is_from_the_future(measurements, now);
-        let is_lost_on_the_way = !stale.is_empty() && !self.ages.late().is_empty();
+        let is_lost_on_the_way = !stale.is_empty() && !self.intake.ages.late().is_empty();
         let unusable = flags::too_old(stale) | flags::frozen(self.frozen());
         (unusable | self.is_elsewhere() | self.doubted_motion())
             .with(flags::DOUBTED_GYROSCOPE, self.doubts_gyroscopes())
@@ -200,11 +206,12 @@ impl Autopilot {
             .with(flags::SOURCE_CLOCK, is_lost_on_the_way)
             .with(
                 flags::PLANT_STALLED,
-                self.clock.is_ignored() || self.clock.stopped_for(now) > self.max_silence(),
+                self.intake.clock.is_ignored()
+                    || self.intake.clock.stopped_for(now) > self.max_silence(),
             )
             .with(
                 flags::ENGAGE_SWITCH,
-                !switch.is_never() && !switch.is_fresh(self.clock.judged(), SWITCH_MAX_AGE),
+                !switch.is_never() && !switch.is_fresh(self.intake.clock.judged(), SWITCH_MAX_AGE),
             )
     }
 
@@ -214,10 +221,10 @@ impl Autopilot {
         Flags::NONE
             .with(flags::PLANT_JUMPED, self.plant_is(PlantState::Jumped))
             .with(flags::PLANT_RELOADED, self.plant_is(PlantState::Reloaded))
-            .with(flags::RELOCATED, self.whereabouts.was_relocated())
+            .with(flags::RELOCATED, self.intake.whereabouts.was_relocated())
     }
 
     pub(super) fn plant_is(&self, state: PlantState) -> bool {
-        self.clock.state() == Some(state)
+        self.intake.clock.state() == Some(state)
     }
 }

@@ -86,15 +86,16 @@ impl StraightTrims {
 impl Autopilot {
     /// Begins with what was found at engaging.
     pub(super) fn begin_straight_trims(&mut self) {
-        self.straight = StraightTrims::default();
+        self.loops.straight = StraightTrims::default();
         self.take_straight_trims(0.0);
     }
 
     /// Learns in straight and level flight by the usual loops.
     pub(super) fn learn_straight_trims(&mut self, estimate: &Estimate, dt_s: f64) {
-        let commanded_rad = self.setpoints.roll_rad;
-        let is_level = self.straight.is_level(estimate, commanded_rad, dt_s);
-        let is_usual = self.runway().is_none() && !self.glides && !self.recovery.is_active();
+        let commanded_rad = self.guidance.setpoints.roll_rad;
+        let is_level = self.loops.straight.is_level(estimate, commanded_rad, dt_s);
+        let is_usual =
+            self.runway().is_none() && !self.loops.glides && !self.loops.recovery.is_active();
         if is_level && is_usual {
             self.take_straight_trims(dt_s);
         }
@@ -102,11 +103,11 @@ impl Autopilot {
 
     fn take_straight_trims(&mut self, dt_s: f64) {
         let trims = Surfaces {
-            throttle: self.airspeed.trim(),
+            throttle: self.loops.airspeed.trim(),
             ..self.trims()
         };
-        let airspeed_mps = self.navigation.estimate().airspeed_mps;
-        self.straight.take(&trims, airspeed_mps, dt_s);
+        let airspeed_mps = self.estimator.navigation.estimate().airspeed_mps;
+        self.loops.straight.take(&trims, airspeed_mps, dt_s);
     }
 
     /// The controls while nothing is heard. Near a runway, in a glide, and at another
@@ -114,7 +115,7 @@ impl Autopilot {
     /// are those of the present flight.
     pub(super) fn silent_trims(&self) -> Surfaces {
         let present = self.trims();
-        let straight = &self.straight;
+        let straight = &self.loops.straight;
         if self.runway().is_some() {
             return present;
         }
@@ -123,8 +124,8 @@ impl Autopilot {
             rudder: straight.rudder.output(),
             ..present
         };
-        let airspeed_mps = self.navigation.estimate().airspeed_mps;
-        if self.glides || !straight.fits(airspeed_mps, present.elevator_trim) {
+        let airspeed_mps = self.estimator.navigation.estimate().airspeed_mps;
+        if self.loops.glides || !straight.fits(airspeed_mps, present.elevator_trim) {
             return trims;
         }
         Surfaces {

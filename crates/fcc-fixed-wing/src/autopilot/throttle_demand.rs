@@ -8,18 +8,18 @@ use crate::control::ThrottleDemand;
 impl Autopilot {
     /// What the throttle is to do for the commanded airspeed and a climb rate.
     pub(super) fn throttle_demand(&self, climb_rate_mps: f64) -> ThrottleDemand {
-        let estimate = self.navigation.estimate();
+        let estimate = self.estimator.navigation.estimate();
         ThrottleDemand {
             airspeed_mps: self
                 .envelope()
                 .least_target_mps(estimate)
-                .max(self.flyable_airspeed_mps(self.targets.airspeed_mps)),
+                .max(self.flyable_airspeed_mps(self.guidance.targets.airspeed_mps)),
             climb_rate_mps,
             load_factor: 1.0 / cos(estimate.roll_rad).max(0.5),
             least_throttle: self
                 .envelope()
                 .least_throttle(estimate.airspeed_mps)
-                .max(self.altitude.least_throttle()),
+                .max(self.loops.altitude.least_throttle()),
         }
     }
 }

@@ -52,12 +52,12 @@ impl Autopilot {
     /// Begins to watch for upsets, with the trims of the present flight unless it
     /// is one, or turns as in one: those are of the controls' present positions.
     pub(super) fn begin_watching_for_upsets(&mut self) {
-        let trims = if is_steady(self.navigation.estimate()) {
+        let trims = if is_steady(self.estimator.navigation.estimate()) {
             self.trims()
         } else {
             Surfaces::default()
         };
-        self.recovery = Recovery::trimmed(&trims, self.schedule());
+        self.loops.recovery = Recovery::trimmed(&trims, self.schedule());
     }
 
     /// The outputs while the aircraft is upset; none otherwise. When it no longer
@@ -67,8 +67,8 @@ impl Autopilot {
         now: Time,
         estimate: &Estimate,
     ) -> Option<Surfaces> {
-        let dt_s = self.clock.step_s();
-        let estimate = &self.recovery.with_gained_airspeed(estimate, dt_s);
+        let dt_s = self.intake.clock.step_s();
+        let estimate = &self.loops.recovery.with_gained_airspeed(estimate, dt_s);
         let flown = self.envelope();
         let envelope = Envelope {
             stall_airspeed_mps: flown.stall_airspeed_mps,
@@ -78,8 +78,8 @@ impl Autopilot {
         let inputs = RecoveryInputs {
             envelope: &envelope,
             schedule: self.schedule_at(estimate.airspeed_mps),
-            heading: &self.heading,
-            altitude: &self.altitude,
+            heading: &self.loops.heading,
+            altitude: &self.loops.altitude,
             followed: self.is_followed(now),
             dt_s,
         };
@@ -89,27 +89,36 @@ impl Autopilot {
             envelope: &self.config.envelope,
             ..inputs
         };
-        let change = self.recovery.observe(&self.last, &trims, estimate, &seen);
+        let change = self
+            .loops
+            .recovery
+            .observe(&self.loops.last, &trims, estimate, &seen);
         match change {
             Change::Ends => {
-                let last = self.last;
-                self.navigation.count_heading_near(self.targets.heading_rad);
+                let last = self.loops.last;
+                self.estimator
+                    .navigation
+                    .count_heading_near(self.guidance.targets.heading_rad);
                 self.take_over(&last);
-                self.heading.lead_from(self.setpoints.roll_rad);
+                self.loops
+                    .heading
+                    .lead_from(self.guidance.setpoints.roll_rad);
                 return None;
             }
-            Change::Begins | Change::None if !self.recovery.is_active() => return None,
+            Change::Begins | Change::None if !self.loops.recovery.is_active() => return None,
             Change::Begins | Change::None => {}
         }
-        let outputs = self.recovery.step(estimate, &inputs);
+        let outputs = self.loops.recovery.step(estimate, &inputs);
         if change == Change::Begins {
-            self.heading.lead_from(self.setpoints.roll_rad);
+            self.loops
+                .heading
+                .lead_from(self.guidance.setpoints.roll_rad);
         }
-        self.setpoints = Setpoints {
-            roll_rad: self.heading.led(0.0, dt_s),
+        self.guidance.setpoints = Setpoints {
+            roll_rad: self.loops.heading.led(0.0, dt_s),
             climb_rate_mps: 0.0,
             pitch_rad: 0.0,
-            ..self.setpoints
+            ..self.guidance.setpoints
         };
         Some(outputs)
     }
@@ -127,7 +136,7 @@ impl Autopilot {
     ) -> Option<Surfaces> {
         let no_motion = lost.contains(Quantity::Attitude) && lost.contains(Quantity::BodyRates);
         if no_motion || lost.contains(Quantity::SpecificForce) {
-            self.recovery.end();
+            self.loops.recovery.end();
             return None;
         }
         let mut estimate = *estimate;
@@ -145,9 +154,13 @@ impl Autopilot {
     /// Whether the surfaces stand where they were last commanded to, if the plant
     /// measures them.
     fn is_followed(&self, now: Time) -> bool {
-        let stand = self.accepted.surfaces.fresh(now, self.config.max_age);
+        let stand = self
+            .intake
+            .accepted
+            .surfaces
+            .fresh(now, self.config.max_age);
         // Where they do not reach the aircraft, the last ones are the measured ones.
         !self.is_not_followed()
-            && stand.is_none_or(|stand| (stand.elevator - self.last.elevator).abs() < FOLLOWS)
+            && stand.is_none_or(|stand| (stand.elevator - self.loops.last.elevator).abs() < FOLLOWS)
     }
 }

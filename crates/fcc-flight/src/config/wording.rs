@@ -101,7 +101,7 @@ fn wrong_type(message: &str, range: Option<&str>) -> Option<String> {
         "a sequence" => {
             "a list such as [1.0, 2.0]; of sections: each below double square brackets such as \
              [[sensor]]"
-        },
+        }
         section if section.starts_with("struct ") => "a section in square brackets",
         other => other,
     };

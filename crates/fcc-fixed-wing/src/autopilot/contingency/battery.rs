@@ -30,7 +30,7 @@ impl Autopilot {
     /// Whether the battery's last reading is below its limits; none if it is not known.
     fn battery_is_below(&self, now: Time) -> Option<bool> {
         let config = &self.config.contingency;
-        let battery = self.accepted.battery.fresh(now, READING_AGE);
+        let battery = self.intake.accepted.battery.fresh(now, READING_AGE);
         is_below(
             battery.unwrap_or_default(),
             config.battery_charge,
@@ -42,28 +42,29 @@ impl Autopilot {
     pub(in super::super) fn follow_battery(&mut self, now: Time, dt_s: f64) {
         if let Some(is_below) = self.battery_is_below(now) {
             let after_s = self.config.contingency.battery_after_s;
-            self.battery.step(is_below, after_s, dt_s);
+            self.supervisor.battery.step(is_below, after_s, dt_s);
         }
     }
 
     /// With a low battery, or one that is limited and not measured, nothing takes off.
     pub(in super::super) fn battery_inhibits(&self, now: Time) -> Flags {
-        let is_good = self.battery_is_below(now) == Some(false) && !self.battery.is_on;
+        let is_good = self.battery_is_below(now) == Some(false) && !self.supervisor.battery.is_on;
         Flags::NONE.with(flags::BATTERY, self.waits_for_takeoff() && !is_good)
     }
 
     /// Acts on a low battery, once; again after the fence was turned away from.
     pub(super) fn meet_low_battery(&mut self) {
-        let contingencies = &mut self.contingencies;
+        let contingencies = &mut self.supervisor.contingencies;
         let is_at_fence = contingencies.active == Contingency::Fence;
-        if !self.battery.is_on || is_at_fence {
+        if !self.supervisor.battery.is_on || is_at_fence {
             contingencies.is_battery_met = false;
         }
         let turns_away =
             is_at_fence && (contingencies.stage.is_on_circle() || contingencies.kept.is_some());
-        if self.battery.is_on && !contingencies.is_battery_met && !turns_away {
+        if self.supervisor.battery.is_on && !contingencies.is_battery_met && !turns_away {
             let action = self.config.contingency.battery;
-            self.contingencies.is_battery_met = self.meet(Contingency::BatteryLow, action);
+            self.supervisor.contingencies.is_battery_met =
+                self.meet(Contingency::BatteryLow, action);
         }
     }
 }

@@ -99,21 +99,30 @@ impl Autopilot {
     fn engine_stands(&mut self, now: Time, dt_s: f64) -> Option<bool> {
         let config = &self.config.contingency;
         let below_radps = config.engine_below_radps?;
-        let speed_radps = self.accepted.engine_speed_radps.fresh(now, READING_AGE)?;
-        let airspeed_mps = self.navigation.estimate().airspeed_mps;
+        let speed_radps = self
+            .intake
+            .accepted
+            .engine_speed_radps
+            .fresh(now, READING_AGE)?;
+        let airspeed_mps = self.estimator.navigation.estimate().airspeed_mps;
         let flies = airspeed_mps > self.config.envelope.stall_airspeed_mps && !self.is_on_wheels();
-        if self.engine.falls_to_nothing(speed_radps, below_radps) && flies {
-            if !self.engine.doubt.is_on {
+        if self
+            .supervisor
+            .engine
+            .falls_to_nothing(speed_radps, below_radps)
+            && flies
+        {
+            if !self.supervisor.engine.doubt.is_on {
                 self.journal.add(Notice {
                     kind: CONTINGENCY,
                     amount_permille: SPEED_DOUBTED,
                     ..Notice::default()
                 });
             }
-            self.engine.doubt.begin();
+            self.supervisor.engine.doubt.begin();
         }
         let stands = speed_radps < below_radps;
-        let doubt = &mut self.engine.doubt;
+        let doubt = &mut self.supervisor.engine.doubt;
         if doubt.is_on {
             doubt.step(stands, config.engine_back_after_s, dt_s);
         }
@@ -122,7 +131,7 @@ impl Autopilot {
 
     /// Whether the thrust tells of the engine.
     const fn watches_thrust(&self) -> bool {
-        self.config.contingency.engine_by_thrust || self.engine.doubt.is_on
+        self.config.contingency.engine_by_thrust || self.supervisor.engine.doubt.is_on
     }
 
     /// Whether the engine is out; none if it is not known.
@@ -130,15 +139,15 @@ impl Autopilot {
         if let Some(stands) = self.engine_stands(now, dt_s) {
             return Some(stands);
         }
-        let is_flown = self.guidance.mode() != Mode::None && !self.is_on_runway();
-        if !self.watches_thrust() || !is_flown || self.last.throttle < THROTTLE {
-            self.engine.is_throttled();
+        let is_flown = self.guidance.mode.mode() != Mode::None && !self.is_on_runway();
+        if !self.watches_thrust() || !is_flown || self.loops.last.throttle < THROTTLE {
+            self.supervisor.engine.is_throttled();
             return None;
         }
-        let estimate = self.navigation.estimate();
+        let estimate = self.estimator.navigation.estimate();
         let path_rad = estimate.pitch_rad - estimate.angle_of_attack_rad * cos(estimate.roll_rad);
         let power = specific_power(path_rad, estimate.acceleration_mps2);
-        let engine = &mut self.engine;
+        let engine = &mut self.supervisor.engine;
         Some(engine.gives_no_thrust(power, self.config.contingency.glide_ratio, dt_s))
     }
 
@@ -151,32 +160,32 @@ impl Autopilot {
             } else {
                 config.engine_back_after_s
             };
-            self.engine.out.step(is_out, after_s, dt_s);
+            self.supervisor.engine.out.step(is_out, after_s, dt_s);
         }
     }
 
     /// Acts on an engine that is out, once, and on one that runs again.
     pub(super) fn meet_engine_out(&mut self) {
-        if !self.engine.out.is_on {
-            let glides = self.contingencies.active == Contingency::EngineOut;
-            if glides && self.contingencies.is_engine_met {
+        if !self.supervisor.engine.out.is_on {
+            let glides = self.supervisor.contingencies.active == Contingency::EngineOut;
+            if glides && self.supervisor.contingencies.is_engine_met {
                 self.leave_glide();
             }
-            self.contingencies.is_engine_met = false;
+            self.supervisor.contingencies.is_engine_met = false;
             return;
         }
-        if self.contingencies.is_engine_met {
+        if self.supervisor.contingencies.is_engine_met {
             return;
         }
         match self.runway().map(|demand| demand.phase) {
-            Some(RunwayPhase::Roll) => return self.guidance.go_around(RunwayReason::Engine),
+            Some(RunwayPhase::Roll) => return self.guidance.mode.go_around(RunwayReason::Engine),
             // It stands, and is about to roll.
             None if self.waits_for_takeoff() => return,
             Some(phase) if phase.is_on_wheels() || phase == RunwayPhase::Flare => return,
             _ => {}
         }
-        self.contingencies.is_engine_met = true;
-        self.engine.glides_s = 0.0;
+        self.supervisor.contingencies.is_engine_met = true;
+        self.supervisor.engine.glides_s = 0.0;
         self.meet_engine(self.config.contingency.engine);
     }
 
@@ -187,7 +196,9 @@ impl Autopilot {
 
     /// Whether a glide opens the throttle, because the engine may give thrust again.
     pub(in super::super) fn tries_engine(&mut self, dt_s: f64) -> bool {
-        self.watches_thrust() && self.engine.out.is_on && self.engine.is_tried(dt_s)
+        self.watches_thrust()
+            && self.supervisor.engine.out.is_on
+            && self.supervisor.engine.is_tried(dt_s)
     }
 
     /// The engine runs again: a plan is continued; what else was flown is not known, and
@@ -199,17 +210,18 @@ impl Autopilot {
         if is_low {
             return;
         }
-        let glided = self.guidance.mode() == Mode::Glide;
-        self.contingencies.end();
-        let action = if !glided || self.left_plan.is_some() {
+        let glided = self.guidance.mode.mode() == Mode::Glide;
+        self.supervisor.contingencies.end();
+        let action = if !glided || self.supervisor.left_plan.is_some() {
             ContingencyAction::Continue
         } else {
             ContingencyAction::Loiter
         };
         if glided {
-            self.targets.altitude_m = self.navigation.estimate().altitude_m;
+            self.guidance.targets.altitude_m = self.estimator.navigation.estimate().altitude_m;
             let airspeed_mps = self.config.reference_airspeed_mps;
-            self.targets.airspeed_mps = self.config.envelope.allowed_airspeed(airspeed_mps);
+            self.guidance.targets.airspeed_mps =
+                self.config.envelope.allowed_airspeed(airspeed_mps);
             match action {
                 ContingencyAction::Continue => self.fly_plan(0),
                 _ => self.pause(),
@@ -230,13 +242,17 @@ impl Autopilot {
             spare_m: config.contingency.glide_spare_m,
         };
         let follower = Follower::gliding(config.plan.unwrap_or_default(), config.route, glide);
-        self.enter(&OverGroundMode::new(Mode::Glide, follower, self.targets));
+        self.enter(&OverGroundMode::new(
+            Mode::Glide,
+            follower,
+            self.guidance.targets,
+        ));
     }
 
     /// Glides on after a restart, until the engine runs.
     pub(in super::super) fn resume_glide(&mut self) {
-        self.engine.out.begin();
-        self.contingencies.is_engine_met = true;
+        self.supervisor.engine.out.begin();
+        self.supervisor.contingencies.is_engine_met = true;
         self.meet_engine(ContingencyAction::Glide);
     }
 }

@@ -113,12 +113,12 @@ impl Autopilot {
         let is_watched = !fence.zones.is_empty()
             && self.runway().is_none()
             && !self.is_on_runway()
-            && self.guidance.mode() != Mode::Glide;
-        let Some(here) = self.ground.here().copied().filter(|_| is_watched) else {
+            && self.guidance.mode.mode() != Mode::Glide;
+        let Some(here) = self.estimator.ground.here().copied().filter(|_| is_watched) else {
             return;
         };
-        let stage = self.contingencies.stage;
-        let is_met = self.contingencies.active == Contingency::Fence;
+        let stage = self.supervisor.contingencies.stage;
+        let is_met = self.supervisor.contingencies.active == Contingency::Fence;
         if is_met && stage == Stage::Staying {
             return;
         }
@@ -136,39 +136,43 @@ impl Autopilot {
             let ahead_m = self.room_ahead_m(&fence, &here);
             // The circle of this moment may need more room than the one that was turned
             // onto: in strong wind, or a faster one.
-            let kept = self.contingencies.kept;
+            let kept = self.supervisor.contingencies.kept;
             let is_on_it = kept.is_some_and(|kept| kept.is_flown(&here, bank.now_rad));
             let has_room = is_on_it && ahead_m >= margin_m
                 || escape.clearance_m >= LEFT_SHARE * margin_m && ahead_m > escape.clearance_m;
             if has_room {
-                self.contingencies.stage = Stage::Leaving;
+                self.supervisor.contingencies.stage = Stage::Leaving;
                 self.return_from_fence(&here);
             }
             return;
         }
         if escape.clearance_m > self.fence_left_m() {
-            self.contingencies.kept = None;
+            self.supervisor.contingencies.kept = None;
         }
         // What leaves the circle begins on it, as near as the margin.
-        let kept = self.contingencies.kept;
+        let kept = self.supervisor.contingencies.kept;
         let needed_m = if kept.is_some() {
             KEPT_SHARE * margin_m
         } else {
             margin_m
         };
         let depth_m = inside_m(&fence, &here);
-        let enters = self.contingencies.enters_fence.unwrap_or(depth_m < 0.0);
+        let enters = self
+            .supervisor
+            .contingencies
+            .enters_fence
+            .unwrap_or(depth_m < 0.0);
         if escape.clearance_m >= needed_m {
-            self.contingencies.enters_fence = Some(false);
+            self.supervisor.contingencies.enters_fence = Some(false);
             if stage == Stage::Leaving {
-                self.contingencies.stage = Stage::Acting;
+                self.supervisor.contingencies.stage = Stage::Acting;
             }
             return;
         }
         // Engaged outside, it flies in on the way home, until there is room for a circle.
         let enters =
             enters && (depth_m < 0.0 || depth_m < inside_m(&fence, &here.straight_on(1.0)));
-        self.contingencies.enters_fence = Some(enters);
+        self.supervisor.contingencies.enters_fence = Some(enters);
         // The fence is left behind. Until there is room for a turn at once for the first time,
         // one that begins later stays nearer to it, or inside.
         let waits = escape.clearance_m >= LEAST_SHARE * margin_m || stage == Stage::Leaving;
@@ -183,21 +187,22 @@ impl Autopilot {
             return;
         }
         let circle = circle.unwrap_or_else(|| KeptCircle::of(&escape, &here));
-        self.contingencies.active = Contingency::Fence;
+        self.supervisor.contingencies.active = Contingency::Fence;
         let turns = if is_met {
-            self.contingencies.turns.saturating_add(1)
+            self.supervisor.contingencies.turns.saturating_add(1)
         } else {
             1
         };
-        self.contingencies.turns = turns;
-        self.contingencies.stage = if turns > MOST_TURNS || action == ContingencyAction::Loiter {
-            Stage::Staying
-        } else {
-            Stage::TurningAway
-        };
-        self.contingencies.kept = Some(circle);
+        self.supervisor.contingencies.turns = turns;
+        self.supervisor.contingencies.stage =
+            if turns > MOST_TURNS || action == ContingencyAction::Loiter {
+                Stage::Staying
+            } else {
+                Stage::TurningAway
+            };
+        self.supervisor.contingencies.kept = Some(circle);
         // Faster, it would not hold it.
-        self.targets.airspeed_mps = self.circle_airspeed_mps();
+        self.guidance.targets.airspeed_mps = self.circle_airspeed_mps();
         self.circle(
             ModeInput::Pause,
             Some(circle.centre),
@@ -210,9 +215,9 @@ impl Autopilot {
     /// Whether a command may end the turn away from the fence. Each one that the aircraft
     /// turns for before there is room for another turn would take some of what is left.
     pub(super) fn may_leave_fence(&self) -> bool {
-        let turns = self.contingencies.active == Contingency::Fence
-            && self.contingencies.stage.is_on_circle();
-        let Some(here) = self.ground.here().filter(|_| turns) else {
+        let turns = self.supervisor.contingencies.active == Contingency::Fence
+            && self.supervisor.contingencies.stage.is_on_circle();
+        let Some(here) = self.estimator.ground.here().filter(|_| turns) else {
             return true;
         };
         let escape = Escape::best(
@@ -230,22 +235,22 @@ impl Autopilot {
 
     /// How far inside circles stay, m: farther in gusts, which carry the aircraft off them.
     fn fence_margin_m(&self) -> f64 {
-        let gusts_g = self.navigation.estimate().gust_load - CALM_GUSTS_G;
+        let gusts_g = self.estimator.navigation.estimate().gust_load - CALM_GUSTS_G;
         self.config.contingency.fence_margin_m + GUSTS_M_PER_G * gusts_g.max(0.0)
     }
 
     /// Follows what bank is allowed, and the airspeed, `dt_s` seconds after the last time.
     pub(super) fn follow_bank(&mut self, dt_s: f64) {
         let envelope = &self.config.envelope;
-        let estimate = self.navigation.estimate();
+        let estimate = self.estimator.navigation.estimate();
         let most_rad = self.config.route.bank_rad.min(envelope.max_bank_rad);
         let allowed = tan(envelope.bank_limit_at_rad(estimate)) / tan(most_rad);
-        let off = 1.0 - allowed.min(1.0) - self.contingencies.bank_missing;
+        let off = 1.0 - allowed.min(1.0) - self.supervisor.contingencies.bank_missing;
         let share = (dt_s / BANK_FOLLOWS_S).min(1.0);
-        self.contingencies.bank_missing += off * share;
+        self.supervisor.contingencies.bank_missing += off * share;
         let lasting_mps = self.lasting_airspeed_mps();
         let off_mps = estimate.airspeed_mps - lasting_mps;
-        self.contingencies.airspeed_mps = Some(lasting_mps + off_mps * share);
+        self.supervisor.contingencies.airspeed_mps = Some(lasting_mps + off_mps * share);
     }
 
     /// The indicated airspeed with which a circle is flown, m/s: of the target no more than
@@ -253,30 +258,38 @@ impl Autopilot {
     fn circle_airspeed_mps(&self) -> f64 {
         let (route, envelope) = (&self.config.route, &self.config.envelope);
         let most_rad = route.bank_rad.min(envelope.max_bank_rad);
-        let gust_load = self.navigation.estimate().gust_load;
+        let gust_load = self.estimator.navigation.estimate().gust_load;
         let needed_mps = envelope.floor_in_turn_mps(most_rad, gust_load) + OVER_NEEDED_MPS;
         let soon_mps = (self.lasting_airspeed_mps() + FASTER_MPS).max(needed_mps);
-        self.targets.airspeed_mps.min(soon_mps)
+        self.guidance.targets.airspeed_mps.min(soon_mps)
     }
 
     /// Tells that the fence is crossed, once until the aircraft is inside of it again.
     fn tell_fence_crossed(&mut self, fence: &Fence<'_>) {
-        let Some(here) = self.ground.here().filter(|_| !fence.zones.is_empty()) else {
+        let Some(here) = self
+            .estimator
+            .ground
+            .here()
+            .filter(|_| !fence.zones.is_empty())
+        else {
             return;
         };
         let is_out = inside_m(fence, here) < 0.0;
         let side = if is_out { Side::Outside } else { Side::Inside };
-        if (self.contingencies.side, side) == (Side::Inside, Side::Outside) {
+        if (self.supervisor.contingencies.side, side) == (Side::Inside, Side::Outside) {
             let crossed = notice(Contingency::Fence, ContingencyAction::Continue);
             self.journal.add(crossed);
         }
-        self.contingencies.side = side;
+        self.supervisor.contingencies.side = side;
     }
 
     /// The indicated airspeed without gusts, m/s.
     fn lasting_airspeed_mps(&self) -> f64 {
-        let now_mps = self.navigation.estimate().airspeed_mps;
-        self.contingencies.airspeed_mps.unwrap_or(now_mps)
+        let now_mps = self.estimator.navigation.estimate().airspeed_mps;
+        self.supervisor
+            .contingencies
+            .airspeed_mps
+            .unwrap_or(now_mps)
     }
 
     /// The aircraft with the airspeed that it has without gusts or, if it is soon reached,
@@ -300,12 +313,12 @@ impl Autopilot {
     pub(super) fn fastest_bank(&self) -> Bank {
         let (route, envelope) = (&self.config.route, &self.config.envelope);
         let most_rad = route.bank_rad.min(envelope.max_bank_rad);
-        let estimate = self.navigation.estimate();
-        let commanded_rad = match self.guidance.over_ground() {
-            Some(_) => self.setpoints.roll_rad,
+        let estimate = self.estimator.navigation.estimate();
+        let commanded_rad = match self.guidance.mode.over_ground() {
+            Some(_) => self.guidance.setpoints.roll_rad,
             None => estimate.roll_rad,
         };
-        let allowed = 1.0 - self.contingencies.bank_missing;
+        let allowed = 1.0 - self.supervisor.contingencies.bank_missing;
         let share = allowed.clamp(LEAST_BANK_SHARE, PLANNED_SHARE);
         Bank {
             // It rolls on for the lag.
@@ -357,6 +370,6 @@ impl Autopilot {
             Some(place) => self.circle_at(ModeInput::Return, &place, here),
             None => self.return_home(),
         }
-        self.contingencies.mode = self.guidance.mode();
+        self.supervisor.contingencies.mode = self.guidance.mode.mode();
     }
 }

@@ -157,20 +157,20 @@ impl Autopilot {
         let terrain = self.config.terrain;
         let obstacles = self.config.plan.map_or(&[][..], |plan| plan.obstacles);
         let is_watched = !(terrain.is_empty() && obstacles.is_empty())
-            && self.guidance.mode() != Mode::Glide
+            && self.guidance.mode.mode() != Mode::Glide
             && config.terrain != ContingencyAction::Continue
             && self.runway().is_none()
             && !self.is_on_runway();
-        let Some(mut here) = self.ground.here().copied().filter(|_| is_watched) else {
-            self.contingencies.terrain = TerrainWatch::default();
+        let Some(mut here) = self.estimator.ground.here().copied().filter(|_| is_watched) else {
+            self.supervisor.contingencies.terrain = TerrainWatch::default();
             return;
         };
         // The ground does not rise with the pressure: its height is compared with the lower
         // of what altimeter and receiver show.
-        let below_m = self.ground.below_altimeter_m();
+        let below_m = self.estimator.ground.below_altimeter_m();
         here.altitude_m -= below_m;
         let speed_mps = length(here.ground_velocity_mps).max(1.0);
-        let bank_rad = self.navigation.estimate().roll_rad;
+        let bank_rad = self.estimator.navigation.estimate().roll_rad;
         let is_level = bank_rad.abs() < LEVEL_RAD;
         let ahead_s = self.terrain_ahead_s(speed_mps);
         let within_m = speed_mps * ahead_s + CIRCLES_M;
@@ -189,7 +189,7 @@ impl Autopilot {
         let climb_mps = self.config.envelope.max_climb_mps;
         let needed = ahead.needs(CLIMB_SHARE * climb_mps);
         let lowest_m = needed.now_m + below_m;
-        self.contingencies.terrain.lowest_m = Some(lowest_m).filter(|m| m.is_finite());
+        self.supervisor.contingencies.terrain.lowest_m = Some(lowest_m).filter(|m| m.is_finite());
         self.tell_of_climb(dt_s);
         // A climb that is flown lags behind a little.
         ahead.margin_m *= LAG_SHARE;
@@ -198,15 +198,15 @@ impl Autopilot {
         let is_climbable = with_bank.now_m <= here.altitude_m;
         ahead.course_rate_radps = 0.0;
         let straight = ahead.needs(most_mps);
-        let is_met = self.contingencies.active == Contingency::Terrain;
-        let stage = self.contingencies.stage;
+        let is_met = self.supervisor.contingencies.active == Contingency::Terrain;
+        let stage = self.supervisor.contingencies.stage;
         let is_in_the_way = !is_climbable || straight.now_m > here.altitude_m;
-        self.contingencies.terrain.is_in_the_way = is_in_the_way;
+        self.supervisor.contingencies.terrain.is_in_the_way = is_in_the_way;
         if !is_in_the_way {
-            self.contingencies.terrain.had_circle = None;
+            self.supervisor.contingencies.terrain.had_circle = None;
             let returns = config.terrain == ContingencyAction::Return && self.points_home(&here);
             if is_met && stage == Stage::TurningAway && returns {
-                self.contingencies.stage = Stage::Acting;
+                self.supervisor.contingencies.stage = Stage::Acting;
                 self.return_home();
             }
             return;
@@ -221,7 +221,7 @@ impl Autopilot {
 
     /// Whether a command may end the turn away from the ground: when it is not ahead any more.
     pub(super) fn may_leave_terrain(&self) -> bool {
-        let contingencies = &self.contingencies;
+        let contingencies = &self.supervisor.contingencies;
         contingencies.active != Contingency::Terrain
             || !contingencies.stage.is_on_circle()
             || !contingencies.terrain.is_in_the_way
@@ -233,6 +233,7 @@ impl Autopilot {
         let ahead_s = self.config.contingency.terrain_ahead_s;
         let of_plan = self
             .guidance
+            .mode
             .over_ground()
             .filter(|mode| mode.mode() == Mode::Plan);
         of_plan.map_or(ahead_s, |mode| {
@@ -255,7 +256,7 @@ impl Autopilot {
             (circle, clear_m)
         });
         let (circle, clear_m) = if right.1 >= left.1 { right } else { left };
-        let watch = &mut self.contingencies.terrain;
+        let watch = &mut self.supervisor.contingencies.terrain;
         if clear_m >= 0.0 {
             watch.had_circle = Some(circle.clockwise);
             return;
@@ -269,19 +270,25 @@ impl Autopilot {
             Some(false) => left.0,
             None => circle,
         };
-        let was_met = self.contingencies.active == Contingency::Terrain;
-        self.contingencies.active = Contingency::Terrain;
-        self.contingencies.stage = if was_met || config.terrain == ContingencyAction::Loiter {
-            Stage::Staying
-        } else {
-            Stage::TurningAway
-        };
+        let was_met = self.supervisor.contingencies.active == Contingency::Terrain;
+        self.supervisor.contingencies.active = Contingency::Terrain;
+        self.supervisor.contingencies.stage =
+            if was_met || config.terrain == ContingencyAction::Loiter {
+                Stage::Staying
+            } else {
+                Stage::TurningAway
+            };
         // Faster, it would not hold it. On it, it climbs above what it turned away from.
-        self.targets.airspeed_mps = self
+        self.guidance.targets.airspeed_mps = self
+            .guidance
             .targets
             .airspeed_mps
             .min(here.airspeed_mps + FASTER_MPS);
-        self.targets.altitude_m = self.targets.altitude_m.max(highest_m + self.sea_level_m());
+        self.guidance.targets.altitude_m = self
+            .guidance
+            .targets
+            .altitude_m
+            .max(highest_m + self.sea_level_m());
         self.circle(
             ModeInput::Pause,
             Some(here.plane_at(circle.centre_m)),
@@ -296,7 +303,7 @@ impl Autopilot {
     fn tell_of_climb(&mut self, dt_s: f64) {
         let sea_level_m = self.sea_level_m();
         let raised_m = self.demanded_altitude_m() - sea_level_m + RAISED_M;
-        let watch = &mut self.contingencies.terrain;
+        let watch = &mut self.supervisor.contingencies.terrain;
         let is_raised = watch.lowest_m.is_some_and(|lowest_m| lowest_m > raised_m);
         let said = match (watch.climbs_s, is_raised) {
             (None, true) => {
@@ -329,7 +336,9 @@ impl Autopilot {
 
     /// The target altitude before it is limited, m.
     fn demanded_altitude_m(&self) -> f64 {
-        let targets = self.guidance.targets();
-        targets.map_or(self.targets.altitude_m, |targets| targets.altitude_m)
+        let targets = self.guidance.mode.targets();
+        targets.map_or(self.guidance.targets.altitude_m, |targets| {
+            targets.altitude_m
+        })
     }
 }

@@ -23,14 +23,15 @@ impl Autopilot {
             return false;
         };
         !self.config.route.runway.is_thrown()
-            && self.ground.stands_on_wheels()
-            && (self.ground.moves(now) || self.is_beyond_takeoff(*runway))
+            && self.estimator.ground.stands_on_wheels()
+            && (self.estimator.ground.moves(now) || self.is_beyond_takeoff(*runway))
     }
 
     /// Whether it stands on the runway from which it took off, but elsewhere along it,
     /// and not where the plan's runway begins either.
     fn is_beyond_takeoff(&self, runway: Option<Runway>) -> bool {
-        let (Some(here), Some(took_off)) = (self.ground.here(), self.took_off) else {
+        let (Some(here), Some(took_off)) = (self.estimator.ground.here(), self.supervisor.took_off)
+        else {
             return false;
         };
         let here = here.plane();

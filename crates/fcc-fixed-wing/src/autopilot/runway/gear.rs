@@ -55,14 +55,14 @@ impl Autopilot {
             return outputs;
         }
         let demand = self.runway();
-        let mode = self.guidance.over_ground();
+        let mode = self.guidance.mode.over_ground();
         let decision = Decision {
             phase: demand.map(|demand| demand.phase),
             lands: mode.is_some_and(OverGroundMode::glides_to_land),
-            on_wheels: self.ground.stands_on_wheels(),
+            on_wheels: self.estimator.ground.stands_on_wheels(),
             height_m: demand.map_or(0.0, |demand| demand.height_m),
-            climb_rate_mps: self.navigation.estimate().climb_rate_mps,
-            before: self.last.gear,
+            climb_rate_mps: self.estimator.navigation.estimate().climb_rate_mps,
+            before: self.loops.last.gear,
         };
         Surfaces {
             gear: decision.gear(),
@@ -78,7 +78,7 @@ impl Autopilot {
         }
         let decision = Decision {
             phase: None,
-            lands: stops_on_wheels || self.lands_in_failsafe() || self.degraded.glides,
+            lands: stops_on_wheels || self.lands_in_failsafe() || self.supervisor.degraded.glides,
             on_wheels: false,
             height_m: 0.0,
             climb_rate_mps: 0.0,

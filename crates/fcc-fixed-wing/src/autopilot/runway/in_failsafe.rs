@@ -49,18 +49,21 @@ impl Autopilot {
             }
             _ => return,
         };
-        self.degraded.low = low;
+        self.supervisor.degraded.low = low;
         if let Low::Climbs(..) = low {
-            let estimate = *self.navigation.estimate();
-            let last = self.last;
+            let estimate = *self.estimator.navigation.estimate();
+            let last = self.loops.last;
             self.take_over(&last);
             // Of level flight, at the airspeed that it has or will have.
             let demand = ThrottleDemand {
                 airspeed_mps: estimate.airspeed_mps,
                 ..self.throttle_demand(estimate.climb_rate_mps)
             };
-            self.airspeed.engage(last.throttle, &demand, &estimate);
-            self.degraded.trimmed_mps = Some(estimate.airspeed_mps.max(config.climb_mps));
+            self.loops
+                .airspeed
+                .engage(last.throttle, &demand, &estimate);
+            self.supervisor.degraded.trimmed_mps =
+                Some(estimate.airspeed_mps.max(config.climb_mps));
         }
     }
 
@@ -72,7 +75,7 @@ impl Autopilot {
         estimate: &Estimate,
         dt_s: f64,
     ) -> Option<Surfaces> {
-        let low = self.degraded.low;
+        let low = self.supervisor.degraded.low;
         if low == Low::No || held_without(lost).lateral == Lateral::Trims {
             return None;
         }
@@ -86,13 +89,13 @@ impl Autopilot {
         let (pitch_rad, throttle) = match low {
             Low::Climbs(pitch_rad, left_s) => {
                 let left_s = left_s - dt_s;
-                self.degraded.low = Low::Climbs(pitch_rad, left_s);
+                self.supervisor.degraded.low = Low::Climbs(pitch_rad, left_s);
                 if left_s <= 0.0 {
                     self.level_off(lost, estimate);
                 }
                 (
                     pitch_rad,
-                    (self.last.throttle + CLOSES_PER_S * dt_s).min(1.0),
+                    (self.loops.last.throttle + CLOSES_PER_S * dt_s).min(1.0),
                 )
             }
             _ => (
@@ -101,12 +104,13 @@ impl Autopilot {
                     TOUCHES_RAD,
                     demand.pitch_rad.max(TOUCHES_RAD),
                 ),
-                (self.last.throttle - CLOSES_PER_S * dt_s).max(0.0),
+                (self.loops.last.throttle - CLOSES_PER_S * dt_s).max(0.0),
             ),
         };
         let schedule = self.schedule_at(estimate.airspeed_mps);
-        let lateral = self.heading.hold_bank(0.0, estimate, schedule, dt_s);
+        let lateral = self.loops.heading.hold_bank(0.0, estimate, schedule, dt_s);
         let vertical = self
+            .loops
             .altitude
             .hold_pitch(pitch_rad, estimate, &envelope, schedule, dt_s);
         self.show(
@@ -116,7 +120,7 @@ impl Autopilot {
         );
         Some(Surfaces {
             throttle,
-            elevator: self.actuation.elevator(vertical.elevator),
+            elevator: self.loops.actuation.elevator(vertical.elevator),
             aileron: lateral.aileron,
             rudder: lateral.rudder,
             ..Surfaces::IDLE
@@ -125,16 +129,18 @@ impl Autopilot {
 
     /// The altitude that it has is kept from now on.
     fn level_off(&mut self, lost: Quantities, estimate: &Estimate) {
-        self.degraded.low = Low::No;
-        self.degraded.altitude_m = estimate.altitude_m;
+        self.supervisor.degraded.low = Low::No;
+        self.supervisor.degraded.altitude_m = estimate.altitude_m;
         if !lost.contains(Quantity::Altitude) {
             let schedule = self.schedule_at(estimate.airspeed_mps);
-            self.altitude.engage(self.last.elevator, estimate, schedule);
+            self.loops
+                .altitude
+                .engage(self.loops.last.elevator, estimate, schedule);
         }
     }
 
     /// Whether a flare is flown to the ground.
     pub(in super::super) fn lands_in_failsafe(&self) -> bool {
-        self.degraded.low == Low::Lands
+        self.supervisor.degraded.low == Low::Lands
     }
 }

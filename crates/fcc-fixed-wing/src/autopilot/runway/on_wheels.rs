@@ -59,7 +59,7 @@ impl Autopilot {
     /// In a failsafe on the wheels: to a stop, straight on as far as the yaw rate is known.
     pub(in super::super) fn stop_on_wheels(&mut self, lost: Quantities) -> Option<Surfaces> {
         let phase = self.runway()?.phase;
-        let rolls = match self.ground.on_wheels() {
+        let rolls = match self.estimator.ground.on_wheels() {
             _ if phase == RunwayPhase::Hand => true,
             Some(on_wheels) => on_wheels && (phase.is_on_wheels() || self.lands_in_failsafe()),
             None => phase.is_on_wheels() && phase != RunwayPhase::Rotate,
@@ -68,20 +68,20 @@ impl Autopilot {
             return None;
         }
         if !self.lands_in_failsafe() {
-            self.guidance.go_around(RunwayReason::Failsafe);
+            self.guidance.mode.go_around(RunwayReason::Failsafe);
         }
-        let (config, dt_s) = (self.config.route.runway, self.clock.step_s());
+        let (config, dt_s) = (self.config.route.runway, self.intake.clock.step_s());
         let yaw_radps = if lost.contains(Quantity::BodyRates) {
             0.0
         } else {
-            self.navigation.estimate().body_rates.yaw_radps
+            self.estimator.navigation.estimate().body_rates.yaw_radps
         };
-        let speed_mps = self.ground.speed_mps().max(LEAST_STEERED_MPS);
-        let brake = &mut self.on_runway.brake;
+        let speed_mps = self.estimator.ground.speed_mps().max(LEAST_STEERED_MPS);
+        let brake = &mut self.guidance.on_runway.brake;
         *brake += limit_abs(config.brake - *brake, BRAKES_PER_S * dt_s);
         let (left_brake, right_brake) = (Some(*brake), Some(*brake));
         Some(Surfaces {
-            throttle: (self.last.throttle - CLOSES_PER_S * dt_s).max(0.0),
+            throttle: (self.loops.last.throttle - CLOSES_PER_S * dt_s).max(0.0),
             rudder: limit_abs(-self.schedule().moment * RUDDER_PER_RADPS * yaw_radps, 1.0),
             nose_wheel: Some(limit_abs(
                 -yaw_radps * config.steering_radius_m / speed_mps,
@@ -114,6 +114,7 @@ impl Autopilot {
         let schedule = self.schedule();
         let level_radps = -LEVELS_PER_S * estimate.roll_rad;
         let level = self
+            .loops
             .heading
             .surfaces_for(level_radps, 0.0, 0.0, estimate, schedule);
         Lateral {
@@ -133,7 +134,7 @@ impl Autopilot {
     ) -> Surfaces {
         let config = self.config.route.runway;
         // Without a measured airspeed it may stay what it was.
-        let speed_mps = if self.navigation.airspeed_doubt().is_some() {
+        let speed_mps = if self.estimator.navigation.airspeed_doubt().is_some() {
             demand.ground_speed_mps
         } else {
             estimate.airspeed_mps
@@ -142,10 +143,11 @@ impl Autopilot {
             && (speed_mps < BRAKES_BELOW * config.approach_mps || demand.phase_s > BRAKES_AFTER_S);
         let rolls = demand.phase == RunwayPhase::RollOut && !demand.takes_off;
         // Dead reckoning moves a standing aircraft, and noise of the velocity does.
-        let is_known = self.ground.is_measured() && self.ground.speed_mps() > STANDS_MPS;
+        let is_known =
+            self.estimator.ground.is_measured() && self.estimator.ground.speed_mps() > STANDS_MPS;
         let strays =
             is_known && brakes && rolls && strays(demand.cross_track_m, demand.cross_track_mps);
-        let control = &mut self.on_runway;
+        let control = &mut self.guidance.on_runway;
         if strays && !control.strayed {
             control.strayed = true;
             self.journal.add(notice(RunwayReason::Strays));
