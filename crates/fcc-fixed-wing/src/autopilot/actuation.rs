@@ -162,12 +162,6 @@ impl Autopilot {
     /// The gains for the present airspeed and latency.
     pub(super) fn schedule(&self) -> Schedule {
         let airspeed_mps = self.estimator.navigation.estimate().airspeed_mps;
-        self.schedule_at(airspeed_mps)
-    }
-
-    /// The gains for an airspeed and the present latency.
-    pub(super) fn schedule_at(&self, airspeed_mps: f64) -> Schedule {
-        let schedule = Schedule::at(airspeed_mps, self.config.reference_airspeed_mps);
-        self.loops.actuation.slowed(schedule)
+        self.loops.schedule_at(&self.config, airspeed_mps)
     }
 }

@@ -3,12 +3,11 @@
 
 use core::fmt;
 
-use super::{Autopilot, flags};
+use super::Autopilot;
 use crate::control::Envelope;
-use fcc_core::flight::Measurements;
-use fcc_core::framework::{Flags, Notice, Time};
+use fcc_core::framework::{Notice, Time};
 use fcc_guidance::Mode;
-use fcc_navigation::{Doubt, DoubtReason, MotionDoubt};
+use fcc_navigation::{Doubt, DoubtReason};
 
 /// The numbers of notices: one for each reason, with the sensor's number in the
 /// lowest bits.
@@ -99,39 +98,6 @@ impl Autopilot {
         if let Some(event) = event {
             self.journal.add(event);
         }
-    }
-
-    /// The conditions that airspeed and altitude are excluded.
-    pub(super) fn doubted(&self) -> Flags {
-        Flags::NONE
-            .with(
-                flags::DOUBTED_AIRSPEED,
-                self.estimator.navigation.airspeed_doubt().is_some(),
-            )
-            .with(
-                flags::DOUBTED_ALTITUDE,
-                self.estimator.navigation.altitude_doubt().is_some(),
-            )
-    }
-
-    /// The faults that attitude or body rates are doubted.
-    pub(super) fn doubted_motion(&self) -> Flags {
-        let doubt = self.estimator.navigation.motion_doubt();
-        Flags::NONE
-            .with(
-                flags::DOUBTED_ATTITUDE,
-                doubt == Some(MotionDoubt::Attitude),
-            )
-            .with(
-                flags::DOUBTED_BODY_RATES,
-                doubt == Some(MotionDoubt::BodyRates),
-            )
-    }
-
-    /// Whether a sensor's airspeed may be used beside others'.
-    pub(super) fn permits_airspeed(&self, measurements: &Measurements) -> bool {
-        let airspeed = measurements.airspeed_mps;
-        airspeed.is_never() || self.estimator.navigation.permits_airspeed(airspeed.value)
     }
 
     /// The envelope, with the distance that the airspeed's uncertainty needs, and with the

@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::{Autopilot, PlanReplacement, Resume};
 use fcc_core::blocks::wrap_pi;
-use fcc_core::flight::{ALTIMETER_SETTINGS_PA, AltitudeReference, Position};
+use fcc_core::flight::{AltitudeReference, Position};
 use fcc_core::schema;
 use fcc_core::units::{FOOT_M, HECTOPASCAL_PA, KNOT_MPS};
 use fcc_guidance::{Mode, ModeInput};
@@ -178,15 +178,15 @@ impl Autopilot {
                 self.fly_to(AltitudeReference::PressureLevel, m);
             }
             AutopilotCommand::Height(m) => self.fly_to(AltitudeReference::Field, m),
-            AutopilotCommand::AltimeterSetting(pa) => self.set_altimeter(pa),
+            AutopilotCommand::AltimeterSetting(pa) => self.guidance.set_altimeter(pa),
             AutopilotCommand::Resume(ref resume) => self.resume(resume),
             AutopilotCommand::Plan(item) => self.fly_plan(item),
             AutopilotCommand::Pause => self.pause(),
             AutopilotCommand::GoTo(ref place) => self.go_to(place),
             AutopilotCommand::ReturnHome => self.return_home(),
-            AutopilotCommand::GoAround => self.go_around(),
+            AutopilotCommand::GoAround => self.guidance.go_around(&self.config),
             AutopilotCommand::Land => {
-                if !self.is_landing() {
+                if !self.guidance.is_landing() {
                     self.fly_landing();
                 }
             }
@@ -194,15 +194,6 @@ impl Autopilot {
             | AutopilotCommand::Heading(_)
             | AutopilotCommand::ReplacePlan(_) => {}
         }
-    }
-
-    /// The pressure altitude of what the target altitude refers to, m.
-    pub(super) fn datum_m(&self) -> f64 {
-        // Only a field whose elevation is known is referred to.
-        self.guidance
-            .altimeter
-            .datum_m(self.guidance.reference)
-            .unwrap_or(0.0)
     }
 
     /// Flies to an altitude above a reference, m.
@@ -214,16 +205,6 @@ impl Autopilot {
             self.guidance.targets.altitude_m = altitude_m + datum_m;
             self.guidance.capture = None;
             self.change_mode(ModeInput::SetPoint);
-        }
-    }
-
-    /// Sets the altimeter. The target altitude is shifted with what it refers
-    /// to.
-    fn set_altimeter(&mut self, setting_pa: f64) {
-        if ALTIMETER_SETTINGS_PA.contains(&setting_pa) {
-            let before_m = self.datum_m();
-            self.guidance.altimeter.setting_pa = setting_pa;
-            self.guidance.mode.shift_altitude(self.datum_m() - before_m);
         }
     }
 }

@@ -128,6 +128,13 @@ impl Contingencies {
         self.active
     }
 
+    /// Whether a command may end the turn away from the ground: when it is not ahead any more.
+    pub(super) fn may_leave_terrain(&self) -> bool {
+        self.active != Contingency::Terrain
+            || !self.stage.is_on_circle()
+            || !self.terrain.is_in_the_way
+    }
+
     /// The lowest altitude above mean sea level that the ground ahead permits, m.
     pub(super) const fn lowest_over_terrain_m(&self) -> Option<f64> {
         self.terrain.lowest_m()
@@ -189,7 +196,7 @@ impl Autopilot {
     /// Whether a command may end what is done: a turn away from the fence or the ground
     /// comes first, until it has led away.
     pub(super) fn may_end_contingency(&self) -> bool {
-        self.may_leave_fence() && self.may_leave_terrain()
+        self.may_leave_fence() && self.supervisor.contingencies.may_leave_terrain()
     }
 
     /// Finds contingencies, and acts on the worst.
@@ -220,7 +227,7 @@ impl Autopilot {
         action: ContingencyAction,
         amount_permille: u16,
     ) -> bool {
-        if self.runway().is_some() {
+        if self.guidance.runway().is_some() {
             return false;
         }
         if self.supervisor.contingencies.active as u8 >= contingency as u8 {

@@ -7,10 +7,10 @@ use core::time::Duration;
 use coming_and_going::{FORGOTTEN_SLOWER, Intermittent, Repeated};
 
 use super::runway::Low;
-use super::{Autopilot, FailsafeEnd, flags};
+use super::{Autopilot, FailsafeConfig, FailsafeEnd, flags};
 use fcc_core::flight::Measurements;
 use fcc_core::framework::{Notice, Tick, Time};
-use fcc_navigation::{AirspeedSource, KnownMotion, MotionDoubt, Quantities, Quantity};
+use fcc_navigation::{KnownMotion, MotionDoubt, Quantities, Quantity};
 
 /// The kinds of notices.
 pub(super) const GOOD_AGAIN: u8 = 3;
@@ -263,6 +263,36 @@ impl Degraded {
         self.unsound_s > hold.as_secs_f64()
     }
 
+    /// The quantities that come and go.
+    pub(super) const fn intermittent(&self) -> Quantities {
+        self.intermittent.left_out
+    }
+
+    /// Whether it goes on: what it holds is sound, or nobody is there to take over.
+    pub(super) fn goes_on(&self, config: &FailsafeConfig) -> bool {
+        let is_sound = self.is_sound && !self.is_worn_out(config.hold);
+        is_sound || config.end == FailsafeEnd::Glide
+    }
+
+    /// Whether what was lost has been good for long enough. Whether the failsafe
+    /// ends then is for the loop to decide: one because of overruns goes on until
+    /// these are over.
+    pub(super) fn is_good_again(&self, config: &FailsafeConfig) -> bool {
+        let after = config.recovered_after * self.repeated.factor();
+        let good = Duration::from_secs_f64(self.good_s);
+        self.is_failsafe && after > Duration::ZERO && good >= after
+    }
+
+    /// Whether it flies on without a quantity.
+    pub(super) const fn flies_without(&self) -> bool {
+        self.is_sound && (self.good_s == 0.0 || !self.intermittent.left_out.is_empty())
+    }
+
+    /// Whether a flare is flown to the ground.
+    pub(super) fn lands(&self) -> bool {
+        self.low == Low::Lands
+    }
+
     /// The first tick of a failsafe, at an altitude, m.
     pub(super) fn begin(&mut self, altitude_m: f64) {
         self.is_failsafe = true;
@@ -296,11 +326,6 @@ impl Autopilot {
         self.stale(now) | self.frozen()
     }
 
-    /// The quantities that come and go in a failsafe.
-    pub(super) const fn intermittent(&self) -> Quantities {
-        self.supervisor.degraded.intermittent.left_out
-    }
-
     /// Follows which quantities come and go in a failsafe.
     pub(super) fn follow_intermittent(&mut self, dt_s: f64) {
         if self.supervisor.degraded.is_failsafe {
@@ -314,7 +339,8 @@ impl Autopilot {
     pub(super) fn known_motion(&self, now: Time, lost: Quantities) -> KnownMotion {
         const MOTION: Quantities = Quantities::of(&[Quantity::Attitude, Quantity::SpecificForce]);
         let no_altitude = self.estimator.navigation.altitude_doubt().is_none()
-            && (self.stale(now) | self.intermittent()).contains(Quantity::Altitude);
+            && (self.stale(now) | self.supervisor.degraded.intermittent())
+                .contains(Quantity::Altitude);
         if lost.intersects(MOTION) || no_altitude || self.estimator.navigation.suspects_motion() {
             KnownMotion::Unknown
         } else if self.is_on_wheels() {
@@ -328,7 +354,8 @@ impl Autopilot {
     /// forces and motion does while it is accurate, and nothing is lost that it
     /// comes from; so does the climb by a satellite receiver in place of an altitude.
     pub(super) fn unreplaced(&self, now: Time, lost: Quantities) -> Quantities {
-        let is_known = self.is_accurate(ACCURATE_RATIO) && !lost.intersects(FORCES_NEED);
+        let is_known = self.estimator.is_accurate(&self.config, ACCURATE_RATIO)
+            && !lost.intersects(FORCES_NEED);
         let climb_is_known = self
             .intake
             .accepted
@@ -338,19 +365,12 @@ impl Autopilot {
             .keeping(Quantity::Altitude, !climb_is_known)
     }
 
-    fn is_accurate(&self, ratio: f64) -> bool {
-        let estimate = self.estimator.navigation.estimate();
-        let accurate_mps = ratio * self.config.reference_airspeed_mps;
-        estimate.airspeed_source == AirspeedSource::Forces
-            && estimate.airspeed_uncertainty_mps < accurate_mps
-    }
-
     /// Whether the airspeed is known by forces and motion, of an aircraft that is learned
     /// and has no sensor of it; none of any other.
     pub(super) fn knows_airspeed_by_forces(&self) -> Option<bool> {
         let has_none =
             self.config.airframe.is_some() && self.intake.accepted.airspeed_mps.is_never();
-        has_none.then(|| self.is_accurate(FLYABLE_RATIO))
+        has_none.then(|| self.estimator.is_accurate(&self.config, FLYABLE_RATIO))
     }
 
     /// Follows a failsafe: for how long it has lasted, and whether all is good
@@ -389,29 +409,5 @@ impl Autopilot {
             self.journal.add(lasted(FLOWN_OTHERWISE, degraded.lasted_s));
         }
         degraded.glides = glides;
-    }
-
-    /// Whether the failsafe goes on: what it holds is sound, or nobody is there
-    /// to take over.
-    pub(super) fn goes_on(&self) -> bool {
-        let degraded = &self.supervisor.degraded;
-        let is_sound = degraded.is_sound && !degraded.is_worn_out(self.config.failsafe.hold);
-        is_sound || self.config.failsafe.end == FailsafeEnd::Glide
-    }
-
-    /// Whether what was lost has been good for long enough. Whether the failsafe
-    /// ends then is for the loop to decide: one because of overruns goes on until
-    /// these are over.
-    pub(super) fn is_good_again(&self) -> bool {
-        let after =
-            self.config.failsafe.recovered_after * self.supervisor.degraded.repeated.factor();
-        let good = Duration::from_secs_f64(self.supervisor.degraded.good_s);
-        self.supervisor.degraded.is_failsafe && after > Duration::ZERO && good >= after
-    }
-
-    /// Whether it flies on without a quantity.
-    pub(super) const fn is_degraded(&self) -> bool {
-        let degraded = &self.supervisor.degraded;
-        degraded.is_sound && (degraded.good_s == 0.0 || !degraded.intermittent.left_out.is_empty())
     }
 }

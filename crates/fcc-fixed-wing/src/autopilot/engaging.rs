@@ -33,9 +33,15 @@ impl Autopilot {
         )
         .with(flags::LOAD_AGAINST_GRAVITY, contradictions.load)
         .with(flags::PITCH_AGAINST_FORCE, contradictions.pitch_and_force)
-        .with(flags::PLANT_REPLAYING, self.plant_is(PlantState::Replaying))
+        .with(
+            flags::PLANT_REPLAYING,
+            self.intake.plant_is(PlantState::Replaying),
+        )
         .with(flags::PILOT_TAKES_OVER, self.supervisor.pilot.is_moved())
-        .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))
+        .with(
+            flags::PLANT_PAUSED,
+            self.intake.plant_is(PlantState::Paused),
+        )
         .with(flags::PLANT_STALLED, self.intake.clock.has_stopped())
         .with(
             flags::SETTLING,

@@ -4,6 +4,7 @@ use core::time::Duration;
 
 use super::Autopilot;
 use super::degraded::{Lateral, Power, Vertical, held_without};
+use super::release::Release;
 use crate::control::Envelope;
 use fcc_core::blocks::{limit_abs, wrap_two_pi};
 use fcc_core::flight::atmosphere::true_airspeed_mps;
@@ -98,7 +99,7 @@ impl Autopilot {
     pub(super) fn keep_trims(&mut self) {
         self.loops.kept_trims = KeptTrims {
             found_with: self.intake.accepted.body_rates.value,
-            trims: self.trims(),
+            trims: self.loops.trims(),
         };
     }
 
@@ -138,7 +139,7 @@ impl Autopilot {
         let glides = self.supervisor.degraded.glides;
         self.guidance.setpoints.roll_rad = 0.0;
         self.guidance.setpoints.climb_rate_mps = 0.0;
-        let silent = self.is_silent(now);
+        let silent = self.intake.is_silent(&self.config, now);
         let idle = glides && !silent || measured.other_control.value.reverse_thrust;
         if held.lateral == Lateral::Trims {
             self.guidance.setpoints.pitch_rad = 0.0;
@@ -153,7 +154,7 @@ impl Autopilot {
             };
             return Surfaces {
                 throttle,
-                ..self.trims()
+                ..self.loops.trims()
             };
         }
         let config = self.config.failsafe;
@@ -162,7 +163,7 @@ impl Autopilot {
             return recovering;
         }
         let (schedule, dt_s) = (
-            self.schedule_at(estimate.airspeed_mps),
+            self.loops.schedule_at(&self.config, estimate.airspeed_mps),
             self.intake.clock.step_s(),
         );
         if !idle && let Some(low) = self.fly_low(lost, &estimate, dt_s) {
@@ -170,11 +171,14 @@ impl Autopilot {
         }
         let envelope = self.envelope_without(lost, &estimate);
         // A constant pitch: one that follows the airspeed lets it diverge.
-        let trimmed = self.schedule_at(if glides {
-            self.config.envelope.best_glide_airspeed_mps
-        } else {
-            self.trimmed_mps()
-        });
+        let trimmed = self.loops.schedule_at(
+            &self.config,
+            if glides {
+                self.config.envelope.best_glide_airspeed_mps
+            } else {
+                self.trimmed_mps()
+            },
+        );
         let roll_rad = if glides { config.glide_bank_rad } else { 0.0 };
         let lateral = self
             .loops
@@ -272,7 +276,7 @@ impl Autopilot {
     pub(super) fn fly_on(&mut self) {
         self.intake.distrusted = Quantities::NONE;
         self.supervisor.degraded = self.supervisor.degraded.recovered();
-        self.end_release_of_failsafe();
+        self.supervisor.release.take_if(Release::is_of_failsafe);
         let last = self.loops.last;
         self.take_over(&last);
         self.loops
@@ -312,19 +316,6 @@ impl Autopilot {
             } else {
                 last.altitude_m.value = estimate.altitude_m;
             }
-        }
-    }
-
-    /// The trims that the loops have found, and the last throttle: an aircraft
-    /// that is not measured does not roll on.
-    pub(super) fn trims(&self) -> Surfaces {
-        Surfaces {
-            throttle: self.loops.last.throttle,
-            elevator: self.loops.altitude.trim(),
-            aileron: self.loops.heading.aileron_trim(),
-            rudder: self.loops.heading.rudder_trim(),
-            elevator_trim: self.loops.trim.position(),
-            ..Surfaces::IDLE
         }
     }
 }

@@ -36,19 +36,19 @@ impl Autopilot {
             .into_iter()
             .flatten()
             .fold(f64::NEG_INFINITY, f64::max);
-        lowest_m + self.sea_level_m()
+        lowest_m + self.guidance.sea_level_m()
     }
 
     /// The highest pressure altitude that is flown to, m; infinite without a ceiling.
     fn highest_m(&self) -> f64 {
         let margin_m = self.config.contingency.fence_height_margin_m;
         let ceiling_m = self.fence().ceiling_m.unwrap_or(f64::INFINITY);
-        ceiling_m - margin_m + self.sea_level_m()
+        ceiling_m - margin_m + self.guidance.sea_level_m()
     }
 
     /// Raises the target altitude to the lowest one, and lowers it to the highest.
     pub(super) fn keep_above_floor(&mut self) {
-        if self.runway().is_some() || self.is_on_runway() {
+        if self.guidance.runway().is_some() || self.is_on_runway() {
             self.guidance.is_at_floor = false;
             self.loops.altitude.pull_out(0.0);
             return;

@@ -1,9 +1,7 @@
 //! Control in a tick: from the targets to the outputs.
 
 use super::Autopilot;
-use crate::Setpoints;
 use crate::control::{Envelope, Schedule};
-use fcc_core::blocks::wrap_two_pi;
 use fcc_core::flight::Surfaces;
 use fcc_core::framework::Time;
 use fcc_navigation::{Estimate, Quantities};
@@ -11,7 +9,7 @@ use fcc_navigation::{Estimate, Quantities};
 impl Autopilot {
     /// The outputs of a tick.
     pub(super) fn fly(&mut self, now: Time) -> Surfaces {
-        if self.is_silent(now) {
+        if self.intake.is_silent(&self.config, now) {
             return self.silent_trims();
         }
         if !self.intake.renewed_since.is_never() {
@@ -61,7 +59,7 @@ impl Autopilot {
         let vertical = altitude.step(to.altitude_m, estimate, envelope, schedule, dt_s);
         let demand = self.throttle_demand(vertical.climb_rate_mps);
         let throttle = self.loops.airspeed.step(&demand, estimate, dt_s);
-        self.show(
+        self.guidance.show(
             lateral.roll_rad,
             vertical.climb_rate_mps,
             vertical.pitch_rad,
@@ -73,20 +71,5 @@ impl Autopilot {
             rudder: lateral.rudder,
             ..Surfaces::IDLE
         }
-    }
-
-    /// The set points of this tick: the targets, and what the loops make of them.
-    pub(super) fn show(&mut self, roll_rad: f64, climb_rate_mps: f64, pitch_rad: f64) {
-        self.guidance.setpoints = Setpoints {
-            airspeed_mps: self.guidance.targets.airspeed_mps,
-            heading_rad: wrap_two_pi(self.guidance.targets.heading_rad),
-            altitude_m: self.guidance.targets.altitude_m,
-            altitude_reference: self.guidance.reference,
-            altitude_above_reference_m: self.guidance.targets.altitude_m - self.datum_m(),
-            roll_rad,
-            climb_rate_mps,
-            pitch_rad,
-            ..self.guidance.setpoints
-        };
     }
 }

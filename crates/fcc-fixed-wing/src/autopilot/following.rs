@@ -138,6 +138,11 @@ impl Following {
         }
         self.is_lost
     }
+
+    /// Whether the outputs do not reach the aircraft.
+    pub(super) const fn is_lost(&self) -> bool {
+        self.is_lost
+    }
 }
 
 impl Autopilot {
@@ -146,7 +151,8 @@ impl Autopilot {
     /// effect.
     pub(super) fn take_over_unless_followed(&mut self, now: Time, max_age: Duration) {
         let measured = self.intake.accepted.surfaces.fresh(now, max_age);
-        let is_flown = self.guidance.mode.mode() != Mode::None && !self.withholds(now);
+        let is_flown =
+            self.guidance.mode.mode() != Mode::None && !self.intake.withholds(&self.config, now);
         let measured = measured.filter(|_| is_flown);
         let passed_s = self.intake.clock.passed_s();
         if self
@@ -157,11 +163,6 @@ impl Autopilot {
         {
             self.take_over(&controls);
         }
-    }
-
-    /// Whether the outputs do not reach the aircraft.
-    pub(super) const fn is_not_followed(&self) -> bool {
-        self.supervisor.following.is_lost
     }
 }
 

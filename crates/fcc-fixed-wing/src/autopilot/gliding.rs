@@ -26,12 +26,12 @@ impl Autopilot {
         let (envelope, schedule) = (self.glide_envelope(), self.schedule());
         let lateral = self.step_lateral(estimate, &envelope, schedule, dt_s);
         let vertical = self.hold_glide(&envelope, estimate, dt_s);
-        self.show(
+        self.guidance.show(
             lateral.roll_rad,
             vertical.climb_rate_mps,
             vertical.pitch_rad,
         );
-        let by = if self.tries_engine(dt_s) {
+        let by = if self.supervisor.engine.opens(&self.config.contingency, dt_s) {
             CLOSES_PER_S
         } else {
             -CLOSES_PER_S

@@ -91,7 +91,8 @@ impl Autopilot {
                 .is_clear_for(self.intake.clock.passed_s());
             return;
         }
-        let is_expected = self.runway().is_some() || self.guidance.mode.mode() == Mode::Glide;
+        let is_expected =
+            self.guidance.runway().is_some() || self.guidance.mode.mode() == Mode::Glide;
         if !is_expected {
             let altitude_m = self.estimator.navigation.estimate().altitude_m;
             let off_ground_m = self.supervisor.told_once.touched.off_ground_m(altitude_m);

@@ -4,7 +4,7 @@ use super::AutopilotConfig;
 use super::actuation::Actuation;
 use super::failsafe::KeptTrims;
 use super::silence::StraightTrims;
-use crate::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop, Recovery};
+use crate::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop, Recovery, Schedule};
 use fcc_core::flight::Surfaces;
 use fcc_guidance::path::BankCommand;
 
@@ -42,6 +42,25 @@ impl Loops {
             straight: StraightTrims::default(),
             last: Surfaces::default(),
             glides: false,
+        }
+    }
+
+    /// The gains for an airspeed and the present latency.
+    pub(super) fn schedule_at(&self, config: &AutopilotConfig, airspeed_mps: f64) -> Schedule {
+        let schedule = Schedule::at(airspeed_mps, config.reference_airspeed_mps);
+        self.actuation.slowed(schedule)
+    }
+
+    /// The trims that the loops have found, and the last throttle: an aircraft
+    /// that is not measured does not roll on.
+    pub(super) fn trims(&self) -> Surfaces {
+        Surfaces {
+            throttle: self.last.throttle,
+            elevator: self.altitude.trim(),
+            aileron: self.heading.aileron_trim(),
+            rudder: self.heading.rudder_trim(),
+            elevator_trim: self.trim.position(),
+            ..Surfaces::IDLE
         }
     }
 }

@@ -9,6 +9,7 @@ mod config;
 mod contingency;
 mod degraded;
 mod engaging;
+mod estimator;
 mod failsafe;
 pub mod flags;
 mod floor;
@@ -19,6 +20,7 @@ mod gliding;
 mod ground_below;
 mod ground_contact;
 mod ground_motion;
+mod guidance;
 mod intake;
 mod journal;
 mod loops;
@@ -39,6 +41,7 @@ mod runway;
 mod scale;
 mod sensor_health;
 mod silence;
+mod supervisor;
 mod throttle_demand;
 mod upset;
 mod whereabouts;
@@ -47,13 +50,13 @@ mod wrong_sensors;
 use core::fmt;
 use core::hint::black_box;
 
-use assembly::{Estimator, GuidanceState, Supervisor};
-use capture::Capture;
 pub use command::AutopilotCommand;
 pub use config::AutopilotConfig;
 pub use contingency::{Contingency, ContingencyAction, ContingencyConfig};
 use degraded::Degraded;
+use estimator::Estimator;
 pub use failsafe::{FailsafeConfig, FailsafeEnd};
+use guidance::GuidanceState;
 use intake::Intake;
 use journal::Journal;
 use loops::Loops;
@@ -64,6 +67,7 @@ pub use resume::Resume;
 pub use routing::ITEM_REACHED;
 pub use runway::{gives_up_runway, touches_ground};
 pub use scale::Scale;
+use supervisor::Supervisor;
 pub use whereabouts::can_be_reached;
 
 use crate::Setpoints;
@@ -141,22 +145,23 @@ impl Controller for Autopilot {
     }
 
     fn engage_inhibits(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        self.inhibits(tick.woke, self.seen(measurements))
+        self.inhibits(tick.woke, self.estimator.seen(measurements))
     }
 
     fn faults(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        let seen = self.seen(measurements);
+        let seen = self.estimator.seen(measurements);
         self.unsafe_to_fly(tick.woke, seen) | self.not_flyable(tick.woke, seen)
     }
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        let of_parts = self.loops.actuation.conditions() | self.doubted() | self.trim_conditions();
-        let unused = self.unused_sensors(measurements) | self.route_conditions();
-        (self.external(tick.woke, self.seen(measurements)) | of_parts | unused)
+        let of_parts =
+            self.loops.actuation.conditions() | self.estimator.doubted() | self.trim_conditions();
+        let unused = self.estimator.unused_sensors(measurements) | self.route_conditions();
+        (self.external(tick.woke, self.estimator.seen(measurements)) | of_parts | unused)
             .with(flags::RECOVERING, self.loops.recovery.is_active())
             .with(
                 flags::UNDERSPEED,
-                self.loops.altitude.gives_up_height() && self.runway().is_none(),
+                self.loops.altitude.gives_up_height() && self.guidance.runway().is_none(),
             )
             .with(
                 flags::STALLS_FASTER,
@@ -167,7 +172,7 @@ impl Controller for Autopilot {
     }
 
     fn failsafe_goes_on(&self) -> bool {
-        self.goes_on()
+        self.supervisor.degraded.goes_on(&self.config.failsafe)
     }
 
     fn is_unattended(&self) -> bool {
@@ -175,7 +180,9 @@ impl Controller for Autopilot {
     }
 
     fn has_recovered(&self) -> bool {
-        self.is_good_again()
+        self.supervisor
+            .degraded
+            .is_good_again(&self.config.failsafe)
     }
 
     fn recover(&mut self, _tick: &Tick, _measurements: &Measurements) {
@@ -183,7 +190,7 @@ impl Controller for Autopilot {
     }
 
     fn must_release(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {
-        self.is_elsewhere()
+        self.intake.is_elsewhere()
     }
 
     fn is_taken_over(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {
@@ -191,16 +198,17 @@ impl Controller for Autopilot {
     }
 
     fn prepare_release(&mut self, tick: &Tick, measurements: &Measurements) -> bool {
-        let seen = *self.seen(measurements);
+        let seen = *self.estimator.seen(measurements);
         self.begin_to_release(false, tick.woke, &seen)
     }
 
     fn is_ready_for_release(&self) -> bool {
-        self.is_trimmed_for_release()
+        (self.supervisor.release.as_ref())
+            .is_none_or(|release| release.is_trimmed(self.config.level_and_trim))
     }
 
     fn withholds_outputs(&self, tick: &Tick, _measurements: &Measurements) -> bool {
-        self.withholds(tick.woke)
+        self.intake.withholds(&self.config, tick.woke)
     }
 
     fn notices(&self) -> &[Notice] {
@@ -256,7 +264,7 @@ impl Controller for Autopilot {
     }
 
     fn failsafe(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
-        let seen = *self.seen(measurements);
+        let seen = *self.estimator.seen(measurements);
         self.prepare_end_of_failsafe(tick.woke, &seen);
         let lost = self.lost(tick.woke, &seen);
         let estimate = *self.estimator.navigation.estimate();
@@ -334,7 +342,7 @@ impl Controller for Autopilot {
             measurements,
             &self.gate_limits(),
         );
-        let plausible = plausible.keeping(AIRSPEED, self.permits_airspeed(measurements));
+        let plausible = plausible.keeping(AIRSPEED, self.estimator.permits_airspeed(measurements));
         match &self.estimator.raw {
             Some(raw) => raw.permitted(sensor, plausible),
             None => plausible,

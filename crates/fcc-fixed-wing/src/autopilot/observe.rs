@@ -36,7 +36,7 @@ impl Autopilot {
         }
         self.follow(measured);
         self.follow_pilot(now, measured);
-        if self.is_elsewhere().is_empty() {
+        if self.intake.is_elsewhere().is_empty() {
             self.accept(tick, measured);
         } else {
             self.start_anew(measured);
@@ -49,7 +49,7 @@ impl Autopilot {
         if self.intake.clock.advances(now) {
             self.intake.whereabouts.keep(&self.intake.accepted);
         }
-        self.follow_ages(now, measured);
+        self.intake.follow_ages(&self.config, now, measured);
         let step_s = self.intake.clock.step_s();
         self.note_throttle(now);
         self.follow_intermittent(step_s);
@@ -130,7 +130,7 @@ impl Autopilot {
 
     /// Follows where the aircraft is.
     fn follow(&mut self, measured: &Measurements) {
-        if self.plant_is(PlantState::Jumped) || self.plant_is(PlantState::Reloaded) {
+        if self.intake.plant_is(PlantState::Jumped) || self.intake.plant_is(PlantState::Reloaded) {
             self.intake.whereabouts = Whereabouts::default();
         } else if self.intake.clock.state().is_some() {
             let was_long = self.intake.clock.gap().is_some_and(|gap| gap.was_long);
@@ -150,7 +150,7 @@ impl Autopilot {
     /// Accepts the plausible measurements of a tick, after the gap that ended
     /// in it, if one did.
     fn accept(&mut self, tick: &Tick, measured: &Measurements) {
-        if !self.knows_attitude() {
+        if !self.estimator.knows_attitude() {
             self.forget_attitude();
         }
         self.move_distrusted(tick.woke, measured);

@@ -27,7 +27,7 @@ impl Autopilot {
             .with(flags::STABILITY, other.stability)
             .with(flags::OTHER_WRITER, other.writer)
             .with(flags::REVERSE_THRUST, other.reverse_thrust)
-            .with(flags::PLANT_FAST, self.plant_is(PlantState::Fast))
+            .with(flags::PLANT_FAST, self.intake.plant_is(PlantState::Fast))
             .with(
                 flags::SUSPECT_AIRSPEED,
                 airspeed_is_suspect(measurements)
@@ -35,8 +35,8 @@ impl Autopilot {
             )
             .with(flags::PLANT_STALLED, self.intake.clock.has_stopped())
             .with(flags::SOURCE_CLOCK, !self.intake.ages.late().is_empty())
-            .with(flags::NOT_FOLLOWED, self.is_not_followed())
-            .with(flags::DEGRADED, self.is_degraded())
+            .with(flags::NOT_FOLLOWED, self.supervisor.following.is_lost())
+            .with(flags::DEGRADED, self.supervisor.degraded.flies_without())
             .with(
                 flags::FROM_THE_FUTURE,
                 is_from_the_future(measurements, now),

@@ -6,7 +6,6 @@
 
 use core::time::Duration;
 
-use super::Autopilot;
 use fcc_core::flight::Measurements;
 use fcc_core::framework::Time;
 use fcc_navigation::{Estimate, Quantities, Quantity};
@@ -14,10 +13,6 @@ use fcc_navigation::{Estimate, Quantities, Quantity};
 /// The age of the body rates is averaged over this time, s: the mean age of
 /// readings that are held between two samples is the delay of that hold.
 const AVERAGED_S: f64 = 1.0;
-/// The greatest delay of all readings that was flown with a Cessna 172 at 73 and
-/// 100 kt: 250 ms and a period of 25 ms. A slower aircraft stands more in
-/// proportion.
-const FLYABLE: Duration = Duration::from_millis(275);
 /// The share of a new value in the jitter (RFC 3550, section 6.4.1).
 const JITTER_SHARE: f64 = 1.0 / 16.0;
 
@@ -38,7 +33,7 @@ pub(super) struct ReadingAges {
 impl ReadingAges {
     /// Reads a tick's measurements. Of a plant whose time stands still no reading
     /// grows older: `judged` is the time by which they are.
-    fn step(
+    pub(super) fn step(
         &mut self,
         now: Time,
         judged: Time,
@@ -98,14 +93,4 @@ pub(super) fn newest(measured: &Measurements) -> Time {
         .fold(measured.plant.taken, |newest, quantity| {
             newest.max(quantity.taken(measured))
         })
-}
-
-impl Autopilot {
-    /// Follows the ages of a tick's readings.
-    pub(super) fn follow_ages(&mut self, now: Time, measured: &Measurements) {
-        let judged = self.intake.clock.judged();
-        let flyable = FLYABLE.div_f64(self.config.pace.clamp(0.1, 1.0));
-        let (max_age, dt_s) = (self.config.max_age.min(flyable), self.intake.clock.step_s());
-        self.intake.ages.step(now, judged, measured, max_age, dt_s);
-    }
 }

@@ -143,14 +143,15 @@ impl Autopilot {
             AutopilotCommand::GoAround => {
                 // A landing that was commanded is not one yet on its way there.
                 let next = self
-                    .after(ModeInput::GoAround)
-                    .filter(|_| self.is_landing());
+                    .guidance
+                    .after(&self.config, ModeInput::GoAround)
+                    .filter(|_| self.guidance.is_landing());
                 return next.map(drop).ok_or(Refusal::NotLanding);
             }
-            AutopilotCommand::Land if self.is_landing() => return Ok(()),
+            AutopilotCommand::Land if self.guidance.is_landing() => return Ok(()),
             _ => {}
         }
-        if let Some(demand) = self.runway() {
+        if let Some(demand) = self.guidance.runway() {
             if demand.phase.is_on_wheels() {
                 return Err(Refusal::OnWheels);
             }
@@ -198,7 +199,7 @@ impl Autopilot {
     /// leads far from it is that of another place, or a wrong digit.
     fn may_set_altimeter(&self, setting_pa: f64) -> Result<(), Refusal> {
         let decision_m = self.config.route.runway.decision_height_m;
-        let runway = self.runway();
+        let runway = self.guidance.runway();
         let moves = |demand: &RunwayDemand| {
             demand.height_m < decision_m && demand.ground_speed_mps > STANDS_MPS
         };

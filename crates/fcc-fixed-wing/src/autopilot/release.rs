@@ -2,6 +2,8 @@
 //! to time: wings level, no climb, the airspeed held, the elevator trimmed. A
 //! failsafe that ends is level already, and is trimmed in its last seconds.
 
+use core::time::Duration;
+
 use super::degraded::{Vertical, held_without};
 use super::upset::is_far_from_level;
 use super::{Autopilot, FailsafeEnd, flags};
@@ -40,6 +42,18 @@ pub(super) struct Release {
     settled_s: f64,
 }
 
+impl Release {
+    /// Whether it belongs to the end of a failsafe.
+    pub(super) fn is_of_failsafe(&mut self) -> bool {
+        self.in_failsafe
+    }
+
+    /// Whether the aircraft is trimmed, or the time for it is over.
+    pub(super) fn is_trimmed(&self, within: Duration) -> bool {
+        self.settled_s >= SETTLED_S || self.lasted_s >= within.as_secs_f64()
+    }
+}
+
 impl Autopilot {
     /// Begins to level and to trim, at the end of a failsafe or by a command;
     /// whether that is possible.
@@ -55,8 +69,8 @@ impl Autopilot {
             && held_without(self.lost(now, measured)).vertical != Vertical::Trim
             && !is_far_from_level(estimate)
             && !self.loops.recovery.is_active()
-            && !self.is_silent(now)
-            && !self.withholds(now);
+            && !self.intake.is_silent(&self.config, now)
+            && !self.intake.withholds(&self.config, now);
         if !is_flyable || self.config.level_and_trim.is_zero() {
             return false;
         }
@@ -71,13 +85,6 @@ impl Autopilot {
         true
     }
 
-    /// Ends what began in a failsafe that is over.
-    pub(super) fn end_release_of_failsafe(&mut self) {
-        self.supervisor
-            .release
-            .take_if(|release| release.in_failsafe);
-    }
-
     /// Trims in the last seconds of a failsafe, when nothing is held any longer:
     /// not in its first tick, before what can be held is known.
     pub(super) fn prepare_end_of_failsafe(&mut self, now: Time, measured: &Measurements) {
@@ -85,20 +92,12 @@ impl Autopilot {
             return;
         }
         if self.supervisor.degraded.is_sound() {
-            self.end_release_of_failsafe();
+            self.supervisor.release.take_if(Release::is_of_failsafe);
         } else if self.supervisor.release.is_none()
             && self.config.failsafe.end == FailsafeEnd::Release
         {
             self.begin_to_release(true, now, measured);
         }
-    }
-
-    /// Whether the aircraft is trimmed, or the time for it is over.
-    pub(super) fn is_trimmed_for_release(&self) -> bool {
-        self.supervisor.release.as_ref().is_none_or(|release| {
-            release.settled_s >= SETTLED_S
-                || release.lasted_s >= self.config.level_and_trim.as_secs_f64()
-        })
     }
 
     /// Wings level, no climb, and the airspeed of its beginning, if a release is

@@ -69,7 +69,7 @@ impl Autopilot {
 
     /// Whether the plan may change over a runway.
     fn may_leave_runway(&self) -> Result<(), Refusal> {
-        let Some(demand) = self.runway() else {
+        let Some(demand) = self.guidance.runway() else {
             return Ok(());
         };
         let climbs = matches!(demand.phase, RunwayPhase::Climb | RunwayPhase::GoAround);

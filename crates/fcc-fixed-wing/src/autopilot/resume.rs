@@ -5,7 +5,7 @@ use core::f64::consts::TAU;
 use libm::round;
 
 use super::Autopilot;
-use fcc_core::flight::{ALTIMETER_SETTINGS_PA, AltitudeReference, Surfaces};
+use fcc_core::flight::{AltitudeReference, Surfaces};
 use fcc_core::schema;
 use fcc_guidance::route::TookOff;
 use fcc_guidance::{ActiveMode, ModeInput, Progress};
@@ -70,7 +70,7 @@ impl Autopilot {
         }
         self.supervisor.took_off = resume.took_off.known().or(self.supervisor.took_off);
         if self.resume_over_ground(progress.mode, progress.item) {
-            self.resume_altimeter(resume);
+            self.guidance.resume_altimeter(resume);
             self.take_over(&resume.surfaces);
             return;
         }
@@ -83,7 +83,7 @@ impl Autopilot {
         progress.captured.airspeed_mps = self.config.envelope.allowed_airspeed(airspeed_mps);
         self.guidance.mode = ActiveMode::resume(&config, &progress);
         self.guidance.targets = self.guidance.mode.targets().unwrap_or(aimed);
-        self.resume_altimeter(resume);
+        self.guidance.resume_altimeter(resume);
         let reference = resume.altitude_reference;
         let is_known = self.guidance.altimeter.datum_m(reference).is_some();
         self.guidance.reference = if is_known {
@@ -94,12 +94,5 @@ impl Autopilot {
         // The captured altitude is not refined any further.
         self.guidance.capture = None;
         self.take_over(&resume.surfaces);
-    }
-
-    fn resume_altimeter(&mut self, resume: &Resume) {
-        let setting_pa = resume.altimeter_setting_pa;
-        if let Some(pa) = setting_pa.filter(|pa| ALTIMETER_SETTINGS_PA.contains(pa)) {
-            self.guidance.altimeter.setting_pa = pa;
-        }
     }
 }

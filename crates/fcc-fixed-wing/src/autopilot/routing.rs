@@ -43,7 +43,7 @@ impl Autopilot {
                 self.config.envelope.allowed_airspeed(demanded_mps);
         }
         self.keep_above_floor();
-        let sea_level_m = self.sea_level_m();
+        let sea_level_m = self.guidance.sea_level_m();
         self.guidance.mode.advance(
             self.estimator.navigation.estimate(),
             self.estimator.ground.here(),
@@ -92,13 +92,6 @@ impl Autopilot {
         self.supervisor.told_once.end &= has_ended;
     }
 
-    /// The pressure altitude of mean sea level, m.
-    pub(super) fn sea_level_m(&self) -> f64 {
-        // At sea level there is always a datum.
-        let datum_m = self.guidance.altimeter.datum_m(AltitudeReference::SeaLevel);
-        datum_m.unwrap_or(0.0)
-    }
-
     /// One step of the heading loop, towards a heading or with a bank.
     pub(super) fn step_lateral(
         &mut self,
@@ -141,7 +134,7 @@ impl Autopilot {
 
     /// Follows where the aircraft is.
     pub(super) fn follow_ground(&mut self, now: fcc_core::framework::Time, dt_s: f64) {
-        let sea_level_m = self.sea_level_m();
+        let sea_level_m = self.guidance.sea_level_m();
         self.estimator
             .ground
             .doubt_altimeter(self.estimator.navigation.altitude_doubt().is_some());
@@ -196,7 +189,9 @@ impl Autopilot {
         };
         let left = self.supervisor.left_plan.filter(|_| item == 0);
         let index = usize::from(item.saturating_sub(1));
-        if plan.step(index).is_none() || self.after(ModeInput::Plan).is_none() {
+        if plan.step(index).is_none()
+            || self.guidance.after(&self.config, ModeInput::Plan).is_none()
+        {
             return;
         }
         if let Some(left) = left {
@@ -241,7 +236,10 @@ impl Autopilot {
         }
         let height_m = self.config.route.return_height_m;
         self.supervisor.took_off.is_some()
-            && self.after(ModeInput::Return).is_some()
+            && self
+                .guidance
+                .after(&self.config, ModeInput::Return)
+                .is_some()
             && self.fly_step(Mode::Land, Step::LandBack { height_m })
     }
 
@@ -280,7 +278,7 @@ impl Autopilot {
         radius_m: f64,
         clockwise: bool,
     ) {
-        let altitude_m = self.guidance.targets.altitude_m - self.sea_level_m();
+        let altitude_m = self.guidance.targets.altitude_m - self.guidance.sea_level_m();
         self.change_to(input, loiter(at, altitude_m, radius_m, clockwise));
     }
 
@@ -312,7 +310,7 @@ impl Autopilot {
 
     /// Flies one step in the mode that follows an input, if there is one.
     fn change_to(&mut self, input: ModeInput, step: Step) {
-        if let Some(mode) = self.after(input) {
+        if let Some(mode) = self.guidance.after(&self.config, input) {
             self.fly_step(mode, step);
         }
     }
@@ -347,24 +345,6 @@ impl Autopilot {
             Mode::None | Mode::Hold | Mode::TimedPattern => return false,
         }
         true
-    }
-
-    /// Gives a landing up.
-    pub(super) fn go_around(&mut self) {
-        if self.after(ModeInput::GoAround).is_some() {
-            self.guidance.mode.go_around(RunwayReason::Commanded);
-        }
-    }
-
-    pub(super) fn after(&self, input: ModeInput) -> Option<Mode> {
-        let is_rolling = self
-            .runway()
-            .is_some_and(|demand| demand.phase.is_on_wheels());
-        if is_rolling {
-            return None;
-        }
-        let configured = self.config.guidance.mode();
-        self.guidance.mode.mode().after(input, configured)
     }
 
     /// Enters a mode over the ground.

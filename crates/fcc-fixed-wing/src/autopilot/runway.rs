@@ -85,30 +85,16 @@ pub(super) struct RunwayControl {
 }
 
 impl Autopilot {
-    /// The take-off or landing that is flown.
-    pub(super) fn runway(&self) -> Option<RunwayDemand> {
-        self.guidance
-            .mode
-            .over_ground()
-            .and_then(OverGroundMode::runway)
-    }
-
-    /// Whether it is on the glide path of a landing, or beyond.
-    pub(super) fn is_landing(&self) -> bool {
-        self.runway()
-            .is_some_and(|demand| !demand.takes_off && demand.phase != RunwayPhase::GoAround)
-    }
-
     /// Whether the wheels carry the aircraft, or it is about to touch down.
     pub(super) fn is_on_runway(&self) -> bool {
         let flares = |demand: RunwayDemand| demand.phase == RunwayPhase::Flare;
-        self.is_on_wheels() || self.runway().is_some_and(flares)
+        self.is_on_wheels() || self.guidance.runway().is_some_and(flares)
     }
 
     /// Whether it stands or rolls.
     pub(super) fn is_on_wheels(&self) -> bool {
         let rolls = |demand: RunwayDemand| demand.phase.is_on_wheels();
-        self.estimator.ground.stands_on_wheels() || self.runway().is_some_and(rolls)
+        self.estimator.ground.stands_on_wheels() || self.guidance.runway().is_some_and(rolls)
     }
 
     /// Whether it stands on its wheels, or is held in a hand that throws it.
@@ -120,7 +106,7 @@ impl Autopilot {
 
     /// The outputs of a take-off or a landing; none while neither is flown.
     pub(super) fn control_on_runway(&mut self, estimate: &Estimate, dt_s: f64) -> Option<Surfaces> {
-        let Some(demand) = self.runway() else {
+        let Some(demand) = self.guidance.runway() else {
             if self.guidance.on_runway.phase.is_some() {
                 // The throttle was not the airspeed loop's.
                 let last = self.loops.last;
@@ -159,7 +145,8 @@ impl Autopilot {
         };
         let (throttle, climb_rate_mps, pitch_rad, elevator) =
             self.vertical_on_runway(&demand, estimate, dt_s);
-        self.show(lateral.roll_rad, climb_rate_mps, pitch_rad);
+        self.guidance
+            .show(lateral.roll_rad, climb_rate_mps, pitch_rad);
         let outputs = Surfaces {
             throttle,
             elevator,
@@ -344,7 +331,8 @@ impl Autopilot {
             RunwayPhase::Approach if demand.is_powerless => {
                 let vertical = self.hold_glide(&envelope, estimate, dt_s);
                 let elevator = self.loops.actuation.elevator(vertical.elevator);
-                let tries = demand.height_m > TRIES_ABOVE_M && self.tries_engine(dt_s);
+                let tries = demand.height_m > TRIES_ABOVE_M
+                    && self.supervisor.engine.opens(&self.config.contingency, dt_s);
                 (
                     if tries { opening } else { closing },
                     vertical.climb_rate_mps,

@@ -3,46 +3,17 @@
 use core::time::Duration;
 
 use super::future::is_from_the_future;
-use super::plant_clock::Waiting;
 use super::{Autopilot, flags, receiver, wrong_sensors};
-use fcc_core::flight::{Measurements, PlantState};
+use fcc_core::flight::Measurements;
 use fcc_core::framework::{Flags, Reading, Time};
 use fcc_navigation::inertial::RawNavigation;
-use fcc_navigation::{Quantities, Quantity, is_possible_fix};
+use fcc_navigation::{Quantities, Quantity};
 
 /// A switch that was read before and is silent for longer than this counts as
 /// lost, since it could not be switched off.
 const SWITCH_MAX_AGE: Duration = Duration::from_secs(1);
 
-/// Longer than this after its readings are too old, nothing is sent to a silent
-/// plant: it has the outputs, and would have to take all that wait for it at
-/// once when it continues, perhaps with another aircraft.
-const SENT_FOR: Duration = Duration::from_millis(250);
-
 impl Autopilot {
-    /// The measurements of this tick, as they are flown by.
-    pub(super) fn seen<'a>(&'a self, measured: &'a Measurements) -> &'a Measurements {
-        self.estimator
-            .raw
-            .as_ref()
-            .map_or(measured, RawNavigation::found)
-    }
-
-    /// The raw sensors that are not used, and that control does not need.
-    pub(super) fn unused_sensors(&self, measured: &Measurements) -> Flags {
-        let has_fix = !measured.gnss.is_never();
-        let is = |what: fn(&RawNavigation) -> bool| self.estimator.raw.as_ref().is_some_and(what);
-        Flags::NONE
-            .with(
-                flags::IMPOSSIBLE_FIX,
-                has_fix && !is_possible_fix(&measured.gnss.value),
-            )
-            .with(flags::REPEATED_FIX, is(RawNavigation::repeats_place))
-            .with(flags::REPEATED_FIELD, is(RawNavigation::repeats_field))
-            .with(flags::LEFT_UNIT, is(RawNavigation::left_a_unit))
-            .with(flags::WRONG_SENSOR, is(RawNavigation::has_wrong_sensor))
-    }
-
     /// Reports what the plant's clock shows, and the sensors that are not used any more, or
     /// otherwise than before, since this tick.
     pub(super) fn report_clock_and_sensors(&mut self) {
@@ -63,59 +34,14 @@ impl Autopilot {
             .for_each(|event| self.journal.add(event));
     }
 
-    /// Whether the gyroscopes are not flown by, because the magnetic field contradicts them;
-    /// not by the attitude either until it is known which of the two is wrong: an aircraft
-    /// that follows wrong gyroscopes rolls over meanwhile.
-    pub(super) fn doubts_gyroscopes(&self) -> bool {
-        self.estimator
-            .raw
-            .as_ref()
-            .is_some_and(|raw| raw.doubts_gyroscopes() || raw.questions_gyroscopes())
-    }
-
-    /// Whether what comes from raw sensors has an attitude, if it is flown by them.
-    pub(super) fn knows_attitude(&self) -> bool {
-        self.estimator
-            .raw
-            .as_ref()
-            .is_none_or(|raw| raw.knows_attitude() && !raw.questions_gyroscopes())
-    }
-
     /// The needed quantities whose readings are too old to be used; all of them
     /// while a simulated plant is silent.
     pub(super) fn stale(&self, now: Time) -> Quantities {
-        if self.is_silent(now) {
+        if self.intake.is_silent(&self.config, now) {
             Quantities::ALL
         } else {
             self.too_old(&self.intake.accepted)
         }
-    }
-
-    /// Whether nothing has arrived from a simulated plant for longer than a
-    /// reading may be old. A paused plant may be silent.
-    pub(super) fn is_silent(&self, now: Time) -> bool {
-        self.silence(now) > self.config.max_age
-    }
-
-    /// For how long a simulated plant is waited for: one that is silent, or whose
-    /// time stands still although it sends and is not paused.
-    fn max_silence(&self) -> Duration {
-        self.config.max_silence.max(self.config.max_age)
-    }
-
-    /// For how long a simulated plant that is not paused has been silent.
-    fn silence(&self, now: Time) -> Duration {
-        if self.plant_is(PlantState::Paused) {
-            Duration::ZERO
-        } else {
-            self.intake.clock.silent_for(now)
-        }
-    }
-
-    /// Whether this tick's outputs are not to be sent.
-    pub(super) fn withholds(&self, now: Time) -> bool {
-        self.intake.clock.waiting() == Waiting::Replaying
-            || self.intake.clock.silent_for(now) > self.config.max_age + SENT_FOR
     }
 
     /// The frozen quantities; none on the ground: with an airspeed below the
@@ -136,9 +62,9 @@ impl Autopilot {
     /// none is used: the airspeed and, for a time, the altitude are known without.
     pub(super) fn too_old(&self, measurements: &Measurements) -> Quantities {
         let judged = self.intake.clock.judged();
-        let knows_attitude = self.knows_attitude();
+        let knows_attitude = self.estimator.knows_attitude();
         let by_gyroscopes = Quantities::NONE
-            .with(Quantity::BodyRates, self.doubts_gyroscopes())
+            .with(Quantity::BodyRates, self.estimator.doubts_gyroscopes())
             .with(Quantity::Attitude, !knows_attitude)
             .with(Quantity::Heading, !knows_attitude);
         Quantity::ALL
@@ -171,12 +97,12 @@ impl Autopilot {
 
     /// The faults of an engaged flight, and what comes and goes in a failsafe.
     pub(super) fn unsafe_to_fly(&self, now: Time, measurements: &Measurements) -> Flags {
-        self.unsafe_now(now, measurements) | flags::too_old(self.intermittent())
+        self.unsafe_now(now, measurements) | flags::too_old(self.supervisor.degraded.intermittent())
     }
 
     /// The faults of this tick. A silent plant is waited for.
     pub(super) fn unsafe_now(&self, now: Time, measurements: &Measurements) -> Flags {
-        let lost = self.silence(now) > self.max_silence();
+        let lost = self.intake.silence(now) > self.intake.max_silence(&self.config);
         let stale = if lost {
             Quantities::ALL
         } else {
@@ -199,32 +125,19 @@ impl Autopilot {
         let is_lost_to_the_future = !stale.is_empty() && is_from_the_future(measurements, now);
         let is_lost_on_the_way = !stale.is_empty() && !self.intake.ages.late().is_empty();
         let unusable = flags::too_old(stale) | flags::frozen(self.frozen());
-        (unusable | self.is_elsewhere() | self.doubted_motion())
-            .with(flags::DOUBTED_GYROSCOPE, self.doubts_gyroscopes())
+        (unusable | self.intake.is_elsewhere() | self.estimator.doubted_motion())
+            .with(flags::DOUBTED_GYROSCOPE, self.estimator.doubts_gyroscopes())
             .with(flags::REJECTED, rejected)
             .with(flags::FROM_THE_FUTURE, is_lost_to_the_future)
             .with(flags::SOURCE_CLOCK, is_lost_on_the_way)
             .with(
                 flags::PLANT_STALLED,
                 self.intake.clock.is_ignored()
-                    || self.intake.clock.stopped_for(now) > self.max_silence(),
+                    || self.intake.clock.stopped_for(now) > self.intake.max_silence(&self.config),
             )
             .with(
                 flags::ENGAGE_SWITCH,
                 !switch.is_never() && !switch.is_fresh(self.intake.clock.judged(), SWITCH_MAX_AGE),
             )
-    }
-
-    /// Why what was flown before must not be continued: the plant is no longer
-    /// where it was.
-    pub(super) fn is_elsewhere(&self) -> Flags {
-        Flags::NONE
-            .with(flags::PLANT_JUMPED, self.plant_is(PlantState::Jumped))
-            .with(flags::PLANT_RELOADED, self.plant_is(PlantState::Reloaded))
-            .with(flags::RELOCATED, self.intake.whereabouts.was_relocated())
-    }
-
-    pub(super) fn plant_is(&self, state: PlantState) -> bool {
-        self.intake.clock.state() == Some(state)
     }
 }

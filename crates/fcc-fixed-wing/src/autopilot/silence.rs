@@ -94,8 +94,9 @@ impl Autopilot {
     pub(super) fn learn_straight_trims(&mut self, estimate: &Estimate, dt_s: f64) {
         let commanded_rad = self.guidance.setpoints.roll_rad;
         let is_level = self.loops.straight.is_level(estimate, commanded_rad, dt_s);
-        let is_usual =
-            self.runway().is_none() && !self.loops.glides && !self.loops.recovery.is_active();
+        let is_usual = self.guidance.runway().is_none()
+            && !self.loops.glides
+            && !self.loops.recovery.is_active();
         if is_level && is_usual {
             self.take_straight_trims(dt_s);
         }
@@ -104,7 +105,7 @@ impl Autopilot {
     fn take_straight_trims(&mut self, dt_s: f64) {
         let trims = Surfaces {
             throttle: self.loops.airspeed.trim(),
-            ..self.trims()
+            ..self.loops.trims()
         };
         let airspeed_mps = self.estimator.navigation.estimate().airspeed_mps;
         self.loops.straight.take(&trims, airspeed_mps, dt_s);
@@ -114,9 +115,9 @@ impl Autopilot {
     /// airspeed than that of the last straight and level flight, elevator and throttle
     /// are those of the present flight.
     pub(super) fn silent_trims(&self) -> Surfaces {
-        let present = self.trims();
+        let present = self.loops.trims();
         let straight = &self.loops.straight;
-        if self.runway().is_some() {
+        if self.guidance.runway().is_some() {
             return present;
         }
         let trims = Surfaces {

@@ -53,7 +53,7 @@ impl Autopilot {
     /// is one, or turns as in one: those are of the controls' present positions.
     pub(super) fn begin_watching_for_upsets(&mut self) {
         let trims = if is_steady(self.estimator.navigation.estimate()) {
-            self.trims()
+            self.loops.trims()
         } else {
             Surfaces::default()
         };
@@ -77,13 +77,13 @@ impl Autopilot {
         };
         let inputs = RecoveryInputs {
             envelope: &envelope,
-            schedule: self.schedule_at(estimate.airspeed_mps),
+            schedule: self.loops.schedule_at(&self.config, estimate.airspeed_mps),
             heading: &self.loops.heading,
             altitude: &self.loops.altitude,
             followed: self.is_followed(now),
             dt_s,
         };
-        let trims = self.trims();
+        let trims = self.loops.trims();
         // What is above the configured stalling speed is for the outer loops to regain.
         let seen = RecoveryInputs {
             envelope: &self.config.envelope,
@@ -160,7 +160,7 @@ impl Autopilot {
             .surfaces
             .fresh(now, self.config.max_age);
         // Where they do not reach the aircraft, the last ones are the measured ones.
-        !self.is_not_followed()
+        !self.supervisor.following.is_lost()
             && stand.is_none_or(|stand| (stand.elevator - self.loops.last.elevator).abs() < FOLLOWS)
     }
 }

@@ -8,7 +8,9 @@ use core::time::Duration;
 use libm::cos;
 
 use super::super::Autopilot;
-use super::{CONTINGENCY, Contingency, ContingencyAction, Delayed, PERMILLE, notice};
+use super::{
+    CONTINGENCY, Contingency, ContingencyAction, ContingencyConfig, Delayed, PERMILLE, notice,
+};
 use fcc_core::blocks::LowPass;
 use fcc_core::framework::{Notice, Time};
 use fcc_core::units::GRAVITY_MPS2;
@@ -81,6 +83,16 @@ impl Engine {
         self.power.reset(if self.out.is_on { GLIDE } else { LEVEL });
     }
 
+    /// Whether the thrust tells of the engine.
+    const fn is_watched_by_thrust(&self, config: &ContingencyConfig) -> bool {
+        config.engine_by_thrust || self.doubt.is_on
+    }
+
+    /// Whether a glide opens the throttle, because the engine may give thrust again.
+    pub(in super::super) fn opens(&mut self, config: &ContingencyConfig, dt_s: f64) -> bool {
+        self.is_watched_by_thrust(config) && self.out.is_on && self.is_tried(dt_s)
+    }
+
     /// Whether the engine is tried in a glide, after `dt_s` more of it.
     fn is_tried(&mut self, dt_s: f64) -> bool {
         self.glides_s = (self.glides_s + dt_s) % TRIED_EVERY_S;
@@ -129,18 +141,19 @@ impl Autopilot {
         (!doubt.is_on).then_some(stands)
     }
 
-    /// Whether the thrust tells of the engine.
-    const fn watches_thrust(&self) -> bool {
-        self.config.contingency.engine_by_thrust || self.supervisor.engine.doubt.is_on
-    }
-
     /// Whether the engine is out; none if it is not known.
     fn engine_is_out(&mut self, now: Time, dt_s: f64) -> Option<bool> {
         if let Some(stands) = self.engine_stands(now, dt_s) {
             return Some(stands);
         }
         let is_flown = self.guidance.mode.mode() != Mode::None && !self.is_on_runway();
-        if !self.watches_thrust() || !is_flown || self.loops.last.throttle < THROTTLE {
+        if !self
+            .supervisor
+            .engine
+            .is_watched_by_thrust(&self.config.contingency)
+            || !is_flown
+            || self.loops.last.throttle < THROTTLE
+        {
             self.supervisor.engine.is_throttled();
             return None;
         }
@@ -177,7 +190,7 @@ impl Autopilot {
         if self.supervisor.contingencies.is_engine_met {
             return;
         }
-        match self.runway().map(|demand| demand.phase) {
+        match self.guidance.runway().map(|demand| demand.phase) {
             Some(RunwayPhase::Roll) => return self.guidance.mode.go_around(RunwayReason::Engine),
             // It stands, and is about to roll.
             None if self.waits_for_takeoff() => return,
@@ -194,17 +207,11 @@ impl Autopilot {
         self.begin_contingency(Contingency::EngineOut, action, amount_permille);
     }
 
-    /// Whether a glide opens the throttle, because the engine may give thrust again.
-    pub(in super::super) fn tries_engine(&mut self, dt_s: f64) -> bool {
-        self.watches_thrust()
-            && self.supervisor.engine.out.is_on
-            && self.supervisor.engine.is_tried(dt_s)
-    }
-
     /// The engine runs again: a plan is continued; what else was flown is not known, and
     /// the aircraft circles. Low, and on the ground, the landing goes on.
     fn leave_glide(&mut self) {
         let is_low = self
+            .guidance
             .runway()
             .is_some_and(|demand| demand.phase.is_on_wheels() || demand.height_m < LANDS_M);
         if is_low {

@@ -111,7 +111,7 @@ impl Autopilot {
         }
         // Take-off and landing lead where a runway is.
         let is_watched = !fence.zones.is_empty()
-            && self.runway().is_none()
+            && self.guidance.runway().is_none()
             && !self.is_on_runway()
             && self.guidance.mode.mode() != Mode::Glide;
         let Some(here) = self.estimator.ground.here().copied().filter(|_| is_watched) else {

@@ -60,7 +60,7 @@ pub(in super::super) struct TerrainWatch {
     /// clockwise.
     had_circle: Option<bool>,
     /// Whether what is ahead, with the present bank or without one, cannot be climbed over.
-    is_in_the_way: bool,
+    pub(super) is_in_the_way: bool,
 }
 
 /// The way ahead, with the present bank, or without one.
@@ -159,7 +159,7 @@ impl Autopilot {
         let is_watched = !(terrain.is_empty() && obstacles.is_empty())
             && self.guidance.mode.mode() != Mode::Glide
             && config.terrain != ContingencyAction::Continue
-            && self.runway().is_none()
+            && self.guidance.runway().is_none()
             && !self.is_on_runway();
         let Some(mut here) = self.estimator.ground.here().copied().filter(|_| is_watched) else {
             self.supervisor.contingencies.terrain = TerrainWatch::default();
@@ -217,14 +217,6 @@ impl Autopilot {
         let first_s = with_bank.first_s.min(straight.first_s);
         let highest_m = with_bank.highest_m.max(straight.highest_m);
         self.turn_from_terrain(&surface, first_s, highest_m + below_m);
-    }
-
-    /// Whether a command may end the turn away from the ground: when it is not ahead any more.
-    pub(super) fn may_leave_terrain(&self) -> bool {
-        let contingencies = &self.supervisor.contingencies;
-        contingencies.active != Contingency::Terrain
-            || !contingencies.stage.is_on_circle()
-            || !contingencies.terrain.is_in_the_way
     }
 
     /// For how long the way ahead is looked at, s: on the leg of a plan, which was checked,
@@ -288,7 +280,7 @@ impl Autopilot {
             .guidance
             .targets
             .altitude_m
-            .max(highest_m + self.sea_level_m());
+            .max(highest_m + self.guidance.sea_level_m());
         self.circle(
             ModeInput::Pause,
             Some(here.plane_at(circle.centre_m)),
@@ -301,8 +293,8 @@ impl Autopilot {
 
     /// Tells of a climb when it begins and when it is over.
     fn tell_of_climb(&mut self, dt_s: f64) {
-        let sea_level_m = self.sea_level_m();
-        let raised_m = self.demanded_altitude_m() - sea_level_m + RAISED_M;
+        let sea_level_m = self.guidance.sea_level_m();
+        let raised_m = self.guidance.demanded_altitude_m() - sea_level_m + RAISED_M;
         let watch = &mut self.supervisor.contingencies.terrain;
         let is_raised = watch.lowest_m.is_some_and(|lowest_m| lowest_m > raised_m);
         let said = match (watch.climbs_s, is_raised) {
@@ -332,13 +324,5 @@ impl Autopilot {
                 ..Notice::default()
             });
         }
-    }
-
-    /// The target altitude before it is limited, m.
-    fn demanded_altitude_m(&self) -> f64 {
-        let targets = self.guidance.mode.targets();
-        targets.map_or(self.guidance.targets.altitude_m, |targets| {
-            targets.altitude_m
-        })
     }
 }

@@ -54,7 +54,7 @@ impl Autopilot {
         if !self.config.route.runway.retractable_gear {
             return outputs;
         }
-        let demand = self.runway();
+        let demand = self.guidance.runway();
         let mode = self.guidance.mode.over_ground();
         let decision = Decision {
             phase: demand.map(|demand| demand.phase),
@@ -78,7 +78,9 @@ impl Autopilot {
         }
         let decision = Decision {
             phase: None,
-            lands: stops_on_wheels || self.lands_in_failsafe() || self.supervisor.degraded.glides,
+            lands: stops_on_wheels
+                || self.supervisor.degraded.lands()
+                || self.supervisor.degraded.glides,
             on_wheels: false,
             height_m: 0.0,
             climb_rate_mps: 0.0,

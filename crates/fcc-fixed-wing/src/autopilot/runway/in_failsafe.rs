@@ -36,7 +36,7 @@ impl Autopilot {
     /// Begins a failsafe: what is flown first. The loops are engaged with what is flown, as
     /// in a take-off only the pitch's is.
     pub(in super::super) fn begin_low(&mut self) {
-        let Some(demand) = self.runway() else {
+        let Some(demand) = self.guidance.runway() else {
             return;
         };
         let config = self.config.route.runway;
@@ -79,7 +79,7 @@ impl Autopilot {
         if low == Low::No || held_without(lost).lateral == Lateral::Trims {
             return None;
         }
-        let demand = self.runway()?;
+        let demand = self.guidance.runway()?;
         let mut envelope = self.runway_envelope(&demand);
         if lost.contains(Quantity::Airspeed) {
             // No change of pitch would change an airspeed that is assumed.
@@ -107,13 +107,13 @@ impl Autopilot {
                 (self.loops.last.throttle - CLOSES_PER_S * dt_s).max(0.0),
             ),
         };
-        let schedule = self.schedule_at(estimate.airspeed_mps);
+        let schedule = self.loops.schedule_at(&self.config, estimate.airspeed_mps);
         let lateral = self.loops.heading.hold_bank(0.0, estimate, schedule, dt_s);
         let vertical = self
             .loops
             .altitude
             .hold_pitch(pitch_rad, estimate, &envelope, schedule, dt_s);
-        self.show(
+        self.guidance.show(
             lateral.roll_rad,
             vertical.climb_rate_mps,
             vertical.pitch_rad,
@@ -132,15 +132,10 @@ impl Autopilot {
         self.supervisor.degraded.low = Low::No;
         self.supervisor.degraded.altitude_m = estimate.altitude_m;
         if !lost.contains(Quantity::Altitude) {
-            let schedule = self.schedule_at(estimate.airspeed_mps);
+            let schedule = self.loops.schedule_at(&self.config, estimate.airspeed_mps);
             self.loops
                 .altitude
                 .engage(self.loops.last.elevator, estimate, schedule);
         }
-    }
-
-    /// Whether a flare is flown to the ground.
-    pub(in super::super) fn lands_in_failsafe(&self) -> bool {
-        self.supervisor.degraded.low == Low::Lands
     }
 }

@@ -58,16 +58,18 @@ fn strays(cross_track_m: f64, cross_track_mps: f64) -> bool {
 impl Autopilot {
     /// In a failsafe on the wheels: to a stop, straight on as far as the yaw rate is known.
     pub(in super::super) fn stop_on_wheels(&mut self, lost: Quantities) -> Option<Surfaces> {
-        let phase = self.runway()?.phase;
+        let phase = self.guidance.runway()?.phase;
         let rolls = match self.estimator.ground.on_wheels() {
             _ if phase == RunwayPhase::Hand => true,
-            Some(on_wheels) => on_wheels && (phase.is_on_wheels() || self.lands_in_failsafe()),
+            Some(on_wheels) => {
+                on_wheels && (phase.is_on_wheels() || self.supervisor.degraded.lands())
+            }
             None => phase.is_on_wheels() && phase != RunwayPhase::Rotate,
         };
         if !rolls {
             return None;
         }
-        if !self.lands_in_failsafe() {
+        if !self.supervisor.degraded.lands() {
             self.guidance.mode.go_around(RunwayReason::Failsafe);
         }
         let (config, dt_s) = (self.config.route.runway, self.intake.clock.step_s());
