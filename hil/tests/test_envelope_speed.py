@@ -190,6 +190,7 @@ def _climbing_turns(turbulence: int, seed: int) -> float:
             r"autopilot\.envelope\.max_airspeed_kt: is 66: choose at least 89\.0",
         ),
         ("min_airspeed_kt = 50.0\n", r"min_airspeed_kt: is 50: choose at least 58\.3"),
+        ("never_exceed_airspeed_kt = 60.0\n", r"never_exceed_airspeed_kt: is 60: .* least 82\.3"),
         ("max_airspeed_kt = 170.0\n", "max_airspeed_kt: is 170: choose at most never_exceed"),
         ("best_glide_airspeed_kt = 40.0\n", r"best_glide_airspeed_kt: is 40: choose 58\.3 to 135"),
         ("max_load_factor_g = 5.0\n", "max_load_factor_g: is 5: choose at most limit_load_factor"),

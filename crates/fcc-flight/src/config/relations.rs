@@ -141,6 +141,20 @@ fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&[&str], Strin
         let keys: Vec<_> = keys.iter().map(String::as_str).collect();
         report(&keys, format!("is {value}: choose {wanted}"));
     };
+    let (above_stall, room) = (OVER_STALL * stall, MARGINS * envelope.airspeed_margin_kt);
+    if never < above_stall + room {
+        at(
+            &["never_exceed_airspeed_kt", "stall_airspeed_kt"],
+            never,
+            format!(
+                "at least {:.1}: {OVER_STALL} times stall_airspeed_kt, {stall}, and {MARGINS} \
+                 times airspeed_margin_kt, {}, or there is no airspeed to hold",
+                above_stall + room,
+                envelope.airspeed_margin_kt
+            ),
+        );
+        return;
+    }
     if least >= most {
         at(
             &["min_airspeed_kt", "max_airspeed_kt"],
@@ -149,7 +163,6 @@ fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&[&str], Strin
         );
         return;
     }
-    let room = MARGINS * envelope.airspeed_margin_kt;
     if most < least + room {
         at(
             &["max_airspeed_kt", "min_airspeed_kt", "airspeed_margin_kt"],
@@ -162,7 +175,6 @@ fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&[&str], Strin
             ),
         );
     }
-    let above_stall = OVER_STALL * stall;
     if least < above_stall {
         at(
             &["min_airspeed_kt", "stall_airspeed_kt"],
