@@ -24,10 +24,8 @@ use crate::watched::Watched;
 const WRITE_EVERY: Duration = Duration::from_millis(15);
 /// How long the controls are held before a deflection.
 const REST: Duration = Duration::from_millis(300);
-/// How long the daemon makes sure of its release: an override that is set
-/// meanwhile is taken for its own, and cleared. Twice the time for which it wants them
-/// to be clear, for what a network or a busy machine delays.
-const RELEASED: Duration = Duration::from_secs(1);
+/// How long the daemon makes sure of its release.
+const RELEASED: Duration = Duration::from_millis(500);
 /// The interval between two releases.
 const RELEASE_AGAIN_AFTER: Duration = Duration::from_millis(250);
 /// How long X-Plane's first answer may take.
@@ -308,9 +306,6 @@ fn deflect(bench: &mut Bench<'_>, control: &Control) -> Result<f64, Stop> {
     let limits = Envelope::now(bench);
     bench.disengage()?;
     bench.wait("released", RELEASED)?;
-    for what in [Watched::OverrideJoystick, Watched::OverrideThrottles] {
-        bench.link.write(bench.link.path(what), 1.0);
-    }
     let began = bench.link.latest().copied();
     hold(bench, &held, &limits, (control.written, 0.0), REST)?;
     let mut responses = [0.0; 2];
@@ -351,6 +346,11 @@ fn hold(
 ) -> Result<(), Stop> {
     let until = Instant::now() + duration;
     while Instant::now() < until {
+        // Each time: the daemon clears an override that is set soon after its release, as a
+        // late write of its own, until the yoke moves to where it did not put it.
+        for what in [Watched::OverrideJoystick, Watched::OverrideThrottles] {
+            bench.link.write(bench.link.path(what), 1.0);
+        }
         held.write(bench, deflected, deflection);
         bench.wait("deflected", WRITE_EVERY)?;
         undisturbed(bench)?;
