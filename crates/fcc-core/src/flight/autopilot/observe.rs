@@ -123,8 +123,9 @@ impl Autopilot {
                     Some(PlaceDoubt::Repeats | PlaceDoubt::Moves)
                 );
             let passed_s = self.clock.passed_s();
+            let step_m = self.navigation.resolutions().altitude_step_m;
             self.whereabouts
-                .step(measured, passed_s, was_long, by_receiver);
+                .step(measured, passed_s, was_long, by_receiver, step_m);
         }
     }
 

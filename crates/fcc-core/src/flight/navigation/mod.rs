@@ -64,8 +64,8 @@ pub use lift::{Lift, LiftChannel};
 pub(crate) use motion::KnownMotion;
 pub(crate) use motion_monitor::MotionDoubt;
 pub(crate) use plausibility::{
-    ATTITUDE_RAD, ENGAGE_SWITCH, GateLimits, HEADING_RAD, HEIGHT_M, PlausibilityLimit, RATES_RADPS,
-    SPECIFIC_FORCE_MPS2, airspeed_can_follow, airspeed_is_suspect, is_possible_fix,
+    ENGAGE_SWITCH, GateLimits, HEIGHT_M, PlausibilityLimit, RATES_RADPS, SPECIFIC_FORCE_MPS2,
+    airspeed_can_follow, airspeed_is_suspect, is_possible_altitude, is_possible_fix,
     plausibility_gate,
 };
 pub(crate) use replacement::{DERIVED_RATES_LATE_S, Lost, Replacement};
