@@ -46,9 +46,7 @@ impl Autopilot {
     pub(super) fn wrong_sensor_notice(&self) -> Option<Notice> {
         let raw = self.raw.as_ref()?;
         let wrong = raw.wrong_sensor().map(wrong_sensors::notice);
-        wrong
-            .or_else(|| raw.late_fixes_s().map(receiver::late_fixes))
-            .or_else(|| raw.refuses_velocity().map(receiver::velocity))
+        wrong.or_else(|| raw.refuses_velocity().map(receiver::velocity))
     }
 
     /// What is told in this tick and in no other.
