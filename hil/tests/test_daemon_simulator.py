@@ -29,6 +29,7 @@ from fcc_hil.standin import Mode, Settings
 SUCCESS = 0
 FAILURE = 1
 FAILSAFE = 3
+NOT_RELEASED = 5
 REFUSED = 11
 
 TOO_OLD = "attitude is missing or too old"
@@ -183,7 +184,8 @@ def test_a_killed_simulator_ends_the_program_if_configured(fccd: Path, tmp_path:
         engage(simulator, daemon)
         simulator.kill()
         ending = daemon.end()
-    assert ending.exit_code == FAILSAFE
+    # Nobody confirms the release.
+    assert ending.exit_code == NOT_RELEASED
     assert ending.report["ending"] == "failsafe ended"
     assert ending.states[-1] == "failsafe -> stopped"
 

@@ -1,4 +1,4 @@
-"""The README's test runs as printed, and has ten lines."""
+"""The README's test runs as printed."""
 
 from __future__ import annotations
 
@@ -12,11 +12,9 @@ import fcc_hil.lockstep_rig  # noqa: F401 - or the run inside loads it anew
 README = Path(__file__).parents[2] / "README.md"
 
 
-def test_the_ten_line_test_runs_as_printed(pytester: pytest.Pytester) -> None:
+def test_the_test_runs_as_printed(pytester: pytest.Pytester) -> None:
     blocks = re.findall(r"^```python\n(.*?)^```$", README.read_text(), re.MULTILINE | re.DOTALL)
     tests = [block for block in blocks if "def test_" in block]
     assert len(tests) == 1
-    lines = [line for line in tests[0].splitlines() if line.strip()]
-    assert len(lines) == 10
     pytester.makepyfile(tests[0])
     pytester.runpytest_inprocess("-p", "no:cacheprovider").assert_outcomes(passed=1)

@@ -87,5 +87,3 @@ def test_the_daemon_is_built_from_the_libraries_of_the_python_module() -> None:
     assert "cargo build --locked --release -p fcc-daemon -p fcc-py --bin fccd" in makefile
     module = libraries("--package=fcc-py", "--features=pyo3/extension-module")
     assert module <= libraries("--package=fcc-py", "--package=fcc-daemon")
-    for name in ("README.md", "docs/tutorial.md", "hil/README.md"):
-        assert "cargo build --release -p fcc-daemon" not in (ROOT / name).read_text()

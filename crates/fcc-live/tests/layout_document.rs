@@ -5,7 +5,7 @@
 use std::fmt::Write as _;
 use std::mem::offset_of;
 
-use fcc_live::{EVENT_HISTORY, Event, Info, LAYOUT, MAX_WATCHERS, RECORD_BUFFER, Status};
+use fcc_live::{Event, Info, LAYOUT, Status};
 
 const DOCUMENT: &str = include_str!("../../../docs/telemetry.md");
 
@@ -14,23 +14,32 @@ const DOCUMENT: &str = include_str!("../../../docs/telemetry.md");
 /// meaning.
 const DESCRIBED: u32 = 5;
 
-/// A table of fields: offset in `$of`, type, meaning.
+/// A table of fields: offset in `$of`, type.
 macro_rules! table {
-    ($of:ty; $($($field:ident).+: $kind:literal, $meaning:literal;)+) => {{
-        let mut text = String::from("| offset | field | type | what |\n|---:|---|---|---|\n");
+    ($of:ty; $($($field:ident).+: $kind:literal;)+) => {{
+        let mut text = String::from("| offset | field | type\n|---:|---|---\n");
         $(
             let offset = offset_of!($of, $($field).+);
             let name = stringify!($($field).+).replace(' ', "");
-            let _ = writeln!(text, "| {offset} | `{name}` | {} | {} |", $kind, $meaning);
+            let _ = writeln!(text, "| {offset} | `{name}` | {}", $kind);
         )+
-        let _ = writeln!(text, "| {} | | | end |", size_of::<$of>());
+        let _ = writeln!(text, "| {} | |", size_of::<$of>());
         text
     }};
 }
 
+/// The page's lines, of a table's rows the first three cells.
+fn without_meanings() -> String {
+    let lines = DOCUMENT.lines().map(|line| {
+        let cells = line.splitn(5, '|').take(4).collect::<Vec<_>>().join("|");
+        cells.trim_end().to_owned() + "\n"
+    });
+    lines.collect()
+}
+
 fn assert_documented(table: &str) {
     assert!(
-        DOCUMENT.contains(table),
+        without_meanings().contains(table),
         "docs/telemetry.md lacks this table:\n{table}"
     );
 }
@@ -41,66 +50,61 @@ fn the_version_is_the_documented_one() {
     for topic in ["columns", "record", "event", "status"] {
         assert!(DOCUMENT.contains(&format!("{topic}/v{LAYOUT}`")), "{topic}");
     }
-    assert!(DOCUMENT.contains(&format!("the one you support (here: {LAYOUT})")));
-    assert!(DOCUMENT.contains(&format!("for up to {MAX_WATCHERS} programs")));
-    let buffers = format!("1,{:03} records are one second", RECORD_BUFFER - 1_000);
-    assert!(DOCUMENT.contains(&buffers), "{buffers}");
-    assert!(DOCUMENT.contains(&format!("the last {EVENT_HISTORY} events")));
 }
 
 #[test]
 fn event() {
     assert_documented(&table!(Event;
-        tick: "u64", "the tick it happened in";
-        time_ns: "i64", "that tick's wake-up";
-        code: "u32", "kind of event, see below";
-        index: "u32", "sensor or actuator, from 0";
-        values: "u64[3]", "depends on the code";
-        text: "char[976]", "as text";
+        tick: "u64";
+        time_ns: "i64";
+        code: "u32";
+        index: "u32";
+        values: "u64[3]";
+        text: "char[976]";
     ));
 }
 
 #[test]
 fn status() {
     assert_documented(&table!(Status;
-        time_ns: "i64", "wake-up of the last tick";
-        ticks: "u64", "since the loop's start";
-        missed: "u64", "missed periods";
-        lateness_p50_ns: "u64", "of all ticks since the start";
-        lateness_p99_ns: "u64", "";
-        lateness_p99_9_ns: "u64", "";
-        lateness_max_ns: "u64", "";
-        lateness_counts: "u64[14]", "ticks by lateness: up to 0.1, 0.316, 1, 3.16, ... µs, half a decade each, up to 100 ms; the last bin counts those above";
-        not_published: "u64", "records that were not published";
-        cpu_ns: "u64", "CPU time of the publishing thread";
-        watchers: "u32", "programs that watch the records";
-        recorder_state: "u32", "0 off, 1 recording, 2 cannot write";
-        recorded: "u64", "records in the file";
-        not_recorded: "u64", "records that are not in the file";
-        recording_bytes: "u64", "size of the file";
-        recording: "char[128]", "the file's name, or why there is none";
+        time_ns: "i64";
+        ticks: "u64";
+        missed: "u64";
+        lateness_p50_ns: "u64";
+        lateness_p99_ns: "u64";
+        lateness_p99_9_ns: "u64";
+        lateness_max_ns: "u64";
+        lateness_counts: "u64[14]";
+        not_published: "u64";
+        cpu_ns: "u64";
+        watchers: "u32";
+        recorder_state: "u32";
+        recorded: "u64";
+        not_recorded: "u64";
+        recording_bytes: "u64";
+        recording: "char[128]";
     ));
 }
 
 #[test]
 fn info() {
     assert_documented(&table!(Info;
-        layout: "u32", "version of all other layouts";
-        record_bytes: "u32", "size of a record";
-        event_bytes: "u32", "size of an event";
-        status_bytes: "u32", "size of a status";
-        process_id: "u32", "the daemon's process";
-        priority: "i32", "of the loop's thread under SCHED_FIFO, else 0";
-        memory_locked: "u32", "1 if the daemon's memory is locked";
-        requests_denied: "u32", "real-time requests that the kernel denied";
-        started_unix_ns: "i64", "when publishing began, since 1970, UTC";
-        started_ns: "i64", "the same instant on the loop's clock";
-        rate_hz: "f64", "nominal";
-        software: "char[32]", "version of the daemon";
-        commit: "char[48]", "the commit it was built from; empty if unknown";
-        timer: "char[16]", "timerfd, posix or nanosleep";
-        policy: "char[16]", "scheduling of the loop's thread";
-        plant: "char[64]", "name of the plant";
-        refusals: "char[280]", "the denied requests, as text";
+        layout: "u32";
+        record_bytes: "u32";
+        event_bytes: "u32";
+        status_bytes: "u32";
+        process_id: "u32";
+        priority: "i32";
+        memory_locked: "u32";
+        requests_denied: "u32";
+        started_unix_ns: "i64";
+        started_ns: "i64";
+        rate_hz: "f64";
+        software: "char[32]";
+        commit: "char[48]";
+        timer: "char[16]";
+        policy: "char[16]";
+        plant: "char[64]";
+        refusals: "char[280]";
     ));
 }

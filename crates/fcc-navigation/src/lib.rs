@@ -71,9 +71,9 @@ pub use lift::{Lift, LiftChannel};
 pub use motion::KnownMotion;
 pub use motion_monitor::MotionDoubt;
 pub use plausibility::{
-    AIRSPEED, ATTITUDE_RAD, ENGAGE_SWITCH, GateLimits, HEADING_RAD, HEIGHT_M, PlausibilityLimit,
-    RATES_RADPS, SPECIFIC_FORCE_MPS2, airspeed_can_follow, airspeed_is_suspect, is_possible_fix,
-    plausibility_gate,
+    AIRSPEED, ENGAGE_SWITCH, GateLimits, HEIGHT_M, PlausibilityLimit, RATES_RADPS,
+    SPECIFIC_FORCE_MPS2, airspeed_can_follow, airspeed_is_suspect, is_possible_altitude,
+    is_possible_fix, plausibility_gate,
 };
 pub use quantity::{Quantities, Quantity};
 pub use replacement::{DERIVED_RATES_LATE_S, Replacement};

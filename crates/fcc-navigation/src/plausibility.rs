@@ -52,12 +52,12 @@ pub struct PlausibilityLimit {
 
 /// 10° for a sensor that recovers after a gap, and a roll rate of half a turn
 /// per second: twice that of training aircraft.
-pub const ATTITUDE_RAD: PlausibilityLimit = PlausibilityLimit {
+const ATTITUDE_RAD: PlausibilityLimit = PlausibilityLimit {
     at_once: 0.175,
     per_s: PI,
 };
 /// 15° for a swinging compass, and half a turn per second, as in a fast spin.
-pub const HEADING_RAD: PlausibilityLimit = PlausibilityLimit {
+const HEADING_RAD: PlausibilityLimit = PlausibilityLimit {
     at_once: 0.26,
     per_s: PI,
 };
@@ -280,7 +280,7 @@ fn take_others(good: &mut Measurements, new: &Measurements) -> [bool; 6] {
 }
 
 /// Whether an aircraft can be so high.
-pub(super) fn is_possible_altitude(altitude_m: f64) -> bool {
+pub fn is_possible_altitude(altitude_m: f64) -> bool {
     ALTITUDE_M.contains(&altitude_m)
 }
 

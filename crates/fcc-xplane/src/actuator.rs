@@ -19,7 +19,6 @@ use crate::link::{Control, SharedState};
 use crate::port::{Errno, Port};
 use crate::protocol::PathError;
 use crate::protocol::dref::WRITE_BYTES;
-use crate::round_trip::marked;
 use crate::sensor::send;
 use crate::traffic::WritePace;
 use crate::udp_port::UdpPort;
@@ -130,13 +129,10 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
         }
         let outputs = if held.confirmation.awaits_too_long() {
             // No loop is closed yet: what would be put answers nothing.
-            held.first
-        } else if link.too_late().is_zero() {
-            *outputs
+            &held.first
         } else {
-            marked(outputs, now)
+            outputs
         };
-        let outputs = &outputs;
         let messages = self.controls.messages(outputs);
         if held.pace.take(now, messages, link.frame_period_s()) {
             sent = sent.and(self.controls.set(outputs, write));

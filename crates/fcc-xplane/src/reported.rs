@@ -8,7 +8,6 @@ use crate::link::Control;
 use crate::missing::Missing;
 use crate::no_answer::{InWords, Why};
 use crate::old_datagrams::OldDatagrams;
-use crate::program::Program;
 use crate::silence::Silence;
 use crate::simulator::SimulatorState;
 use crate::slow_network::{SLOW_S, SlowNetwork};
@@ -73,13 +72,11 @@ impl Default for Reported {
 }
 
 impl Reported {
-    /// A description of what has changed; none if there is nothing to report. Only the
-    /// end of the `program` at the simulator's port is known to be the simulator's end.
+    /// A description of what has changed; none if there is nothing to report.
     pub(crate) fn change(
         &mut self,
         status: &XPlaneStatus,
         config: &XPlaneConfig,
-        program: Option<Program>,
     ) -> Option<String> {
         if let Some(text) = self.change_of_announced(status) {
             return Some(text);
@@ -92,7 +89,7 @@ impl Reported {
         }
         match self.trouble {
             Some((Trouble::Silent(simulator), since)) => {
-                self.cause_of_silence(status, config, program, (simulator, since))
+                self.cause_of_silence(status, config, (simulator, since))
             }
             Some((trouble, since)) => {
                 let worth =
@@ -120,21 +117,12 @@ impl Reported {
         &mut self,
         status: &XPlaneStatus,
         config: &XPlaneConfig,
-        program: Option<Program>,
         (simulator, since): (SocketAddr, Instant),
     ) -> Option<String> {
         let silence = self
             .silence
             .get_or_insert_with(|| Silence::begin(config, status, simulator));
         let why = silence.look(status);
-        let is_gone = program.is_some_and(|program| program.has_ended());
-        if why == Why::PortClosed && is_gone && status.link().free_if_gone() {
-            // Nobody confirms this one.
-            self.control = Control::Free;
-            return Some(format!(
-                "X-Plane at {simulator} has ended, and nothing holds its controls"
-            ));
-        }
         let after = match why {
             Why::NothingArrives => REPORT_NOTHING_AFTER,
             _ => REPORT_AFTER,
@@ -244,7 +232,7 @@ impl Reported {
         let (simulator, other) = status.simulator().zip(announced)?;
         Some(format!(
             "another X-Plane announced itself, at {other}: X-Plane at {simulator} is kept until it \
-             confirms the release of its controls, or has ended"
+             confirms the release of its controls. If it has ended, start this program again"
         ))
     }
 

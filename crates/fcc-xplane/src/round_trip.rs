@@ -2,7 +2,6 @@
 
 use core::time::Duration;
 
-use fcc_core::flight::Surfaces;
 use fcc_core::framework::Time;
 
 /// Over such a time it is the longest that was seen: the same value may be written again
@@ -15,22 +14,6 @@ const TIMES: u8 = 2;
 /// ... by so many values at least, of three axes in 20 frames a second or more: after a freeze
 /// of the simulator each shows once what was written before.
 const LEAST: u16 = 15;
-
-/// While it is too long the rudder is put aside by this much more in each such time, s, up to
-/// so often: a value that does not change says nothing of when it was written.
-const MARK: f64 = 2.5e-4;
-const MARKED_FOR: Duration = Duration::from_millis(250);
-const MARKS: u64 = 20;
-
-/// The outputs with the rudder put aside; one that is not put at all, not a number, stays so.
-pub(crate) fn marked(outputs: &Surfaces, now: Time) -> Surfaces {
-    let number = now.as_nanos().unsigned_abs() / MARKED_FOR.as_nanos() as u64;
-    let aside = (number % MARKS) as f64 * MARK;
-    Surfaces {
-        rudder: (outputs.rudder + aside).clamp(-1.0, 1.0),
-        ..*outputs
-    }
-}
 
 /// When a value that is read back was written: so long ago at least, and at most, where the
 /// same one was written several times in succession.
@@ -144,22 +127,5 @@ mod tests {
         assert_eq!(still.too_late(), Duration::ZERO);
         read(&mut trip, (10, 3), (60, 80), true);
         assert_eq!(trip.too_late(), Duration::ZERO);
-    }
-
-    #[test]
-    fn a_mark_is_half_a_percent_of_the_rudder_at_most_and_puts_none_that_is_not_put() {
-        let at = |quarters: i64, rudder: f64| {
-            let outputs = Surfaces {
-                rudder,
-                ..Surfaces::default()
-            };
-            marked(&outputs, Time::from_nanos(quarters * 250_000_000)).rudder
-        };
-        for quarters in 0..40 {
-            assert!((-0.3..=-0.295).contains(&at(quarters, -0.3)));
-            assert!(at(quarters, 1.0) <= 1.0);
-            assert!(at(quarters, f64::NAN).is_nan());
-        }
-        assert!((at(3, 0.0) - at(2, 0.0) - MARK).abs() < 1e-12);
     }
 }

@@ -18,6 +18,7 @@ pub(super) const FLOWN_OTHERWISE: u8 = 4;
 
 /// The items of notices of what is flown otherwise than before; 0 is the glide.
 pub(super) mod otherwise {
+    /// Not used any more.
     pub(in super::super) const LATE_FIXES: u16 = 1;
     pub(in super::super) const VELOCITY_REFUSED: u16 = 2;
     pub(in super::super) const VELOCITY_USED: u16 = 3;

@@ -141,9 +141,10 @@ impl Autopilot {
                     Some(PlaceDoubt::Repeats | PlaceDoubt::Moves)
                 );
             let passed_s = self.intake.clock.passed_s();
+            let step_m = self.estimator.navigation.resolutions().altitude_step_m;
             self.intake
                 .whereabouts
-                .step(measured, passed_s, was_long, by_receiver);
+                .step(measured, passed_s, was_long, by_receiver, step_m);
         }
     }
 

@@ -2,13 +2,13 @@
 
 use core::fmt;
 
-use libm::{fabs, hypot};
+use libm::fabs;
 
 use super::{Autopilot, AutopilotCommand};
 use fcc_core::flight::atmosphere::pressure_altitude_m;
 use fcc_core::framework::Notice;
 use fcc_guidance::ModeInput;
-use fcc_guidance::route::{ALTIMETER_OFF_M, LONGEST_LEG_M, RunwayDemand, RunwayReason};
+use fcc_guidance::route::{ALTIMETER_OFF_M, RunwayDemand, RunwayReason};
 
 /// The number of the notice that answers, below those of doubted sensors; the amount is the
 /// refusal's number. A plan that
@@ -43,12 +43,12 @@ pub(super) enum Refusal {
     TurningAway,
     NoLanding,
     NotBeforeItIsHigher,
-    TooFar,
-    OffTheReceiver,
+    // 16 is not used.
+    OffTheReceiver = 17,
 }
 
 impl Refusal {
-    const ALL: [Self; 17] = [
+    const ALL: [Self; 16] = [
         Self::NotEngaged,
         Self::NotPrepared,
         Self::NoSuchItem,
@@ -64,7 +64,6 @@ impl Refusal {
         Self::TurningAway,
         Self::NoLanding,
         Self::NotBeforeItIsHigher,
-        Self::TooFar,
         Self::OffTheReceiver,
     ];
 
@@ -94,10 +93,6 @@ impl Refusal {
                 "the height over the runway is measured by the altimeter: set it while the aircraft \
                  stands, or above autopilot.runway.decision_height_ft over the runway"
             }
-            Self::TooFar => {
-                "the place is more than 815 km away, the range of a Cessna 172: are latitude and \
-                 longitude exchanged?"
-            }
             Self::OffTheReceiver => {
                 "the altimeter would be further off the satellite receiver's altitude, by more \
                  than cold air explains: is it the setting of this place?"
@@ -108,8 +103,8 @@ impl Refusal {
 
     /// The refusal of an answer.
     fn of(answer: &Notice) -> Option<Self> {
-        let number = usize::from(answer.amount_permille / PERMILLE);
-        Self::ALL.get(number.checked_sub(1)?).copied()
+        let number = answer.amount_permille / PERMILLE;
+        Self::ALL.into_iter().find(|one| *one as u16 == number)
     }
 
     /// Whether a plan is not replaced.
@@ -169,20 +164,9 @@ impl Autopilot {
                 let index = usize::from(item.saturating_sub(1));
                 plan.step(index).map(drop).ok_or(Refusal::NoItem)
             }
-            AutopilotCommand::Pause | AutopilotCommand::ReturnHome => {
+            AutopilotCommand::Pause | AutopilotCommand::ReturnHome | AutopilotCommand::GoTo(_) => {
                 let here = self.estimator.ground.here();
                 here.map(drop).ok_or(Refusal::NowhereKnown)
-            }
-            AutopilotCommand::GoTo(place) => {
-                let here = self
-                    .estimator
-                    .ground
-                    .here()
-                    .ok_or(Refusal::NowhereKnown)?
-                    .plane();
-                let way_m = here.position_m(place.latitude_rad, place.longitude_rad);
-                let is_near = hypot(way_m.x, way_m.y) <= LONGEST_LEG_M;
-                is_near.then_some(()).ok_or(Refusal::TooFar)
             }
             AutopilotCommand::Land => {
                 self.estimator.ground.here().ok_or(Refusal::NowhereKnown)?;
@@ -241,6 +225,7 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
             write!(f, "the plan is not replaced: {}", refusal.words())
         }
         (Some(refusal), _) => write!(f, "not carried out: {}", refusal.words()),
+        (None, _) if notice.amount_permille > 0 => f.write_str("not used (refusal 16)"),
         (None, 0) => f.write_str("the plan is replaced, as before the restart"),
         (None, item) => write!(f, "the plan is replaced, and flown from item {item}"),
     }

@@ -23,8 +23,6 @@ impl Autopilot {
             by_clock,
             raw.and_then(RawNavigation::wrong_sensor)
                 .map(wrong_sensors::notice),
-            raw.and_then(RawNavigation::late_fixes_s)
-                .map(receiver::late_fixes),
             raw.and_then(RawNavigation::refuses_velocity)
                 .map(receiver::velocity),
         ];

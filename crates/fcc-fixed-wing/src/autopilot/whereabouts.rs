@@ -9,7 +9,7 @@ use super::plant_clock::MAX_STEP_S;
 use fcc_core::blocks::wrap_pi;
 use fcc_core::flight::{Attitude, Measurements, Position};
 use fcc_core::framework::{Reading, Time};
-use fcc_navigation::{ATTITUDE_RAD, HEADING_RAD, HEIGHT_M, PlausibilityLimit};
+use fcc_navigation::{HEIGHT_M, PlausibilityLimit, is_possible_altitude};
 
 /// The Earth's mean radius, m (WGS 84: 6,371,009 m).
 const EARTH_M: f64 = 6_371_009.0;
@@ -56,6 +56,8 @@ pub(super) struct Whereabouts {
     attitude: Reading<Attitude>,
     heading_rad: Reading<f64>,
     altitude_m: Reading<f64>,
+    /// The plant's time since that altitude, s.
+    altitude_passed_s: f64,
     position: Reading<Position>,
     /// The plant's time since that position, s.
     passed_s: f64,
@@ -72,16 +74,19 @@ pub(super) struct Whereabouts {
 
 impl Whereabouts {
     /// Follows the aircraft in a tick in which `passed_s` of the plant's time
-    /// passed. After a long gap attitude, heading and altitude are compared,
-    /// too. A satellite receiver's position, `by_receiver`, may jump by itself.
+    /// passed. After a long gap the altitude is compared, too; a coarse altimeter
+    /// changes it by `altitude_step_m` at once. A satellite receiver's position,
+    /// `by_receiver`, may jump by itself.
     pub(super) fn step(
         &mut self,
         measured: &Measurements,
         passed_s: f64,
         after_gap: bool,
         by_receiver: bool,
+        altitude_step_m: f64,
     ) {
-        self.was_relocated = after_gap && self.is_another(measured, passed_s);
+        self.altitude_passed_s += passed_s;
+        self.was_relocated = after_gap && self.is_out_of_reach(measured, altitude_step_m);
         self.passed_s += passed_s;
         if passed_s > MAX_STEP_S {
             self.gap_s += passed_s;
@@ -119,9 +124,12 @@ impl Whereabouts {
     }
 
     /// Stores where the aircraft is while its time advances.
-    pub(super) const fn keep(&mut self, accepted: &Measurements) {
+    pub(super) fn keep(&mut self, accepted: &Measurements) {
         self.attitude = accepted.attitude;
         self.heading_rad = accepted.heading_rad;
+        if accepted.altitude_m.taken > self.altitude_m.taken {
+            self.altitude_passed_s = 0.0;
+        }
         self.altitude_m = accepted.altitude_m;
     }
 
@@ -149,26 +157,14 @@ impl Whereabouts {
             || moved_m > STILL_POSITION_M
     }
 
-    /// Whether at least two of the three readings that are new are out of
-    /// reach: one alone is a fault of its sensor.
-    fn is_another(&self, measured: &Measurements, passed_s: f64) -> bool {
-        let is_new = |was: Time, is: Time| !was.is_never() && is > was && is > self.seen;
-        let attitude = is_new(self.attitude.taken, measured.attitude.taken) && {
-            let (was, is) = (self.attitude.value, measured.attitude.value);
-            !(ATTITUDE_RAD.holds_over(wrap_pi(is.roll_rad - was.roll_rad), passed_s)
-                && ATTITUDE_RAD.holds_over(is.pitch_rad - was.pitch_rad, passed_s))
-        };
-        let heading = is_new(self.heading_rad.taken, measured.heading_rad.taken) && {
-            let turned = wrap_pi(measured.heading_rad.value - self.heading_rad.value);
-            !HEADING_RAD.holds_over(turned, passed_s)
-        };
-        let altitude = is_new(self.altitude_m.taken, measured.altitude_m.taken)
-            && !HEIGHT_M.holds_over(measured.altitude_m.value - self.altitude_m.value, passed_s);
-        [attitude, heading, altitude]
-            .into_iter()
-            .filter(|out| *out)
-            .count()
-            >= 2
+    /// Whether the altitude is new and out of reach.
+    fn is_out_of_reach(&self, measured: &Measurements, altitude_step_m: f64) -> bool {
+        let (was, is) = (self.altitude_m, measured.altitude_m);
+        let is_new = !was.is_never() && is.taken > was.taken && is.taken > self.seen;
+        let beyond_m = ((is.value - was.value).abs() - altitude_step_m).max(0.0);
+        is_new
+            && is_possible_altitude(is.value)
+            && !HEIGHT_M.holds_over(beyond_m, self.altitude_passed_s)
     }
 }
 

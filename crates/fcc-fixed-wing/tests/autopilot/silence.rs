@@ -294,7 +294,6 @@ fn stopped_time_is_waited_out_and_the_flight_continues_where_it_was() {
         assert!(cockpit.engage_inhibits().contains(flags::PLANT_STALLED));
         if moved {
             cockpit.feel.altitude_m += 300.0;
-            cockpit.feel.heading_deg += 90.0;
             cockpit.step();
             assert_eq!(cockpit.must_release(), flags::RELOCATED);
         } else {

@@ -6,7 +6,6 @@ use super::displacement::Displacement;
 use super::drift::Drift;
 use super::in_flight::InFlight;
 use super::innovations::Innovations;
-use super::lateness::Lateness;
 use super::motion::{Increment, Inertial, Motion, turn};
 use super::parameters as p;
 use super::path::Path;
@@ -59,7 +58,7 @@ pub(super) struct Filter {
     pub(super) earth_field: Vector3<f64>,
     pub(super) body_field: Vector3<f64>,
     pub(super) wind: Vector2<f64>,
-    /// By how much fixes are later than they say, s, beside a lateness that came at once.
+    /// By how much fixes are later than they say, s.
     pub(super) late_s: f64,
     pub(super) covariance: Covariance,
     pub(super) tracks: Tracks,
@@ -78,7 +77,6 @@ pub(super) struct Filter {
     pub(super) trend: Trend,
     pub(super) path: Path,
     pub(super) in_flight: InFlight,
-    pub(super) lateness: Lateness,
     pub(super) displacement: Displacement,
     pub(super) scatter: Scatter,
     /// When this filter last took a velocity for its own that it had refused.
@@ -162,7 +160,6 @@ impl Filter {
             trend: Trend::default(),
             path: Path::new(),
             in_flight: InFlight::new(),
-            lateness: Lateness::default(),
             displacement: Displacement::default(),
             scatter: Scatter::default(),
             taken_over: Time::NEVER,

@@ -17,7 +17,6 @@ use changes::Changes;
 use sums::Sums;
 
 use super::filter::{ATTITUDE, Filter, LATENESS, Raw, UNKNOWN_ANGLE, VELOCITY};
-use super::lateness::Lateness;
 use super::motion::turn;
 use super::parameters as p;
 use super::receiver::earlier;
@@ -244,8 +243,7 @@ impl Filter {
             return false;
         }
         let (believed, gravity) = (self.motion.attitude, self.motion.gravity());
-        let late_s = self.fixes_late_s();
-        let Some(found) = self.in_flight.other(believed, late_s, gravity) else {
+        let Some(found) = self.in_flight.other(believed, self.late_s, gravity) else {
             return false;
         };
         self.settle();
@@ -267,7 +265,6 @@ impl Filter {
         (self.rate_bias, self.force_bias) = biases;
         self.change_magnetometer();
         self.forget_wind();
-        self.lateness = Lateness::default();
         self.late_s = found.late_s;
         self.reset_covariance(LATENESS, 1, p::LATENESS * p::LATENESS);
         true

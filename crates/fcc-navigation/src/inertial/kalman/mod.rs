@@ -31,7 +31,6 @@ mod history;
 mod in_flight;
 mod innovations;
 mod inputs;
-mod lateness;
 mod magnetic;
 mod motion;
 mod noise;
@@ -174,11 +173,6 @@ impl KalmanNavigation {
     /// From here on the magnetic field is that of another magnetometer.
     pub fn change_magnetometer(&mut self) {
         self.filter.change_magnetometer();
-    }
-
-    /// By how much the fixes of the receiver are later than they say, s.
-    pub fn late_fixes_s(&self) -> f64 {
-        self.filter.fixes_late_s()
     }
 
     /// Whether the receiver's velocities are not used because its own places, or air and

@@ -51,7 +51,7 @@ impl KalmanNavigation {
             earth_field_ut: filter.earth_field.into(),
             body_field_ut: filter.body_field.into(),
             wind_mps: filter.wind.into(),
-            fixes_late_s: filter.fixes_late_s(),
+            fixes_late_s: filter.late_s,
             angle_of_attack_rad: f64::NAN,
             sigma: filter.sigmas(&motion.attitude),
         }

@@ -194,12 +194,6 @@ pub(super) const REST_VELOCITY: Noise = Noise::new(0.05, 0.5);
 /// The square of the number of standard deviations up to which an innovation is
 /// believed.
 pub(super) const GATE: f64 = 25.0;
-/// A position beyond this at its first fix is far off, and may be where this was before.
-pub(super) const LATE_GATE: f64 = 50.0;
-/// ... unless the aircraft turns faster than this, rad/s: a spin has no path. Velocities are not
-/// used for this time, s, until it is known whether fixes are late.
-pub(super) const LATE_RATE: f64 = 1.0;
-pub(super) const LATE_SUSPECTED_S: f64 = 1.2;
 /// The same of the magnetic field, whose disturbances are frequent and not large.
 pub(super) const FIELD_GATE: f64 = 11.3;
 /// How long a sensor is refused, s, before the filter doubts itself: a receiver,

@@ -12,9 +12,6 @@ use fcc_core::framework::Time;
 /// States of the latest seconds, and how far apart they are.
 const STATES: usize = 56;
 const APART: Duration = Duration::from_millis(100);
-/// Slower than this, m/s, and further from the path, m, nothing is said of a fix.
-const LEAST_MPS: f64 = 8.0;
-const BESIDE_M: f64 = 6.0;
 /// Where this was, and how it moved.
 #[derive(Clone, Copy, Debug)]
 struct Past {
@@ -121,30 +118,5 @@ impl Path {
             motion.to_place(place) - motion.to_place(past.place) - moved,
             past.velocity + self.corrected.1 - past.corrected.1,
         ]
-    }
-
-    /// By how much a fix is late, if it was on the path of the latest seconds.
-    pub(super) fn late_s(
-        &self,
-        motion: &Motion,
-        taken: Time,
-        place: GeodeticPosition,
-    ) -> Option<f64> {
-        let now = (motion.to_place(place), motion.velocity, 0.0);
-        let past = (0..STATES)
-            .map_while(|before| self.newest(before))
-            .map(|past| {
-                let [difference, velocity] = self.seen_from(past, motion, place);
-                (difference, velocity, signed_s(taken, past.time))
-            });
-        let (difference, velocity, late_s) = core::iter::once(now).chain(past).min_by(|a, b| {
-            let [a, b] = [a, b].map(|one| one.0.xy().norm_squared());
-            a.total_cmp(&b)
-        })?;
-        let (difference, velocity) = (difference.xy(), velocity.xy());
-        let speed = velocity.norm();
-        let ahead_s = difference.dot(&velocity) / (speed * speed).max(1.0);
-        let is_on = speed > LEAST_MPS && (difference - velocity * ahead_s).norm() < BESIDE_M;
-        (is_on && ahead_s.abs() * speed < BESIDE_M).then(|| (late_s - ahead_s).max(0.0))
     }
 }

@@ -43,7 +43,7 @@ impl Filter {
             self.tracks.position.judged(taken, true);
             return;
         }
-        let seen = self.seen(taken, place, after_s, self.lateness.late_s());
+        let seen = self.seen(taken, place, after_s);
         let difference = seen.difference;
         let since_s = self.tracks.position.since_tried_s(taken);
         let mut measurement = on(
@@ -61,7 +61,6 @@ impl Filter {
             p::GATE,
             self.corrected_by_fix(taken),
         ) {
-            self.lateness.accepted();
             let shows_heading = !self.has_heading()
                 && self.tracks.velocity.since_used_s(taken) > p::UNAIDED_S
                 && self.motion.velocity.xy().norm() > MOVING_MPS;
@@ -69,16 +68,6 @@ impl Filter {
                 self.take_heading_from_course();
             }
             return;
-        }
-        let is_steady = self.rates.norm() < p::LATE_RATE;
-        if is_steady && self.distance(&measurement) > p::LATE_GATE {
-            let is_known = self
-                .lateness
-                .refused(&self.path, &self.motion, taken, place);
-            if is_known {
-                self.late_s = 0.0;
-                self.reset_covariance(LATENESS, 1, p::LATENESS * p::LATENESS);
-            }
         }
         if self.tracks.position.refused_s(taken) >= p::RECEIVER_REFUSED_S {
             self.motion.shift(difference);
@@ -155,22 +144,10 @@ impl Filter {
             return;
         }
         let (horizontal, vertical) = (p::VELOCITY_HORIZONTAL, p::VELOCITY_VERTICAL);
-        let refused_s = self.tracks.position.refused_s(taken);
-        if self.lateness.is_suspected(taken) && refused_s < p::LATE_SUSPECTED_S {
-            return;
-        }
         let since_s = self.tracks.velocity.since_tried_s(taken);
         let noises = [horizontal, horizontal, vertical];
         let place = self.motion.place;
-        let mut seen = self.seen(taken, place, after_s, 0.0);
-        if self.lateness.late_s() > 0.0 {
-            let then = self.seen(taken, place, after_s, self.lateness.late_s());
-            let [far_now, far_then] = [seen, then]
-                .map(|one| self.distance(&on(VELOCITY, velocity - one.velocity, noises, since_s)));
-            if !self.lateness.compare(taken, far_then - far_now) {
-                seen = then;
-            }
-        }
+        let seen = self.seen(taken, place, after_s);
         let difference = velocity - seen.velocity;
         let mut measurement = on(VELOCITY, difference, noises, since_s);
         let variance = horizontal.variance();
@@ -246,14 +223,14 @@ impl Filter {
     }
 
     /// What a fix is compared with, that was taken `after_s` after the time of the state and
-    /// comes `late_s` later than that, and as much more as is estimated.
-    fn seen(&self, taken: Time, place: GeodeticPosition, after_s: f64, late_s: f64) -> Seen {
+    /// comes as much later as is estimated.
+    fn seen(&self, taken: Time, place: GeodeticPosition, after_s: f64) -> Seen {
         /// The state of the latest moment can be moved back by this, s.
         const MOMENT_S: f64 = 0.1;
-        let late_s = late_s + self.late_s;
-        let after_s = after_s - late_s;
+        let after_s = after_s - self.late_s;
         let known = if after_s < -MOMENT_S {
-            self.path.then(&self.motion, earlier(taken, late_s), place)
+            self.path
+                .then(&self.motion, earlier(taken, self.late_s), place)
         } else {
             None
         };
@@ -269,11 +246,6 @@ impl Filter {
                 acceleration,
             },
         )
-    }
-
-    /// By how much fixes are later than they say, s.
-    pub(super) fn fixes_late_s(&self) -> f64 {
-        self.lateness.late_s() + self.late_s
     }
 
     /// The share of what a fix shows of its lateness that is taken for that: none while an
@@ -300,7 +272,7 @@ impl Filter {
     /// By how much the variance of a fix is larger: the present error is not that of its time,
     /// and what is corrected shows only after this.
     fn late_excess(&self) -> f64 {
-        1.0 + self.fixes_late_s() * self.fixes_late_s()
+        1.0 + self.late_s * self.late_s
     }
 
     pub(super) fn has_heading(&self) -> bool {
