@@ -161,7 +161,7 @@ impl Autopilot {
 
     /// The gains for the present airspeed and latency.
     pub(super) fn schedule(&self) -> Schedule {
-        let airspeed_mps = self.estimator.navigation.estimate().airspeed_mps;
+        let airspeed_mps = self.estimator.estimate().airspeed_mps;
         self.loops.schedule_at(&self.config, airspeed_mps)
     }
 }

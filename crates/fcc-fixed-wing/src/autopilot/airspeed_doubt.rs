@@ -105,7 +105,7 @@ impl Autopilot {
     /// bank that the turn needs: one that is limited for want of speed would
     /// otherwise stay limited.
     pub(super) fn envelope(&self) -> Envelope {
-        let (envelope, estimate) = (self.config.envelope, self.estimator.navigation.estimate());
+        let (envelope, estimate) = (self.config.envelope, self.estimator.estimate());
         let range_mps = envelope.max_airspeed_mps - envelope.min_airspeed_mps;
         let by_mps = (KEPT_SDS * estimate.airspeed_uncertainty_mps).min(MOST_SHARE * range_mps);
         let found_mps = self.loops.recovery.found_stall_mps();
@@ -130,13 +130,7 @@ impl Autopilot {
     /// A commanded airspeed, inside of that envelope while the airspeed is not a
     /// sensor's.
     pub(super) fn flyable_airspeed_mps(&self, commanded_mps: f64) -> f64 {
-        if self
-            .estimator
-            .navigation
-            .estimate()
-            .airspeed_uncertainty_mps
-            > 0.0
-        {
+        if self.estimator.estimate().airspeed_uncertainty_mps > 0.0 {
             self.envelope().allowed_airspeed(commanded_mps)
         } else {
             commanded_mps

@@ -169,7 +169,7 @@ impl Autopilot {
                 self.change_mode(ModeInput::SetPoint);
             }
             AutopilotCommand::Heading(rad) if rad.is_finite() => {
-                let now_rad = self.estimator.navigation.estimate().heading_rad;
+                let now_rad = self.estimator.estimate().heading_rad;
                 self.guidance.targets.heading_rad = now_rad + wrap_pi(rad - now_rad);
                 self.change_mode(ModeInput::SetPoint);
             }

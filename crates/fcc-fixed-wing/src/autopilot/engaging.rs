@@ -18,7 +18,7 @@ const ROUNDING_S: f64 = 1e-6;
 impl Autopilot {
     /// Why the autopilot does not engage.
     pub(super) fn inhibits(&self, now: Time, measurements: &Measurements) -> Flags {
-        let estimate = self.estimator.navigation.estimate();
+        let estimate = self.estimator.estimate();
         let contradictions = self.estimator.navigation.contradictions();
         let stale = self.stale(now);
         let is_slow = estimate.airspeed_mps < self.config.envelope.min_airspeed_mps
@@ -76,7 +76,7 @@ impl Autopilot {
         self.supervisor.contingencies.reset();
         self.supervisor.pilot.set_engaged(true);
         self.supervisor.degraded = Degraded::default();
-        let estimate = *self.estimator.navigation.estimate();
+        let estimate = *self.estimator.estimate();
         self.guidance.targets = Targets {
             airspeed_mps: self.config.envelope.allowed_airspeed(estimate.airspeed_mps),
             heading_rad: estimate.heading_rad,
@@ -108,7 +108,7 @@ impl Autopilot {
     pub(super) fn take_over(&mut self, standing: &Surfaces) {
         self.loops.last = *standing;
         self.loops.trim.take_over(standing.elevator_trim);
-        let estimate = *self.estimator.navigation.estimate();
+        let estimate = *self.estimator.estimate();
         self.loops.bank.reset(estimate.roll_rad);
         let schedule = self.schedule();
         self.loops
@@ -128,7 +128,7 @@ impl Autopilot {
     /// a time in which nobody else flew: the surfaces stood at these trims, so what is
     /// off now is none of them.
     pub(super) fn rejoin(&mut self) {
-        let estimate = *self.estimator.navigation.estimate();
+        let estimate = *self.estimator.estimate();
         self.loops.bank.reset(estimate.roll_rad);
         self.loops.heading.restart(&estimate);
         self.loops.altitude.restart(&estimate);

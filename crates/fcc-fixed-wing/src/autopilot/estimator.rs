@@ -6,7 +6,7 @@ use fcc_core::flight::Measurements;
 use fcc_core::framework::Flags;
 use fcc_navigation::inertial::RawNavigation;
 use fcc_navigation::{
-    AirspeedSource, FrozenDetector, MotionDoubt, Navigation, Replacement, is_possible_fix,
+    AirspeedSource, Estimate, FrozenDetector, MotionDoubt, Navigation, Replacement, is_possible_fix,
 };
 
 /// Where the aircraft is and how it moves.
@@ -43,6 +43,11 @@ impl Estimator {
         }
     }
 
+    /// Attitude, airspeed, altitude and their rates.
+    pub(super) const fn estimate(&self) -> &Estimate {
+        self.navigation.estimate()
+    }
+
     /// The conditions that airspeed and altitude are excluded.
     pub(super) fn doubted(&self) -> Flags {
         Flags::NONE
@@ -77,7 +82,7 @@ impl Estimator {
     }
 
     pub(super) fn is_accurate(&self, config: &AutopilotConfig, ratio: f64) -> bool {
-        let estimate = self.navigation.estimate();
+        let estimate = self.estimate();
         let accurate_mps = ratio * config.reference_airspeed_mps;
         estimate.airspeed_source == AirspeedSource::Forces
             && estimate.airspeed_uncertainty_mps < accurate_mps

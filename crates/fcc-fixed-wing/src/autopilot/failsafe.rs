@@ -124,7 +124,7 @@ impl Autopilot {
         if !self.supervisor.degraded.is_failsafe {
             self.supervisor
                 .degraded
-                .begin(self.estimator.navigation.estimate().altitude_m);
+                .begin(self.estimator.estimate().altitude_m);
             self.begin_low();
             if self.frozen().contains(Quantity::BodyRates) {
                 let trims = Surfaces {
@@ -230,7 +230,7 @@ impl Autopilot {
 
     /// The estimate, with what takes the place of the lost quantities.
     fn estimate_without(&self, lost: Quantities) -> Estimate {
-        let mut estimate = *self.estimator.navigation.estimate();
+        let mut estimate = *self.estimator.estimate();
         if lost.contains(Quantity::SpecificForce) {
             estimate.side_force_mps2 = 0.0;
         }
@@ -291,10 +291,7 @@ impl Autopilot {
         if self.intake.distrusted.is_empty() {
             return;
         }
-        let (estimate, distrusted) = (
-            *self.estimator.navigation.estimate(),
-            self.intake.distrusted,
-        );
+        let (estimate, distrusted) = (*self.estimator.estimate(), self.intake.distrusted);
         let last = &mut self.intake.accepted;
         if distrusted.contains(Quantity::Attitude) {
             last.attitude.value = Attitude {

@@ -65,7 +65,7 @@ impl Autopilot {
     /// altitude (m), a = v²/2h, up to that of the largest load; 0 if it does not
     /// descend, m/s².
     fn pull_out_mps2(&self, lowest_m: f64) -> f64 {
-        let estimate = self.estimator.navigation.estimate();
+        let estimate = self.estimator.estimate();
         let sink_mps = (-estimate.climb_rate_mps).max(0.0);
         let height_m = estimate.altitude_m - lowest_m - REACTION_S * sink_mps;
         let most_mps2 = GRAVITY_MPS2 * (self.config.envelope.max_load_factor - 1.0);
@@ -89,7 +89,7 @@ impl Autopilot {
 
     /// The climb rate for a failsafe to hold, m/s: none, or that to the floor.
     pub(super) fn kept_climb_rate_mps(&self) -> f64 {
-        let low_m = self.lowest_m() - self.estimator.navigation.estimate().altitude_m;
+        let low_m = self.lowest_m() - self.estimator.estimate().altitude_m;
         (GAIN_PER_S * low_m).max(0.0)
     }
 }

@@ -16,10 +16,7 @@ impl Autopilot {
             // Some of the estimate is from before the loss.
             return self.loops.last;
         }
-        let (estimate, dt_s) = (
-            *self.estimator.navigation.estimate(),
-            self.intake.clock.step_s(),
-        );
+        let (estimate, dt_s) = (*self.estimator.estimate(), self.intake.clock.step_s());
         self.follow_outputs(&estimate);
         let (schedule, envelope) = (self.schedule(), self.envelope());
         if self.intake.accepted.body_rates.value != self.loops.kept_trims.found_with {

@@ -94,7 +94,7 @@ impl Autopilot {
         let is_expected =
             self.guidance.runway().is_some() || self.guidance.mode.mode() == Mode::Glide;
         if !is_expected {
-            let altitude_m = self.estimator.navigation.estimate().altitude_m;
+            let altitude_m = self.estimator.estimate().altitude_m;
             let off_ground_m = self.supervisor.told_once.touched.off_ground_m(altitude_m);
             self.guidance.targets.altitude_m = self.guidance.targets.altitude_m.max(off_ground_m);
             if self.supervisor.told_once.has_flown && self.supervisor.told_once.touch.is_due() {

@@ -267,7 +267,7 @@ impl Controller for Autopilot {
         let seen = *self.estimator.seen(measurements);
         self.prepare_end_of_failsafe(tick.woke, &seen);
         let lost = self.lost(tick.woke, &seen);
-        let estimate = *self.estimator.navigation.estimate();
+        let estimate = *self.estimator.estimate();
         if !lost.intersects(Quantity::BodyRates | Quantity::Attitude) {
             self.follow_outputs(&estimate);
         } else if !lost.contains(Quantity::Attitude) {
@@ -305,10 +305,7 @@ impl Controller for Autopilot {
     }
 
     fn estimated(&self) -> Estimate {
-        let estimate = self
-            .intake
-            .ages
-            .shown_in(self.estimator.navigation.estimate());
+        let estimate = self.intake.ages.shown_in(self.estimator.estimate());
         let estimate = self.estimator.ground.shown_in(&estimate);
         Estimate {
             heading_rad: wrap_two_pi(estimate.heading_rad),

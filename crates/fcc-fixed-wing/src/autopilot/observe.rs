@@ -103,7 +103,7 @@ impl Autopilot {
             && lost.contains(Quantity::BodyRates)
             && !lost.contains(Quantity::Attitude);
         self.loops.actuation.derives_rates(replaces);
-        let estimate = *self.estimator.navigation.estimate();
+        let estimate = *self.estimator.estimate();
         self.estimator
             .replacement
             .follow(&self.intake.accepted, lost, &estimate, step_s);

@@ -63,7 +63,7 @@ impl Autopilot {
         now: Time,
         measured: &Measurements,
     ) -> bool {
-        let estimate = self.estimator.navigation.estimate();
+        let estimate = self.estimator.estimate();
         let unsafe_now = self.unsafe_to_fly(now, measured) | self.not_flyable(now, measured);
         let is_flyable = !unsafe_now.intersects(flags::NOT_SENSED)
             && held_without(self.lost(now, measured)).vertical != Vertical::Trim
@@ -130,10 +130,7 @@ impl Autopilot {
     /// The outputs with the trim, after one step of it: quick before a release,
     /// slow in steady flight, none where the climb rate is not held.
     pub(super) fn with_trim(&mut self, now: Time, outputs: Surfaces, lost: Quantities) -> Surfaces {
-        let (estimate, dt_s) = (
-            *self.estimator.navigation.estimate(),
-            self.intake.clock.step_s(),
-        );
+        let (estimate, dt_s) = (*self.estimator.estimate(), self.intake.clock.step_s());
         let is_known = held_without(lost).vertical == Vertical::Level;
         let trimming = if !is_known || self.loops.recovery.is_active() {
             Trimming::Held

@@ -77,7 +77,7 @@ impl Autopilot {
         let Some(aimed) = ActiveMode::resume(&config, &progress).targets() else {
             return;
         };
-        let off_rad = self.estimator.navigation.estimate().heading_rad - aimed.heading_rad;
+        let off_rad = self.estimator.estimate().heading_rad - aimed.heading_rad;
         progress.captured.heading_rad += round(off_rad / TAU) * TAU;
         let airspeed_mps = progress.captured.airspeed_mps;
         progress.captured.airspeed_mps = self.config.envelope.allowed_airspeed(airspeed_mps);

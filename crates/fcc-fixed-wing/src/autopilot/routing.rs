@@ -45,7 +45,7 @@ impl Autopilot {
         self.keep_above_floor();
         let sea_level_m = self.guidance.sea_level_m();
         self.guidance.mode.advance(
-            self.estimator.navigation.estimate(),
+            self.estimator.estimate(),
             self.estimator.ground.here(),
             sea_level_m,
             self.intake.clock.passed_s(),
@@ -352,9 +352,7 @@ impl Autopilot {
         self.leave();
         if self.guidance.mode.over_ground().is_none() {
             // The others command a bank at once: the aircraft has not reached it yet.
-            self.loops
-                .bank
-                .reset(self.estimator.navigation.estimate().roll_rad);
+            self.loops.bank.reset(self.estimator.estimate().roll_rad);
         }
         self.guidance.reference = AltitudeReference::SeaLevel;
         self.guidance.capture = None;

@@ -45,7 +45,7 @@ impl Autopilot {
     /// The frozen quantities; none on the ground: with an airspeed below the
     /// floor, and not engaged. A glide may be slower.
     pub(super) fn frozen(&self) -> Quantities {
-        let airspeed_mps = self.estimator.navigation.estimate().airspeed_mps;
+        let airspeed_mps = self.estimator.estimate().airspeed_mps;
         let is_slow = airspeed_mps < self.config.envelope.min_airspeed_mps;
         if is_slow && (!self.supervisor.pilot.is_engaged() || self.is_on_runway()) {
             Quantities::NONE

@@ -107,7 +107,7 @@ impl Autopilot {
             throttle: self.loops.airspeed.trim(),
             ..self.loops.trims()
         };
-        let airspeed_mps = self.estimator.navigation.estimate().airspeed_mps;
+        let airspeed_mps = self.estimator.estimate().airspeed_mps;
         self.loops.straight.take(&trims, airspeed_mps, dt_s);
     }
 
@@ -125,7 +125,7 @@ impl Autopilot {
             rudder: straight.rudder.output(),
             ..present
         };
-        let airspeed_mps = self.estimator.navigation.estimate().airspeed_mps;
+        let airspeed_mps = self.estimator.estimate().airspeed_mps;
         if self.loops.glides || !straight.fits(airspeed_mps, present.elevator_trim) {
             return trims;
         }

@@ -8,7 +8,7 @@ use crate::control::ThrottleDemand;
 impl Autopilot {
     /// What the throttle is to do for the commanded airspeed and a climb rate.
     pub(super) fn throttle_demand(&self, climb_rate_mps: f64) -> ThrottleDemand {
-        let estimate = self.estimator.navigation.estimate();
+        let estimate = self.estimator.estimate();
         ThrottleDemand {
             airspeed_mps: self
                 .envelope()

@@ -52,7 +52,7 @@ impl Autopilot {
     /// Begins to watch for upsets, with the trims of the present flight unless it
     /// is one, or turns as in one: those are of the controls' present positions.
     pub(super) fn begin_watching_for_upsets(&mut self) {
-        let trims = if is_steady(self.estimator.navigation.estimate()) {
+        let trims = if is_steady(self.estimator.estimate()) {
             self.loops.trims()
         } else {
             Surfaces::default()

@@ -116,7 +116,7 @@ impl Autopilot {
             .accepted
             .engine_speed_radps
             .fresh(now, READING_AGE)?;
-        let airspeed_mps = self.estimator.navigation.estimate().airspeed_mps;
+        let airspeed_mps = self.estimator.estimate().airspeed_mps;
         let flies = airspeed_mps > self.config.envelope.stall_airspeed_mps && !self.is_on_wheels();
         if self
             .supervisor
@@ -157,7 +157,7 @@ impl Autopilot {
             self.supervisor.engine.is_throttled();
             return None;
         }
-        let estimate = self.estimator.navigation.estimate();
+        let estimate = self.estimator.estimate();
         let path_rad = estimate.pitch_rad - estimate.angle_of_attack_rad * cos(estimate.roll_rad);
         let power = specific_power(path_rad, estimate.acceleration_mps2);
         let engine = &mut self.supervisor.engine;
@@ -225,7 +225,7 @@ impl Autopilot {
             ContingencyAction::Loiter
         };
         if glided {
-            self.guidance.targets.altitude_m = self.estimator.navigation.estimate().altitude_m;
+            self.guidance.targets.altitude_m = self.estimator.estimate().altitude_m;
             let airspeed_mps = self.config.reference_airspeed_mps;
             self.guidance.targets.airspeed_mps =
                 self.config.envelope.allowed_airspeed(airspeed_mps);

@@ -235,14 +235,14 @@ impl Autopilot {
 
     /// How far inside circles stay, m: farther in gusts, which carry the aircraft off them.
     fn fence_margin_m(&self) -> f64 {
-        let gusts_g = self.estimator.navigation.estimate().gust_load - CALM_GUSTS_G;
+        let gusts_g = self.estimator.estimate().gust_load - CALM_GUSTS_G;
         self.config.contingency.fence_margin_m + GUSTS_M_PER_G * gusts_g.max(0.0)
     }
 
     /// Follows what bank is allowed, and the airspeed, `dt_s` seconds after the last time.
     pub(super) fn follow_bank(&mut self, dt_s: f64) {
         let envelope = &self.config.envelope;
-        let estimate = self.estimator.navigation.estimate();
+        let estimate = self.estimator.estimate();
         let most_rad = self.config.route.bank_rad.min(envelope.max_bank_rad);
         let allowed = tan(envelope.bank_limit_at_rad(estimate)) / tan(most_rad);
         let off = 1.0 - allowed.min(1.0) - self.supervisor.contingencies.bank_missing;
@@ -258,7 +258,7 @@ impl Autopilot {
     fn circle_airspeed_mps(&self) -> f64 {
         let (route, envelope) = (&self.config.route, &self.config.envelope);
         let most_rad = route.bank_rad.min(envelope.max_bank_rad);
-        let gust_load = self.estimator.navigation.estimate().gust_load;
+        let gust_load = self.estimator.estimate().gust_load;
         let needed_mps = envelope.floor_in_turn_mps(most_rad, gust_load) + OVER_NEEDED_MPS;
         let soon_mps = (self.lasting_airspeed_mps() + FASTER_MPS).max(needed_mps);
         self.guidance.targets.airspeed_mps.min(soon_mps)
@@ -285,7 +285,7 @@ impl Autopilot {
 
     /// The indicated airspeed without gusts, m/s.
     fn lasting_airspeed_mps(&self) -> f64 {
-        let now_mps = self.estimator.navigation.estimate().airspeed_mps;
+        let now_mps = self.estimator.estimate().airspeed_mps;
         self.supervisor
             .contingencies
             .airspeed_mps
@@ -313,7 +313,7 @@ impl Autopilot {
     pub(super) fn fastest_bank(&self) -> Bank {
         let (route, envelope) = (&self.config.route, &self.config.envelope);
         let most_rad = route.bank_rad.min(envelope.max_bank_rad);
-        let estimate = self.estimator.navigation.estimate();
+        let estimate = self.estimator.estimate();
         let commanded_rad = match self.guidance.mode.over_ground() {
             Some(_) => self.guidance.setpoints.roll_rad,
             None => estimate.roll_rad,

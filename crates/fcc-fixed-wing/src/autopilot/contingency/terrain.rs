@@ -170,7 +170,7 @@ impl Autopilot {
         let below_m = self.estimator.ground.below_altimeter_m();
         here.altitude_m -= below_m;
         let speed_mps = length(here.ground_velocity_mps).max(1.0);
-        let bank_rad = self.estimator.navigation.estimate().roll_rad;
+        let bank_rad = self.estimator.estimate().roll_rad;
         let is_level = bank_rad.abs() < LEVEL_RAD;
         let ahead_s = self.terrain_ahead_s(speed_mps);
         let within_m = speed_mps * ahead_s + CIRCLES_M;

@@ -61,7 +61,7 @@ impl Autopilot {
             lands: mode.is_some_and(OverGroundMode::glides_to_land),
             on_wheels: self.estimator.ground.stands_on_wheels(),
             height_m: demand.map_or(0.0, |demand| demand.height_m),
-            climb_rate_mps: self.estimator.navigation.estimate().climb_rate_mps,
+            climb_rate_mps: self.estimator.estimate().climb_rate_mps,
             before: self.loops.last.gear,
         };
         Surfaces {

@@ -51,7 +51,7 @@ impl Autopilot {
         };
         self.supervisor.degraded.low = low;
         if let Low::Climbs(..) = low {
-            let estimate = *self.estimator.navigation.estimate();
+            let estimate = *self.estimator.estimate();
             let last = self.loops.last;
             self.take_over(&last);
             // Of level flight, at the airspeed that it has or will have.

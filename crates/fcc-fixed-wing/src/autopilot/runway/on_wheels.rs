@@ -76,7 +76,7 @@ impl Autopilot {
         let yaw_radps = if lost.contains(Quantity::BodyRates) {
             0.0
         } else {
-            self.estimator.navigation.estimate().body_rates.yaw_radps
+            self.estimator.estimate().body_rates.yaw_radps
         };
         let speed_mps = self.estimator.ground.speed_mps().max(LEAST_STEERED_MPS);
         let brake = &mut self.guidance.on_runway.brake;
