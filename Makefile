@@ -46,7 +46,16 @@ endif
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: tested test-release python advisories lock reproducible package-check wheels deb test-attacks test-contingencies test-fences test-glides test-guidance test-landings test-landings-beside test-plan-real-time test-recordings test-raw-edges test-upsets test-android android android-check android-package test-deb test-vm test-cross test-page test-ground station check-cross help faulty fly ground fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-ground bench-flood soak doc build clean
+GOALS := advisories android android-check android-package bench bench-android bench-flight \
+    bench-flood bench-ground bench-live bench-peer bench-timing build campaign check-boards \
+    check-cross clean clippy deb deny doc faulty fly fly-jsbsim fly-plan fly-plan-jsbsim fuzz \
+    ground help lint lint-python lint-rust lock package-check python reproducible soak soundness \
+    station test test-android test-attacks test-contingencies test-cross test-deb test-fences \
+    test-full test-glides test-ground test-guidance test-landings test-landings-beside test-page \
+    test-plan-real-time test-python test-quick test-raw-edges test-recordings test-release \
+    test-rust test-upsets test-vm test-x-plane tested wheels
+
+.PHONY: $(GOALS)
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { print $$1 "\t" $$2 }' $(MAKEFILE_LIST) | LC_ALL=C sort | \
@@ -101,7 +110,26 @@ fly-plan-jsbsim: build $(STAMPS)/python-module ## Fly a plan with JSBSim over X-
 	$(PYTHON) -m fcc_hil plan --realtime --fccd $(FCCD) --plan $(PLAN) --wind $(WIND) --wind-from $(WIND_FROM) --seed $(SEED) \
 	    $(if $(TERRAIN),--terrain $(TERRAIN)) --json $(if $(filter-out file,$(origin JSON)),$(JSON),target/fly-plan-jsbsim.json) --plot target/fly-plan-jsbsim.png
 
-test: lint check-cross test-rust test-python test-page ## Run every check and every test
+# Flights in lockstep, and what documents and the module's stub say.
+QUICK := $(patsubst %,hil/tests/test_%.py,actions air_data altimeter bad_readings degraded documents \
+    documented_keys fault_table fcc_autopilot fcc_flight fcc_stub floor lockstep pattern pilot_takeover \
+    release score upset)
+# Rust tests that wait for real time, by parts of their names.
+REAL_TIME := timerfd:: posix:: nanosleep:: early:: thread:: watchdog:: slow_disk:: full_disk:: \
+    lines:: real_gpsd:: finding:: following::
+
+# Three layers: between changes, before a commit, and before a problem counts as solved.
+test-quick: clippy tested ## Check what takes no real time: lints, Rust, a choice of flights in lockstep (6 minutes)
+	cargo test --locked --workspace --all-features --lib --bins --tests -- $(addprefix --skip ,$(REAL_TIME))
+	$(WITH_TESTED) $(PYTHON) -m pytest --numprocesses auto $(QUICK)
+
+test: lint check-cross test-rust test-python test-page ## Run every check and every test, long flights left out (20 minutes)
+
+# Every goal whose name begins with `test-`: a new one cannot be forgotten.
+FULL := $(filter-out test-quick test-full test-recordings,$(filter test-%,$(GOALS)))
+test-full: test check-boards $(FULL) $(if $(MCAP_TOOL),test-recordings) ## Run `make test` and every longer test (5 hours; MCAP_TOOL=)
+	@echo "passed: test check-boards $(FULL) $(if $(MCAP_TOOL),test-recordings)"
+	@$(if $(MCAP_TOOL),,echo "not run: test-recordings: it needs MCAP_TOOL=PATH")
 
 test-rust: $(STAMPS)/rust $(STAMPS)/gpsd
 	cargo test --locked --workspace --all-features
@@ -230,9 +258,11 @@ faulty: $(STAMPS)/rust
 
 lint: lint-rust lint-python deny ## Check formatting, lints, licences
 
-lint-rust: $(STAMPS)/rust
+clippy: $(STAMPS)/rust
 	cargo fmt --all --check
 	cargo clippy --locked --workspace --all-targets --all-features -- -D warnings
+
+lint-rust: clippy
 	RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps --all-features
 
 lint-python: tested $(STAMPS)/playwright
@@ -280,17 +310,24 @@ soundness: ## Run Miri and ThreadSanitizer over timers, loop, records and live t
 
 # The boards: a Raspberry Pi with 64 bits, and a BeagleBone or a Pi with 32.
 BOARDS := aarch64-unknown-linux-gnu armv7-unknown-linux-gnueabihf
+# The one that differs from this machine in more than its instructions: sizes, alignment.
+NARROW := armv7-unknown-linux-gnueabihf
 # Of servo boards: a Cortex-M0, and a Cortex-M4.
 MICROCONTROLLERS := thumbv6m-none-eabi thumbv7em-none-eabi
 
 # The whole workspace, as in the other checks: with another choice of packages some
 # crates of build scripts have other features, and are compiled once more.
-check-cross: $(STAMPS)/cross ## Check that everything compiles for the boards
-	for board in $(BOARDS); do \
-	    ./scripts/cross $$board check --locked --workspace --all-features || exit 1; \
-	done
+CHECK_BOARD := check --locked --workspace --all-features
+
+check-cross: $(STAMPS)/cross ## Check that everything compiles for the board with 32 bits, and for servo boards
+	./scripts/cross $(NARROW) $(CHECK_BOARD)
 	for board in $(MICROCONTROLLERS); do \
 	    cargo build --locked -p servo-board-firmware --target $$board || exit 1; \
+	done
+
+check-boards: check-cross ## Check that everything compiles for all boards
+	for board in $(filter-out $(NARROW),$(BOARDS)); do \
+	    ./scripts/cross $$board $(CHECK_BOARD) || exit 1; \
 	done
 
 test-cross: $(STAMPS)/cross $(STAMPS)/qemu build ## Build for the boards, and run the tests in emulation
