@@ -25,6 +25,8 @@ TARGET   := $(or $(CARGO_TARGET_DIR),target)
 FCCD     := $(TARGET)/release/fccd
 # The same with fault injection, for tests.
 FAULTY   := $(TARGET)/release/fccd-faulty
+# What tests run: built by `tested`.
+TESTED   := $(abspath $(TARGET))/ci
 # The folder of the Python module's wheels.
 WHEELS   := $(TARGET)/wheels
 # A workspace of its own, built with the same compiler.
@@ -44,7 +46,16 @@ endif
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: python advisories lock reproducible package-check wheels deb test-attacks test-contingencies test-fences test-glides test-guidance test-landings test-landings-beside test-plan-real-time test-recordings test-raw-edges test-upsets test-android android android-check android-package test-deb test-vm test-cross test-page test-ground station check-cross help faulty fly ground fly-jsbsim fly-plan fly-plan-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz soundness bench bench-android bench-timing bench-peer bench-flight campaign bench-live bench-ground bench-flood soak doc build clean
+GOALS := advisories android android-check android-package bench bench-android bench-flight \
+    bench-flood bench-ground bench-live bench-peer bench-timing build campaign check-boards \
+    check-cross clean clippy deb deny doc faulty fly fly-jsbsim fly-plan fly-plan-jsbsim fuzz \
+    ground help lint lint-python lint-rust lock package-check python reproducible soak soundness \
+    station test test-android test-attacks test-contingencies test-cross test-deb test-fences \
+    test-full test-glides test-ground test-guidance test-landings test-landings-beside test-page \
+    test-plan-real-time test-python test-quick test-raw-edges test-recordings test-release \
+    test-rust test-upsets test-vm test-x-plane tested wheels
+
+.PHONY: $(GOALS)
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { print $$1 "\t" $$2 }' $(MAKEFILE_LIST) | LC_ALL=C sort | \
@@ -99,85 +110,115 @@ fly-plan-jsbsim: build $(STAMPS)/python-module ## Fly a plan with JSBSim over X-
 	$(PYTHON) -m fcc_hil plan --realtime --fccd $(FCCD) --plan $(PLAN) --wind $(WIND) --wind-from $(WIND_FROM) --seed $(SEED) \
 	    $(if $(TERRAIN),--terrain $(TERRAIN)) --json $(if $(filter-out file,$(origin JSON)),$(JSON),target/fly-plan-jsbsim.json) --plot target/fly-plan-jsbsim.png
 
-test: lint check-cross test-rust test-python test-page ## Run every check and every test
+# Flights in lockstep, and what documents and the module's stub say.
+QUICK := $(patsubst %,hil/tests/test_%.py,actions air_data altimeter bad_readings degraded documents \
+    documented_keys fault_table fcc_autopilot fcc_flight fcc_stub floor lockstep pattern pilot_takeover \
+    release score upset)
+# Rust tests that wait for real time, by parts of their names.
+REAL_TIME := timerfd:: posix:: nanosleep:: early:: thread:: watchdog:: slow_disk:: full_disk:: \
+    lines:: real_gpsd:: finding:: following::
+
+# Three layers: between changes, before a commit, and before a problem counts as solved.
+test-quick: clippy tested ## Check what takes no real time: lints, Rust, a choice of flights in lockstep (6 minutes)
+	cargo test --locked --workspace --all-features --lib --bins --tests -- $(addprefix --skip ,$(REAL_TIME))
+	$(WITH_TESTED) $(PYTHON) -m pytest --numprocesses auto $(QUICK)
+
+test: lint check-cross test-rust test-python test-page ## Run every check and every test, long flights left out (20 minutes)
+
+# Every goal whose name begins with `test-`: a new one cannot be forgotten.
+FULL := $(filter-out test-quick test-full test-recordings,$(filter test-%,$(GOALS)))
+test-full: test check-boards $(FULL) $(if $(MCAP_TOOL),test-recordings) ## Run `make test` and every longer test (5 hours; MCAP_TOOL=)
+	@echo "passed: test check-boards $(FULL) $(if $(MCAP_TOOL),test-recordings)"
+	@$(if $(MCAP_TOOL),,echo "not run: test-recordings: it needs MCAP_TOOL=PATH")
 
 test-rust: $(STAMPS)/rust $(STAMPS)/gpsd
 	cargo test --locked --workspace --all-features
+	cargo check --locked -p fcc-daemon -p fcc-ground -p fcc-py
 	cargo check --locked -p fcc-daemon -p fcc-py --no-default-features
 	@for crate in fcc-runtime fcc-telemetry fcc-record fcc-live fcc-replay fcc-report fcc-top thermostat pendulum; do \
 	    ! cargo tree --locked -p $$crate -e no-dev | grep -E 'fcc-(navigation|guidance|calibration|fixed-wing)' || \
 	    { echo "$$crate is compiled with an aircraft: see above"; exit 1; }; done
+	@for crate in fcc-daemon fcc-ground fcc-py fcc-android; do \
+	    ! cargo tree --locked -p $$crate -e no-dev,features | grep -E 'fault-injection|fcc-conformance' || \
+	    { echo "$$crate is compiled with what is for tests: see above"; exit 1; }; done
 
 # One more than there are processors: a third of the tests wait for flights in real time.
 WORKERS := $(shell expr $$(nproc) + 1)
 
-test-python: faulty station $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/systemd
-	$(BUILD_FCCD) -p thermostat --bin thermostat
-	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) FCC_GROUND=$(abspath $(TARGET))/release/fcc-ground \
-	    $(PYTHON) -m pytest hil --numprocesses $(WORKERS) --dist loadfile
+WITH_TESTED := FCCD=$(TESTED)/fccd FCCD_INJECTION=$(TESTED)/fccd FCC_GROUND=$(TESTED)/fcc-ground
 
-IN_BROWSER := FCCD=$(abspath $(FCCD)) FCC_GROUND=$(abspath $(TARGET))/release/fcc-ground $(PYTHON) -m pytest web/tests --numprocesses $(WORKERS)
+test-python: tested $(STAMPS)/strace $(STAMPS)/systemd
+	$(WITH_TESTED) $(PYTHON) -m pytest hil --numprocesses $(WORKERS) --dist loadfile
 
-test-page: build station $(STAMPS)/python $(STAMPS)/browser ## Check the page, and test it in a browser beside real flights (3 minutes)
+IN_BROWSER := $(PYTHON) -m pytest web/tests --numprocesses $(WORKERS)
+
+test-page: tested $(STAMPS)/browser ## Check the page, and test it in a browser beside real flights (3 minutes)
 	cd web && npm run check
-	$(IN_BROWSER) --ignore web/tests/mock
+	$(WITH_TESTED) $(IN_BROWSER) --ignore web/tests/mock
 
-test-ground: build station $(STAMPS)/python $(STAMPS)/browser ## Test the page beside real flights, and in flights that are made up (6 minutes)
-	$(IN_BROWSER)
+test-ground: tested $(STAMPS)/browser ## Test the page beside real flights, and in flights that are made up (6 minutes)
+	$(WITH_TESTED) $(IN_BROWSER)
 
-test-x-plane: build $(STAMPS)/python-module ## Run all steps of `fccd x-plane check` in full against the stand-in (3 minutes)
-	FCCD_FULL_CHECK=1 FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil/tests/test_x_plane_check.py
+WITH_RELEASED := FCC_RELEASED=1 FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) FCC_GROUND=$(abspath $(TARGET))/release/fcc-ground
+
+test-release: faulty station $(STAMPS)/python-module $(STAMPS)/browser $(STAMPS)/strace $(STAMPS)/systemd ## Run the tests in Python and in a browser with what ships (40 minutes)
+	$(BUILD_FCCD) -p thermostat --bin thermostat
+	$(WITH_RELEASED) $(PYTHON) -m pytest hil --numprocesses $(WORKERS) --dist loadfile
+	$(WITH_RELEASED) $(IN_BROWSER) --ignore web/tests/mock
+
+test-x-plane: tested ## Run all steps of `fccd x-plane check` in full against the stand-in (3 minutes)
+	FCCD_FULL_CHECK=1 FCCD=$(TESTED)/fccd $(PYTHON) -m pytest hil/tests/test_x_plane_check.py
 
 ATTACKS := hil/tests/test_release_helper.py::test_whoever_is_killed_the_controls_are_released_in_the_end \
            hil/tests/test_shared_memory.py::test_whoever_damages_shared_memory_the_flight_goes_on
 
-test-attacks: build $(STAMPS)/python-module ## Kill daemon and helper 100 times, and damage shared memory 100 times, in flight (15 minutes)
-	FCCD_KILLS=100 FCCD_ATTACKS=100 FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest --capture=no $(ATTACKS)
+test-attacks: tested ## Kill daemon and helper 100 times, and damage shared memory 100 times, in flight (15 minutes)
+	FCCD_KILLS=100 FCCD_ATTACKS=100 FCCD=$(TESTED)/fccd $(PYTHON) -m pytest --capture=no $(ATTACKS)
 
 UPSETS := hil/tests/test_drawn_upsets.py \
           hil/tests/test_envelope_speed.py::test_climbing_turns_at_75_kt_do_not_stall
 
-test-upsets: $(STAMPS)/python-module ## Recover from 100 drawn upsets, and fly 60 flights of climbing turns in turbulence (5 minutes)
+test-upsets: tested ## Recover from 100 drawn upsets, and fly 60 flights of climbing turns in turbulence (5 minutes)
 	FCCD_UPSETS=100 FCCD_CLIMBING_TURNS=20 $(PYTHON) -m pytest --capture=no $(UPSETS)
 
 EDGES := hil/tests/test_upset.py hil/tests/test_floor.py hil/tests/test_release.py hil/tests/test_envelope_speed.py
 
-test-raw-edges: $(STAMPS)/python-module ## Fly the edges of flight by the raw sensors of a board, and of a phone (4 minutes)
+test-raw-edges: tested ## Fly the edges of flight by the raw sensors of a board, and of a phone (4 minutes)
 	FCC_RAW_SENSORS=board $(PYTHON) -m pytest $(EDGES)
 	FCC_RAW_SENSORS=phone $(PYTHON) -m pytest $(EDGES)
 
 # As many at a time as there are processors, and all of what they print.
 SEVERAL := -m pytest --numprocesses auto -rA --show-capture=stdout
 
-test-fences: $(STAMPS)/python-module ## Fly 20 times against a fence with JSBSim, in 20 kt and turbulence (10 minutes)
+test-fences: tested ## Fly 20 times against a fence with JSBSim, in 20 kt and turbulence (10 minutes)
 	FCC_FENCES=20 $(PYTHON) $(SEVERAL) hil/tests/test_contingency.py
 
-test-contingencies: $(STAMPS)/python-module ## Lose position, commander and battery, and meet ridges, each 20 times with JSBSim (40 minutes)
+test-contingencies: tested ## Lose position, commander and battery, and meet ridges, each 20 times with JSBSim (40 minutes)
 	FCC_CONTINGENCIES=20 $(PYTHON) $(SEVERAL) hil/tests/test_contingency.py
 
-test-glides: $(STAMPS)/python-module ## Stop the engine at 3,000 ft and glide down 20 times with JSBSim (10 minutes)
+test-glides: tested ## Stop the engine at 3,000 ft and glide down 20 times with JSBSim (10 minutes)
 	FCC_GLIDES=20 $(PYTHON) -m pytest --capture=no hil/tests/test_glide.py
 
-test-guidance: $(STAMPS)/python-module ## Fly 12 legs in five winds and circles with JSBSim, by both laws (15 minutes)
+test-guidance: tested ## Fly 12 legs in five winds and circles with JSBSim, by both laws (15 minutes)
 	FCC_GUIDANCE=1 $(PYTHON) $(SEVERAL) hil/tests/test_guidance.py
 
-test-landings: build $(STAMPS)/python-module ## Take off, fly a circuit and land 100 times with JSBSim, in five winds (25 minutes)
-	FCC_LANDINGS=20 FCCD=$(abspath $(FCCD)) $(PYTHON) $(SEVERAL) hil/tests/test_landing.py
+test-landings: tested ## Take off, fly a circuit and land 100 times with JSBSim, in five winds (25 minutes)
+	FCC_LANDINGS=20 FCCD=$(TESTED)/fccd $(PYTHON) $(SEVERAL) hil/tests/test_landing.py
 
-test-landings-beside: build $(STAMPS)/python-module ## The same 60 times: other aircraft, a plain receiver without a range finder (20 minutes)
-	FCC_LANDINGS_BESIDE=4 FCCD=$(abspath $(FCCD)) $(PYTHON) $(SEVERAL) hil/tests/test_landing.py
+test-landings-beside: tested ## The same 60 times: other aircraft, a plain receiver without a range finder (20 minutes)
+	FCC_LANDINGS_BESIDE=4 FCCD=$(TESTED)/fccd $(PYTHON) $(SEVERAL) hil/tests/test_landing.py
 
-test-plan-real-time: build $(STAMPS)/python-module ## Fly legs by a plan with JSBSim over X-Plane's protocol, longer than in `make test` (2 minutes)
-	FCC_PLAN_REAL_TIME=1 FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil/tests/test_plan_real_time.py
+test-plan-real-time: tested ## Fly legs by a plan with JSBSim over X-Plane's protocol, longer than in `make test` (2 minutes)
+	FCC_PLAN_REAL_TIME=1 FCCD=$(TESTED)/fccd $(PYTHON) -m pytest hil/tests/test_plan_real_time.py
 
-test-recordings: build $(STAMPS)/python-module ## Copy 100 recordings by each command of MCAP's tool, and replay them (MCAP_TOOL=, 10 minutes)
+test-recordings: tested ## Copy 100 recordings by each command of MCAP's tool, and replay them (MCAP_TOOL=, 10 minutes)
 	@test -x "$(MCAP_TOOL)" || { echo "MCAP_TOOL=PATH: MCAP's command line tool, https://mcap.dev/guides/cli"; exit 2; }
-	MCAP_TOOL=$(MCAP_TOOL) MCAP_FLIGHTS=100 FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil/tests/test_rewritten_recording.py
+	MCAP_TOOL=$(MCAP_TOOL) MCAP_FLIGHTS=100 FCCD=$(TESTED)/fccd $(PYTHON) -m pytest hil/tests/test_rewritten_recording.py
 
 # The app's classes and its native library, on this machine's Java. Its own report of
 # what native code does wrong (-Xcheck:jni) is in the output and no failure by itself.
 ANDROID := target/android
-test-android: build $(STAMPS)/python-module $(STAMPS)/java $(STAMPS)/aapt ## Test the app and its native library under Java, and fly JSBSim by it (15 minutes)
+test-android: tested $(STAMPS)/java $(STAMPS)/aapt ## Test the app and its native library under Java, and fly JSBSim by it (15 minutes)
 	@mkdir -p $(ANDROID)/faulty
 	cargo build --locked -p fcc-android --features fault-injection
 	cp $(TARGET)/debug/libfcc_android.so $(ANDROID)/faulty/
@@ -191,7 +232,7 @@ test-android: build $(STAMPS)/python-module $(STAMPS)/java $(STAMPS)/aapt ## Tes
 	done
 	@! grep -E 'WARNING in native method|WARNING: JNI|FATAL ERROR in native' $(ANDROID)/host-tests.log
 	FCC_ANDROID=$(abspath android/host-tests/fccd) FCC_ANDROID_LIBRARY=$(abspath $(TARGET))/debug \
-	    FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil/tests/test_android.py
+	    FCCD=$(TESTED)/fccd $(PYTHON) -m pytest hil/tests/test_android.py
 
 # For bench-android, such as ANDROID_TIMING="--rounds 2 --seconds 20 --rate 100".
 ANDROID_TIMING ?=
@@ -217,13 +258,15 @@ faulty: $(STAMPS)/rust
 
 lint: lint-rust lint-python deny ## Check formatting, lints, licences
 
-lint-rust: $(STAMPS)/rust
+clippy: $(STAMPS)/rust
 	cargo fmt --all --check
 	./scripts/structure
 	cargo clippy --locked --workspace --all-targets --all-features -- -D warnings
+
+lint-rust: clippy
 	RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps --all-features
 
-lint-python: $(STAMPS)/python-module $(STAMPS)/playwright
+lint-python: tested $(STAMPS)/playwright
 	$(PYTHON) -m ruff check hil deploy web
 	$(PYTHON) -m ruff check --config hil/pyproject.toml crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check scripts/structure
 	$(PYTHON) -m ruff format --check hil deploy web
@@ -268,17 +311,24 @@ soundness: ## Run Miri and ThreadSanitizer over timers, loop, records and live t
 
 # The boards: a Raspberry Pi with 64 bits, and a BeagleBone or a Pi with 32.
 BOARDS := aarch64-unknown-linux-gnu armv7-unknown-linux-gnueabihf
+# The one that differs from this machine in more than its instructions: sizes, alignment.
+NARROW := armv7-unknown-linux-gnueabihf
 # Of servo boards: a Cortex-M0, and a Cortex-M4.
 MICROCONTROLLERS := thumbv6m-none-eabi thumbv7em-none-eabi
 
 # The whole workspace, as in the other checks: with another choice of packages some
 # crates of build scripts have other features, and are compiled once more.
-check-cross: $(STAMPS)/cross ## Check that everything compiles for the boards
-	for board in $(BOARDS); do \
-	    ./scripts/cross $$board check --locked --workspace --all-features || exit 1; \
-	done
+CHECK_BOARD := check --locked --workspace --all-features
+
+check-cross: $(STAMPS)/cross ## Check that everything compiles for the board with 32 bits, and for servo boards
+	./scripts/cross $(NARROW) $(CHECK_BOARD)
 	for board in $(MICROCONTROLLERS); do \
 	    cargo build --locked -p servo-board-firmware --target $$board || exit 1; \
+	done
+
+check-boards: check-cross ## Check that everything compiles for all boards
+	for board in $(filter-out $(NARROW),$(BOARDS)); do \
+	    ./scripts/cross $$board $(CHECK_BOARD) || exit 1; \
 	done
 
 test-cross: $(STAMPS)/cross $(STAMPS)/qemu build ## Build for the boards, and run the tests in emulation
@@ -501,3 +551,13 @@ MATURIN := VIRTUAL_ENV=$(abspath $(VENV)) $(abspath $(VENV))/bin/maturin develop
 $(STAMPS)/python-module: $(STAMPS)/python
 	cd crates/fcc-py && $(MATURIN) --release --features conformance,pyo3/extension-module
 	cd examples/pendulum && $(MATURIN)
+
+# All that tests in Python run, by one call of cargo: their features unify, and each crate is
+# compiled once. The faults do nothing unless a test sets them by the environment.
+# `pendulum` alone: it is to have no aircraft.
+tested: $(STAMPS)/rust $(STAMPS)/page $(STAMPS)/python
+	cargo build --locked --profile ci -p fcc-daemon -p fcc-ground -p thermostat -p fcc-py \
+	    --lib --bins --features fcc-daemon/fault-injection,fcc-py/conformance,pyo3/extension-module
+	cargo build --locked -p pendulum --lib --features pyo3/extension-module
+	./scripts/install-module $(VENV) $(TESTED)/libfcc.so fcc crates/fcc-py/fcc.pyi
+	./scripts/install-module $(VENV) $(TARGET)/debug/libpendulum.so pendulum

@@ -53,11 +53,7 @@ def fccd() -> Path:
 @pytest.fixture(scope="session")
 def faulty_fccd() -> Path:
     """Return the daemon built with faults to inject."""
-    return _program(
-        "FCCD_INJECTION",
-        "cargo build --release -p fcc-daemon --features fault-injection "
-        "--target-dir target/injection",
-    )
+    return _program("FCCD_INJECTION", "make tested")
 
 
 @pytest.fixture

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 from pathlib import Path
 
@@ -9,9 +10,13 @@ from daemon_under_test import start
 
 MOST_RESIDENT_KB = 23 << 10
 """What `docs/timing.md` adds up to, and a little more."""
+PROGRAM_KB = 15_872
+"""Of this the program as it ships, 15.5 MB. The rest is data, in whichever build."""
+IS_RELEASED = "FCC_RELEASED" in os.environ
 
 
 def test_a_flight_takes_less_than_23_mb_and_no_page_fault(fccd: Path, tmp_path: Path) -> None:
+    """Of all with `make test-release`; of the data with any build, whose program may be larger."""
     config = tmp_path / "fccd.toml"
     config.write_text(f'[built-in]\n[recording]\nfolder = "{tmp_path}/recordings"\n')
     with start(fccd, tmp_path, config) as daemon:
@@ -20,9 +25,13 @@ def test_a_flight_takes_less_than_23_mb_and_no_page_fault(fccd: Path, tmp_path: 
             daemon.next_state()
         lines = Path(f"/proc/{daemon.pid}/status").read_text().splitlines()
         status = dict(line.split(":", 1) for line in lines)
-        resident_kb = int(status["VmRSS"].removesuffix("kB"))
+        resident_kb, program_kb = (
+            int(status[name].removesuffix("kB")) for name in ("VmRSS", "RssFile")
+        )
         ending = daemon.end(signal.SIGTERM)
-    assert resident_kb < MOST_RESIDENT_KB
+    assert resident_kb - program_kb < MOST_RESIDENT_KB - PROGRAM_KB
+    if IS_RELEASED:
+        assert resident_kb < MOST_RESIDENT_KB
     timing = ending.report["timing"]
     # Without locked memory a page is loaded when it is first needed.
     if timing["realtime"]["memory_locked"]:

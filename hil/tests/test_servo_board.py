@@ -31,7 +31,7 @@ FRAME = bytes.fromhex(
     "0001054452454601012f803f73696d2f6f7065726174696f6e2f6f766572726964652f"
     "6f766572726964655f6a6f79737469636b9805f56500"
 )
-"""Frame 0 that sets `override_joystick` to 1; also in `crates/fcc-servo-board/tests/frames.rs`,
+"""Frame 0 that sets `override_joystick` to 1; also in `crates/fcc-servo-board/tests/it/frames.rs`,
 where firmware's crate makes and reads it."""
 
 PILOT = Controls(elevator=0.1, aileron=0.2, rudder=0.3, throttle=0.4)

@@ -19,7 +19,7 @@ mod stages;
     clippy::new_without_default,
     reason = "it is a test's own"
 )]
-#[path = "../../../crates/fcc-xplane/tests/support/mod.rs"]
+#[path = "../../../crates/fcc-xplane/tests/it/support/mod.rs"]
 mod support;
 
 pub use flight::Flight;

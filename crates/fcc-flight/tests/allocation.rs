@@ -1,6 +1,8 @@
 //! Ten thousand ticks of the whole thing - aircraft, navigation, guidance,
 //! control, actuators, record, and a warm-up before each - do not touch the
 //! allocator; nor does a flight in which sensors fail and the aircraft is upset.
+//!
+//! A process of its own: what another test initialises first would not allocate here.
 #![cfg(test)]
 
 use std::sync::{Arc, Mutex};

@@ -1,5 +1,7 @@
 //! The built-in aircraft is thrown, flies a circuit and lands where it was, without brakes
 //! and without a switch for its weight; without a call of the allocator.
+//!
+//! A process of its own: what another test initialises first would not allocate here.
 #![cfg(test)]
 
 use std::time::Duration;

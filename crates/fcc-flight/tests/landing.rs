@@ -1,5 +1,7 @@
 //! The built-in aircraft takes off, flies a circuit and lands, in lockstep, scored from
 //! its truth; without a call of the allocator.
+//!
+//! A process of its own: what another test initialises first would not allocate here.
 #![cfg(test)]
 
 use std::time::Duration;

@@ -1,4 +1,6 @@
 //! A publisher and its watchers, as two programs on one machine.
+//!
+//! A process of its own: handlers of signals are of the whole process.
 #![cfg(test)]
 
 use std::thread::sleep;

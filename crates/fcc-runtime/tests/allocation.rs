@@ -1,5 +1,7 @@
 //! Ten thousand ticks and not one call of the allocator, shown by counting
 //! them.
+//!
+//! A process of its own: what another test initialises first would not allocate here.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "as in any test")]
 
 use std::time::Duration;

@@ -1,7 +1,10 @@
 //! A panic in a tick is told by the report and waits for no terminal. The only
 //! test of its process: panic hooks are for all threads.
+//!
+//! A process of its own: the hook is of the whole process.
 #![allow(clippy::unwrap_used, reason = "as in any test")]
 
+#[path = "it/bench/mod.rs"]
 mod bench;
 
 use std::panic;

@@ -1,4 +1,4 @@
-"""Modes of small motion from textbook equations, for tests/modes.rs.
+"""Modes of small motion from textbook equations, for tests/it/modes.rs.
 
 The small-perturbation equations of Roskam (Airplane Flight Dynamics and
 Automatic Flight Controls I, 1995, ch. 5) in his units, with the tables of his

@@ -1,4 +1,6 @@
 //! Nothing in a tick allocates.
+//!
+//! A process of its own: what another test initialises first would not allocate here.
 
 use fcc_conformance::allocator_calls;
 use fcc_core::flight::{Measurements, Surfaces};

@@ -1,4 +1,6 @@
 //! The POSIX timer's signals: taken and given back, and nobody else's counted.
+//!
+//! A process of its own: signals are of the whole process.
 #![cfg(test)]
 
 use std::fs;

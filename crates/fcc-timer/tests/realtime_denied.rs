@@ -1,5 +1,7 @@
 //! Wishes of a thread without any rights: every one is refused, reported with
 //! what to do, and leaves no half-way state.
+//!
+//! A process of its own: limits are of the whole process.
 #![cfg(test)]
 #![allow(unsafe_code)]
 

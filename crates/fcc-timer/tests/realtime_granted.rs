@@ -1,5 +1,7 @@
 //! Requests that the kernel may grant: what is reported is what the kernel says,
 //! whether or not this user has the rights.
+//!
+//! A process of its own: what is locked and which policy is set is of the whole process.
 #![cfg(test)]
 
 use std::fs;

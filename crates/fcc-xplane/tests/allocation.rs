@@ -1,5 +1,8 @@
 //! Nothing in a tick allocates: 10,000 of them under a counting allocator.
+//!
+//! A process of its own: what another test initialises first would not allocate here.
 
+#[path = "it/support/mod.rs"]
 mod support;
 
 use fcc_conformance::allocator_calls;

@@ -15,6 +15,9 @@
 //! - `FCCD_PAUSE_AT_S`: this many seconds after the loop's start, its messages
 //!   are not read, for `FCCD_PAUSE_S` (for ever, if not given).
 //!
+//! Without these a flight is the same to the last bit as in a program without the
+//! feature: control is not replaced, and the sensor that would block measures nothing.
+//!
 //! Such a program counts the calls of its allocator, too: [`loop_allocator_calls`]. So
 //! that a test can show that they would be seen, [`allocate_in_loop`] makes some.
 
@@ -165,9 +168,16 @@ fn number(name: &str) -> Option<f64> {
     std::env::var(name).ok()?.parse().ok()
 }
 
+/// What replaces control, if a fault of it is to happen. Nothing otherwise: the controls
+/// of a replaced control are released at once, and those of the autopilot level first.
+pub(super) fn faulty_control() -> Option<Box<dyn ControlOverride>> {
+    let faulty = Faulty::from_environment();
+    faulty.is_armed().then(|| Box::new(faulty) as _)
+}
+
 impl Faulty {
     /// Reads the faults from the environment.
-    pub(super) fn from_environment() -> Self {
+    fn from_environment() -> Self {
         Self {
             panic_at_s: number("FCCD_PANIC_AT_S"),
             nan_at_s: number("FCCD_NAN_AT_S"),
@@ -175,6 +185,17 @@ impl Faulty {
             slow: Slow::from_environment(),
             engaged_at: Time::NEVER,
         }
+    }
+
+    fn is_armed(&self) -> bool {
+        [
+            self.panic_at_s,
+            self.nan_at_s,
+            self.hang_at_s,
+            self.slow.at_s,
+        ]
+        .iter()
+        .any(Option::is_some)
     }
 
     fn is_due(&self, at_s: Option<f64>, tick: &Tick) -> bool {

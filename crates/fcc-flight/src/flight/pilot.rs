@@ -20,8 +20,7 @@ impl Pilot {
     /// An autopilot, and what replaces its outputs, if anything does.
     pub(super) fn new(autopilot: Autopilot, control: Option<Box<dyn ControlOverride>>) -> Self {
         #[cfg(feature = "fault-injection")]
-        let control =
-            control.or_else(|| Some(Box::new(super::injection::Faulty::from_environment())));
+        let control = control.or_else(super::injection::faulty_control);
         Self { autopilot, control }
     }
 }

@@ -1,0 +1,7 @@
+//! Tests of fcc-daemon: one program, so that what they share is linked once.
+#![cfg(test)]
+
+mod command_line;
+mod doctor;
+mod replay;
+mod report;
