@@ -53,7 +53,7 @@ GOALS := advisories android android-check android-package bench bench-android be
     station test test-android test-attacks test-contingencies test-cross test-deb test-fences \
     test-full test-glides test-ground test-guidance test-landings test-landings-beside test-page \
     test-plan-real-time test-python test-quick test-raw-edges test-recordings test-release \
-    test-rust test-upsets test-vm test-x-plane tested wheels
+    test-rust test-seeds test-upsets test-vm test-x-plane tested wheels
 
 .PHONY: $(GOALS)
 
@@ -180,6 +180,12 @@ UPSETS := hil/tests/test_drawn_upsets.py \
 
 test-upsets: tested ## Recover from 100 drawn upsets, and fly 60 flights of climbing turns in turbulence (5 minutes)
 	FCCD_UPSETS=100 FCCD_CLIMBING_TURNS=20 $(PYTHON) -m pytest --capture=no $(UPSETS)
+
+# Those with `first_of`.
+SEEDS := hil/tests/test_margins.py hil/tests/test_raw_failures.py hil/tests/test_raw_static_port.py
+
+test-seeds: tested ## Fly what `make test` flies with one seed with all of them (3 minutes)
+	FCC_SEEDS=1 $(PYTHON) $(SEVERAL) $(SEEDS)
 
 EDGES := hil/tests/test_upset.py hil/tests/test_floor.py hil/tests/test_release.py hil/tests/test_envelope_speed.py
 

@@ -1,6 +1,6 @@
 """The rows of the table of degraded flight (docs/faults.md), with what is held in each.
 
-Flown in lockstep (`test_degraded`) and by the running daemon (`test_daemon_degraded`).
+Flown in lockstep (`test_degraded`), and some by the running daemon (`test_daemon_degraded`).
 """
 
 from __future__ import annotations
@@ -38,6 +38,8 @@ ROWS = {
     "attitude and acceleration": (["attitude", "specific_force"], Limits(3.0, 100.0, 15.0)),
     "airspeed and altitude": (["airspeed", "altitude"], Limits(1.0, 150.0, 15.0)),
 }
+PITCH_AND_POWER = ("airspeed and acceleration", "attitude and acceleration")
+"""Flown with a constant throttle."""
 
 
 @dataclass(frozen=True)

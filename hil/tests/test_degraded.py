@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import fcc
 import numpy as np
 import pytest
-from degraded_rows import LEVEL_AFTER_S, ROWS, SinceLoss
+from degraded_rows import LEVEL_AFTER_S, PITCH_AND_POWER, ROWS, SinceLoss
 
 from fcc_hil.faulty_sensors import Kind, SensorFault
 from fcc_hil.lockstep_rig import LockstepRig
@@ -23,6 +23,8 @@ SEED = 11
 """Not one of those on which the laws were developed (7)."""
 LOST_AT_S = 30.0
 LOST_FOR_S = 20.0
+MOST_FORCES_SD_MPS = 2.6
+"""5 % of 100 kt."""
 
 
 class Flight:
@@ -99,6 +101,8 @@ def test_what_is_left_is_held_and_then_the_pattern_is_flown_on(name: str) -> Non
     assert flight.when("engaged -> failsafe") == pytest.approx(0.25, abs=0.06)
     assert flight.when("now: flying on without a lost quantity") < 0.4
     flight.since_loss().assert_held(limits, LOST_FOR_S)
+    if name in PITCH_AND_POWER:
+        assert np.ptp(flight.between("throttle", LEVEL_AFTER_S, LOST_FOR_S)) < 0.01
     # Good for 2 s: the same leg, its heading and its altitude.
     assert flight.when("all is good again") == pytest.approx(LOST_FOR_S + 2.0, abs=0.1)
     assert flight.when("failsafe -> engaged") == pytest.approx(LOST_FOR_S + 2.0, abs=0.1)
@@ -109,6 +113,16 @@ def test_what_is_left_is_held_and_then_the_pattern_is_flown_on(name: str) -> Non
     assert np.max(np.abs((turned_deg - 90.0 + 180.0) % 360.0 - 180.0)) < 3.0
     climbed_ft = flight.between("altitude_ft", *end) - captured.altitude_ft
     assert np.max(np.abs(climbed_ft - 150.0)) < 20.0
+
+
+@pytest.mark.parametrize("aircraft", ["c172p", "c172x"])
+def test_a_lost_airspeed_is_replaced_by_forces(aircraft: str) -> None:
+    flight = Flight(["airspeed"], LOST_FOR_S, aircraft=aircraft)
+    for time_s in np.arange(1.0, LOST_FOR_S, 0.5):
+        flight.fly_to(LOST_AT_S + float(time_s))
+        estimate = flight.rig.machine.estimate
+        assert estimate.airspeed_source == "forces"
+        assert estimate.airspeed_uncertainty_mps < MOST_FORCES_SD_MPS
 
 
 def test_a_lost_airspeed_is_replaced_by_forces_in_turbulence() -> None:

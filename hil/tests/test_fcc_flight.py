@@ -61,12 +61,12 @@ def test_the_same_seed_flies_the_same_flight_to_the_last_bit() -> None:
 
 
 def test_the_gil_is_released() -> None:
-    """Another thread counts on while a flight of hours is flown."""
+    """Another thread counts on while a flight of half an hour is flown."""
     over = threading.Event()
     counted = 0
 
     def fly() -> None:
-        fcc.fly(seconds=20_000.0, keep=False)
+        fcc.fly(seconds=2_000.0, keep=False)
         over.set()
 
     thread = threading.Thread(target=fly)

@@ -84,19 +84,23 @@ def test_conditions_are_those_of_the_requirement() -> None:
 
 
 def test_set_points_are_those_of_the_requirement() -> None:
+    # Each reads a configuration.
+    flown = {flight.aircraft: flight.limits for flight in DRAWN}
+    limits = {name: (one.slowest_order_kt, one.fastest_order_kt) for name, one in flown.items()}
     for flight in DRAWN:
         times_s = [order.time_s for order in flight.orders]
         gaps_s = np.diff([0.0, *times_s])
         assert min(gaps_s) >= 8.0
         assert max(gaps_s) <= 45.0 + 8.0
         assert times_s[-1] == flight.seconds - 75.0
+        slowest_kt, fastest_kt = limits[flight.aircraft]
+        stall_kt = flight.stall_kt
         for order in flight.orders:
             assert order.heading_deg is None or 0.0 <= order.heading_deg < 360.0
             assert order.climb_ft is None or abs(order.climb_ft) <= 1_500.0
             kt = order.airspeed_kt
-            limits = flight.limits
-            assert kt is None or limits.slowest_order_kt <= kt <= limits.fastest_order_kt
-            assert kt is None or kt >= 1.3 * flight.stall_kt
+            assert kt is None or slowest_kt <= kt <= fastest_kt
+            assert kt is None or kt >= 1.3 * stall_kt
 
 
 def test_the_same_number_and_seed_are_the_same_flight() -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 import fcc
 import numpy as np
 import pytest
+from first_of import first_of
 
 from fcc_hil.lockstep_rig import LockstepRig
 from fcc_hil.plan_flight import PlanConditions, fly
@@ -19,7 +20,7 @@ CLOSES_M = 60.0
 HIGHEST_M = 400.0
 
 
-@pytest.mark.parametrize("seed", [71, 72])
+@pytest.mark.parametrize("seed", first_of(71, 72))
 def test_the_altimeter_is_flown_without_and_not_the_receiver(seed: int) -> None:
     """A tape over the port, or water in it: the pressure stands, but for the sensor's noise.
 
