@@ -11,9 +11,8 @@ use fcc_fixed_wing::{Autopilot, AutopilotCommand};
 use fcc_flight::flight::{Access, Facts, FlightTime, Observer, Reports};
 use fcc_phone::HintSession;
 use fcc_telemetry::FlightRecord;
-use serde::Serialize;
 
-use crate::live::Live;
+use crate::live::{Live, ShownHints};
 
 /// The part of the period that a tick should take at most.
 ///
@@ -24,19 +23,6 @@ use crate::live::Live;
 /// Wittenmark, Computer-Controlled Systems, 1997): a tick should not add more than a tenth
 /// of that.
 const PART_OF_PERIOD: u32 = 20;
-
-/// What a screen shows of them.
-#[derive(Clone, PartialEq, Debug, Default, Serialize)]
-pub(crate) struct ShownHints {
-    /// Whether there is a session for the loop's thread.
-    session: bool,
-    /// Why there is none.
-    why: Option<String>,
-    /// How long the system was told that a tick may take.
-    target_us: f64,
-    /// How often it was told how long one took.
-    reports: u64,
-}
 
 /// The session of a flight.
 pub(crate) struct HintingObserver {

@@ -17,7 +17,6 @@ use fcc_telemetry::{FlightEvent, FlightRecord, Realtime, TimingReport, expiry_of
 use fcc_timer::{TimerError, TimingStats};
 use serde::Serialize;
 
-use crate::hints::ShownHints;
 use crate::listener::{Notice, Notifier};
 use crate::now::Now;
 
@@ -71,6 +70,19 @@ struct Granted {
     nice: i8,
     #[serde(flatten)]
     realtime: Realtime,
+}
+
+/// Performance hints for the loop's thread.
+#[derive(Clone, PartialEq, Debug, Default, Serialize)]
+pub(crate) struct ShownHints {
+    /// Whether there is a session for the loop's thread.
+    pub(crate) session: bool,
+    /// Why there is none.
+    pub(crate) why: Option<String>,
+    /// How long the system was told that a tick may take.
+    pub(crate) target_us: f64,
+    /// How often it was told how long one took.
+    pub(crate) reports: u64,
 }
 
 /// The state of the recorder.

@@ -6,6 +6,7 @@
 //! says what was held, and the next start of the app releases it. Pipe and mark have
 //! the same lines: the configuration, and those of [`fcc_flight::release`].
 
+mod earlier;
 mod helper;
 mod mark;
 
@@ -21,9 +22,9 @@ use fcc_core::framework::{ControlAuthority, PlantId, Released, TakeoverNotice};
 use fcc_flight::config::Config;
 use fcc_flight::release::{HelperPipes, Line, in_one_line};
 
+pub(crate) use earlier::{begin_flight, release_left};
 pub(crate) use helper::serve;
 use mark::Mark;
-pub(crate) use mark::{begin_flight, release_left};
 
 /// The second process has so long to begin, before the user is told that it is missing.
 const HELPER_WITHIN: Duration = Duration::from_secs(10);

@@ -1,12 +1,15 @@
 //! The sensor of a device that another thread reads.
 
 use core::time::Duration;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::Instant;
 
 use fcc_core::flight::Measurements;
 use fcc_core::framework::{Sensor, SensorFault, Tick, Time};
 use rtrb::Consumer;
 
-use crate::device_thread::ThreadHandle;
 use crate::{Measured, Sample};
 
 /// What the thread of a device hands over.
@@ -19,6 +22,9 @@ pub(crate) enum Message<V> {
 /// How far a sample may be ahead of a tick: it may be taken after the tick woke,
 /// and then belongs to the next one. One that is further ahead has a wrong clock.
 const MOST_AHEAD: Duration = Duration::from_millis(10);
+
+/// How long the drop of a sensor waits for its thread.
+const END_WITHIN: Duration = Duration::from_secs(1);
 
 /// A device as a sensor: takes what its thread has read since the last tick.
 ///
@@ -107,5 +113,27 @@ impl<V: Measured> Sensor<Measurements> for DeviceSensor<V> {
 
     fn name(&self) -> &str {
         &self.name
+    }
+}
+
+/// Ends the thread when it is dropped.
+#[derive(Debug)]
+pub(crate) struct ThreadHandle {
+    pub(crate) end: Arc<AtomicBool>,
+    pub(crate) thread: Option<JoinHandle<()>>,
+}
+
+impl Drop for ThreadHandle {
+    /// Waits for the thread, but not for a driver that hangs.
+    fn drop(&mut self) {
+        self.end.store(true, Ordering::Relaxed);
+        let Some(thread) = self.thread.take() else {
+            return;
+        };
+        let until = Instant::now() + END_WITHIN;
+        while !thread.is_finished() && Instant::now() < until {
+            thread.thread().unpark();
+            thread::sleep(Duration::from_millis(1));
+        }
     }
 }

@@ -4,14 +4,14 @@ use core::time::Duration;
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::thread::{self, JoinHandle};
+use std::thread;
 use std::time::Instant;
 
 use fcc_core::framework::{FALLBACK_AFTER, SensorFault, Time};
 use rtrb::{Producer, RingBuffer};
 
-use crate::device_sensor::Message;
-use crate::{DeviceError, DeviceSensor, Source};
+use crate::device_sensor::{DeviceSensor, Message, ThreadHandle};
+use crate::{DeviceError, Source};
 
 /// Messages that fit between a thread and the loop: a tick every 100 ms takes
 /// those of a device that gives 2,500 a second.
@@ -24,9 +24,6 @@ const STACK_BYTES: usize = 256 * 1024;
 /// Invalid samples in a row after which a device is set up again: one that lost
 /// its power for a moment has lost its registers.
 const MALFORMED_IN_A_ROW: u32 = 20;
-
-/// How long the drop of a sensor waits for its thread.
-const END_WITHIN: Duration = Duration::from_secs(1);
 
 /// How the thread of a device is started.
 ///
@@ -172,28 +169,6 @@ impl DeviceStatus {
 
     fn lock(&self) -> MutexGuard<'_, State> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-/// Ends the thread when it is dropped.
-#[derive(Debug)]
-pub(crate) struct ThreadHandle {
-    end: Arc<AtomicBool>,
-    thread: Option<JoinHandle<()>>,
-}
-
-impl Drop for ThreadHandle {
-    /// Waits for the thread, but not for a driver that hangs.
-    fn drop(&mut self) {
-        self.end.store(true, Ordering::Relaxed);
-        let Some(thread) = self.thread.take() else {
-            return;
-        };
-        let until = Instant::now() + END_WITHIN;
-        while !thread.is_finished() && Instant::now() < until {
-            thread.thread().unpark();
-            thread::sleep(Duration::from_millis(1));
-        }
     }
 }
 

@@ -1,7 +1,6 @@
 //! The thread that publishes, as seen by who hands it messages.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -11,41 +10,12 @@ use rtrb::{Producer, RingBuffer};
 use super::PublishError;
 use super::command::{CommandServer, Ends, PendingCommand, Verdict};
 use super::item::Item;
-use super::thread::{self, Started};
-use fcc_telemetry::{Instance, Telemetry, not_started};
+use super::thread::{self, Order, Progress, Started};
+use fcc_telemetry::{Telemetry, not_started};
 
 /// How long the start and the end of publishing may take. A flight waits no
 /// longer.
 pub(super) const PATIENCE: Duration = Duration::from_secs(2);
-
-/// What is published, and how.
-#[derive(Clone, Debug)]
-pub(super) struct Order {
-    /// The daemon's name.
-    pub(super) instance: Instance,
-    /// Items that may wait.
-    pub(super) waiting: usize,
-    /// The identifier of the first command; none if no commands are taken.
-    pub(super) first_command: Option<u64>,
-}
-
-/// What the thread tells without waiting.
-#[derive(Default, Debug)]
-pub(super) struct Progress {
-    /// Increases.
-    pub(super) beats: AtomicU64,
-    /// Records that could not be published.
-    pub(super) not_published: AtomicU64,
-    /// Records that were lost before the thread.
-    pub(super) not_taken: AtomicU64,
-}
-
-impl Progress {
-    /// Records that are not published.
-    pub(super) fn all_not_published(&self) -> u64 {
-        self.not_published.load(Ordering::Relaxed) + self.not_taken.load(Ordering::Relaxed)
-    }
-}
 
 /// A running thread that publishes. Dropping it ends the services.
 #[derive(Debug)]

@@ -14,7 +14,8 @@ use super::PublishError;
 use super::item::Item;
 use super::message::{self, Encoded, FromPublisher, Received, ToPublisher, put, take};
 use super::offered::is_offered;
-use super::publishing_thread::{Order, PublishingThread};
+use super::publishing_thread::PublishingThread;
+use super::thread::Order;
 use fcc_telemetry::schema::read_words;
 use fcc_telemetry::{Instance, Telemetry};
 

@@ -1,6 +1,6 @@
 //! The publishing thread.
 
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::SyncSender;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -16,7 +16,6 @@ use super::command::{CommandServer, Rings};
 use super::item::Item;
 use super::marks::Marks;
 use super::place::Place;
-use super::publishing_thread::{Order, Progress};
 use super::services::{self, Access, COLUMNS, EVENT, INFO, Out, RECORD, STATUS, Service};
 use super::space;
 use super::{Event, Info, PublishError, Status};
@@ -42,6 +41,35 @@ const LOOK_EVERY: Duration = Duration::from_millis(20);
 const CHECK_EVERY: Duration = Duration::from_millis(50);
 /// Records in a row that cannot be published: shared memory was damaged.
 const MOST_FAILURES: u32 = 20;
+
+/// What is published, and how.
+#[derive(Clone, Debug)]
+pub(super) struct Order {
+    /// The daemon's name.
+    pub(super) instance: Instance,
+    /// Items that may wait.
+    pub(super) waiting: usize,
+    /// The identifier of the first command; none if no commands are taken.
+    pub(super) first_command: Option<u64>,
+}
+
+/// What the thread tells without waiting.
+#[derive(Default, Debug)]
+pub(super) struct Progress {
+    /// Increases.
+    pub(super) beats: AtomicU64,
+    /// Records that could not be published.
+    pub(super) not_published: AtomicU64,
+    /// Records that were lost before the thread.
+    pub(super) not_taken: AtomicU64,
+}
+
+impl Progress {
+    /// Records that are not published.
+    pub(super) fn all_not_published(&self) -> u64 {
+        self.not_published.load(Ordering::Relaxed) + self.not_taken.load(Ordering::Relaxed)
+    }
+}
 
 /// Whether publishing began.
 pub(super) type Started = Result<(), PublishError>;

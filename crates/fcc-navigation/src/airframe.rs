@@ -1,8 +1,5 @@
 //! What is known of an aircraft's forces.
 
-use super::Navigation;
-use super::airspeed_monitor::AirspeedMonitor;
-
 /// What was learned of an aircraft's forces in a flight with an airspeed sensor. With it
 /// an airspeed is found without one. It holds for the sensors, their mounting, the
 /// reference airspeed V₀ and about the weight of that flight.
@@ -39,19 +36,3 @@ pub(super) const CESSNA_172: AirframePrior = AirframePrior {
 /// Thrust over weight at full throttle, from the throttle per g in cruise: thrust
 /// is proportional to the square of the throttle, whose slope is 1 at a half.
 pub(super) const FULL_THRUST_SHARE: f64 = 0.9;
-
-impl Navigation {
-    /// The same for an aircraft of which another flight has learned.
-    #[must_use]
-    pub fn for_learned(mut self, learned: Option<LearnedAirframe>) -> Self {
-        self.airframe.learned = learned;
-        self.monitor = AirspeedMonitor::new(self.airframe);
-        self
-    }
-
-    /// What this flight has learned of the aircraft; none before a minute with an
-    /// airspeed sensor that is believed and a known throttle.
-    pub fn learned_airframe(&self) -> Option<LearnedAirframe> {
-        self.monitor.learned()
-    }
-}

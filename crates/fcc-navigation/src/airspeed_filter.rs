@@ -3,7 +3,7 @@
 use libm::exp;
 
 use super::airframe::AirframePrior;
-use super::force_sample::ForceSample;
+use super::force_sample::{ForceSample, MIN_AIRSPEED_MPS};
 use super::scalar_update::{add_variance, squared, update};
 use super::wind::Wind;
 use fcc_core::blocks::limit_abs;
@@ -60,7 +60,6 @@ const GUSTS_ALONG: f64 = 0.3;
 /// its random walk, per √s, m/s².
 const BIAS_SD_MPS2: f64 = 0.2;
 const BIAS_WALK_MPS2: f64 = 0.002;
-pub(super) const MIN_AIRSPEED_MPS: f64 = 5.0;
 
 /// The state: indicated airspeed V in m/s, vertical wind w in m/s, offset of
 /// the axial force, thrust ratio, angle of attack of zero lift in rad, angle of

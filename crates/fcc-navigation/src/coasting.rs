@@ -1,6 +1,6 @@
 //! A copy of the vertical filter that has run without the altimeter.
 
-use super::altitude_monitor::AltitudeInput;
+use super::altitude_input::AltitudeInput;
 use super::vertical::VerticalState;
 
 /// The altimeter differs by more than this, m, its step, and what the copy can be

@@ -2,7 +2,6 @@
 
 use libm::{cos, sin};
 
-use super::airspeed_filter::MIN_AIRSPEED_MPS;
 use super::upward::Upward;
 use fcc_core::blocks::limit_abs;
 use fcc_core::units::GRAVITY_MPS2;
@@ -12,6 +11,9 @@ use fcc_core::units::GRAVITY_MPS2;
 const STEEP_BANK_RAD: f64 = 1.05;
 const STEEP_PITCH_RAD: f64 = 0.79;
 const LOADS: core::ops::RangeInclusive<f64> = 0.3..=2.5;
+
+/// The airspeed of a path is at least this, m/s.
+pub(super) const MIN_AIRSPEED_MPS: f64 = 5.0;
 
 /// What the filter's models need, averaged over the time between two
 /// corrections.

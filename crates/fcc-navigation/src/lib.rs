@@ -16,6 +16,7 @@ mod airframe;
 mod airspeed_filter;
 mod airspeed_monitor;
 mod airspeed_reason;
+mod altitude_input;
 mod altitude_monitor;
 mod attitude;
 mod coasting;
@@ -159,6 +160,14 @@ impl Navigation {
         self
     }
 
+    /// The same for an aircraft of which another flight has learned.
+    #[must_use]
+    pub fn for_learned(mut self, learned: Option<LearnedAirframe>) -> Self {
+        self.airframe.learned = learned;
+        self.monitor = AirspeedMonitor::new(self.airframe);
+        self
+    }
+
     /// The throttle from now on, 0..=1, if it is known, and whether the
     /// autopilot flies: only then is a sensor doubted; in a flare, where lift and drag
     /// are other ones, only the altimeter.
@@ -197,6 +206,12 @@ impl Navigation {
     pub fn altitude_doubt(&self) -> Option<bool> {
         let monitor = &self.altitude_monitor;
         monitor.is_doubted().then(|| monitor.is_sound())
+    }
+
+    /// What this flight has learned of the aircraft; none before a minute with an
+    /// airspeed sensor that is believed and a known throttle.
+    pub fn learned_airframe(&self) -> Option<LearnedAirframe> {
+        self.monitor.learned()
     }
 
     /// Whether an airspeed may be used beside those of other sensors.

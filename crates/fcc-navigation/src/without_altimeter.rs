@@ -3,7 +3,8 @@
 use libm::tan;
 
 use super::Navigation;
-use super::altitude_monitor::{self, AltitudeInput, Verdict};
+use super::altitude_input::AltitudeInput;
+use super::altitude_monitor::{self, Verdict};
 use super::attitude::Orientation;
 use super::motion::KnownMotion;
 use super::path::Path;

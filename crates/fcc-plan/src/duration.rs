@@ -2,8 +2,10 @@
 
 use core::f64::consts::TAU;
 
-use crate::check::{Conditions, Leg, above_sea_level, legs};
+use crate::conditions::Conditions;
 use crate::item::{Item, Loiter, LoiterEnd};
+use crate::leg::{Leg, above_sea_level};
+use crate::legs::legs;
 use crate::plan::Plan;
 
 /// What turns add to legs, as a factor; the least speed over the ground, of the

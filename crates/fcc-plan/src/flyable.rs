@@ -1,7 +1,8 @@
 //! Speeds that an aircraft does not fly, and places where nothing is flown.
 
-use crate::check::{Conditions, Leg};
+use crate::conditions::Conditions;
 use crate::item::{Item, Place, Speed};
+use crate::leg::Leg;
 use crate::plan::Plan;
 use crate::problem::Problem;
 

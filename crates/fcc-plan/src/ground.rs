@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use fcc_core::flight::terrain::Terrain;
 
-use crate::check::Conditions;
+use crate::conditions::Conditions;
 use crate::item::{Altitude, AltitudeDatum, Place};
 use crate::path::{Part, Piece, walk};
 use crate::plan::{Obstacle, Plan, limits};

@@ -5,8 +5,9 @@ use fcc_guidance::path::turn::smallest_circle_m;
 use fcc_guidance::route::{OverGround, PLANNED_SHARE, ROLL_LAG_S, RouteConfig};
 use nalgebra::Vector2;
 
-use crate::check::{Conditions, Leg, above_sea_level};
+use crate::conditions::Conditions;
 use crate::item::{Item, Loiter, Place};
+use crate::leg::{Leg, above_sea_level};
 use crate::plan::{Obstacle, Plan};
 use crate::problem::Problem;
 

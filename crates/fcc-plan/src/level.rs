@@ -1,8 +1,8 @@
 //! Items that lie below the ground, where no tiles of elevations are given, or below
 //! another altitude that is kept.
 
-use crate::check::{above_sea_level, landing_elevation_m};
 use crate::item::Item;
+use crate::leg::{above_sea_level, landing_elevation_m};
 use crate::plan::{Plan, limits};
 use crate::problem::Problem;
 

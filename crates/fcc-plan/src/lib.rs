@@ -15,6 +15,7 @@
 
 mod check;
 mod command;
+mod conditions;
 mod duration;
 mod file;
 mod flyable;
@@ -22,6 +23,8 @@ mod geodesic;
 mod ground;
 mod inside;
 mod item;
+mod leg;
+mod legs;
 mod level;
 mod mavproxy;
 mod outline;
@@ -34,11 +37,13 @@ mod runway;
 mod unusual;
 mod wpl;
 
-pub use check::{Conditions, check, landing_elevation_m};
+pub use check::check;
+pub use conditions::Conditions;
 pub use duration::longest_s;
 pub use file::{FileError, Format, is_plan, read, read_file, write};
 pub use ground::{resolve, terrain_problems};
 pub use item::{Altitude, AltitudeDatum, Item, Loiter, LoiterEnd, Place, Speed};
+pub use leg::landing_elevation_m;
 pub use level::Level;
 pub use plan::{
     Circle, Fence, Home, Identity, Obstacle, Plan, PlanHash, Polygon, RallyPoint, limits,

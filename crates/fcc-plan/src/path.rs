@@ -4,8 +4,10 @@
 use fcc_guidance::path::turn::{Turn, smallest_circle_m};
 use fcc_guidance::route::PLANNED_SHARE;
 
-use crate::check::{Conditions, Leg, above_sea_level, legs};
+use crate::conditions::Conditions;
 use crate::item::{Item, Loiter, Place};
+use crate::leg::{Leg, above_sea_level};
+use crate::legs::legs;
 use crate::plan::Plan;
 
 /// The length of a piece, m.

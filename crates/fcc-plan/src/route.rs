@@ -3,8 +3,8 @@
 use fcc_core::flight::terrain::Obstacle;
 use fcc_guidance::route::{Destination, FOR_EVER, JUMPS, Route, RouteConfig, Runway, Step, Until};
 
-use crate::check::above_sea_level;
 use crate::item::{Altitude, Item, Loiter, LoiterEnd, Place, Speed};
+use crate::leg::above_sea_level;
 use crate::outline::Outline;
 use crate::plan::{self, Plan, limits};
 use crate::problem::Problem;

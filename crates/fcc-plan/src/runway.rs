@@ -1,8 +1,9 @@
 //! What a take-off and a landing need.
 
-use crate::check::{Conditions, Leg, above_sea_level};
+use crate::conditions::Conditions;
 use crate::flyable::direction_problem;
 use crate::item::Item;
+use crate::leg::{Leg, above_sea_level};
 use crate::plan::Plan;
 
 /// What flies above a runway is so high at least, m.

@@ -3,8 +3,10 @@
 use fcc_core::units::FOOT_M;
 use fcc_guidance::route::LONGEST_LEG_M;
 
-use crate::check::{Conditions, Leg, above_sea_level, legs};
+use crate::conditions::Conditions;
 use crate::item::{AltitudeDatum, Item, Loiter, LoiterEnd, Place};
+use crate::leg::{Leg, above_sea_level};
+use crate::legs::legs;
 use crate::level::Level;
 use crate::plan::{Plan, limits};
 use crate::problem::Problem;

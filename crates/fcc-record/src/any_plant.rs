@@ -7,7 +7,7 @@ use fcc_telemetry::schema::RecordDescription;
 use fcc_telemetry::schema::protobuf::{DecodeError, decode};
 use prost::Message as _;
 
-use super::items::RecordedMessage;
+use super::item::RecordedMessage;
 
 /// What is not read.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]

@@ -7,7 +7,7 @@ use mcap::records::{Channel, MessageHeader, Record};
 use prost::Message as _;
 
 use super::foxglove::REMARK;
-use super::items::{Item, RecordedMessage};
+use super::item::{Item, RecordedMessage};
 use super::remark::Remark;
 use super::schema::{self, Topic};
 use super::wire;

@@ -9,7 +9,7 @@ use super::about::{About, COLUMNS, CONFIG, RECORDING};
 use super::any_plant::AnyMessage;
 use super::channels::Channels;
 use super::end::{END, End};
-use super::items::Item;
+use super::item::Item;
 use super::raw::{Cut, Next, RawReader};
 use super::schema::{self, PACKAGE, Topic};
 use super::summary::Summary;

@@ -18,7 +18,7 @@ use super::damage::Damage;
 use super::end::{END, End, RunStatistics};
 use super::file::options;
 use super::foxglove;
-use super::items::Item;
+use super::item::Item;
 use super::name::{self, damaged, unfinished};
 use super::raw::{Cut, Next, RawReader};
 use super::reader::{OpenError, Recording, Verified};

@@ -3,6 +3,7 @@
 use crate::config::BoardConfig;
 use crate::message::{NotForBoard, Reply, Request};
 use crate::subscriptions::Subscriptions;
+use crate::surfaces::Surfaces;
 use crate::value::{Readings, Value};
 
 /// Rows of DATA that are written.
@@ -11,19 +12,6 @@ const ROW_THROTTLES: i32 = 25;
 /// Their columns 3, and 2 and 3.
 const ROW_FLAPS: i32 = 13;
 const ROW_BRAKES: i32 = 14;
-
-/// Where servos go.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-pub struct Surfaces {
-    /// -1 to 1, positive: nose up.
-    pub elevator: f32,
-    /// -1 to 1, positive: right wing down.
-    pub aileron: f32,
-    /// -1 to 1, positive: nose right.
-    pub rudder: f32,
-    /// 0 idle to 1 full.
-    pub throttle: f32,
-}
 
 /// Who has control.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -1,6 +1,6 @@
 //! A board's configuration.
 
-use crate::board::Surfaces;
+use crate::surfaces::Surfaces;
 use crate::value::ENGAGE_SWITCH;
 
 /// A board's configuration.

@@ -48,10 +48,12 @@ mod config;
 mod frame;
 mod message;
 mod subscriptions;
+mod surfaces;
 mod value;
 
-pub use board::{Board, Control, Drive, Surfaces};
+pub use board::{Board, Control, Drive};
 pub use config::BoardConfig;
 pub use frame::{Decoder, Encoder, LineCounts, MAX_FRAME, MAX_MESSAGE};
 pub use message::{NotForBoard, shortened};
+pub use surfaces::Surfaces;
 pub use value::{DIFFERENTIAL_PRESSURE, ENGAGE_SWITCH, Readings};

@@ -1,6 +1,6 @@
 //! The values that a board has, by X-Plane's names for them.
 
-use crate::board::Surfaces;
+use crate::surfaces::Surfaces;
 
 /// The dataref of the engage switch, if no other is configured: fccd's default.
 pub const ENGAGE_SWITCH: &str = "sim/cockpit2/switches/generic_lights_switch[56]";

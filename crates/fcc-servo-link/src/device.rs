@@ -9,7 +9,8 @@ use fcc_core::framework::{Actuator, ActuatorFault, Sensor, SensorFault, Tick};
 use fcc_xplane::{Port, Simulator, UdpPort, XPlane, XPlaneActuator, XPlaneSensor, XPlaneStatus};
 
 use crate::config::{Link, ServoBoardConfig};
-use crate::serial_port::{BOARD, LineStatus, SerialPort};
+use crate::line::LineStatus;
+use crate::serial_port::{BOARD, SerialPort};
 use crate::tty::Baud;
 
 const NAME: &str = "servo board";

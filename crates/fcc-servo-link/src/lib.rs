@@ -39,6 +39,7 @@
 
 mod config;
 mod device;
+mod line;
 mod relay;
 mod serial_port;
 mod tty;
@@ -48,5 +49,6 @@ pub use device::{
     Devices, LinkStatus, OnLine, OpenError, ServoBoardActuator, ServoBoardSensor, open,
     open_serial, open_udp,
 };
-pub use serial_port::{LineStatus, SerialPort};
+pub use line::LineStatus;
+pub use serial_port::SerialPort;
 pub use tty::{Baud, NoSuchBaud};

@@ -16,7 +16,7 @@ use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::socket::{MsgFlags, recv, send};
 use nix::sys::termios::{FlushArg, tcflush};
 
-use crate::serial_port::Line;
+use crate::line::Line;
 use crate::tty::{self, Baud};
 
 /// The interval between two attempts to open a line that was lost.

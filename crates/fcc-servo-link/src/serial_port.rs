@@ -1,6 +1,6 @@
 //! A serial line as a port for messages, for the loop.
 
-use core::sync::atomic::{AtomicI32, AtomicU64, Ordering};
+use core::sync::atomic::Ordering;
 use core::time::Duration;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
@@ -18,6 +18,7 @@ use nix::sys::socket::{
     socketpair,
 };
 
+use crate::line::{Line, LineStatus};
 use crate::relay::Relay;
 use crate::tty::{self, Baud};
 
@@ -29,67 +30,6 @@ pub(crate) const BOARD: SocketAddr =
 const QUEUE_BYTES: usize = 16_384;
 /// How long the end waits for the last messages, a release, to be written.
 const END_WITHIN: Duration = Duration::from_secs(1);
-
-/// What the loop and the thread that serves the line share.
-#[derive(Debug, Default)]
-pub(crate) struct Line {
-    /// Why there is no line now; 0 if there is one.
-    pub(crate) errno: AtomicI32,
-    pub(crate) sent: AtomicU64,
-    pub(crate) written: AtomicU64,
-    pub(crate) dropped: AtomicU64,
-    pub(crate) received: AtomicU64,
-    pub(crate) corrupt: AtomicU64,
-    pub(crate) lost: AtomicU64,
-    pub(crate) floods: AtomicU64,
-}
-
-/// The state of a serial line, readable from any thread without a lock.
-#[derive(Clone, Debug, Default)]
-pub struct LineStatus(pub(crate) Arc<Line>);
-
-impl LineStatus {
-    /// Whether the line is open.
-    pub fn is_open(&self) -> bool {
-        self.0.errno.load(Ordering::Relaxed) == 0
-    }
-
-    /// Messages given to the line.
-    pub fn sent(&self) -> u64 {
-        self.0.sent.load(Ordering::Acquire)
-    }
-
-    /// Of these, the ones that the operating system took.
-    pub fn written(&self) -> u64 {
-        self.0.written.load(Ordering::Acquire)
-    }
-
-    /// The ones that were dropped: the line was lost before they were written.
-    pub fn dropped(&self) -> u64 {
-        self.0.dropped.load(Ordering::Acquire)
-    }
-
-    /// Frames that arrived with the right checksum.
-    pub fn received(&self) -> u64 {
-        self.0.received.load(Ordering::Acquire)
-    }
-
-    /// What arrived between two delimiters and was no frame.
-    pub fn corrupt(&self) -> u64 {
-        self.0.corrupt.load(Ordering::Acquire)
-    }
-
-    /// How often more arrived within 100 ms than any board sends, 100,000 bytes, and the
-    /// rest was dropped.
-    pub fn floods(&self) -> u64 {
-        self.0.floods.load(Ordering::Acquire)
-    }
-
-    /// Frames that did not arrive, by their numbers.
-    pub fn lost(&self) -> u64 {
-        self.0.lost.load(Ordering::Acquire)
-    }
-}
 
 /// A serial line: each message is a frame.
 #[derive(Debug)]
@@ -137,15 +77,6 @@ impl SerialPort {
     /// The line's state.
     pub fn status(&self) -> LineStatus {
         LineStatus(Arc::clone(&self.line))
-    }
-}
-
-impl Line {
-    fn lost(&self) -> Result<(), Errno> {
-        match self.errno.load(Ordering::Relaxed) {
-            0 => Ok(()),
-            errno => Err(errno),
-        }
     }
 }
 

@@ -6,19 +6,14 @@
 //! hold in body axes; the source's stability axes coincide with them at its
 //! reference of zero angle of attack.
 
-use libm::{asin, atan2, exp, sincos, sqrt};
+use libm::sincos;
 use nalgebra::Vector3;
 
 use crate::airframe::{Airframe, Drag, LateralRow, Lift, Propulsion};
 use crate::atmosphere::Air;
-use crate::stall;
-
-/// Sharpness of the stall, 1/rad: lift changes from one curve to the other
-/// within about ±2° of the stall.
-const STALL_SHARPNESS: f64 = 50.0;
-/// The lowest airspeed, m/s, used to make rates dimensionless: below it dynamic
-/// pressure is negligible, and 1/V must stay finite.
-const SLOWEST_MPS: f64 = 1.0;
+pub use crate::flow::Flow;
+use crate::flow::SLOWEST_MPS;
+use crate::stall::{self, coefficients};
 
 /// The present deflections of the controls. Signs are those of the source: see
 /// each field.
@@ -46,42 +41,6 @@ pub struct Loads {
     pub lift_per_alpha_rate: f64,
     /// Pitching moment per angle-of-attack rate, N·m·s/rad.
     pub pitch_per_alpha_rate: f64,
-}
-
-/// Flow past the aircraft.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Flow {
-    /// True airspeed, m/s.
-    pub airspeed_mps: f64,
-    /// Airspeed within the plane of symmetry, m/s.
-    pub symmetric_mps: f64,
-    /// Angle of attack, rad.
-    pub alpha_rad: f64,
-    /// Sine and cosine of the angle of attack, obtained by a division.
-    pub sin_cos_alpha: (f64, f64),
-    /// Sideslip, rad, positive when the air comes from the right.
-    pub beta_rad: f64,
-}
-
-impl Flow {
-    /// From the velocity through the air, body axes, m/s.
-    pub fn of(velocity: &Vector3<f64>) -> Self {
-        let symmetric_mps = sqrt(velocity.x * velocity.x + velocity.z * velocity.z);
-        let airspeed_mps = sqrt(symmetric_mps * symmetric_mps + velocity.y * velocity.y);
-        let side = velocity.y / airspeed_mps.max(SLOWEST_MPS);
-        let sin_cos_alpha = if symmetric_mps > 0.0 {
-            (velocity.z / symmetric_mps, velocity.x / symmetric_mps)
-        } else {
-            (0.0, 1.0)
-        };
-        Self {
-            airspeed_mps,
-            symmetric_mps,
-            alpha_rad: atan2(velocity.z, velocity.x),
-            sin_cos_alpha,
-            beta_rad: asin(side.clamp(-1.0, 1.0)),
-        }
-    }
 }
 
 /// Loads at a flow, turn rates relative to the air in rad/s (body axes),
@@ -179,47 +138,6 @@ pub fn loads(
 pub fn lift_and_drag(lift: &Lift, drag: &Drag, alpha_rad: f64) -> (f64, f64) {
     let coefficients = coefficients(lift, drag, alpha_rad, sincos(alpha_rad));
     (coefficients.lift, coefficients.drag)
-}
-
-/// Coefficients at an angle of attack.
-pub(crate) struct Coefficients {
-    pub(crate) lift: f64,
-    pub(crate) drag: f64,
-    /// The share of separated flow, 0..=1.
-    pub(crate) separated: f64,
-}
-
-pub(crate) fn coefficients(
-    lift: &Lift,
-    drag: &Drag,
-    alpha_rad: f64,
-    (sin_alpha, cos_alpha): (f64, f64),
-) -> Coefficients {
-    let attached_lift = lift.zero + lift.per_alpha * alpha_rad;
-    let attached_drag = drag.zero + drag.induced * attached_lift * attached_lift;
-
-    let (sin_stall, cos_stall) = sincos(lift.stall_alpha_rad);
-    let stall_drag = drag.zero + drag.induced * lift.stall * lift.stall;
-    let plate = 1.11 + 0.018 * lift.aspect_ratio;
-    let lift_rest =
-        (lift.stall - plate * sin_stall * cos_stall) * sin_stall / (cos_stall * cos_stall);
-    let drag_rest = (stall_drag - plate * sin_stall * sin_stall) / cos_stall;
-
-    let square = sin_alpha * sin_alpha;
-    // The published curve contains cos²/sin, which is valid only beyond the
-    // stall.
-    let separated_lift = plate * sin_alpha * cos_alpha
-        + lift_rest * cos_alpha * cos_alpha * sin_alpha / square.max(sin_stall * sin_stall);
-    let separated_drag = plate * square + drag_rest * cos_alpha.abs();
-
-    let above = exp(-STALL_SHARPNESS * (alpha_rad - lift.stall_alpha_rad));
-    let below = exp(STALL_SHARPNESS * (alpha_rad + lift.stall_alpha_rad));
-    let separated = (1.0 + above + below) / ((1.0 + above) * (1.0 + below));
-    Coefficients {
-        lift: attached_lift + separated * (separated_lift - attached_lift),
-        drag: attached_drag + separated * (separated_drag - attached_drag),
-        separated,
-    }
 }
 
 /// Thrust along body x, N, at a true airspeed in m/s. Negative where the

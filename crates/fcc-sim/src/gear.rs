@@ -7,7 +7,7 @@
 
 use nalgebra::Vector3;
 
-use crate::motion::State;
+use crate::state::State;
 
 /// A wheel.
 #[derive(Clone, Copy, PartialEq, Debug)]

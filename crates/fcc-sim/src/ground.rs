@@ -3,7 +3,7 @@
 use fcc_core::flight::terrain::Terrain;
 
 use crate::config::SimConfig;
-use crate::sensing::LocalEarth;
+use crate::local_earth::LocalEarth;
 
 /// Terrain where it is known, and level ground elsewhere.
 #[derive(Clone, Copy, Debug)]

@@ -16,8 +16,8 @@ use libm::{acos, cos, floor, sin, sqrt};
 
 use crate::atmosphere::Air;
 use crate::config::SimConfig;
+use crate::local_earth::LocalEarth;
 use crate::raw::{RawSensors, RawTruth};
-use crate::sensing::LocalEarth;
 use crate::units::STANDARD_GRAVITY_MPS2;
 
 /// What the person does with the sensors.

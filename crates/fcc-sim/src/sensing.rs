@@ -5,14 +5,15 @@
 //! that received it: as on a real bus, the delay is unknown to the loop.
 
 use fcc_core::flight::atmosphere::differential_pressure_pa;
-use fcc_core::flight::{Attitude, BodyRates, Measurements, Position, SpecificForce, Velocity};
+use fcc_core::flight::{Attitude, BodyRates, Measurements, SpecificForce, Velocity};
 use fcc_core::framework::{Reading, Time};
-use libm::{cos, round, sin, sqrt};
+use libm::round;
 
 use crate::atmosphere::Air;
 use crate::config::{Channels, SensorConfig, SimConfig};
 use crate::gauss::{Gauss, Stream};
 use crate::ground::GroundBelow;
+use crate::local_earth::LocalEarth;
 use crate::raw::{RawSensors, RawTruth};
 use crate::truth::{Truth, half_turn, turn};
 
@@ -153,49 +154,6 @@ fn raw_truth(truth: &Truth, earth: &LocalEarth, ground: &GroundBelow) -> RawTrut
         velocity: truth.velocity,
         height_m: truth.altitude_m - ground.elevation_m(truth.north_m, truth.east_m),
         throttle: truth.throttle,
-    }
-}
-
-/// The flat earth, tangent to the WGS 84 ellipsoid where the flight begins.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LocalEarth {
-    latitude_rad: f64,
-    longitude_rad: f64,
-    north_radius_m: f64,
-    /// Of the circle of latitude.
-    east_radius_m: f64,
-}
-
-impl LocalEarth {
-    pub(crate) fn new(latitude_rad: f64, longitude_rad: f64) -> Self {
-        /// WGS 84: semi-major axis, m, and first eccentricity squared.
-        const EQUATOR_M: f64 = 6_378_137.0;
-        const ECCENTRICITY_2: f64 = 6.694_379_990_14e-3;
-        let sine = sin(latitude_rad);
-        let shape = 1.0 - ECCENTRICITY_2 * sine * sine;
-        Self {
-            latitude_rad,
-            longitude_rad,
-            north_radius_m: EQUATOR_M * (1.0 - ECCENTRICITY_2) / (shape * sqrt(shape)),
-            east_radius_m: EQUATOR_M / sqrt(shape) * cos(latitude_rad),
-        }
-    }
-
-    /// North and east of the origin, m; east by the shorter way.
-    pub(crate) fn north_east_m(&self, position: &Position) -> (f64, f64) {
-        let east_rad = half_turn(position.longitude_rad - self.longitude_rad);
-        (
-            (position.latitude_rad - self.latitude_rad) * self.north_radius_m,
-            east_rad * self.east_radius_m,
-        )
-    }
-
-    pub(crate) fn position(&self, north_m: f64, east_m: f64, altitude_m: f64) -> Position {
-        Position {
-            latitude_rad: self.latitude_rad + north_m / self.north_radius_m,
-            longitude_rad: half_turn(self.longitude_rad + east_m / self.east_radius_m),
-            altitude_m,
-        }
     }
 }
 

@@ -13,12 +13,15 @@
 //! The tail feels the stall by the downwash that is lost: its angle of attack
 //! rises, and the nose drops.
 
-use libm::{atan2, sqrt};
+use libm::{atan2, exp, sincos, sqrt};
 use nalgebra::Vector3;
 
-use crate::aerodynamics::{Coefficients, Flow, coefficients};
-use crate::airframe::Airframe;
+use crate::airframe::{Airframe, Drag, Lift};
+use crate::flow::Flow;
 
+/// Sharpness of the stall, 1/rad: lift changes from one curve to the other
+/// within about ±2° of the stall.
+const STALL_SHARPNESS: f64 = 50.0;
 /// Below the stalling angle by this, rad, no flow counts as separated: by the
 /// curve it is less than 0.1 %.
 const ATTACHED_BELOW_RAD: f64 = 0.14;
@@ -34,6 +37,47 @@ const AILERON_ARM: f64 = 0.1875;
 /// Roll damping of strips per lift slope, without the loss at the tips (Etkin and
 /// Reid 1996, section 5.8, constant chord).
 const STRIP_DAMPING: f64 = 1.0 / 6.0;
+
+/// Coefficients at an angle of attack.
+pub(crate) struct Coefficients {
+    pub(crate) lift: f64,
+    pub(crate) drag: f64,
+    /// The share of separated flow, 0..=1.
+    pub(crate) separated: f64,
+}
+
+pub(crate) fn coefficients(
+    lift: &Lift,
+    drag: &Drag,
+    alpha_rad: f64,
+    (sin_alpha, cos_alpha): (f64, f64),
+) -> Coefficients {
+    let attached_lift = lift.zero + lift.per_alpha * alpha_rad;
+    let attached_drag = drag.zero + drag.induced * attached_lift * attached_lift;
+
+    let (sin_stall, cos_stall) = sincos(lift.stall_alpha_rad);
+    let stall_drag = drag.zero + drag.induced * lift.stall * lift.stall;
+    let plate = 1.11 + 0.018 * lift.aspect_ratio;
+    let lift_rest =
+        (lift.stall - plate * sin_stall * cos_stall) * sin_stall / (cos_stall * cos_stall);
+    let drag_rest = (stall_drag - plate * sin_stall * sin_stall) / cos_stall;
+
+    let square = sin_alpha * sin_alpha;
+    // The published curve contains cos²/sin, which is valid only beyond the
+    // stall.
+    let separated_lift = plate * sin_alpha * cos_alpha
+        + lift_rest * cos_alpha * cos_alpha * sin_alpha / square.max(sin_stall * sin_stall);
+    let separated_drag = plate * square + drag_rest * cos_alpha.abs();
+
+    let above = exp(-STALL_SHARPNESS * (alpha_rad - lift.stall_alpha_rad));
+    let below = exp(STALL_SHARPNESS * (alpha_rad + lift.stall_alpha_rad));
+    let separated = (1.0 + above + below) / ((1.0 + above) * (1.0 + below));
+    Coefficients {
+        lift: attached_lift + separated * (separated_lift - attached_lift),
+        drag: attached_drag + separated * (separated_drag - attached_drag),
+        separated,
+    }
+}
 
 /// The wing by strips.
 #[derive(Clone, Copy, Debug, Default)]

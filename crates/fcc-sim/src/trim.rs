@@ -3,10 +3,11 @@
 use libm::{cos, sin, sincos};
 use thiserror::Error;
 
-use crate::aerodynamics::{coefficients, full_thrust_n, lift_and_drag, windmill_n};
+use crate::aerodynamics::{full_thrust_n, lift_and_drag, windmill_n};
 use crate::airframe::Airframe;
 use crate::atmosphere::Air;
 use crate::stall;
+use crate::stall::coefficients;
 
 /// Straight and level flight in still air.
 #[derive(Clone, Copy, PartialEq, Debug)]

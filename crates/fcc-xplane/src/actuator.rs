@@ -9,13 +9,13 @@ use std::sync::Arc;
 use fcc_core::flight::Surfaces;
 use fcc_core::framework::{Actuator, ActuatorFault, Tick, Time};
 
-use crate::authority::plant_at;
 use crate::config::XPlaneConfig;
 use crate::confirmation::Confirmation;
 use crate::controls::{Controls, LET_GO_TIMES};
 use crate::counters::count;
 use crate::deflections::yoke_ratios;
 use crate::link::{Control, SharedState};
+use crate::plant::plant_at;
 use crate::port::{Errno, Port};
 use crate::protocol::PathError;
 use crate::protocol::dref::WRITE_BYTES;

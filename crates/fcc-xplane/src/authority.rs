@@ -9,14 +9,12 @@ use fcc_core::framework::{ActuatorFault, ControlAuthority, PlantId, Released, Ta
 
 use crate::config::XPlaneConfig;
 use crate::open::{OpenError, XPlane};
+use crate::plant::{address, plant_at};
 use crate::port_watch::PortWatch;
 use crate::release::{Expected, reserve_for};
 use crate::reported::Reported;
 use crate::status::XPlaneStatus;
 use crate::udp_port::is_of_this_machine;
-
-/// Prefix of the name of an X-Plane plant; its address follows.
-const NAME: &str = "X-Plane at ";
 
 /// Monitors who has control of X-Plane, and releases it over a separate socket.
 #[derive(Debug)]
@@ -201,15 +199,6 @@ impl ControlAuthority for XPlaneAuthority {
     fn by_hand(&self) -> &'static str {
         "switch off override_joystick and override_throttles there"
     }
-}
-
-/// The X-Plane at an address, as [`XPlaneAuthority`] names it.
-pub fn plant_at(simulator: SocketAddr) -> Option<PlantId> {
-    PlantId::new(format_args!("{NAME}{simulator}"))
-}
-
-fn address(plant: &PlantId) -> Option<SocketAddr> {
-    plant.as_str().strip_prefix(NAME)?.parse().ok()
 }
 
 #[cfg(test)]

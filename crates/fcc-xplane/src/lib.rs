@@ -78,6 +78,7 @@ mod no_answer;
 mod old_datagrams;
 mod open;
 mod other_control;
+mod plant;
 mod port;
 mod port_watch;
 mod pressure_altitude;
@@ -114,7 +115,7 @@ mod written;
 
 pub use actuator::XPlaneActuator;
 pub use address::{AddressError, HostName, Simulator, USUAL_LOCAL_PORT, XPLANE_PORT};
-pub use authority::{XPlaneAuthority, plant_at};
+pub use authority::XPlaneAuthority;
 pub use config::{
     AxialLoad, DataRows, Input, Output, PlantKind, RowsVersion, XPlaneConfig, XPlaneConfigError,
 };
@@ -124,6 +125,7 @@ pub use link::Control;
 pub use missing::Missing;
 pub use old_datagrams::OldDatagrams;
 pub use open::{OpenError, XPlane};
+pub use plant::plant_at;
 pub use port::{Errno, Port};
 pub use sensor::XPlaneSensor;
 pub use simulator::SimulatorState;

@@ -17,8 +17,6 @@ use std::sync::{Mutex, PoisonError};
 
 use socket2::{SockFilter, SockRef, Socket};
 
-use crate::link::SharedState;
-
 // Codes of instructions (linux/bpf_common.h), which libc does not have for Android.
 const BPF_LD: u32 = 0x00;
 const BPF_JMP: u32 = 0x05;
@@ -71,17 +69,14 @@ impl SourceFilter {
         })
     }
 
-    /// Follows what is known about the simulator; `owned` are the ports that are
-    /// the simulator's user's, if that is known. Without a filter the sensor
-    /// still leaves out what others send, as long as the socket's buffer does
+    /// Follows what is known about the simulator: its address, the ports to deliver from, and
+    /// `owned`, the ports that are the simulator's user's, if that is known. Without a filter
+    /// the sensor still leaves out what others send, as long as the socket's buffer does
     /// not overflow; so a failure is none of the connection.
-    pub(crate) fn follow(&self, link: &SharedState, owned: Option<&[u16]>) {
-        let Some(simulator) = link.address.simulator() else {
-            return;
-        };
+    pub(crate) fn follow(&self, ip: IpAddr, delivered: Ports, owned: Option<&[u16]>) {
         let wanted = Source {
-            ip: simulator.ip(),
-            ports: permitted(link.delivered_ports(), owned),
+            ip,
+            ports: permitted(delivered, owned),
         };
         let mut attached = self.attached.lock().unwrap_or_else(PoisonError::into_inner);
         if attached.as_ref() != Some(&wanted)
@@ -226,18 +221,18 @@ mod tests {
             [(); 3].map(|()| UdpSocket::bind("127.0.0.1:0").unwrap());
         receiver.set_nonblocking(true).unwrap();
         let filter = SourceFilter::of(&receiver).unwrap();
-        let link = SharedState::new(Some(simulator.local_addr().unwrap()));
+        let at = simulator.local_addr().unwrap();
         let to = receiver.local_addr().unwrap();
         for _ in 0..100 {
             other.send_to(&[9], to).unwrap();
         }
-        let owned = [simulator.local_addr().unwrap().port()];
-        filter.follow(&link, Some(&owned));
+        let owned = [at.port()];
+        filter.follow(at.ip(), [0; 4], Some(&owned));
         assert_eq!(received(&receiver, &[&other, &simulator]), [1]);
         // Later only what is not permitted is dropped.
         simulator.send_to(&[7], to).unwrap();
-        filter.follow(&link, None);
-        filter.follow(&link, Some(&owned));
+        filter.follow(at.ip(), [0; 4], None);
+        filter.follow(at.ip(), [0; 4], Some(&owned));
         assert_eq!(received(&receiver, &[]), [7]);
     }
 

@@ -4,6 +4,7 @@ use std::fmt::Display;
 
 use fcc_flight::config::ConfigError;
 use fcc_record::OpenError;
+use fcc_replay::ChainError;
 use serde::Serialize;
 
 use crate::exit::Exit;
@@ -66,4 +67,14 @@ impl From<ConfigError> for Failure {
     fn from(error: ConfigError) -> Self {
         Self::usage(error)
     }
+}
+
+/// Why files are no recording that can be replayed.
+pub(super) fn not_opened(error: ChainError) -> Failure {
+    let exit = match error {
+        ChainError::Open(OpenError::CutInDescription { .. }) => Exit::NotReplayed,
+        ChainError::Open(error) => return error.into(),
+        _ => Exit::NotReplayed,
+    };
+    Failure::of(exit, error)
 }

@@ -7,11 +7,11 @@ use std::time::Instant;
 use fcc_fixed_wing::Autopilot;
 use fcc_flight::config::{AirframeSection, Config};
 use fcc_flight::replay::{recorded_config, replay as replay_of};
-use fcc_record::{OpenError, create_output, unless_left};
-use fcc_replay::{Chain, ChainError, Comparison, Csv, Deviation, Identity, Replayed};
+use fcc_record::{create_output, unless_left};
+use fcc_replay::{Chain, Comparison, Csv, Deviation, Identity, Replayed};
 use serde::Serialize;
 
-use super::failure::Failure;
+use super::failure::{Failure, not_opened};
 use super::progress;
 use super::replay_navigation::replay_navigation;
 use crate::cli::ReplayArgs;
@@ -46,16 +46,6 @@ pub(super) fn replay(args: &ReplayArgs) -> Result<Exit, Failure> {
     let other = args.config.as_deref().map(Config::load).transpose()?;
     let outcome = run(&chain, &recorded, other, args).map_err(Failure::new)?;
     Ok(outcome.print(args.json))
-}
-
-/// Why files are no recording that can be replayed.
-pub(super) fn not_opened(error: ChainError) -> Failure {
-    let exit = match error {
-        ChainError::Open(OpenError::CutInDescription { .. }) => Exit::NotReplayed,
-        ChainError::Open(error) => return error.into(),
-        _ => Exit::NotReplayed,
-    };
-    Failure::of(exit, error)
 }
 
 /// Replays with the recorded configuration or another, and compares.

@@ -9,9 +9,8 @@ use fcc_report::{FlightAddition, FlightSurvey, NavigationReplay};
 use fcc_telemetry::FlightMessage;
 use serde::Serialize;
 
-use super::failure::Failure;
+use super::failure::{Failure, not_opened};
 use super::progress;
-use super::replay::not_opened;
 use crate::cli::ReplayArgs;
 use crate::exit::Exit;
 use crate::output;

@@ -12,7 +12,7 @@ use libm::{atan2, cos, exp, hypot, sin};
 use nalgebra::Vector2;
 
 use super::ground_below::GroundBelow;
-use super::place_monitor::{Moving, PlaceDoubt, PlaceMonitor, Verdict};
+use super::place_monitor::{Moving, PlaceDoubt, PlaceMonitor, STANDS_MPS, Verdict};
 use fcc_core::blocks::{limit, wrap_pi};
 use fcc_core::flight::earth::metres_per_radian;
 use fcc_core::flight::{Measurements, Position};
@@ -27,8 +27,6 @@ const LONGEST_AGE: Duration = Duration::from_secs(1);
 const FORCE_AGE: Duration = Duration::from_millis(250);
 /// Faster than this on its wheels the aircraft moves where it points, m/s.
 const ROLLS_MPS: f64 = 5.0;
-/// Slower than this it stands, m/s.
-pub(super) const STANDS_MPS: f64 = 2.0;
 /// The receiver's altitude has noise: what the altimeter is off it is followed with this
 /// time constant, s.
 const ALTITUDE_FOLLOWS_S: f64 = 5.0;

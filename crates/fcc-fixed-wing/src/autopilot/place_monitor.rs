@@ -7,7 +7,6 @@
 //! the velocity over the ground as well as airspeed and heading say, is not used
 //! either: what contradicts the velocity alone may be right.
 
-use super::ground_motion::STANDS_MPS;
 use libm::hypot;
 use nalgebra::Vector2;
 
@@ -18,6 +17,8 @@ use fcc_core::framework::{Reading, Time};
 /// For so long a place or a velocity may be repeated, s: longer than a receiver that
 /// gives one fix a second, and is read more often, repeats it.
 const REPEATS_S: f64 = 3.0;
+/// Slower than this it stands, m/s.
+pub(super) const STANDS_MPS: f64 = 2.0;
 /// So fast over the ground a place changes, m/s, also where its last digit is a metre.
 const MOVES_MPS: f64 = 5.0;
 /// Places are compared over so long, s.

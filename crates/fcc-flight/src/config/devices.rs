@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 use toml::de::DeTable;
 
-use super::read::{Entry, Keys};
+use super::entry::{Entry, Keys};
 use super::{ChipSection, Config, DeviceEntry, ServosSection, XPlaneSection};
 
 /// One entry of `[[sensor]]`: a kind, and that kind's keys.

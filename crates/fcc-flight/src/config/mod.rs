@@ -19,6 +19,7 @@ mod cpu;
 mod device;
 mod devices;
 mod early_wake;
+mod entry;
 mod error;
 mod exactly;
 mod gpio;

@@ -12,7 +12,7 @@ use serde_json::{Map, Value, json};
 use toml::Spanned;
 use toml::de::DeTable;
 
-use super::read::{Entry, Keys};
+use super::entry::{Entry, Keys};
 use super::{
     ActuatorEntry, BuiltInSection, Config, SensorEntry, ServoBoardSection, XPlaneSection, ranges,
 };

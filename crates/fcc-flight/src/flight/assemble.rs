@@ -1,6 +1,5 @@
 //! Assembles sensors, autopilot and actuators from a configuration.
 
-use std::io::{self, ErrorKind};
 use std::sync::Arc;
 
 use fcc_core::flight::{Measurements, Surfaces};
@@ -9,9 +8,10 @@ use fcc_fixed_wing::Autopilot;
 #[cfg(feature = "live")]
 use fcc_live::{SentCommands, StartPublisher};
 use fcc_runtime::LoopConfig;
-use fcc_sim::{SimConfig, SimError, Simulation, TruthHandle};
-use fcc_xplane::{OpenError, XPlane, XPlaneAuthority, XPlaneConfig, XPlaneStatus};
+use fcc_sim::{SimConfig, Simulation, TruthHandle};
+use fcc_xplane::{XPlane, XPlaneAuthority, XPlaneConfig, XPlaneStatus};
 
+use super::assembly_error::AssemblyError;
 use super::calibrated::calibrated;
 use super::control_override::ControlOverride;
 use super::device::{DeviceReporter, WatchedDevice, open_device};
@@ -68,48 +68,6 @@ pub struct Assembly {
     /// this process does, which other programs of the user can end.
     #[cfg(feature = "live")]
     pub publisher: Option<StartPublisher>,
-}
-
-/// Why a flight could not be assembled.
-#[derive(thiserror::Error, Debug)]
-#[non_exhaustive]
-pub enum AssemblyError {
-    /// The built-in aircraft is impossible.
-    #[error("the built-in aircraft: {0}")]
-    BuiltIn(#[from] SimError),
-    /// The connection to X-Plane could not be opened.
-    #[error("X-Plane: {0}")]
-    XPlane(#[from] OpenError),
-    /// The thread that reads a device could not be started.
-    #[error(
-        "cannot start the thread that reads {name}: {source}; free memory, or raise the limit of threads"
-    )]
-    Device {
-        /// The device.
-        name: String,
-        /// The operating system's error.
-        source: io::Error,
-    },
-    /// The configuration has the sensors of a phone, and the program runs on none.
-    #[error(
-        "a sensor is of the kind \"phone\", and this program has no phone: fly it in the Android app, \
-         or list other sensors"
-    )]
-    NoPhone,
-    /// The link to the servo board could not be opened.
-    #[error("servo board: {0}")]
-    ServoBoard(#[from] fcc_servo_link::OpenError),
-}
-
-impl AssemblyError {
-    /// Whether another program has the local port, or that of the beacons.
-    pub fn is_taken(&self) -> bool {
-        matches!(
-            self,
-            Self::XPlane(OpenError::Bind { source, .. } | OpenError::Beacon { source, .. })
-                if source.kind() == ErrorKind::AddrInUse
-        )
-    }
 }
 
 /// A simulated plant: its sensors and actuators.
@@ -336,6 +294,10 @@ impl Assembly {
 
 #[cfg(test)]
 mod tests {
+    use std::io::{self, ErrorKind};
+
+    use fcc_xplane::OpenError;
+
     use super::*;
 
     #[test]

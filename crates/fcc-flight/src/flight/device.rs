@@ -11,10 +11,10 @@ use fcc_linux::iio::Iio;
 use fcc_linux::serial::{GnssReceiver, RcReceiver};
 use fcc_linux::{Clock, DeviceOwner, DeviceStatus, DeviceThread, monotonic};
 
-use super::assemble::AssemblyError;
+use super::assembly_error::AssemblyError;
 use super::observer::{Access, Observer};
-use super::phone::{PhoneHost, open_phone};
-use crate::config::DeviceEntry;
+use super::phone::PhoneHost;
+use crate::config::{DeviceEntry, PhoneSection};
 
 /// A device, and its state for programs.
 pub(crate) struct WatchedDevice {
@@ -66,6 +66,21 @@ pub(crate) fn open_device(
         Ok(sensor) => Ok((sensor, vec![watched])),
         Err(source) => Err(AssemblyError::Device { name, source }),
     }
+}
+
+/// The phone's sensors, uncalibrated.
+fn open_phone(
+    section: &PhoneSection,
+    host: Option<&mut dyn PhoneHost>,
+) -> Result<WatchedSensor, AssemblyError> {
+    let host = host.ok_or(AssemblyError::NoPhone)?;
+    let opened = host.open(section).map_err(|source| AssemblyError::Device {
+        name: "phone".to_owned(),
+        source,
+    })?;
+    let devices = opened.devices.into_iter();
+    let watched = devices.map(|(name, status)| WatchedDevice::new(name, name.to_owned(), status));
+    Ok((opened.sensor, watched.collect()))
 }
 
 fn started(

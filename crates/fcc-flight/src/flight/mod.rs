@@ -5,6 +5,7 @@
 //! the [`Outcome`]. What only the host program can do is done by its [`Host`].
 
 mod assemble;
+mod assembly_error;
 mod calibrated;
 mod check_controls;
 #[cfg(any(test, feature = "conformance"))]
@@ -43,9 +44,8 @@ mod scorer;
 mod servos;
 mod truth_recorder;
 
-pub use assemble::{
-    Assembly, AssemblyError, assemble, assemble_on_phone, authority_without_connection,
-};
+pub use assemble::{Assembly, assemble, assemble_on_phone, authority_without_connection};
+pub use assembly_error::AssemblyError;
 pub use check_controls::{Checked, Movement, Unchecked, Verdict, check_controls};
 pub use control_override::ControlOverride;
 pub(crate) use device::open_device;

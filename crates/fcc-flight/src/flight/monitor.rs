@@ -3,24 +3,8 @@
 use fcc_core::framework::{EventKind, Message, State};
 
 use super::observer::FlightTime;
+use super::outcome::Over;
 use super::plan::Length;
-
-/// Why a flight is over.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Over {
-    /// Its time has passed.
-    Time,
-    /// Its plan is flown to its end.
-    Flown,
-    /// Its take-off was given up, and it stands.
-    GivenUp,
-    /// The wheels touched the ground where they are not to.
-    Ground,
-    /// The loop entered failsafe.
-    Failsafe,
-    /// Engaging was refused.
-    Refused,
-}
 
 /// How a plan is flown, by the events.
 #[derive(Clone, Copy, Debug, Default)]

@@ -7,7 +7,6 @@ use fcc_timer::RealtimeGranted;
 use serde::Serialize;
 
 use super::ground::Impact;
-use super::monitor::Over;
 use super::plan::Pace;
 
 /// The scheduling of a loop without a thread of its own.
@@ -78,6 +77,23 @@ pub enum Conclusion {
     Overloaded,
     /// The controls may still be held.
     NotReleased,
+}
+
+/// Why a flight is over.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Over {
+    /// Its time has passed.
+    Time,
+    /// Its plan is flown to its end.
+    Flown,
+    /// Its take-off was given up, and it stands.
+    GivenUp,
+    /// The wheels touched the ground where they are not to.
+    Ground,
+    /// The loop entered failsafe.
+    Failsafe,
+    /// Engaging was refused.
+    Refused,
 }
 
 /// An event.

@@ -11,7 +11,7 @@ use fcc_linux::servo::{
     ServoControl, ServoThread, SysfsPwm,
 };
 
-use super::assemble::AssemblyError;
+use super::assembly_error::AssemblyError;
 use super::device::WatchedDevice;
 use crate::config::{ActuatorEntry, Config, ServosSection};
 

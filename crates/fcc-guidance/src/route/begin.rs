@@ -3,37 +3,13 @@
 use nalgebra::Vector2;
 
 use super::circle::{Circle, Circling};
-use super::demand::Profile;
 use super::follower::{Follower, Phase};
+use super::goal::{Goal, GoalKind, Next, Profile};
 use super::leg::Leg;
 use super::runway::{Runway, RunwayFlight};
 use super::step::{Step, Until, nearest_of};
 use super::{OverGround, RETURNS_CLOCKWISE};
 use crate::path::{LocalPlane, Motion, cross, length};
-
-/// Where a step leads.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Goal {
-    pub(super) at: LocalPlane,
-    pub(super) altitude_m: f64,
-    pub(super) kind: GoalKind,
-}
-
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) enum GoalKind {
-    /// Passed within this distance, m.
-    Place(f64),
-    Circle(Circle),
-    /// Landed on; the altitude of a go-around, m.
-    Landing(f64),
-}
-
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Next {
-    pub(super) place_m: Vector2<f64>,
-    /// The leg from the goal to there.
-    pub(super) leg: Option<Leg>,
-}
 
 /// Whether the aircraft flies along the leg of a landing, or stands behind its begin.
 fn is_on_approach(leg: &Leg, here: &OverGround, motion: &Motion) -> bool {

@@ -1,22 +1,9 @@
 //! The altitude and the airspeed that a route demands.
 
 use super::follower::{Follower, Phase};
+use super::goal::{Profile, Speed};
 use super::step::Step;
 use crate::path::Motion;
-
-/// From where the altitude changes along a leg.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Profile {
-    pub(super) to_go_m: f64,
-    pub(super) altitude_m: f64,
-}
-
-/// A speed, m/s.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) enum Speed {
-    Indicated(f64),
-    OverGround(f64),
-}
 
 /// So near an altitude changes no more along a leg, m.
 const LEAST_LEG_M: f64 = 1.0;

@@ -4,11 +4,10 @@ use libm::{atan, atan2, tan};
 use nalgebra::Vector2;
 
 use super::back::TookOff;
-use super::begin::{Goal, GoalKind, Next};
 use super::circle::Circling;
 use super::corner::{Conditions, Corner};
-use super::demand::{Profile, Speed};
 use super::glide::GlideFlight;
+use super::goal::{Goal, GoalKind, Next, Profile, Speed};
 use super::leg::Leg;
 use super::runway::RunwayFlight;
 use super::sequence::{Sequence, Steps};

@@ -18,6 +18,7 @@ mod corner;
 mod demand;
 mod follower;
 mod glide;
+mod goal;
 mod leg;
 mod over_ground;
 mod over_runway;

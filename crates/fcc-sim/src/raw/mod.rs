@@ -28,7 +28,7 @@ use libm::{cos, round, sqrt};
 pub use sets::RawSensorSet;
 
 use crate::gauss::Stream;
-use crate::sensing::LocalEarth;
+use crate::local_earth::LocalEarth;
 
 schema! {
     /// The truth that raw sensors measure, at one moment. By default it stands on

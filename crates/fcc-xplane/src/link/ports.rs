@@ -94,8 +94,8 @@ impl SharedState {
 
     /// Adapts the kernel's filter to what is known; not in a tick.
     pub(crate) fn adapt_filter(&self, owned: Option<&[u16]>) {
-        if let Some(filter) = self.filter.get() {
-            filter.follow(self, owned);
+        if let Some((filter, simulator)) = self.filter.get().zip(self.address.simulator()) {
+            filter.follow(simulator.ip(), self.delivered_ports(), owned);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The controls on the wheels.
 
 use super::super::Autopilot;
-use super::super::ground_motion::STANDS_MPS;
+use super::super::place_monitor::STANDS_MPS;
 use super::{CLOSES_PER_S, RUDDER_PER_RADPS, notice};
 use crate::control::Lateral;
 use fcc_core::blocks::{limit, limit_abs};

@@ -7,6 +7,7 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::saved::SavedPlan;
 use super::state_file;
 use crate::config::{Config, PreparedPlan};
 use crate::sealed;
@@ -16,15 +17,6 @@ const NAME: &str = "fccd-plan";
 const VERSION: u32 = 1;
 /// A plan's file has half of it.
 const MOST_BYTES: u64 = 8 << 20;
-
-/// Which plan was flown.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub(super) struct SavedPlan {
-    /// The first 64 bits of its hash; 0: none.
-    pub(super) hash: u64,
-    /// When it was uploaded, s since 1970 (UTC).
-    pub(super) uploaded_unix_s: u64,
-}
 
 /// The plans that may have replaced the configuration's.
 #[derive(Debug, Default)]

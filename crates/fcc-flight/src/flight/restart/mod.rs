@@ -32,11 +32,11 @@ use crate::config::{Config, RestartMode};
 use boot_clock::BootInstant;
 use found::{Found, Looked, Search};
 use keeper::Keeper;
-use kept_plan::{NotedPlans, SavedPlan};
+use kept_plan::NotedPlans;
 pub(super) use observer::RestartKeeper;
 use place::SavedPlace;
 use recovery::{Next, Recovery};
-use saved::{Saved, SavedCommands, SavedSwitch};
+use saved::{Saved, SavedCommands, SavedPlan, SavedSwitch};
 #[cfg(fuzzing)]
 pub use state_file::read_state;
 

@@ -211,9 +211,8 @@ mod tests {
     use fcc_runtime::{LoopConfig, Machine, Parts};
     use fcc_timer::ManualTimer;
 
-    use super::super::kept_plan::SavedPlan;
     use super::super::place::SavedPlace;
-    use super::super::saved::SavedSwitch;
+    use super::super::saved::{SavedPlan, SavedSwitch};
     use super::*;
     use crate::config::Config;
 

@@ -5,7 +5,6 @@ use fcc_fixed_wing::{AutopilotCommand, Resume};
 use fcc_guidance::Mode;
 
 use super::boot_clock::BootInstant;
-use super::kept_plan::SavedPlan;
 use super::place::SavedPlace;
 
 /// The stored state of a flight.
@@ -27,6 +26,15 @@ pub(super) struct Saved {
     pub(super) resume: Resume,
     /// What commands have said besides.
     pub(super) commanded: SavedCommands,
+}
+
+/// Which plan was flown.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(super) struct SavedPlan {
+    /// The first 64 bits of its hash; 0: none.
+    pub(super) hash: u64,
+    /// When it was uploaded, s since 1970 (UTC).
+    pub(super) uploaded_unix_s: u64,
 }
 
 /// What was commanded and is not in the record.

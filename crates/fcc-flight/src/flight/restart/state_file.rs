@@ -94,9 +94,8 @@ mod tests {
     use proptest::prelude::*;
 
     use super::super::boot_clock::BootInstant;
-    use super::super::kept_plan::SavedPlan;
     use super::super::place::{SavedPlace, Sourced};
-    use super::super::saved::{SavedCommands, SavedSwitch};
+    use super::super::saved::{SavedCommands, SavedPlan, SavedSwitch};
     use super::*;
 
     fn saved(mode: Mode, elapsed_s: f64) -> Saved {

@@ -12,9 +12,8 @@ use fcc_telemetry::units::{COMMANDED_ALTIMETER_SETTING_PA, COMMANDED_HEADING_RAD
 use serde::{Deserialize, Serialize};
 
 use super::boot_clock::BootInstant;
-use super::kept_plan::SavedPlan;
 use super::place::{SavedPlace, Sourced};
-use super::saved::{Saved, SavedCommands, SavedSwitch};
+use super::saved::{Saved, SavedCommands, SavedPlan, SavedSwitch};
 
 /// The stored state of a flight as named numbers.
 #[derive(Deserialize, Serialize)]

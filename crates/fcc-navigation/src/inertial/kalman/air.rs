@@ -3,9 +3,10 @@
 use libm::sqrt;
 use nalgebra::{SMatrix, SVector, Vector2, Vector3};
 
-use super::filter::{ATTITUDE, BAROMETER_BIAS, Filter, POSITION, STATES, VELOCITY, WIND};
+use super::filter::Filter;
 use super::noise::Noise;
 use super::parameters as p;
+use super::states::{ATTITUDE, BAROMETER_BIAS, POSITION, STATES, VELOCITY, WIND};
 use super::update::{Corrects, Measurement};
 use crate::inertial::ObservationKind;
 use fcc_core::flight::atmosphere::{density_ratio, pressure_altitude_m};

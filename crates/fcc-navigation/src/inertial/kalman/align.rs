@@ -2,12 +2,13 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::filter::{
-    ATTITUDE, FORCE_BIAS, Filter, LATENESS, POSITION, RATE_BIAS, UNKNOWN_ANGLE, VELOCITY, WIND,
-};
+use super::filter::Filter;
 use super::inputs::Step;
 use super::motion::turn;
 use super::parameters as p;
+use super::states::{
+    ATTITUDE, FORCE_BIAS, LATENESS, POSITION, RATE_BIAS, UNKNOWN_ANGLE, VELOCITY, WIND,
+};
 use fcc_core::units::GRAVITY_MPS2;
 
 /// How long forces are averaged, s.

@@ -1,8 +1,9 @@
 //! Other inertial sensors than before; without gyroscopes: attitude by the magnetic field,
 //! receiver and airspeed.
 
-use super::filter::{ATTITUDE, BODY_FIELD, FORCE_BIAS, Filter, RATE_BIAS, VELOCITY};
+use super::filter::Filter;
 use super::parameters as p;
+use super::states::{ATTITUDE, BODY_FIELD, FORCE_BIAS, RATE_BIAS, VELOCITY};
 use fcc_core::framework::Time;
 use fcc_core::units::GRAVITY_MPS2;
 

@@ -6,10 +6,7 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use super::filter::{ATTITUDE, Filter, POSITION, VELOCITY};
 use super::motion::Motion;
-use super::parameters as p;
-use super::receiver::DOUBTED_ATTITUDE;
 use crate::inertial::GeodeticPosition;
 use fcc_core::framework::Time;
 
@@ -34,10 +31,6 @@ const BENT_SHARE: f64 = 0.25;
 const MOST_MPS: f64 = 25.0;
 const MOST_M: f64 = 20.0;
 
-/// Places that contradict a velocity within this time, s, after it was taken for the filter's own
-/// show that it misled this.
-const MISLED_S: f64 = 4.0;
-
 /// Places and velocities of the latest seconds.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Displacement {
@@ -48,7 +41,7 @@ pub(super) struct Displacement {
     ahead: Vector2<f64>,
     /// When they were last apart by more than they agree within, while they contradict.
     apart: Time,
-    is_contradicted: bool,
+    pub(super) is_contradicted: bool,
     /// Whether the velocities are wrong, and the places are not.
     pub(super) is_velocity_wrong: bool,
 }
@@ -109,41 +102,5 @@ impl Displacement {
     /// so many seconds.
     pub(super) fn faster(&self, in_s: f64) -> Vector2<f64> {
         (self.gap / in_s.max(1.0)).cap_magnitude(MOST_MPS)
-    }
-}
-
-impl Filter {
-    /// Follows whether the receiver's velocities are wrong and its positions are not: they
-    /// contradict each other, and this filter refuses the velocities only.
-    pub(super) fn follow_displacement(
-        &mut self,
-        taken: Time,
-        velocity: Vector3<f64>,
-        contradicts_air: bool,
-    ) {
-        let (position, tracked) = (self.tracks.position, self.tracks.velocity);
-        let was = self.displacement.is_contradicted;
-        let contradicts = self.displacement.contradicts(&self.motion, taken, velocity);
-        let followed_s = taken.since(self.taken_over).as_secs_f64();
-        if contradicts && !was && followed_s < MISLED_S {
-            self.displacement.is_velocity_wrong = true;
-            let faster = self.displacement.faster(followed_s);
-            let off = (velocity - self.motion.velocity).xy() + faster;
-            self.settle();
-            self.motion.velocity += off.push(0.0);
-            self.path.corrected(Vector3::zeros(), off.push(0.0));
-            self.reset_covariance(VELOCITY, 2, faster.norm_squared());
-            self.add_variance(POSITION, 2, faster.norm_squared());
-            self.add_variance(ATTITUDE, 3, DOUBTED_ATTITUDE);
-        } else if !contradicts || position.refused_s(taken) > p::RECEIVER_REFUSED_S {
-            if self.displacement.is_velocity_wrong {
-                // It is judged anew.
-                self.tracks.velocity.refused_since = Time::NEVER;
-            }
-            self.displacement.is_velocity_wrong = false;
-        } else if position.refused_since.is_never() {
-            self.displacement.is_velocity_wrong |=
-                contradicts_air || !tracked.refused_since.is_never();
-        }
     }
 }

@@ -7,8 +7,8 @@
 //! process from the corrections of the state: Myers and Tapley 1976, *Adaptive sequential
 //! estimation with unknown noise statistics*, IEEE Transactions on Automatic Control 21).
 
-use super::filter::{FORCE_BIAS, RATE_BIAS, StateVector};
 use super::parameters as p;
+use super::states::{FORCE_BIAS, RATE_BIAS, StateVector};
 
 /// Biases of gyroscopes, of three axes, and of accelerometers forward and to the right: what is
 /// off downwards tips no horizon, and may be an accelerometer at the end of its range.

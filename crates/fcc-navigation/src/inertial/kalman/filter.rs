@@ -1,36 +1,22 @@
 //! The state of the filter, its covariance, and how both move on.
 
-use nalgebra::{Matrix3, SMatrix, SVector, Vector2, Vector3};
+use nalgebra::{Matrix3, SMatrix, Vector2, Vector3};
 
 use super::displacement::Displacement;
 use super::drift::Drift;
 use super::in_flight::InFlight;
 use super::innovations::Innovations;
-use super::motion::{Increment, Inertial, Motion, turn};
+use super::motion::{Increment, Inertial, Motion, Raw, turn};
 use super::parameters as p;
 use super::path::Path;
 use super::scatter::Scatter;
+use super::states::{
+    ATTITUDE, BAROMETER_BIAS, BODY_FIELD, Covariance, EARTH_FIELD, FORCE_BIAS, LATENESS, POSITION,
+    RATE_BIAS, STATES, StateVector, UNKNOWN_ANGLE, VELOCITY, WIND,
+};
 use super::track::Tracks;
 use super::trend::Trend;
 use fcc_core::framework::Time;
-
-/// Number of states.
-pub(super) const STATES: usize = 25;
-pub(super) type Covariance = SMatrix<f64, STATES, STATES>;
-pub(super) type StateVector = SVector<f64, STATES>;
-
-/// Where each part of the error begins: the attitude's is a rotation vector in
-/// north, east, down.
-pub(super) const ATTITUDE: usize = 0;
-pub(super) const VELOCITY: usize = 3;
-pub(super) const POSITION: usize = 6;
-pub(super) const RATE_BIAS: usize = 9;
-pub(super) const FORCE_BIAS: usize = 12;
-pub(super) const BAROMETER_BIAS: usize = 15;
-pub(super) const EARTH_FIELD: usize = 16;
-pub(super) const BODY_FIELD: usize = 19;
-pub(super) const WIND: usize = 22;
-pub(super) const LATENESS: usize = 24;
 
 /// The first of them: those that others change as time passes, and with those that
 /// change them.
@@ -41,9 +27,6 @@ const MOVING: usize = BAROMETER_BIAS;
 const COVARIANCE_S: f64 = 0.008;
 /// Inertial samples further apart than this are not connected, s.
 pub(super) const GAP_S: f64 = 0.2;
-/// An angle is never less certain than one of which nothing is known: the
-/// variance of a uniform one, π²/3.
-pub(super) const UNKNOWN_ANGLE: f64 = 3.29;
 /// Corrections below this turn the covariance by nothing, rad.
 const SMALL_TURN: f64 = 1e-3;
 
@@ -379,11 +362,4 @@ impl Filter {
     pub(super) fn sigma(&self, at: usize) -> f64 {
         libm::sqrt(self.covariance[(at, at)].max(0.0))
     }
-}
-
-/// One reading of the inertial sensors as it came.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Raw {
-    pub(super) rates: Option<Vector3<f64>>,
-    pub(super) force: Option<Vector3<f64>>,
 }

@@ -16,11 +16,9 @@ use nalgebra::{UnitQuaternion, Vector3};
 use changes::Changes;
 use sums::Sums;
 
-use super::filter::{ATTITUDE, Filter, LATENESS, Raw, UNKNOWN_ANGLE, VELOCITY};
-use super::motion::turn;
-use super::parameters as p;
-use super::receiver::earlier;
-use super::signed_s;
+use super::motion::{Raw, turn};
+use super::states::UNKNOWN_ANGLE;
+use super::{earlier, signed_s};
 use fcc_core::framework::Time;
 
 /// Velocities, how far apart they are at least, s, and over how long they are compared: not
@@ -36,10 +34,10 @@ const LATENESS_APART_S: f64 = 0.1;
 /// How often they are compared, s.
 const EVERY_S: f64 = 0.5;
 /// The largest biases that a sensor has, rad/s, m/s².
-const LARGEST_RATE_BIAS: f64 = 0.05;
-const LARGEST_FORCE_BIAS: f64 = 0.5;
+pub(super) const LARGEST_RATE_BIAS: f64 = 0.05;
+pub(super) const LARGEST_FORCE_BIAS: f64 = 0.5;
 /// A velocity is not better than this, m/s.
-const RECEIVER_MPS: f64 = 0.5;
+pub(super) const RECEIVER_MPS: f64 = 0.5;
 /// The attitude that is believed is wrong if it leaves so many times what the best one leaves,
 /// and as many times this, m/s; and if the best one leaves no more than this, m/s, and no more
 /// than this share of the changes, and its horizon is as sure as this, rad².
@@ -128,7 +126,7 @@ impl InFlight {
     }
 
     /// Takes a velocity of a time; whether it is to be compared with those before.
-    fn take(&mut self, taken: Time, mps: Vector3<f64>) -> bool {
+    pub(super) fn take(&mut self, taken: Time, mps: Vector3<f64>) -> bool {
         let last = self.before(1).taken;
         if !last.is_never() && signed_s(taken, last) < VELOCITIES_APART_S {
             return false;
@@ -176,7 +174,7 @@ impl InFlight {
 
     /// Another attitude, if that explains the latest velocities twice and the one that is
     /// believed does not, whatever they are late by.
-    fn other(
+    pub(super) fn other(
         &mut self,
         believed: UnitQuaternion<f64>,
         late_s: f64,
@@ -231,42 +229,6 @@ impl InFlight {
 }
 
 /// A bias as far as a sensor may have it: otherwise it was found with a wrong attitude.
-fn credible(bias: Vector3<f64>, largest: f64) -> Vector3<f64> {
+pub(super) fn credible(bias: Vector3<f64>, largest: f64) -> Vector3<f64> {
     bias.map(|one| if one.abs() > largest { 0.0 } else { one })
-}
-
-impl Filter {
-    /// Takes a receiver's velocity of a time; where the attitude does not explain how it
-    /// changed, and another one does, that one is right. Whether it was changed.
-    pub(super) fn align_in_flight(&mut self, taken: Time, velocity: Vector3<f64>) -> bool {
-        if !self.in_flight.take(taken, velocity) {
-            return false;
-        }
-        let (believed, gravity) = (self.motion.attitude, self.motion.gravity());
-        let Some(found) = self.in_flight.other(believed, self.late_s, gravity) else {
-            return false;
-        };
-        self.settle();
-        let change = found.velocity - self.motion.velocity;
-        self.motion.attitude = found.attitude;
-        self.motion.velocity = found.velocity;
-        self.path.corrected(Vector3::zeros(), change);
-        for axis in 0..3 {
-            let variance = found.variance[axis].min(UNKNOWN_ANGLE);
-            self.reset_covariance(ATTITUDE + axis, 1, variance);
-        }
-        self.reset_covariance(VELOCITY, 3, RECEIVER_MPS * RECEIVER_MPS);
-        let biases = (
-            credible(self.rate_bias, LARGEST_RATE_BIAS),
-            credible(self.force_bias, LARGEST_FORCE_BIAS),
-        );
-        self.change_gyroscopes(0.0);
-        self.change_accelerometers(0.0);
-        (self.rate_bias, self.force_bias) = biases;
-        self.change_magnetometer();
-        self.forget_wind();
-        self.late_s = found.late_s;
-        self.reset_covariance(LATENESS, 1, p::LATENESS * p::LATENESS);
-        true
-    }
 }

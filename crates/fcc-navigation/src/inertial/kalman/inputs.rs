@@ -3,8 +3,9 @@
 
 use nalgebra::Vector3;
 
-use super::filter::{GAP_S, Raw};
+use super::filter::GAP_S;
 use super::history::{History, Sample};
+use super::motion::Raw;
 use crate::inertial::Observation;
 use fcc_core::framework::Time;
 

@@ -3,11 +3,12 @@
 use libm::{atan2, hypot};
 use nalgebra::{SMatrix, Vector3};
 
-use super::filter::{ATTITUDE, BODY_FIELD, EARTH_FIELD, Filter, RATE_BIAS, STATES};
+use super::filter::Filter;
 use super::motion::turn;
 use super::noise::variances;
 use super::parameters as p;
 use super::receiver::UNKNOWN_HEADING;
+use super::states::{ATTITUDE, BODY_FIELD, EARTH_FIELD, RATE_BIAS, STATES};
 use super::update::{Corrects, Measurement};
 use crate::inertial::ObservationKind;
 use fcc_core::framework::Time;

@@ -23,6 +23,7 @@
 
 mod air;
 mod align;
+mod align_in_flight;
 mod by_field;
 mod displacement;
 mod drift;
@@ -42,6 +43,7 @@ mod refused_velocity;
 mod rest;
 mod scatter;
 mod spikes;
+mod states;
 mod track;
 mod trend;
 mod unaided;
@@ -342,4 +344,10 @@ fn signed_s(to: Time, from: Time) -> f64 {
     } else {
         -from.since(to).as_secs_f64()
     }
+}
+
+/// A time that is by so much earlier.
+fn earlier(time: Time, by_s: f64) -> Time {
+    let by = Duration::from_secs_f64(by_s.abs());
+    if by_s < 0.0 { time + by } else { time - by }
 }

@@ -20,6 +20,13 @@ pub(super) struct Motion {
     pub(super) is_located: bool,
 }
 
+/// One reading of the inertial sensors as it came.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Raw {
+    pub(super) rates: Option<Vector3<f64>>,
+    pub(super) force: Option<Vector3<f64>>,
+}
+
 /// One reading of the inertial sensors without their biases.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Inertial {

@@ -4,11 +4,12 @@ use libm::{atan2, cos, hypot, sin, sqrt};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::KalmanNavigation;
-use super::filter::{
-    ATTITUDE, BAROMETER_BIAS, BODY_FIELD, EARTH_FIELD, FORCE_BIAS, Filter, LATENESS, POSITION,
-    RATE_BIAS, VELOCITY, WIND,
-};
+use super::filter::Filter;
 use super::motion::Motion;
+use super::states::{
+    ATTITUDE, BAROMETER_BIAS, BODY_FIELD, EARTH_FIELD, FORCE_BIAS, LATENESS, POSITION, RATE_BIAS,
+    VELOCITY, WIND,
+};
 use crate::inertial::{GeodeticPosition, Sigma, Solution};
 use fcc_core::framework::Time;
 

@@ -1,15 +1,15 @@
 //! Positions and velocities of a satellite receiver.
 
-use core::time::Duration;
-
 use nalgebra::{SMatrix, Vector3};
 
-use super::filter::{
-    ATTITUDE, BAROMETER_BIAS, FORCE_BIAS, Filter, LATENESS, POSITION, RATE_BIAS, STATES, VELOCITY,
-};
+use super::earlier;
+use super::filter::Filter;
 use super::noise::{Noise, variances};
 use super::parameters as p;
 use super::path::Path;
+use super::states::{
+    ATTITUDE, BAROMETER_BIAS, FORCE_BIAS, LATENESS, POSITION, RATE_BIAS, STATES, VELOCITY,
+};
 use super::update::{Corrects, Measurement};
 use crate::inertial::{GeodeticPosition, ObservationKind};
 use fcc_core::framework::Time;
@@ -317,12 +317,6 @@ impl Filter {
         self.tracks.velocity.since_used_s(self.time) < p::UNAIDED_S
             || self.tracks.position.since_used_s(self.time) < p::UNAIDED_S
     }
-}
-
-/// A time that is by so much earlier.
-pub(super) fn earlier(time: Time, by_s: f64) -> Time {
-    let by = Duration::from_secs_f64(by_s.abs());
-    if by_s < 0.0 { time + by } else { time - by }
 }
 
 /// What a fix is compared with.

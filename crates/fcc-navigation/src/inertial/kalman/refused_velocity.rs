@@ -3,9 +3,15 @@
 
 use nalgebra::Vector3;
 
-use super::filter::{Filter, WIND};
+use super::filter::Filter;
 use super::parameters as p;
+use super::receiver::DOUBTED_ATTITUDE;
+use super::states::{ATTITUDE, POSITION, VELOCITY, WIND};
 use fcc_core::framework::Time;
+
+/// Places that contradict a velocity within this time, s, after it was taken for the filter's own
+/// show that it misled this.
+const MISLED_S: f64 = 4.0;
 
 impl Filter {
     /// Whether the receiver's velocities are not used because its own places, or air and
@@ -33,5 +39,39 @@ impl Filter {
     /// Whether a receiver contradicted the air lately.
     pub(super) fn is_contradicted(&self, now: Time) -> bool {
         now.since(self.contradicted).as_secs_f64() < p::CONTRADICTED_S
+    }
+
+    /// Follows whether the receiver's velocities are wrong and its positions are not: they
+    /// contradict each other, and this filter refuses the velocities only.
+    pub(super) fn follow_displacement(
+        &mut self,
+        taken: Time,
+        velocity: Vector3<f64>,
+        contradicts_air: bool,
+    ) {
+        let (position, tracked) = (self.tracks.position, self.tracks.velocity);
+        let was = self.displacement.is_contradicted;
+        let contradicts = self.displacement.contradicts(&self.motion, taken, velocity);
+        let followed_s = taken.since(self.taken_over).as_secs_f64();
+        if contradicts && !was && followed_s < MISLED_S {
+            self.displacement.is_velocity_wrong = true;
+            let faster = self.displacement.faster(followed_s);
+            let off = (velocity - self.motion.velocity).xy() + faster;
+            self.settle();
+            self.motion.velocity += off.push(0.0);
+            self.path.corrected(Vector3::zeros(), off.push(0.0));
+            self.reset_covariance(VELOCITY, 2, faster.norm_squared());
+            self.add_variance(POSITION, 2, faster.norm_squared());
+            self.add_variance(ATTITUDE, 3, DOUBTED_ATTITUDE);
+        } else if !contradicts || position.refused_s(taken) > p::RECEIVER_REFUSED_S {
+            if self.displacement.is_velocity_wrong {
+                // It is judged anew.
+                self.tracks.velocity.refused_since = Time::NEVER;
+            }
+            self.displacement.is_velocity_wrong = false;
+        } else if position.refused_since.is_never() {
+            self.displacement.is_velocity_wrong |=
+                contradicts_air || !tracked.refused_since.is_never();
+        }
     }
 }

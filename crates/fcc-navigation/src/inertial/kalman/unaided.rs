@@ -3,10 +3,11 @@
 
 use nalgebra::Vector3;
 
-use super::filter::{Filter, RATE_BIAS, VELOCITY};
+use super::filter::Filter;
 use super::noise::Noise;
 use super::parameters as p;
 use super::receiver::on;
+use super::states::{RATE_BIAS, VELOCITY};
 use super::update::{Corrects, Measurement};
 use fcc_core::framework::Time;
 

@@ -2,10 +2,9 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::filter::{
-    ATTITUDE, BODY_FIELD, EARTH_FIELD, Filter, LATENESS, RATE_BIAS, STATES, StateVector,
-};
+use super::filter::Filter;
 use super::innovations::Innovation;
+use super::states::{ATTITUDE, BODY_FIELD, EARTH_FIELD, LATENESS, RATE_BIAS, STATES, StateVector};
 use crate::inertial::ObservationKind;
 use fcc_core::framework::Time;
 

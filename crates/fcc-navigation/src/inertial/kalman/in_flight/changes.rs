@@ -4,7 +4,7 @@ use nalgebra::linalg::SymmetricEigen;
 use nalgebra::{Matrix3, Matrix4, Quaternion, UnitQuaternion, Vector3};
 
 use super::{RECEIVER_MPS, VELOCITIES};
-use crate::inertial::kalman::filter::UNKNOWN_ANGLE;
+use crate::inertial::kalman::states::UNKNOWN_ANGLE;
 
 /// How much the attitude that is believed weighs, m²/s²: as little as if nothing were known.
 const UNSEEN: f64 = RECEIVER_MPS * RECEIVER_MPS / UNKNOWN_ANGLE;
