@@ -91,11 +91,7 @@ impl ReadingSet {
     ///
     /// # Panics
     /// If one is not among them: an error of the compiler in a constant.
-    #[expect(
-        clippy::panic,
-        clippy::indexing_slicing,
-        reason = "it is evaluated by the compiler"
-    )]
+    #[expect(clippy::indexing_slicing, reason = "it is evaluated by the compiler")]
     pub const fn named(names: &[&str], called: &[&str]) -> Self {
         let mut set = Self::NONE;
         let mut n = 0;

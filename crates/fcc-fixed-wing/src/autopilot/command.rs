@@ -162,7 +162,7 @@ impl Autopilot {
         }
         match *command {
             AutopilotCommand::Heartbeat(within_s) => {
-                self.supervisor.contingencies.promise(within_s)
+                self.supervisor.contingencies.promise(within_s);
             }
             AutopilotCommand::Airspeed(mps) if mps.is_finite() => {
                 self.guidance.targets.airspeed_mps = self.config.envelope.allowed_airspeed(mps);

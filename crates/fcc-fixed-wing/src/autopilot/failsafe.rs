@@ -103,13 +103,9 @@ impl Autopilot {
         };
     }
 
-    /// What the table of [degraded flight](super::degraded) holds without the
-    /// lost quantities; idle throttle while thrust is reversed. A silent plant
-    /// keeps its throttle: it may return with another aircraft. What was
-    /// rejected as implausible is not believed again while the failsafe lasts,
-    /// unless it agrees with the estimate, or is an altitude that
-    /// [returns](ReturningAltitude).
-    pub(super) fn safest(&mut self, now: Time, measured: &Measurements) -> Surfaces {
+    /// Begins a failsafe, or goes on with it: what is rejected from now on is not believed
+    /// again at once.
+    fn begin_or_go_on(&mut self, measured: &Measurements) {
         // One that was frozen stood still: what comes after it is no jump.
         self.supervisor.degraded.frozen |= self.frozen();
         let jumped = self.rejected(measured) & !self.supervisor.degraded.frozen;
@@ -134,6 +130,16 @@ impl Autopilot {
                 self.take_over(&trims);
             }
         }
+    }
+
+    /// What the table of [degraded flight](super::degraded) holds without the
+    /// lost quantities; idle throttle while thrust is reversed. A silent plant
+    /// keeps its throttle: it may return with another aircraft. What was
+    /// rejected as implausible is not believed again while the failsafe lasts,
+    /// unless it agrees with the estimate, or is an altitude that
+    /// [returns](ReturningAltitude).
+    pub(super) fn safest(&mut self, now: Time, measured: &Measurements) -> Surfaces {
+        self.begin_or_go_on(measured);
         let lost = self.unreplaced(now, self.lost(now, measured));
         let held = held_without(lost);
         let glides = self.supervisor.degraded.glides;

@@ -76,12 +76,6 @@ impl Intake {
         self.silence(now) > config.max_age
     }
 
-    /// For how long a simulated plant is waited for: one that is silent, or whose
-    /// time stands still although it sends and is not paused.
-    pub(super) fn max_silence(&self, config: &AutopilotConfig) -> Duration {
-        config.max_silence.max(config.max_age)
-    }
-
     /// For how long a simulated plant that is not paused has been silent.
     pub(super) fn silence(&self, now: Time) -> Duration {
         if self.plant_is(PlantState::Paused) {

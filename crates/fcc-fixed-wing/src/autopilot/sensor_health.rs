@@ -100,7 +100,7 @@ impl Autopilot {
 
     /// The faults of this tick. A silent plant is waited for.
     pub(super) fn unsafe_now(&self, now: Time, measurements: &Measurements) -> Flags {
-        let lost = self.intake.silence(now) > self.intake.max_silence(&self.config);
+        let lost = self.intake.silence(now) > self.config.longest_silence();
         let stale = if lost {
             Quantities::ALL
         } else {
@@ -131,7 +131,7 @@ impl Autopilot {
             .with(
                 flags::PLANT_STALLED,
                 self.intake.clock.is_ignored()
-                    || self.intake.clock.stopped_for(now) > self.intake.max_silence(&self.config),
+                    || self.intake.clock.stopped_for(now) > self.config.longest_silence(),
             )
             .with(
                 flags::ENGAGE_SWITCH,

@@ -261,7 +261,7 @@ mod tests {
 
     #[test]
     fn a_contradiction_of_two_keys_is_at_the_one_that_is_written() {
-        let never = "[built-in]\n[autopilot.envelope]\nnever_exceed_airspeed_kt = 60\n";
+        let never = "[built-in]\n[autopilot.envelope]\nnever_exceed_airspeed_kt = 100\n";
         let words = "test:3: autopilot.envelope.never_exceed_airspeed_kt: contradicts \
                      autopilot.envelope.max_airspeed_kt, which is 135: choose at most";
         assert!(message(never).contains(words), "{}", message(never));

@@ -123,6 +123,32 @@ const APPROACH_OVER_STALL: f64 = 1.2;
 /// to hold an airspeed in.
 const MARGINS: f64 = 3.0;
 
+/// Whether there is an airspeed to hold below the never-exceed speed.
+fn has_airspeeds(
+    envelope: &EnvelopeSection,
+    least_never_kt: f64,
+    at: &mut impl FnMut(&[&str], f64, String),
+) -> bool {
+    let (never, stall) = (
+        envelope.never_exceed_airspeed_kt,
+        envelope.stall_airspeed_kt,
+    );
+    if never >= least_never_kt {
+        return true;
+    }
+    let wanted = format!(
+        "at least {least_never_kt:.1}: {OVER_STALL} times stall_airspeed_kt, {stall}, and \
+         {MARGINS} times airspeed_margin_kt, {}, or there is no airspeed to hold",
+        envelope.airspeed_margin_kt
+    );
+    at(
+        &["never_exceed_airspeed_kt", "stall_airspeed_kt"],
+        never,
+        wanted,
+    );
+    false
+}
+
 /// Of `[autopilot.envelope]`: an envelope in which an aircraft can fly, and of the airspeeds
 /// of `[autopilot.runway]`, that they are in it.
 fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&[&str], String)) {
@@ -134,25 +160,13 @@ fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&[&str], Strin
         envelope.never_exceed_airspeed_kt,
     );
     let mut at = |keys: &[&str], value: f64, wanted: String| {
-        let keys: Vec<_> = keys
-            .iter()
-            .map(|key| format!("autopilot.envelope.{key}"))
-            .collect();
+        let whole = |key: &&str| format!("autopilot.envelope.{key}");
+        let keys: Vec<_> = keys.iter().map(whole).collect();
         let keys: Vec<_> = keys.iter().map(String::as_str).collect();
         report(&keys, format!("is {value}: choose {wanted}"));
     };
     let (above_stall, room) = (OVER_STALL * stall, MARGINS * envelope.airspeed_margin_kt);
-    if never < above_stall + room {
-        at(
-            &["never_exceed_airspeed_kt", "stall_airspeed_kt"],
-            never,
-            format!(
-                "at least {:.1}: {OVER_STALL} times stall_airspeed_kt, {stall}, and {MARGINS} \
-                 times airspeed_margin_kt, {}, or there is no airspeed to hold",
-                above_stall + room,
-                envelope.airspeed_margin_kt
-            ),
-        );
+    if !has_airspeeds(envelope, above_stall + room, &mut at) {
         return;
     }
     if least >= most {
