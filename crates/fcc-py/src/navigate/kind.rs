@@ -149,7 +149,7 @@ impl Kind {
 
     pub(super) fn bounds(&self) -> String {
         if self.name == "gnss_position" {
-            return ", latitudes between -π/2 and π/2: are they in degrees?".to_owned();
+            return ", latitudes between -π/2 and π/2".to_owned();
         }
         format!(", between {} and {}", self.range.0, self.range.1)
     }

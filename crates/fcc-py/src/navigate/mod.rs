@@ -7,7 +7,6 @@ mod no_fix;
 mod plausible;
 mod result;
 mod sources;
-mod units;
 
 use std::time::Duration;
 
@@ -37,10 +36,9 @@ const LONGEST_WAIT_S: f64 = 0.05;
 /// rest. Samples that are masked, not finite or not possible are ignored.
 ///
 /// Sources whose times do not meet those of the gyroscope (or the accelerometer), or half a
-/// second and more between its samples, are a `ValueError`; samples mostly at other times,
-/// rates beyond 35 rad/s, a field that is not the earth's, a force that points down or is not
-/// about 9.8 m/s², a negative airspeed, a bias that no sensor has and a source of which less
-/// than half agrees with the others a `UserWarning`.
+/// second and more between its samples, are a `ValueError`; samples mostly at other times a
+/// `UserWarning`. Units, signs and axes are taken as they are: `normalised_innovations` shows
+/// by source how well they agree, by RMS of 1 or less if they do.
 #[pyfunction]
 #[pyo3(signature = (
     *,
@@ -120,8 +118,6 @@ pub(crate) fn navigate<'py>(
         py.detach(|| run.steps(&sources.events, piece));
         py.check_signals()?;
     }
-    plausible::agree(py, &run.innovations)?;
-    plausible::biases(py, &run.solutions)?;
     result::dict(
         py,
         &sources,

@@ -1,41 +1,21 @@
-//! Of which clock, unit and axes samples seem to be: each may be possible, and all together
-//! not.
+//! Whether the times of the sources are of one clock.
 
 use std::ffi::CString;
 
-use fcc_core::flight::inertial::{Innovation, Solution};
 use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 
 use super::kind::{KINDS, Kind, Series};
-use super::mounting::Mounting;
-use super::result::SENSORS;
-use super::units::{backward, field, upside_down, weight};
 
 /// The filter connects no samples of an inertial unit further apart than this, s, and keeps
 /// none for longer than that.
 const CONNECTED_S: f64 = 0.2;
 const KEPT_S: f64 = 0.5;
-/// The end of the range of most gyroscopes: 2,000 °/s. One sample of so many may be beyond.
-const LARGEST_RATE: f64 = 35.0;
-const RARELY: usize = 1_000;
 /// By how much a source may begin and end beside the inertial samples, s.
 const BESIDE_S: f64 = 1.0;
 
-/// The zero-rate output of an MPU-6050 is within 20 °/s (product specification, revision 3.4,
-/// section 6.1), and its zero-g output within 80 mg (section 6.2), rad/s, m/s²: an accelerometer
-/// with twice as much is turned, or another one.
-const LARGEST_RATE_BIAS: f64 = 0.349;
-const LARGEST_FORCE_BIAS: f64 = 1.6;
-/// Fewer samples of a source say nothing of it.
-const LEAST_JUDGED: usize = 20;
-
 /// Refuses what nothing can be computed from, and warns of what is unlikely.
-pub(super) fn check(
-    py: Python<'_>,
-    series: &[Option<Series>],
-    mounting: &Mounting,
-) -> PyResult<()> {
+pub(super) fn check(py: Python<'_>, series: &[Option<Series>]) -> PyResult<()> {
     let given: Vec<(&Kind, &Series)> = KINDS
         .iter()
         .zip(series)
@@ -45,24 +25,11 @@ pub(super) fn check(
     let Some((driving, others)) = given.split_first() else {
         return Ok(());
     };
-    let of = |name: &str| given.iter().find(|(kind, _)| kind.name == name);
     let mut unlikely = Vec::new();
     unlikely.extend(period(driving)?);
     for other in others {
         unlikely.extend(clock(driving, other)?);
     }
-    let (gyroscope, magnetometer) = (of("gyroscope"), of("magnetometer"));
-    unlikely.extend(gyroscope.and_then(|(_, gyroscope)| rates(gyroscope)));
-    unlikely.extend(magnetometer.and_then(|(_, magnetometer)| field(magnetometer)));
-    let accelerometer = of("accelerometer");
-    let heavy = accelerometer.and_then(|source| weight(*source));
-    let turned = || accelerometer.and_then(|source| upside_down(*source, mounting));
-    unlikely.extend(heavy.or_else(turned));
-    unlikely.extend(given.iter().filter_map(|source| backward(*source)));
-    warn(py, unlikely)
-}
-
-pub(super) fn warn(py: Python<'_>, unlikely: impl IntoIterator<Item = String>) -> PyResult<()> {
     for words in unlikely {
         PyErr::warn(
             py,
@@ -72,49 +39,6 @@ pub(super) fn warn(py: Python<'_>, unlikely: impl IntoIterator<Item = String>) -
         )?;
     }
     Ok(())
-}
-
-/// Warns of a bias that no sensor has: another source contradicts it.
-pub(super) fn biases(py: Python<'_>, solutions: &[Solution]) -> PyResult<()> {
-    let largest = |of: fn(&Solution) -> [f64; 3]| {
-        let all = solutions.iter().flat_map(of).filter(|one| one.is_finite());
-        all.fold(0.0, |most: f64, one| most.max(one.abs()))
-    };
-    let rate = largest(|solution| solution.gyroscope_bias_radps);
-    let force = largest(|solution| solution.accelerometer_bias_mps2);
-    let of_rate = (rate > LARGEST_RATE_BIAS).then(|| {
-        format!(
-            "gyroscope: a bias of {:.0} °/s is found, and most have less than {:.0}",
-            rate.to_degrees(),
-            LARGEST_RATE_BIAS.to_degrees()
-        )
-    });
-    let of_force = (force > LARGEST_FORCE_BIAS).then(|| {
-        format!(
-            "accelerometer: a bias of {force:.1} m/s² is found, and most have less than \
-             {LARGEST_FORCE_BIAS}"
-        )
-    });
-    let question = "are units, signs, axes and times right, of it and of the other sources?";
-    let found = of_rate.into_iter().chain(of_force);
-    warn(py, found.map(|found| format!("{found}: {question}")))
-}
-
-/// Warns of a source most of whose samples are refused.
-pub(super) fn agree(py: Python<'_>, innovations: &[Innovation]) -> PyResult<()> {
-    warn(
-        py,
-        SENSORS.iter().filter_map(|(kind, name, _)| {
-            let of = || innovations.iter().filter(|one| one.kind == *kind);
-            let (all, accepted) = (of().count(), of().filter(|one| one.accepted).count());
-            (all >= LEAST_JUDGED && 2 * accepted < all).then(|| {
-                format!(
-                    "{name}: {accepted} of the {all} samples that were judged agree with the other \
-                     sources: are units, signs, axes and times right, of it and of the others?"
-                )
-            })
-        }),
-    )
 }
 
 fn period((kind, series): &(&Kind, &Series)) -> PyResult<Option<String>> {
@@ -137,7 +61,7 @@ fn period((kind, series): &(&Kind, &Series)) -> PyResult<Option<String>> {
     }
     let words = format!(
         "{}: its samples are {middle_s} s apart (median), and not connected beyond {CONNECTED_S} \
-         s: times are in s; are they in milliseconds?",
+         s: times are in s",
         kind.name
     );
     if middle_s >= KEPT_S {
@@ -167,20 +91,4 @@ fn clock(
         _ if 2 * inside < n => Ok(Some(words)),
         _ => Ok(None),
     }
-}
-
-fn rates(gyroscope: &Series) -> Option<String> {
-    let strength = |row: &[f64; 3]| row.iter().map(|along| along * along).sum::<f64>().sqrt();
-    let beyond = gyroscope
-        .rows
-        .iter()
-        .filter(|row| strength(row) > LARGEST_RATE)
-        .count();
-    (beyond * RARELY > gyroscope.rows.len()).then(|| {
-        format!(
-            "gyroscope: {beyond} of {} samples are beyond {LARGEST_RATE} rad/s (2,000 °/s), which \
-             most gyroscopes cannot show: rates are in rad/s; are they in °/s?",
-            gyroscope.rows.len()
-        )
-    })
 }

@@ -91,7 +91,7 @@ const PLAIN: [Plain; 5] = [
 ];
 
 /// The sources that are compared with what is expected of them, with their columns.
-pub(super) const SENSORS: [(ObservationKind, &str, usize); 6] = [
+const SENSORS: [(ObservationKind, &str, usize); 6] = [
     (ObservationKind::MagneticField, "magnetometer", 3),
     (ObservationKind::StaticPressure, "static_pressure", 1),
     (
@@ -133,7 +133,7 @@ pub(super) fn dict<'py>(
         let unknown = vec![f64::NAN; solutions.len()];
         result.set_item("heading_rad", unknown.to_pyarray(py))?;
     }
-    let by_sensor = PyDict::new(py);
+    let (by_sensor, normalised) = (PyDict::new(py), PyDict::new(py));
     for (kind, name, width) in SENSORS {
         let of: Vec<&Innovation> = innovations.iter().filter(|i| i.kind == kind).collect();
         if of.is_empty() {
@@ -148,9 +148,29 @@ pub(super) fn dict<'py>(
         let accepted: Vec<bool> = of.iter().map(|i| i.accepted).collect();
         one.set_item("accepted", accepted.to_pyarray(py))?;
         by_sensor.set_item(name, one)?;
+        let rms = PyDict::new(py);
+        let n = of.len() as f64;
+        let axes = (0..width).map(|axis| mean_square(&of, axis).sqrt());
+        match width {
+            1 => rms.set_item("rms", axes.sum::<f64>())?,
+            _ => rms.set_item("rms", axes.collect::<Vec<_>>())?,
+        }
+        let accepted = of.iter().filter(|i| i.accepted).count() as f64;
+        rms.set_item("accepted", accepted / n)?;
+        normalised.set_item(name, rms)?;
     }
     result.set_item("innovations", by_sensor)?;
+    result.set_item("normalised_innovations", normalised)?;
     Ok(result)
+}
+
+/// Of an axis' innovations, each divided by its standard deviation.
+fn mean_square(of: &[&Innovation], axis: usize) -> f64 {
+    let normalised = of.iter().map(|one| {
+        let pair = one.difference.get(axis).zip(one.sigma.get(axis));
+        pair.map_or(0.0, |(difference, sigma)| difference / sigma)
+    });
+    normalised.map(|one| one * one).sum::<f64>() / of.len() as f64
 }
 
 /// An array of a row for each; of numbers if a row has one.

@@ -12,7 +12,6 @@ use super::kind::{KINDS, Kind, Series};
 use super::mounting::Mounting;
 use super::no_fix;
 use super::plausible;
-use super::units::{self, middle_strength};
 use crate::arguments::within;
 
 /// The longest delay, s: the filter keeps half a second of samples.
@@ -133,22 +132,9 @@ impl Sources {
             }
         }
         // After the samples themselves: in a wrong unit they are not possible.
-        plausible::check(py, &series, mounting)?;
-        if of("magnetometer").and_then(units::field).is_some() {
-            sources.leave_field_out();
-        }
+        plausible::check(py, &series)?;
         sources.events.sort_by_key(|event| event.arrived);
         Ok(sources)
-    }
-
-    /// What is not the earth's field gives no heading.
-    fn leave_field_out(&mut self) {
-        let is_field = |event: &Event| matches!(event.observation, Observation::MagneticField(_));
-        self.events.retain(|event| !is_field(event));
-        let names = KINDS.iter().zip(&mut self.present);
-        for (_, present) in names.filter(|(kind, _)| kind.name == "magnetometer") {
-            *present = false;
-        }
     }
 
     fn add(
@@ -193,12 +179,6 @@ impl Sources {
                 taken: time(since_s - delay_s),
                 observation,
             });
-        }
-        if kind.name == "accelerometer" && is_in_g(&series.rows) {
-            return Err(PyValueError::new_err(
-                "accelerometer: the strength of its middle sample is about 1: it is in m/s², 9.8 \
-                 at rest; is it in g?",
-            ));
         }
         // Some may be spoilt; most are not possible if they are in another unit.
         let shown = series.rows.len() - series.masked;
@@ -256,11 +236,6 @@ fn observation(name: &str, row: [f64; 3]) -> Observation {
         }),
         _ => Observation::Velocity(row),
     }
-}
-
-/// Whether the middle one of the strengths is that of gravity in g, and not 9.8.
-fn is_in_g(rows: &[[f64; 3]]) -> bool {
-    middle_strength(rows).is_some_and(|middle| (0.8..1.2).contains(&middle))
 }
 
 fn nothing() -> PyErr {
