@@ -38,7 +38,7 @@ const LONGEST_WAIT_S: f64 = 0.05;
 /// Sources whose times do not meet those of the gyroscope (or the accelerometer), or half a
 /// second and more between its samples, are a `ValueError`; samples mostly at other times a
 /// `UserWarning`. Units, signs and axes are taken as they are: `normalised_innovations` shows
-/// by source how well they agree, an RMS of about 1 if they do.
+/// by source how well they agree, by RMS of 1 or less if they do.
 #[pyfunction]
 #[pyo3(signature = (
     *,
