@@ -95,14 +95,6 @@ pub struct AutopilotConfig {
     pub terrain: Terrain<'static>,
 }
 
-impl AutopilotConfig {
-    /// For how long a simulated plant is waited for: one that is silent, or whose
-    /// time stands still although it sends and is not paused.
-    pub(super) fn longest_silence(&self) -> Duration {
-        self.max_silence.max(self.max_age)
-    }
-}
-
 impl Default for AutopilotConfig {
     /// A Cessna 172 and the thesis' pattern.
     fn default() -> Self {

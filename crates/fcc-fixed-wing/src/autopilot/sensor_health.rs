@@ -3,7 +3,7 @@
 use core::time::Duration;
 
 use super::future::is_from_the_future;
-use super::{Autopilot, flags, receiver, wrong_sensors};
+use super::{Autopilot, AutopilotConfig, flags, receiver, wrong_sensors};
 use fcc_core::flight::Measurements;
 use fcc_core::framework::{Flags, Reading, Time};
 use fcc_navigation::inertial::RawNavigation;
@@ -12,6 +12,12 @@ use fcc_navigation::{Quantities, Quantity};
 /// A switch that was read before and is silent for longer than this counts as
 /// lost, since it could not be switched off.
 const SWITCH_MAX_AGE: Duration = Duration::from_secs(1);
+
+/// For how long a simulated plant is waited for: one that is silent, or whose
+/// time stands still although it sends and is not paused.
+fn longest_silence(config: &AutopilotConfig) -> Duration {
+    config.max_silence.max(config.max_age)
+}
 
 impl Autopilot {
     /// Reports what the plant's clock shows, and the sensors that are not used any more, or
@@ -100,7 +106,7 @@ impl Autopilot {
 
     /// The faults of this tick. A silent plant is waited for.
     pub(super) fn unsafe_now(&self, now: Time, measurements: &Measurements) -> Flags {
-        let lost = self.intake.silence(now) > self.config.longest_silence();
+        let lost = self.intake.silence(now) > longest_silence(&self.config);
         let stale = if lost {
             Quantities::ALL
         } else {
@@ -131,7 +137,7 @@ impl Autopilot {
             .with(
                 flags::PLANT_STALLED,
                 self.intake.clock.is_ignored()
-                    || self.intake.clock.stopped_for(now) > self.config.longest_silence(),
+                    || self.intake.clock.stopped_for(now) > longest_silence(&self.config),
             )
             .with(
                 flags::ENGAGE_SWITCH,
