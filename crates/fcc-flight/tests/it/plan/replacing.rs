@@ -228,7 +228,7 @@ fn answer(flight: &mut Flight, command: AutopilotCommand) -> String {
     let told = flight
         .events
         .iter()
-        .find(|event| event.contains("the plan is"));
+        .find(|event| event.starts_with("the plan is"));
     told.unwrap_or_else(|| panic!("{:#?}", flight.events))
         .clone()
 }
