@@ -15,16 +15,21 @@ from pathlib import Path
 
 import pytest
 from daemon_under_test import (
+    DaemonUnderTest,
     assert_released,
     engage,
     start,
+    wait_until,
     write_config,
 )
+from other_user import needs_two_users
+from test_release_helper import CUT_OFF
 
 from fcc_hil.process import StandInProcess
 from fcc_hil.standin import Settings
 from fcc_hil.udp import free_port
 
+SUCCESS = 0
 NOT_RELEASED = 5
 
 
@@ -73,22 +78,31 @@ def _bound(port: int) -> socket.socket:
     return bound
 
 
+WITHOUT_CAPABILITIES = ["setpriv", "--bounding-set=-all", "--inh-caps=-all"]
+"""So that it cannot look at a process that has them, as at one of another user."""
+
+
 @pytest.mark.parametrize("by", [signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize("sees", ["it", pytest.param("it not", marks=needs_two_users)])
 def test_a_port_that_is_closed_is_not_the_end_of_a_simulator(
-    fccd: Path, tmp_path: Path, by: signal.Signals
+    fccd: Path, tmp_path: Path, by: signal.Signals, sees: str
 ) -> None:
     """It was taken for that, and the controls stayed held with exit code 0."""
     with StandInProcess(Settings(port=0)) as simulator:
         relay = Relay(simulator.port)
         relay.start()
         config = write_config(tmp_path, relay.port)
-        with start(fccd, tmp_path, config) as daemon:
+        words: list[str | Path] = [fccd, "run", "--config", config, "--json"]
+        with DaemonUnderTest(words if sees == "it" else WITHOUT_CAPABILITIES + words, tmp_path) as (
+            daemon
+        ):
             engage(simulator, daemon)
             relay.close()
             ending = daemon.end(by, within_s=8.0)
             # Longer than a release that is believed to be over.
             time.sleep(4.0)
             assert simulator.progress().overridden
+            assert "has ended, and nothing holds" not in daemon.log
             assert ending.exit_code == (NOT_RELEASED if by is signal.SIGTERM else -by)
             relay.open()
             assert_released(simulator)
@@ -106,10 +120,10 @@ def relay_process(to: int, port: int = 0) -> Iterator[tuple[subprocess.Popen[str
             process.kill()
 
 
-@pytest.mark.parametrize("by", [signal.SIGTERM, signal.SIGKILL])
-def test_a_helper_waits_for_a_relay_that_was_killed(
-    fccd: Path, tmp_path: Path, by: signal.Signals
+def test_what_was_held_behind_a_relay_that_was_killed_is_released_by_the_next_start(
+    fccd: Path, tmp_path: Path
 ) -> None:
+    """The relay is taken for the simulator, and has ended."""
     with StandInProcess(Settings(port=0)) as simulator:
         with relay_process(simulator.port) as (relay, port):
             config = write_config(tmp_path, port)
@@ -117,8 +131,24 @@ def test_a_helper_waits_for_a_relay_that_was_killed(
                 engage(simulator, daemon)
                 relay.kill()
                 relay.wait()
-                ending = daemon.end(by, within_s=8.0)
-        assert ending.exit_code == (NOT_RELEASED if by is signal.SIGTERM else -by)
+                ending = daemon.end(signal.SIGTERM)
+        assert ending.exit_code == SUCCESS
+        assert "has ended, and nothing holds" in ending.log
+        assert simulator.progress().overridden
+        with relay_process(simulator.port, port), start(fccd, tmp_path, config) as again:
+            assert "they are released" in again.wait_for(CUT_OFF)
+            wait_until(lambda: not simulator.progress().overridden, "they are")
+
+
+def test_a_helper_waits_for_a_relay_that_was_killed(fccd: Path, tmp_path: Path) -> None:
+    with StandInProcess(Settings(port=0)) as simulator:
+        with relay_process(simulator.port) as (relay, port):
+            config = write_config(tmp_path, port)
+            with start(fccd, tmp_path, config) as daemon:
+                engage(simulator, daemon)
+                relay.kill()
+                relay.wait()
+                daemon.end(signal.SIGKILL)
         # Longer than a release that is believed to be over.
         time.sleep(4.0)
         assert simulator.progress().overridden

@@ -29,7 +29,6 @@ from fcc_hil.standin import Mode, Settings
 SUCCESS = 0
 FAILURE = 1
 FAILSAFE = 3
-NOT_RELEASED = 5
 REFUSED = 11
 
 TOO_OLD = "attitude is missing or too old"
@@ -184,8 +183,7 @@ def test_a_killed_simulator_ends_the_program_if_configured(fccd: Path, tmp_path:
         engage(simulator, daemon)
         simulator.kill()
         ending = daemon.end()
-    # Nobody confirms the release.
-    assert ending.exit_code == NOT_RELEASED
+    assert ending.exit_code == FAILSAFE
     assert ending.report["ending"] == "failsafe ended"
     assert ending.states[-1] == "failsafe -> stopped"
 

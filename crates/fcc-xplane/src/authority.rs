@@ -11,10 +11,12 @@ use crate::config::XPlaneConfig;
 use crate::open::{OpenError, XPlane};
 use crate::plant::{address, plant_at};
 use crate::port_watch::PortWatch;
+use crate::program::Program;
 use crate::release::{Expected, reserve_for};
 use crate::reported::Reported;
 use crate::status::XPlaneStatus;
 use crate::udp_port::is_of_this_machine;
+use crate::udp_sockets::UdpSockets;
 
 /// Monitors who has control of X-Plane, and releases it over a separate socket.
 #[derive(Debug)]
@@ -26,6 +28,8 @@ pub struct XPlaneAuthority {
     expected: Mutex<Option<(SocketAddr, u16)>>,
     /// For the release of this simulator, if no other port is free then.
     reserve: Mutex<Option<(SocketAddr, UdpSocket)>>,
+    /// The program at this simulator's port, if it could be found out.
+    program: Mutex<Option<(SocketAddr, Option<Program>)>>,
     /// Of the connection that is flown, and of those beside it.
     watches: Mutex<Vec<PortWatch>>,
 }
@@ -49,6 +53,7 @@ impl XPlaneAuthority {
             reported: Mutex::default(),
             expected: Mutex::default(),
             reserve: Mutex::default(),
+            program: Mutex::default(),
             watches: Mutex::default(),
         }
     }
@@ -64,6 +69,30 @@ impl XPlaneAuthority {
         for (watch, link) in watches.iter_mut().zip(links) {
             watch.look(link, &flown);
         }
+    }
+
+    /// Finds out which program is at the simulator's port, once; again if that one has
+    /// ended, since a simulator that was started again may be there.
+    fn look_at_program(&self, simulator: SocketAddr) {
+        let mut program = locked(&self.program);
+        let is_known = matches!(*program, Some((of, found)) if of == simulator
+            && found.is_none_or(|found| !found.has_ended()));
+        if is_known || !is_of_this_machine(simulator) {
+            return;
+        }
+        let mut sockets = UdpSockets::sending_from(simulator.ip());
+        sockets.look();
+        let found = sockets.program_at(simulator.port());
+        // Without one at the port the one that has ended is still what is known.
+        if found.is_some() || program.is_none_or(|(of, _)| of != simulator) {
+            *program = Some((simulator, found));
+        }
+    }
+
+    fn program_at(&self, simulator: SocketAddr) -> Option<Program> {
+        locked(&self.program)
+            .filter(|(of, _)| *of == simulator)
+            .and_then(|(_, program)| program)
     }
 
     /// What is known of this simulator, for its release.
@@ -82,6 +111,7 @@ impl XPlaneAuthority {
             user: flown
                 .and(watches)
                 .and_then(|watches| watches.first().and_then(PortWatch::user)),
+            program: self.program_at(simulator),
         }
     }
 }
@@ -138,6 +168,9 @@ impl ControlAuthority for XPlaneAuthority {
     }
 
     fn prepare_release(&self, plant: &PlantId) {
+        if let Some(simulator) = address(plant) {
+            self.look_at_program(simulator);
+        }
         let mut reserve = locked(&self.reserve);
         if let Some(simulator) = address(plant)
             && reserve.as_ref().is_none_or(|(of, _)| *of != simulator)
@@ -152,12 +185,20 @@ impl ControlAuthority for XPlaneAuthority {
         if let Some(status) = &self.status {
             status.link().join_beacon_group();
             self.watch_ports(status);
+            // Before it answers, there may be no program.
+            if let Some((simulator, _)) = status.simulator().zip(self.answers_from()) {
+                self.look_at_program(simulator);
+            }
         }
+        let program = self
+            .status
+            .as_ref()
+            .and_then(|status| self.program_at(status.simulator()?));
         let mut reported = locked(&self.reported);
         if let Some(text) = self
             .status
             .as_ref()
-            .and_then(|status| reported.change(status, &self.config))
+            .and_then(|status| reported.change(status, &self.config, program))
         {
             report(format_args!("{text}"));
         }

@@ -83,6 +83,7 @@ mod port;
 mod port_watch;
 mod pressure_altitude;
 mod probe;
+mod program;
 pub mod protocol;
 mod quantity;
 mod readbacks;

@@ -210,6 +210,17 @@ impl SharedState {
         self.address.set_simulator(address);
     }
 
+    /// The simulator no longer exists, and another one waits: what was released is
+    /// free. Returns whether it is.
+    pub(crate) fn free_if_gone(&self) -> bool {
+        let waits = self.announced().is_some() && self.control() != Control::Held;
+        if waits {
+            self.set_free_if_releasing();
+            self.set_may_be_undone(false);
+        }
+        waits
+    }
+
     /// `Free` becomes `ReleaseMonitor`: another program's overrides are cleared.
     pub(crate) fn set_releasing_if_free(&self) {
         self.change_control(Control::Free, Control::ReleaseMonitor);

@@ -12,6 +12,7 @@ use crate::controls::Controls;
 use crate::open::{OpenError, XPlane, bind, local_ports};
 use crate::port_watch::{ClosedPort, MOST_PORTS};
 use crate::probe::Probe;
+use crate::program::Program;
 use crate::protocol::rref;
 use crate::quantity::{OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES};
 use crate::source_filter;
@@ -25,7 +26,7 @@ const AGAIN_AFTER: Duration = Duration::from_millis(250);
 const CLEAR_FOR: Duration = Duration::from_millis(500);
 /// The receive timeout.
 const LISTEN_FOR: Duration = Duration::from_millis(20);
-/// After this many refusals in a row no program has the simulator's port.
+/// After this many refusals in a row the simulator counts as unreachable.
 const REFUSALS: u32 = 4;
 /// The rate at which the readback is requested, Hz.
 const READ_BACK_HZ: u16 = 20;
@@ -41,6 +42,9 @@ pub(crate) struct Expected {
     pub(crate) port: Option<u16>,
     /// Whose socket that is, of a simulator on this machine.
     pub(crate) user: Option<u32>,
+    /// The program that listened at the simulator's port, if it is known: that of
+    /// another user cannot be looked at.
+    pub(crate) program: Option<Program>,
 }
 
 impl XPlane {
@@ -245,6 +249,20 @@ impl Conversation {
         self.listening.as_ref().is_some_and(Probe::is_refused)
     }
 
+    /// Whether the simulator has ended: no program has its port, as this machine
+    /// knows of its own, and the one that had it is gone. Of another machine it is not
+    /// known, since a firewall that rejects what it does not let through reports the
+    /// same; nor of a program that cannot be looked at.
+    fn has_ended(&mut self) -> bool {
+        let port = self.simulator.port();
+        let is_closed = self.sockets.as_mut().is_some_and(|sockets| {
+            sockets.look();
+            sockets.user_of(port).is_ok_and(|user| user.is_none())
+        });
+        let is_gone = |program: Program| program.has_ended();
+        is_closed && self.expected.program.is_some_and(is_gone)
+    }
+
     fn end(mut self) {
         for request in &mut self.requests {
             rref::set_frequency(request, 0);
@@ -295,6 +313,9 @@ fn retry_until_released(
         if !refused && conversation.is_refused() {
             refused = true;
             refusals += 1;
+        }
+        if refused && refusals >= REFUSALS && conversation.has_ended() {
+            return Released::Unreachable;
         }
     }
     if refusals >= REFUSALS {

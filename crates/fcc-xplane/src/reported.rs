@@ -8,6 +8,7 @@ use crate::link::Control;
 use crate::missing::Missing;
 use crate::no_answer::{InWords, Why};
 use crate::old_datagrams::OldDatagrams;
+use crate::program::Program;
 use crate::silence::Silence;
 use crate::simulator::SimulatorState;
 use crate::slow_network::{SLOW_S, SlowNetwork};
@@ -72,11 +73,13 @@ impl Default for Reported {
 }
 
 impl Reported {
-    /// A description of what has changed; none if there is nothing to report.
+    /// A description of what has changed; none if there is nothing to report. Only the
+    /// end of the `program` at the simulator's port is known to be the simulator's end.
     pub(crate) fn change(
         &mut self,
         status: &XPlaneStatus,
         config: &XPlaneConfig,
+        program: Option<Program>,
     ) -> Option<String> {
         if let Some(text) = self.change_of_announced(status) {
             return Some(text);
@@ -89,7 +92,7 @@ impl Reported {
         }
         match self.trouble {
             Some((Trouble::Silent(simulator), since)) => {
-                self.cause_of_silence(status, config, (simulator, since))
+                self.cause_of_silence(status, config, program, (simulator, since))
             }
             Some((trouble, since)) => {
                 let worth =
@@ -117,12 +120,21 @@ impl Reported {
         &mut self,
         status: &XPlaneStatus,
         config: &XPlaneConfig,
+        program: Option<Program>,
         (simulator, since): (SocketAddr, Instant),
     ) -> Option<String> {
         let silence = self
             .silence
             .get_or_insert_with(|| Silence::begin(config, status, simulator));
         let why = silence.look(status);
+        let is_gone = program.is_some_and(|program| program.has_ended());
+        if why == Why::PortClosed && is_gone && status.link().free_if_gone() {
+            // Nobody confirms this one.
+            self.control = Control::Free;
+            return Some(format!(
+                "X-Plane at {simulator} has ended, and nothing holds its controls"
+            ));
+        }
         let after = match why {
             Why::NothingArrives => REPORT_NOTHING_AFTER,
             _ => REPORT_AFTER,
@@ -232,7 +244,7 @@ impl Reported {
         let (simulator, other) = status.simulator().zip(announced)?;
         Some(format!(
             "another X-Plane announced itself, at {other}: X-Plane at {simulator} is kept until it \
-             confirms the release of its controls. If it has ended, start this program again"
+             confirms the release of its controls, or has ended"
         ))
     }
 

@@ -16,18 +16,21 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 
+use crate::program::Program;
 use crate::socket_diagnosis::SocketDiagnosis;
 
 /// More than a machine with 10,000 sockets has.
 const MOST_BYTES: usize = 2_000_000;
-/// The columns of a row: the local address, and the user's number.
+/// The columns of a row: the local address, the user's number, and that of the socket.
 const LOCAL_ADDRESS: usize = 1;
 const USER: usize = 7;
+const INODE: usize = 9;
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 struct Socket {
     port: u16,
     user: u32,
+    inode: u64,
 }
 
 /// The sockets from which a datagram with one sender's address may come.
@@ -80,6 +83,12 @@ impl UdpSockets {
             (Err(error), None) if !listed.is_whole => Err(error),
             (_, None) => Ok(None),
         }
+    }
+
+    /// The program that has this port, by the list; none if it cannot be found out.
+    pub(crate) fn program_at(&mut self, port: u16) -> Option<Program> {
+        let mut listed = self.listed().sockets.iter();
+        Program::with_socket(listed.find(|socket| socket.port == port)?.inode)
     }
 
     /// The ports of a user, those that are `likely` first, each once; at most so
@@ -165,8 +174,9 @@ fn row(line: &str) -> Option<(IpAddr, Socket)> {
     let mut columns = line.split_ascii_whitespace();
     let (address, port) = columns.nth(LOCAL_ADDRESS)?.split_once(':')?;
     let user = columns.nth(USER - LOCAL_ADDRESS - 1)?.parse().ok()?;
+    let inode = columns.nth(INODE - USER - 1)?.parse().ok()?;
     let port = u16::from_str_radix(port, 16).ok()?;
-    Some((hexadecimal(address)?, Socket { port, user }))
+    Some((hexadecimal(address)?, Socket { port, user, inode }))
 }
 
 /// An address as the kernel prints it: words of 32 bits, each in the machine's

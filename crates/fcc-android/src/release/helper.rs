@@ -79,6 +79,7 @@ impl Left {
         let mut ends = || LAST.load(Ordering::SeqCst) != self.after || is_cancelled();
         match release(authority, &plant, &mut ends) {
             Ok(Released::Confirmed) => (format!("{plant} was released"), true),
+            Ok(Released::Unreachable) => (format!("{plant} has ended"), true),
             Ok(Released::Cancelled) => (String::new(), false),
             Ok(Released::Refused | Released::Unconfirmed) => (
                 format!(

@@ -91,6 +91,8 @@ pub trait TakeoverNotice: fmt::Debug + Send + Sync {
 pub enum Released {
     /// The plant confirmed the release of its controls.
     Confirmed,
+    /// The plant no longer exists: there is nothing left to control.
+    Unreachable,
     /// The plant's machine reports that no program is there, as a firewall does,
     /// too: the plant has ended, or its controls are still held.
     Refused,
@@ -104,6 +106,6 @@ pub enum Released {
 impl Released {
     /// Whether the plant's controls are no longer held.
     pub const fn is_over(self) -> bool {
-        matches!(self, Self::Confirmed)
+        matches!(self, Self::Confirmed | Self::Unreachable)
     }
 }

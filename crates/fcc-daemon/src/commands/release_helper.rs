@@ -30,6 +30,7 @@ pub(super) fn release_helper() -> Result<Exit, Failure> {
     };
     let plant = result.plant;
     let (text, exit) = match result.released {
+        Released::Unreachable => return Ok(Exit::Success),
         Released::Cancelled | Released::Confirmed => {
             (format!("; {plant} was released"), Exit::Success)
         }

@@ -172,7 +172,10 @@ impl Host for Process<'_> {
     /// only then can nothing take control again.
     fn end(&mut self, released: Released) {
         if let Some(plant) = self.plant.as_mut().filter(|_| released.is_over()) {
-            plant.notice.release(plant.notice.number());
+            // One that has ended may have been a relay: the next start looks again.
+            if released == Released::Confirmed {
+                plant.notice.release(plant.notice.number());
+            }
             plant.helper.end();
             plant.lock.remove_files();
         }

@@ -311,6 +311,9 @@ pub(super) fn release_by(
         let continues = if is_over { "" } else { host.continue_release() };
         say(match released {
             Ok(Released::Confirmed) => format!("{plant} confirmed the release of its controls"),
+            Ok(Released::Unreachable) => {
+                format!("{plant} has ended, and nothing holds its controls")
+            }
             Ok(Released::Refused) => format!(
                 "{plant} did not confirm the release of its controls: its machine, or a firewall \
                  there, reports that no program has that port; if the simulator still runs, its \

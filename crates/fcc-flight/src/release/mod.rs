@@ -60,7 +60,8 @@ pub enum NoConfigError {
 }
 
 /// Releases what is held until that is confirmed, for two minutes at most. What
-/// prevents it may pass: a network that is down, ports that another program has.
+/// prevents it may pass: a network that is down, ports that another program has; and
+/// what has ended may have been a relay, behind which the simulator is.
 ///
 /// # Errors
 /// When nothing can be sent to this plant.
@@ -73,7 +74,7 @@ pub fn release(
     loop {
         let left = RELEASE_FOR.saturating_sub(begun.elapsed());
         match authority.release(plant, left, is_cancelled) {
-            Err(_) if left > AGAIN_AFTER && !is_cancelled() => {
+            Err(_) | Ok(Released::Unreachable) if left > AGAIN_AFTER && !is_cancelled() => {
                 thread::sleep(AGAIN_AFTER);
             }
             result => return result,
