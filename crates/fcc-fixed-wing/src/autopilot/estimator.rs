@@ -22,7 +22,6 @@ pub(super) struct Estimator {
 }
 
 impl Estimator {
-    /// Before the first tick.
     pub(super) fn new(config: &AutopilotConfig) -> Self {
         Self {
             raw: config.raw_navigation.map(RawNavigation::new),

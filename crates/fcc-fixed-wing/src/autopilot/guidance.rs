@@ -25,7 +25,6 @@ pub(super) struct GuidanceState {
 }
 
 impl GuidanceState {
-    /// Before the first tick.
     pub(super) fn new(config: &AutopilotConfig) -> Self {
         Self {
             mode: ActiveMode::None,

@@ -42,7 +42,6 @@ pub(super) struct Intake {
 }
 
 impl Intake {
-    /// Before the first tick.
     pub(super) fn new() -> Self {
         Self {
             accepted: Measurements::default(),

@@ -32,7 +32,6 @@ impl Journal {
         item: 0,
     };
 
-    /// Nothing has happened.
     pub(super) const NEW: Self = Self {
         events: [Self::EMPTY; MOST],
         count: 0,

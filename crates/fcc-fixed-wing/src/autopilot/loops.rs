@@ -28,7 +28,6 @@ pub(super) struct Loops {
 }
 
 impl Loops {
-    /// Loops that are not engaged.
     pub(super) fn new(config: &AutopilotConfig) -> Self {
         Self {
             heading: HeadingLoop::new(config.heading),

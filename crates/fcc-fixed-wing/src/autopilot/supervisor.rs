@@ -29,7 +29,6 @@ pub(super) struct Supervisor {
 }
 
 impl Supervisor {
-    /// Before the first tick.
     pub(super) fn new(config: &AutopilotConfig) -> Self {
         Self {
             left_plan: None,
