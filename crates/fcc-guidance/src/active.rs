@@ -20,7 +20,7 @@ pub enum GuidanceConfig {
     Hold,
     /// The timed pattern of the thesis.
     TimedPattern(TimedPatternConfig),
-    /// Fly the plan of [`AutopilotConfig::plan`](fcc_fixed_wing::AutopilotConfig::plan).
+    /// Fly the plan of the configuration.
     Plan,
 }
 

@@ -18,7 +18,7 @@ schema! {
     /// navigation, if there is a source, and are never needed for control.
     ///
     /// From field 16 on they are raw: what the parts of a small computer or a
-    /// phone give, in body axes after their [`Calibration`](super::calibration),
+    /// phone give, in body axes after their calibration,
     /// from which navigation computes the others, if it is configured to.
     ///
     /// ```
