@@ -96,6 +96,11 @@ impl Inbox {
         self.sending.is_old_by_round_trip(writing.too_late());
     }
 
+    /// From now on another simulator sends, whose clock is another one.
+    pub(crate) fn leave(&mut self) {
+        self.sending.map_anew();
+    }
+
     /// When a value of this quantity last arrived.
     pub(crate) fn arrived(&self, quantity: Quantity) -> Time {
         self.values.arrived(quantity)

@@ -89,6 +89,15 @@ impl SendingClock {
         self.map.step(arrived, network_s);
     }
 
+    /// The clock is another one from now on.
+    pub(crate) fn map_anew(&mut self) {
+        *self = Self {
+            stamp: self.stamp,
+            sent: self.sent,
+            ..Self::default()
+        };
+    }
+
     /// From now on what arrives is so old by what was written and read back.
     pub(crate) const fn is_old_by_round_trip(&mut self, by: Duration) {
         self.by_round_trip = by;
@@ -229,6 +238,18 @@ mod tests {
                 assert_about(bench.run(1, 1.0, 1.0, 0.0), 0.0);
             }
         }
+    }
+
+    /// It may show as little later as if what it sends were held back.
+    #[test]
+    fn another_simulator_is_mapped_anew() {
+        let mut bench = Bench::new();
+        bench.run(10, 1.0, 1.0, 0.0);
+        bench.freeze(0.5, 1.0);
+        bench.run(100, 1.0, 1.0, 0.0);
+        bench.now_s += 5.0;
+        bench.clock.map_anew();
+        assert_about(bench.run(100, 1.0, 1.0, 0.0), 0.0);
     }
 
     #[test]

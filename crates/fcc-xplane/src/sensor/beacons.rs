@@ -71,6 +71,7 @@ impl<P: Port> XPlaneSensor<P> {
             let _ = self.port.send(request, known);
         });
         self.reply_ports.leave(known.ip() == other.ip());
+        self.inbox.leave();
         self.link.change_simulator(other);
     }
 }
