@@ -126,7 +126,7 @@ pub struct GateLimits {
     /// Readings older than this are too old.
     pub max_age: Duration,
     /// The quantities of which only a value is accepted that can follow the last good one, however long that was ago.
-    pub distrusted: Quantities,
+    pub rejected_by_gate: Quantities,
     /// By how much the altitude of a coarse sensor changes at once, m.
     pub altitude_step_m: f64,
 }
@@ -144,11 +144,11 @@ pub fn plausibility_gate(
 ) -> ReadingSet {
     let GateLimits {
         max_age,
-        distrusted,
+        rejected_by_gate,
         altitude_step_m,
     } = *limits;
     let convinced = |quantity: Quantity| {
-        if distrusted.contains(quantity) {
+        if rejected_by_gate.contains(quantity) {
             Duration::MAX
         } else {
             ACCEPTED_AFTER * max_age

@@ -1,10 +1,10 @@
-//! Sets of readings and of sensors.
+//! Sets of conditions, of readings and of sensors.
 
-use core::ops::BitOrAssign;
+use core::ops::{BitOr, BitOrAssign};
 
-/// Declares a set of up to 64 things by their index.
+/// Declares a set of up to 64 things by their index, and the name of its sets of one.
 macro_rules! index_set {
-    ($(#[$doc:meta])* $name:ident) => {
+    ($(#[$doc:meta])* $name:ident, $one:ident) => {
         $(#[$doc])*
         #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
         #[repr(transparent)]
@@ -18,7 +18,7 @@ macro_rules! index_set {
             pub const ALL: Self = Self(u64::MAX);
 
             /// One alone, by its index 0..=63; a higher one wraps.
-            pub const fn one(index: u32) -> Self {
+            pub const fn $one(index: u32) -> Self {
                 Self(1_u64.wrapping_shl(index))
             }
 
@@ -42,6 +42,11 @@ macro_rules! index_set {
                 self.0 & others.0 == others.0
             }
 
+            /// Whether it contains any of `others`.
+            pub const fn intersects(self, others: Self) -> bool {
+                self.0 & others.0 != 0
+            }
+
             /// With `others`, if `holds`.
             #[must_use]
             pub const fn with(self, others: Self, holds: bool) -> Self {
@@ -56,7 +61,15 @@ macro_rules! index_set {
 
             /// The indices, lowest first.
             pub fn iter(self) -> impl Iterator<Item = u32> {
-                (0..64).filter(move |index| self.contains(Self::one(*index)))
+                (0..64).filter(move |index| self.contains(Self::$one(*index)))
+            }
+        }
+
+        impl BitOr for $name {
+            type Output = Self;
+
+            fn bitor(self, others: Self) -> Self {
+                Self(self.0 | others.0)
             }
         }
 
@@ -69,6 +82,22 @@ macro_rules! index_set {
 }
 
 index_set! {
+    /// A set of up to 64 conditions: engage inhibits or faults. A controller names
+    /// its bits ([`Controller::flag_name`](super::Controller::flag_name)).
+    ///
+    /// ```
+    /// use fcc_core::framework::Flags;
+    ///
+    /// let (open, cold) = (Flags::bit(0), Flags::bit(1));
+    /// let found = Flags::NONE.with(open, true).with(cold, false);
+    /// assert!(found.contains(open) && !found.intersects(cold));
+    /// assert_eq!((found | cold).iter().collect::<Vec<_>>(), [0, 1]);
+    /// assert!(found.keeping(open, false).is_empty());
+    /// ```
+    Flags, bit
+}
+
+index_set! {
     /// A set of readings, by their places among the measurements.
     ///
     /// ```
@@ -77,12 +106,12 @@ index_set! {
     /// const SPEED: ReadingSet = ReadingSet::named(&["depth", "speed"], &["speed"]);
     /// assert_eq!(SPEED, ReadingSet::one(1));
     /// ```
-    ReadingSet
+    ReadingSet, one
 }
 
 index_set! {
     /// A set of sensors, by their numbers in the loop.
-    SensorSet
+    SensorSet, one
 }
 
 impl ReadingSet {

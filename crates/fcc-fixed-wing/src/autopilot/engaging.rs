@@ -71,7 +71,7 @@ impl Autopilot {
 
     /// Engages: what is flown now is held, or the pattern begins.
     pub(super) fn begin_flight(&mut self, now: Time) {
-        self.intake.distrusted = Quantities::NONE;
+        self.intake.rejected_by_gate = Quantities::NONE;
         self.supervisor.told_once = ToldOnce::default();
         self.supervisor.contingencies.reset();
         self.supervisor.pilot.set_engaged(true);

@@ -109,14 +109,14 @@ impl Autopilot {
         // One that was frozen stood still: what comes after it is no jump.
         self.supervisor.degraded.frozen |= self.frozen();
         let jumped = self.rejected(measured) & !self.supervisor.degraded.frozen;
-        let distrusted = self.intake.distrusted | jumped;
-        if distrusted.contains(Quantity::Altitude)
-            && !self.intake.distrusted.contains(Quantity::Altitude)
+        let rejected_by_gate = self.intake.rejected_by_gate | jumped;
+        if rejected_by_gate.contains(Quantity::Altitude)
+            && !self.intake.rejected_by_gate.contains(Quantity::Altitude)
         {
             self.intake.returning_altitude =
                 ReturningAltitude::after(self.intake.accepted.altitude_m);
         }
-        self.intake.distrusted = distrusted;
+        self.intake.rejected_by_gate = rejected_by_gate;
         if !self.supervisor.degraded.is_failsafe {
             self.supervisor
                 .degraded
@@ -280,7 +280,7 @@ impl Autopilot {
     /// Continues what was flown before the failsafe: targets, mode and progress
     /// are as they were.
     pub(super) fn fly_on(&mut self) {
-        self.intake.distrusted = Quantities::NONE;
+        self.intake.rejected_by_gate = Quantities::NONE;
         self.supervisor.degraded = self.supervisor.degraded.recovered();
         self.supervisor.release.take_if(Release::is_of_failsafe);
         let last = self.loops.last;
@@ -293,29 +293,30 @@ impl Autopilot {
     /// A value that was rejected is believed again when it agrees with what the
     /// others tell about it: the last good one is moved with the estimate. An altitude is
     /// also when it is that of an aircraft again: the estimate without it drifts.
-    pub(super) fn move_distrusted(&mut self, now: Time, measured: &Measurements) {
-        if self.intake.distrusted.is_empty() {
+    pub(super) fn move_rejected(&mut self, now: Time, measured: &Measurements) {
+        if self.intake.rejected_by_gate.is_empty() {
             return;
         }
-        let (estimate, distrusted) = (*self.estimator.estimate(), self.intake.distrusted);
+        let (estimate, rejected_by_gate) =
+            (*self.estimator.estimate(), self.intake.rejected_by_gate);
         let last = &mut self.intake.accepted;
-        if distrusted.contains(Quantity::Attitude) {
+        if rejected_by_gate.contains(Quantity::Attitude) {
             last.attitude.value = Attitude {
                 pitch_rad: estimate.pitch_rad,
                 roll_rad: estimate.roll_rad,
             };
         }
-        if distrusted.contains(Quantity::Heading) {
+        if rejected_by_gate.contains(Quantity::Heading) {
             last.heading_rad.value = wrap_two_pi(estimate.heading_rad);
         }
-        if distrusted.contains(Quantity::BodyRates) {
+        if rejected_by_gate.contains(Quantity::BodyRates) {
             last.body_rates.value = estimate.body_rates;
         }
-        if distrusted.contains(Quantity::Altitude) {
+        if rejected_by_gate.contains(Quantity::Altitude) {
             let (new, receiver) = (measured.altitude_m, Receiver::of(measured, now));
             if self.intake.returning_altitude.step(&new, receiver) {
                 last.altitude_m = new;
-                self.intake.distrusted = distrusted.keeping(Quantity::Altitude, false);
+                self.intake.rejected_by_gate = rejected_by_gate.keeping(Quantity::Altitude, false);
             } else {
                 last.altitude_m.value = estimate.altitude_m;
             }

@@ -37,7 +37,7 @@ pub(super) struct Intake {
     /// has been measured since.
     pub(super) renewed_since: Time,
     /// The quantities that were rejected as implausible in this failsafe.
-    pub(super) distrusted: Quantities,
+    pub(super) rejected_by_gate: Quantities,
     pub(super) returning_altitude: ReturningAltitude,
 }
 
@@ -51,7 +51,7 @@ impl Intake {
             before: Time::NEVER,
             settled_s: None,
             renewed_since: Time::NEVER,
-            distrusted: Quantities::NONE,
+            rejected_by_gate: Quantities::NONE,
             returning_altitude: ReturningAltitude::default(),
         }
     }

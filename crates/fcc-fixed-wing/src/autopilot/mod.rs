@@ -286,7 +286,7 @@ impl Controller for Autopilot {
     }
 
     fn disengage(&mut self) {
-        self.intake.distrusted = Quantities::NONE;
+        self.intake.rejected_by_gate = Quantities::NONE;
         self.supervisor.degraded = Degraded::default();
         self.supervisor.pilot.set_engaged(false);
         self.change_mode(ModeInput::Disengage);

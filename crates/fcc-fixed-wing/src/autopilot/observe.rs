@@ -154,7 +154,7 @@ impl Autopilot {
         if !self.estimator.knows_attitude() {
             self.forget_attitude();
         }
-        self.move_distrusted(tick.woke, measured);
+        self.move_rejected(tick.woke, measured);
         let Some(gap) = self.intake.clock.gap() else {
             self.pass_gate(measured);
             return;
@@ -167,12 +167,12 @@ impl Autopilot {
             // but how fast it can be.
             let airspeed = self.intake.accepted.airspeed_mps;
             self.intake.accepted = Measurements::default();
-            let distrusted = core::mem::take(&mut self.intake.distrusted);
+            let rejected_by_gate = core::mem::take(&mut self.intake.rejected_by_gate);
             self.pass_gate(measured);
             let passed_s = self.intake.clock.passed_s();
             if !airspeed_can_follow(&airspeed, &self.intake.accepted.airspeed_mps, passed_s) {
                 self.intake.accepted.airspeed_mps = airspeed;
-                self.intake.distrusted = distrusted & Quantity::Airspeed.alone();
+                self.intake.rejected_by_gate = rejected_by_gate & Quantity::Airspeed.alone();
             }
         }
         self.intake
@@ -198,7 +198,7 @@ impl Autopilot {
         self.estimator.replacement.forget_angles();
         self.estimator.navigation.adopt_next_attitude();
         let by_gyroscopes = Quantity::Attitude | Quantity::Heading;
-        self.intake.distrusted = self.intake.distrusted & !by_gyroscopes;
+        self.intake.rejected_by_gate = self.intake.rejected_by_gate & !by_gyroscopes;
     }
 
     /// Accepts the plausible ones of a tick's measurements.
@@ -211,7 +211,7 @@ impl Autopilot {
     pub(super) const fn gate_limits(&self) -> GateLimits {
         GateLimits {
             max_age: self.config.max_age,
-            distrusted: self.intake.distrusted,
+            rejected_by_gate: self.intake.rejected_by_gate,
             altitude_step_m: self.estimator.navigation.resolutions().altitude_step_m,
         }
     }
@@ -249,7 +249,7 @@ impl Autopilot {
     /// Starts anew with a plant that is another, or elsewhere.
     fn start_anew(&mut self, measured: &Measurements) {
         self.intake.accepted = Measurements::default();
-        self.intake.distrusted = Quantities::NONE;
+        self.intake.rejected_by_gate = Quantities::NONE;
         self.pass_gate(measured);
         self.estimator.ground.forget_place();
         self.estimator.navigation.reset(&self.config.navigation);

@@ -9,7 +9,7 @@ use fcc_core::framework::{Readings, Time};
 
 const LIMITS: GateLimits = GateLimits {
     max_age: Duration::from_millis(250),
-    distrusted: Quantities::NONE,
+    rejected_by_gate: Quantities::NONE,
     altitude_step_m: 0.0,
 };
 
