@@ -36,7 +36,7 @@ PATIENCE_S = 180.0
 _ATTEMPTS = 5
 _LOOK_S = 0.1
 
-# Faults, in bits, of fcc-fixed-wing's autopilot/flags.rs: the quantities that control needs are too old.
+# Faults, in bits, of the autopilot's flags.rs: the quantities that control needs are too old.
 _ALL_OLD = 0x3F
 # With these: the engage switch is silent, so is the simulator, readings are old by its own clock.
 _LATE = _ALL_OLD | 1 << 11 | 1 << 20 | 1 << 42
