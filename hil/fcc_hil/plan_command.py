@@ -59,7 +59,6 @@ def add(commands: Any) -> None:
         metavar="FOLDER",
         help="elevation tiles (.hgt): the ground that is flown over, and known to the autopilot",
     )
-    plan.add_argument("--law", choices=("l1", "npfg"), default="npfg", help="(default: npfg)")
     ranges.add_files(plan, json="write the figures here", plot="write a picture here, .png")
     plan.add_argument(
         "--realtime",
@@ -117,7 +116,6 @@ def _plan(options: argparse.Namespace) -> int:
                 turbulence_severity=options.turbulence,
             ),
             seed=options.seed,
-            law=options.law,
             sensors="board-rtk" if options.position == "precise" else "board",
             without=frozenset({"range"} if options.no_range_finder else ()),
             terrain=options.terrain,
@@ -132,7 +130,7 @@ def _plan(options: argparse.Namespace) -> int:
         return 1
     _show(score)
     if options.json is not None:
-        document = {"law": options.law, **score.document()}
+        document = score.document()
         documents.write(options.json, document)
     if options.plot is not None:
         plan_plot.plot(options.plot, options.plan, flown)

@@ -35,15 +35,13 @@ AFTER_S = 5.0
 _CALM = Weather()
 
 
-def configuration(
-    plan: Path, navigation: str, law: str, wind_kt: float, *, mode: str = "plan"
-) -> str:
+def configuration(plan: Path, navigation: str, wind_kt: float, *, mode: str = "plan") -> str:
     """Return the text of a configuration that flies a plan, or has one and flies otherwise."""
     north, east, down = FIELD_UT
     file = str(plan.resolve()).replace("\\", "\\\\").replace('"', '\\"')
     return (
         f'[guidance]\nmode = "{mode}"\n'
-        f'[plan]\nfile = "{file}"\nlaw = "{law}"\nwind_kt = {max(wind_kt, 0.0):.1f}\n'
+        f'[plan]\nfile = "{file}"\nwind_kt = {max(wind_kt, 0.0):.1f}\n'
         f"loiter_radius_m = {LOITER_M:.1f}\n"
         f'[navigation]\nmethod = "{navigation}"\nmagnetic_field_ut = [{north}, {east}, {down}]\n'
     )
@@ -56,7 +54,6 @@ class PlanConditions:
     aircraft: str = "c172p"
     weather: Weather = _CALM
     seed: int = 1
-    law: str = "npfg"
     sensors: str = SENSORS
     """Of `fcc.RawSensors`."""
     without: frozenset[str] = frozenset()
@@ -93,7 +90,7 @@ def fly(
     seed, sensors = conditions.seed, conditions.sensors
     read = plan_file.read(plan)
     takes_off = plan_start.takes_off(read)
-    text = configuration(plan, "kalman", conditions.law, conditions.weather.wind_kt)
+    text = configuration(plan, "kalman", conditions.weather.wind_kt)
     machine = fcc.Machine(text + terrain_section(conditions) + conditions.config)
     plant = plan_start.plant(
         read, conditions.aircraft, seed=seed, weather=conditions.weather, terrain=conditions.terrain

@@ -51,7 +51,7 @@ def fly(
         # The plan's altitudes are those of the daemon's altimeter setting.
         qnh_inhg=STANDARD_INHG,
     )
-    text = plan_flight.configuration(plan, "measured", conditions.law, conditions.weather.wind_kt)
+    text = plan_flight.configuration(plan, "measured", conditions.weather.wind_kt)
     text += plan_flight.terrain_section(conditions) + conditions.config
     rig = DaemonRig(fccd, plan_start.settings(read, simulator), text, scratch)
     try:

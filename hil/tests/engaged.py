@@ -24,7 +24,7 @@ def machine(plan: str, wind_kt: float, *, mode: str = "plan", config: str = "") 
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "drawn.waypoints")
         file.write_text(plan, encoding="utf-8")
-        return fcc.Machine(configuration(file, "kalman", "npfg", wind_kt, mode=mode) + config)
+        return fcc.Machine(configuration(file, "kalman", wind_kt, mode=mode) + config)
 
 
 def engage(plant: Plant, loop: fcc.Machine, seed: int) -> LockstepRig:

@@ -1,4 +1,4 @@
-"""Legs and circles with JSBSim's c172p by raw sensors, by both laws, from its truth."""
+"""Legs and circles with JSBSim's c172p by raw sensors, from its truth."""
 
 from __future__ import annotations
 
@@ -22,7 +22,6 @@ SEEDS = int(os.environ.get("FCC_GUIDANCE", "0"))
 """Of each: they are slow. Some legs are flown in each run (test_plan)."""
 FIRST = 401
 each_seed = pytest.mark.parametrize("seed", range(FIRST, FIRST + SEEDS))
-each_law = pytest.mark.parametrize("law", ["npfg", "l1"])
 FLY_OVERS = (5, 8, 11)
 WITHIN_M = 60.0
 CLIMBS = (5, 9)
@@ -35,13 +34,12 @@ _LOITER_TURNS = 18
 @pytest.mark.parametrize(
     "wind", [(0.0, 0.0), *((20.0, from_deg) for from_deg in (0, 90, 180, 270))]
 )
-@each_law
-def test_twelve_legs(law: str, wind: tuple[float, float], seed: int) -> None:
+def test_twelve_legs(wind: tuple[float, float], seed: int) -> None:
     """Issue: 5 m calm, 10 m in 20 kt; 15 ft on level legs, 2 kt, fly-overs within 60 m."""
     wind_kt, from_deg = wind
     weather = Weather(wind_kt=wind_kt, wind_from_deg=from_deg)
-    score, _ = plan_flight.fly(TWELVE_LEGS, PlanConditions(weather=weather, seed=seed, law=law))
-    print(f"\n{law} | {wind_kt:.0f} kt from {from_deg:.0f} | {seed} | {_cells(score)}")
+    score, _ = plan_flight.fly(TWELVE_LEGS, PlanConditions(weather=weather, seed=seed))
+    print(f"\n{wind_kt:.0f} kt from {from_deg:.0f} | {seed} | {_cells(score)}")
     assert all(waypoint.passed for waypoint in score.waypoints)
     assert [leg.item for leg in score.legs] == list(range(2, 13))
     for leg in score.legs:
@@ -84,16 +82,15 @@ def _circles(*radii_m: float) -> str:
 
 @each_seed
 @pytest.mark.parametrize("from_deg", [0.0, 90.0])
-@each_law
-def test_circles_in_15_kt(law: str, from_deg: float, seed: int, tmp_path: Path) -> None:
+def test_circles_in_15_kt(from_deg: float, seed: int, tmp_path: Path) -> None:
     """Issue: 750 m and 1,000 m at 100 kt, within 5 % of the radius, at most 30 degrees of bank."""
     plan = tmp_path / "circles.waypoints"
     plan.write_text(_circles(750.0, 1_000.0, -750.0))
     weather = Weather(wind_kt=15.0, wind_from_deg=from_deg)
-    score, _ = plan_flight.fly(plan, PlanConditions(weather=weather, seed=seed, law=law))
+    score, _ = plan_flight.fly(plan, PlanConditions(weather=weather, seed=seed))
     assert [circle.radius_m for circle in score.circles] == [750.0, 1_000.0, 750.0]
     for circle in score.circles:
-        print(f"\n{law}, 15 kt from {from_deg:.0f}, seed {seed}: {circle}")
+        print(f"\n15 kt from {from_deg:.0f}, seed {seed}: {circle}")
         assert circle.seconds > math.tau * circle.radius_m / 60.0
         assert circle.radius_error_max_percent <= 5.0
         assert circle.bank_max_deg <= 30.0
@@ -104,6 +101,6 @@ def test_a_smaller_circle_is_refused_with_the_smallest_radius(tmp_path: Path) ->
     plan = tmp_path / "circles.waypoints"
     plan.write_text(_circles(618.0))
     with pytest.raises(fcc.ConfigError, match=r"618 m is too small .* give at least 619 m"):
-        fcc.Machine(plan_flight.configuration(plan, "kalman", "npfg", 15.0))
+        fcc.Machine(plan_flight.configuration(plan, "kalman", 15.0))
     plan.write_text(_circles(619.0))
-    fcc.Machine(plan_flight.configuration(plan, "kalman", "npfg", 15.0))
+    fcc.Machine(plan_flight.configuration(plan, "kalman", 15.0))

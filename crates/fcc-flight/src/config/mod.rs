@@ -82,7 +82,7 @@ pub use guidance::GuidanceSection;
 pub use lines::{GnssSerialSection, RcReceiverSection};
 pub use navigation::{NavigationMethod, NavigationSection};
 pub use phone::PhoneSection;
-pub use plan::{LawChoice, PlanSection};
+pub use plan::PlanSection;
 pub use recording::RecordingSection;
 pub(crate) use remarks::NO_ACTUATOR;
 pub use replacement::PreparedPlan;

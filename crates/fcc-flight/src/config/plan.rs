@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use fcc_core::units::{FOOT_M, KNOT_MPS};
-use fcc_guidance::path::{L1Config, NpfgConfig};
-use fcc_guidance::route::{LawConfig, Route, RouteConfig};
+use fcc_guidance::path::NpfgConfig;
+use fcc_guidance::route::{Route, RouteConfig};
 use fcc_plan::{Conditions, FileError, Format, Identity, Item, Place, Problem, Steps};
 use serde::{Deserialize, Serialize};
 
@@ -28,9 +28,7 @@ pub struct PlanSection {
     pub file: Option<PathBuf>,
     /// The strongest wind, from any direction, that the plan is checked for.
     pub wind_kt: f64,
-    /// The law that follows the path.
-    pub law: LawChoice,
-    /// Period of its oscillation around the path; none for the law's own.
+    /// Period of the oscillation around the path; none for the law's own.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub period_s: Option<f64>,
     /// The largest bank of a turn over the ground; the envelope may limit it further.
@@ -63,24 +61,12 @@ struct Loaded {
     plan: fcc_plan::Plan,
 }
 
-/// Laws of guidance.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum LawChoice {
-    /// Park, Deyst and How 2004.
-    L1,
-    /// Stastny 2018.
-    #[default]
-    Npfg,
-}
-
 impl Default for PlanSection {
     fn default() -> Self {
         let route = RouteConfig::default();
         Self {
             file: None,
             wind_kt: 20.0,
-            law: LawChoice::default(),
             period_s: None,
             max_bank_deg: 30.0,
             bank_rate_degps: 15.0,
@@ -99,15 +85,9 @@ impl PlanSection {
     /// How routes are flown.
     pub(super) fn route_config(&self, runway: &RunwaySection) -> RouteConfig {
         RouteConfig {
-            law: match self.law {
-                LawChoice::L1 => LawConfig::L1(L1Config {
-                    period_s: self.period_s.unwrap_or(L1Config::default().period_s),
-                    ..L1Config::default()
-                }),
-                LawChoice::Npfg => LawConfig::Npfg(NpfgConfig {
-                    period_s: self.period_s.unwrap_or(NpfgConfig::default().period_s),
-                    ..NpfgConfig::default()
-                }),
+            law: NpfgConfig {
+                period_s: self.period_s.unwrap_or(NpfgConfig::default().period_s),
+                ..NpfgConfig::default()
             },
             bank_rad: self.max_bank_deg.to_radians(),
             bank_rate_radps: self.bank_rate_degps.to_radians(),

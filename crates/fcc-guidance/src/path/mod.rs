@@ -2,14 +2,14 @@
 //! in wind.
 //!
 //! ```text
-//! position ─► LocalPlane ─► Path::nearest ─► L1 or Npfg ─► BankCommand
+//! position ─► LocalPlane ─► Path::nearest ─► Npfg ─► BankCommand
 //! ```
 //!
 //! | type | what |
 //! |---|---|
 //! | [`LocalPlane`] | metres north and east of a place, anywhere on WGS-84 |
 //! | [`Path`] | a line or a circle in such a plane |
-//! | [`L1`], [`Npfg`] | the laws: from position, velocity and wind to a lateral acceleration |
+//! | [`Npfg`] | the law: from position, velocity and wind to a lateral acceleration |
 //! | [`BankCommand`] | its bank, within limit and rate |
 //! | [`turn`] | ground speed, smallest radius, fly-by and fly-over in wind |
 //!
@@ -19,8 +19,6 @@
 //! are in rad clockwise from true north, and vectors are (north, east).
 
 mod bank;
-mod l1;
-mod law;
 mod local_plane;
 mod npfg;
 mod shape;
@@ -30,8 +28,6 @@ pub(super) mod simulation;
 pub mod turn;
 
 pub use bank::BankCommand;
-pub use l1::{L1, L1Config};
-pub use law::{LateralLaw, Law};
 pub use local_plane::LocalPlane;
 pub use npfg::{Npfg, NpfgConfig};
 pub use shape::{Nearest, Path};

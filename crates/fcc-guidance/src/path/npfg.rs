@@ -10,8 +10,7 @@ use core::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI};
 use libm::{atan2, cos, sin, sqrt};
 use nalgebra::Vector2;
 
-use super::law::TurnDirection;
-use super::{LateralLaw, Motion, Nearest, Path, cross, length, unit};
+use super::{Motion, Nearest, Path, cross, length, unit};
 
 /// Period and damping of NPFG.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -43,7 +42,7 @@ impl Default for NpfgConfig {
 /// is carried away as little as possible; in between both are blended.
 ///
 /// ```
-/// use fcc_guidance::path::{LateralLaw, Motion, Npfg, NpfgConfig, Path};
+/// use fcc_guidance::path::{Motion, Npfg, NpfgConfig, Path};
 /// use nalgebra::Vector2;
 ///
 /// // On a line to the north in 10 m/s of wind from the west, with the heading that
@@ -76,6 +75,26 @@ impl Npfg {
             config,
             direction: TurnDirection::default(),
         }
+    }
+
+    /// The acceleration to the right of the air velocity, m/s², that brings an aircraft onto
+    /// a path and along it. It is finite for any finite motion.
+    pub fn acceleration_mps2(&mut self, path: &Path, motion: &Motion) -> f64 {
+        let air = motion.air_velocity_mps();
+        let (airspeed, wind) = (length(air), motion.wind_mps);
+        let Some(heading) = unit(air) else {
+            return 0.0;
+        };
+        let nearest = path.nearest(motion.position_m);
+        let (proximity, bearing) = self.bearing(&nearest, motion);
+        let wanted = air_velocity_for(bearing, airspeed, wind);
+        let error = self
+            .direction
+            .keep(atan2(cross(heading, wanted), heading.dot(&wanted)));
+        let gain = 4.0 * PI * self.config.damping / self.config.period_s;
+        // Behind the beam the largest acceleration, not less of it again.
+        let turning = gain * airspeed * sin(error.clamp(-FRAC_PI_2, FRAC_PI_2));
+        turning + proximity * curve(path, &nearest, motion, airspeed)
     }
 
     /// How near the path is: 0 where the error is so large that the shortest way is
@@ -126,26 +145,6 @@ fn air_velocity_for(bearing: Vector2<f64>, airspeed: f64, wind: Vector2<f64>) ->
     unit(blended).map_or(exact, |way| way * airspeed)
 }
 
-impl LateralLaw for Npfg {
-    fn acceleration_mps2(&mut self, path: &Path, motion: &Motion) -> f64 {
-        let air = motion.air_velocity_mps();
-        let (airspeed, wind) = (length(air), motion.wind_mps);
-        let Some(heading) = unit(air) else {
-            return 0.0;
-        };
-        let nearest = path.nearest(motion.position_m);
-        let (proximity, bearing) = self.bearing(&nearest, motion);
-        let wanted = air_velocity_for(bearing, airspeed, wind);
-        let error = self
-            .direction
-            .keep(atan2(cross(heading, wanted), heading.dot(&wanted)));
-        let gain = 4.0 * PI * self.config.damping / self.config.period_s;
-        // Behind the beam the largest acceleration, not less of it again.
-        let turning = gain * airspeed * sin(error.clamp(-FRAC_PI_2, FRAC_PI_2));
-        turning + proximity * curve(path, &nearest, motion, airspeed)
-    }
-}
-
 /// The acceleration that keeps an aircraft on a curved path in wind: κV²/cos(crab),
 /// with V the speed over the ground along the path, κ that of the parallel curve on
 /// which the aircraft is, and the crab angle that of the course of the path.
@@ -162,6 +161,29 @@ fn curve(path: &Path, nearest: &Nearest, motion: &Motion, airspeed: f64) -> f64 
     let through_air = sqrt((airspeed * airspeed - across * across).max(0.0));
     let cosine = through_air / airspeed.max(1e-3);
     feasible * curvature * along * along / cosine.max(LEAST_RADIUS_SHARE)
+}
+
+/// Beyond this error of the course a turn that has begun keeps its direction: which
+/// way is the shorter one may change with each gust.
+const REVERSED_RAD: f64 = 0.9 * PI;
+
+/// Keeps the direction of a turn.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+struct TurnDirection {
+    last_rad: f64,
+}
+
+impl TurnDirection {
+    /// The error of the course in -π to π, or beyond by what the turn that has
+    /// begun leaves.
+    fn keep(&mut self, error_rad: f64) -> f64 {
+        let flips = error_rad.abs() > REVERSED_RAD
+            && self.last_rad.abs() > REVERSED_RAD
+            && (error_rad > 0.0) != (self.last_rad > 0.0);
+        let kept = if flips { -error_rad } else { error_rad };
+        self.last_rad = kept;
+        kept
+    }
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use super::runway::RunwayFlight;
 use super::sequence::{Sequence, Steps};
 use super::step::{Destination, Route, Step, Until};
 use super::{OverGround, PLANNED_SHARE, ROLL_LAG_S, RouteConfig};
-use crate::path::{LateralLaw, Law, LocalPlane, Motion, Path, length};
+use crate::path::{LocalPlane, Motion, Npfg, Path, length};
 
 /// Flies a route.
 ///
@@ -48,7 +48,7 @@ pub struct Follower {
     pub(super) config: RouteConfig,
     pub(super) sequence: Sequence,
     pub(super) returns: &'static [Destination],
-    law: Law,
+    law: Npfg,
     /// The index of the step that is flown.
     pub(super) index: usize,
     pub(super) goal: Goal,
@@ -137,7 +137,7 @@ impl Follower {
             config,
             sequence: Sequence::new(steps),
             returns,
-            law: config.law.law(),
+            law: Npfg::new(config.law),
             index,
             goal: Goal {
                 at: LocalPlane::at(0.0, 0.0),

@@ -41,32 +41,7 @@ pub use runway::HELD_MPS;
 pub use runway::{Runway, RunwayConfig, RunwayDemand, RunwayPhase, RunwayReason};
 pub use step::{Destination, FOR_EVER, JUMPS, Route, Step, Until};
 
-use crate::path::{L1Config, Law, NpfgConfig};
-
-/// Which law brings the aircraft onto its path.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub enum LawConfig {
-    /// Park, Deyst and How 2004.
-    L1(L1Config),
-    /// Stastny 2018.
-    Npfg(NpfgConfig),
-}
-
-impl Default for LawConfig {
-    fn default() -> Self {
-        Self::Npfg(NpfgConfig::default())
-    }
-}
-
-impl LawConfig {
-    /// The law with these numbers.
-    pub fn law(&self) -> Law {
-        match *self {
-            Self::L1(config) => Law::l1(config),
-            Self::Npfg(config) => Law::npfg(config),
-        }
-    }
-}
+use crate::path::NpfgConfig;
 
 /// The tangent of the bank that turns are planned with, as a share of that of the
 /// largest: the rest is for getting onto the arc and back.
@@ -86,7 +61,7 @@ pub const LONGEST_LEG_M: f64 = 815_000.0;
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct RouteConfig {
     /// The law.
-    pub law: LawConfig,
+    pub law: NpfgConfig,
     /// Largest bank, rad, below π/2; the envelope may limit it further.
     pub bank_rad: f64,
     /// Largest rate of the commanded bank, rad/s.
@@ -103,7 +78,7 @@ impl Default for RouteConfig {
     /// For 100 kt: a circle that 30° of bank allow in 20 kt of wind, and more.
     fn default() -> Self {
         Self {
-            law: LawConfig::default(),
+            law: NpfgConfig::default(),
             bank_rad: core::f64::consts::FRAC_PI_6,
             bank_rate_radps: 0.261_799, // 15 °/s
             loiter_radius_m: 800.0,

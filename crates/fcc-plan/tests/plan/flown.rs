@@ -3,10 +3,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use fcc_guidance::path::{BankCommand, L1Config, LocalPlane, NpfgConfig};
-use fcc_guidance::route::{
-    Destination, Follower, LawConfig, OverGround, Route, RouteConfig, Step, Until,
-};
+use fcc_guidance::path::{BankCommand, LocalPlane};
+use fcc_guidance::route::{Destination, Follower, OverGround, Route, RouteConfig, Step, Until};
 use nalgebra::{Vector2, Vector3};
 use proptest::prelude::*;
 
@@ -167,7 +165,6 @@ proptest! {
         near_pole in any::<bool>(),
         heading in -PI..PI,
         wind_mps in 0.0..15.0,
-        by_l1 in any::<bool>(),
     ) {
         let latitude = if near_pole { latitude.signum() * (FRAC_PI_2 - 1e-4) } else { latitude };
         let (steps, length_m) = steps(&drawn, (latitude, longitude));
@@ -178,12 +175,7 @@ proptest! {
             returns: Box::leak(Box::new(home)),
             ..Route::default()
         };
-        let law = if by_l1 {
-            LawConfig::L1(L1Config::default())
-        } else {
-            LawConfig::Npfg(NpfgConfig::default())
-        };
-        let config = RouteConfig { law, ..RouteConfig::default() };
+        let config = RouteConfig::default();
         let mut follower = Follower::along(route, 0, config, AIRSPEED_MPS);
         let mut aircraft = PointMass::new(latitude, longitude, heading, wind_mps);
         let mut reached = None;

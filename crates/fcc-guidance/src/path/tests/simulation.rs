@@ -1,11 +1,11 @@
-//! A point mass with roll dynamics in wind, and the figures that the laws have to
+//! A point mass with roll dynamics in wind, and the figures that the law has to
 //! reach with it.
 
 use std::vec::Vec;
 
 use nalgebra::Vector2;
 
-use super::{BankCommand, L1Config, LateralLaw, Law, Motion, NpfgConfig, Path};
+use super::{BankCommand, Motion, Npfg, NpfgConfig, Path};
 
 pub(crate) const KT: f64 = 1_852.0 / 3_600.0;
 pub(crate) const DT_S: f64 = 0.01;
@@ -58,7 +58,7 @@ impl PointMass {
     }
 
     /// Follows a path; cross-track errors, m, after `settle_s`.
-    fn follow(&mut self, law: &mut Law, path: &Path, settle_s: f64, until_s: f64) -> Vec<f64> {
+    fn follow(&mut self, law: &mut Npfg, path: &Path, settle_s: f64, until_s: f64) -> Vec<f64> {
         let ticks = |seconds: f64| (seconds / DT_S) as usize;
         let mut errors = Vec::new();
         for tick in 0..ticks(until_s) {
@@ -72,13 +72,6 @@ impl PointMass {
     }
 }
 
-fn laws() -> [Law; 2] {
-    [
-        Law::l1(L1Config::default()),
-        Law::npfg(NpfgConfig::default()),
-    ]
-}
-
 pub(crate) fn rms(errors: &[f64]) -> f64 {
     (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt()
 }
@@ -89,25 +82,24 @@ pub(crate) fn wind(from_deg: i32, kt: f64) -> Vector2<f64> {
 }
 
 /// Issue: cross-track RMS at most 5 m in calm air and 10 m in 20 kt from any side.
-/// Without turbulence and noise both laws are far below, and have no steady error.
+/// Without turbulence and noise the law is far below, and has no steady error.
 #[test]
 fn a_line_is_held_in_any_wind() {
     let path = Path::line(Vector2::new(0.0, 100.0), Vector2::new(9_000.0, 100.0)).unwrap();
-    for mut law in laws() {
-        for (from_deg, kt) in [
-            (0, 0.0),
-            (0, 20.0),
-            (90, 20.0),
-            (180, 20.0),
-            (225, 20.0),
-            (270, 20.0),
-        ] {
-            for roll_tau_s in [0.5, 1.0] {
-                let mut aircraft = PointMass::new(100.0, wind(from_deg, kt), roll_tau_s);
-                let errors = aircraft.follow(&mut law, &path, 60.0, 180.0);
-                let rms = rms(&errors);
-                assert!(rms < 0.5, "{law:?} wind {from_deg} {kt} kt: {rms} m");
-            }
+    let mut law = Npfg::new(NpfgConfig::default());
+    for (from_deg, kt) in [
+        (0, 0.0),
+        (0, 20.0),
+        (90, 20.0),
+        (180, 20.0),
+        (225, 20.0),
+        (270, 20.0),
+    ] {
+        for roll_tau_s in [0.5, 1.0] {
+            let mut aircraft = PointMass::new(100.0, wind(from_deg, kt), roll_tau_s);
+            let errors = aircraft.follow(&mut law, &path, 60.0, 180.0);
+            let rms = rms(&errors);
+            assert!(rms < 0.5, "wind {from_deg} {kt} kt: {rms} m");
         }
     }
 }
@@ -116,20 +108,19 @@ fn a_line_is_held_in_any_wind() {
 /// with at most 30° of bank.
 #[test]
 fn circles_are_held_within_5_percent_in_15_kt() {
-    for mut law in laws() {
-        for radius_m in [750.0, 1_000.0] {
-            for clockwise in [true, false] {
-                for roll_tau_s in [0.5, 1.0] {
-                    let path = Path::Circle {
-                        centre_m: Vector2::new(0.0, 2_000.0),
-                        radius_m,
-                        clockwise,
-                    };
-                    let mut aircraft = PointMass::new(100.0, wind(250, 15.0), roll_tau_s);
-                    let errors = aircraft.follow(&mut law, &path, 180.0, 600.0);
-                    let worst = errors.iter().fold(0.0_f64, |most, e| most.max(e.abs()));
-                    assert!(worst < 0.05 * radius_m, "{law:?} {radius_m} m: {worst} m");
-                }
+    let mut law = Npfg::new(NpfgConfig::default());
+    for radius_m in [750.0, 1_000.0] {
+        for clockwise in [true, false] {
+            for roll_tau_s in [0.5, 1.0] {
+                let path = Path::Circle {
+                    centre_m: Vector2::new(0.0, 2_000.0),
+                    radius_m,
+                    clockwise,
+                };
+                let mut aircraft = PointMass::new(100.0, wind(250, 15.0), roll_tau_s);
+                let errors = aircraft.follow(&mut law, &path, 180.0, 600.0);
+                let worst = errors.iter().fold(0.0_f64, |most, e| most.max(e.abs()));
+                assert!(worst < 0.05 * radius_m, "{radius_m} m: {worst} m");
             }
         }
     }
@@ -147,26 +138,25 @@ fn comes_to_a_path_from_anywhere() {
             clockwise: true,
         },
     ];
-    for mut law in laws() {
-        for path in paths {
-            for n in 0..12 {
-                let mut aircraft = PointMass::new(100.0, wind(40 * n, 20.0), 0.5);
-                let angle = f64::from(n) * 0.9;
-                aircraft.heading_rad = 2.0 * angle;
-                aircraft.position_m = Vector2::new(angle.cos(), angle.sin()) * f64::from(n * 400);
-                let mut last = 0.0;
-                for _ in 0..40_000 {
-                    let a = law.acceleration_mps2(&path, &aircraft.motion());
-                    assert!(a.is_finite());
-                    let command = aircraft.fly(a);
-                    assert!(command.abs() <= MOST_BANK_DEG.to_radians() + 1e-12);
-                    let rate_deg = (command - last).to_degrees() / DT_S;
-                    assert!(rate_deg.abs() <= BANK_RATE_DEG + 1e-6);
-                    last = command;
-                }
-                let error = path.nearest(aircraft.position_m).cross_track_m;
-                assert!(error.abs() < 40.0, "{law:?} {path:?} from {n}: {error}");
+    let mut law = Npfg::new(NpfgConfig::default());
+    for path in paths {
+        for n in 0..12 {
+            let mut aircraft = PointMass::new(100.0, wind(40 * n, 20.0), 0.5);
+            let angle = f64::from(n) * 0.9;
+            aircraft.heading_rad = 2.0 * angle;
+            aircraft.position_m = Vector2::new(angle.cos(), angle.sin()) * f64::from(n * 400);
+            let mut last = 0.0;
+            for _ in 0..40_000 {
+                let a = law.acceleration_mps2(&path, &aircraft.motion());
+                assert!(a.is_finite());
+                let command = aircraft.fly(a);
+                assert!(command.abs() <= MOST_BANK_DEG.to_radians() + 1e-12);
+                let rate_deg = (command - last).to_degrees() / DT_S;
+                assert!(rate_deg.abs() <= BANK_RATE_DEG + 1e-6);
+                last = command;
             }
+            let error = path.nearest(aircraft.position_m).cross_track_m;
+            assert!(error.abs() < 40.0, "{path:?} from {n}: {error}");
         }
     }
 }
