@@ -3,6 +3,7 @@
 use core::f64::consts::FRAC_PI_2;
 
 use super::{Guidance, Mode, Progress, Targets};
+use fcc_core::framework::ROUNDING_S;
 use fcc_navigation::Estimate;
 
 /// The timed pattern: hold, then legs that turn by a fixed angle and
@@ -56,9 +57,6 @@ pub struct TimedPattern {
     captured: Targets,
     elapsed_s: f64,
 }
-
-/// Tolerance for the sum of ticks at a whole second, s.
-const ROUNDING_S: f64 = 1e-6;
 
 impl TimedPattern {
     /// The present leg: 0 while holding, then 1, 2, ...

@@ -5,10 +5,11 @@
 
 use libm::{cos, fabs, hypot, sin, sqrt, tan};
 
+use super::force_sample::LEAST_AIRSPEED_MPS;
 use super::sample_tracker::is_current;
 use fcc_core::blocks::wrap_pi;
 use fcc_core::flight::Measurements;
-use fcc_core::framework::Time;
+use fcc_core::framework::{ROUNDING_S, Time};
 use fcc_core::units::GRAVITY_MPS2;
 
 /// Readings are averaged over blocks of this length, s: angles, forces.
@@ -22,16 +23,12 @@ const FORCES_KEPT: f64 = 0.96;
 const FOUR_CHANGES: f64 = 3.1;
 const FOUR_FORCES: f64 = 3.7;
 const SIX_FORCES: f64 = 5.3;
-/// Rounding of a sum of steps, s.
-const ROUNDING_S: f64 = 1e-6;
 
 /// Beyond these nothing is compared: bank and pitch, rad (60°).
 const STEEP_RAD: f64 = 1.05;
 /// Beyond this turn about the y and z axes no forces are compared: a spin, rad/s
 /// (40 °/s).
 const SPIN_RADPS: f64 = 0.7;
-/// Below this the airspeed sensor does not show an acceleration, m/s.
-const LEAST_AIRSPEED_MPS: f64 = 15.0;
 
 /// The squares of the least changes of an angle in a block, RMS, rad²: of both to
 /// tell a sign (0.35°), of the larger to tell a unit or an offset (1°).

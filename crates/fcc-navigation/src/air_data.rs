@@ -5,6 +5,7 @@ use core::time::Duration;
 use libm::{asin, cos, sin};
 
 use super::attitude::Orientation;
+use super::force_sample::MIN_AIRSPEED_MPS;
 use super::resolution::Resolution;
 use super::sample_tracker::{NewSample, SampleTracker, is_current};
 use super::vertical::VerticalState;
@@ -43,9 +44,6 @@ pub struct AirspeedChannel {
 
 /// The coarsest airspeed sensor that is flown: 2 kt, m/s.
 const COARSEST_MPS: f64 = 1.03;
-
-/// Below this airspeed the flight-path angle is not computed, m/s.
-const MIN_AIRSPEED_MPS: f64 = 5.0;
 
 /// The largest angle of attack in normal flight, rad.
 const MAX_ALPHA_RAD: f64 = 0.3;

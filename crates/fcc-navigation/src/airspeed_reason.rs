@@ -1,9 +1,8 @@
 //! Why a sensor of airspeed is excluded.
 
+use fcc_core::flight::atmosphere::SEA_LEVEL_DENSITY_KGPM3;
 use fcc_core::units::GRAVITY_MPS2;
 
-/// The density of the standard atmosphere at sea level, kg/m³ (ISO 2533).
-const SEA_LEVEL_DENSITY: f64 = 1.225;
 /// The height that tells a blocked tube from other faults, m, and the part of
 /// the expected change that must be seen, both ways.
 const TELLING_M: f64 = 8.0;
@@ -55,9 +54,10 @@ impl Reference {
     ) -> DoubtReason {
         if let Self(Some((before_m, before_mps))) = self {
             let climbed_m = altitude_m - before_m;
-            let rose_pa =
-                0.5 * SEA_LEVEL_DENSITY * (airspeed_mps * airspeed_mps - before_mps * before_mps);
-            let trapped_pa = SEA_LEVEL_DENSITY * density_ratio * GRAVITY_MPS2 * climbed_m;
+            let rose_pa = 0.5
+                * SEA_LEVEL_DENSITY_KGPM3
+                * (airspeed_mps * airspeed_mps - before_mps * before_mps);
+            let trapped_pa = SEA_LEVEL_DENSITY_KGPM3 * density_ratio * GRAVITY_MPS2 * climbed_m;
             if climbed_m.abs() > TELLING_M && SEEN.contains(&(rose_pa / trapped_pa)) {
                 return DoubtReason::BlockedTube;
             }

@@ -12,6 +12,8 @@ const STEEP_BANK_RAD: f64 = 1.05;
 const STEEP_PITCH_RAD: f64 = 0.79;
 const LOADS: core::ops::RangeInclusive<f64> = 0.3..=2.5;
 
+/// Slower nothing flies, m/s.
+pub(super) const LEAST_AIRSPEED_MPS: f64 = 15.0;
 /// The airspeed of a path is at least this, m/s.
 pub(super) const MIN_AIRSPEED_MPS: f64 = 5.0;
 

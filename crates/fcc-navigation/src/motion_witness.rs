@@ -2,6 +2,7 @@
 
 use libm::{asin, atan2, cos};
 
+use super::force_sample::LEAST_AIRSPEED_MPS;
 use super::scalar_update::squared;
 use fcc_core::blocks::{LowPass, limit_abs, wrap_pi};
 use fcc_core::flight::Attitude;
@@ -18,8 +19,6 @@ const PITCH_SD_RAD: f64 = 0.035;
 /// Beyond these nothing is compared: bank and pitch, rad (50°, 40°).
 const STEEP_BANK_RAD: f64 = 0.87;
 const STEEP_PITCH_RAD: f64 = 0.7;
-/// Slower nothing flies, m/s.
-const LEAST_AIRSPEED_MPS: f64 = 15.0;
 
 /// One tick's inputs; none is what is not measured.
 #[derive(Clone, Copy, Debug, Default)]

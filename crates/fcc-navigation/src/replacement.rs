@@ -5,6 +5,7 @@ use core::time::Duration;
 use libm::{asin, atan2, cos, exp, sin};
 
 use super::estimate::Estimate;
+use super::force_sample::LEAST_AIRSPEED_MPS;
 use super::quantity::{Quantities, Quantity};
 use fcc_core::blocks::{LowPass, limit_abs, wrap_pi};
 use fcc_core::flight::{Attitude, BodyRates, Measurements};
@@ -240,9 +241,6 @@ impl Replacement {
         }
     }
 }
-
-/// Slower nothing flies, m/s.
-const LEAST_AIRSPEED_MPS: f64 = 15.0;
 
 #[cfg(test)]
 mod tests {

@@ -4,20 +4,16 @@ use core::time::Duration;
 
 use super::readings::Arrived;
 use super::rest::{Halves, Rest};
+use super::turning::{MOVED_MPS2, STRENGTH_SHARE};
 use super::{Collect, Found, Next, Quality, Refusal, Values, norm};
 use crate::{Axes, AxesCalibration, Rotation, level_and_nose_up, levelled};
 use fcc_core::units::GRAVITY_MPS2;
 
 /// For how long each attitude is held.
 const LENGTH: Duration = Duration::from_secs(3);
-/// From the first half of it to the second, m/s²: a tilt of 0.3°.
-const MOVED_MPS2: f64 = 0.05;
 /// The nose is raised by at least so much, rad: 20°. The errors of the two
 /// attitudes count by its sine.
 const RAISED_RAD: f64 = 0.349;
-/// By how much the strength may differ from gravity: of a calibrated sensor at
-/// rest a tenth of it.
-const STRENGTH_SHARE: f64 = 0.03;
 /// The largest error of the angles, rad: 1°.
 const LARGEST_SIGMA_RAD: f64 = 0.0175;
 

@@ -16,12 +16,12 @@ use fcc_core::units::GRAVITY_MPS2;
 /// For how long it lies still between turns.
 const LENGTH: Duration = Duration::from_secs(2);
 /// From the first half of it to the second, m/s²: a tilt of 0.3°.
-const MOVED_MPS2: f64 = 0.05;
+pub(super) const MOVED_MPS2: f64 = 0.05;
 /// A bias that changes by more meanwhile is a slow turn, rad/s: 0.5°/s.
 const DRIFTED_RADPS: f64 = 8.7e-3;
 /// By how much the strength may differ from gravity: of a calibrated sensor at
 /// rest a tenth of it.
-const STRENGTH_SHARE: f64 = 0.03;
+pub(super) const STRENGTH_SHARE: f64 = 0.03;
 /// A smaller turn is no turn, rad: 17°.
 const LEAST_TURN_RAD: f64 = 0.3;
 /// The standard deviation of each unknown that is enough, of that of an angle

@@ -11,6 +11,8 @@ use crate::units::GRAVITY_MPS2;
 pub const SEA_LEVEL_PRESSURE_PA: f64 = 101_325.0;
 /// Temperature at mean sea level, K.
 pub const SEA_LEVEL_TEMPERATURE_K: f64 = 288.15;
+/// Density at sea level, kg/m³ (ISO 2533:1975).
+pub const SEA_LEVEL_DENSITY_KGPM3: f64 = 1.225;
 const LAPSE_RATE_K_PER_M: f64 = -0.006_5;
 const GAS_CONSTANT_J_PER_KG_K: f64 = 287.053;
 /// The upper limit of the lapse rate, m. Higher altitudes are limited to this

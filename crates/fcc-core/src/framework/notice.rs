@@ -32,6 +32,9 @@ schema! {
     }
 }
 
+/// The thousandths of a notice's amount.
+pub const PERMILLE: u16 = 1_000;
+
 impl Notice {
     /// How long it lasted, s.
     pub fn lasted_s(&self) -> f64 {

@@ -3,6 +3,9 @@
 use core::ops::{Add, Sub};
 use core::time::Duration;
 
+/// Rounding of a sum of steps, s.
+pub const ROUNDING_S: f64 = 1e-6;
+
 /// An instant in nanoseconds on the loop's monotonic clock, or [`Time::NEVER`].
 ///
 /// The origin of the clock is arbitrary; only differences have a meaning.

@@ -1,7 +1,7 @@
 //! What is between the outputs and their effect: latency, play, oscillation.
 
 use super::{Autopilot, AutopilotConfig, flags};
-use crate::control::{ElevatorResponse, OscillationMonitor, PlayInverse, Schedule};
+use crate::control::{ElevatorResponse, LEAST_PACE, OscillationMonitor, PlayInverse, Schedule};
 use fcc_core::blocks::limit;
 use fcc_core::flight::Surfaces;
 use fcc_core::framework::Flags;
@@ -15,9 +15,6 @@ const ROLL_TUNED_FOR_S: f64 = 0.12;
 /// The time constant of the loops themselves, s: their bandwidth is
 /// proportional to 1/(this + the latency in excess of what they are tuned for).
 const OWN_S: f64 = 0.2;
-/// The least part of the bandwidth: with less, the outer loops are no longer
-/// slower than the inner ones.
-const LEAST_PACE: f64 = 0.35;
 /// In an aircraft whose loops are slower than this, by their unit of time, the
 /// elevator's effect is not told from noise: the latency stays the assumed one.
 const SLOWEST_MEASURED: f64 = 1.25;

@@ -33,7 +33,7 @@ use super::Autopilot;
 pub use config::{ContingencyAction, ContingencyConfig};
 pub(super) use delayed::Delayed;
 pub(super) use engine_out::Engine;
-use fcc_core::framework::Notice;
+use fcc_core::framework::{Notice, PERMILLE};
 use fcc_core::schema;
 use fcc_guidance::Mode;
 use fcc_guidance::route::RunwayReason;
@@ -42,9 +42,6 @@ use terrain::TerrainWatch;
 
 /// The number of their notices: the amount says which, the item what is done.
 pub(super) const CONTINGENCY: u8 = 31;
-/// The amount of one contingency; none: that there is a position again.
-const PERMILLE: u16 = 1_000;
-
 schema! {
     /// What the autopilot does by itself, and why; the worse the greater.
     pub enum Contingency {

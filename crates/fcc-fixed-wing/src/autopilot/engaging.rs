@@ -7,13 +7,10 @@ use super::upset::is_far_from_level;
 use super::{Autopilot, flags};
 use crate::control::ElevatorTrim;
 use fcc_core::flight::{AltitudeReference, Measurements, PlantState, Surfaces};
-use fcc_core::framework::{Flags, Time};
+use fcc_core::framework::{Flags, ROUNDING_S, Time};
 use fcc_guidance::{ActiveMode, Mode, ModeInput, Targets};
 use fcc_navigation::inertial::RawNavigation;
 use fcc_navigation::{Quantities, Quantity};
-
-/// Of a sum of the plant's steps, s.
-const ROUNDING_S: f64 = 1e-6;
 
 impl Autopilot {
     /// Why the autopilot does not engage.

@@ -4,9 +4,10 @@ use core::fmt;
 
 use libm::fabs;
 
+use super::place_monitor::STANDS_MPS;
 use super::{Autopilot, AutopilotCommand};
 use fcc_core::flight::atmosphere::pressure_altitude_m;
-use fcc_core::framework::Notice;
+use fcc_core::framework::{Notice, PERMILLE};
 use fcc_guidance::ModeInput;
 use fcc_guidance::route::{ALTIMETER_OFF_M, RunwayDemand, RunwayReason};
 
@@ -14,14 +15,11 @@ use fcc_guidance::route::{ALTIMETER_OFF_M, RunwayDemand, RunwayReason};
 /// refusal's number. A plan that
 /// is replaced is always answered, with the item that is flown first.
 pub const COMMAND_ANSWER: u8 = 0;
-const PERMILLE: u16 = 1_000;
 /// Lower than this over a runway nothing else is begun, m.
 const COMMANDED_M: f64 = 30.0;
 /// Air that is 35 K colder or warmer than the standard makes the altimeter wrong by this share
 /// of the height.
 const AIR_SHARE: f64 = 0.12;
-/// Slower than this over the ground it stands, m/s.
-const STANDS_MPS: f64 = 2.0;
 
 /// Why a command is not carried out.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

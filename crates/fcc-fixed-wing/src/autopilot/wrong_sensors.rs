@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use fcc_core::framework::Notice;
+use fcc_core::framework::{Notice, PERMILLE};
 use fcc_navigation::inertial::{FoundBy, SensorKind, WrongSensor};
 
 /// The numbers of notices: from the first one on, one for each kind and reason.
@@ -26,8 +26,6 @@ const REASONS: [(FoundBy, &str); 5] = [
     (FoundBy::Repeats, "it repeats itself in motion"),
     (FoundBy::Silence, "it is silent"),
 ];
-/// The sensor's number, counted from 1, is the amount.
-const PERMILLE: u16 = 1_000;
 
 /// The notice of a sensor that is not used any more.
 pub(super) fn notice(wrong: WrongSensor) -> Notice {

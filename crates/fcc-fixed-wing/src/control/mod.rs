@@ -37,7 +37,7 @@ pub use elevator_response::ElevatorResponse;
 pub use elevator_trim::{ElevatorTrim, Trimming};
 pub use envelope::Envelope;
 pub use heading::{HeadingConfig, HeadingLoop, Lateral};
-pub use oscillation::OscillationMonitor;
+pub use oscillation::{LEAST_PACE, OscillationMonitor};
 pub use play_inverse::PlayInverse;
 pub(crate) use recovery::{Change, Recovery, RecoveryInputs};
 pub use schedule::Schedule;

@@ -23,8 +23,9 @@ const OSCILLATES_AFTER: u32 = 6;
 const TOO_SLOW_S: f64 = 0.625;
 /// The part of the gain that stays at each further half-cycle.
 const KEPT: f64 = 0.85;
-/// The least part of the gain.
-const LEAST_PACE: f64 = 0.35;
+/// The least part of the loops' bandwidth: with less, the outer loops are no longer
+/// slower than the inner ones.
+pub const LEAST_PACE: f64 = 0.35;
 /// Gain is given back after this time without an oscillation, s.
 const QUIET_S: f64 = 5.0;
 /// How fast it is given back, 1/s.

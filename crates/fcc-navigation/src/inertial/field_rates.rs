@@ -4,14 +4,13 @@
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::Solution;
+use super::kalman::GAP_S;
+use crate::force_sample::LEAST_AIRSPEED_MPS;
 use fcc_core::framework::Time;
 use fcc_core::units::GRAVITY_MPS2;
 
-/// Samples further apart than this are not compared, s.
-const GAP_S: f64 = 0.2;
-/// No turn is steeper (60° of bank), and nothing turns so slowly through the air, m/s.
+/// No turn is steeper (60° of bank).
 const STEEPEST: f64 = 1.73;
-const LEAST_AIRSPEED: f64 = 15.0;
 
 /// The last sample of the field.
 #[derive(Clone, Copy, Debug, Default)]
@@ -52,7 +51,7 @@ fn turn_rates(known: &Solution) -> Vector3<f64> {
     let to_earth = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
     let down = to_earth.inverse() * Vector3::z();
     let ([north, east, _], [wind_north, wind_east]) = (known.velocity_mps, known.wind_mps);
-    let airspeed = libm::hypot(north - wind_north, east - wind_east).max(LEAST_AIRSPEED);
+    let airspeed = libm::hypot(north - wind_north, east - wind_east).max(LEAST_AIRSPEED_MPS);
     // In inverted flight there is no coordinated turn.
     let slope = if down.z > 0.0 { down.y / down.z } else { 0.0 };
     down * (GRAVITY_MPS2 * slope.clamp(-STEEPEST, STEEPEST) / airspeed)

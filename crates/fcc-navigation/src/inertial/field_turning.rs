@@ -8,7 +8,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::kalman::turn;
+use super::kalman::{GAP_S, turn};
 use fcc_core::framework::Time;
 
 /// Samples of the field are fitted over this time at least, s: long enough for
@@ -18,9 +18,6 @@ const WINDOW_S: f64 = 0.2;
 /// up to this one, s.
 const LEAST_SAMPLES: f64 = 6.0;
 const LONGEST_WINDOW_S: f64 = 1.0;
-/// Gyroscopes are not integrated over longer gaps, nor beyond their last sample
-/// for longer, s.
-const GAP_S: f64 = 0.2;
 
 /// Half a second of gyroscopes at 128 Hz; a magnetometer's sample comes some
 /// 10 ms later than one of them.

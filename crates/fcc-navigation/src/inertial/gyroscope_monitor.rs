@@ -17,7 +17,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::Solution;
 use super::field_turning::{FieldTurning, Turning};
-use super::receiver_witness::ReceiverWitness;
+use super::receiver_witness::{ReceiverWitness, SILENT_S};
 use super::stuck::StuckAxis;
 use fcc_core::blocks::smoothing_factor;
 use fcc_core::framework::Time;
@@ -74,10 +74,9 @@ const TURNS_RAD: f64 = 0.0175;
 const AGREES_SHARE: f64 = 0.4;
 
 /// In flight the field is waited for for so long, s: one that does not count then is
-/// not that of the earth, and gyroscopes are flown unchecked. One that is silent for the
-/// second time, s, is not waited for.
+/// not that of the earth, and gyroscopes are flown unchecked. One that is silent is not
+/// waited for.
 const AWAITED_FOR_S: f64 = 20.0;
-const SILENT_S: f64 = 1.0;
 
 /// Gyroscopes that the field contradicts within so many windows (0.6 s, 20 °/s) are doubted at
 /// once. Others are as soon as a receiver contradicts them, too; if it has not after this time,

@@ -9,7 +9,7 @@
 use libm::atan2;
 use nalgebra::{UnitQuaternion, Vector2, Vector3};
 
-use super::kalman::Innovation;
+use super::kalman::{GAP_S, Innovation};
 use super::{ObservationKind, Solution};
 use fcc_core::blocks::{smoothing_factor, wrap_pi};
 use fcc_core::framework::Time;
@@ -28,10 +28,8 @@ const COURSE_MPS: f64 = 15.0;
 /// It was so within this time, s: the filter follows the receiver, and does not differ any more
 /// when the field has shown enough.
 const LATELY_S: f64 = 2.5;
-/// A receiver that was not heard for this time, s, says nothing.
-const SILENT_S: f64 = 1.0;
-/// Gyroscopes are not integrated over longer gaps, s.
-const GAP_S: f64 = 0.2;
+/// A receiver or a magnetometer that was not heard for this time, s, says nothing.
+pub(super) const SILENT_S: f64 = 1.0;
 
 /// Compares the gyroscopes with a receiver.
 #[derive(Clone, Copy, Debug)]

@@ -8,11 +8,9 @@ use core::time::Duration;
 use libm::cos;
 
 use super::super::Autopilot;
-use super::{
-    CONTINGENCY, Contingency, ContingencyAction, ContingencyConfig, Delayed, PERMILLE, notice,
-};
+use super::{CONTINGENCY, Contingency, ContingencyAction, ContingencyConfig, Delayed, notice};
 use fcc_core::blocks::LowPass;
-use fcc_core::framework::{Notice, Time};
+use fcc_core::framework::{Notice, PERMILLE, Time};
 use fcc_core::units::GRAVITY_MPS2;
 use fcc_guidance::route::{Follower, GlideConfig, RunwayPhase, RunwayReason};
 use fcc_guidance::{Mode, OverGroundMode};

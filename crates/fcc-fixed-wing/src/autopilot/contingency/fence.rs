@@ -4,7 +4,8 @@ use libm::{atan, tan};
 use nalgebra::Vector2;
 
 use super::super::Autopilot;
-use super::{Contingency, ContingencyAction, PERMILLE, Stage, notice};
+use super::{Contingency, ContingencyAction, Stage, notice};
+use fcc_core::framework::PERMILLE;
 use fcc_core::units::GRAVITY_MPS2;
 use fcc_guidance::fence::{Bank, Escape, Fence};
 use fcc_guidance::path::{LocalPlane, Path, length};
@@ -20,7 +21,7 @@ const ALONG_CIRCLE: f64 = 0.939_7;
 const BANKED_WITHIN_RAD: f64 = 0.122;
 /// A target that is more than this above the present airspeed is not reached on the
 /// circle, m/s.
-const FASTER_MPS: f64 = 3.0;
+pub(super) const FASTER_MPS: f64 = 3.0;
 /// The bank that gusts and airspeed allow, and the airspeed, are followed with this time
 /// constant, s: a third of a turn. A circle is planned with this share of the largest
 /// bank's tangent at least: twice the radius.

@@ -9,9 +9,10 @@ use libm::{cos, sin, tan};
 use nalgebra::Vector2;
 
 use super::super::Autopilot;
+use super::fence::FASTER_MPS;
 use super::surface::Surface;
-use super::{CONTINGENCY, Contingency, ContingencyAction, PERMILLE, Stage, notice};
-use fcc_core::framework::Notice;
+use super::{CONTINGENCY, Contingency, ContingencyAction, Stage, notice};
+use fcc_core::framework::{Notice, PERMILLE};
 use fcc_core::units::GRAVITY_MPS2;
 use fcc_guidance::fence::{Escape, Fence};
 use fcc_guidance::path::length;
@@ -41,9 +42,6 @@ const LEVEL_RAD: f64 = 0.052;
 /// after so long without one, s.
 const RAISED_M: f64 = 1.0;
 const OVER_S: f64 = 10.0;
-/// A target that is more than this above the present airspeed is not reached on the
-/// circle, m/s.
-const FASTER_MPS: f64 = 3.0;
 /// What is done, in a notice.
 pub(super) const CLIMBS: u16 = 100;
 pub(super) const PASSED: u16 = 101;

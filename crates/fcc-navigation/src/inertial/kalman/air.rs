@@ -9,11 +9,9 @@ use super::parameters as p;
 use super::states::{ATTITUDE, BAROMETER_BIAS, POSITION, STATES, VELOCITY, WIND};
 use super::update::{Corrects, Measurement};
 use crate::inertial::ObservationKind;
-use fcc_core::flight::atmosphere::{density_ratio, pressure_altitude_m};
+use fcc_core::flight::atmosphere::{SEA_LEVEL_DENSITY_KGPM3, density_ratio, pressure_altitude_m};
 use fcc_core::framework::Time;
 
-/// Density at sea level (ISO 2533:1975), kg/m³.
-const SEA_LEVEL_DENSITY: f64 = 1.225;
 /// With a slower motion through the air than this its direction says nothing,
 /// m/s.
 const SLOW: f64 = 4.0;
@@ -63,7 +61,7 @@ impl Filter {
     /// A differential pressure, as the equivalent airspeed that it is of
     /// (incompressible; below 100 m/s to 1 %).
     pub(super) fn differential_pressure(&mut self, taken: Time, pressure_pa: f64, after_s: f64) {
-        let equivalent_mps = sqrt(2.0 * pressure_pa.max(0.0) / SEA_LEVEL_DENSITY);
+        let equivalent_mps = sqrt(2.0 * pressure_pa.max(0.0) / SEA_LEVEL_DENSITY_KGPM3);
         let kind = ObservationKind::DifferentialPressure;
         self.airspeed(kind, taken, equivalent_mps, after_s);
     }
@@ -83,8 +81,8 @@ impl Filter {
         self.settle();
         let density = density_ratio(self.motion.place.altitude_m + self.barometer_bias);
         let measured = equivalent_mps / sqrt(density);
-        let offset =
-            p::DIFFERENTIAL_PRESSURE_PA / (SEA_LEVEL_DENSITY * sqrt(density) * equivalent_mps);
+        let offset = p::DIFFERENTIAL_PRESSURE_PA
+            / (SEA_LEVEL_DENSITY_KGPM3 * sqrt(density) * equivalent_mps);
         let noise = p::AIRSPEED.plus(p::AIRSPEED_SHARE * measured).plus(offset);
         if self.tracks.airspeed.used.is_never() {
             self.begin_with_air(measured);

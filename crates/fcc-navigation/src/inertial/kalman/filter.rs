@@ -26,7 +26,7 @@ const MOVING: usize = BAROMETER_BIAS;
 /// The covariance moves on in steps of at least this, s.
 const COVARIANCE_S: f64 = 0.008;
 /// Inertial samples further apart than this are not connected, s.
-pub(super) const GAP_S: f64 = 0.2;
+pub(in crate::inertial) const GAP_S: f64 = 0.2;
 /// Corrections below this turn the covariance by nothing, rad.
 const SMALL_TURN: f64 = 1e-3;
 

@@ -52,7 +52,8 @@ mod update;
 use core::time::Duration;
 
 use align::Alignment;
-use filter::{Filter, GAP_S};
+use filter::Filter;
+pub(super) use filter::GAP_S;
 use history::{History, Sample};
 use inputs::Inputs;
 use rest::Rest;
