@@ -72,7 +72,9 @@ pub(crate) fn read(text: &str) -> Result<Plan, Vec<Problem>> {
             }
         }
     }
-    if let Err((field, message)) = reader.fence.complete() {
+    if let Err((field, message)) = reader.fence.complete()
+        && reader.problems.is_empty()
+    {
         reader.problems.push(Problem::of(field, message));
     }
     let items = &reader.plan.items;

@@ -111,6 +111,9 @@ impl FenceReader {
                 if altitude_m != 0.0 && !is_above_home {
                     return refused("frame", "a place to return to is above home: give 3");
                 }
+                if self.fence.return_point.is_some() {
+                    return refused("command", "the fence has a place to return to: give one");
+                }
                 self.fence.return_point = Some((place, altitude_m));
             }
             other => return refused("command", &format!("{other} is not supported")),

@@ -54,6 +54,18 @@ impl<'a> Node<'a> {
         }
     }
 
+    /// Refuses a key that is one of these but for the case of its letters.
+    pub(super) fn none_like(&self, known: &[&str]) -> Result<(), Refusal> {
+        for key in self.object()?.keys() {
+            let meant = known.iter().find(|known| known.eq_ignore_ascii_case(key));
+            if let Some(meant) = meant.filter(|meant| *meant != key) {
+                let given = quoted(key);
+                return self.refuse(format!("has a key \"{given}\": write \"{meant}\""));
+            }
+        }
+        Ok(())
+    }
+
     /// The one of these keys with a list or an object that is not empty.
     pub(super) fn content(&self, keys: &[&str]) -> Result<Option<&'a str>, Refusal> {
         let is_full = |value: &Value| match value {
@@ -159,8 +171,11 @@ impl<'a> Node<'a> {
 
     /// Whether latitude and longitude are 0: a place that was not set.
     pub(super) fn is_unset(&self) -> bool {
-        let mut numbers = self.value.as_array().into_iter().flatten().take(2);
-        numbers.all(|number| number.as_f64() == Some(0.0))
+        let numbers = self.value.as_array();
+        numbers.is_some_and(|numbers| {
+            let mut place = numbers.iter().take(2);
+            place.all(|number| number.as_f64() == Some(0.0))
+        })
     }
 
     /// `[latitude, longitude, altitude]`.

@@ -67,6 +67,7 @@ impl Reader {
             ));
         }
         version(root, 1)?;
+        root.none_like(&["geoFence", "rallyPoints"])?;
         let mission = root.key("mission")?;
         let done = self.mission(&mission);
         self.note(done);
@@ -98,7 +99,8 @@ impl Reader {
             at_most("mission.items", self.plan.items.len(), limits::ITEMS)?;
             match items_of(&node, number) {
                 Ok((jump_id, items)) => {
-                    numbers.insert(jump_id, number);
+                    // Of two with one name QGroundControl takes the first.
+                    numbers.entry(jump_id).or_insert(number);
                     self.plan.items.extend(items);
                 }
                 Err(problem) => {
@@ -131,10 +133,12 @@ impl Reader {
         let Some(fence) = section(root, "geoFence")? else {
             return Ok(());
         };
+        fence.only(&["version", "polygons", "circles", "breachReturn"])?;
         let mut read = Fence::default();
         let mut corners_of_all = 0;
         for node in entries(&fence, "polygons")? {
             at_most(&node.path, read.polygons.len(), limits::FENCES)?;
+            node.only(&["version", "polygon", INCLUSION, GROUP])?;
             let mut corners = Vec::new();
             for corner in node.key("polygon")?.list()? {
                 at_most(&corner.path, corners_of_all, limits::FENCE_CORNERS)?;
@@ -156,6 +160,7 @@ impl Reader {
         }
         for node in entries(&fence, "circles")? {
             at_most(&node.path, read.circles.len(), limits::FENCES)?;
+            node.only(&["version", "circle", INCLUSION, GROUP])?;
             let circle = node.key("circle")?;
             let (inclusion, group) = inclusion(&node)?;
             read.circles.push(Circle {
@@ -177,6 +182,7 @@ impl Reader {
         let Some(rally) = section(root, "rallyPoints")? else {
             return Ok(());
         };
+        rally.only(&["version", "points"])?;
         for node in entries(&rally, "points")? {
             at_most(&node.path, self.plan.rally.len(), limits::RALLY_POINTS)?;
             let (place, altitude_m) = node.position()?;
@@ -263,7 +269,14 @@ const SAVE_AGAIN: &str = "open the file with a present QGroundControl and save i
 
 /// Zones of a fence and rally points, of any version; the first also had parameters of the
 /// vehicle.
-const CONTENT: [&str; 5] = ["polygon", "polygons", "circle", "circles", "points"];
+const CONTENT: [&str; 6] = [
+    "polygon",
+    "polygons",
+    "circle",
+    "circles",
+    "breachReturn",
+    "points",
+];
 
 /// A section of the fence or the rally points: none if it is missing, empty, or of version 1
 /// without content, which QGroundControl ignores.
@@ -303,10 +316,13 @@ fn command(node: &Node<'_>) -> Result<Command, Refusal> {
     })
 }
 
+const INCLUSION: &str = "inclusion";
+const GROUP: &str = "inclusionGroup";
+
 /// Whether to stay inside of a zone, and its group, for which QGroundControl has no key.
 fn inclusion(zone: &Node<'_>) -> Result<(bool, u16), Refusal> {
-    let inclusion = zone.key("inclusion")?.boolean()?;
-    let group = zone.optional("inclusionGroup")?.filter(|_| inclusion);
+    let inclusion = zone.key(INCLUSION)?.boolean()?;
+    let group = zone.optional(GROUP)?.filter(|_| inclusion);
     let group = group.map(|group| group.whole(u16::MAX)).transpose()?;
     Ok((inclusion, group.unwrap_or(0)))
 }

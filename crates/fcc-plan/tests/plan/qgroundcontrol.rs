@@ -129,6 +129,28 @@ fn sections_of_version_1_are_read_if_they_are_empty() {
             r#""geoFence": {"version": 3},"#,
             "geoFence.version: 3: only version 2",
         ),
+        (
+            r#""geoFence": {"version": 1, "breachReturn": [45, 8, 50]},"#,
+            "geoFence: has \"breachReturn\" and is of version 1",
+        ),
+        // A fence that is not read is not there, and nobody sees it.
+        (
+            r#""geofence": {"version": 2, "circles": []},"#,
+            "the file: has a key \"geofence\": write \"geoFence\"",
+        ),
+        (
+            r#""geoFence": {"version": 2, "polygon": [[45, 8], [46, 8], [46, 9]]},"#,
+            "geoFence: has a key \"polygon\", and there is none of this name",
+        ),
+        (
+            r#""geoFence": {"version": 2, "polygons": [{"inclusive": false,
+                "polygon": [[45, 8], [46, 8], [46, 9]]}]},"#,
+            "geoFence.polygons[0]: has a key \"inclusive\"",
+        ),
+        (
+            r#""geoFence": {"version": 2, "breachReturn": "here"},"#,
+            "geoFence.breachReturn: give a list",
+        ),
     ] {
         let problems = read(&text(waypoint, sections)).unwrap_err();
         assert!(
@@ -136,6 +158,22 @@ fn sections_of_version_1_are_read_if_they_are_empty() {
             "{problems:?}"
         );
     }
+}
+
+/// `MissionController.cc` looks for the first item with the number of a jump.
+#[test]
+fn a_jump_to_one_of_two_items_with_its_number_is_to_the_first() {
+    let waypoint = |north: f64| {
+        format!(
+            r#"{{"type": "SimpleItem", "command": 16, "doJumpId": 7, "frame": 3,
+                "params": [0, 0, 0, null, {north}, 8.0, 300]}},"#
+        )
+    };
+    let jump = r#"{"type": "SimpleItem", "command": 177, "doJumpId": 8, "frame": 2,
+        "params": [7, 1, 0, 0, 0, 0, 0]}"#;
+    let items = format!("{}{}{jump}", waypoint(45.05), waypoint(45.1));
+    let plan = read(&text(&items, "")).unwrap();
+    assert!(matches!(plan.items[2], Item::Jump { to: 1, .. }));
 }
 
 #[test]
