@@ -14,6 +14,8 @@ pub struct End {
     pub ending: String,
     /// Records in the file.
     pub ticks: u64,
+    /// Events in the file.
+    pub events: u64,
     /// Number of its first tick.
     pub first_tick: u64,
     /// Number of its last tick.
@@ -39,6 +41,7 @@ impl End {
         fields([
             ("ending", self.ending.clone()),
             ("ticks", self.ticks.to_string()),
+            ("events", self.events.to_string()),
             ("first_tick", self.first_tick.to_string()),
             ("last_tick", self.last_tick.to_string()),
             ("missed", self.missed.to_string()),
@@ -54,6 +57,7 @@ impl End {
         Self {
             ending: text("ending"),
             ticks: number(fields_read, "ticks"),
+            events: number(fields_read, "events"),
             first_tick: number(fields_read, "first_tick"),
             last_tick: number(fields_read, "last_tick"),
             missed: number(fields_read, "missed"),
@@ -78,6 +82,7 @@ impl RunStatistics {
         match message {
             Message::Tick(record) => self.count(record),
             Message::Event(event) => {
+                self.end.events += 1;
                 if let EventKind::NotRecorded { count, .. } = event.kind {
                     self.end.not_recorded = self.end.not_recorded.saturating_add(count);
                 }

@@ -34,6 +34,9 @@ pub struct Items<M> {
     end: Option<End>,
     being_written: bool,
     last_tick: Option<Tick>,
+    /// Events that were read, and whether there was damage.
+    events: u64,
+    is_damaged: bool,
     /// Damage after which no tick was read yet.
     damage: Option<Damage>,
     /// Items read after it.
@@ -56,6 +59,8 @@ impl<M: RecordedMessage> Items<M> {
             end,
             being_written,
             last_tick: None,
+            events: 0,
+            is_damaged: false,
             damage: None,
             held_back: documents.into_iter().map(Item::Document).collect(),
             finished: false,
@@ -117,7 +122,10 @@ impl<M: RecordedMessage> Items<M> {
         match read {
             Some(Ok(item)) => {
                 let tick = match &item {
-                    Item::Message(message) => message.tick().copied(),
+                    Item::Message(message) => {
+                        self.events += u64::from(message.tick().is_none());
+                        message.tick().copied()
+                    }
                     _ => None,
                 };
                 if tick.is_some() || self.held_back.len() >= MAX_HELD_BACK {
@@ -129,16 +137,35 @@ impl<M: RecordedMessage> Items<M> {
                 }
                 self.held_back.push_back(item);
             }
-            Some(Err(damaged)) => match &mut self.damage {
-                Some(damage) => damage.join(&damaged),
-                None => self.damage = Some(Damage::of(damaged)),
-            },
+            Some(Err(damaged)) => {
+                self.is_damaged = true;
+                match &mut self.damage {
+                    Some(damage) => damage.join(&damaged),
+                    None => self.damage = Some(Damage::of(damaged)),
+                }
+            }
             None => {
                 self.finished = true;
+                self.cut = self.cut.take().or_else(|| self.left_out());
                 self.locate_damage(None);
             }
         }
         None
+    }
+
+    /// What another program has left out of a file without damage, by the statistics in it.
+    fn left_out(&self) -> Option<String> {
+        let end = self.end.as_ref().filter(|_| !self.is_damaged)?;
+        let last_tick = self.last_tick?.number;
+        if last_tick < end.last_tick {
+            let first = last_tick + 1;
+            return Some(format!("ticks {first} to {} were left out", end.last_tick));
+        }
+        let missing = end.events.checked_sub(self.events).filter(|n| *n > 0)?;
+        Some(format!(
+            "{missing} of its {} events were left out; commands are events",
+            end.events
+        ))
     }
 
     fn locate_damage(&mut self, next: Option<&Tick>) {

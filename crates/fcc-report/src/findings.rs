@@ -28,7 +28,7 @@ pub(super) fn findings(report: &RunReport) -> Vec<String> {
 fn end(report: &RunReport) -> Option<String> {
     match &report.end {
         FileEnd::Cut(reason) => Some(format!(
-            "The recording was not finished: {reason}. The report covers the part before that."
+            "The recording is not whole: {reason}. The report covers what is there."
         )),
         FileEnd::BeingWritten(so_far) => Some(format!(
             "The recording is {so_far}. The report covers these."

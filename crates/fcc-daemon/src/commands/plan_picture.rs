@@ -174,6 +174,37 @@ pub(super) fn zones(plan: &Plan) -> String {
             "\nfence: circle of {radius_m:.0} m around {at}: {side}"
         );
     }
+    let back = plan.fence.return_point;
+    let rows = [
+        ("floor, above sea level", plan.fence.floor_m),
+        ("ceiling, above sea level", plan.fence.ceiling_m),
+    ];
+    for (name, altitude_m) in rows {
+        if let Some(altitude_m) = altitude_m {
+            let _ = write!(text, "\nfence: {name}: {altitude_m:.0} m");
+        }
+    }
+    if let Some((place, altitude_m)) = back {
+        let at = place_text(place);
+        let _ = write!(
+            text,
+            "\nfence: return to {at}, {altitude_m:.0} m above home"
+        );
+    }
+    for obstacle in &plan.obstacles {
+        let (at, radius_m, top_m) = (
+            place_text(obstacle.centre),
+            obstacle.radius_m,
+            obstacle.top_m,
+        );
+        let _ = write!(
+            text,
+            "\nobstacle: {radius_m:.0} m around {at}, up to {top_m:.0} m above sea level"
+        );
+    }
+    if let Some(cruise_mps) = plan.cruise_mps {
+        let _ = write!(text, "\ncruise speed: {cruise_mps:.1} m/s");
+    }
     for point in &plan.rally {
         let (at, altitude_m) = (place_text(point.place), point.altitude_m);
         let _ = write!(text, "\nrally point: {at}, {altitude_m:.0} m above home");

@@ -45,6 +45,7 @@ pub(super) fn read(text: &str) -> Read<'_> {
     let mut reader = Reader {
         text,
         places,
+        broken: problems.len(),
         problems,
     };
     let header = broken_header(text, &reader.problems);
@@ -115,6 +116,8 @@ pub(super) struct Reader<'t> {
     text: &'t str,
     places: Places<'t>,
     problems: Vec<Problem>,
+    /// The number of those of syntax, which come first.
+    broken: usize,
 }
 
 impl<'t> Keys<'t> for Reader<'t> {
@@ -212,6 +215,16 @@ impl<'t> Reader<'t> {
     }
 
     fn report(&mut self, line: Option<usize>, key: String, error: &Error) {
+        // The value of a line with an error of syntax is not what was written.
+        if line.is_some()
+            && self
+                .problems
+                .iter()
+                .take(self.broken)
+                .any(|p| p.line == line)
+        {
+            return;
+        }
         let key = (!key.is_empty()).then_some(key);
         self.problems.push(Problem {
             line,

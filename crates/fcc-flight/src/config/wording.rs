@@ -18,6 +18,14 @@ pub(super) fn reword(message: &str, key: Option<&str>) -> String {
         .or_else(|| unknown_value(message))
         .or_else(|| wrong_type(message, range.as_deref()))
         .or_else(|| missing_key(message, key));
+    let of_list = key.filter(|key| key.ends_with(']') && message.starts_with("invalid type: map"));
+    let plain = of_list
+        .and_then(|key| key.rsplit_once('['))
+        .map_or(plain, |(section, _)| {
+            Some(format!(
+                "is in double square brackets: write [{section}], there is one of it"
+            ))
+        });
     plain.unwrap_or_else(|| match message {
         "duplicate key" => "is given a second time: keep one".to_owned(),
         "wanted string or table" => "choose a text in quotes".to_owned(),
@@ -80,6 +88,7 @@ fn wrong_type(message: &str, range: Option<&str>) -> Option<String> {
         .strip_prefix("invalid type: ")
         .or_else(|| message.strip_prefix("invalid value: "))?;
     let (found, expected) = rest.rsplit_once(", expected ")?;
+    let is_fraction = found.starts_with("floating point ");
     let found = ["string ", "integer ", "floating point ", "boolean "]
         .into_iter()
         .find_map(|kind| found.strip_prefix(kind))
@@ -92,6 +101,12 @@ fn wrong_type(message: &str, range: Option<&str>) -> Option<String> {
         "map" => "a section".to_owned(),
         "sequence" => "a list".to_owned(),
         other => other.parse().map_or_else(|_| other.to_owned(), number),
+    };
+    // Of 80.0 the point is what is wrong.
+    let found = if is_fraction && found.bytes().all(|byte| byte.is_ascii_digit()) {
+        format!("{found}.0")
+    } else {
+        found
     };
     let wanted = match expected {
         "f32" | "f64" => "a number",
@@ -157,6 +172,14 @@ mod tests {
             (
                 "[budget]\ntick_us = []\n",
                 "f:3: budget.tick_us: is a list: choose a whole number, 1 to 1000000",
+            ),
+            (
+                "[realtime]\npriority = 80.0\n",
+                "f:3: realtime.priority: is 80.0: choose a whole number, 0 to 99",
+            ),
+            (
+                "[[loop]]\nrate_hz = 40\n",
+                "f:2: loop[0]: is in double square brackets: write [loop], there is one of it",
             ),
             (
                 "[recording]\nfolder = 5\n",

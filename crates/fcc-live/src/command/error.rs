@@ -13,8 +13,8 @@ pub enum CommandError {
     Unreachable(#[from] WatchError),
     /// The daemon runs and accepts no commands.
     #[error(
-        "fccd '{instance}', version {software}, accepts no commands of version {own}: it has commands = \
-         false under [telemetry], or is another version"
+        "fccd '{instance}', version {software}, accepts no commands of version {own}: it is ending, has \
+         commands = false under [telemetry], or is another version"
     )]
     NotAccepted {
         /// The daemon.

@@ -61,9 +61,26 @@ pub(crate) struct FenceReader {
     corners: usize,
 }
 
+/// A place to return to, corners and circles; rally points.
+const SUPPORTED: [u16; 6] = [
+    id::FENCE_RETURN_POINT,
+    id::FENCE_POLYGON_INCLUSION,
+    id::FENCE_POLYGON_EXCLUSION,
+    id::FENCE_CIRCLE_INCLUSION,
+    id::FENCE_CIRCLE_EXCLUSION,
+    id::RALLY_POINT,
+];
+
 impl FenceReader {
     /// Takes the next command, one of a fence or a rally point.
     pub(crate) fn take(&mut self, command: &Command) -> Result<(), Refusal> {
+        if !SUPPORTED.contains(&command.id) {
+            let given = command.id;
+            return refused(
+                "command",
+                &format!("{given} is not supported: give 5000 to 5004, or 5100"),
+            );
+        }
         let inclusion = matches!(
             command.id,
             id::FENCE_POLYGON_INCLUSION | id::FENCE_CIRCLE_INCLUSION
@@ -116,7 +133,7 @@ impl FenceReader {
                 }
                 self.fence.return_point = Some((place, altitude_m));
             }
-            other => return refused("command", &format!("{other} is not supported")),
+            _ => {}
         }
         Ok(())
     }

@@ -54,11 +54,12 @@ impl<'a> Node<'a> {
         }
     }
 
-    /// Refuses a key that is one of these but for the case of its letters.
-    pub(super) fn none_like(&self, known: &[&str]) -> Result<(), Refusal> {
+    /// Refuses a key whose name has a word of one of these, `(word, key)`, and is another.
+    pub(super) fn none_like(&self, known: &[(&str, &str)]) -> Result<(), Refusal> {
         for key in self.object()?.keys() {
-            let meant = known.iter().find(|known| known.eq_ignore_ascii_case(key));
-            if let Some(meant) = meant.filter(|meant| *meant != key) {
+            let words = key.to_ascii_lowercase();
+            let meant = known.iter().find(|(word, _)| words.contains(word));
+            if let Some((_, meant)) = meant.filter(|(_, meant)| meant != key) {
                 let given = quoted(key);
                 return self.refuse(format!("has a key \"{given}\": write \"{meant}\""));
             }

@@ -67,7 +67,7 @@ impl Reader {
             ));
         }
         version(root, 1)?;
-        root.none_like(&["geoFence", "rallyPoints"])?;
+        root.none_like(&[("fence", "geoFence"), ("rally", "rallyPoints")])?;
         let mission = root.key("mission")?;
         let done = self.mission(&mission);
         self.note(done);

@@ -20,6 +20,11 @@ pub trait Commandable: Telemetry<Command: PartialEq> {
     fn refusal(_: &Notice) -> Option<&'static str> {
         None
     }
+
+    /// Whether the controller may refuse a command.
+    fn may_refuse(_: &Self::Command) -> bool {
+        true
+    }
 }
 
 /// Set points that are commanded together.
@@ -273,6 +278,10 @@ mod flight {
 
         fn refusal(notice: &Notice) -> Option<&'static str> {
             why_refused(notice)
+        }
+
+        fn may_refuse(command: &AutopilotCommand) -> bool {
+            !matches!(command, AutopilotCommand::Heartbeat(_))
         }
     }
 }

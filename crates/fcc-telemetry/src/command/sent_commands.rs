@@ -23,6 +23,8 @@ struct Waiting<R> {
     asked: PendingCommand,
     /// The number of its parts that the loop has not read yet.
     unread: VecDeque<LoopCommand<R>>,
+    /// Whether the controller may refuse it.
+    may_be_refused: bool,
     /// The tick that read the last of it.
     read_in: Option<u64>,
     /// Why it was refused, if it was.
@@ -96,9 +98,14 @@ impl<C: Commandable> SentCommands<C> {
                 return Some((asked.id, Verdict::Refused(why)));
             }
         }
+        let may_be_refused = unread.iter().any(|command| match command {
+            LoopCommand::Controller(command) => C::may_refuse(command),
+            _ => false,
+        });
         self.waiting.push_back(Waiting {
             asked,
             unread,
+            may_be_refused,
             read_in: None,
             refusal: None,
         });
@@ -146,12 +153,11 @@ impl<C: Commandable> SentCommands<C> {
                 let Some(refusal) = C::refusal(&notice) else {
                     return;
                 };
-                for waiting in self.waiting.iter_mut().filter(|waiting| {
-                    let command = &waiting.asked.command;
-                    waiting.read_in == Some(event.tick)
-                        && command.needs_control::<C>()
-                        && matches!(command, Command::Set(_) | Command::ReplacePlan { .. })
-                }) {
+                for waiting in self
+                    .waiting
+                    .iter_mut()
+                    .filter(|waiting| waiting.read_in == Some(event.tick) && waiting.may_be_refused)
+                {
                     waiting.refusal = Some(refusal.to_owned());
                 }
             }
@@ -339,6 +345,34 @@ mod tests {
             words.contains("standby") && words.contains("while engaged"),
             "{words}"
         );
+    }
+
+    #[test]
+    fn an_altimeter_setting_may_be_refused_and_a_heartbeat_not() {
+        use fcc_core::framework::Notice;
+        use fcc_fixed_wing::COMMAND_ANSWER;
+
+        let mut commands = commands();
+        let setting = Command::set([("altimeter_setting_pa", 95_000.0)]);
+        waiting(&mut commands, 1, setting);
+        waiting(&mut commands, 2, Command::set([("heartbeat_s", 5.0)]));
+        for command in [
+            AutopilotCommand::AltimeterSetting(95_000.0),
+            AutopilotCommand::Heartbeat(5.0),
+        ] {
+            let read = EventKind::CommandReceived(LoopCommand::Controller(command));
+            commands.event(&event(3, read));
+        }
+        let answer = Notice {
+            kind: COMMAND_ANSWER,
+            amount_permille: 1_000,
+            ..Notice::default()
+        };
+        commands.event(&event(3, EventKind::Noticed(answer)));
+        let first = commands.verdict(3, State::Engaged);
+        assert!(matches!(first, Some((1, Verdict::Refused(_)))), "{first:?}");
+        let carried_out = Some((2, Verdict::CarriedOut { tick: 3 }));
+        assert_eq!(commands.verdict(3, State::Engaged), carried_out);
     }
 
     #[test]

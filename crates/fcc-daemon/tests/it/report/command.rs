@@ -69,7 +69,7 @@ fn a_cut_file_is_reported_up_to_its_cut() {
     let output = fccd(&[file.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(13));
     let text = String::from_utf8(output.stdout).unwrap();
-    assert!(text.contains("The recording was not finished"), "{text}");
+    assert!(text.contains("The recording is not whole"), "{text}");
     assert!(text.contains("25.0000 ms"), "{text}");
 }
 
