@@ -4,7 +4,7 @@ import L from "leaflet";
 import { message, sendCommand, writable, type Command } from "../../core/api";
 import { button, h, setClass, setText } from "../../core/dom";
 import { slide } from "../../core/slide";
-import { toShown, toSi, unitOf } from "../../core/units";
+import { inUnits, toShown, toSi, unitOf } from "../../core/units";
 import { toPlace } from "../../map/plan-layer";
 import { daemon } from "../../live/session";
 
@@ -71,7 +71,7 @@ export class Commands {
       const tick = await sendCommand(instance, command);
       this.#say(`${name}: carried out at tick ${tick}`, "good");
     } catch (error) {
-      this.#say(`${name} refused: ${message(error)}`, "bad");
+      this.#say(`${name} refused: ${inUnits(message(error))}`, "bad");
     }
   }
 
