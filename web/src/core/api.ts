@@ -199,6 +199,5 @@ export async function sendCommand(instance: string, command: Command): Promise<n
 export const message = (error: unknown): string => error instanceof Error ? error.message : String(error);
 
 export function socketUrl(path: string): string {
-  const scheme = location.protocol === "https:" ? "wss:" : "ws:";
-  return `${scheme}//${location.host}/api${path}`;
+  return `${location.protocol === "https:" ? "wss:" : "ws:"}//${location.host}/api${path}`;
 }

@@ -26,6 +26,7 @@ const AGED_EVERY_MS = 250;
 const TEXTS_EVERY_MS = 100;
 const PLAN_EVERY_MS = 5000;
 const FIRST_ZOOM = 13;
+const STANDS_MPS = 1;
 /** As the daemon reports this command, whoever gave it. */
 const GO_TO = /go to (-?[\d.]+)°, (-?[\d.]+)°/;
 
@@ -132,7 +133,7 @@ export function openFly(): View {
     if (!record) {
       display.show(null);
       set_points.show(null);
-      commands.show({ engaged: false, mode: "", inhibits: [], fresh: false, altitude_m: NaN });
+      commands.show({ engaged: false, mode: "", inhibits: [], fresh: false, landed: false, altitude_m: NaN });
       return;
     }
     const state = flightState(record, age);
@@ -150,7 +151,7 @@ export function openFly(): View {
     const mode = record.named("desired_guidance_mode");
     const fresh = freshness(age) !== "lost";
     set_points.setEditable(state.engaged && fresh, !state.engaged ? "Nothing is held: not engaged." : mode === "hold" ? "" : `A set point ends mode ${mode.replace("takeoff", "take-off")}, and is held.`);
-    commands.show({ engaged: state.engaged, mode, inhibits: record.flags("engage_inhibits"), fresh, altitude_m: state.altitude_m });
+    commands.show({ engaged: state.engaged, mode, inhibits: record.flags("engage_inhibits"), fresh, landed: state.engaged && mode === "land" && state.ground_speed_mps < STANDS_MPS, altitude_m: state.altitude_m });
     showConditions(record, state.engaged);
     for (const { one, value, box } of cells) {
       setText(value, one.text(record, state));
