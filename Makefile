@@ -410,7 +410,7 @@ bench-live: $(STAMPS)/rust build $(STAMPS)/python ## Fly with and without 1,000 
 	cargo build --locked --release -p fcc-live --features flight --example watch
 	$(PYTHON) -m fcc_hil bench-live --fccd $(FCCD) --watcher $(TARGET)/release/examples/watch $(LIVE)
 
-# For bench-ground, such as MEASURE="--soak-minutes 60".
+# For bench-ground, such as MEASURE="--only soak --soak-minutes 480".
 MEASURE ?=
 
 bench-ground: build station $(STAMPS)/python $(STAMPS)/browser ## Measure the ground station and its page; soak it (50 minutes; MEASURE=)

@@ -389,15 +389,18 @@ def main() -> None:
     options.add_argument("--rounds", type=int, default=3)
     options.add_argument("--heap-minutes", type=float, default=10.0)
     options.add_argument("--soak-minutes", type=float, default=20.0)
+    options.add_argument("--only", nargs="+", choices=["viewers", "page", "soak"], help="parts")
     given = options.parse_args()
     rows: list[Row] = []
     with Progress(disable=not sys.stderr.isatty()) as progress:
-        parts: list[Callable[[Measured], list[Row]]] = [
-            lambda of: lateness(of, given.seconds, given.rounds, progress),
-            lambda of: page_figures(of, given.heap_minutes, progress),
-            lambda of: soak(of, given.soak_minutes, progress),
-        ]
-        for part in parts:
+        parts: dict[str, Callable[[Measured], list[Row]]] = {
+            "viewers": lambda of: lateness(of, given.seconds, given.rounds, progress),
+            "page": lambda of: page_figures(of, given.heap_minutes, progress),
+            "soak": lambda of: soak(of, given.soak_minutes, progress),
+        }
+        for name, part in parts.items():
+            if given.only and name not in given.only:
+                continue
             with tempfile.TemporaryDirectory() as folder:
                 measured = Measured(Path(folder), given.fccd.resolve(), given.station.resolve())
                 rows += part(measured)

@@ -12,6 +12,7 @@ from ground_station import Station, waited
 from playwright.sync_api import Page
 
 from air import Air, Visit
+from visitor import axe
 
 HOSTILE = "<img src=x onerror=document.title='owned'>"
 MANY = "n => document.querySelectorAll('.items tbody tr:not(.problem)').length === n"
@@ -67,7 +68,7 @@ def test_a_plan_drawn_by_taps_is_read_back_by_its_hash(
     assert abs(north[0] - north[1]) < 1e-3 < north[1] - north[2]
     # Home is on the runway, as the vehicle's plan has it.
     drawn, flown = draft["plan"]["home"], ground.vehicle()["plan"]["home"]
-    assert abs(drawn["altitude_m"] - flown["altitude_m"]) <= 2
+    assert drawn["altitude_m"] == flown["altitude_m"]
     # Another program than the station computes the same hash of the exported file.
     with page.expect_download() as download:
         page.get_by_role("button", name="Export .plan").click()
@@ -156,6 +157,37 @@ def test_a_plan_with_a_problem_is_not_uploaded(ground: Station, visit: Visit) ->
     )
     assert page.get_by_role("button", name="Upload to vehicle").is_disabled()
     assert ground.vehicle()["hash"] == before
+
+
+def test_a_refused_value_says_at_its_cell_how_to_mend_it(air: Air, visit: Visit) -> None:
+    page = visit(air.station).open("plan")
+    draw(page)
+    holds = saved(page, air.station, "plan-1", lambda plan: altitudes(plan)[2:3] == [260])["plan"]
+    field = page.get_by_label("Altitude of item 3, m")
+    # A letter, nothing, and more than the table's 20,000 m.
+    for typed in ("26o", "", "20001"):
+        field.fill(typed)
+        page.keyboard.press("Tab")
+        # It stays as typed, also in the table that the focus of another row draws anew.
+        page.get_by_label("Altitude of item 1, m").focus()
+        page.wait_for_selector("tr.selected [data-key=item-0-altitude]")
+        assert field.input_value() == typed
+        assert field.get_attribute("aria-invalid") == "true"
+        why = page.locator(f"#{field.get_attribute('aria-describedby')}")
+        assert (typed or "Nothing") in why.inner_text()
+        assert "The plan keeps 260" in why.inner_text()
+        assert "Altitude of item 3" in page.locator(".plan-side > [role=status]").inner_text()
+    assert "type -1000 m to 20000 m" in why.inner_text()
+    assert axe(page) == []
+    assert air.station.ask("GET", "/api/drafts/plan-1")[1]["plan"] == holds
+    field.focus()
+    page.keyboard.press("Escape")
+    assert field.input_value() == "260"
+    assert why.inner_text() == ""
+    # A decimal comma is a point.
+    field.fill("261,5")
+    page.keyboard.press("Enter")
+    saved(page, air.station, "plan-1", lambda plan: altitudes(plan)[2:3] == [261.5])
 
 
 def test_markup_of_others_stays_text(air: Air, visit: Visit, tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import { worldX, worldY } from "../src/map/mercator";
 import { TrackPoints } from "../src/map/track-points";
 import { History } from "../src/plan/history";
 import { emptyPlan, inserted, newItem, removed, same, swapped, type Item, type Plan } from "../src/plan/model";
-import { duration, fixed, shown, toSi, unitSystem, withUnit } from "../src/core/units";
+import { duration, fixed, inUnits, shown, toSi, unitSystem, withUnit } from "../src/core/units";
 import { decimate } from "../src/views/flights/decimate";
 
 const at = { latitude_deg: 47, longitude_deg: 8 };
@@ -71,6 +71,19 @@ describe("units", () => {
     expect(toSi("altitude", 1000)).toBeCloseTo(304.8, 9);
     unitSystem.set("metric");
     expect(withUnit("speed", 51.444)).toBe("51.4\u202fm/s");
+  });
+
+  it("of the daemon's texts are converted, number and unit together", () => {
+    unitSystem.set("metric");
+    // 3,000 ft are 914.4 m, 60 kt 30.87 m/s, 70 kt 36.01 m/s, 1,640 ft 499.9 m: by the definitions.
+    expect(inUnits("go to 47.123456°, -8.100000°, 3000 ft")).toBe("go to 47.123456°, -8.100000°, 914\u202fm");
+    expect(inUnits("airspeed is 300 kt: choose 60 to 70 kt")).toBe("airspeed is 154.3\u202fm/s: choose 30.9 to 36.0\u202fm/s");
+    expect(inUnits("choose -1640 to 3000 ft")).toBe("choose \u2212500 to 914\u202fm");
+    expect(inUnits("item 3 of the plan is reached, 15 m off its altitude")).toBe("item 3 of the plan is reached, 15 m off its altitude");
+    unitSystem.set("aviation");
+    expect(inUnits("15 kt of tail wind")).toBe("15 kt of tail wind");
+    expect(inUnits("airspeed 30.87 m/s, 2 m/s², 5 ftp")).toBe("airspeed 60.0\u202fkt, 2 m/s², 5 ftp");
+    unitSystem.set("metric");
   });
 
   it("show north as 360 and a heading in three digits", () => {

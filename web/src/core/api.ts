@@ -7,20 +7,12 @@ export type SetPoint = { name: string; unit: string; lowest: number; highest: nu
 
 export interface Daemon {
   instance: string;
-  plant: string;
   software: string;
   rate_hz: number;
-  process_id: number;
-  guidance_mode: string | null;
   /** When a plan can be uploaded. */
   plan_upload?: "standby" | "flight" | null;
   setpoints: SetPoint[];
-  aircraft?: {
-    stall_mps?: number | null;
-    min_mps?: number | null;
-    max_mps?: number | null;
-    never_exceed_mps?: number | null;
-  } | null;
+  aircraft?: { stall_mps?: number | null; min_mps?: number | null; max_mps?: number | null; never_exceed_mps?: number | null } | null;
 }
 
 export interface Status {
@@ -42,7 +34,6 @@ export interface Draft {
 export interface DraftEntry {
   name: string;
   revision: number;
-  changed_utc_s: number;
   items: number;
   hash: string;
 }
@@ -111,11 +102,7 @@ export interface Finding {
 }
 
 export class Refused extends Error {
-  constructor(
-    readonly status: number,
-    message: string,
-    readonly body: unknown,
-  ) {
+  constructor(readonly status: number, message: string, readonly body: unknown) {
     super(message);
   }
 }
@@ -158,12 +145,7 @@ async function failure(response: Response): Promise<Refused> {
   return new Refused(response.status, message, body);
 }
 
-export async function request(
-  method: string,
-  path: string,
-  body?: unknown,
-  signal?: AbortSignal,
-): Promise<Response> {
+export async function request(method: string, path: string, body?: unknown, signal?: AbortSignal): Promise<Response> {
   const headers: Record<string, string> = {};
   const token = sessionStorage.getItem(TOKEN);
   if (token) headers["authorization"] = `Bearer ${token}`;
@@ -205,27 +187,17 @@ export function commandEnvelope(): { number: number; deadline_ms_utc: number } {
 }
 
 export type Command =
-  | "engage"
-  | "disengage"
-  | "pause"
-  | "resume"
-  | "return"
-  | "land"
+  | "engage" | "disengage" | "pause" | "resume" | "return" | "land"
   | { set: Record<string, number> }
   | { go_to: { latitude_deg: number; longitude_deg: number; altitude_m: number } };
 
 export async function sendCommand(instance: string, command: Command): Promise<number> {
-  const answer = await postJson<{ carried_out: number }>(`/live/${part(instance)}/command`, {
-    ...commandEnvelope(),
-    command,
-  });
+  const answer = await postJson<{ carried_out: number }>(`/live/${part(instance)}/command`, { ...commandEnvelope(), command });
   return answer.carried_out;
 }
 
-export const message = (error: unknown): string =>
-  error instanceof Error ? error.message : String(error);
+export const message = (error: unknown): string => error instanceof Error ? error.message : String(error);
 
 export function socketUrl(path: string): string {
-  const scheme = location.protocol === "https:" ? "wss:" : "ws:";
-  return `${scheme}//${location.host}/api${path}`;
+  return `${location.protocol === "https:" ? "wss:" : "ws:"}//${location.host}/api${path}`;
 }

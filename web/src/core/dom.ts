@@ -12,11 +12,7 @@ function apply(element: Element, props: Props): void {
   }
 }
 
-export function h<K extends keyof HTMLElementTagNameMap>(
-  tag: K,
-  props: Props = {},
-  ...children: Child[]
-): HTMLElementTagNameMap[K] {
+export function h<K extends keyof HTMLElementTagNameMap>(tag: K, props: Props = {}, ...children: Child[]): HTMLElementTagNameMap[K] {
   const element = document.createElement(tag);
   apply(element, props);
   append(element, children);
@@ -67,7 +63,6 @@ const ICONS = {
   up: "M12 19V6M6 11l6-6 6 6",
   down: "M12 5v13M6 13l6 6 6-6",
   add: "M12 5v14M5 12h14",
-  close: "M6 6l12 12M18 6L6 18",
   centre: "M12 3v4M12 17v4M3 12h4M17 12h4M8 12a4 4 0 108 0 4 4 0 10-8 0",
   sun: "M8 12a4 4 0 108 0 4 4 0 10-8 0M12 3v2M12 19v2M3 12h2M19 12h2M5.600 5.600L7 7M17 17l1.400 1.400M5.600 18.400L7 17M17 7l1.400-1.400",
   moon: "M19.500 14A8 8 0 0110 4.500 8 8 0 1019.500 14z",
@@ -77,7 +72,6 @@ const ICONS = {
   upload: "M12 16V5M7 9l5-5 5 5M4.500 20h15",
   minus: "M5 12h14",
   fit: "M4 9V4h5M20 9V4h-5M4 15v5h5M20 15v5h-5",
-  sound: "M4 12h16",
 } as const;
 export type IconName = keyof typeof ICONS;
 
@@ -108,16 +102,10 @@ export function button(
 }
 
 /** One of a few choices, shown side by side. */
-export function choice<T extends string>(
-  label: string,
-  options: readonly (readonly [T, string])[],
-  current: () => T,
-  choose: (value: T) => void,
-): HTMLElement {
+export function choice<T extends string>(label: string, options: readonly (readonly [T, string])[], current: () => T, choose: (value: T) => void): HTMLElement {
   const group = h("div", { class: "segmented", role: "group", "aria-label": label });
   const mark = () => {
-    for (const item of group.children)
-      item.setAttribute("aria-pressed", String(item.getAttribute("data-value") === current()));
+    for (const item of group.children) item.setAttribute("aria-pressed", String(item.getAttribute("data-value") === current()));
   };
   for (const [value, text] of options)
     group.append(h("button", { type: "button", "data-value": value, click: () => (choose(value), mark()) }, text));

@@ -1,16 +1,18 @@
 /** Fields of tables. Each keeps a key, so that the focus survives a new table. */
 
-import { h } from "./dom";
+import { h, setText } from "./dom";
+import { watched } from "./state";
 import { digitsOf, toShown, toSi, unitOf, type Quantity } from "./units";
 
 export interface NumberField {
   key: string;
   label: string;
+  unit?: string;
   value: number | null;
   digits: number;
   /** Zeros at the end are shown. */
   fixed?: boolean;
-  /** Without it an empty field is set back. */
+  /** Without it an empty field is refused. */
   empty?: string;
   lowest?: number;
   highest?: number;
@@ -22,44 +24,74 @@ export interface NumberField {
 
 const text = (value: number | null, digits: number): string => (value === null ? "" : String(Number(value.toFixed(digits))));
 
-export function numberField(field: NumberField): HTMLInputElement {
+/** What was typed and refused, by the keys of the fields: a new table shows it again. */
+const typed = new Map<string, { text: string; before: string; why: string }>();
+/** The newest, for who does not see the field. */
+export const refusal = watched("");
+
+/** Why it is refused and what to do, or null. */
+function refused(field: NumberField, given: string): string | null {
+  const { lowest = -Infinity, highest = Infinity, digits } = field;
+  if (given === "") return field.empty === undefined ? "a number is needed" : null;
+  const value = Number(given.replace(",", "."));
+  if (!Number.isFinite(value)) return "type digits, as in 12.5";
+  if (field.step === 1 && !Number.isInteger(value)) return "type a whole number";
+  if (value >= lowest && value <= highest) return null;
+  const limit = (one: number) => `${text(one, digits)}${field.unit ? ` ${field.unit}` : ""}`;
+  return highest === Infinity ? `type ${limit(lowest)} or more` : `type ${limit(lowest)} to ${limit(highest)}`;
+}
+
+export function numberField(field: NumberField): HTMLElement {
   const before = field.fixed && field.value !== null ? field.value.toFixed(field.digits) : text(field.value, field.digits);
+  const id = `why-${field.key}`;
   const input = h("input", {
-    type: "number", class: `number ${field.class ?? ""}`, "data-key": field.key, "aria-label": field.label, step: field.step ?? "any",
-    min: field.lowest ?? null, max: field.highest ?? null, placeholder: field.empty ?? null, value: before, disabled: field.disabled ?? false, inputmode: "decimal",
+    type: "text", class: `number ${field.class ?? ""}`, "data-key": field.key, "aria-label": field.label, "aria-describedby": id,
+    placeholder: field.empty ?? null, disabled: field.disabled ?? false, inputmode: "decimal", autocomplete: "off",
   });
+  const why = h("span", { class: "refused", id });
+  const show = () => {
+    let one = typed.get(field.key);
+    if (one && one.before !== before) one = void typed.delete(field.key);
+    input.value = one?.text ?? before;
+    input.setAttribute("aria-invalid", String(one !== undefined));
+    setText(why, one ? `${one.text || "Nothing"} is refused: ${one.why}. The plan keeps ${before || field.empty}; Esc brings it back.` : "");
+  };
   input.addEventListener("change", () => {
-    if (input.value === before) return;
-    if (input.value.trim() === "") {
-      if (field.empty === undefined) input.value = before;
-      else field.changed(null);
-      return;
-    }
-    const value = Number(input.value);
-    if (!Number.isFinite(value) || !input.checkValidity()) {
-      input.reportValidity();
-      input.value = before;
-      return;
-    }
-    field.changed(value);
+    const given = input.value.trim();
+    const reason = refused(field, given);
+    typed.delete(field.key);
+    if (reason !== null) typed.set(field.key, { text: given, before, why: reason });
+    show();
+    refusal.set(why.textContent && `${field.label}: ${why.textContent}`);
+    if (reason !== null || given === before) return;
+    // Until it is drawn anew.
+    input.value = given;
+    field.changed(given === "" ? null : Number(given.replace(",", ".")));
   });
-  return input;
+  input.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape") return;
+    typed.delete(field.key);
+    show();
+    refusal.set("");
+  });
+  show();
+  return h("span", { class: "field" }, input, field.unit ? h("span", { class: "unit" }, field.unit) : null, why);
 }
 
 /** In the chosen units, with the unit beside it. */
 export function quantityField(quantity: Quantity, field: Omit<NumberField, "digits">): HTMLElement {
-  const digits = digitsOf(quantity);
+  const unit = unitOf(quantity);
   const { lowest, highest, ...rest } = field;
-  const input = numberField({
+  return numberField({
     ...rest,
-    label: `${field.label}, ${unitOf(quantity)}`,
+    label: `${field.label}, ${unit}`,
+    unit,
     value: field.value === null ? null : toShown(quantity, field.value),
-    digits,
+    digits: digitsOf(quantity),
     ...(lowest === undefined ? {} : { lowest: toShown(quantity, lowest) }),
     ...(highest === undefined ? {} : { highest: toShown(quantity, highest) }),
     changed: (value) => field.changed(value === null ? null : toSi(quantity, value)),
   });
-  return h("span", { class: "field" }, input, h("span", { class: "unit" }, unitOf(quantity)));
 }
 
 export function selectField<T extends string>(

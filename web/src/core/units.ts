@@ -76,6 +76,19 @@ export function withUnit(quantity: Quantity, si: number): string {
   return `${shown(quantity, si)}${unit === "°" ? "" : "\u202f"}${unit}`;
 }
 
+const WRITTEN = /(\u2212|-)?(\d[\d.]*)(?: to (-?\d[\d.]*))? (ft\/min|ft|kt|NM|m\/s|km)(?![\w/²])/g;
+
+/** A text of the daemon with its speeds and altitudes in the chosen units. */
+export function inUnits(text: string): string {
+  const other = UNITS[unitSystem.get() === "metric" ? "aviation" : "metric"];
+  return text.replace(WRITTEN, (all: string, minus: string | undefined, from: string, to: string | undefined, unit: string) => {
+    const quantity = (Object.keys(other) as Quantity[]).find((one) => other[one].unit === unit);
+    if (!quantity) return all;
+    const converted = (number: string) => shown(quantity, Number(number) / other[quantity].factor);
+    return `${converted((minus ? "-" : "") + from)}${to ? ` to ${converted(to)}` : ""}\u202f${unitOf(quantity)}`;
+  });
+}
+
 export function duration(seconds: number): string {
   if (!Number.isFinite(seconds)) return MISSING;
   const whole = Math.max(0, Math.round(seconds));

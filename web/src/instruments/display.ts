@@ -79,8 +79,6 @@ export class FlightDisplay {
     if (!context) return;
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     const colours = this.#colours;
-    context.fillStyle = colours.instrument;
-    context.fillRect(0, 0, width, height);
     const state = this.#state;
     const body = height - HEADING_PX;
     const speed: Box = { x: 0, y: 0, width: TAPE_PX, height: body };
@@ -88,6 +86,8 @@ export class FlightDisplay {
     const attitude: Box = { x: TAPE_PX, y: 0, width: width - 2 * TAPE_PX, height: body };
     const heading: Box = { x: 0, y: body, width, height: HEADING_PX };
     if (!state) {
+      context.fillStyle = colours.instrument;
+      context.fillRect(0, 0, width, height);
       for (const box of [speed, altitude, attitude, heading]) cross(context, box, "lost", colours.caution);
       return;
     }

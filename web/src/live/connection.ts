@@ -7,28 +7,20 @@ export interface RunStatus {
   time_s?: number;
   ticks?: number;
   missed?: number;
-  lateness_p50_us?: number | null;
-  lateness_p99_us?: number | null;
-  lateness_p99_9_us?: number | null;
-  lateness_max_us?: number | null;
+  lateness_p50_us?: number | null; lateness_p99_us?: number | null; lateness_p99_9_us?: number | null; lateness_max_us?: number | null;
   lateness_counts?: number[] | null;
-  recorder?: string | null;
-  recording?: string | null;
-  recorded?: number | null;
-  not_recorded?: number | null;
-  recording_bytes?: number | null;
+  recorder?: string | null; recording?: string | null; recorded?: number | null; not_recorded?: number | null; recording_bytes?: number | null;
   watchers?: number | null;
-  load?: number[] | null;
-  processors?: number | null;
-  temperature_c?: number | null;
-  memory_available_bytes?: number | null;
-  disk_available_bytes?: number | null;
+  load?: number[] | null; processors?: number | null; temperature_c?: number | null;
+  memory_available_bytes?: number | null; disk_available_bytes?: number | null;
   station?: { clients?: number; cpu_percent?: number | null; memory_bytes?: number | null } | null;
 }
 
 export interface LiveListener {
   record?(record: LiveRecord): void;
   event?(event: FlightEvent): void;
+  /** Where it was until now, in degrees. */
+  track?(places: [number, number][]): void;
   status?(status: RunStatus): void;
   /** Connected, or why not. */
   link?(connected: boolean, reason: string): void;
@@ -38,6 +30,7 @@ export interface LiveListener {
 
 interface Message {
   hello?: { columns: Column[]; rate_hz: number; run_started_utc_s: number };
+  track?: [number, number][];
   event?: FlightEvent;
   status?: RunStatus;
   end?: string;
@@ -105,6 +98,7 @@ export class Connection {
       this.listener.hello?.(message.hello.run_started_utc_s);
       this.listener.link?.(true, "");
     }
+    if (message.track) this.listener.track?.(message.track);
     if (message.event) this.listener.event?.(message.event);
     if (message.status) {
       this.status = message.status;

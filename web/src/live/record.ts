@@ -39,14 +39,8 @@ export class Layout {
 export class LiveRecord {
   readonly #view: DataView;
 
-  constructor(
-    readonly layout: Layout,
-    buffer: ArrayBuffer,
-  ) {
-    if (buffer.byteLength !== layout.bytes)
-      throw new RangeError(
-        `a record of ${buffer.byteLength} bytes, where the columns give ${layout.bytes}`,
-      );
+  constructor(readonly layout: Layout, buffer: ArrayBuffer) {
+    if (buffer.byteLength !== layout.bytes) throw new RangeError(`a record of ${buffer.byteLength} bytes, where the columns give ${layout.bytes}`);
     this.#view = new DataView(buffer);
   }
 

@@ -73,6 +73,10 @@ export function choose(instance: string): void {
       for (const listener of record_listeners) listener(record);
     },
     event: addEvent,
+    track: (places) => {
+      flown.clear();
+      for (const [latitude_deg, longitude_deg] of places) flown.add(latitude_deg, longitude_deg);
+    },
     status: (status) => run.set(status),
     hello: (started) => {
       if (started !== run_started_utc_s.get() && run_started_utc_s.get() !== 0) {

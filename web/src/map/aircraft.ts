@@ -67,7 +67,8 @@ export class AircraftLayer extends L.Layer {
     this.#ahead.classList.toggle("hidden", !shown);
     if (!shown) return;
     const px_per_m = (256 * 2 ** map.getZoom()) / EQUATOR_M / Math.max(0.05, Math.cos((pose.latitude_deg * Math.PI) / 180));
-    this.#ahead.style.width = `${Math.round(speed * AHEAD_S * px_per_m)}px`;
+    // In steps of its dots: another width is laid out anew.
+    this.#ahead.style.width = `${4 * Math.round((speed * AHEAD_S * px_per_m) / 4)}px`;
     this.#ahead.style.transform = `rotate(${Math.atan2(-pose.north_mps, pose.east_mps).toFixed(2)}rad)`;
   }
 }

@@ -1,4 +1,4 @@
-/** A layer of the map that is drawn on one canvas of the map's size. */
+/** A layer of the map that is drawn on one opaque canvas of the map's size. */
 
 import L from "leaflet";
 import { worldX, worldY } from "./mercator";
@@ -24,12 +24,9 @@ export abstract class CanvasLayer extends L.Layer {
   readonly #draw = () => this.#redraw();
   readonly #moved = () => this.invalidate();
 
-  readonly #opaque: boolean;
-
-  constructor(options: { pane: string; opaque: boolean }) {
+  constructor(pane: string) {
     super();
-    L.setOptions(this, { pane: options.pane });
-    this.#opaque = options.opaque;
+    L.setOptions(this, { pane });
   }
 
   abstract draw(context: CanvasRenderingContext2D, view: Projection): void;
@@ -70,10 +67,9 @@ export abstract class CanvasLayer extends L.Layer {
       canvas.style.height = `${size.y}px`;
     }
     L.DomUtil.setPosition(canvas, map.containerPointToLayerPoint([0, 0]));
-    const context = canvas.getContext("2d", { alpha: !this.#opaque });
+    const context = canvas.getContext("2d", { alpha: false });
     if (!context) return;
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    context.clearRect(0, 0, size.x, size.y);
     const scale = 2 ** map.getZoom();
     const centre = map.getCenter();
     const x0 = Math.round(worldX(centre.lng) * scale - size.x / 2);

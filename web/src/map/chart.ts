@@ -145,7 +145,7 @@ export function createChart(label: string): Chart {
     minZoom: 2, maxZoom: 19, worldCopyJump: false, maxBoundsViscosity: 1, keyboardPanDelta: 60,
   });
   map.setView(INITIAL, 3);
-  const base = new BaseLayer({ pane: "tilePane", opaque: true }).addTo(map);
+  const base = new BaseLayer("tilePane").addTo(map);
   controls.append(
     button("Zoom in", () => map.zoomIn(), { icon: "add", bare: true, class: "map-button" }),
     button("Zoom out", () => map.zoomOut(), { icon: "minus", bare: true, class: "map-button" }),

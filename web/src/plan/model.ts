@@ -14,15 +14,7 @@ export type LoiterEnd = "never" | "altitude" | { turns: number } | { seconds: nu
 
 export type Item =
   | { kind: "waypoint"; place: Place; altitude: Altitude; radius_m: number | null }
-  | {
-      kind: "loiter";
-      place: Place | null;
-      altitude: Altitude;
-      radius_m: number | null;
-      clockwise: boolean;
-      end: LoiterEnd;
-      leave_towards_next: boolean;
-    }
+  | { kind: "loiter"; place: Place | null; altitude: Altitude; radius_m: number | null; clockwise: boolean; end: LoiterEnd; leave_towards_next: boolean }
   | { kind: "return" }
   | { kind: "land"; place: Place | null; altitude: Altitude; abort_altitude_m: number | null }
   | { kind: "takeoff"; place: Place | null; altitude: Altitude; pitch_deg: number | null }
@@ -50,13 +42,7 @@ export interface Plan {
   home: { place: Place; altitude_m: number } | null;
   cruise_mps: number | null;
   items: Item[];
-  fence: {
-    polygons: FencePolygon[];
-    circles: FenceCircle[];
-    floor_m: number | null;
-    ceiling_m: number | null;
-    return_point: [Place, number] | null;
-  };
+  fence: { polygons: FencePolygon[]; circles: FenceCircle[]; floor_m: number | null; ceiling_m: number | null; return_point: [Place, number] | null };
   rally: { place: Place; altitude_m: number }[];
   obstacles: { centre: Place; radius_m: number; top_m: number }[];
 }
@@ -89,9 +75,7 @@ export const emptyPlan = (): Plan => ({
 });
 
 export const placeOf = (item: Item): Place | null => ("place" in item ? item.place : null);
-export const altitudeOf = (item: Item): Altitude | null =>
-  "altitude" in item ? item.altitude : null;
-export const hasPlace = (item: Item): boolean => "place" in item;
+export const altitudeOf = (item: Item): Altitude | null => "altitude" in item ? item.altitude : null;
 
 const FIRST_ALTITUDE_M = 150;
 
@@ -174,8 +158,5 @@ export function same(a: unknown, b: unknown): boolean {
   if (Object.is(a, b)) return true;
   if (typeof a !== "object" || typeof b !== "object" || a === null || b === null) return false;
   const keys = Object.keys(a);
-  return (
-    keys.length === Object.keys(b).length &&
-    keys.every((key) => same((a as Record<string, unknown>)[key], (b as Record<string, unknown>)[key]))
-  );
+  return keys.length === Object.keys(b).length && keys.every((key) => same((a as Record<string, unknown>)[key], (b as Record<string, unknown>)[key]));
 }

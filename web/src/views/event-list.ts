@@ -1,8 +1,8 @@
 /** Events, newest first. Their texts are data. */
 
 import type { FlightEvent } from "../core/api";
-import { h } from "../core/dom";
-import { duration } from "../core/units";
+import { h, setText } from "../core/dom";
+import { duration, inUnits, unitSystem } from "../core/units";
 
 const SHOWN = 200;
 
@@ -18,9 +18,13 @@ export function eventItem(event: FlightEvent): HTMLElement {
     "li",
     { "data-tone": eventTone(event.code) },
     h("span", { class: "event-time" }, duration(event.time_s)),
-    h("span", { class: "event-text" }, event.text),
+    h("span", { class: "event-text", "data-text": event.text }, inUnits(event.text)),
   );
 }
+
+unitSystem.watch(() => {
+  for (const one of document.querySelectorAll<HTMLElement>(".event-text")) setText(one, inUnits(one.dataset["text"] ?? ""));
+});
 
 export class EventList {
   readonly #list = h("ol", {});

@@ -131,3 +131,19 @@ def test_viewer_cannot_command(visit, mock):
     page = visit(link=mock.link.split("#")[0]).open("fly")
     assert page.locator(".slide").is_disabled()
     assert "View only" in page.locator(".viewer").inner_text()
+
+
+def test_who_has_landed_is_told_to_disengage(visit, mock):
+    land = 8
+    page = visit().open("fly")
+    mock.set(pose={"state": 1, "desired_guidance_mode": land, "estimated_north_mps": 20})
+    page.wait_for_selector(".slide-text:text-is('Slide to disengage')")
+    mock.set(
+        pose={
+            "state": 1,
+            "desired_guidance_mode": land,
+            "estimated_north_mps": 0,
+            "estimated_east_mps": 0,
+        }
+    )
+    page.wait_for_selector(".slide-text:text-is('Landed: slide to disengage')")

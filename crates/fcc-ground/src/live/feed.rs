@@ -15,6 +15,7 @@ use serde_json::{Value, json};
 use tokio::sync::{broadcast, watch};
 
 use super::Machine;
+use super::track::Track;
 use crate::columns::Columns;
 
 /// How long nothing may come before it is looked whether the daemon lives.
@@ -42,6 +43,9 @@ pub(crate) struct Feed {
     status: watch::Sender<Utf8Bytes>,
     events: broadcast::Sender<Utf8Bytes>,
     past: Mutex<VecDeque<Utf8Bytes>>,
+    /// The columns of the position, and where it was.
+    position: Option<[usize; 2]>,
+    track: Mutex<Track>,
     ended: AtomicBool,
     end: watch::Sender<Utf8Bytes>,
 }
@@ -69,10 +73,16 @@ impl Feed {
     }
 
     fn new(watcher: &RowWatcher) -> Self {
+        let columns = Columns::of(watcher.columns());
+        let latitude = columns.index("estimated_latitude_rad");
         Self {
             instance: watcher.instance().clone(),
             info: *watcher.info(),
-            columns: Columns::of(watcher.columns()),
+            position: latitude
+                .zip(columns.index("estimated_longitude_rad"))
+                .map(Into::into),
+            track: Mutex::default(),
+            columns,
             is_flight: watcher
                 .columns()
                 .has_layout_of(&RecordDescription::of::<FlightRecord>()),
@@ -111,6 +121,12 @@ impl Feed {
     pub(crate) fn word(&self, column: &str) -> Option<u64> {
         let row = Arc::clone(&self.record.borrow().row);
         self.columns.word(self.columns.index(column)?, &row)
+    }
+
+    /// Where it was until now, as a message to a page.
+    pub(super) fn track(&self) -> Value {
+        let track = self.track.lock().unwrap_or_else(PoisonError::into_inner);
+        track.message()
     }
 
     /// The first message to a page.
@@ -156,6 +172,11 @@ impl Feed {
         })?;
         let is_new = newest.is_some();
         if let Some(newest) = newest {
+            if let Some(position) = self.position {
+                let place = position.map(|column| self.columns.value(column, &newest.row));
+                let mut track = self.track.lock().unwrap_or_else(PoisonError::into_inner);
+                track.add(place);
+            }
             self.record.send_replace(newest);
         }
         while let Some(event) = watcher.next_event()? {

@@ -11,6 +11,7 @@ mod feed;
 mod foxglove;
 mod machine;
 mod socket;
+mod track;
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

@@ -71,6 +71,7 @@ async fn watch(socket: &mut WebSocket, feed: &Feed) -> Result<(), Closed> {
     let (mut records, mut statuses, mut ends) = (feed.records(), feed.statuses(), feed.ends());
     let (past, mut events) = feed.events();
     text(socket, feed.hello().to_string().into()).await?;
+    text(socket, feed.track().to_string().into()).await?;
     for event in past {
         text(socket, event).await?;
     }

@@ -254,6 +254,8 @@ fn record(number: u64) -> FlightRecord {
     let mut record = FlightRecord::new(tick, State::Engaged);
     record.estimate.altitude_m = 1_000.25;
     record.estimate.roll_rad = -0.5;
+    record.estimate.latitude_rad = 0.5 + number as f64 * 1e-4;
+    record.estimate.longitude_rad = 0.1;
     record
 }
 

@@ -97,6 +97,30 @@ fn a_page_gets_the_ticks_of_a_daemon_until_it_ends() {
     panic!("it is still there");
 }
 
+/// As its second message: places in degrees, thinned out.
+#[test]
+fn a_page_gets_the_track_so_far() {
+    let ground = Ground::new();
+    let daemon = Daemon::start("track");
+    wait_for(&ground, &daemon);
+    ground.runtime.block_on(async {
+        let path = format!("/api/live/{}", daemon.instance);
+        // The daemon flies 0.0001 rad, 637 m, to the north in each tick.
+        tokio::time::sleep(Duration::from_secs(1)).await;
+        let mut socket = connect(&ground, &path).await;
+        next(&mut socket).await;
+        let track = json(&next(&mut socket).await);
+        let places = track["track"].as_array().unwrap();
+        assert!(places.len() > 10, "{track}");
+        for two in places.windows(2) {
+            let north = two[1][0].as_f64().unwrap() - two[0][0].as_f64().unwrap();
+            // 0.0001 rad are 0.0057296°; a tick may be missing.
+            assert!((north / 0.005_729_6).round() >= 1.0, "{track}");
+            assert_eq!(two[1][1], 5.729_578);
+        }
+    });
+}
+
 /// Of 240 ticks of 1.6 kB nobody keeps those that were not taken, but the last.
 #[test]
 fn a_page_that_was_slow_gets_the_newest_tick() {

@@ -20,7 +20,8 @@ import { Timeline } from "./timeline";
 import "../../design/flights.css";
 import "../../design/fly.css";
 
-const EVENTS_MARKED_EVERY_MS = 200;
+/** Faster changes of a text are not readable, and each one is laid out anew. */
+const TEXTS_EVERY_MS = 100;
 
 export async function openReplay(file: string, other_file: string | undefined): Promise<View> {
   const [recording, flights] = await Promise.all([Recording.open(file), getJson<Flight[]>("/flights").catch((): Flight[] => [])]);
@@ -53,16 +54,19 @@ export async function openReplay(file: string, other_file: string | undefined): 
   let shift_s = 0;
   let other_track: TrackLayer | null = null;
   let state: FlightState | null = null;
-  let marked = -Infinity;
+  let written_ms = -Infinity;
 
-  const moved = (time_s: number) => {
-    state = flightState(recording.row(time_s), 0);
+  const moved = (time_s: number, playing = false) => {
+    const row = recording.row(time_s);
+    state = flightState(row, 0);
     display.show(state);
     aircraft.show(state.position_known ? state : null);
     const second = other ? flightState(other.row(time_s - shift_s), 0) : null;
     ghost.show(second?.position_known ? second : null);
     plots.show(time_s);
-    const row = recording.row(time_s);
+    const now = performance.now();
+    if (playing && now - written_ms < TEXTS_EVERY_MS) return;
+    written_ms = now;
     const engaged = row.number("state") === 1;
     const mode = recording.named("desired_guidance_mode", time_s);
     const item = row.number("desired_guidance_item");
@@ -77,18 +81,12 @@ export async function openReplay(file: string, other_file: string | undefined): 
       utc(recording.start_utc_s + time_s).slice(11, 19),
     ];
     cells.forEach((cell, at) => setText(cell, texts[at] ?? ""));
-    const now = performance.now();
-    if (now - marked < EVENTS_MARKED_EVERY_MS) return;
-    marked = now;
-    let last = -1;
-    recording.events.forEach((event, at) => {
-      if (event.time_s <= time_s) last = at;
-    });
+    const last = recording.events.findLastIndex((event) => event.time_s <= time_s);
     items.forEach((one, at) => one.toggleAttribute("data-now", at === last));
   };
 
   const plots = new Plots(recording, (time_s) => timeline.seek(time_s));
-  const timeline: Timeline = new Timeline(recording, (time_s) => moved(time_s));
+  const timeline: Timeline = new Timeline(recording, moved);
 
   const compare = async (with_file: string) => {
     other_track?.remove();

@@ -9,6 +9,8 @@ import type { Recording } from "./recording";
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10, 25, 50, 100];
 const SKIP_S = 10;
+/** As often as live data come. */
+const DRAWN_EVERY_MS = 25;
 
 /** Bands of modes, by their number in the record, so that each has a colour of its own. */
 const MODE_HUES = [0, 45, 90, 290, 200, 170, 20, 140, 110, 60, 0];
@@ -30,7 +32,7 @@ export class Timeline {
 
   constructor(
     private readonly recording: Recording,
-    private readonly moved: (time_s: number) => void,
+    private readonly moved: (time_s: number, playing: boolean) => void,
   ) {
     this.#time_s = recording.begin_s;
     this.#slider = h("input", { type: "range", min: recording.begin_s, max: recording.end_s, step: Math.max(0.05, (recording.end_s - recording.begin_s) / 2000), value: recording.begin_s, "aria-label": "Time of the flight" });
@@ -61,6 +63,7 @@ export class Timeline {
     this.#play.setAttribute("aria-label", this.#playing ? "Pause" : "Play");
     this.#last = performance.now();
     if (this.#playing) onNextFrame(this.#step);
+    else this.#show();
   }
 
   seek(time_s: number): void {
@@ -70,13 +73,15 @@ export class Timeline {
 
   #advance(now: number): void {
     if (!this.#playing || this.#closed) return;
+    const due = Math.floor(now / DRAWN_EVERY_MS) > Math.floor(this.#last / DRAWN_EVERY_MS);
     this.#time_s += (Math.min(250, Math.max(0, now - this.#last)) / 1000) * this.#speed;
     this.#last = now;
     if (this.#time_s >= this.recording.end_s) {
       this.#time_s = this.recording.end_s;
       this.toggle();
+      return;
     }
-    this.#show();
+    if (due) this.#show();
     onNextFrame(this.#step);
   }
 
@@ -86,7 +91,7 @@ export class Timeline {
     const text = `${duration(since)} of ${duration(this.recording.end_s - this.recording.begin_s)}`;
     if (this.#time.textContent !== text) this.#slider.setAttribute("aria-valuetext", text);
     setText(this.#time, text);
-    this.moved(this.#time_s);
+    this.moved(this.#time_s, this.#playing);
   }
 
   #draw(): void {

@@ -4,7 +4,7 @@ import L from "leaflet";
 import { message, sendCommand, writable, type Command } from "../../core/api";
 import { button, h, setClass, setText } from "../../core/dom";
 import { slide } from "../../core/slide";
-import { toShown, toSi, unitOf } from "../../core/units";
+import { inUnits, toShown, toSi, unitOf } from "../../core/units";
 import { toPlace } from "../../map/plan-layer";
 import { daemon } from "../../live/session";
 
@@ -13,6 +13,7 @@ export interface FlightPhase {
   mode: string;
   inhibits: string[];
   fresh: boolean;
+  landed: boolean;
   altitude_m: number;
 }
 
@@ -30,7 +31,7 @@ export class Commands {
   readonly #where = h("span", { class: "where" });
   #marker: L.CircleMarker | null = null;
   #picking = false;
-  #phase: FlightPhase = { engaged: false, mode: "", inhibits: [], fresh: false, altitude_m: NaN };
+  #phase: FlightPhase = { engaged: false, mode: "", inhibits: [], fresh: false, landed: false, altitude_m: NaN };
 
   constructor(private readonly map: L.Map) {
     this.#pause = button("Pause", () => void this.send("pause"), { icon: "pause" });
@@ -71,7 +72,7 @@ export class Commands {
       const tick = await sendCommand(instance, command);
       this.#say(`${name}: carried out at tick ${tick}`, "good");
     } catch (error) {
-      this.#say(`${name} refused: ${message(error)}`, "bad");
+      this.#say(`${name} refused: ${inUnits(message(error))}`, "bad");
     }
   }
 
@@ -114,7 +115,7 @@ export class Commands {
     this.#phase = phase;
     const may = writable.get() && phase.fresh;
     const { engaged, mode } = phase;
-    const label = engaged ? "Slide to disengage" : phase.inhibits.length > 0 ? "Engaging is inhibited" : "Slide to go!";
+    const label = phase.landed ? "Landed: slide to disengage" : engaged ? "Slide to disengage" : phase.inhibits.length > 0 ? "Engaging is inhibited" : "Slide to go!";
     this.#slide.set(writable.get() ? label : "View only: open the printed link", may && (engaged || phase.inhibits.length === 0), engaged ? "stop" : "go");
     this.#pause.disabled = !(may && engaged && mode !== "loiter");
     this.#resume.disabled = !(may && engaged && ["loiter", "go to", "return", "hold"].includes(mode));

@@ -1,5 +1,6 @@
 /** Fly: where the aircraft is, what it does, what it is told. */
 
+import L from "leaflet";
 import { getJson, part, type VehiclePlan } from "../../core/api";
 import { button, h, replace, setClass, setText } from "../../core/dom";
 import { notOnNextFrame, onNextFrame } from "../../core/frame";
@@ -25,6 +26,9 @@ const AGED_EVERY_MS = 250;
 const TEXTS_EVERY_MS = 100;
 const PLAN_EVERY_MS = 5000;
 const FIRST_ZOOM = 13;
+const STANDS_MPS = 1;
+/** As the daemon reports this command, whoever gave it. */
+const GO_TO = /go to (-?[\d.]+)°, (-?[\d.]+)°/;
 
 interface Readout {
   label: string;
@@ -70,6 +74,7 @@ export function openFly(): View {
   const track = new TrackLayer(flown).addTo(map);
   const aircraft = new AircraftLayer().addTo(map);
   const plan = new PlanLayer(map);
+  const goal = L.marker([0, 0], { interactive: false, keyboard: false, zIndexOffset: 200, alt: "Go to", icon: L.divIcon({ className: "point-box", html: h("span", { class: "point active" }, "Go to"), iconSize: [54, 24] }) });
   const display = new FlightDisplay();
   const commands = new Commands(map);
   const set_points = new SetPoints((values) => void commands.send({ set: values }));
@@ -128,7 +133,7 @@ export function openFly(): View {
     if (!record) {
       display.show(null);
       set_points.show(null);
-      commands.show({ engaged: false, mode: "", inhibits: [], fresh: false, altitude_m: NaN });
+      commands.show({ engaged: false, mode: "", inhibits: [], fresh: false, landed: false, altitude_m: NaN });
       return;
     }
     const state = flightState(record, age);
@@ -146,7 +151,7 @@ export function openFly(): View {
     const mode = record.named("desired_guidance_mode");
     const fresh = freshness(age) !== "lost";
     set_points.setEditable(state.engaged && fresh, !state.engaged ? "Nothing is held: not engaged." : mode === "hold" ? "" : `A set point ends mode ${mode.replace("takeoff", "take-off")}, and is held.`);
-    commands.show({ engaged: state.engaged, mode, inhibits: record.flags("engage_inhibits"), fresh, altitude_m: state.altitude_m });
+    commands.show({ engaged: state.engaged, mode, inhibits: record.flags("engage_inhibits"), fresh, landed: state.engaged && mode === "land" && state.ground_speed_mps < STANDS_MPS, altitude_m: state.altitude_m });
     showConditions(record, state.engaged);
     for (const { one, value, box } of cells) {
       setText(value, one.text(record, state));
@@ -155,6 +160,9 @@ export function openFly(): View {
     }
     const engaged_mode = state.engaged && ["plan", "takeoff", "land"].includes(mode);
     plan.mark(engaged_mode ? record.number("desired_guidance_item") : 0);
+    const place = state.engaged && mode === "go to" ? GO_TO.exec(events.findLast((one) => GO_TO.test(one.text))?.text ?? "") : null;
+    if (place) goal.setLatLng([Number(place[1]), Number(place[2])]).addTo(map);
+    else goal.remove();
     const flown = record.bits("desired_plan_hash");
     setText(hash, flown === 0n ? "no plan" : flown.toString(16).padStart(16, "0"));
     setText(clock, duration(record.number("tick") / (daemon.get()?.rate_hz || 1)));

@@ -2,7 +2,7 @@
 
 import type { Daemon, SetPoint } from "../../core/api";
 import { h, replace, setClass, setText } from "../../core/dom";
-import { digitsOf, shown, toShown, toSi, unitOf, unitSystem, type Quantity } from "../../core/units";
+import { digitsOf, shown, toShown, toSi, unitOf, type Quantity } from "../../core/units";
 import { freshness, type FlightState } from "../../live/flight-state";
 
 interface Line {
@@ -67,7 +67,6 @@ export class SetPoints {
     const form = h("form", { submit: (event: Event) => { event.preventDefault(); this.#submit(); } }, table, h("div", { class: "row end" }, this.#note, this.#send));
     replace(this.element, h("h2", {}, "Set points"), form);
     this.setEditable(this.#editable, "");
-    unitSystem.get();
   }
 
   /** The reason is why they are not, or what a change ends. */

@@ -3,6 +3,7 @@
 import L from "leaflet";
 import { getJson, message, part, postJson, Refused, request, writable, type Check, type DraftEntry, type Problem } from "../../core/api";
 import { button, choice, h, icon, replace, setClass, setText } from "../../core/dom";
+import { refusal } from "../../core/fields";
 import { notOnNextFrame, onNextFrame } from "../../core/frame";
 import { duration, unitSystem, withUnit } from "../../core/units";
 import { daemon, linkAge, newest } from "../../live/session";
@@ -11,7 +12,7 @@ import { AircraftLayer } from "../../map/aircraft";
 import { createChart } from "../../map/chart";
 import { latLng, PlanLayer, toPlace, type Part } from "../../map/plan-layer";
 import { DraftEditor, watchDrafts, type SaveState } from "../../plan/draft";
-import { altitudeOf, inserted, newItem, placeOf, removed, swapped, type Item, type Kind, type Place, type Plan } from "../../plan/model";
+import { altitudeOf, emptyPlan, inserted, newItem, placeOf, removed, swapped, type Item, type Kind, type Place, type Plan } from "../../plan/model";
 import type { View } from "../../shell";
 import { ItemTable } from "./item-table";
 import { Profile } from "./profile";
@@ -28,6 +29,8 @@ const TOOLS: readonly (readonly [Tool, string])[] = [
   ["home", "Home"], ["fence", "Fence"], ["rally", "Rally"], ["obstacle", "Obstacle"],
 ];
 const LAST_DRAFT = "fcc.plan.last";
+/** A home so close to another one is on the same field. */
+const SAME_FIELD_M = 2000;
 const NOT_CHECKED = "The plan cannot be checked";
 
 export async function openPlan(wanted: string | undefined): Promise<View> {
@@ -55,7 +58,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
   const profile = new Profile((index) => select({ of: "item", index }));
   const vehicle = new Vehicle(() => refresh(), () => writable.get());
 
-  const plan = (): Plan => editor?.plan ?? { home: null, cruise_mps: null, items: [], fence: { polygons: [], circles: [], floor_m: null, ceiling_m: null, return_point: null }, rally: [], obstacles: [] };
+  const plan = (): Plan => editor?.plan ?? emptyPlan();
   const may = (): boolean => writable.get() && editor !== null;
   const edit = (next: Plan, what: string) => {
     if (may()) editor?.edit(withHome(next), what);
@@ -74,7 +77,13 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
     const record = newest();
     const state = record ? flightState(record, 0) : null;
     const first = next.items.map(placeOf).find((one) => one !== null);
-    if (state?.position_known) return { ...next, home: { place: { latitude_deg: state.latitude_deg, longitude_deg: state.longitude_deg }, altitude_m: Math.round(state.altitude_m) || 0 } };
+    // The vehicle's own home has the runway's elevation; the altimeter has an error.
+    const known = vehicle.plan?.plan?.home;
+    if (state?.position_known) {
+      const here = { latitude_deg: state.latitude_deg, longitude_deg: state.longitude_deg };
+      const near = known && map.distance(latLng(known.place), latLng(here)) < SAME_FIELD_M;
+      return { ...next, home: { place: here, altitude_m: near ? known.altitude_m : Math.round(state.altitude_m) || 0 } };
+    }
     return first ? { ...next, home: { place: first, altitude_m: 0 } } : next;
   };
 
@@ -358,8 +367,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
 
   // --- keys, lists, end --------------------------------------------------
   const keys = (event: KeyboardEvent) => {
-    const typing = event.target instanceof HTMLInputElement && event.target.type === "text";
-    if (typing || !(event.ctrlKey || event.metaKey)) return;
+    if (event.target === name_input || !(event.ctrlKey || event.metaKey)) return;
     const key = event.key.toLowerCase();
     if (key === "z" && !event.shiftKey) editor?.undo();
     else if ((key === "z" && event.shiftKey) || key === "y") editor?.redo();
@@ -380,6 +388,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
   }, 500);
   const stops = [
     unitSystem.watch(refresh),
+    refusal.watch((text) => say(text, "bad")),
     writable.watch(refresh),
     daemon.watch(() => void vehicle.refresh()),
     watchDrafts(
