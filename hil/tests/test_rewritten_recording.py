@@ -293,6 +293,32 @@ def test_of_a_copy_of_a_part_its_own_ticks_are_listed(
     assert "the recording begins in tick" in late["unflown"]["why"]
 
 
+@pytest.mark.parametrize(
+    ("keeps", "missing"),
+    [
+        (lambda at, topic: at < 0.5, "ticks"),
+        (lambda at, topic: topic == RECORD, "events"),
+    ],
+    ids=["its beginning", "its records"],
+)
+def test_of_a_copy_of_a_part_it_is_said_what_was_left_out(
+    fccd: Path, flight: Path, tmp_path: Path, keeps: Callable[[float, str], bool], missing: str
+) -> None:
+    content = Content.of(flight)
+    count = len(content.messages)
+    some = [
+        seen for number, seen in enumerate(content.messages) if keeps(number / count, seen[1].topic)
+    ]
+    path = tmp_path / "part.mcap"
+    write(path, Content(content.profile, content.attachments, content.metadata, some), Way())
+    report = fccd_json(fccd, "report", path, exit_code=INCOMPLETE)
+    assert missing in report["end"]["words"]
+    assert "were left out" in report["end"]["words"]
+    replayed = subprocess.run([fccd, "replay", path], capture_output=True, text=True, check=False)
+    assert replayed.returncode == NOT_REPLAYED
+    assert "were left out" in replayed.stdout + replayed.stderr
+
+
 def test_a_damaged_copy_loses_its_chunk_and_is_recovered(
     fccd: Path, flight: Path, tmp_path: Path
 ) -> None:

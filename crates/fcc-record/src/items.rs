@@ -34,6 +34,7 @@ pub struct Items<M> {
     end: Option<End>,
     being_written: bool,
     last_tick: Option<Tick>,
+    first_tick: Option<u64>,
     /// Events that were read, and whether there was damage.
     events: u64,
     is_damaged: bool,
@@ -59,6 +60,7 @@ impl<M: RecordedMessage> Items<M> {
             end,
             being_written,
             last_tick: None,
+            first_tick: None,
             events: 0,
             is_damaged: false,
             damage: None,
@@ -131,6 +133,7 @@ impl<M: RecordedMessage> Items<M> {
                 if tick.is_some() || self.held_back.len() >= MAX_HELD_BACK {
                     self.locate_damage(tick.as_ref());
                 }
+                self.first_tick = self.first_tick.or(tick.map(|tick| tick.number));
                 self.last_tick = tick.or(self.last_tick);
                 if self.damage.is_none() && self.held_back.is_empty() {
                     return Some(item);
@@ -161,7 +164,10 @@ impl<M: RecordedMessage> Items<M> {
             let first = last_tick + 1;
             return Some(format!("ticks {first} to {} were left out", end.last_tick));
         }
-        let missing = end.events.checked_sub(self.events).filter(|n| *n > 0)?;
+        // One that begins late is told by its ticks.
+        let is_from_first = self.first_tick == Some(end.first_tick);
+        let missing = end.events.checked_sub(self.events);
+        let missing = missing.filter(|n| *n > 0 && is_from_first)?;
         Some(format!(
             "{missing} of its {} events were left out; commands are events",
             end.events

@@ -155,7 +155,12 @@ impl Outcome {
 
     fn exit(&self) -> Exit {
         match &self.comparison {
-            Comparison::Identity(identity) if !identity.is_identical() => Exit::Differs,
+            // What is not in the file, as a command, may be the difference.
+            Comparison::Identity(identity)
+                if !identity.is_identical() && self.replayed.cuts.is_empty() =>
+            {
+                Exit::Differs
+            }
             _ if !self.replayed.is_complete() => Exit::NotReplayed,
             Comparison::Deviation(deviation) if deviation.is_of_nothing() => Exit::NotReplayed,
             // All ticks are there.
