@@ -222,7 +222,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
       say(`${chosen.name} is imported; undo brings back what was there.`, "good");
     } catch (error) {
       const body = error instanceof Refused ? (error.body as { problems?: Problem[] } | null) : null;
-      say(`${chosen.name} is not imported: ${body?.problems?.map((one) => one.message).join("; ") ?? message(error)}`, "bad");
+      say(`${chosen.name} is not imported: ${body?.problems?.map((one) => [one.item && `item ${one.item}`, one.field, one.message].filter(Boolean).join(": ")).join("; ") ?? message(error)}`, "bad");
     }
   };
   const exportFile = async (format: "plan" | "waypoints") => {
