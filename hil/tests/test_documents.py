@@ -33,6 +33,8 @@ DOCUMENTS = [
     *(ROOT / "docs").rglob("*.md"),
     *(ROOT / "proto").glob("*.md"),
     *ROOT.glob("crates/*/*.md"),
+    ROOT / "crates/README.md",
+    ROOT / "android/README.md",
     ROOT / "hil/README.md",
     ROOT / "web/README.md",
 ]
