@@ -425,6 +425,7 @@ book: $(STAMPS)/rust ## Build the documents as a book with search: target/book/h
 	@command -v mdbook >/dev/null || cargo install --locked --version 0.5.4 mdbook
 	./scripts/book target/book
 	mdbook build target/book
+	./scripts/book --check target/book/html
 
 doc: $(STAMPS)/rust ## Build the API documentation
 	cargo doc --locked --workspace --no-deps --all-features
