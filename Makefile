@@ -47,7 +47,7 @@ endif
 .NOTPARALLEL:
 
 GOALS := advisories android android-check android-package bench bench-android bench-flight \
-    bench-flood bench-ground bench-live bench-peer bench-timing build campaign check-boards \
+    bench-flood bench-ground bench-live bench-peer bench-timing book build campaign check-boards \
     check-cross clean clippy deb deny doc faulty fly fly-jsbsim fly-plan fly-plan-jsbsim fuzz \
     ground help lint lint-python lint-rust lock package-check python reproducible soak soundness \
     station test test-android test-attacks test-contingencies test-cross test-deb test-fences \
@@ -267,6 +267,7 @@ lint: lint-rust lint-python deny ## Check formatting, lints, licences
 clippy: $(STAMPS)/rust
 	cargo fmt --all --check
 	./scripts/structure
+	./scripts/words
 	cargo clippy --locked --workspace --all-targets --all-features -- -D warnings
 
 lint-rust: clippy
@@ -274,9 +275,9 @@ lint-rust: clippy
 
 lint-python: tested $(STAMPS)/playwright
 	$(PYTHON) -m ruff check hil deploy web
-	$(PYTHON) -m ruff check --config hil/pyproject.toml crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check scripts/structure
+	$(PYTHON) -m ruff check --config hil/pyproject.toml crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check scripts/structure scripts/words scripts/book
 	$(PYTHON) -m ruff format --check hil deploy web
-	$(PYTHON) -m ruff format --config hil/pyproject.toml --check crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check scripts/structure
+	$(PYTHON) -m ruff format --config hil/pyproject.toml --check crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check scripts/structure scripts/words scripts/book
 	cd hil && ../$(PYTHON) -m mypy
 	cd deploy/vm && MYPYPATH=../../hil/tests ../../$(PYTHON) -m mypy --config-file ../../hil/pyproject.toml .
 	cd web/tests && MYPYPATH=../../hil/tests ../../$(PYTHON) -m mypy --config-file ../../hil/pyproject.toml *.py
@@ -419,6 +420,12 @@ bench-ground: build station $(STAMPS)/python $(STAMPS)/browser ## Measure the gr
 
 bench-flood: build $(STAMPS)/python ## Fly among 100,000 datagrams a second of another host (1 minute)
 	$(PYTHON) -m fcc_hil bench-flood --fccd $(FCCD)
+
+book: $(STAMPS)/rust ## Build the documents as a book with search: target/book/html
+	@command -v mdbook >/dev/null || cargo install --locked --version 0.5.4 mdbook
+	./scripts/book target/book
+	mdbook build target/book
+	./scripts/book --check target/book/html
 
 doc: $(STAMPS)/rust ## Build the API documentation
 	cargo doc --locked --workspace --no-deps --all-features

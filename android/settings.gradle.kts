@@ -1,4 +1,4 @@
-// The app; its native library first: docs/android.md, "For a phone".
+// The app; its native library first: docs/android.md, "Build it".
 pluginManagement {
     repositories {
         google()

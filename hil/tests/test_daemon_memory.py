@@ -9,7 +9,7 @@ from pathlib import Path
 from daemon_under_test import start
 
 MOST_RESIDENT_KB = 23 << 10
-"""What `docs/timing.md` adds up to, and a little more."""
+"""What `docs/timing.md` says."""
 PROGRAM_KB = 15_872
 """Of this the program as it ships, 15.5 MB. The rest is data, in whichever build."""
 IS_RELEASED = "FCC_RELEASED" in os.environ

@@ -27,13 +27,42 @@ def test_standard_output_is_no_file_to_write() -> None:
         ranges.file_to_write("-")
 
 
-def test_links_between_documents_lead_to_files() -> None:
-    root = Path(__file__).parents[2]
-    documents = [root / "README.md", root / "hil/README.md", *(root / "docs").rglob("*.md")]
+ROOT = Path(__file__).parents[2]
+DOCUMENTS = [
+    *ROOT.glob("*.md"),
+    *(ROOT / "docs").rglob("*.md"),
+    *(ROOT / "proto").glob("*.md"),
+    *ROOT.glob("crates/*/*.md"),
+    ROOT / "crates/README.md",
+    ROOT / "android/README.md",
+    ROOT / "hil/README.md",
+    ROOT / "web/README.md",
+]
+
+
+def anchor(heading: str) -> str:
+    """Return the anchor of a heading, as GitHub makes it."""
+    text = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading).replace("`", "").strip().lower()
+    return re.sub(r"[^\w\- ]", "", text).replace(" ", "-")
+
+
+def test_links_between_documents_lead_to_files_and_headings() -> None:
     links = [
-        (document, link)
-        for document in documents
-        for link in re.findall(r"\]\(([^)#\s:]+)(?:#[^)]*)?\)", document.read_text())
+        (document, link, heading)
+        for document in DOCUMENTS
+        for link, heading in re.findall(
+            r"\]\(([^)#\s:]*)(?:#([^)\s]*))?\)",
+            re.sub(r"^( *)```.*?^\1```$", "", document.read_text(), flags=re.MULTILINE | re.DOTALL),
+        )
     ]
     assert len(links) > 100
-    assert [link for document, link in links if not (document.parent / link).exists()] == []
+    missing = []
+    for document, link, heading in links:
+        to = (document.parent / link).resolve() if link else document
+        if not to.exists():
+            missing.append((document.name, link))
+        elif heading and to.suffix == ".md":
+            headings = re.findall(r"^#+ (.+)$", to.read_text(), re.MULTILINE)
+            if heading not in map(anchor, headings):
+                missing.append((document.name, f"{link}#{heading}"))
+    assert missing == []

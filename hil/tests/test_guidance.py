@@ -53,7 +53,7 @@ def test_twelve_legs(wind: tuple[float, float], seed: int) -> None:
 
 
 def _cells(score: PlanScore) -> str:
-    """Return a row of the table in docs/plan.md."""
+    """Return a row of a table of legs and turns."""
     level = [leg for leg in score.legs if leg.item not in CLIMBS]
     over = [waypoint for waypoint in score.waypoints if waypoint.item in FLY_OVERS]
     turns = score.turns

@@ -2,7 +2,7 @@
 //! that flies a simulated X-Plane over loopback ([`Flight`]), and its single
 //! stages ([`Stages`]). The benches measure time and count instructions; the
 //! programs count system calls and bytes of memory, and measure the latency.
-//! `make bench` runs them all; `docs/benchmarks.md` has the results.
+//! `make bench` runs them all; `docs/results/timing.md` has the results.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,

@@ -23,7 +23,7 @@ use crate::phone::AppPhone;
 /// Time between two states.
 const SHOWN_EVERY: Duration = Duration::from_millis(100);
 
-/// What the screen shows. Its JSON is described in docs/android.md.
+/// What the screen shows. Its JSON is described in android/README.md.
 #[derive(Clone, Debug, Default, Serialize)]
 struct Shown {
     kind: &'static str,

@@ -30,7 +30,7 @@ const TIMING_EVERY: Duration = Duration::from_millis(500);
 /// Whether a loop hangs in this process: nothing flies in it again, by whatever computer.
 static HUNG: AtomicBool = AtomicBool::new(false);
 
-/// What a screen shows. Its JSON is described in docs/android.md.
+/// What a screen shows. Its JSON is described in android/README.md.
 #[derive(Clone, Debug, Default, Serialize)]
 struct Shown {
     /// Whether a loop runs.

@@ -177,7 +177,7 @@ fn is_bool(name: &str) -> bool {
 mod tests {
     use super::*;
 
-    /// The layout is documented in docs/telemetry.md: a row is as in memory.
+    /// The layout is documented in proto/layout.md: a row is as in memory.
     #[test]
     fn words_are_those_of_the_columns() {
         let column = |name: &str, offset: usize, kind: &str| {

@@ -14,7 +14,7 @@
 //! thread. A program that is no flight may publish in a thread of its own.
 //!
 //! A program opens a [`Watcher`], or for any plant a [`RowWatcher`]; programs in other languages read the same
-//! services by the layouts in `docs/telemetry.md`:
+//! services by the layouts in `proto/layout.md`:
 //!
 //! | service | what | history |
 //! |---|---|---|

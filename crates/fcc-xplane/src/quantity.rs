@@ -1,7 +1,7 @@
 //! The quantities read from X-Plane: their datarefs, their units there, and
 //! their plausible ranges.
 //!
-//! [`table`] lists them; `docs/x-plane.md` has the same table. Latitude,
+//! [`table`] lists them; `datarefs.md` has the same table. Latitude,
 //! longitude and elevation are received by RPOS, since as f32 they lose about a
 //! metre.
 //!

@@ -6,7 +6,7 @@ import { duration, inUnits, unitSystem } from "../core/units";
 
 const SHOWN = 200;
 
-/** What kinds of events ask for attention, by their codes (docs/telemetry.md). */
+/** What kinds of events ask for attention, by their codes (proto/layout.md). */
 const BAD = new Set([4, 6, 8, 9, 10, 12, 13, 14, 16, 24, 26]);
 const REMARK = new Set([3, 17, 19, 21, 22, 23]);
 

@@ -1,5 +1,5 @@
 //! Runs our clocks and their peers in turn, under the same conditions, and
-//! compares the times of their ticks. `docs/benchmarks.md` describes the
+//! compares the times of their ticks. `docs/results/timing.md` describes the
 //! method.
 
 mod load;

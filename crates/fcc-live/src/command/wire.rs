@@ -234,10 +234,10 @@ mod tests {
 
     use super::*;
 
-    /// The part of `docs/telemetry.md` about commands: programs in other languages rely on it.
+    /// The part of `proto/layout.md` about commands: programs in other languages rely on it.
     fn documented() -> &'static str {
-        let document = include_str!("../../../../docs/telemetry.md");
-        document.split_once("### Commands").unwrap().1
+        let document = include_str!("../../../../proto/layout.md");
+        document.split_once("## Commands").unwrap().1
     }
 
     #[test]
@@ -260,7 +260,7 @@ mod tests {
             code: "u32" version: "u32" tick: "u64" value: "f64" least: "f64" most: "f64"
             name: "char[32]" text: "char[8120]");
         for row in request.iter().chain(&answer) {
-            assert!(documented().contains(row), "docs/telemetry.md lacks {row}");
+            assert!(documented().contains(row), "proto/layout.md lacks {row}");
         }
     }
 

@@ -1,4 +1,4 @@
-//! The layouts in `docs/telemetry.md` are those of the structs: programs in
+//! The layouts in `proto/layout.md` are those of the structs: programs in
 //! other languages rely on that page.
 
 use std::fmt::Write as _;
@@ -6,7 +6,7 @@ use std::mem::offset_of;
 
 use fcc_live::{Event, Info, LAYOUT, Status};
 
-const DOCUMENT: &str = include_str!("../../../../docs/telemetry.md");
+const DOCUMENT: &str = include_str!("../../../../proto/layout.md");
 
 /// The layout that this version of the page describes: increase `LAYOUT`, and
 /// the version in the services' names, with every change of a struct or a
@@ -39,7 +39,7 @@ fn without_meanings() -> String {
 fn assert_documented(table: &str) {
     assert!(
         without_meanings().contains(table),
-        "docs/telemetry.md lacks this table:\n{table}"
+        "proto/layout.md lacks this table:\n{table}"
     );
 }
 

@@ -1,5 +1,5 @@
 //! Sensors with the very errors that the filter expects: its parameters, as
-//! docs/navigation.md and `kalman/parameters.rs` state them.
+//! `kalman/parameters.rs` states them.
 
 use fcc_core::flight::atmosphere::pressure_pa;
 use fcc_core::flight::earth::metres_per_radian;

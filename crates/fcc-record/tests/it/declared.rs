@@ -15,8 +15,8 @@ use fcc_telemetry::schema::protobuf::{File, text};
 use prost_types::{DescriptorProto, FileDescriptorProto};
 
 const PROTO: &str = "proto/fcc/v2/flight.proto";
-const DOCUMENT: &str = "docs/telemetry.md";
-const RECORD: &str = "### `fcc.v2.Record`\n";
+const DOCUMENT: &str = "proto/layout.md";
+const RECORD: &str = "## `fcc.v2.Record`\n";
 
 fn path(file: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))

@@ -133,7 +133,7 @@ mod tests {
 
     use super::*;
 
-    /// docs/telemetry.md: 0 none, 1 hold, 2 timed pattern, 3 plan, 4 loiter, 5 go-to,
+    /// proto/layout.md: 0 none, 1 hold, 2 timed pattern, 3 plan, 4 loiter, 5 go-to,
     /// 6 return, 7 take-off, 8 land, 9 go-around, 10 glide.
     #[test]
     fn a_mode_is_plotted_by_its_names() {

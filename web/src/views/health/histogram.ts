@@ -4,7 +4,7 @@ import { h } from "../../core/dom";
 import { onNextFrame } from "../../core/frame";
 import { FONT, palette } from "../../design/theme";
 
-/** Upper ends of the bins (docs/telemetry.md); the last counts what is above. */
+/** Upper ends of the bins (proto/layout.md); the last counts what is above. */
 const LABELS = ["0.1", "0.3", "1", "3", "10", "32", "100", "316", "1 ms", "3", "10", "32", "100", ">"];
 /** From here on a tick is late for a loop of 1 kHz. */
 const LATE_BIN = 8;

@@ -161,7 +161,7 @@ fn neither_c1_nor_the_direction_of_writing_reaches_the_terminal() {
     }
 }
 
-/// As the README says: the key `error`, the text of standard error, and the exit
+/// As docs/commands.md says: the key `error`, the text of standard error, and the exit
 /// codes of `fccd --help`.
 #[test]
 fn every_command_reports_an_error_as_json() {
@@ -199,8 +199,8 @@ fn every_command_reports_an_error_as_json() {
 
 /// The two results whose form does not depend on success.
 #[test]
-fn the_forms_of_check_and_command_are_those_of_the_readme() {
-    let readme = include_str!("../../../../../README.md");
+fn the_forms_of_check_and_command_are_those_of_the_documents() {
+    let page = include_str!("../../../../../docs/commands.md");
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("wrong.toml"), "[lop]\n").unwrap();
     let instance = format!("form-{}", std::process::id());
@@ -213,7 +213,7 @@ fn the_forms_of_check_and_command_are_those_of_the_readme() {
         let printed: Value = serde_json::from_slice(&ended.stdout).unwrap();
         let names = printed.as_object().unwrap().keys();
         let names: Vec<_> = names.map(|name| format!("\"{name}\"")).collect();
-        let described = readme.split(['{', '}']).any(|form| {
+        let described = page.split(['{', '}']).any(|form| {
             form.split(", ").count() == names.len() && names.iter().all(|name| form.contains(name))
         });
         assert!(described, "{words:?}: {names:?}");

@@ -1,4 +1,4 @@
-//! The table of datarefs in `docs/x-plane.md` is [`TABLE`](super::TABLE).
+//! The table of datarefs in `datarefs.md` is [`TABLE`](super::TABLE).
 //!
 //! `FCC_UPDATE=1 cargo test -p fcc-xplane document` writes it.
 
@@ -77,7 +77,7 @@ fn markdown() -> String {
 
 #[test]
 fn the_document_has_the_table() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/x-plane.md");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("datarefs.md");
     let document = fs::read_to_string(&path).unwrap();
     let begin = document.find(BEGIN).expect("the table begins") + BEGIN.len();
     let end = document.find(END).expect("the table ends");

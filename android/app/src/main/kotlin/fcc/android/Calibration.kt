@@ -34,7 +34,7 @@ class Calibration(config: String, recordings: File, kind: String, packageName: S
 /** A kind of calibration, and what was found of it before. */
 data class CalibrationOffer(val kind: String, val found: String?)
 
-/** The state of a calibration; see docs/android.md. */
+/** The state of a calibration; see android/README.md. */
 class CalibrationState(state: JSONObject) {
     val kind: String = state.getString("kind")
     val beforehand: String = state.getString("beforehand")

@@ -58,7 +58,7 @@ object Flight {
     /** Disengages, and releases the controls. */
     fun disengage() = flown().disengage()
 
-    /** Changes a set point, by its name in docs/android.md. */
+    /** Changes a set point, by its name in android/README.md. */
     fun set(name: String, value: Double) = flown().set(mapOf(name to value))
 
     /** For [FlightComputer.position]: the flight, if there is one. */

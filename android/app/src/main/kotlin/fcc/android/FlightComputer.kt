@@ -35,7 +35,7 @@ class FlightComputer(
      */
     fun stop() = Native.stop(handle)
 
-    /** The state now, as JSON: see docs/android.md. Never waits for the loop. */
+    /** The state now, as JSON: see android/README.md. Never waits for the loop. */
     fun state(): String = Native.state(handle)
 
     /**
@@ -49,7 +49,7 @@ class FlightComputer(
     fun disengage(): Long = Native.command(handle, "\"Disengage\"")
 
     /**
-     * Changes set points, by the names that docs/android.md lists; the tick that
+     * Changes set points, by the names that android/README.md lists; the tick that
      * did.
      *
      * @throws CommandException if one is unknown or out of its limits, or if it is

@@ -18,7 +18,7 @@ enum class Phase {
     ENDING,
 }
 
-/** The state of the flight for the screens: what docs/android.md describes as JSON. */
+/** The state of the flight for the screens: what android/README.md describes as JSON. */
 class FlightState(val phase: Phase, state: JSONObject = JSONObject()) {
     /** Why the last flight did not begin, or why it ended. */
     val ending = state.text("ending")

@@ -10,7 +10,7 @@ import fcc.android.R
 /** A quantity that can be set: how it is shown, and by how much a step changes it. */
 internal class Quantity(
     val label: Int,
-    /** Its set point in docs/android.md. */
+    /** Its set point in android/README.md. */
     val setPoint: String,
     val step: Double,
     val format: (Double) -> String,
