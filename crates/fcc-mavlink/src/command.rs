@@ -379,6 +379,9 @@ fn set_current(command: &Received, situation: &Situation<'_>) -> Judged {
         Some(item) => item as u16,
         None => return denied("parameter 1: give an item from 0"),
     };
+    if state.flies_mission() && !resets && item == missions.current(state) {
+        return Ok(Todo::Nothing);
+    }
     if state.flight.is_engaged {
         return Ok(Todo::one(set("plan_item", f64::from(item + 1))));
     }

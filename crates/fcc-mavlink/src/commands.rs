@@ -11,15 +11,14 @@ use crate::vehicle::{Now, Outcome};
 
 type Code = MavResult;
 
-/// What takes longer is in progress first, and again every so often, ms.
-const IN_PROGRESS_MS: u64 = 100;
+/// What takes longer is in progress first, and again every so often, ms: in time for MAVSDK,
+/// which sends again after 500 ms, and seldom, for its missions take that for a failure.
+const IN_PROGRESS_MS: u64 = 400;
 const AGAIN_MS: u64 = 1_000;
 /// A frame that comes twice, or is sent again with a higher `confirmation`, ms.
 const REPEATED_MS: u64 = 5_000;
 /// `COMMAND_INT` does not say that it is sent again: the same within this time is, ms.
 const SAME_MS: u64 = 1_000;
-/// So many frames earlier than one that came before it, a command is late.
-const LATE_FRAMES: u8 = 32;
 /// Commands that are being carried out, and senders that are remembered.
 const MOST_RUNNING: usize = 16;
 const MOST_SENDERS: usize = 32;
@@ -71,12 +70,6 @@ impl Commands {
             if last.bytes == received.bytes && is_again {
                 let result = last.result.unwrap_or(Code::MAV_RESULT_IN_PROGRESS);
                 fx.answer(peer, ack(peer, received.number, result));
-                return false;
-            }
-            let behind = last.sequence.wrapping_sub(sequence);
-            if since_ms < SAME_MS && (1..=LATE_FRAMES).contains(&behind) {
-                let code = Code::MAV_RESULT_TEMPORARILY_REJECTED;
-                fx.answer(peer, ack(peer, received.number, code));
                 return false;
             }
         }
@@ -132,7 +125,10 @@ impl Commands {
             last.result = Some(code);
         }
         fx.answer(peer, ack(peer, number, code));
-        if let Err((_, why)) = result {
+        // Stations try what a vehicle supports: a text for each would hide the others.
+        if let Err((_, why)) = result
+            && code != Code::MAV_RESULT_UNSUPPORTED
+        {
             fx.tell(peer, MavSeverity::MAV_SEVERITY_WARNING, why);
         }
     }

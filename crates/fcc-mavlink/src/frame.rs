@@ -242,7 +242,7 @@ mod tests {
     fn a_frame_of_another_program_is_found_in_any_pieces() {
         for cut in 0..V2.len() {
             let (a, b) = V2.split_at(cut);
-            let frames = found(&[&[0xfd, 0x00, 0xfe], a, b]);
+            let frames = found(&[&[0xfd, 0x00, 0x7e], a, b]);
             assert_eq!(frames.len(), 1, "cut at {cut}");
             assert_eq!((frames[0].system, frames[0].component), (255, 190));
             assert_eq!(frames[0].payload.u8(4), 6, "MAV_TYPE_GCS");

@@ -453,7 +453,8 @@ impl Missions {
     /// That of the plan before, if the aircraft is near it; or where it stands.
     fn home(&self, state: &VehicleState) -> Option<Home> {
         let known = self.plan.home;
-        let Some(position) = state.motion.position else {
+        let stands = !state.flight.is_engaged && !state.flight.is_airborne;
+        let Some(position) = state.motion.position.filter(|_| stands) else {
             return known;
         };
         let place = Place {
@@ -461,7 +462,7 @@ impl Missions {
             longitude_deg: position.longitude_rad.to_degrees(),
         };
         let is_near = |home: &Home| distance_m(home.place, place) < SAME_FIELD_M;
-        if state.flight.is_engaged || known.as_ref().is_some_and(is_near) {
+        if known.as_ref().is_some_and(is_near) {
             return known;
         }
         Some(Home {

@@ -246,6 +246,11 @@ impl Protocol {
         if !self.is_for_here(target) {
             return;
         }
+        // What the vehicle's plan is, is being found out: stations ask again.
+        let is_known = !self.state.is_connected || self.state.plan_hash == self.missions.hash();
+        if matches!(frame.id, 38 | 43 | 44 | 45) && !is_known {
+            return;
+        }
         let may = self.control.permits(peer);
         let (state, missions, fx) = (&self.state, &mut self.missions, &mut self.fx);
         match frame.id {
@@ -326,8 +331,10 @@ impl Protocol {
 
     /// A command in either encoding: exactly one final answer.
     fn command(&mut self, (peer, sequence): (Peer, u8), received: &Received, now: Now) {
+        // What only asks is answered again in full: the message may be lost, too.
+        let is_once = row_of(received.number).is_some_and(|row| row.controls);
         let fx = &mut self.fx;
-        if !self.commands.begin((peer, sequence), received, now, fx) {
+        if is_once && !self.commands.begin((peer, sequence), received, now, fx) {
             return;
         }
         let result = match self.carry_out(peer, received, now) {

@@ -6,11 +6,12 @@ use std::sync::mpsc::{Receiver, Sender};
 use std::sync::{PoisonError, Weak};
 use std::time::Instant;
 
+use fcc_live::Commander;
 use fcc_mavlink::{Action, Outcome, Parameter};
 use fcc_plan::Plan;
 use fcc_telemetry::Instance;
 
-use crate::commands::{Order, send, utc_ms};
+use crate::commands::{Order, utc_ms};
 use crate::failure::Failure;
 use crate::station::Station;
 use crate::upload::{Upload, content};
@@ -45,6 +46,7 @@ pub(super) fn run(
 ) {
     // Numbers that no page uses by chance: pages count from the time in ms.
     let mut number = u64::MAX;
+    let mut line = None;
     while let Ok(job) = jobs.recv() {
         let Some(station) = station.upgrade() else {
             return;
@@ -61,8 +63,13 @@ pub(super) fn run(
                 action,
             } => {
                 number -= 1;
-                let carried_out =
-                    carry_out(&station, instance, (number, deadline), &sender, action);
+                let carried_out = carry_out(
+                    &station,
+                    instance,
+                    (number, deadline, &sender),
+                    &mut line,
+                    action,
+                );
                 Done::Outcome(ticket, carried_out.map_err(|why| why.words().to_owned()))
             }
         };
@@ -72,11 +79,40 @@ pub(super) fn run(
     }
 }
 
+/// The connection to a daemon: opening it takes longer than a command.
+struct Line {
+    sender: String,
+    commander: Commander,
+}
+
+impl Line {
+    /// The line that there is, if it leads to the daemon that runs now; or another one.
+    fn to<'a>(
+        line: &'a mut Option<Self>,
+        station: &Station,
+        instance: &Instance,
+        sender: &str,
+    ) -> Result<&'a mut Commander, Failure> {
+        let process_id = station.feed(instance)?.info.process_id;
+        let is_usable =
+            |line: &Self| line.sender == sender && line.commander.info().process_id == process_id;
+        let usable = line.take().filter(is_usable);
+        let opened = match usable {
+            Some(usable) => usable,
+            None => Self {
+                sender: sender.to_owned(),
+                commander: Commander::open(instance, sender).map_err(Failure::refused)?,
+            },
+        };
+        Ok(&mut line.insert(opened).commander)
+    }
+}
+
 fn carry_out(
     station: &Station,
     instance: &Instance,
-    (number, deadline): (u64, Instant),
-    sender: &str,
+    (number, deadline, sender): (u64, Instant, &str),
+    line: &mut Option<Line>,
     action: Action,
 ) -> Result<u64, Failure> {
     let turn = station.orders.turn.lock();
@@ -93,7 +129,9 @@ fn carry_out(
     match action {
         Action::Commands(commands) => {
             for command in commands {
-                send(instance, &command, order, sender)?;
+                let commander = Line::to(line, station, instance, sender)?;
+                order.in_time(utc_ms())?;
+                commander.command(&command).map_err(Failure::refused)?;
             }
             Ok(0)
         }
