@@ -121,9 +121,9 @@ class Station:
             self.process.wait(PATIENCE_S)
 
 
-def make_ground(folder: Path, fccd: Path, station: str) -> Station:
+def make_ground(folder: Path, fccd: Path, station: str, options: Sequence[str] = ()) -> Station:
     """Start `scripts/ground`: the station, and the built-in aircraft on its runway."""
     instance = f"ground-{os.getpid()}"
     environment = {"FCCD": str(fccd), "STATION": station, "GROUND": str(folder)}
-    script = [ROOT / "scripts/ground"]
+    script = [ROOT / "scripts/ground", *options]
     return Station(script, fccd, instance, {**environment, "INSTANCE": instance})

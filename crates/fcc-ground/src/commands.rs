@@ -1,6 +1,7 @@
 //! Commands to a daemon: each once, and in time.
 
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -32,6 +33,8 @@ pub(crate) struct Orders {
     numbers: Mutex<BTreeMap<u64, u64>>,
     /// Held while a command is sent: one at a time.
     pub(crate) turn: Mutex<()>,
+    /// The system number of the MAVLink station that has taken control; 0: none.
+    pub(crate) mavlink_owner: AtomicU8,
 }
 
 /// A command's number and the time until which it may be carried out.
@@ -56,6 +59,19 @@ impl Order {
 }
 
 impl Orders {
+    /// Whether a page may command.
+    ///
+    /// # Errors
+    /// When a MAVLink station has taken control.
+    pub(crate) fn permit_page(&self) -> Result<(), Failure> {
+        match self.mavlink_owner.load(Ordering::Acquire) {
+            0 => Ok(()),
+            owner => Err(Failure::refused(format!(
+                "the MAVLink station with system number {owner} is in control: release it there"
+            ))),
+        }
+    }
+
     /// Takes a number, which is never taken again.
     ///
     /// # Errors
@@ -141,9 +157,9 @@ pub(crate) fn send(
     instance: &Instance,
     command: &Command,
     order: Order,
-    peer: Peer,
+    sender: &str,
 ) -> Result<u64, Failure> {
-    let opened = Commander::open(instance, &peer.sender());
+    let opened = Commander::open(instance, sender);
     let mut commander = opened.map_err(Failure::refused)?;
     order.in_time(utc_ms())?;
     commander.command(command).map_err(Failure::refused)
@@ -166,7 +182,8 @@ pub(crate) async fn command(
     let tick = aside(move || {
         let turn = station.orders.turn.lock();
         let _turn = turn.unwrap_or_else(PoisonError::into_inner);
-        send(&instance, &command, order, peer)
+        station.orders.permit_page()?;
+        send(&instance, &command, order, &peer.sender())
     })
     .await?;
     Ok(Json(json!({ "carried_out": tick })))

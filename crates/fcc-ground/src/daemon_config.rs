@@ -16,6 +16,7 @@ pub(crate) struct DaemonConfigs {
     by_instance: BTreeMap<Instance, Config>,
     files: BTreeMap<Instance, PathBuf>,
     other: Config,
+    first: Option<Instance>,
     /// The folder of recordings of the first.
     pub(crate) recordings: Option<PathBuf>,
 }
@@ -24,10 +25,11 @@ impl DaemonConfigs {
     pub(crate) fn load(files: &[PathBuf]) -> Result<Self, ConfigError> {
         let mut by_instance = BTreeMap::new();
         let mut found = BTreeMap::new();
-        let mut recordings = None;
+        let (mut first, mut recordings) = (None, None);
         for file in files {
             let config = Config::load(file)?;
             recordings.get_or_insert_with(|| config.recording.folder.clone());
+            first.get_or_insert_with(|| config.telemetry.instance.clone());
             found.insert(config.telemetry.instance.clone(), file.clone());
             by_instance.insert(config.telemetry.instance.clone(), config);
         }
@@ -39,6 +41,7 @@ impl DaemonConfigs {
             by_instance,
             files: found,
             other,
+            first,
             recordings,
         })
     }
@@ -58,6 +61,11 @@ impl DaemonConfigs {
     /// The configuration's file.
     pub(crate) fn file(&self, instance: &Instance) -> Option<&Path> {
         self.files.get(instance).map(PathBuf::as_path)
+    }
+
+    /// The name of the daemon of the first configuration.
+    pub(crate) const fn first(&self) -> Option<&Instance> {
+        self.first.as_ref()
     }
 
     /// The names of the daemons.

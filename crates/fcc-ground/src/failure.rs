@@ -50,6 +50,12 @@ impl Failure {
     pub(crate) const fn with(status: StatusCode, body: Value) -> Self {
         Self { status, body }
     }
+
+    /// Why, in words.
+    pub(crate) fn words(&self) -> &str {
+        let words = self.body.get("refused").or_else(|| self.body.get("error"));
+        words.and_then(Value::as_str).unwrap_or_default()
+    }
 }
 
 impl IntoResponse for Failure {

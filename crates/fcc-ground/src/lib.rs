@@ -2,9 +2,9 @@
 //! daemon.
 //!
 //! ```text
-//! shared memory ─► live ─┐
-//! recordings ─► flights ─┼─► station ─► guard ─► server ─► browsers
-//! drafts, plans, upload ─┘
+//! shared memory ─► live ─┐            ┌─► guard ─► server ─► browsers
+//! recordings ─► flights ─┼─► station ─┤
+//! drafts, plans, upload ─┘            └─► mavlink ─► other ground stations
 //! ```
 //!
 //! It is a process of its own: it reads what a daemon publishes, and sends commands as
@@ -24,6 +24,7 @@ mod flights;
 mod guard;
 mod live;
 mod map;
+mod mavlink;
 mod page;
 mod plans;
 mod server;
@@ -32,6 +33,7 @@ mod station;
 mod token;
 mod upload;
 
-pub use cli::Cli;
+pub use cli::{Cli, MavlinkIdentity, MavlinkLinks};
 pub use exit::Exit;
+pub use mavlink::MavlinkLink;
 pub use start::{Running, StartError, run, runtime, start};

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 
 use clap::Parser as _;
 use fcc_flight::config::ConfigError;
+use fcc_mavlink::Identity;
 use fcc_telemetry::StationLink;
 use nix::ifaddrs::getifaddrs;
 use qrcode::QrCode;
@@ -18,12 +19,13 @@ use tokio::runtime::Runtime;
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::task::JoinHandle;
 
-use crate::cli::Cli;
+use crate::cli::{Cli, MavlinkIdentity};
 use crate::daemon_config::DaemonConfigs;
 use crate::exit::Exit;
 use crate::failure::THREADS;
 use crate::guard::Hosts;
 use crate::map::MapFile;
+use crate::mavlink;
 use crate::server;
 use crate::station::{self, router};
 use crate::token::Token;
@@ -38,6 +40,9 @@ pub enum StartError {
     /// The map cannot be used.
     #[error("--map {0}")]
     Map(String),
+    /// MAVLink cannot be spoken as asked.
+    #[error("{0}")]
+    Mavlink(String),
     /// No folder was given, and none is known.
     #[error("--state DIR: give a folder for drafts: neither STATE_DIRECTORY nor HOME is set")]
     NoState,
@@ -68,7 +73,7 @@ pub enum StartError {
 impl StartError {
     const fn exit(&self) -> Exit {
         match self {
-            Self::Config(_) | Self::Map(_) | Self::NoState => Exit::Usage,
+            Self::Config(_) | Self::Map(_) | Self::Mavlink(_) | Self::NoState => Exit::Usage,
             Self::Taken(_) => Exit::Taken,
             Self::State { .. } | Self::Listen { .. } | Self::System(_) => Exit::Failure,
         }
@@ -152,12 +157,31 @@ fn state_folder(given: Option<PathBuf>) -> Result<PathBuf, StartError> {
     found.ok_or(StartError::NoState)
 }
 
+/// What of the command line is MAVLink's, if it is spoken at all.
+fn mavlink_options(cli: &Cli, configs: &DaemonConfigs) -> Option<mavlink::Options> {
+    let instance = cli.mavlink_instance.clone();
+    (!cli.mavlink.is_empty()).then(|| mavlink::Options {
+        links: cli.mavlink.concat(),
+        allowed: cli.mavlink_allow.clone(),
+        system: cli.mavlink_system,
+        identity: match cli.mavlink_identity {
+            MavlinkIdentity::Generic => Identity::Generic,
+            MavlinkIdentity::Px4 => Identity::Px4,
+        },
+        key: cli.mavlink_key.clone(),
+        instance: instance
+            .or_else(|| configs.first().cloned())
+            .unwrap_or_default(),
+    })
+}
+
 /// Starts a station within a runtime of tokio.
 ///
 /// # Errors
 /// When a configuration, the map, the folder or the address cannot be used.
 pub async fn start(cli: Cli) -> Result<Running, StartError> {
     let configs = DaemonConfigs::load(&cli.configs)?;
+    let mavlink = mavlink_options(&cli, &configs);
     let map = cli
         .map
         .as_ref()
@@ -192,6 +216,9 @@ pub async fn start(cli: Cli) -> Result<Running, StartError> {
         configs,
     );
     let station = station.map_err(StartError::System)?;
+    if let Some(options) = mavlink {
+        mavlink::start(&station, &options).map_err(StartError::Mavlink)?;
+    }
     let serving = tokio::spawn(server::serve(listener, router(station)));
     Ok(Running {
         address,

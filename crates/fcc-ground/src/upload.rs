@@ -59,7 +59,7 @@ pub(crate) async fn vehicle_plan(
 }
 
 /// The content of the plan with this hash, if it is known here.
-fn content(station: &Station, instance: &Instance, hash: u64) -> Option<Plan> {
+pub(crate) fn content(station: &Station, instance: &Instance, hash: u64) -> Option<Plan> {
     let uploaded = Some(uploaded_file(station, hash));
     let of_start = station.configs.plan_file(instance).map(Path::to_owned);
     let candidates = uploaded.into_iter().chain(of_start);
@@ -116,38 +116,48 @@ pub(crate) async fn upload(
     let plan = aside(move || {
         let turn = station.orders.turn.lock();
         let _turn = turn.unwrap_or_else(PoisonError::into_inner);
-        Upload::new(&station, instance, &uploaded, (order, peer))?.carry_out()
-    });
-    Ok(Json(plan.await?))
-}
-
-struct Upload<'a> {
-    station: &'a Station,
-    instance: Instance,
-    order: Order,
-    peer: Peer,
-    item: u16,
-    text: String,
-    /// Of the plan as it is flown.
-    hash: u64,
-    of_draft: String,
-}
-
-impl<'a> Upload<'a> {
-    fn new(
-        station: &'a Station,
-        instance: Instance,
-        uploaded: &Uploaded,
-        (order, peer): (Order, Peer),
-    ) -> Result<Self, Failure> {
+        station.orders.permit_page()?;
         let draft = station.drafts.get(&uploaded.draft)?;
         if draft.revision != uploaded.revision {
             return Err(Failure::refused(
                 "the draft was changed meanwhile: look at its newest revision, and upload that",
             ));
         }
+        let from = (order, peer.sender());
+        let item = uploaded.item.unwrap_or(1);
+        let upload = Upload::new(&station, instance, (&draft.plan, item), from)?;
+        let feed = upload.carry_out()?;
+        Ok(json!({
+            "hash": format!("{:016x}", upload.hash),
+            "draft_hash": hash_text(&draft.plan),
+            "uploaded_utc_s": feed.word(UPLOADED),
+        }))
+    });
+    Ok(Json(plan.await?))
+}
+
+/// A plan on its way to a daemon.
+pub(crate) struct Upload<'a> {
+    station: &'a Station,
+    instance: Instance,
+    order: Order,
+    sender: String,
+    item: u16,
+    text: String,
+    /// Of the plan as it is flown.
+    pub(crate) hash: u64,
+}
+
+impl<'a> Upload<'a> {
+    /// A plan, from an item on.
+    pub(crate) fn new(
+        station: &'a Station,
+        instance: Instance,
+        (plan, item): (&Plan, u16),
+        (order, sender): (Order, String),
+    ) -> Result<Self, Failure> {
         let config = station.configs.of(Some(&instance));
-        let flown = checked(&draft.plan, config).map_err(|problems| {
+        let flown = checked(plan, config).map_err(|problems| {
             let first = problems
                 .first()
                 .map(ToString::to_string)
@@ -156,20 +166,20 @@ impl<'a> Upload<'a> {
             let body = json!({ "refused": refused, "problems": problems });
             Failure::with(StatusCode::CONFLICT, body)
         })?;
-        let text = fcc_plan::write(&draft.plan, Format::QgcPlan);
+        let text = fcc_plan::write(plan, Format::QgcPlan);
         Ok(Self {
             station,
             instance,
             order,
-            peer,
-            item: uploaded.item.unwrap_or(1),
+            sender,
+            item,
             text: text.map_err(|_| Failure::internal("the plan cannot be written"))?,
             hash: flown.hash().first_64_bits(),
-            of_draft: hash_text(&draft.plan),
         })
     }
 
-    fn carry_out(&self) -> Result<Value, Failure> {
+    /// Brings it to the daemon, and waits until a record shows it.
+    pub(crate) fn carry_out(&self) -> Result<Arc<Feed>, Failure> {
         let feed = self.station.feed(&self.instance)?;
         let file = uploaded_file(self.station, self.hash);
         if let Some(folder) = file.parent() {
@@ -177,17 +187,12 @@ impl<'a> Upload<'a> {
         }
         files::replace(&file, self.text.as_bytes()).map_err(|error| failed(&file, &error))?;
         let plan_file = self.station.configs.plan_file(&self.instance);
-        let uploaded = match plan_file {
+        match plan_file {
             Some(plan_file) if self.station.restarts && feed.word(STATE) == Some(STANDBY) => {
                 self.start_with(plan_file, &feed)
             }
             _ => self.replace(&file, &feed),
-        }?;
-        Ok(json!({
-            "hash": format!("{:016x}", self.hash),
-            "draft_hash": self.of_draft,
-            "uploaded_utc_s": uploaded.word(UPLOADED),
-        }))
+        }
     }
 
     /// Replaces the plan of a daemon that flies.
@@ -197,7 +202,7 @@ impl<'a> Upload<'a> {
             file: file.display().to_string(),
             item: self.item,
         };
-        send(&self.instance, &command, self.order, self.peer)?;
+        send(&self.instance, &command, self.order, &self.sender)?;
         let feed = Arc::clone(feed);
         self.shown(SHOWN_WITHIN, move || Some(Arc::clone(&feed)))
             .ok_or_else(|| {
@@ -226,7 +231,7 @@ impl<'a> Upload<'a> {
         // Engaged meanwhile: it keeps its plan.
         let is_in_standby = before.word(STATE) == Some(STANDBY);
         let stopped = if is_in_standby {
-            send(&self.instance, &Command::Stop, self.order, self.peer)
+            send(&self.instance, &Command::Stop, self.order, &self.sender)
         } else {
             Err(Failure::refused("the aircraft was engaged meanwhile"))
         };

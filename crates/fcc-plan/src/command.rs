@@ -62,11 +62,13 @@ pub(crate) mod frame {
     pub(crate) const TERRAIN_INT: u8 = 11;
 }
 
-/// A command as a file has it.
+/// A command as a file or a ground station has it.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(crate) struct Command {
-    pub(crate) id: u16,
-    pub(crate) frame: u8,
-    /// NaN where the file leaves a parameter to the vehicle.
-    pub(crate) parameters: [f64; 7],
+pub struct Command {
+    /// `MAV_CMD`.
+    pub id: u16,
+    /// `MAV_FRAME`.
+    pub frame: u8,
+    /// In the units of MAVLink, places in degrees; NaN where one is left to the vehicle.
+    pub parameters: [f64; 7],
 }

@@ -27,6 +27,7 @@ mod leg;
 mod legs;
 mod level;
 mod mavproxy;
+pub mod mission;
 mod outline;
 mod path;
 mod plan;

@@ -38,7 +38,7 @@ pub(crate) struct Feed {
     pub(crate) info: Info,
     pub(crate) columns: Columns,
     /// Its records are those of this program's aircraft.
-    pub(super) is_flight: bool,
+    pub(crate) is_flight: bool,
     record: watch::Sender<Newest>,
     status: watch::Sender<Utf8Bytes>,
     events: broadcast::Sender<Utf8Bytes>,
@@ -99,7 +99,7 @@ impl Feed {
         self.ended.load(Ordering::Acquire)
     }
 
-    pub(super) fn records(&self) -> watch::Receiver<Newest> {
+    pub(crate) fn records(&self) -> watch::Receiver<Newest> {
         self.record.subscribe()
     }
 
@@ -112,7 +112,7 @@ impl Feed {
     }
 
     /// The events until now, and those from now on.
-    pub(super) fn events(&self) -> (Vec<Utf8Bytes>, broadcast::Receiver<Utf8Bytes>) {
+    pub(crate) fn events(&self) -> (Vec<Utf8Bytes>, broadcast::Receiver<Utf8Bytes>) {
         let past = self.past.lock().unwrap_or_else(PoisonError::into_inner);
         (past.iter().cloned().collect(), self.events.subscribe())
     }
@@ -195,6 +195,7 @@ impl Feed {
             "time_s": self.seconds(event.time_ns),
             "code": event.code,
             "index": event.index,
+            "values": event.values,
             "text": event.text.as_str(),
         }});
         let text = Utf8Bytes::from(text.to_string());
