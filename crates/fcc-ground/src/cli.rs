@@ -65,34 +65,9 @@ pub struct Cli {
     /// Send the newest records to Foxglove, too: the line with the link says where
     #[arg(long)]
     pub foxglove: bool,
-    /// Speak MAVLink to other ground stations: on this link, or without one by UDP to ports
-    /// 14550 and 14540 of this machine; may be given several times. A link is
-    /// udp:ADDRESS:PORT, udpin:ADDRESS:PORT, tcpin:ADDRESS:PORT or serial:DEVICE:BAUD, and
-    /// behind it ,rate=N (bytes per second) and ,high-latency
-    #[arg(
-        long,
-        value_name = "LINK",
-        num_args = 0..=1,
-        default_missing_value = "usual",
-        value_parser = mavlink_links
-    )]
-    pub mavlink: Vec<MavlinkLinks>,
-    /// The number of the vehicle as a MAVLink system
-    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u8).range(1..))]
-    pub mavlink_system: u8,
-    /// As what the vehicle presents itself: px4 for stations that offer modes only to
-    /// autopilots that they know
-    #[arg(long, value_name = "KIND", default_value = "generic")]
-    pub mavlink_identity: MavlinkIdentity,
-    /// The key of signatures, 64 hexadecimal digits: nothing unsigned is read then
-    #[arg(long, value_name = "FILE")]
-    pub mavlink_key: Option<PathBuf>,
-    /// A machine whose frames links that listen read; may be given several times
-    #[arg(long, value_name = "ADDRESS")]
-    pub mavlink_allow: Vec<IpAddr>,
-    /// The daemon that MAVLink stations see [default: that of the first configuration]
-    #[arg(long, value_name = "NAME")]
-    pub mavlink_instance: Option<Instance>,
+    /// MAVLink
+    #[command(flatten)]
+    pub mavlink: MavlinkArgs,
     /// A map in one file, made by `pmtiles`
     #[arg(long, value_name = "FILE.pmtiles")]
     pub map: Option<PathBuf>,
@@ -111,6 +86,43 @@ pub struct Cli {
     pub json: bool,
 }
 
+/// MAVLink for other ground stations.
+#[derive(clap::Args, Clone, Debug)]
+pub struct MavlinkArgs {
+    /// Speak MAVLink to other ground stations: on this link, or without one by UDP to ports
+    /// 14550 and 14540 of this machine; may be given several times. A link is
+    /// udp:ADDRESS:PORT, udpin:ADDRESS:PORT, tcpin:ADDRESS:PORT or serial:DEVICE:BAUD, and
+    /// behind it ,rate=N (bytes per second) and ,high-latency
+    #[arg(
+        long = "mavlink",
+        value_name = "LINK",
+        num_args = 0..=1,
+        default_missing_value = "usual",
+        value_parser = mavlink_links
+    )]
+    pub links: Vec<MavlinkLinks>,
+    /// The number of the vehicle as a MAVLink system
+    #[arg(long = "mavlink-system", value_name = "N", default_value = "1", value_parser = clap::value_parser!(u8).range(1..))]
+    pub system: u8,
+    /// As what the vehicle presents itself: px4 for stations that offer modes only to
+    /// autopilots that they know
+    #[arg(
+        long = "mavlink-identity",
+        value_name = "KIND",
+        default_value = "generic"
+    )]
+    pub identity: MavlinkIdentity,
+    /// The key of signatures, 64 hexadecimal digits: nothing unsigned is read then
+    #[arg(long = "mavlink-key", value_name = "FILE")]
+    pub key: Option<PathBuf>,
+    /// A machine whose frames links that listen read; may be given several times
+    #[arg(long = "mavlink-allow", value_name = "ADDRESS")]
+    pub allow: Vec<IpAddr>,
+    /// The daemon that MAVLink stations see [default: that of the first configuration]
+    #[arg(long = "mavlink-instance", value_name = "NAME")]
+    pub instance: Option<Instance>,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -121,8 +133,8 @@ mod tests {
         Cli::command().debug_assert();
         let cli = Cli::parse_from(["fcc-ground"]);
         assert!(cli.listen.ip().is_loopback());
-        assert!(cli.mavlink.is_empty());
+        assert!(cli.mavlink.links.is_empty());
         let cli = Cli::parse_from(["fcc-ground", "--mavlink", "--json"]);
-        assert_eq!(cli.mavlink.concat(), MavlinkLink::usual());
+        assert_eq!(cli.mavlink.links.concat(), MavlinkLink::usual());
     }
 }
