@@ -125,5 +125,5 @@ def make_ground(folder: Path, fccd: Path, station: str, options: Sequence[str] =
     """Start `scripts/ground`: the station, and the built-in aircraft on its runway."""
     instance = f"ground-{os.getpid()}"
     environment = {"FCCD": str(fccd), "STATION": station, "GROUND": str(folder)}
-    script = [ROOT / "scripts/ground", *options]
+    script: list[str | Path] = [ROOT / "scripts/ground", *options]
     return Station(script, fccd, instance, {**environment, "INSTANCE": instance})

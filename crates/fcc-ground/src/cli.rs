@@ -3,7 +3,7 @@
 use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
 
-use clap::{Args, Parser, ValueEnum};
+use clap::{Parser, ValueEnum};
 use fcc_telemetry::Instance;
 
 use crate::exit::EXIT_CODES;
@@ -65,7 +65,7 @@ pub struct Cli {
     /// Send the newest records to Foxglove, too: the line with the link says where
     #[arg(long)]
     pub foxglove: bool,
-    /// MAVLink.
+    /// MAVLink
     #[command(flatten)]
     pub mavlink: MavlinkArgs,
     /// A map in one file, made by `pmtiles`
@@ -86,8 +86,8 @@ pub struct Cli {
     pub json: bool,
 }
 
-/// The options of MAVLink.
-#[derive(Args, Clone, Debug)]
+/// MAVLink for other ground stations.
+#[derive(clap::Args, Clone, Debug)]
 pub struct MavlinkArgs {
     /// Speak MAVLink to other ground stations: on this link, or without one by UDP to ports
     /// 14550 and 14540 of this machine; may be given several times. A link is

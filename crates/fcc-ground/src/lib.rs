@@ -33,7 +33,7 @@ mod station;
 mod token;
 mod upload;
 
-pub use cli::{Cli, MavlinkIdentity, MavlinkLinks};
+pub use cli::{Cli, MavlinkArgs, MavlinkIdentity, MavlinkLinks};
 pub use exit::Exit;
 pub use mavlink::MavlinkLink;
 pub use start::{Running, StartError, run, runtime, start};

@@ -159,16 +159,17 @@ fn state_folder(given: Option<PathBuf>) -> Result<PathBuf, StartError> {
 
 /// What of the command line is MAVLink's, if it is spoken at all.
 fn mavlink_options(cli: &Cli, configs: &DaemonConfigs) -> Option<mavlink::Options> {
-    let instance = cli.mavlink.instance.clone();
-    (!cli.mavlink.links.is_empty()).then(|| mavlink::Options {
-        links: cli.mavlink.links.concat(),
-        allowed: cli.mavlink.allow.clone(),
-        system: cli.mavlink.system,
-        identity: match cli.mavlink.identity {
+    let given = &cli.mavlink;
+    let instance = given.instance.clone();
+    (!given.links.is_empty()).then(|| mavlink::Options {
+        links: given.links.concat(),
+        allowed: given.allow.clone(),
+        system: given.system,
+        identity: match given.identity {
             MavlinkIdentity::Generic => Identity::Generic,
             MavlinkIdentity::Px4 => Identity::Px4,
         },
-        key: cli.mavlink.key.clone(),
+        key: given.key.clone(),
         instance: instance
             .or_else(|| configs.first().cloned())
             .unwrap_or_default(),

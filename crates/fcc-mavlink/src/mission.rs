@@ -261,10 +261,12 @@ impl Missions {
             return;
         }
         let items = self.list(part).items.to_vec();
+        let count = items.len() as u16;
         let range = u16::try_from(start).ok().zip(u16::try_from(last).ok());
         match range {
-            Some((start, last)) if start <= last && usize::from(last) < items.len() => {
-                self.receive(peer, part, (items, start, last + 1), now, fx);
+            // MAVProxy counts one too many.
+            Some((start, last)) if start <= last && last <= count && start < count => {
+                self.receive(peer, part, (items, start, count.min(last + 1)), now, fx);
             }
             _ => {
                 let text = format!("items {start} to {last}: the list has {}", items.len());

@@ -404,7 +404,7 @@ impl Protocol {
             OfProtocol::Interval(number, us) => {
                 let streams = self.links.streams(peer.link);
                 if !streams.is_some_and(|streams| streams.set(number, us)) {
-                    return Err(no_message(number));
+                    return Err((MavResult::MAV_RESULT_DENIED, no_message(number).1));
                 }
             }
             OfProtocol::TellInterval(number) => {

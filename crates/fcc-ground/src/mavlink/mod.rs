@@ -180,7 +180,7 @@ impl Face {
         let (mut looked, mut kept) = (Instant::now(), Instant::now());
         self.look();
         while let Some(station) = self.station.upgrade() {
-            if looked.elapsed() > LOOK_EVERY {
+            if self.watched.is_none() || looked.elapsed() > LOOK_EVERY {
                 looked = Instant::now();
                 self.look();
             }
@@ -230,7 +230,9 @@ impl Face {
         let feed = station.daemons.feed(&self.instance);
         let feed = feed.filter(|feed| feed.is_flight && self.watched.is_none());
         if let Some(feed) = feed {
-            let (records, (_, events)) = (feed.records(), feed.events());
+            let (mut records, (_, events)) = (feed.records(), feed.events());
+            // The one that is there is new here.
+            records.mark_changed();
             self.watched = Some(Watched {
                 feed,
                 records,

@@ -2,7 +2,9 @@
 //!
 //! Stations are made of the crate `mavlink` alone, whose frames are not those of this crate.
 
+#![cfg(test)]
 #![expect(deprecated, reason = "stations still send what the dialect calls old")]
+#![allow(clippy::indexing_slicing, reason = "helper functions of tests")]
 
 mod commands;
 mod hostile;

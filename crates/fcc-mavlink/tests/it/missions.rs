@@ -1,5 +1,5 @@
 //! Missions, fences and rally points: what mavlink.io's guide and the cases of
-//! mavsdk_mavlink_tests (2026-10) say.
+//! `mavsdk_mavlink_tests` (2026-10) say.
 
 use fcc_mavlink::Action;
 use mavlink::dialects::common::{
@@ -242,7 +242,9 @@ fn a_station_that_reads_while_another_uploads_gets_one_plan() {
     world.send(2, &list);
     world.all(100);
     let mut other = mission(3);
-    other.iter_mut().for_each(|item| item.y += 7);
+    for item in &mut other {
+        item.y += 7;
+    }
     upload(&mut world, 1, &other).expect("an answer");
     // By the old request, which is answered with the newer message (the guide).
     for seq in 0..3 {

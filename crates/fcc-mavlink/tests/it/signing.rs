@@ -18,8 +18,7 @@ fn bytes(hex: &str) -> Vec<u8> {
 }
 
 fn key() -> Key {
-    let text: String = (0..32).map(|n| format!("{n:02x}")).collect();
-    read_key(&text).unwrap()
+    read_key("000102030405060708090a0b0c0d0e0f101112131415161718191a1b1c1d1e1f").unwrap()
 }
 
 fn now(seconds: u64) -> Now {
