@@ -296,8 +296,8 @@ def test_of_a_copy_of_a_part_its_own_ticks_are_listed(
 @pytest.mark.parametrize(
     ("keeps", "missing"),
     [
-        (lambda at, topic: at < 0.5, "ticks"),
-        (lambda at, topic: topic == RECORD, "events"),
+        (lambda at, _: at < 0.5, "ticks"),
+        (lambda _, topic: topic == RECORD, "events"),
     ],
     ids=["its beginning", "its records"],
 )
