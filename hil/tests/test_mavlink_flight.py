@@ -11,7 +11,7 @@ from mavsdk.plugins.mission_raw import MissionRaw
 from mavsdk.plugins.telemetry import FlightMode, Telemetry
 
 
-def test_mavsdk_uploads_flies_pauses_replaces_returns_and_lands(tmp_path: Path, fccd: Path) -> None:
+def test_mavsdk_uploads_flies_pauses_replaces_and_returns(tmp_path: Path, fccd: Path) -> None:
     with vehicle(tmp_path / "ground", fccd, IN_THE_AIR) as (ground, port):
         mavsdk, system = mavsdk_system(port)
         missions, action, telemetry = MissionRaw(system), Action(system), Telemetry(system)
