@@ -337,15 +337,19 @@ impl RawReader {
         computed: Option<u32>,
         checksum: u32,
     ) -> Result<Option<DamagedBytes>, Cut> {
-        let index = self.position..self.length;
+        let mut index = self.position..self.length;
         let file = self.file.get_mut();
-        let why = match summary::read_footer(file, self.length) {
-            Some(at) if at.start != 0 && at.start != index.start => {
-                Some("the footer does not point to the index")
+        let footer = summary::read_footer(file, self.length);
+        let is_here = |at: &Range<u64>| at.start == 0 || at.start == index.start;
+        let why = match (footer, summary::end(file, index.start)) {
+            (_, Some(end)) if end < self.length => {
+                index.start = end;
+                Some("these bytes follow the file's end")
             }
-            Some(at) => summary::read(file, &at).err(),
-            None if summary::has_end(file, self.length) => Some("the footer is damaged"),
-            None => return Err(Cut::Off(self.length)),
+            (Some(at), _) if is_here(&at) => summary::read(file, &at).err(),
+            (Some(_), _) => Some("the footer does not point to the index"),
+            (None, _) if summary::has_end(file, self.length) => Some("the footer is damaged"),
+            (None, _) => return Err(Cut::Off(self.length)),
         };
         self.finished = true;
         self.position = self.length;

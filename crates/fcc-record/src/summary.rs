@@ -68,6 +68,18 @@ pub(super) fn has_end(file: &mut File, bytes: u64) -> bool {
         .is_some_and(|tail| tail.ends_with(mcap::MAGIC) || head(&tail) == Some(FOOTER_HEAD))
 }
 
+/// The end of a finished file whose index begins at `at`, if other bytes follow it.
+pub(super) fn end(file: &mut File, mut at: u64) -> Option<u64> {
+    loop {
+        let record = head(&read_at(file, at, HEAD_BYTES as u64)?)?;
+        at = at.checked_add(HEAD_BYTES as u64)?.checked_add(record.1)?;
+        if record == FOOTER_HEAD {
+            let is_end = read_at(file, at, MAGIC_BYTES)? == mcap::MAGIC;
+            return is_end.then_some(at + MAGIC_BYTES);
+        }
+    }
+}
+
 /// The content of a finished file's index.
 ///
 /// # Errors

@@ -45,11 +45,11 @@ pub(super) fn text(diagnosis: &Diagnosis) -> String {
             let _ = writeln!(text, "\n{title}:");
         }
         for finding in todo {
-            let _ = write!(text, " {} {}", mark(grade), finding.name);
+            let mut said = format!(" {} {}", mark(grade), finding.name);
             if !finding.why.is_empty() {
-                let _ = write!(text, ": {}", finding.why);
+                let _ = write!(said, ": {}", finding.why);
             }
-            text.push('\n');
+            let _ = writeln!(text, "{}", wrapped(&said));
             for remedy in &finding.remedies {
                 let _ = writeln!(text, "     {}\n       {}", remedy.place, remedy.line);
             }
@@ -63,6 +63,23 @@ pub(super) fn text(diagnosis: &Diagnosis) -> String {
         diagnosis.count(Grade::Lacks),
         diagnosis.count(Grade::NotKnown),
     );
+    text
+}
+
+/// A finding in lines of a terminal's width, the others below its name.
+fn wrapped(finding: &str) -> String {
+    let mut text = String::new();
+    let mut column = 0;
+    for word in finding.split_inclusive(' ') {
+        let width = word.trim_end().chars().count();
+        if column + width > TERMINAL {
+            text.truncate(text.trim_end().len());
+            text.push_str("\n   ");
+            column = 3;
+        }
+        text.push_str(word);
+        column += word.chars().count();
+    }
     text
 }
 

@@ -1,6 +1,6 @@
 //! What is worth a look in a configuration that is accepted.
 
-use super::{Config, SensorEntry, XPlaneSection, raw_readings, read};
+use super::{Config, DeviceEntry, SensorEntry, XPlaneSection, raw_readings, read};
 
 /// That a flight moves nothing is permitted, and said.
 pub(crate) const NO_ACTUATOR: &str =
@@ -69,6 +69,16 @@ impl Config {
     /// Where the pilot's stick is read, if it is to take over.
     fn stick_remark(&self) -> Option<String> {
         let threshold = self.engage.stick_takeover?;
+        let has_sticks = |sensor: &SensorEntry| match sensor {
+            SensorEntry::Device(device) => match &**device {
+                DeviceEntry::RcReceiver(section) => section.channels().controls.is_some(),
+                _ => false,
+            },
+            _ => false,
+        };
+        if self.sensors().any(|sensor| has_sticks(&sensor)) {
+            return None;
+        }
         let source = if self.x_planes().next().is_some() {
             "read from X-Plane's sim/joystick/joy_mapped_axis_value[1] to [3], which it has since \
              11.50 and which was not tried with a real one: move the stick once in standby and \

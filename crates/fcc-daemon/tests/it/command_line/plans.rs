@@ -268,6 +268,24 @@ fn what_nothing_measures_is_said() {
     assert!(!said.contains("no sensor here"), "{said}");
 }
 
+#[test]
+fn a_stick_that_takes_over_needs_a_sensor_that_reads_it() {
+    let folder = tempfile::tempdir().unwrap();
+    for (keys, is_read) in [("", true), ("roll_channel = 0\n", false)] {
+        let text = format!(
+            "[built-in]\n[engage]\nstick_takeover = 0.3\n[[sensor]]\nkind = \"rc-receiver\"\n\
+             path = \"/dev/ttyS1\"\n{keys}"
+        );
+        fs::write(folder.path().join("c.toml"), text).unwrap();
+        let (exit, said) = ended(folder.path(), &["check", "c.toml"]);
+        assert_eq!(
+            (exit, said.contains("without effect")),
+            (Some(0), !is_read),
+            "{said}"
+        );
+    }
+}
+
 /// 19,120 m are 62,730 ft; from 45° north, 8° east to 8° north, 45° east it is far.
 #[test]
 fn what_is_seldom_meant_is_remarked_on() {

@@ -74,6 +74,21 @@ fn a_file_whose_beginning_is_overwritten_is_read_from_the_next_record() {
     }
 }
 
+/// As `cat` joins two files.
+#[test]
+fn bytes_behind_a_finished_file_are_damage_and_no_cut() {
+    let original = &ORIGINALS[0];
+    for others in [&b"\0"[..], &[7; 100], &original.bytes] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("joined.mcap");
+        fs::write(&path, [&original.bytes, others].concat()).unwrap();
+        let (messages, damages, cut) = read_damaged(&path);
+        assert_eq!((ticks(&messages).len(), cut), (TICKS as usize, None));
+        let places: Vec<_> = damages.iter().map(|damage| damage.from_byte).collect();
+        assert_eq!(places, [original.bytes.len() as u64], "{damages:?}");
+    }
+}
+
 /// What is known of the flight is lost, and its records are identified by their
 /// content.
 #[test]
