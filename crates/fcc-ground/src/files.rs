@@ -1,7 +1,7 @@
-//! Small files that must survive a loss of power whole.
+//! Files: small ones that must survive a loss of power whole, and parts of large ones.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Read as _, Write as _};
+use std::io::{self, Read as _, Seek as _, SeekFrom, Write as _};
 use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::Path;
 
@@ -39,6 +39,26 @@ pub(crate) fn remove(path: &Path) -> io::Result<()> {
 /// not waited.
 pub(crate) fn read_limited(path: &Path, most_bytes: u64) -> io::Result<String> {
     let mut text = String::new();
+    let file = open(path)?;
+    file.take(most_bytes + 1).read_to_string(&mut text)?;
+    if text.len() as u64 > most_bytes {
+        return Err(io::Error::other(format!(
+            "is larger than {most_bytes} bytes"
+        )));
+    }
+    Ok(text)
+}
+
+/// Bytes of a file from a place on; fewer at its end.
+pub(crate) fn read_part(path: &Path, from: u64, bytes: u64) -> io::Result<Vec<u8>> {
+    let mut file = open(path)?;
+    file.seek(SeekFrom::Start(from))?;
+    let mut read = Vec::new();
+    file.take(bytes).read_to_end(&mut read)?;
+    Ok(read)
+}
+
+fn open(path: &Path) -> io::Result<File> {
     let flags = OFlag::O_NOFOLLOW | OFlag::O_NONBLOCK;
     let file = OpenOptions::new()
         .read(true)
@@ -47,11 +67,5 @@ pub(crate) fn read_limited(path: &Path, most_bytes: u64) -> io::Result<String> {
     if !file.metadata()?.is_file() {
         return Err(io::Error::other("is no file"));
     }
-    file.take(most_bytes + 1).read_to_string(&mut text)?;
-    if text.len() as u64 > most_bytes {
-        return Err(io::Error::other(format!(
-            "is larger than {most_bytes} bytes"
-        )));
-    }
-    Ok(text)
+    Ok(file)
 }

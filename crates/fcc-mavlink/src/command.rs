@@ -281,6 +281,10 @@ fn in_flight(situation: &Situation<'_>, command: Command) -> Judged {
     if situation.state.flight.is_engaged {
         return Ok(Todo::one(command));
     }
+    if situation.state.flight.is_airborne {
+        let why = "the pilot is in control: arm first";
+        return Err((Code::MAV_RESULT_NOT_IN_CONTROL, why.to_owned()));
+    }
     not_now(NOT_ENGAGED)
 }
 

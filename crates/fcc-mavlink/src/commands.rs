@@ -17,7 +17,8 @@ const IN_PROGRESS_MS: u64 = 400;
 const AGAIN_MS: u64 = 1_000;
 /// A frame that comes twice, or is sent again with a higher `confirmation`, ms.
 const REPEATED_MS: u64 = 5_000;
-/// `COMMAND_INT` does not say that it is sent again: the same within this time is, ms.
+/// `COMMAND_INT` does not say that it is sent again: the same within this time is, ms. In it
+/// frames overtake each other, too.
 const SAME_MS: u64 = 1_000;
 /// Commands that are being carried out, and senders that are remembered.
 const MOST_RUNNING: usize = 16;
@@ -70,6 +71,14 @@ impl Commands {
             if last.bytes == received.bytes && is_again {
                 let result = last.result.unwrap_or(Code::MAV_RESULT_IN_PROGRESS);
                 fx.answer(peer, ack(peer, received.number, result));
+                return false;
+            }
+            let is_older = sequence.wrapping_sub(last.sequence).cast_signed() < 0;
+            if is_older && since_ms < SAME_MS {
+                let code = Code::MAV_RESULT_TEMPORARILY_REJECTED;
+                fx.answer(peer, ack(peer, received.number, code));
+                let why = "it arrived behind a later command: send it again";
+                fx.tell(peer, MavSeverity::MAV_SEVERITY_WARNING, why);
                 return false;
             }
         }

@@ -197,6 +197,11 @@ impl Body {
         }
     }
 
+    /// Its length in a frame without signature.
+    pub(crate) fn bytes(&self) -> f64 {
+        (HEADER_V2 + self.payload.len() + CRC_BYTES) as f64
+    }
+
     /// The whole frame of version 2; `sign` adds a signature to a frame that has its flag.
     pub(crate) fn frame(
         &self,

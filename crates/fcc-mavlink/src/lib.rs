@@ -3,7 +3,7 @@
 //! ```text
 //! bytes ─► Links ─► Signing ─► Protocol ─┬─► Commands, by the table of commands ─► Request
 //!                                        ├─► Missions: transactions of lists ────► Request
-//!                                        ├─► Parameters, Control
+//!                                        ├─► Parameters, Control, Logs
 //! VehicleState ─► messages ─► Streams ───┴─► Links, within their rate ─► bytes
 //! ```
 //!
@@ -22,6 +22,7 @@ mod effects;
 mod frame;
 mod item;
 mod link;
+mod log;
 mod message;
 mod mission;
 mod mode;
@@ -32,6 +33,7 @@ mod streams;
 mod vehicle;
 
 pub use link::LinkOptions;
+pub use log::{Log, LogWanted};
 pub use parameter::Parameter;
 pub use protocol::{Protocol, Settings, Severity};
 pub use signing::{Key, read_key};

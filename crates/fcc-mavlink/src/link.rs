@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, VecDeque};
 
 use crate::frame::{Body, Deframer, Frame};
+use crate::log::Logs;
 use crate::message::{Scene, body, id};
 use crate::parameter::Parameters;
 use crate::signing::Signing;
@@ -36,7 +37,7 @@ struct Link {
     streams: Streams,
     answers: VecDeque<Body>,
     sequence: u8,
-    /// Bytes that may be sent now, and those of lists of parameters: half of them.
+    /// Bytes that may be sent now, and those of parameters and recordings: half of them.
     budget: f64,
     list_budget: f64,
     refilled_ms: u64,
@@ -104,12 +105,12 @@ impl Links {
         &mut self,
         scene: &Scene<'_>,
         control: Option<&Body>,
-        (parameters, signing): (&mut Parameters, &mut Signing),
+        (parameters, logs, signing): (&mut Parameters, &mut Logs, &mut Signing),
         mut out: impl FnMut(LinkId, Vec<u8>),
     ) {
         for (number, link) in &mut self.0 {
             link.refill(scene.now);
-            while let Some(body) = link.next(*number, scene, control, parameters) {
+            while let Some(body) = link.next(*number, scene, control, (parameters, logs)) {
                 let signer = signing.signer(*number as u8, scene.now);
                 let frame = body.frame((scene.system, COMPONENT), link.sequence, signer);
                 link.sequence = link.sequence.wrapping_add(1);
@@ -131,13 +132,13 @@ impl Link {
         self.refilled_ms = now.ms;
     }
 
-    /// The next message, by priority: heartbeat, answers, parameters, telemetry.
+    /// The next message, by priority: heartbeat, answers, parts of lists, telemetry.
     fn next(
         &mut self,
         number: LinkId,
         scene: &Scene<'_>,
         control: Option<&Body>,
-        parameters: &mut Parameters,
+        (parameters, logs): (&mut Parameters, &mut Logs),
     ) -> Option<Body> {
         if self.budget <= 0.0 {
             return None;
@@ -150,11 +151,10 @@ impl Link {
             return Some(answer);
         }
         if self.list_budget > 0.0
-            && let Some(parameter) = parameters.next(number)
+            && let Some(part) = parameters.next(number).or_else(|| logs.next(number))
         {
-            // Header, checksum and the longest payload.
-            self.list_budget -= 37.0;
-            return Some(parameter);
+            self.list_budget -= part.bytes();
+            return Some(part);
         }
         while self.budget > RESERVE_BYTES {
             let due = self.streams.due(scene.now.ms)?;

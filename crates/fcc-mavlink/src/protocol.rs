@@ -1,5 +1,6 @@
 //! The protocol as a whole: bytes in, bytes and requests out, time passed in.
 
+use fcc_telemetry::Command;
 use mavlink::dialects::common::{
     MESSAGE_INTERVAL_DATA, MISSION_ITEM_REACHED_DATA, MavMessage, MavResult, MavSeverity,
     TIMESYNC_DATA,
@@ -12,6 +13,7 @@ use crate::effects::{Effects, Peer};
 use crate::frame::{Body, Frame};
 use crate::item::MissionItem;
 use crate::link::{COMPONENT, LinkOptions, Links};
+use crate::log::{Log, LogWanted, Logs};
 use crate::message::{Scene, id, requested};
 use crate::mission::Missions;
 use crate::mode::by_custom_mode;
@@ -63,6 +65,7 @@ pub struct Protocol {
     commands: Commands,
     missions: Missions,
     parameters: Parameters,
+    logs: Logs,
     control: Control,
     fx: Effects,
     /// Another system with this one's number was heard, and that was said.
@@ -81,6 +84,7 @@ impl Protocol {
             commands: Commands::default(),
             missions: Missions::default(),
             parameters: Parameters::default(),
+            logs: Logs::default(),
             control: Control::default(),
             fx: Effects::default(),
             has_twin: false,
@@ -96,6 +100,7 @@ impl Protocol {
     pub fn close(&mut self, link: LinkId) {
         self.links.close(link);
         self.parameters.forget(link);
+        self.logs.forget(link);
     }
 
     /// The newest state of the vehicle.
@@ -117,6 +122,21 @@ impl Protocol {
     /// All parameters.
     pub fn set_parameters(&mut self, all: Vec<Parameter>) {
         self.parameters.set_all(all);
+    }
+
+    /// What stations need of the recordings, once.
+    pub const fn wanted_log(&mut self) -> Option<LogWanted> {
+        self.logs.wanted()
+    }
+
+    /// All recordings, the oldest first.
+    pub fn set_logs(&mut self, all: Vec<Log>) {
+        self.logs.set_all(all);
+    }
+
+    /// Bytes of a recording from here on; fewer than were wanted at its end.
+    pub fn set_log_data(&mut self, log: u16, at: u32, bytes: Vec<u8>) {
+        self.logs.set_data(log, at, bytes);
     }
 
     /// The system number of the station that has taken control; none: all may command.
@@ -181,6 +201,11 @@ impl Protocol {
             let text = format!("station {system} is not heard: control is free");
             self.fx.announce(MavSeverity::MAV_SEVERITY_WARNING, &text);
         }
+        let is_engaged = self.state.is_connected && self.state.flight.is_engaged;
+        if let Some((peer, within_s)) = self.control.promise(is_engaged, now) {
+            let promise = vec![Command::set([("heartbeat_s", within_s)])];
+            self.fx.request(peer, Action::Commands(promise), now);
+        }
         for (link, body) in self.fx.answers.drain(..) {
             self.links.answer(link, body);
         }
@@ -195,7 +220,7 @@ impl Protocol {
             now,
         };
         let status = self.control.status();
-        let shared = (&mut self.parameters, &mut self.signing);
+        let shared = (&mut self.parameters, &mut self.logs, &mut self.signing);
         self.links.send(&scene, status.as_ref(), shared, out);
     }
 
@@ -222,7 +247,7 @@ impl Protocol {
         // Where the target is.
         let target = match frame.id {
             id::HEARTBEAT => return self.control.hear(peer, now),
-            11 => 4,
+            11 | 117 => 4,
             20 | 38 | 23 => {
                 if frame.id == 20 {
                     2
@@ -230,12 +255,13 @@ impl Protocol {
                     4
                 }
             }
-            21 | 43 | 45 | 47 => 0,
+            21 | 43 | 45 | 47 | 121 | 122 => 0,
             40 | 41 | 44 | 51 => 2,
             73 => 32,
             75 | 76 => 30,
             110 => 1,
             111 => 16,
+            119 => 10,
             _ => return,
         };
         let mut target: [u8; 2] = fields.bytes(target);
@@ -289,6 +315,7 @@ impl Protocol {
             111 if fields.i64(0) == 0 => {
                 fx.answer(peer, MavMessage::TIMESYNC(timesync(peer, frame, now)));
             }
+            117..=122 => self.logs.take(peer, frame.id, fields, fx),
             _ => {}
         }
     }

@@ -76,7 +76,7 @@ impl Config {
             },
             _ => false,
         };
-        if self.sensors().any(|sensor| has_sticks(&sensor)) {
+        if self.sensors().any(has_sticks) {
             return None;
         }
         let source = if self.x_planes().next().is_some() {

@@ -333,9 +333,15 @@ impl Face {
             // As above.
             let _ = self.jobs.send(job);
         }
+        if let Some(wanted) = self.protocol.wanted_log() {
+            // As above.
+            let _ = self.jobs.send(Job::Log(wanted));
+        }
         while let Ok(came) = self.came.try_recv() {
             match came {
                 Done::Outcome(ticket, outcome) => self.protocol.finish(ticket, &outcome),
+                Done::Logs(all) => self.protocol.set_logs(all),
+                Done::LogData(log, at, bytes) => self.protocol.set_log_data(log, at, bytes),
                 Done::Found(hash, plan) => {
                     if hash != self.protocol.plan_hash() {
                         self.protocol.set_plan(hash, plan.as_deref());

@@ -2,17 +2,19 @@
 //!
 //! It runs in a thread of its own, for a command may take seconds.
 
+use std::path::Path;
 use std::sync::mpsc::{Receiver, Sender};
 use std::sync::{PoisonError, Weak};
-use std::time::Instant;
+use std::time::{Instant, UNIX_EPOCH};
 
 use fcc_live::Commander;
-use fcc_mavlink::{Action, Outcome, Parameter};
+use fcc_mavlink::{Action, Log, LogWanted, Outcome, Parameter};
 use fcc_plan::Plan;
 use fcc_telemetry::Instance;
 
 use crate::commands::{Order, utc_ms};
 use crate::failure::Failure;
+use crate::files;
 use crate::station::Station;
 use crate::upload::{Upload, content};
 
@@ -28,6 +30,8 @@ pub(super) enum Job {
     },
     /// Find the content of the plan with this hash.
     Find(u64),
+    /// List or read recordings.
+    Log(LogWanted),
 }
 
 /// What came of it.
@@ -35,6 +39,8 @@ pub(super) enum Job {
 pub(super) enum Done {
     Outcome(u32, Outcome),
     Found(u64, Option<Box<Plan>>),
+    Logs(Vec<Log>),
+    LogData(u16, u32, Vec<u8>),
 }
 
 /// Does what comes, one after the other, until nobody asks any more.
@@ -47,6 +53,7 @@ pub(super) fn run(
     // Numbers that no page uses by chance: pages count from the time in ms.
     let mut number = u64::MAX;
     let mut line = None;
+    let mut recordings = Vec::new();
     while let Ok(job) = jobs.recv() {
         let Some(station) = station.upgrade() else {
             return;
@@ -55,6 +62,18 @@ pub(super) fn run(
             Job::Find(hash) => {
                 let plan = content(&station, instance, hash);
                 Done::Found(hash, plan.map(Box::new))
+            }
+            Job::Log(LogWanted::List) => {
+                recordings = fcc_record::files(&station.recordings).unwrap_or_default();
+                recordings.truncate(u16::MAX.into());
+                Done::Logs(recordings.iter().map(|path| log(path)).collect())
+            }
+            Job::Log(LogWanted::Data { log, at, bytes }) => {
+                let path = usize::from(log)
+                    .checked_sub(1)
+                    .and_then(|n| recordings.get(n));
+                let read = path.map(|path| files::read_part(path, at.into(), bytes.into()));
+                Done::LogData(log, at, read.and_then(Result::ok).unwrap_or_default())
             }
             Job::Do {
                 ticket,
@@ -141,6 +160,18 @@ fn carry_out(
             upload.carry_out()?;
             Ok(upload.hash)
         }
+    }
+}
+
+/// A recording as stations list it.
+fn log(path: &Path) -> Log {
+    let found = path.metadata().ok();
+    let written = found.as_ref().and_then(|found| found.modified().ok());
+    let since = written.and_then(|written| written.duration_since(UNIX_EPOCH).ok());
+    let bytes = found.map_or(0, |found| found.len());
+    Log {
+        utc_s: since.map_or(0, |since| since.as_secs() as u32),
+        bytes: u32::try_from(bytes).unwrap_or(u32::MAX),
     }
 }
 

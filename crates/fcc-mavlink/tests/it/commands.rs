@@ -1,7 +1,5 @@
 //! Commands: results are those of MAVLink's `common.xml` and of `mavsdk_mavlink_tests` (2026-10).
 
-use std::collections::BTreeMap;
-
 use fcc_mavlink::{Action, Mode};
 use mavlink::dialects::common::{
     COMMAND_LONG_DATA, HEARTBEAT_DATA, MavCmd, MavMessage, MavModeFlag, MavResult as Code,
@@ -111,8 +109,9 @@ fn given(world: &World) -> Vec<String> {
 /// Plane is silent on 128 of them (`mavsdk_mavlink_tests`).
 #[test]
 fn every_number_has_exactly_one_final_answer_in_both_encodings() {
+    const IN_PROGRESS: u8 = 5;
     let mut world = world_with_mission();
-    let mut answers: BTreeMap<(u16, bool), Vec<Code>> = BTreeMap::new();
+    let mut supported = [0, 0];
     let mut sequence = 0_u8;
     for number in 0..=u16::MAX {
         for is_int in [false, true] {
@@ -120,59 +119,87 @@ fn every_number_has_exactly_one_final_answer_in_both_encodings() {
             let (id, payload) = if is_int {
                 (75, int(number, 6, [0.0; 4], (i32::MAX, i32::MAX, 0.0)))
             } else {
-                (
-                    76,
-                    long(number, [0.0, 0.0, 0.0, 0.0, f32::NAN, f32::NAN, 0.0], 0),
-                )
+                let unset = [0.0, 0.0, 0.0, 0.0, f32::NAN, f32::NAN, 0.0];
+                (76, long(number, unset, 0))
             };
-            let bytes = frame((255, 190), sequence, id, &payload);
-            world.send_bytes(1, bytes);
-            // As the enum lacks most numbers, answers are read from their bytes.
+            world.acks.clear();
+            world.send_bytes(1, frame((255, 190), sequence, id, &payload));
             world.step();
-            let now = world.now();
-            world.protocol.step(now, |_, _| {});
-            for heard in world.inbox.drain(..) {
-                if let MavMessage::COMMAND_ACK(ack) = heard.message {
-                    answers
-                        .entry((ack.command as u16, is_int))
-                        .or_default()
-                        .push(ack.result);
-                }
+            world.step();
+            let [(answered, result)] = world.acks[..] else {
+                panic!("command {number}, int: {is_int}: {:?}", world.acks);
+            };
+            assert_eq!(answered, number);
+            assert_ne!(result, IN_PROGRESS, "command {number}");
+            if result != Code::MAV_RESULT_UNSUPPORTED as u8 {
+                supported[usize::from(is_int)] += 1;
             }
         }
     }
-    // Those that the crate knows, for it can read no other answer: 160 and more.
-    assert!(answers.len() > 2 * 150, "{}", answers.len());
-    for ((number, is_int), codes) in &answers {
-        assert_eq!(codes.len(), 1, "command {number}, int: {is_int}");
-        assert_ne!(codes[0], Code::MAV_RESULT_IN_PROGRESS);
-    }
-    let code = |number| answers[&(number, false)][0];
-    assert_eq!(
-        code(MavCmd::MAV_CMD_DO_GRIPPER as u16),
-        Code::MAV_RESULT_UNSUPPORTED
-    );
-    assert_eq!(
-        code(MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN as u16),
-        Code::MAV_RESULT_UNSUPPORTED
-    );
+    // The 25 of docs/mavlink.md, without 512, which asks for message 0 here.
+    assert_eq!(supported, [24, 24]);
 }
 
+/// Frames overtake each other on a link of several ways.
 #[test]
-fn an_unknown_number_is_unsupported_by_its_bytes() {
-    let mut world = World::new();
-    world.send_bytes(1, frame((255, 190), 1, 76, &long(9_999, [0.0; 7], 0)));
-    let mut acks = Vec::new();
-    let now = world.now();
-    // The frame itself, for the crate refuses a number that its enum does not have.
-    let bytes = frame((255, 190), 2, 75, &int(9_999, 6, [0.0; 4], (0, 0, 0.0)));
-    world.protocol.receive(1, &bytes, now);
-    world.protocol.step(now, |_, frame| {
-        if frame[7] == 77 {
-            acks.push((u16::from_le_bytes([frame[10], frame[11]]), frame[12]));
+fn a_command_that_a_later_one_has_overtaken_is_refused() {
+    let mut world = world_with_mission();
+    world.set_state(flying);
+    for (sequence, number, result) in [
+        (7, 20, Code::MAV_RESULT_ACCEPTED),
+        (6, 193, Code::MAV_RESULT_TEMPORARILY_REJECTED),
+        (7, 20, Code::MAV_RESULT_ACCEPTED),
+        (8, 193, Code::MAV_RESULT_ACCEPTED),
+    ] {
+        world.acks.clear();
+        world.send_bytes(
+            1,
+            frame((255, 190), sequence, 76, &long(number, [0.0; 7], 0)),
+        );
+        let _ = world.all(50);
+        assert_eq!(world.acks, [(number, result as u8)], "frame {sequence}");
+    }
+    assert_eq!(given(&world).len(), 2, "each once");
+}
+
+/// The vehicle's contingency does the rest: `docs/plan.md`, "Contingencies".
+#[test]
+fn who_takes_control_promises_to_stay() {
+    let promised = |world: &mut World| {
+        let given = given(world);
+        world.asked.clear();
+        let seconds = given.iter().filter_map(|command| {
+            let (_, rest) = command.split_once("heartbeat_s\", ")?;
+            rest.split(')').next()?.parse().ok()
+        });
+        seconds.collect::<Vec<f64>>()
+    };
+    let alive = MavMessage::HEARTBEAT(HEARTBEAT_DATA::default());
+    let operator = |world: &mut World, takes: f32| {
+        world.ms += 6_000;
+        let payload = long(32_100, [takes, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], 0);
+        world.send_bytes(1, frame((255, 190), 1, 76, &payload));
+        let _ = world.all(100);
+    };
+    let stay = |world: &mut World, seconds: u64| {
+        for _ in 0..seconds {
+            world.send(1, &alive);
+            let _ = world.all(1_000);
         }
-    });
-    assert_eq!(acks, [(9_999, 3)], "UNSUPPORTED is 3");
+    };
+    let mut world = world_with_mission();
+    operator(&mut world, 1.0);
+    stay(&mut world, 60);
+    assert!(promised(&mut world).is_empty(), "on the ground");
+    world.set_state(flying);
+    stay(&mut world, 40);
+    assert_eq!(promised(&mut world), [60.0, 60.0], "renewed");
+    operator(&mut world, 0.0);
+    assert_eq!(promised(&mut world), [0.0], "released");
+    operator(&mut world, 1.0);
+    let _ = world.all(11_000);
+    assert_eq!(promised(&mut world), [60.0, 0.1], "not heard any more");
+    assert_eq!(world.protocol.owner(), None);
 }
 
 #[test]

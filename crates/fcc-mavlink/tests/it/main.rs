@@ -9,6 +9,7 @@
 mod commands;
 mod hostile;
 mod links;
+mod logs;
 mod lossy;
 mod missions;
 mod opening;

@@ -52,6 +52,8 @@ pub(crate) struct World {
     up: BTreeMap<(u64, u64), (LinkId, Vec<u8>)>,
     down: BTreeMap<(u64, u64), (LinkId, Vec<u8>)>,
     pub(crate) inbox: VecDeque<Heard>,
+    /// Commands and their results, by their bytes: the crate reads no number that it lacks.
+    pub(crate) acks: Vec<(u16, u8)>,
     /// Bytes that the vehicle has sent on each link.
     pub(crate) sent: BTreeMap<LinkId, usize>,
     counter: u64,
@@ -94,6 +96,7 @@ impl World {
             up: BTreeMap::new(),
             down: BTreeMap::new(),
             inbox: VecDeque::new(),
+            acks: Vec::new(),
             sent: BTreeMap::new(),
             counter: 0,
             random: 0x9e37_79b9_7f4a_7c15,
@@ -194,6 +197,12 @@ impl World {
         }
         let later = self.down.split_off(&(self.ms + 1, 0));
         for (_, (link, frame)) in std::mem::replace(&mut self.down, later) {
+            if frame[7..10] == [77, 0, 0] {
+                let number = u16::from_le_bytes([frame[10], frame[11]]);
+                // Zeros at the end are cut off.
+                self.acks
+                    .push((number, if frame[1] > 2 { frame[12] } else { 0 }));
+            }
             self.inbox
                 .extend(parsed(&frame).map(|message| Heard { link, message }));
         }
