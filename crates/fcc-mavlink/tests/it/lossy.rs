@@ -10,7 +10,8 @@ use crate::world::{Weather, World, waypoint};
 
 const ACK_MS: u64 = 1_500;
 const TRIES: usize = 5;
-/// As many as a station on a bad link tries, whose user sees progress.
+/// To read it, the station alone asks again: of 500 items one is lost 6 times in a row
+/// nearly always.
 const PATIENT: usize = 30;
 
 /// Uploads; none: no answer at all came.
@@ -31,7 +32,9 @@ pub(crate) fn upload(
     });
     world.inbox.clear();
     world.send(link, &to_send);
-    for _ in 0..PATIENT.max(TRIES) {
+    let mut tries = 0;
+    while tries < TRIES {
+        tries += 1;
         loop {
             let heard = world.wait(ACK_MS, |heard| match &heard.message {
                 _ if heard.link != link => None,
@@ -44,6 +47,7 @@ pub(crate) fn upload(
             match heard {
                 Some(Ok(ack)) => return Some(ack),
                 Some(Err(seq)) => {
+                    tries = 0;
                     let mut item = items[usize::from(seq)].clone();
                     item.seq = seq;
                     to_send = MavMessage::MISSION_ITEM_INT(item);
@@ -153,7 +157,7 @@ fn missions_of_500_items_pass_a_link_that_loses_a_quarter_of_all_frames() {
                 "upload {n} is a mixture"
             );
         }
-        assert!(is_accepted, "upload {n} of a patient station");
+        assert!(is_accepted, "upload {n}");
         assert_eq!(
             world.plan.items.len(),
             500,
