@@ -31,7 +31,7 @@ pub(super) fn probe(args: &ProbeArgs) -> Result<Exit, Failure> {
 
 fn text(found: &[Connected]) -> String {
     if found.is_empty() {
-        return "nothing is connected that is known: no I²C bus in /dev and no device in \
+        return "no sensor was found: there is no I²C bus in /dev and no device in\n\
                 /sys/bus/iio/devices. Switch the buses on (docs/boards.md)"
             .to_owned();
     }

@@ -7,9 +7,21 @@ use super::{Diagnosis, Finding, Grade};
 /// Columns of a terminal.
 const TERMINAL: usize = 80;
 
-/// The table, followed by what to do, the worst first.
+/// The verdict, the table, and what to do, the worst first.
 pub(super) fn text(diagnosis: &Diagnosis) -> String {
     let mut text = String::new();
+    let verdict = match diagnosis.count(Grade::Lacks) {
+        0 => "nothing is lacking",
+        _ => "not ready",
+    };
+    let _ = writeln!(
+        text,
+        "{verdict}: ✓ {} ok, ~ {} could be better, ✗ {} lacking, ? {} not known\n",
+        diagnosis.count(Grade::Ok),
+        diagnosis.count(Grade::CouldBeBetter),
+        diagnosis.count(Grade::Lacks),
+        diagnosis.count(Grade::NotKnown),
+    );
     for line in diagnosis.machine.iter().chain([&diagnosis.kernel]) {
         if !line.is_empty() {
             let _ = writeln!(text, "{line}");
@@ -55,14 +67,7 @@ pub(super) fn text(diagnosis: &Diagnosis) -> String {
             }
         }
     }
-    let _ = write!(
-        text,
-        "\n✓ {} ok, ~ {} could be better, ✗ {} lacking, ? {} not known on this machine",
-        diagnosis.count(Grade::Ok),
-        diagnosis.count(Grade::CouldBeBetter),
-        diagnosis.count(Grade::Lacks),
-        diagnosis.count(Grade::NotKnown),
-    );
+    text.truncate(text.trim_end().len());
     text
 }
 

@@ -27,8 +27,8 @@ const LOOKING_S: f64 = 0.5;
 pub enum SessionError {
     /// Nothing gives raw readings.
     #[error(
-        "the configuration has no raw sensors: give built-in.raw_sensors, or list sensors of a \
-         board or the servo board"
+        "the configuration has no raw sensors to calibrate: list sensors of a board or the servo \
+         board (X-Plane gives none; the built-in aircraft does with built-in.raw_sensors)"
     )]
     NoSources,
     /// There is no such source.

@@ -170,6 +170,7 @@ mod flight {
 
     use fcc_core::flight::Position;
     use fcc_core::framework::Notice;
+    use fcc_core::units::KNOT_MPS;
     use fcc_fixed_wing::{Autopilot, AutopilotCommand, why_refused};
 
     use super::{Commandable, CommandableSetpoint, JointSetpoints};
@@ -219,7 +220,7 @@ mod flight {
             CommandableSetpoint {
                 name: "airspeed_mps",
                 // For any aircraft; each has its own.
-                limits: 5.0..=340.0,
+                limits: 10.0 * KNOT_MPS..=650.0 * KNOT_MPS,
                 command: AutopilotCommand::Airspeed,
                 needs_control: true,
                 alternatives: None,
@@ -317,7 +318,7 @@ mod tests {
             ),
             (
                 Command::set([("airspeed_mps", f64::NAN)]),
-                "airspeed is NaN kt: choose 9.72 to 660.91 kt",
+                "airspeed is NaN kt: choose 10 to 650 kt",
             ),
             (Command::set([("airspeed_mps", -1.0)]), "airspeed is -1.94"),
             (

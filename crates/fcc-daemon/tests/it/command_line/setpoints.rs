@@ -65,7 +65,7 @@ fn set_points_beyond_the_limits_are_refused_in_the_units_given() {
         ),
         (
             ["--airspeed-kt", "nan"],
-            "fccd: airspeed is NaN kt: choose 9.72 to 660.91 kt",
+            "fccd: airspeed is NaN kt: choose 10 to 650 kt",
         ),
     ] {
         assert_eq!(command(&words), (Some(2), said.to_owned()));

@@ -201,6 +201,7 @@ fn an_empty_machine_is_unknown_and_lacks_nothing() {
 #[test]
 fn the_table_contains_findings_and_remedies() {
     let text = check_files(BEAGLEBONE).to_text();
+    assert!(text.starts_with("not ready: "), "{text}");
     for words in [
         "TI AM335x BeagleBone Black",
         " ✗ Real-time right  none",
