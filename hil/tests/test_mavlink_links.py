@@ -95,6 +95,18 @@ def test_a_station_is_answered_on_each_kind_of_link(
         link.close()
 
 
+def test_who_is_not_the_peer_of_a_link_is_not_heard(tmp_path: Path, fccd: Path) -> None:
+    with vehicle(tmp_path / "ground", fccd) as (_, port):
+        peer = mavutil.mavlink_connection(f"udpin:127.0.0.1:{port}")
+        assert peer.wait_heartbeat(timeout=20.0)
+        host, own_port = next(iter(peer.clients))
+        foreign = mavutil.mavlink_connection(f"udpout:{host}:{own_port}")
+        assert not answered(foreign)
+        assert answered(peer)
+        foreign.close()
+        peer.close()
+
+
 def test_mavsdk_downloads_a_recording_as_it_is_on_the_board(tmp_path: Path, fccd: Path) -> None:
     with vehicle(tmp_path / "ground", fccd) as (ground, port):
         mavsdk, system = mavsdk_system(port)

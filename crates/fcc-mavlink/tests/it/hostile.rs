@@ -1,5 +1,6 @@
 //! Whatever bytes come: no panic, and nothing is carried out that was not asked for.
 
+use mavlink::dialects::common::MavMessage;
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -12,7 +13,7 @@ fn known() -> impl Strategy<Value = u32> {
     prop_oneof![
         prop::sample::select(vec![
             0_u32, 11, 20, 21, 23, 38, 39, 40, 41, 43, 44, 45, 47, 51, 69, 73, 75, 76, 77, 110,
-            111, 126, 256,
+            111, 117, 119, 121, 122, 126, 256,
         ]),
         0..20_000_u32,
     ]
@@ -75,8 +76,23 @@ proptest! {
         world.all(100);
         prop_assert!(world.asked.is_empty());
         let has_ack = world.inbox.iter().any(|heard| {
-            matches!(heard.message, mavlink::dialects::common::MavMessage::COMMAND_ACK(_))
+            matches!(heard.message, MavMessage::COMMAND_ACK(_))
         });
         prop_assert!(!has_ack);
     }
+}
+
+/// Its commands are not from a station, and it is told once.
+#[test]
+fn another_vehicle_with_the_same_number_commands_nothing() {
+    let mut world = World::new();
+    world.set_state(flying);
+    for sequence in 0..3 {
+        let home = long(20, [0.0; 7], 0);
+        world.send_bytes(2, frame((1, 1), sequence, 76, &home));
+    }
+    let told = world.all(100);
+    let is_text = |message: &&MavMessage| matches!(message, MavMessage::STATUSTEXT(_));
+    assert_eq!(told.iter().filter(is_text).count(), 3, "once on each link");
+    assert!(world.asked.is_empty() && world.acks.is_empty());
 }
