@@ -11,10 +11,10 @@ pub(super) const UNKNOWNS: usize = 9;
 type Unknowns = SVector<f64, UNKNOWNS>;
 type Normal = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 
-/// Steps of the fit; from a sphere four are enough for 20 % of scale.
-const STEPS: usize = 12;
+/// Steps of a fit; from a sphere four are enough for 20 % of scale.
+pub(super) const STEPS: usize = 12;
 /// A step that changes nothing more ends it, of the strength.
-const SMALL: f64 = 1e-12;
+pub(super) const SMALL: f64 = 1e-12;
 /// Directions are spread evenly if each axis has a third of their squares; less
 /// than this share along one does not determine its scale.
 const LEAST_SPREAD: f64 = 0.15;

@@ -11,7 +11,7 @@ use libm::sqrt;
 use nalgebra::{Matrix3, Rotation3, SMatrix, SVector, Vector3};
 
 use super::Axes;
-use super::fit::{axes, is_possible};
+use super::fit::{SMALL, STEPS, axes, is_possible};
 
 /// The matrix of scale and misalignment, column by column: what turning about x
 /// shows in x, y and z, then what turning about y shows.
@@ -20,10 +20,6 @@ pub(super) type Unknowns = SVector<f64, UNKNOWNS>;
 pub(super) type Normal = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 type Jacobian = SMatrix<f64, 3, UNKNOWNS>;
 
-/// Steps of the fit; four are enough for 10 % of scale.
-const STEPS: usize = 12;
-/// A step that changes less ends it.
-const SMALL: f64 = 1e-12;
 /// Directions of gravity that differ by more after the best fit, RMS, rad: 10°.
 /// That is no noise but other axes.
 const LARGEST_RESIDUAL_RAD: f64 = 0.17;

@@ -39,9 +39,8 @@ const LEAST_EXPLAINED: f64 = 0.2;
 /// Another model is believed if it leaves less than this part of what the
 /// present one leaves unexplained.
 const BETTER: f64 = 0.94;
-/// One with play, if it leaves less than this part of what the best one without
-/// play does, and the elevator explains at least this part of all.
-const PLAY_IS_BETTER: f64 = 0.94;
+/// One with play, if it is better than the best one without, and the elevator explains at
+/// least this part of all.
 const PLAY_EXPLAINS: f64 = 0.25;
 /// And does so for as long, s: one manoeuvre may be explained by chance.
 const PLAY_AFTER_S: f64 = 1.0;
@@ -285,7 +284,7 @@ impl ElevatorResponse {
                 }
             }
         }
-        let has_play = with_play.0 < PLAY_IS_BETTER * without.0
+        let has_play = with_play.0 < BETTER * without.0
             && with_play.0 < (1.0 - PLAY_EXPLAINS) * explained.left;
         let between_s = f64::from(COMPARED_EVERY) * self.period_s;
         self.with_play_s = if has_play {

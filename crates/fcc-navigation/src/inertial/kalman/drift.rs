@@ -52,7 +52,7 @@ impl Drift {
             let Some((sum, variance)) = sums.next() else {
                 return 0.0;
             };
-            let beyond = *sum * *sum - p::DRIFT_GATE * *variance;
+            let beyond = *sum * *sum - p::SUM_GATE * *variance;
             *sum -= share * *sum;
             *variance -= 2.0 * share * *variance;
             p::DRIFT_GAIN * share * beyond.max(0.0)

@@ -60,20 +60,19 @@ pub(super) const SHAKEN_BIAS_WALK: f64 = 0.03;
 /// For so long after it was slow, s: the take-off run of a light aircraft, some 20 s, and its
 /// acceleration to the speed of climb.
 pub(super) const BEGINS_S: f64 = 60.0;
-/// Corrections of a bias are summed over this time, s, and beyond the square of so many
-/// standard deviations their sum is a drift. Chosen on flights of JSBSim: without a fault,
+/// Corrections of a bias are summed over this time, s, and beyond three standard deviations
+/// (this is the square) their sum is a drift. Chosen on flights of JSBSim: without a fault,
 /// in turbulence 5, the square is at most 2 (two of them).
 pub(super) const DRIFT_S: f64 = 15.0;
-pub(super) const DRIFT_GATE: f64 = 9.0;
+pub(super) const SUM_GATE: f64 = 9.0;
 /// By how much the variance grows in that time, as a multiple of the square of the sum.
 pub(super) const DRIFT_GAIN: f64 = 3.0;
 /// How uncertain a bias becomes by that at most, rad/s, m/s².
 pub(super) const LARGEST_RATE_BIAS: f64 = 0.1;
 pub(super) const LARGEST_FORCE_BIAS: f64 = 5.0;
-/// Innovations of the velocity are summed over this time, s, and beyond the square of so many
-/// standard deviations their sum goes in one direction.
+/// Innovations of the velocity are summed over this time, s, and beyond as many standard
+/// deviations their sum goes in one direction.
 pub(super) const TREND_S: f64 = 1.0;
-pub(super) const TREND_GATE: f64 = 9.0;
 /// If those that are refused go on in it, the filter doubts itself after this time, s, and
 /// while the heading is more certain than this, rad (10°): with a wrong one an acceleration
 /// forward is one sideways.

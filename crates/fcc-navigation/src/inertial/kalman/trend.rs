@@ -30,6 +30,6 @@ impl Trend {
     /// Whether one that is refused goes on in the direction of those before.
     pub(super) fn leads_to(&self, difference: Vector2<f64>) -> bool {
         let along = self.sum.dot(&difference.normalize());
-        along > 0.0 && along * along > p::TREND_GATE * self.variance
+        along > 0.0 && along * along > p::SUM_GATE * self.variance
     }
 }

@@ -9,12 +9,10 @@ use super::RawNavigation;
 use fcc_core::flight::{GnssFix, Measurements, Velocity};
 use fcc_core::framework::{Reading, Time};
 
-/// For so long a place may be repeated: that of a receiver that gives one fix a second
-/// is read several times.
-const PLACE_LASTS: Duration = Duration::from_secs(2);
-/// For so long a velocity may be: one of a coarse resolution is the same for some fixes of
-/// steady flight.
-const VELOCITY_LASTS: Duration = Duration::from_secs(2);
+/// For so long a place or a velocity may be repeated: that of a receiver that gives one fix
+/// a second is read several times, and a coarse velocity of steady flight is the same for
+/// some fixes.
+const LASTS: Duration = Duration::from_secs(2);
 
 /// An inertial unit that repeats a specific force of less than this, m/s², and its rates: zeros
 /// of a bus that does not answer, less the biases. All other sensors may be at the same bus.
@@ -55,7 +53,7 @@ impl RawNavigation {
 
     /// Whether a receiver has only repeated its place for seconds, although it moves.
     pub fn repeats_place(&self) -> bool {
-        self.repeats.place_lasts > PLACE_LASTS
+        self.repeats.place_lasts > LASTS
     }
 }
 
@@ -132,7 +130,7 @@ impl Repeats {
     }
 
     fn lasts(&self, since: Time) -> bool {
-        !since.is_never() && self.last_fix.since(since) > VELOCITY_LASTS
+        !since.is_never() && self.last_fix.since(since) > LASTS
     }
 }
 
