@@ -62,7 +62,10 @@ fn a_flight_is_streamed_at_50_hz() {
     }
     for number in STREAMS {
         let sent = counts.get(&number.into()).copied().unwrap_or(0);
-        assert!(sent >= 48 * seconds, "message {number}: {sent} in {seconds} s");
+        assert!(
+            sent >= 48 * seconds,
+            "message {number}: {sent} in {seconds} s"
+        );
     }
 }
 
