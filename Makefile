@@ -51,9 +51,9 @@ GOALS := advisories android android-check android-package bench bench-android be
     check-cross clean clippy deb deny doc faulty fly fly-jsbsim fly-plan fly-plan-jsbsim fuzz \
     ground help lint lint-python lint-rust lock package-check python reproducible soak soundness \
     station test test-android test-attacks test-contingencies test-cross test-deb test-fences \
-    test-full test-glides test-ground test-guidance test-landings test-landings-beside test-page \
-    test-plan-real-time test-python test-quick test-raw-edges test-recordings test-release \
-    test-rust test-seeds test-upsets test-vm test-x-plane tested wheels
+    test-full test-glides test-ground test-guidance test-landings test-landings-beside test-mavlink \
+    test-page test-plan-real-time test-python test-quick test-raw-edges test-recordings \
+    test-release test-rust test-seeds test-upsets test-vm test-x-plane tested wheels
 
 .PHONY: $(GOALS)
 
@@ -147,7 +147,7 @@ WORKERS := $(shell expr $$(nproc) + 1)
 
 WITH_TESTED := FCCD=$(TESTED)/fccd FCCD_INJECTION=$(TESTED)/fccd FCC_GROUND=$(TESTED)/fcc-ground
 
-test-python: tested $(STAMPS)/strace $(STAMPS)/systemd
+test-python: tested $(STAMPS)/strace $(STAMPS)/systemd $(STAMPS)/node
 	$(WITH_TESTED) $(PYTHON) -m pytest hil --numprocesses $(WORKERS) --dist loadfile
 
 IN_BROWSER := $(PYTHON) -m pytest web/tests --numprocesses $(WORKERS)
@@ -161,10 +161,21 @@ test-ground: tested $(STAMPS)/browser ## Test the page beside real flights, and 
 
 WITH_RELEASED := FCC_RELEASED=1 FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) FCC_GROUND=$(abspath $(TARGET))/release/fcc-ground
 
-test-release: faulty station $(STAMPS)/python-module $(STAMPS)/browser $(STAMPS)/strace $(STAMPS)/systemd ## Run the tests in Python and in a browser with what ships (40 minutes)
+test-release: faulty station $(STAMPS)/python-module $(STAMPS)/browser $(STAMPS)/strace $(STAMPS)/systemd $(STAMPS)/node ## Run the tests in Python and in a browser with what ships (40 minutes)
 	$(BUILD_FCCD) -p thermostat --bin thermostat
 	$(WITH_RELEASED) $(PYTHON) -m pytest hil --numprocesses $(WORKERS) --dist loadfile
 	$(WITH_RELEASED) $(IN_BROWSER) --ignore web/tests/mock
+
+# Seconds of the stream that node-mavlink decodes.
+FCC_MAVLINK_SECONDS ?= 3600
+MAVLINK_STREAM := $(abspath $(TARGET))/mavlink-stream
+
+test-mavlink: tested $(STAMPS)/node ## Decode an hour of MAVLink by node-mavlink; test missions on lossy and cut links (5 minutes; FCC_MAVLINK_SECONDS=)
+	FCC_MAVLINK_SECONDS=$(FCC_MAVLINK_SECONDS) FCC_MAVLINK_STREAM=$(MAVLINK_STREAM) \
+	    cargo test --locked -p fcc-mavlink --test it
+	FCC_MAVLINK_SECONDS=$(FCC_MAVLINK_SECONDS) FCC_MAVLINK_STREAM=$(MAVLINK_STREAM) \
+	    $(WITH_TESTED) $(PYTHON) -m pytest --capture=no hil/tests/test_mavlink_node.py
+	rm -f $(MAVLINK_STREAM)
 
 test-x-plane: tested ## Run all steps of `fccd x-plane check` in full against the stand-in (3 minutes)
 	FCCD_FULL_CHECK=1 FCCD=$(TESTED)/fccd $(PYTHON) -m pytest hil/tests/test_x_plane_check.py
@@ -492,6 +503,12 @@ $(STAMPS)/playwright: $(STAMPS)/python web/tests/locked.txt
 $(STAMPS)/browser: $(STAMPS)/playwright
 	@command -v chromium >/dev/null || ./scripts/apt-install chromium
 	@touch $@
+
+# node-mavlink, which decodes what we send.
+$(STAMPS)/node: hil/node/package-lock.json
+	@command -v npm >/dev/null || ./scripts/apt-install nodejs npm
+	cd hil/node && npm ci --no-audit --no-fund --ignore-scripts
+	@mkdir -p $(STAMPS) && touch $@
 
 $(STAMPS)/strace:
 	@command -v strace >/dev/null || ./scripts/apt-install strace

@@ -11,11 +11,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from ground_station import Station, make_ground
 from mavsdk import ComponentType, Configuration, Mavsdk
 from mavsdk.plugins.mission_raw import MissionItem
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import common
+
+from fcc_hil.tangent_plane import away_m
 
 IN_THE_AIR = """QGC WPL 110
 0	1	0	16	0	0	0	0	45.0	8.0	120	1
@@ -101,6 +104,12 @@ def same(a: MissionItem, b: MissionItem) -> bool:
         return whole + ["nan" if math.isnan(n) else round(n, 4) for n in numbers]
 
     return parts(a) == parts(b)
+
+
+def metres(place: tuple[float, float], other: tuple[float, float]) -> float:
+    """Return how far apart two places are."""
+    latitude_deg, longitude_deg = (np.array([degrees]) for degrees in other)
+    return float(away_m(*place, (latitude_deg, longitude_deg))[0])
 
 
 class Pymavlink:

@@ -23,7 +23,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +32,7 @@ from ground_station import ROOT, Station
 from playwright.sync_api import Browser, Page, sync_playwright
 from rich.progress import Progress
 
+from mavlink_load import MavlinkStation, latencies_ms, take_50_hz
 from visitor import Visitor, chromium
 
 CONFIG = """
@@ -49,6 +50,9 @@ folder = "{folder}/recordings"
 ITEMS = 100
 THROTTLED = 6
 VIEWERS = 200
+MAVLINK_STATIONS = 3
+MAVLINK_COMMANDS = 300
+PARTS = ("viewers", "page", "soak", "mavlink")
 TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 MAPS = ("land-50m", "detail-", "coast-")
 FRAMES = """seconds => new Promise(done => {
@@ -190,43 +194,94 @@ class Measured:
             yield daemon
 
     @contextlib.contextmanager
-    def station(self) -> Iterator[Station]:
+    def station(self, options: Sequence[str] = ()) -> Iterator[Station]:
         words: list[str | Path] = [self.program, "--config", self.config, "--fccd", self.fccd]
         state: list[str | Path] = ["--state", self.folder / "state"]
-        station = Station([*words, *state], self.fccd, self.instance)
+        station = Station([*words, *state, *options], self.fccd, self.instance)
         try:
             yield station
         finally:
             station.end()
 
 
-def lateness(measured: Measured, seconds: float, rounds: int, progress: Progress) -> list[Row]:
-    """Return the loop's lateness with viewers against without, and the station's cost."""
-    p99_us: dict[int, list[float]] = {0: [], VIEWERS: []}
-    cores, resident_mb, sent_mb = [], [], []
-    task = progress.add_task("flights without and with viewers", total=2 * rounds)
+def in_turn(
+    measured: Measured,
+    rounds: int,
+    beside: Callable[[Station, bool], None],
+    options: Sequence[str] = (),
+) -> tuple[float, float]:
+    """Return the loop's p99 without and with a load, µs; flights without and with it alternate."""
+    p99_us: dict[bool, list[float]] = {False: [], True: []}
     for _ in range(rounds):
-        for viewers, found_us in p99_us.items():
-            with measured.flight() as daemon, measured.station() as station:
-                process = Process(station.process.pid)
-                ends = time.monotonic() + seconds
-                got = watch(station, viewers, ends)
-                if viewers:
-                    cores.append(process.cores())
-                    resident_mb.append(process.resident_mb())
-                    sent_mb.append(got / seconds / 1e6)
+        for is_loaded, found_us in p99_us.items():
+            given = options if is_loaded else ()
+            with measured.flight() as daemon, measured.station(given) as station:
+                beside(station, is_loaded)
                 ending = daemon.end(signal.SIGINT)
             found_us.append(ending.report["timing"]["lateness_us"]["p99"])
-            progress.advance(task)
-    without, beside = (statistics.median(p99_us[viewers]) for viewers in (0, VIEWERS))
+    return statistics.median(p99_us[False]), statistics.median(p99_us[True])
+
+
+def lateness(measured: Measured, seconds: float, rounds: int, progress: Progress) -> list[Row]:
+    """Return the loop's lateness with viewers against without, and the station's cost."""
+    cores, resident_mb, sent_mb = [], [], []
+    task = progress.add_task("flights without and with viewers", total=2 * rounds)
+
+    def beside(station: Station, is_loaded: bool) -> None:
+        process = Process(station.process.pid)
+        got = watch(station, VIEWERS if is_loaded else 0, time.monotonic() + seconds)
+        if is_loaded:
+            cores.append(process.cores())
+            resident_mb.append(process.resident_mb())
+            sent_mb.append(got / seconds / 1e6)
+        progress.advance(task)
+
+    without, with_them = in_turn(measured, rounds, beside)
     flights = f"{rounds} flights of {seconds:.0f} s each, in turn"
     return [
-        (f"loop's p99 with {VIEWERS} viewers against without", f"{beside / without:.2f}", "1.1"),
-        (f"the same in µs; {flights}", f"{beside:.1f}; {without:.1f}", ""),
+        (f"loop's p99 with {VIEWERS} viewers against without", f"{with_them / without:.2f}", "1.1"),
+        (f"the same in µs; {flights}", f"{with_them:.1f}; {without:.1f}", ""),
         (f"station with {VIEWERS} viewers: cores", f"{max(cores):.2f}", "0.5"),
         ("the same: memory, MB", f"{max(resident_mb):.0f}", "60"),
         ("the same: sent, MB/s", f"{max(sent_mb):.1f}", ""),
     ]
+
+
+def mavlink(measured: Measured, seconds: float, rounds: int, progress: Progress) -> list[Row]:
+    """Return the latency of commands, and the loop's lateness with MAVLink stations."""
+    task = progress.add_task("MAVLink", total=2 * rounds + 1)
+    cores, frames = [], []
+    stations = [MavlinkStation(255 - n) for n in range(MAVLINK_STATIONS)]
+
+    def beside(station: Station, is_loaded: bool) -> None:
+        process, until = Process(station.process.pid), time.monotonic() + seconds
+        if is_loaded:
+            frames.append(take_50_hz(stations, until) / seconds)
+            cores.append(process.cores())
+        else:
+            time.sleep(seconds)
+        progress.advance(task)
+
+    links = [word for one in stations for word in ("--mavlink", one.link)]
+    without, with_them = in_turn(measured, rounds, beside, links)
+    one = MavlinkStation(255)
+    with measured.flight() as daemon, measured.station(["--mavlink", one.link]):
+        found = latencies_ms(one, MAVLINK_COMMANDS)
+        daemon.end(signal.SIGINT)
+    progress.advance(task)
+    what = f"{MAVLINK_STATIONS} MAVLink stations at 50 Hz"
+    flights = f"{rounds} flights of {seconds:.0f} s each, in turn"
+    rows: list[Row] = [
+        (f"loop's p99 with {what} against without", f"{with_them / without:.2f}", "1.1"),
+        (f"MAVLink: the same in µs; {flights}", f"{with_them:.1f}; {without:.1f}", ""),
+        (f"station with {what}: cores", f"{max(cores):.2f}", ""),
+        ("MAVLink: messages a second", f"{min(frames):.0f}", ""),
+    ]
+    for name, taken_ms in found.items():
+        cuts = statistics.quantiles(taken_ms, n=100)
+        figure = f"`{name}` by UDP, {len(taken_ms)} times: p50; p99, ms"
+        rows.append((figure, f"{cuts[49]:.1f}; {cuts[98]:.1f}", "p99 100"))
+    return rows
 
 
 def page_of(browser: Browser, station: Station) -> Visitor:
@@ -385,11 +440,12 @@ def main() -> None:
     options.add_argument("--station", type=Path, required=True)
     options.add_argument("--results", type=Path, help="write the table here, as Markdown")
     options.add_argument("--json", action="store_true", help="print the figures as JSON")
-    options.add_argument("--seconds", type=float, default=60.0, help="of a flight with viewers")
+    seconds_of = "of a flight with viewers, or MAVLink stations"
+    options.add_argument("--seconds", type=float, default=60.0, help=seconds_of)
     options.add_argument("--rounds", type=int, default=3)
     options.add_argument("--heap-minutes", type=float, default=10.0)
     options.add_argument("--soak-minutes", type=float, default=20.0)
-    options.add_argument("--only", nargs="+", choices=["viewers", "page", "soak"], help="parts")
+    options.add_argument("--only", nargs="+", choices=PARTS, help="parts")
     given = options.parse_args()
     rows: list[Row] = []
     with Progress(disable=not sys.stderr.isatty()) as progress:
@@ -397,6 +453,7 @@ def main() -> None:
             "viewers": lambda of: lateness(of, given.seconds, given.rounds, progress),
             "page": lambda of: page_figures(of, given.heap_minutes, progress),
             "soak": lambda of: soak(of, given.soak_minutes, progress),
+            "mavlink": lambda of: mavlink(of, given.seconds, given.rounds, progress),
         }
         for name, part in parts.items():
             if given.only and name not in given.only:
@@ -406,7 +463,12 @@ def main() -> None:
                 rows += part(measured)
     machine = f"{os.cpu_count()} processors, {platform.machine()}, kernel {platform.release()}"
     table = ["| figure | seen | wanted |", "|---|---|---|"]
-    table += [f"| {what} | {seen} | {wanted} |" for what, seen, wanted in rows]
+    lines = {what: f"| {what} | {seen} | {wanted} |" for what, seen, wanted in rows}
+    if given.only and given.results and given.results.exists():
+        # The other parts stay as they were.
+        before = [line for line in given.results.read_text().splitlines() if line.startswith("| ")]
+        lines = {line.split(" | ")[0].removeprefix("| "): line for line in before[1:]} | lines
+    table += lines.values()
     said: Any = [dict(zip(("figure", "seen", "wanted"), row, strict=True)) for row in rows]
     print(json.dumps({"machine": machine, "figures": said}) if given.json else "\n".join(table))
     if given.results:

@@ -387,7 +387,7 @@ impl Missions {
         let Some((to, part, end, code)) = self.ended else {
             return;
         };
-        if to == peer && part as u8 == number && seq + 1 == end {
+        if to == peer && part as u8 == number && seq.checked_add(1) == Some(end) {
             fx.answer(peer, ack(peer, number, code, self.list(part).opaque_id));
         }
     }

@@ -14,6 +14,7 @@ mod lossy;
 mod missions;
 mod opening;
 mod signing;
+mod stream;
 mod world;
 
 fn signing_key() -> fcc_mavlink::Key {
