@@ -273,7 +273,7 @@ def mavlink(measured: Measured, seconds: float, rounds: int, progress: Progress)
     flights = f"{rounds} flights of {seconds:.0f} s each, in turn"
     rows: list[Row] = [
         (f"loop's p99 with {what} against without", f"{with_them / without:.2f}", "1.1"),
-        (f"MAVLink: the same in µs; {flights}", f"{with_them:.1f}; {without:.1f}", ""),
+        ("MAVLink: the same in µs", f"{with_them:.2f}; {without:.2f}; {flights}", ""),
         (f"station with {what}: cores", f"{max(cores):.2f}", ""),
         ("MAVLink: messages a second", f"{min(frames):.0f}", ""),
     ]
