@@ -160,7 +160,7 @@ impl<C: Telemetry> PublisherOf<C> {
         }
     }
 
-    /// Messages are published now and not within the next 20 ms; and each second
+    /// Messages are published now and not within the next 10 ms; and each second
     /// a status.
     pub fn flush(&mut self) {
         let now = Instant::now();

@@ -65,7 +65,7 @@ impl<C: Telemetry> PublishingThread<C> {
         self.ring.push(item).is_ok()
     }
 
-    /// What was put is published now and not within the next 20 ms.
+    /// What was put is published now and not within the next 10 ms.
     pub(super) fn wake(&self) {
         self.thread.thread().unpark();
     }

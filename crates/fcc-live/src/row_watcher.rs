@@ -69,7 +69,7 @@ impl Opened {
             return Err(WatchError::NoSharedMemory(words));
         }
         let access = services::access(&place.root).map_err(WatchError::NoSharedMemory)?;
-        // Who publishes serves them in turn, each 20 ms: the information first, the
+        // Who publishes serves them in turn, each 10 ms: the information first, the
         // columns last. With the information subscribed to after the other three,
         // and the columns after it has arrived, all have arrived with the columns.
         // Those of another version have other names.

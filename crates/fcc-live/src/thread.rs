@@ -36,7 +36,7 @@ pub(super) const STACK_BYTES: usize = if cfg!(debug_assertions) {
 };
 
 /// How long it sleeps unless woken.
-const LOOK_EVERY: Duration = Duration::from_millis(20);
+const LOOK_EVERY: Duration = Duration::from_millis(10);
 /// Interval of checking the files, which takes some 30 us.
 const CHECK_EVERY: Duration = Duration::from_millis(50);
 /// Records in a row that cannot be published: shared memory was damaged.

@@ -137,7 +137,7 @@ fn dropped_records_are_counted() {
         }
         came
     };
-    // Its ring has room for 2,048, and its thread polls every 20 ms; a watcher's
+    // Its ring has room for 2,048, and its thread polls every 10 ms; a watcher's
     // queue has room for 1,024.
     let status = wait_for("a status of all records", || {
         publisher.flush();

@@ -19,7 +19,7 @@ use super::run_statistics::RunStatistics;
 
 /// The interval at which the loop's messages are read: short enough for a live
 /// display, long enough to cost little.
-const FETCH_EVERY: Duration = Duration::from_millis(20);
+const FETCH_EVERY: Duration = Duration::from_millis(10);
 
 /// A loop and its observers.
 pub(super) struct Follower<'a> {
