@@ -103,10 +103,15 @@ fn room(leg: &Leg, next: &Leg, begins_m: f64, turn: &Turn) -> Option<(&'static s
     let lacks = |room_m: f64, needs_m: f64, which: &str| {
         // Of a leg that the turn before it fills, that one is told.
         let room_m = room_m.max(0.0);
+        let has = if which == "before" && begins_m > 0.0 {
+            "of which the turn at its begin leaves"
+        } else {
+            "which has"
+        };
         // Less than what is shown is none.
         (needs_m > room_m + 0.5).then(|| {
             let message = format!(
-                "the turn needs {needs_m:.0} m of the leg {which}, which has {room_m:.0} m: move a \
+                "the turn needs {needs_m:.0} m of the leg {which}, {has} {room_m:.0} m: move a \
                  waypoint, fly slower, or turn less"
             );
             ("turn", message)

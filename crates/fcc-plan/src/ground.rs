@@ -59,7 +59,7 @@ pub fn resolve(plan: &Plan, terrain: &Terrain<'_>) -> Result<Plan, Vec<Problem>>
 
 fn unknown(place: Place) -> String {
     format!(
-        "no elevation is known at {:.5}, {:.5}: add a tile of it",
+        "no elevation is known at {:.5}, {:.5}: its tile is missing, or has a void there",
         place.latitude_deg, place.longitude_deg
     )
 }

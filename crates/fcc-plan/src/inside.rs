@@ -32,20 +32,29 @@ pub(crate) fn fence_problem(leg: &Leg, fence: &Fence<'_>, turn: &TurnAway) -> Fo
         return None;
     }
     let mut at_m = 0.0;
+    // Where most is lacking to turn away.
+    let mut nearest: Option<(f64, f64)> = None;
     loop {
         let place = leg.from.0.ahead(leg.course_deg, at_m);
         let (latitude, longitude) = place.radians();
         let clearance_m = fence.clearance_m(latitude, longitude, Vector2::zeros());
-        let why = outside(fence, place).map(str::to_owned).or_else(|| {
-            let is_straight = (turn.from_m..=leg.length_m - turn.to_m).contains(&at_m);
-            is_straight.then(|| turn.lacks(leg, fence, place, clearance_m))?
-        });
-        if let Some(why) = why {
+        if let Some(why) = outside(fence, place) {
             let message = format!("{at_m:.0} m along the leg it is {why}: move a waypoint");
             return Some(("fence", message));
         }
+        let is_straight = (turn.from_m..=leg.length_m - turn.to_m).contains(&at_m);
+        let lacks_m = is_straight.then(|| turn.lacks_m(leg, fence, place, clearance_m));
+        let lacks_m = lacks_m
+            .flatten()
+            .filter(|m| nearest.is_none_or(|(most_m, _)| *m > most_m));
+        nearest = lacks_m.map(|lacks_m| (lacks_m, at_m)).or(nearest);
         if at_m >= leg.length_m {
-            return None;
+            let (lacks_m, at_m) = nearest?;
+            let message = format!(
+                "{at_m:.0} m along the leg it is too near to the fence to turn away from it with \
+                 this wind behind: {lacks_m:.0} m more are needed: move a waypoint"
+            );
+            return Some(("fence", message));
         }
         let least_m = STEP_M.max(leg.length_m / MOST_POINTS);
         at_m = (at_m + (clearance_m - turn.reach_m).max(least_m)).min(leg.length_m);
@@ -184,14 +193,8 @@ impl TurnAway {
         }
     }
 
-    /// What a place lacks.
-    fn lacks(
-        &self,
-        leg: &Leg,
-        fence: &Fence<'_>,
-        place: Place,
-        clearance_m: f64,
-    ) -> Option<String> {
+    /// How much nearer to the fence a place is than it may be, m.
+    fn lacks_m(&self, leg: &Leg, fence: &Fence<'_>, place: Place, clearance_m: f64) -> Option<f64> {
         let margin_m = self.margin_m.filter(|_| clearance_m < self.reach_m)?;
         let (latitude_rad, longitude_rad) = place.radians();
         let (sin, cos) = place.to(leg.to.0).1.to_radians().sin_cos();
@@ -212,13 +215,7 @@ impl TurnAway {
             lag_s: ROLL_LAG_S,
         };
         let escape = Escape::best(fence, &here, &bank)?;
-        (escape.clearance_m < margin_m).then(|| {
-            format!(
-                "too near to the fence to turn away from it with this wind behind: {:.0} m more \
-                 are needed",
-                margin_m - escape.clearance_m
-            )
-        })
+        (escape.clearance_m < margin_m).then_some(margin_m - escape.clearance_m)
     }
 }
 

@@ -41,8 +41,8 @@ pub struct Recovered {
     pub cut: Option<String>,
     /// The damage in it, and what is missing because of it.
     pub damages: Vec<Damage>,
-    /// The path of the original file, kept if it was damaged; none if the
-    /// recovered one contains all of it.
+    /// The path of the original file, kept if it was damaged or no tick of it can be
+    /// read; none if the recovered one contains all of it.
     #[serde(serialize_with = "name::serialize_option")]
     pub kept: Option<PathBuf>,
 }
@@ -157,7 +157,7 @@ pub fn recover_while(
     let half = recording.bytes() / 2;
     let rewritten = rewrite(path, &beside, &damages, |read| progress(half + read / 2));
     let result = match rewritten {
-        Ok(Rewritten::Whole { ticks }) => replace(path, &beside, !damages.is_empty())
+        Ok(Rewritten::Whole { ticks }) => replace(path, &beside, !damages.is_empty() || ticks == 0)
             .map_err(failed)
             .map(|kept| Recovered {
                 path: path.to_owned(),

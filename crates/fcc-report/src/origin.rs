@@ -82,9 +82,8 @@ impl FileEnd {
             (Some(cut), _) if recording.is_being_written() => Self::BeingWritten(cut.to_owned()),
             (Some(cut), _) => Self::Cut(cut.to_owned()),
             (None, Some(end)) if recording.is_whole() => Self::Finished(end.ending.clone()),
-            // The index that leads to the end is damaged.
-            (None, None) if recording.is_whole() => Self::Unknown,
-            (None, _) => Self::Cut("its end is missing".to_owned()),
+            // The index that leads to the end is damaged, or other bytes follow it.
+            (None, _) => Self::Unknown,
         }
     }
 }

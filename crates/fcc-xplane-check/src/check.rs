@@ -13,7 +13,7 @@ use crate::link::Link;
 use crate::report::{Report, Simulator};
 use crate::screen::Screen;
 use crate::step::{Outcome, Step, StepResult};
-use crate::steps::STEPS;
+use crate::steps::{NO_ANSWER, STEPS};
 use crate::waits::{FULL, SHORT};
 
 /// Several beacons.
@@ -186,6 +186,7 @@ fn carry_out(step: &Step, bench: &mut Bench<'_>) -> (StepResult, bool) {
     let figures = bench.figures.clone();
     let quit = matches!(done, Err(Stop::Quit));
     let advice = match done {
+        Err(_) if bench.link.latest().is_none() => NO_ANSWER,
         Err(Stop::NotReady(_)) => NOT_READY,
         _ => step.advice,
     };

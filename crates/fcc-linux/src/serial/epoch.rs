@@ -19,6 +19,8 @@ pub struct Epochs {
     motion: Option<(f64, [f64; 2])>,
     place: Option<(f64, Position)>,
     accuracy_m: [f64; 2],
+    /// By the last GSA: the altitude of GGA is held.
+    is_flat: bool,
     /// Sentences have none.
     vertical_speed: VerticalSpeed,
     order: EpochOrder,
@@ -56,6 +58,7 @@ impl Default for Epochs {
             motion: None,
             place: None,
             accuracy_m: [0.0; 2],
+            is_flat: false,
             vertical_speed: VerticalSpeed::default(),
             order: EpochOrder::of_day(),
             since_fix: Heard::default(),
@@ -74,7 +77,7 @@ impl Epochs {
                 heard.motions = heard.motions.saturating_add(1);
             }
             Sentence::Place(place) => {
-                self.place = place;
+                self.place = place.filter(|_| !self.is_flat);
                 heard.places = heard.places.saturating_add(1);
             }
             Sentence::Accuracy {
@@ -82,6 +85,10 @@ impl Epochs {
                 vertical_m,
             } => {
                 self.accuracy_m = [horizontal_m, vertical_m];
+                return Epoch::Incomplete;
+            }
+            Sentence::Kind { has_altitude } => {
+                self.is_flat = !has_altitude;
                 return Epoch::Incomplete;
             }
             Sentence::Other => return Epoch::Incomplete,
@@ -131,7 +138,7 @@ impl Epochs {
             .span
             .map_or(Duration::ZERO, |(first, last)| last.since(first));
         match (heard.places, heard.motions) {
-            (0, 0) if span > SENT_WITHIN => Some(NEITHER),
+            (0, 0) => (span > SENT_WITHIN).then_some(NEITHER),
             (2.., 0) => Some(NO_RMC),
             (0, 2..) => Some(NO_GGA),
             // Those of one time would have been taken.

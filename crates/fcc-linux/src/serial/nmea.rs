@@ -1,5 +1,5 @@
 //! NMEA 0183, as every satellite receiver speaks it: position and altitude
-//! (GGA), speed and course (RMC), accuracies (GST).
+//! (GGA), speed and course (RMC), accuracies (GST), kind of fix (GSA).
 //!
 //! A field that is empty is not known, as before the first fix; one that is not
 //! what it should be is damaged.
@@ -40,6 +40,11 @@ pub enum Sentence {
         horizontal_m: f64,
         /// Of the altitude.
         vertical_m: f64,
+    },
+    /// GSA: whether the fix is three-dimensional.
+    Kind {
+        /// Otherwise the altitude is an older one.
+        has_altitude: bool,
     },
     /// One that is not used.
     Other,
@@ -90,6 +95,7 @@ fn parser(head: &[u8]) -> Option<Parser> {
         b"RMC," => Some(motion),
         b"GGA," => Some(place),
         b"GST," => Some(accuracy),
+        b"GSA," => Some(kind),
         [kind @ .., b','] if kind.iter().all(u8::is_ascii_uppercase) => {
             Some(|_| Some(Sentence::Other))
         }
@@ -169,6 +175,12 @@ fn accuracy(fields: &mut str::Split<'_, char>) -> Option<Sentence> {
         horizontal_m: deviation(latitude)?.max(deviation(longitude)?),
         vertical_m: deviation(altitude)?,
     })
+}
+
+/// How the kind is chosen, and the kind: 1 no fix, 2 two-dimensional, 3 three-dimensional.
+fn kind(fields: &mut str::Split<'_, char>) -> Option<Sentence> {
+    let has_altitude = fields.nth(1)? == "3";
+    Some(Sentence::Kind { has_altitude })
 }
 
 /// A field that is not what it should be.

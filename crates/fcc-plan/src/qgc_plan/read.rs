@@ -59,7 +59,10 @@ impl Reader {
     }
 
     fn root(&mut self, root: &Node<'_>) -> Result<(), Refusal> {
-        let kind = root.key("fileType")?;
+        let Some(kind) = root.optional("fileType")? else {
+            let what = "lacks \"fileType\", as files of QGroundControl before 3.2 do";
+            return root.refuse(format!("{what}: {SAVE_AGAIN}"));
+        };
         if kind.text()? != "Plan" {
             let given = quoted(kind.text()?);
             return kind.refuse(format!(
@@ -243,8 +246,15 @@ fn items_of(node: &Node<'_>, number: usize) -> Result<(usize, Vec<Item>), Proble
     }
     // A survey or a corridor scan, with the items that it sends.
     if let Some(transects) = node.optional(TRANSECTS).map_err(refused)? {
-        let list = transects.key("Items").and_then(|items| items.list());
-        let items = list.map_err(refused)?.enumerate().map(|(n, item)| {
+        let list = transects.key("Items").map_err(refused)?;
+        let mut items = list.list().map_err(refused)?.peekable();
+        if items.peek().is_none() {
+            return Err(refused((
+                list.path.clone(),
+                format!("is empty: {SAVE_AGAIN}"),
+            )));
+        }
+        let items = items.enumerate().map(|(n, item)| {
             let command = command(&item)
                 .map_err(|(field, message)| Problem::of_item(number + n, field, message))?;
             decode(number + n, &command)

@@ -219,6 +219,10 @@ fn a_plan_of_json_says_where() {
              items: open the file with a present QGroundControl and save it again",
         ),
         (
+            r#"{"type": "ComplexItem", "complexItemType": "survey", "TransectStyleComplexItem": {"Items": []}}"#,
+            "item 1: mission.items[0].TransectStyleComplexItem.Items: is empty: open the file",
+        ),
+        (
             r#"{"type": "SimpleItem", "command": 16, "frame": 3, "params": [0, 0, 0]}"#,
             "item 1: mission.items[0].params: give 7 numbers, or 4 and a coordinate of 3",
         ),
@@ -245,6 +249,8 @@ fn a_plan_of_json_says_where() {
     }
     assert!(said(r#"{"fileType": "Plan", "version": 2}"#).contains("version: 2: only version 1"));
     assert!(said(r#"{"fileType": "Mission"}"#).contains("fileType: \"Mission\""));
+    let before_3_2 = said(r#"{"version": "1.0", "plannedHomePosition": {}, "items": []}"#);
+    assert!(before_3_2.contains("as files of QGroundControl before 3.2 do: open the file"));
     assert!(said("{").contains("is not JSON"));
     assert!(said("[]").contains("the file: give an object"));
     assert!(said("hello").contains("the first line has to be QGC WPL 110"));

@@ -111,8 +111,13 @@ impl<C: Recorded> Writing<C> {
             let compression = self.settings.compression;
             match RecordingFile::begin(&mut *self.disk, &path, about, compression) {
                 Ok(file) => {
-                    // If that fails, it counts as old once the flight has ended.
-                    let _ = folder::list_as_newest(&path);
+                    if let Err(error) = folder::list_as_newest(&path) {
+                        let folder = self.settings.folder.display();
+                        self.remarks.push(format!(
+                            "{folder}/.order: cannot be written: {error}: this recording counts as \
+                             old when room is made: remove it, as the user of fccd"
+                        ));
+                    }
                     return Ok(file);
                 }
                 // Two flights in one millisecond: the second is given a later

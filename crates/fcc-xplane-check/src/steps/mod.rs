@@ -13,6 +13,7 @@ mod stops;
 mod time;
 
 use crate::step::Step;
+pub(crate) use network::NO_ANSWER;
 
 /// The steps.
 pub const STEPS: [Step; 20] = [

@@ -31,6 +31,11 @@ const NOTHING_HEARD: [&str; 4] = [
 /// What it says when its writes have no effect.
 const NO_EFFECT: [&str; 1] = ["no effect"];
 
+/// What to do about an X-Plane that does not answer, in any step.
+pub(crate) const NO_ANSWER: &str = "Start X-Plane, and load an aircraft. X-Plane 12: Settings > Network > \
+    Accept incoming connections. Check the address in the configuration ([x-plane] simulator), and \
+    firewalls on both machines for UDP: docs/x-plane.md.";
+
 pub(super) const READY: Step = Step {
     number: 1,
     title: "the network is on and fccd is ready",
@@ -38,9 +43,7 @@ pub(super) const READY: Step = Step {
     passes: "X-Plane answers, sends every dataref that fccd needs, and fccd reports that it is \
              ready (parked: that only the airspeed is too low).",
     source: "fccd requests everything again each second, and reports a missing value within 6 s",
-    advice: "Start X-Plane, and load an aircraft. X-Plane 12: Settings > Network > Accept incoming connections. Check the address in \
-             the configuration ([x-plane] simulator), and firewalls on both machines for UDP: \
-             docs/x-plane.md.",
+    advice: NO_ANSWER,
     run: ready,
     restore: |_| {},
 };

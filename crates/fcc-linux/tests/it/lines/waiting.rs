@@ -49,6 +49,8 @@ const VTG: &str = "GNVTG,0.0,T,,M,97.19,N,180.0,K,R";
 #[test]
 fn what_is_missing_in_the_sentences_is_said() {
     assert_eq!(said_of(&[GGA, RMC], 1), None);
+    let three = "GNGSA,A,3,01,02,03,04,,,,,,,,,1.9,0.9,1.0,1";
+    assert_eq!(said_of(&[GGA, RMC, three], 1), None);
     for (texts, period_s, expected) in [
         (&[GGA, VTG][..], 1, "GGA arrives and no RMC"),
         (&[GGA], 1, "GGA arrives and no RMC"),
@@ -101,6 +103,8 @@ fn a_receiver_that_was_just_switched_on_has_no_fix_and_is_not_damaged() {
             "GNRMC,1015#.00,A,4500.0,N,00800.0,E,0.1,,271126,,,A",
             "GNGGA,1015#.00,4500.0,N,00800.0,E,1,03,9.9,,,,,,",
         ],
+        // A held altitude: GSA says that the fix has two dimensions.
+        &["GNGSA,A,2,01,02,03,,,,,,,,,,9.9,9.9,1.0,1", RMC, GGA],
     ] {
         assert_eq!(said_of(texts, 1), Some(NO_FIX), "{texts:?}");
     }

@@ -74,6 +74,23 @@ fn a_file_whose_beginning_is_overwritten_is_read_from_the_next_record() {
     }
 }
 
+/// What cannot be read here, another program may read.
+#[test]
+fn a_recording_without_a_readable_tick_is_kept_when_it_is_recovered() {
+    let original = &ORIGINALS[1];
+    let chunks = original.all(op::CHUNK);
+    let first = chunks
+        .iter()
+        .find(|chunk| !ticks_in(original, chunk).is_empty());
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("cut.mcap");
+    let cut = &original.bytes[..first.unwrap().end - 100];
+    fs::write(&path, cut).unwrap();
+    let recovered = recover(&path, |_| {}).unwrap();
+    assert_eq!(recovered.ticks, 0);
+    assert_eq!(fs::read(recovered.kept.unwrap()).unwrap(), cut);
+}
+
 /// As `cat` joins two files.
 #[test]
 fn bytes_behind_a_finished_file_are_damage_and_no_cut() {
