@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import socket
 import tty
 from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -50,6 +52,11 @@ def over(listens: str, connects: str) -> Callable[[], tuple[str, Callable[[], An
         return f"{listens}:{address}", lambda: mavutil.mavlink_connection(f"{connects}:{address}")
 
     return made
+
+
+def wire_address(wire: str) -> tuple[str, int]:
+    _, host, port = wire.split(":")
+    return host, int(port)
 
 
 def answered(link: Any) -> Any:
@@ -105,6 +112,21 @@ def test_who_is_not_the_peer_of_a_link_is_not_heard(tmp_path: Path, fccd: Path) 
         assert answered(peer)
         foreign.close()
         peer.close()
+
+
+def test_who_sends_nothing_valid_makes_room_for_a_station(tmp_path: Path, fccd: Path) -> None:
+    wire, connect = over("tcpin", "tcp")()
+    port = free_port()
+    options = ["--mavlink", wire, "--mavlink", f"udpin:127.0.0.1:{port}"]
+    with vehicle(tmp_path / "ground", fccd, options=options), ExitStack() as open_ones:
+        for _ in range(12):
+            other = open_ones.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
+            other.sendto(b"x", ("127.0.0.1", port))
+            tcp = open_ones.enter_context(socket.create_connection(wire_address(wire)))
+            tcp.sendall(b"x")
+        for link in (connect(), mavutil.mavlink_connection(f"udpout:127.0.0.1:{port}")):
+            assert until("an answer", lambda one=link: answered(one))
+            link.close()
 
 
 def test_mavsdk_downloads_a_recording_as_it_is_on_the_board(tmp_path: Path, fccd: Path) -> None:

@@ -102,7 +102,7 @@ pub struct MavlinkArgs {
     )]
     pub links: Vec<MavlinkLinks>,
     /// The number of the vehicle as a MAVLink system
-    #[arg(long = "mavlink-system", value_name = "N", default_value = "1", value_parser = clap::value_parser!(u8).range(1..))]
+    #[arg(long = "mavlink-system", value_name = "N", requires = "links", default_value = "1", value_parser = clap::value_parser!(u8).range(1..))]
     pub system: u8,
     /// As what the vehicle presents itself: px4 for stations that offer modes only to
     /// autopilots that they know
@@ -113,13 +113,13 @@ pub struct MavlinkArgs {
     )]
     pub identity: MavlinkIdentity,
     /// The key of signatures, 64 hexadecimal digits: nothing unsigned is read then
-    #[arg(long = "mavlink-key", value_name = "FILE")]
+    #[arg(long = "mavlink-key", value_name = "FILE", requires = "links")]
     pub key: Option<PathBuf>,
     /// A machine whose frames links that listen read; may be given several times
-    #[arg(long = "mavlink-allow", value_name = "ADDRESS")]
+    #[arg(long = "mavlink-allow", value_name = "ADDRESS", requires = "links")]
     pub allow: Vec<IpAddr>,
     /// The daemon that MAVLink stations see [default: that of the first configuration]
-    #[arg(long = "mavlink-instance", value_name = "NAME")]
+    #[arg(long = "mavlink-instance", value_name = "NAME", requires = "links")]
     pub instance: Option<Instance>,
 }
 
@@ -134,6 +134,8 @@ mod tests {
         let cli = Cli::parse_from(["fcc-ground"]);
         assert!(cli.listen.ip().is_loopback());
         assert!(cli.mavlink.links.is_empty());
+        // Without a link it would have no effect.
+        assert!(Cli::try_parse_from(["fcc-ground", "--mavlink-key", "key"]).is_err());
         let cli = Cli::parse_from(["fcc-ground", "--mavlink", "--json"]);
         assert_eq!(cli.mavlink.links.concat(), MavlinkLink::usual());
     }

@@ -140,6 +140,8 @@ pub(crate) enum OfProtocol {
     TellInterval(u32),
     /// The item that is flown when control is taken, from 0.
     Start(u16),
+    /// The mode that is shown in standby.
+    Choose(Mode),
     /// Take or give back control: whether others may take it over.
     Operator { takes: bool, takeover: bool },
     /// Only `HIGH_LATENCY2` on this link.
@@ -424,7 +426,10 @@ pub(crate) fn choose(row: Option<&ModeRow>, situation: &Situation<'_>) -> Judged
         mode if mode == flight.mode => Ok(Todo::Nothing),
         Mode::Plan if state.flies_mission() => Ok(Todo::Nothing),
         // Stations choose the mode first, and arm then.
-        Mode::Plan if !flight.is_engaged && situation.missions.total() > 0 => Ok(Todo::Nothing),
+        mode @ Mode::Plan if !flight.is_engaged && situation.missions.total() > 0 => {
+            Ok(Todo::Protocol(OfProtocol::Choose(mode)))
+        }
+        mode @ Mode::Standby if !flight.is_engaged => Ok(Todo::Protocol(OfProtocol::Choose(mode))),
         Mode::Standby if flight.is_airborne => {
             denied("in the air: nothing would hold the aircraft; land, or disarm by force")
         }
@@ -458,9 +463,17 @@ fn reposition(command: &Received, situation: &Situation<'_>) -> Judged {
     let altitude_m = command
         .altitude_m(state)?
         .unwrap_or(state.flight.altitude_m);
-    let place = command.given(5).zip(command.given(6));
+    let place = match [command.given(5), command.given(6), command.given(7)] {
+        // Nothing at all: it stays where it is.
+        [None, None, None] => return in_flight(situation, set("pause", 1.0)),
+        [None, None, _] => state.motion.position.map(|here| {
+            let [latitude_rad, longitude_rad] = [here.latitude_rad, here.longitude_rad];
+            (latitude_rad.to_degrees(), longitude_rad.to_degrees())
+        }),
+        [latitude_deg, longitude_deg, _] => latitude_deg.zip(longitude_deg),
+    };
     let Some((latitude_deg, longitude_deg)) = place.filter(|place| *place != (0.0, 0.0)) else {
-        return denied("parameters 5 and 6: give a place");
+        return denied("parameters 5 and 6: give a place, or NaN for here");
     };
     let is_place = latitude_deg.abs() <= 90.0 && longitude_deg.abs() <= 180.0;
     if !is_place || !altitude_m.is_finite() {

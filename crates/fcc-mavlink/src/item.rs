@@ -25,6 +25,15 @@ impl Part {
     pub(crate) fn of(number: u8) -> Option<Self> {
         Self::ALL.get(usize::from(number)).copied()
     }
+
+    /// The list that items with a command are of.
+    const fn of_command(number: u16) -> Self {
+        match number {
+            5000..=5004 => Self::Fence,
+            5100 => Self::Rally,
+            _ => Self::Mission,
+        }
+    }
 }
 
 /// An item as it was sent: it is given back the same.
@@ -61,12 +70,20 @@ impl MissionItem {
         all
     }
 
-    /// From the payload of `MISSION_ITEM_INT`, with its sequence number.
-    pub(crate) fn read(fields: &Fields) -> (u16, Self) {
+    /// From the payload of `MISSION_ITEM_INT`, with its sequence number; or of the older
+    /// `MISSION_ITEM`, whose place is in degrees.
+    pub(crate) fn read(fields: &Fields, is_in_degrees: bool) -> (u16, Self) {
+        let is_scaled = fields.u8(34) != FRAME_MISSION;
+        let whole = |at| match fields.f32(at) {
+            _ if !is_in_degrees => fields.i32(at),
+            number if number.is_nan() => i32::MAX,
+            number if is_scaled => (f64::from(number) * 1e7).round() as i32,
+            number => number as i32,
+        };
         let item = Self {
             parameters: [0, 4, 8, 12].map(|at| fields.f32(at)),
-            x: fields.i32(16),
-            y: fields.i32(20),
+            x: whole(16),
+            y: whole(20),
             z: fields.f32(24),
             command: fields.u16(30),
             frame: fields.u8(34),
@@ -144,6 +161,11 @@ pub(crate) type Refused = (MavMissionResult, String);
 /// Puts a list into a plan.
 pub(crate) fn put(plan: &mut Plan, part: Part, list: &[MissionItem]) -> Result<(), Refused> {
     let commands: Vec<Command> = list.iter().map(MissionItem::command).collect();
+    let is_other = |command: &&Command| Part::of_command(command.id) != part;
+    if let Some(other) = commands.iter().find(is_other) {
+        let text = format!("command {} is not of this list", other.id);
+        return Err((MavMissionResult::MAV_MISSION_UNSUPPORTED, text));
+    }
     let read = match part {
         Part::Mission => not_carried_out(&commands)
             .map_or_else(|| mission::items(&commands), Err)

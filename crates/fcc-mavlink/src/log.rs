@@ -41,7 +41,8 @@ pub enum LogWanted {
 /// The recordings, and who is reading them: one station at a time.
 #[derive(Debug, Default)]
 pub(crate) struct Logs {
-    all: Vec<Log>,
+    /// None: they are being listed.
+    all: Option<Vec<Log>>,
     wanted: Option<LogWanted>,
     /// A list that waits for its content, or is being sent: to whom, the next one, the last.
     list: Option<(LinkId, u16, u16)>,
@@ -65,10 +66,10 @@ impl Logs {
     }
 
     pub(crate) fn set_all(&mut self, all: Vec<Log>) {
-        self.all = all;
         if let Some((_, _, last)) = &mut self.list {
-            *last = (*last).min(self.all.len().max(1) as u16);
+            *last = (*last).min(all.len().max(1) as u16);
         }
+        self.all = Some(all);
     }
 
     /// Bytes that were wanted; fewer at the end of the recording.
@@ -84,7 +85,7 @@ impl Logs {
         match id {
             117 => {
                 self.list = Some((peer.link, fields.u16(0).max(1), fields.u16(2)));
-                self.all.clear();
+                self.all = None;
                 self.wanted = Some(LogWanted::List);
             }
             119 => {
@@ -127,13 +128,9 @@ impl Logs {
 
     fn entry(&mut self, link: LinkId) -> Option<Body> {
         let (_, next, last) = self.list.as_mut().filter(|list| list.0 == link)?;
-        if self.wanted == Some(LogWanted::List) {
-            return None;
-        }
-        let count = self.all.len() as u16;
-        let log = usize::from(*next)
-            .checked_sub(1)
-            .and_then(|at| self.all.get(at));
+        let all = self.all.as_ref()?;
+        let count = all.len() as u16;
+        let log = usize::from(*next).checked_sub(1).and_then(|at| all.get(at));
         let entry = LOG_ENTRY_DATA {
             time_utc: log.map_or(0, |log| log.utc_s),
             size: log.map_or(0, |log| log.bytes),

@@ -198,6 +198,7 @@ fn sys_status(state: &VehicleState) -> SYS_STATUS_DATA {
                 Sensor::MAV_SYS_STATUS_SENSOR_DIFFERENTIAL_PRESSURE,
             ),
             (sensors.gnss, Sensor::MAV_SYS_STATUS_SENSOR_GPS),
+            (sensors.compass, Sensor::MAV_SYS_STATUS_SENSOR_3D_MAG),
         ]
         .into_iter()
         .filter(|(is_there, _)| *is_there)
@@ -206,6 +207,8 @@ fn sys_status(state: &VehicleState) -> SYS_STATUS_DATA {
     let check = Sensor::MAV_SYS_STATUS_PREARM_CHECK;
     let may = state.health.may_engage || state.flight.is_engaged;
     let charge = state.health.battery_charge;
+    // MAVProxy takes a fence that is not healthy for a breach, also where there is none.
+    let healthy = healthy | Sensor::MAV_SYS_STATUS_GEOFENCE;
     SYS_STATUS_DATA {
         onboard_control_sensors_present: present | check,
         onboard_control_sensors_enabled: present | check,

@@ -13,7 +13,7 @@ use mavlink::dialects::common::{MavMissionResult, MavSeverity, MissionState};
 use crate::effects::{Effects, Peer};
 use crate::frame::Body;
 use crate::item::{MissionItem, Part, Refused, lists, opaque_id, put};
-use crate::vehicle::{Action, Now, Outcome, VehicleState};
+use crate::vehicle::{Action, LinkId, Now, Outcome, VehicleState};
 
 type Code = MavMissionResult;
 type Items = Arc<[MissionItem]>;
@@ -219,6 +219,13 @@ impl Missions {
         self.readers.retain(|reader| reader.peer != peer);
         self.upload
             .take_if(|upload| upload.peer == peer && upload.taken.is_none());
+    }
+
+    /// A link has ended: what it was sending does not come any more.
+    pub(crate) fn close(&mut self, link: LinkId) {
+        self.readers.retain(|reader| reader.peer.link != link);
+        self.upload
+            .take_if(|upload| upload.peer.link == link && upload.taken.is_none());
     }
 
     /// `MISSION_COUNT`.
@@ -594,6 +601,11 @@ fn ack(peer: Peer, number: u8, code: Code, opaque_id: u32) -> Body {
     payload.extend([code as u8, number]);
     payload.extend(opaque_id.to_le_bytes());
     Body::raw(47, 153, &payload)
+}
+
+/// Another station is in control.
+pub(crate) fn denied(peer: Peer, number: u8) -> Body {
+    ack(peer, number, Code::MAV_MISSION_DENIED, 0)
 }
 
 fn refuse(peer: Peer, number: u8, (code, why): &Refused, fx: &mut Effects) {

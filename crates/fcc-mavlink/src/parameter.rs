@@ -1,6 +1,8 @@
 //! Parameters (mavlink.io, "Parameter Protocol"): all are numbers, sent as `float`.
 
-use mavlink::dialects::common::{MavMessage, MavParamType, MavSeverity, PARAM_VALUE_DATA};
+use mavlink::dialects::common::{
+    MavMessage, MavParamError, MavParamType, MavSeverity, PARAM_ERROR_DATA, PARAM_VALUE_DATA,
+};
 use mavlink::types::CharArray;
 
 use fcc_telemetry::Command;
@@ -9,6 +11,19 @@ use crate::effects::{Effects, Peer};
 use crate::frame::{Body, Fields};
 use crate::vehicle::LinkId;
 use crate::vehicle::{Action, Now, Outcome};
+
+type Error = MavParamError;
+
+/// `PARAM_ERROR`.
+fn error(peer: Peer, (param_index, name): (i16, [u8; 16]), error: Error) -> Body {
+    Body::from(MavMessage::PARAM_ERROR(PARAM_ERROR_DATA {
+        param_index,
+        target_system: peer.system,
+        target_component: peer.component,
+        param_id: CharArray::new(name),
+        error,
+    }))
+}
 
 /// A parameter.
 #[derive(Clone, PartialEq, Debug)]
@@ -81,14 +96,22 @@ impl Parameters {
             .position(|parameter| parameter.name.as_bytes() == name)
     }
 
-    /// `PARAM_REQUEST_READ`: by number or name. One that does not exist has no answer.
+    /// `PARAM_REQUEST_READ`: by number or name.
     pub(crate) fn read(&self, peer: Peer, fields: &Fields, fx: &mut Effects) {
         let index = match usize::try_from(fields.i16(0)) {
             Ok(index) => Some(index),
             Err(_) => self.by_name(&fields.bytes::<16>(4)),
         };
-        if let Some(body) = index.and_then(|index| self.body(index, index as u16)) {
-            fx.answer(peer, body);
+        match index.and_then(|index| self.body(index, index as u16)) {
+            Some(body) => fx.answer(peer, body),
+            None => fx.answer(
+                peer,
+                error(
+                    peer,
+                    (fields.i16(0), fields.bytes(4)),
+                    Error::MAV_PARAM_ERROR_DOES_NOT_EXIST,
+                ),
+            ),
         }
     }
 
@@ -101,11 +124,13 @@ impl Parameters {
         now: Now,
         fx: &mut Effects,
     ) {
-        let Some(index) = self.by_name(&fields.bytes::<16>(6)) else {
-            return;
-        };
-        let Some(parameter) = self.all.get(index) else {
-            return;
+        let name = fields.bytes::<16>(6);
+        let found = self
+            .by_name(&name)
+            .and_then(|index| Some((index, self.all.get(index)?)));
+        let Some((index, parameter)) = found else {
+            let unknown = error(peer, (-1, name), Error::MAV_PARAM_ERROR_DOES_NOT_EXIST);
+            return fx.answer(peer, unknown);
         };
         let value = f64::from(fields.f32(0));
         let refusal = match parameter.setpoint {
@@ -121,7 +146,13 @@ impl Parameters {
             }
         };
         let text = format!("{} is not changed: {refusal}", parameter.name);
+        let code = match parameter.setpoint {
+            _ if !may => Error::MAV_PARAM_ERROR_PERMISSION_DENIED,
+            None => Error::MAV_PARAM_ERROR_READ_ONLY,
+            Some(_) => Error::MAV_PARAM_ERROR_READ_FAIL,
+        };
         self.answer(peer, index, fx);
+        fx.answer(peer, error(peer, (-1, name), code));
         fx.tell(peer, MavSeverity::MAV_SEVERITY_WARNING, &text);
     }
 

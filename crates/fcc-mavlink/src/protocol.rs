@@ -15,12 +15,12 @@ use crate::item::MissionItem;
 use crate::link::{COMPONENT, LinkOptions, Links};
 use crate::log::{Log, LogWanted, Logs};
 use crate::message::{Scene, id, requested};
-use crate::mission::Missions;
+use crate::mission::{Missions, denied};
 use crate::mode::by_custom_mode;
 use crate::parameter::{Parameter, Parameters};
 use crate::signing::{Key, Signing};
 use crate::vehicle::LinkId;
-use crate::vehicle::{Action, Identity, Now, Outcome, Request, VehicleState};
+use crate::vehicle::{Action, Identity, Mode, Now, Outcome, Request, VehicleState};
 
 /// Who speaks, and how it is secured.
 #[derive(Clone, Debug)]
@@ -70,6 +70,8 @@ pub struct Protocol {
     fx: Effects,
     /// Another system with this one's number was heard, and that was said.
     has_twin: bool,
+    /// The mission was chosen in standby: that mode is shown until control is taken.
+    has_chosen: bool,
 }
 
 impl Protocol {
@@ -88,6 +90,7 @@ impl Protocol {
             control: Control::default(),
             fx: Effects::default(),
             has_twin: false,
+            has_chosen: false,
         }
     }
 
@@ -101,11 +104,16 @@ impl Protocol {
         self.links.close(link);
         self.parameters.forget(link);
         self.logs.forget(link);
+        self.missions.close(link);
     }
 
     /// The newest state of the vehicle.
     pub fn set_state(&mut self, state: VehicleState) {
         self.state = state;
+        self.has_chosen &= !state.flight.is_engaged && state.flight.mode == Mode::Standby;
+        if self.has_chosen {
+            self.state.flight.mode = Mode::Plan;
+        }
     }
 
     /// The vehicle's plan, if its hash is not [`plan_hash`](Self::plan_hash); none: its
@@ -169,13 +177,16 @@ impl Protocol {
         }
     }
 
-    /// Takes what has arrived on a link.
-    pub fn receive(&mut self, link: LinkId, bytes: &[u8], now: Now) {
+    /// Takes what has arrived on a link; returns whether a frame of it was read.
+    pub fn receive(&mut self, link: LinkId, bytes: &[u8], now: Now) -> bool {
+        let mut is_read = false;
         for frame in self.links.frames(link, bytes) {
             if self.signing.permits(&frame, now) {
+                is_read = true;
                 self.handle(link, &frame, now);
             }
         }
+        is_read
     }
 
     /// What is wanted from the vehicle; each is answered by [`finish`](Self::finish).
@@ -257,7 +268,7 @@ impl Protocol {
             }
             21 | 43 | 45 | 47 | 121 | 122 => 0,
             40 | 41 | 44 | 51 => 2,
-            73 => 32,
+            39 | 73 => 32,
             75 | 76 => 30,
             110 => 1,
             111 => 16,
@@ -289,7 +300,19 @@ impl Protocol {
             }
             43 => missions.read_list(peer, fields.u8(2), now, fx),
             47 => missions.acknowledged(peer),
-            38 | 41 | 44 | 45 | 73 if !may => self.not_in_control(peer),
+            38 | 39 | 41 | 44 | 45 | 73 if !may => {
+                let part = match frame.id {
+                    38 => Some(6),
+                    39 | 73 => Some(37),
+                    44 => Some(4),
+                    45 => Some(2),
+                    _ => None,
+                };
+                if let Some(at) = part {
+                    fx.answer(peer, denied(peer, fields.u8(at)));
+                }
+                self.not_in_control(peer);
+            }
             38 => {
                 let range = (fields.u8(6), fields.i16(0), fields.i16(2));
                 missions.begin_partial(peer, range, now, fx);
@@ -305,8 +328,8 @@ impl Protocol {
             }
             44 => missions.begin(peer, (fields.u8(4), fields.u16(0)), state, now, fx),
             45 => missions.clear(peer, fields.u8(2), state, now, fx),
-            73 => {
-                let item = MissionItem::read(fields);
+            39 | 73 => {
+                let item = MissionItem::read(fields, frame.id == 39);
                 missions.item(peer, fields.u8(37), item, state, now, fx);
             }
             75 => self.command((peer, frame.sequence), &Received::int(fields), now),
@@ -351,7 +374,8 @@ impl Protocol {
             Ok(Todo::Vehicle(commands)) => {
                 self.fx.request(peer, Action::Commands(commands), now);
             }
-            Ok(_) => {}
+            Ok(Todo::Protocol(of)) => drop(self.of_protocol(peer, of, now)),
+            Ok(Todo::Nothing) => {}
             Err((_, why)) => self.fx.tell(peer, MavSeverity::MAV_SEVERITY_WARNING, &why),
         }
     }
@@ -445,6 +469,10 @@ impl Protocol {
                 self.fx.answer(peer, MavMessage::MESSAGE_INTERVAL(interval));
             }
             OfProtocol::Start(item) => self.missions.set_start(item),
+            OfProtocol::Choose(mode) => {
+                self.has_chosen = mode == Mode::Plan;
+                self.state.flight.mode = mode;
+            }
             OfProtocol::Operator { takes, takeover } => {
                 self.control.request(peer, (takes, takeover), now)?;
             }

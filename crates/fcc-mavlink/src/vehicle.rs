@@ -147,6 +147,8 @@ pub struct Sensors {
     pub airspeed: bool,
     /// Position.
     pub gnss: bool,
+    /// Heading.
+    pub compass: bool,
 }
 
 /// The newest of everything.

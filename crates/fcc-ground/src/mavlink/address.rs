@@ -1,5 +1,6 @@
 //! The links of the command line.
 
+use std::fmt;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -22,6 +23,17 @@ pub(crate) enum Way {
     TcpIn(SocketAddr),
     /// A line, with its bits in a second.
     Serial(PathBuf, u32),
+}
+
+impl fmt::Display for Way {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::UdpTo(to) => write!(f, "udp:{to}"),
+            Self::UdpIn(at) => write!(f, "udpin:{at}"),
+            Self::TcpIn(at) => write!(f, "tcpin:{at}"),
+            Self::Serial(device, baud) => write!(f, "serial:{}:{baud}", device.display()),
+        }
+    }
 }
 
 /// A link: `udp:ADDRESS:PORT`, `udpin:…`, `tcpin:…` or `serial:DEVICE:BAUD`, with
@@ -66,7 +78,10 @@ impl FromStr for MavlinkLink {
         let (kind, rest) = first.split_once(':').ok_or_else(usage)?;
         let address = || {
             let address = rest.parse::<SocketAddr>();
-            address.map_err(|_| format!("{rest}: give a numeric address and a port"))
+            let address = address
+                .ok()
+                .filter(|address: &SocketAddr| address.port() != 0);
+            address.ok_or_else(|| format!("{rest}: give a numeric address and a port"))
         };
         let way = match kind {
             "udp" => Way::UdpTo(address()?),

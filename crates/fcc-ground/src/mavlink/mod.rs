@@ -209,7 +209,11 @@ impl Face {
             let now = self.clock.now();
             match one {
                 Heard::Opened(link, options) => self.protocol.open(link, options, now),
-                Heard::Bytes(link, bytes) => self.protocol.receive(link, &bytes, now),
+                Heard::Bytes(link, bytes) => {
+                    if self.protocol.receive(link, &bytes, now) {
+                        self.wires.know(link);
+                    }
+                }
                 Heard::Closed(link) => self.protocol.close(link),
             }
         }

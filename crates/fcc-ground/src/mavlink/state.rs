@@ -58,17 +58,21 @@ pub(super) fn state(
     let airspeed = measured.airspeed_mps.is_fresh(now, FRESH)
         || measured.differential_pressure_pa.is_fresh(now, FRESH);
     let gnss = measured.position.is_fresh(now, FRESH) || measured.gnss.is_fresh(now, FRESH);
+    let compass =
+        measured.heading_rad.is_fresh(now, FRESH) || measured.magnetic_field.is_fresh(now, FRESH);
     let present = Sensors {
         inertial,
         barometer,
         airspeed,
         gnss,
+        compass,
     };
     let healthy = Sensors {
         inertial: inertial && !has(flags::DOUBTED_ATTITUDE) && !has(flags::DOUBTED_BODY_RATES),
         barometer: barometer && !has(flags::DOUBTED_ALTITUDE),
         airspeed: airspeed && !has(flags::DOUBTED_AIRSPEED) && !has(flags::SUSPECT_AIRSPEED),
         gnss: gnss && !has(flags::DEAD_RECKONING) && !has(flags::IMPOSSIBLE_FIX),
+        compass: compass && !has(flags::HEADING) && !has(flags::FROZEN_HEADING),
     };
     VehicleState {
         is_connected: true,

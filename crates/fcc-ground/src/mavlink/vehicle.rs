@@ -2,7 +2,7 @@
 //!
 //! It runs in a thread of its own, for a command may take seconds.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender};
 use std::sync::{PoisonError, Weak};
 use std::time::{Instant, UNIX_EPOCH};
@@ -64,11 +64,13 @@ pub(super) fn run(
                 Done::Found(hash, plan.map(Box::new))
             }
             Job::Log(LogWanted::List) => {
-                recordings = fcc_record::files(&station.recordings).unwrap_or_default();
-                recordings.truncate(u16::MAX.into());
+                recordings = listed(&station);
                 Done::Logs(recordings.iter().map(|path| log(path)).collect())
             }
             Job::Log(LogWanted::Data { log, at, bytes }) => {
+                if recordings.is_empty() {
+                    recordings = listed(&station);
+                }
                 let path = usize::from(log)
                     .checked_sub(1)
                     .and_then(|n| recordings.get(n));
@@ -161,6 +163,13 @@ fn carry_out(
             Ok(upload.hash)
         }
     }
+}
+
+/// The recordings that have a number, the oldest first.
+fn listed(station: &Station) -> Vec<PathBuf> {
+    let mut recordings = fcc_record::files(&station.recordings).unwrap_or_default();
+    recordings.truncate(u16::MAX.into());
+    recordings
 }
 
 /// A recording as stations list it.

@@ -15,7 +15,7 @@ use fcc_mavlink::{LinkId, LinkOptions};
 
 use super::address::{MavlinkLink, Way, own};
 
-/// Peers of all listening links.
+/// Peers of a listening link. One from which nothing valid has come makes room for others.
 const MOST_PEERS: usize = 8;
 /// A peer that says nothing for so long is forgotten.
 const SILENT: Duration = Duration::from_secs(30);
@@ -56,6 +56,10 @@ struct Peer {
     name: String,
     /// When it was heard, if it may be forgotten.
     heard: Option<Instant>,
+    /// At which listener.
+    listener: Option<usize>,
+    /// A frame of it was read, signed if there is a key.
+    is_known: bool,
 }
 
 /// All links.
@@ -82,38 +86,45 @@ impl Wires {
         };
         let mut heard = Vec::new();
         for link in links {
-            let options = link.options;
-            match &link.way {
-                Way::UdpTo(to) => {
-                    let socket = UdpSocket::bind(own(*to))?;
-                    socket.set_nonblocking(true)?;
-                    let wire = Wire::Udp(Arc::new(socket), *to);
-                    heard.extend(wires.add(wire, to.to_string(), options, false));
-                }
-                Way::UdpIn(at) => {
-                    let socket = UdpSocket::bind(at)?;
-                    socket.set_nonblocking(true)?;
-                    wires
-                        .listeners
-                        .push(Listener::Udp(Arc::new(socket), options));
-                }
-                Way::TcpIn(at) => {
-                    let listener = TcpListener::bind(at)?;
-                    listener.set_nonblocking(true)?;
-                    wires.listeners.push(Listener::Tcp(listener, options));
-                }
-                Way::Serial(device, baud) => {
-                    let settings = LineSettings {
-                        path: device.clone(),
-                        baud: *baud,
-                        has_even_parity: false,
-                    };
-                    let wire = serial(settings)?;
-                    heard.extend(wires.add(wire, device.display().to_string(), options, false));
-                }
-            }
+            wires.open_one(link, &mut heard).map_err(|error| {
+                let at = format!("{}: {error}: choose another one", link.way);
+                io::Error::new(error.kind(), at)
+            })?;
         }
         Ok((wires, heard))
+    }
+
+    fn open_one(&mut self, link: &MavlinkLink, heard: &mut Vec<Heard>) -> io::Result<()> {
+        let options = link.options;
+        match &link.way {
+            Way::UdpTo(to) => {
+                let socket = UdpSocket::bind(own(*to))?;
+                socket.set_nonblocking(true)?;
+                let wire = Wire::Udp(Arc::new(socket), *to);
+                self.add(wire, to.to_string(), options, None, heard);
+            }
+            Way::UdpIn(at) => {
+                let socket = UdpSocket::bind(at)?;
+                socket.set_nonblocking(true)?;
+                self.listeners
+                    .push(Listener::Udp(Arc::new(socket), options));
+            }
+            Way::TcpIn(at) => {
+                let listener = TcpListener::bind(at)?;
+                listener.set_nonblocking(true)?;
+                self.listeners.push(Listener::Tcp(listener, options));
+            }
+            Way::Serial(device, baud) => {
+                let settings = LineSettings {
+                    path: device.clone(),
+                    baud: *baud,
+                    has_even_parity: false,
+                };
+                let wire = serial(settings)?;
+                self.add(wire, device.display().to_string(), options, None, heard);
+            }
+        }
+        Ok(())
     }
 
     fn add(
@@ -121,19 +132,36 @@ impl Wires {
         wire: Wire,
         name: String,
         options: LinkOptions,
-        may_be_forgotten: bool,
-    ) -> Option<Heard> {
-        if may_be_forgotten && self.peers.len() >= MOST_PEERS {
-            return None;
+        listener: Option<usize>,
+        heard: &mut Vec<Heard>,
+    ) -> Option<LinkId> {
+        let others = self.peers.iter();
+        let others = others.filter(|(_, peer)| listener.is_some() && peer.listener == listener);
+        if others.clone().count() >= MOST_PEERS {
+            let unknown = others.filter(|(_, peer)| !peer.is_known);
+            let (oldest, _) = unknown.min_by_key(|(_, peer)| peer.heard)?;
+            let oldest = *oldest;
+            self.peers.remove(&oldest);
+            heard.push(Heard::Closed(oldest));
         }
         self.next = self.next.wrapping_add(1);
         let peer = Peer {
             wire,
             name,
-            heard: may_be_forgotten.then(Instant::now),
+            heard: listener.map(|_| Instant::now()),
+            listener,
+            is_known: false,
         };
         self.peers.insert(self.next, peer);
-        Some(Heard::Opened(self.next, options))
+        heard.push(Heard::Opened(self.next, options));
+        Some(self.next)
+    }
+
+    /// A frame was read of what came by a link.
+    pub(super) fn know(&mut self, link: LinkId) {
+        if let Some(peer) = self.peers.get_mut(&link) {
+            peer.is_known = true;
+        }
     }
 
     /// How a link is called.
@@ -181,23 +209,22 @@ impl Wires {
                         }
                         let link = self.udp_peer(from).or_else(|| {
                             let wire = Wire::Udp(socket, from);
-                            let opened = self.add(wire, from.to_string(), options, true)?;
-                            heard.push(opened);
-                            Some(self.next)
+                            self.add(wire, from.to_string(), options, Some(listener), &mut heard)
                         });
                         if let Some((link, bytes)) = link.zip(buffer.get(..length)) {
                             heard.push(Heard::Bytes(link, bytes.to_vec()));
                         }
                     }
-                    Some(Listener::Tcp(listener, options)) => {
-                        let (Ok((stream, from)), options) = (listener.accept(), *options) else {
+                    Some(Listener::Tcp(socket, options)) => {
+                        let (Ok((stream, from)), options) = (socket.accept(), *options) else {
                             break;
                         };
                         if self.permits(from) && stream.set_nonblocking(true).is_ok() {
                             // Small frames are not to wait for each other.
                             let _ = stream.set_nodelay(true);
                             let wire = Wire::Tcp(stream);
-                            heard.extend(self.add(wire, from.to_string(), options, true));
+                            let name = from.to_string();
+                            self.add(wire, name, options, Some(listener), &mut heard);
                         }
                     }
                     None => break,

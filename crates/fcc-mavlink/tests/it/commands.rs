@@ -323,11 +323,53 @@ fn nan_and_int32_max_mean_unset() {
     // A place that is given is none of what landing does.
     let codes = station(&mut world).give(75, &int(21, 6, [nan; 4], (475_000_000, 90_000_000, nan)));
     assert_eq!(codes, [Code::MAV_RESULT_DENIED]);
-    // PX4 #4944: NaN became 0, 0.
-    world.asked.clear();
-    let codes = station(&mut world).give(75, &int(192, 6, [-1.0, 1.0, 0.0, nan], place));
-    assert_eq!(codes, [Code::MAV_RESULT_DENIED]);
-    assert!(given(&world).is_empty());
+    // PX4 #4944: NaN became 0, 0. As QGroundControl pauses, and changes the altitude.
+    for (command, expected) in [
+        (
+            int(192, 6, [-1.0, 1.0, 0.0, nan], place),
+            "(\"pause\", 1.0)",
+        ),
+        (
+            int(192, 0, [-1.0, 1.0, 0.0, nan], (i32::MAX, i32::MAX, 650.0)),
+            "(\"go_to_altitude_m\", 650.0)",
+        ),
+    ] {
+        world.asked.clear();
+        let codes = station(&mut world).give(75, &command);
+        assert_eq!(codes, [Code::MAV_RESULT_ACCEPTED]);
+        let [given] = &given(&world)[..] else {
+            panic!("{:?}", given(&world));
+        };
+        assert!(given.contains(expected), "{given}");
+    }
+}
+
+/// `QGroundControl` chooses the mode, waits until it is shown, and arms.
+#[test]
+fn the_mission_is_shown_once_it_is_chosen_in_standby() {
+    let mut world = world_with_mission();
+    let shown = |world: &mut World| {
+        world.inbox.clear();
+        let heartbeat = world.wait(6_000, |heard| match &heard.message {
+            MavMessage::HIGH_LATENCY2(state) => Some(state.custom_mode),
+            _ => None,
+        });
+        heartbeat.expect("a state")
+    };
+    let before = shown(&mut world);
+    let code = station(&mut world).long(176, &[1.0, 4.0, 4.0]);
+    assert_eq!(code, Code::MAV_RESULT_ACCEPTED);
+    world.set_state(|_| {});
+    let chosen = shown(&mut world);
+    assert_ne!(before, chosen);
+    assert_eq!(
+        station(&mut world).long(400, &[1.0]),
+        Code::MAV_RESULT_ACCEPTED
+    );
+    world.set_state(flying);
+    assert_eq!(shown(&mut world), chosen, "the same when it is flown");
+    world.set_state(|state| state.flight = fcc_mavlink::Flight::default());
+    assert_eq!(shown(&mut world), before);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use fcc_mavlink::{LinkOptions, Parameter, Severity};
 use mavlink::dialects::common::{
-    MavMessage, PARAM_REQUEST_LIST_DATA, PARAM_SET_DATA, SERIAL_CONTROL_DATA,
+    MavMessage, MavParamError, PARAM_REQUEST_LIST_DATA, PARAM_SET_DATA, SERIAL_CONTROL_DATA,
 };
 use mavlink::types::CharArray;
 
@@ -113,14 +113,22 @@ fn a_parameter_that_cannot_change_in_flight_is_answered_with_its_old_value() {
         };
         world.inbox.clear();
         world.send(1, &MavMessage::PARAM_SET(set));
-        world.wait(500, |heard| match &heard.message {
+        let all = world.all(500);
+        let value = all.iter().find_map(|message| match message {
             MavMessage::PARAM_VALUE(value) => Some(value.param_value),
             _ => None,
-        })
+        });
+        let error = all.iter().find_map(|message| match message {
+            MavMessage::PARAM_ERROR(error) => Some(error.error),
+            _ => None,
+        });
+        (value, error)
     };
-    assert_eq!(set("B_MPS", 50.0), Some(1.0));
-    assert_eq!(set("QNH_HPA", 1_020.0), Some(1_020.0));
-    assert_eq!(set("NO_SUCH", 1.0), None);
+    let read_only = MavParamError::MAV_PARAM_ERROR_READ_ONLY;
+    assert_eq!(set("B_MPS", 50.0), (Some(1.0), Some(read_only)));
+    assert_eq!(set("QNH_HPA", 1_020.0), (Some(1_020.0), None));
+    let unknown = MavParamError::MAV_PARAM_ERROR_DOES_NOT_EXIST;
+    assert_eq!(set("NO_SUCH", 1.0), (None, Some(unknown)));
     let asked = format!("{:?}", world.asked);
     assert!(
         asked.contains("(\"altimeter_setting_pa\", 102000.0)"),

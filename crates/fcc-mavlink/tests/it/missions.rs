@@ -3,9 +3,9 @@
 
 use fcc_mavlink::Action;
 use mavlink::dialects::common::{
-    MISSION_CLEAR_ALL_DATA, MISSION_COUNT_DATA, MISSION_ITEM_INT_DATA, MISSION_REQUEST_DATA,
-    MISSION_WRITE_PARTIAL_LIST_DATA, MavCmd, MavFrame, MavMessage, MavMissionResult as Code,
-    MavMissionType as Part,
+    MISSION_CLEAR_ALL_DATA, MISSION_COUNT_DATA, MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA,
+    MISSION_REQUEST_DATA, MISSION_WRITE_PARTIAL_LIST_DATA, MavCmd, MavFrame, MavMessage,
+    MavMissionResult as Code, MavMissionType as Part,
 };
 
 use crate::lossy::{download, is_same, upload};
@@ -335,4 +335,62 @@ fn a_vehicle_that_takes_long_keeps_the_station_waiting() {
     world.takes_ms = 6_000;
     let ack = upload(&mut world, 1, &mission(3)).expect("an answer");
     assert_eq!(ack.mavtype, Code::MAV_MISSION_ACCEPTED);
+}
+
+/// A rally point among the corners of a fence would be flown as neither.
+#[test]
+fn an_item_of_another_list_is_refused() {
+    for (part, command) in [
+        (FENCE, MavCmd::MAV_CMD_NAV_RALLY_POINT),
+        (
+            Part::MAV_MISSION_TYPE_RALLY,
+            MavCmd::MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION,
+        ),
+        (FENCE, MavCmd::MAV_CMD_NAV_WAYPOINT),
+        (MISSION, MavCmd::MAV_CMD_NAV_RALLY_POINT),
+    ] {
+        let mut world = World::new();
+        let item = MISSION_ITEM_INT_DATA {
+            command,
+            mission_type: part,
+            param4: 0.0,
+            ..waypoint(0)
+        };
+        let ack = upload(&mut world, 1, &[item]).expect("an answer");
+        assert_eq!(ack.mavtype, Code::MAV_MISSION_UNSUPPORTED, "{command:?}");
+    }
+}
+
+/// The older message, which has degrees as `f32`: 1 m at most.
+#[test]
+fn an_item_in_degrees_is_stored_as_one_in_whole_numbers() {
+    let mut world = World::new();
+    begin(&mut world, 1, 1);
+    let item = MISSION_ITEM_DATA {
+        x: 47.5,
+        y: 9.0,
+        z: 300.0,
+        command: MavCmd::MAV_CMD_NAV_WAYPOINT,
+        frame: MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT,
+        target_system: 1,
+        target_component: 1,
+        autocontinue: 1,
+        ..MISSION_ITEM_DATA::default()
+    };
+    world.send(1, &MavMessage::MISSION_ITEM(item));
+    let _ = world.all(100);
+    let got = download(&mut world, 1, MISSION).expect("a list");
+    assert_eq!((got[0].x, got[0].y), (475_000_000, 90_000_000));
+}
+
+/// The guide: who may not upload gets an answer, and not a time-out.
+#[test]
+fn an_upload_of_a_station_that_is_not_in_control_is_denied() {
+    let mut world = World::new();
+    let takes = crate::commands::long(32_100, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], 0);
+    world.send_bytes(2, crate::commands::frame((42, 190), 1, 76, &takes));
+    world.step();
+    let ack = upload(&mut world, 1, &mission(2)).expect("an answer");
+    assert_eq!(ack.mavtype, Code::MAV_MISSION_DENIED);
+    assert_eq!(clear(&mut world, MISSION), Some(Code::MAV_MISSION_DENIED));
 }
