@@ -7,6 +7,7 @@ import socket
 import tty
 from collections.abc import Callable
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -125,7 +126,7 @@ def test_who_sends_nothing_valid_makes_room_for_a_station(tmp_path: Path, fccd: 
             tcp = open_ones.enter_context(socket.create_connection(wire_address(wire)))
             tcp.sendall(b"x")
         for link in (connect(), mavutil.mavlink_connection(f"udpout:127.0.0.1:{port}")):
-            assert until("an answer", lambda one=link: answered(one))
+            assert until("an answer", partial(answered, link))
             link.close()
 
 
