@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 import os
 import socket
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -110,6 +112,40 @@ def metres(place: tuple[float, float], other: tuple[float, float]) -> float:
     """Return how far apart two places are."""
     latitude_deg, longitude_deg = (np.array([degrees]) for degrees in other)
     return float(away_m(*place, (latitude_deg, longitude_deg))[0])
+
+
+@contextmanager
+def mavproxy(port: int, folder: Path) -> Iterator[tuple[Callable[[str], None], Callable[[], str]]]:
+    """Start MAVProxy without a screen: what gives it a line, and what it has printed."""
+    printed = folder / "printed.txt"
+    with (
+        printed.open("w") as out,
+        subprocess.Popen(
+            [
+                *(sys.executable, "-m", "MAVProxy.mavproxy", f"--master=udpin:127.0.0.1:{port}"),
+                *("--dialect=common", f"--state-basedir={folder}"),
+            ],
+            stdin=subprocess.PIPE,
+            stdout=out,
+            stderr=subprocess.STDOUT,
+            text=True,
+            cwd=folder,
+        ) as process,
+    ):
+        stdin = process.stdin
+        assert stdin
+
+        def give(line: str) -> None:
+            stdin.write(f"{line}\n")
+            stdin.flush()
+
+        until("the vehicle", lambda: "Received" in printed.read_text())
+        try:
+            yield give, printed.read_text
+        finally:
+            # It ends with its input.
+            stdin.close()
+            process.wait(20.0)
 
 
 class Pymavlink:

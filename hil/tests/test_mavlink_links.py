@@ -1,9 +1,10 @@
-"""Each kind of link, with and without a key, and recordings by what MAVSDK reads of them."""
+"""Each kind of link, with and without a key; MAVProxy in flight; recordings by MAVSDK."""
 
 from __future__ import annotations
 
 import os
 import socket
+import time
 import tty
 from collections.abc import Callable
 from contextlib import ExitStack
@@ -12,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from mavlink_vehicle import free_port, mavsdk_system, until, vehicle
+from mavlink_vehicle import IN_THE_AIR, free_port, mavproxy, mavsdk_system, until, vehicle
 from mavsdk.plugins.log_files import LogFiles
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import common
@@ -128,6 +129,38 @@ def test_who_sends_nothing_valid_makes_room_for_a_station(tmp_path: Path, fccd: 
         for link in (connect(), mavutil.mavlink_connection(f"udpout:127.0.0.1:{port}")):
             assert until("an answer", partial(answered, link))
             link.close()
+
+
+def test_mavproxy_loads_a_fence_arms_and_chooses_modes(tmp_path: Path, fccd: Path) -> None:
+    mission, loiter = 4 << 24 | 4 << 16, 3 << 24 | 4 << 16
+    fence = tmp_path / "fence.txt"
+    corners = [(44.5, 7.5), (44.5, 8.5), (45.5, 8.5), (45.5, 7.5)]
+    rows = [
+        f"{n}\t0\t0\t5001\t4\t0\t0\t0\t{north}\t{east}\t0\t1"
+        for n, (north, east) in enumerate(corners)
+    ]
+    fence.write_text("\n".join(["QGC WPL 110", *rows]) + "\n")
+    with (
+        vehicle(tmp_path / "ground", fccd, IN_THE_AIR) as (ground, port),
+        mavproxy(port, tmp_path) as (give, printed),
+    ):
+        give(f"fence load {fence}")
+        until("it is taken", lambda: "TYPE_FENCE: ACCEPTED" in printed())
+        until("the fence", lambda: ((ground.vehicle() or {}).get("plan") or {}).get("fence"))
+
+        def corner_lines() -> int:
+            give("fence list")
+            time.sleep(2.0)
+            return sum(line.startswith("5001 ") for line in printed().splitlines())
+
+        until("its list", lambda: corner_lines() >= len(corners))
+        give(f"mode {mission}")
+        until("the mode", lambda: "DO_SET_MODE: ACCEPTED" in printed())
+        give("arm throttle")
+        until("armed", lambda: ground.tick()["state"] == "engaged")
+        give(f"mode {loiter}")
+        until("it circles", lambda: ground.tick()["guidance"]["mode"] == "loiter")
+        assert "breach" not in printed()
 
 
 def test_mavsdk_downloads_a_recording_as_it_is_on_the_board(tmp_path: Path, fccd: Path) -> None:

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import re
 import socket
-import subprocess
-import sys
 import time
 from collections import Counter
 from collections.abc import Iterator
@@ -22,6 +20,7 @@ from mavlink_vehicle import (
     Pymavlink,
     free_port,
     item,
+    mavproxy,
     mavsdk_system,
     same,
     until,
@@ -180,36 +179,15 @@ def test_mavproxy_loads_lists_and_changes_a_mission(
         plan = (ground.vehicle() or {}).get("plan") or {"items": []}
         return [one["altitude"]["m"] for one in plan["items"] if "altitude" in one]
 
-    printed = tmp_path / "printed.txt"
-    with (
-        printed.open("w") as out,
-        subprocess.Popen(
-            [
-                *(sys.executable, "-m", "MAVProxy.mavproxy", f"--master=udpin:127.0.0.1:{port}"),
-                *("--dialect=common", f"--state-basedir={tmp_path}"),
-            ],
-            stdin=subprocess.PIPE,
-            stdout=out,
-            stderr=subprocess.STDOUT,
-            text=True,
-            cwd=tmp_path,
-        ) as process,
-    ):
-        assert process.stdin
-
-        def give(line: str) -> None:
-            assert process.stdin
-            process.stdin.write(f"{line}\n")
-            process.stdin.flush()
+    with mavproxy(port, tmp_path) as (give, printed):
 
         def listed() -> list[tuple[int, float]]:
             give("wp list")
             time.sleep(2.0)
-            lines = [line for line in printed.read_text().splitlines() if " p1=" in line]
+            lines = [line for line in printed().splitlines() if " p1=" in line]
             rows = [line.split()[:5] for line in lines]
             return [(int(words[0]), float(words[4])) for words in rows[-3:]]
 
-        until("the vehicle", lambda: "Received" in printed.read_text())
         give(f"wp load {plan}")
         until("the mission", lambda: altitudes() == [150.0, 300.0, 300.0])
         give("wp changealt 2 250")
@@ -217,10 +195,7 @@ def test_mavproxy_loads_lists_and_changes_a_mission(
         # It asks once, and gets no answer while the daemon starts again.
         until("the list", lambda: listed() == [(22, 150.0), (16, 300.0), (16, 250.0)])
         give("param show QNH_HPA")
-        until("the parameter", lambda: re.search(r"QNH_HPA\s+1013.25", printed.read_text()))
-        give("exit")
-        process.stdin.close()
-        process.wait(20.0)
+        until("the parameter", lambda: re.search(r"QNH_HPA\s+1013.25", printed()))
 
 
 def test_control_is_taken_and_the_page_and_other_stations_wait(standing: tuple[Any, int]) -> None:
