@@ -128,6 +128,9 @@ impl Epochs {
     /// What is missing for a fix, by the sentences since the last one, and what to do
     /// about that. The first epoch has no vertical speed at any rate: after it, `None`.
     pub fn waits_for(&self) -> Option<&'static str> {
+        if self.is_flat {
+            return Some(NO_FIX);
+        }
         let heard = self.since_fix;
         match heard.without_climb {
             0 => {}

@@ -82,7 +82,7 @@ proptest! {
     }
 }
 
-/// Its commands are not from a station, and it is told once.
+/// Its commands are not from a station; one text on each link says that it is there.
 #[test]
 fn another_vehicle_with_the_same_number_commands_nothing() {
     let mut world = World::new();

@@ -105,6 +105,7 @@ fn a_receiver_that_was_just_switched_on_has_no_fix_and_is_not_damaged() {
         ],
         // A held altitude: GSA says that the fix has two dimensions.
         &["GNGSA,A,2,01,02,03,,,,,,,,,,9.9,9.9,1.0,1", RMC, GGA],
+        &[RMC, GGA, "GNGSA,A,2,01,02,03,,,,,,,,,,9.9,9.9,1.0,1"],
     ] {
         assert_eq!(said_of(texts, 1), Some(NO_FIX), "{texts:?}");
     }
