@@ -78,7 +78,7 @@ GROUND_STATION ?=
 
 # With the page in it.
 station: $(STAMPS)/rust $(STAMPS)/page
-	cargo build --locked --release -p fcc-ground
+	cargo build --locked --release -p fcc-daemon -p fcc-py -p fcc-ground --bin fcc-ground
 
 ground: build station ## Draw plans in a browser, fly them with the built-in aircraft, and watch (GROUND_STATION=)
 	FCCD=$(FCCD) STATION=$(TARGET)/release/fcc-ground ./scripts/ground $(GROUND_STATION)

@@ -17,7 +17,7 @@ use crate::traffic::Traffic;
 use crate::{DeviceError, Sample, Source, WAIT};
 
 const CONNECTED_WITHIN: Duration = Duration::from_secs(1);
-/// With a receiver gpsd writes a line every second, even without a fix. A connection
+/// With a receiver gpsd writes a `TPV` every second, even without a fix. A connection
 /// that is cut without a word is noticed by this, too.
 const SILENT: Duration = Duration::from_secs(10);
 const PROTOCOL: u32 = 3;
@@ -113,7 +113,7 @@ impl Gpsd {
             device: device.clone(),
             what,
         };
-        let mut take = |line: &[u8]| match Report::read(line) {
+        let mut take = |report| match report {
             Ok(Report::Fix {
                 device,
                 time_s,
@@ -181,8 +181,11 @@ impl Gpsd {
         let mut reports = 0;
         let pushed = self.lines.push(bytes, |line| {
             reports += 1;
-            heard = Instant::now();
-            take(line);
+            let report = Report::read(line);
+            if let Ok(Report::Fix { .. } | Report::Impossible { .. }) = report {
+                heard = Instant::now();
+            }
+            take(report);
         });
         (self.heard, self.waits_for) = (heard, waits_for);
         if pushed.is_err() {
@@ -262,7 +265,10 @@ impl Source for Gpsd {
         if self.heard.elapsed() > SILENT {
             return Err(DeviceError::Refused {
                 device: name(&self.settings),
-                what: "it reports nothing: check that it has a receiver (`gpsmon` shows it)".into(),
+                what:
+                    "it reports no position (`TPV`): check that it has a receiver (`gpsmon` shows \
+                       it)"
+                    .into(),
             });
         }
         Ok(fix)

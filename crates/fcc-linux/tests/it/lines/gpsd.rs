@@ -378,6 +378,28 @@ fn a_receiver_without_a_fix_is_no_fault() {
     });
 }
 
+/// Of a receiver that it cannot read, gpsd may still send other reports.
+#[test]
+fn satellites_without_a_position_are_said_within_15_s() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let of = settings(listener.local_addr().unwrap().port());
+    let mut gpsd = Gpsd::open(&of, monotonic).unwrap();
+    let (mut stream, _) = listener.accept().unwrap();
+    let begun = Instant::now();
+    while begun.elapsed() < Duration::from_secs(15) {
+        stream.write_all(b"{\"class\":\"SKY\"}\n").unwrap();
+        std::thread::sleep(Duration::from_millis(100));
+        match gpsd.read() {
+            Ok(fix) => assert!(fix.is_none()),
+            Err(error) => {
+                assert!(error.to_string().contains("no position (`TPV`)"), "{error}");
+                return;
+            }
+        }
+    }
+    panic!("no error");
+}
+
 #[test]
 fn of_two_receivers_the_chosen_one_is_used() {
     let line = format!("{TPV}\n");
