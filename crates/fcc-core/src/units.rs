@@ -8,6 +8,9 @@
 /// ```
 pub const FOOT_M: f64 = 0.304_8;
 
+/// One foot per minute in m/s.
+pub const FOOT_PER_MINUTE_MPS: f64 = FOOT_M / 60.0;
+
 /// One international knot in m/s: 1852 m an hour (BIPM, The International
 /// System of Units, 8th ed. 2006, table 8), exact.
 ///

@@ -1,5 +1,7 @@
 //! Recordings, in pieces (MAVLink's `common.xml`: `LOG_REQUEST_LIST` to `LOG_REQUEST_END`).
 
+use core::mem::take;
+
 use mavlink::dialects::common::{LOG_ENTRY_DATA, MavMessage, MavSeverity};
 
 use crate::effects::{Effects, Peer};
@@ -43,6 +45,7 @@ pub enum LogWanted {
 pub(crate) struct Logs {
     /// None: they are being listed.
     all: Option<Vec<Log>>,
+    wants_list: bool,
     wanted: Option<LogWanted>,
     /// A list that waits for its content, or is being sent: to whom, the next one, the last.
     list: Option<(LinkId, u16, u16)>,
@@ -61,7 +64,10 @@ struct Reading {
 
 impl Logs {
     /// What is needed, once.
-    pub(crate) const fn wanted(&mut self) -> Option<LogWanted> {
+    pub(crate) fn wanted(&mut self) -> Option<LogWanted> {
+        if take(&mut self.wants_list) {
+            return Some(LogWanted::List);
+        }
         self.wanted.take()
     }
 
@@ -86,7 +92,7 @@ impl Logs {
             117 => {
                 self.list = Some((peer.link, fields.u16(0).max(1), fields.u16(2)));
                 self.all = None;
-                self.wanted = Some(LogWanted::List);
+                self.wants_list = true;
             }
             119 => {
                 let log = fields.u16(8);

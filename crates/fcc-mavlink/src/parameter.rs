@@ -32,6 +32,8 @@ pub struct Parameter {
     pub name: &'static str,
     /// Its value.
     pub value: f64,
+    /// Where it is from and which values it may have: for who may not change it.
+    pub origin: String,
     /// What changes it in flight, if that is possible: a set point, by its name, and how much
     /// of it one unit of the parameter is.
     pub setpoint: Option<(&'static str, f64)>,
@@ -135,7 +137,7 @@ impl Parameters {
         let value = f64::from(fields.f32(0));
         let refusal = match parameter.setpoint {
             _ if !may => "another station is in control",
-            None => "it is read from fccd's configuration when that starts",
+            None => &parameter.origin,
             Some(_) if self.setting.is_some() => "another one is being set: try again",
             Some((name, unit)) => {
                 let command = Command::set([(name, value * unit)]);

@@ -133,7 +133,7 @@ impl Protocol {
     }
 
     /// What stations need of the recordings, once.
-    pub const fn wanted_log(&mut self) -> Option<LogWanted> {
+    pub fn wanted_log(&mut self) -> Option<LogWanted> {
         self.logs.wanted()
     }
 

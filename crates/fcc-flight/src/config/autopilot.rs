@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use fcc_core::units::{FOOT_M, GRAVITY_MPS2, KNOT_MPS};
+use fcc_core::units::{FOOT_M, FOOT_PER_MINUTE_MPS, GRAVITY_MPS2, KNOT_MPS};
 use fcc_fixed_wing::control::{AirspeedConfig, AltitudeConfig, Envelope, HeadingConfig};
 use fcc_fixed_wing::{AutopilotConfig, Scale};
 use fcc_guidance::GuidanceConfig;
@@ -161,8 +161,6 @@ macro_rules! section {
 
 /// One degree in rad.
 const DEGREE_RAD: f64 = std::f64::consts::PI / 180.0;
-/// One foot a minute in m/s.
-const FOOT_PER_MINUTE_MPS: f64 = FOOT_M / 60.0;
 /// The core's unit.
 const SI: f64 = 1.0;
 

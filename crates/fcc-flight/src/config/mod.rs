@@ -83,6 +83,7 @@ pub use lines::{GnssSerialSection, RcReceiverSection};
 pub use navigation::{NavigationMethod, NavigationSection};
 pub use phone::PhoneSection;
 pub use plan::PlanSection;
+pub use ranges::range_of;
 pub use recording::RecordingSection;
 pub(crate) use remarks::NO_ACTUATOR;
 pub use replacement::PreparedPlan;

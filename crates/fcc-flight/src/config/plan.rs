@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use fcc_core::units::{FOOT_M, KNOT_MPS};
+use fcc_core::units::{FOOT_M, FOOT_PER_MINUTE_MPS, KNOT_MPS};
 use fcc_guidance::path::NpfgConfig;
 use fcc_guidance::route::{Route, RouteConfig};
 use fcc_plan::{Conditions, FileError, Format, Identity, Item, Place, Problem, Steps};
@@ -11,9 +11,6 @@ use serde::{Deserialize, Serialize};
 
 use super::autopilot::RunwaySection;
 use super::{AutopilotSection, BuiltInSection, Config, ConfigError, GuidanceSection};
-
-/// A foot per minute in m/s.
-const FOOT_PER_MINUTE_MPS: f64 = FOOT_M / 60.0;
 
 /// The built-in aircraft begins at least so high over the runway of its plan.
 const LEAST_ABOVE_GROUND_FT: f64 = 1_000.0;

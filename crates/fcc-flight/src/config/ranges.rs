@@ -122,8 +122,8 @@ fn ranges() -> impl Iterator<Item = &'static (&'static str, f64, f64)> {
         .chain(servo_board::RANGES)
 }
 
-/// Smallest and largest value of a numeric key.
-pub(super) fn range_of(key: &str) -> Option<(f64, f64)> {
+/// Smallest and largest value of a numeric key, such as `plan.wind_kt`.
+pub fn range_of(key: &str) -> Option<(f64, f64)> {
     ranges()
         .find(|(name, ..)| *name == key)
         .map(|(_, least, most)| (*least, *most))

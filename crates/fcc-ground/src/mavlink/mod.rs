@@ -88,7 +88,9 @@ pub(crate) fn start(station: &Arc<Station>, options: &Options) -> Result<(), Str
         newest_time_stamp: newest,
     };
     let mut protocol = Protocol::new(settings, clock.now());
-    protocol.set_parameters(vehicle::parameters(station, &options.instance));
+    protocol.set_parameters(vehicle::parameters(
+        station.configs.of(Some(&options.instance)),
+    ));
     let opened = Wires::open(&options.links, &options.allowed);
     let (wires, heard) = opened.map_err(|error| format!("--mavlink: {error}"))?;
     let (jobs, to_do) = channel();

@@ -2,15 +2,19 @@
 //!
 //! It runs in a thread of its own, for a command may take seconds.
 
+use std::iter::once;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender};
 use std::sync::{PoisonError, Weak};
 use std::time::{Instant, UNIX_EPOCH};
 
+use fcc_core::units::{FOOT_M, FOOT_PER_MINUTE_MPS, KNOT_MPS};
+use fcc_flight::config::{Config, range_of};
 use fcc_live::Commander;
 use fcc_mavlink::{Action, Log, LogWanted, Outcome, Parameter};
 use fcc_plan::Plan;
 use fcc_telemetry::Instance;
+use fcc_telemetry::units::number;
 
 use crate::commands::{Order, utc_ms};
 use crate::failure::Failure;
@@ -184,37 +188,99 @@ fn log(path: &Path) -> Log {
     }
 }
 
-/// The parameters of a daemon: of its configuration. Names have 16 characters.
-pub(super) fn parameters(station: &Station, instance: &Instance) -> Vec<Parameter> {
-    let config = station.configs.of(Some(instance));
-    let autopilot = config.autopilot_config();
-    let (envelope, conditions) = (&autopilot.envelope, config.plan_conditions());
-    let fixed = [
-        ("SPD_STALL_MPS", envelope.stall_airspeed_mps),
-        ("SPD_MIN_MPS", envelope.min_airspeed_mps),
-        ("SPD_MAX_MPS", envelope.max_airspeed_mps),
-        ("SPD_NE_MPS", envelope.never_exceed_airspeed_mps),
-        ("SPD_GLIDE_MPS", envelope.best_glide_airspeed_mps),
-        ("SPD_CRUISE_MPS", conditions.airspeed_mps),
-        ("BANK_MAX_DEG", envelope.max_bank_rad.to_degrees()),
-        ("PITCH_MAX_DEG", envelope.max_pitch_rad.to_degrees()),
-        ("PITCH_MIN_DEG", envelope.min_pitch_rad.to_degrees()),
-        ("CLIMB_MAX_MPS", conditions.climb_mps),
-        ("SINK_MAX_MPS", conditions.descent_mps),
-        ("FLOOR_M", envelope.floor_m),
-        ("WIND_MAX_MPS", conditions.wind_mps),
-        ("LOITER_RAD_M", conditions.loiter_radius_m),
-        ("RATE_HZ", config.tick.rate_hz),
-    ];
+/// Parameters, by names of at most 16 characters: the key of the configuration, and how much
+/// of the parameter's unit one of the key's is.
+const PARAMETERS: [(&str, &str, f64); 15] = [
+    (
+        "SPD_STALL_MPS",
+        "autopilot.envelope.stall_airspeed_kt",
+        KNOT_MPS,
+    ),
+    (
+        "SPD_MIN_MPS",
+        "autopilot.envelope.min_airspeed_kt",
+        KNOT_MPS,
+    ),
+    (
+        "SPD_MAX_MPS",
+        "autopilot.envelope.max_airspeed_kt",
+        KNOT_MPS,
+    ),
+    (
+        "SPD_NE_MPS",
+        "autopilot.envelope.never_exceed_airspeed_kt",
+        KNOT_MPS,
+    ),
+    (
+        "SPD_GLIDE_MPS",
+        "autopilot.envelope.best_glide_airspeed_kt",
+        KNOT_MPS,
+    ),
+    (
+        "SPD_CRUISE_MPS",
+        "autopilot.reference_airspeed_kt",
+        KNOT_MPS,
+    ),
+    ("BANK_MAX_DEG", "autopilot.envelope.max_bank_deg", 1.0),
+    ("PITCH_MAX_DEG", "autopilot.envelope.max_pitch_deg", 1.0),
+    ("PITCH_MIN_DEG", "autopilot.envelope.min_pitch_deg", 1.0),
+    (
+        "CLIMB_MAX_MPS",
+        "autopilot.envelope.max_climb_fpm",
+        FOOT_PER_MINUTE_MPS,
+    ),
+    (
+        "SINK_MAX_MPS",
+        "autopilot.envelope.max_sink_fpm",
+        FOOT_PER_MINUTE_MPS,
+    ),
+    ("FLOOR_M", "autopilot.envelope.floor_ft", FOOT_M),
+    ("WIND_MAX_MPS", "plan.wind_kt", KNOT_MPS),
+    ("LOITER_RAD_M", "plan.loiter_radius_m", 1.0),
+    ("RATE_HZ", "loop.rate_hz", 1.0),
+];
+
+/// The parameters of a daemon: of its configuration.
+pub(super) fn parameters(config: &Config) -> Vec<Parameter> {
+    let keys = serde_json::to_value(config).unwrap_or_default();
+    let fixed = PARAMETERS.into_iter().filter_map(|(name, key, unit)| {
+        let value = keys.pointer(&format!("/{}", key.replace('.', "/")))?;
+        let (least, most) = range_of(key)?;
+        let range = format!("{} to {}", number(least), number(most));
+        Some(Parameter {
+            name,
+            value: value.as_f64()? * unit,
+            origin: format!("fccd reads it when it starts, from {key}, {range}"),
+            setpoint: None,
+        })
+    });
     let altimeter = Parameter {
         name: "QNH_HPA",
-        value: autopilot.altimeter.setting_pa / 100.0,
+        value: config.autopilot_config().altimeter.setting_pa / 100.0,
+        origin: String::new(),
         setpoint: Some(("altimeter_setting_pa", 100.0)),
     };
-    let fixed = fixed.map(|(name, value)| Parameter {
-        name,
-        value,
-        setpoint: None,
-    });
-    [altimeter].into_iter().chain(fixed).collect()
+    once(altimeter).chain(fixed).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 53 kt are 27.27 m/s, 965 ft/min 4.902 m/s.
+    #[test]
+    fn each_parameter_has_its_value_in_si_units_and_its_range() {
+        let all = parameters(&Config::default());
+        assert_eq!(all.len(), 1 + PARAMETERS.len());
+        let found = |name| all.iter().find(|one| one.name == name).unwrap();
+        assert!((found("SPD_STALL_MPS").value - 27.27).abs() < 0.005);
+        assert!((found("CLIMB_MAX_MPS").value - 4.902).abs() < 0.000_5);
+        assert_eq!(found("RATE_HZ").value, 40.0);
+        assert!(
+            found("SPD_STALL_MPS")
+                .origin
+                .ends_with("stall_airspeed_kt, 5 to 300")
+        );
+        assert!(all.iter().all(|one| one.name.len() <= 16));
+    }
 }

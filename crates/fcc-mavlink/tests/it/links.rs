@@ -72,6 +72,7 @@ fn parameters() -> Vec<Parameter> {
     let parameter = |(n, name)| Parameter {
         name,
         value: n as f64,
+        origin: "a.b_kt, 1 to 2".to_owned(),
         setpoint: (name == "QNH_HPA").then_some(("altimeter_setting_pa", 100.0)),
     };
     names.into_iter().enumerate().map(parameter).collect()
@@ -122,13 +123,24 @@ fn a_parameter_that_cannot_change_in_flight_is_answered_with_its_old_value() {
             MavMessage::PARAM_ERROR(error) => Some(error.error),
             _ => None,
         });
-        (value, error)
+        let says = |message: &MavMessage| match message {
+            MavMessage::STATUSTEXT(text) => text.text.to_str().ok().map(str::to_owned),
+            _ => None,
+        };
+        (value, error, all.iter().find_map(says))
     };
     let read_only = MavParamError::MAV_PARAM_ERROR_READ_ONLY;
-    assert_eq!(set("B_MPS", 50.0), (Some(1.0), Some(read_only)));
-    assert_eq!(set("QNH_HPA", 1_020.0), (Some(1_020.0), None));
+    assert_eq!(
+        set("B_MPS", 50.0),
+        (
+            Some(1.0),
+            Some(read_only),
+            Some("B_MPS is not changed: a.b_kt, 1 to 2".to_owned())
+        )
+    );
+    assert_eq!(set("QNH_HPA", 1_020.0), (Some(1_020.0), None, None));
     let unknown = MavParamError::MAV_PARAM_ERROR_DOES_NOT_EXIST;
-    assert_eq!(set("NO_SUCH", 1.0), (None, Some(unknown)));
+    assert_eq!(set("NO_SUCH", 1.0), (None, Some(unknown), None));
     let asked = format!("{:?}", world.asked);
     assert!(
         asked.contains("(\"altimeter_setting_pa\", 102000.0)"),

@@ -63,6 +63,7 @@ fn everything_that_is_asked_is_answered_also_the_second_time() {
         world.protocol.set_parameters(vec![Parameter {
             name: "A_M",
             value: 1.0,
+            origin: String::new(),
             setpoint: None,
         }]);
         let mut check =
