@@ -58,7 +58,8 @@ use fcc_core::framework::Time;
 use fcc_core::units::{GRAVITY_MPS2, KNOT_MPS};
 use motion_monitor::MotionMonitor;
 use path::{Density, Path};
-use sample_tracker::{SampleTracker, is_current};
+use sample_tracker::SampleTracker;
+pub use sample_tracker::is_current;
 
 pub use agreement::Contradictions;
 pub use air_data::AirspeedChannel;
@@ -79,7 +80,7 @@ pub use plausibility::{
 pub use quantity::{Quantities, Quantity};
 pub use replacement::{DERIVED_RATES_LATE_S, Replacement};
 pub use resolution::Resolutions;
-pub use returning_altitude::{Receiver, ReturningAltitude};
+pub use returning_altitude::ReturningAltitude;
 use upward::Upward;
 pub use vertical::VerticalChannel;
 

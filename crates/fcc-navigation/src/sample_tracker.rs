@@ -8,7 +8,8 @@ use fcc_core::framework::{Reading, Time};
 /// when it returns, its value is adopted at once.
 const CURRENT: Duration = Duration::from_millis(500);
 
-pub(super) fn is_current<T>(reading: &Reading<T>, now: Time) -> bool {
+/// Whether a reading was taken within the last half second.
+pub fn is_current<T>(reading: &Reading<T>, now: Time) -> bool {
     reading.is_fresh(now, CURRENT)
 }
 

@@ -10,7 +10,7 @@ use fcc_core::blocks::{limit_abs, wrap_two_pi};
 use fcc_core::flight::atmosphere::true_airspeed_mps;
 use fcc_core::flight::{Attitude, BodyRates, Measurements, Surfaces};
 use fcc_core::framework::Time;
-use fcc_navigation::{Estimate, Quantities, Quantity, Receiver, ReturningAltitude};
+use fcc_navigation::{Estimate, Quantities, Quantity, ReturningAltitude, is_current};
 
 /// What ends a failsafe in which nothing sound can be held.
 ///
@@ -313,8 +313,9 @@ impl Autopilot {
             last.body_rates.value = estimate.body_rates;
         }
         if rejected_by_gate.contains(Quantity::Altitude) {
-            let (new, receiver) = (measured.altitude_m, Receiver::of(measured, now));
-            if self.intake.returning_altitude.step(&new, receiver) {
+            let (new, position) = (measured.altitude_m, &measured.position);
+            let receiver_m = is_current(position, now).then_some(position.value.altitude_m);
+            if self.intake.returning_altitude.step(&new, receiver_m) {
                 last.altitude_m = new;
                 self.intake.rejected_by_gate = rejected_by_gate.keeping(Quantity::Altitude, false);
             } else {
