@@ -25,6 +25,16 @@ use crate::values::{
 ///
 /// `config` is a `Config`, or the text of a configuration file as `fccd` reads
 /// it; only `[guidance]`, `[autopilot]` and `[failsafe]` are used.
+///
+/// >>> aircraft, autopilot = fcc.BuiltInAircraft(), fcc.Autopilot()
+/// >>> for _ in range(100):
+/// ...     measured = aircraft.step(None)
+/// ...     autopilot.observe(measured)
+/// >>> autopilot.engage(measured, throttle=aircraft.controls.throttle)
+/// >>> for _ in range(400):
+/// ...     measured = aircraft.step(autopilot.step(measured))
+/// >>> abs(aircraft.truth.altitude_m - autopilot.setpoints.altitude_m) < 10.0
+/// True
 #[pyclass(name = "Autopilot", module = "fcc", frozen)]
 pub(crate) struct PyAutopilot {
     stepped: Mutex<Stepped>,
@@ -112,9 +122,9 @@ impl PyAutopilot {
         Ok(stepped.step(measurements, step_s(dt)?).into())
     }
 
-    /// One tick for each row of a series, as by `step`. `measurements` is an array of shape (n, m), the columns
-    /// being `fcc.MEASUREMENTS`, the rows `dt` s apart; the result is of shape
-    /// (n, 5), the columns being `fcc.SURFACES`.
+    /// One tick for each row of a series, as by `step`. `measurements` is an array of
+    /// shape (n, m), the columns being `fcc.MEASUREMENTS`, the rows `dt` s apart; the
+    /// result is of shape (n, s), the columns being `fcc.SURFACES`.
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn fly<'py>(
         &self,

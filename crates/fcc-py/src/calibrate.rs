@@ -22,6 +22,14 @@ use crate::navigate::inertial_samples;
 /// is given less the bias), `residual` (RMS of what is left), `bias_sigma`,
 /// and `spread` (the least share of the directions along any axis: a third is the
 /// best). Raises `ValueError` with the reason if there is no calibration.
+///
+/// >>> rng = np.random.default_rng(1)
+/// >>> directions = rng.normal(size=(500, 3))
+/// >>> directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+/// >>> noise = rng.normal(0.0, 0.01, size=(500, 3))
+/// >>> found = fcc.calibrate(9.81 * directions + [0.1, 0.0, -0.2] + noise, 9.81)
+/// >>> [round(float(one), 1) + 0.0 for one in found["bias"]]
+/// [0.1, 0.0, -0.2]
 #[pyfunction]
 pub(crate) fn calibrate<'py>(
     py: Python<'py>,
@@ -57,6 +65,13 @@ pub(crate) fn calibrate<'py>(
 /// is given less the bias), `residual_rad` (RMS of the angles by which gravity's
 /// directions still differ), `sigma` (of the worst of scale and misalignment) and
 /// `bias_sigma`. Raises `ValueError` with the reason if there is no calibration.
+///
+/// >>> t = np.arange(0.0, 12.0, 0.01)
+/// >>> still, up = np.zeros((t.size, 3)), np.tile([0.0, 0.0, -9.81], (t.size, 1))
+/// >>> fcc.calibrate_gyroscope(gyroscope=(t, still), accelerometer=(t, up))
+/// Traceback (most recent call last):
+///     ...
+/// ValueError: it was ended too early: 0 of 3 are there
 #[pyfunction]
 #[pyo3(signature = (*, gyroscope, accelerometer))]
 pub(crate) fn calibrate_gyroscope<'py>(
@@ -126,6 +141,9 @@ fn of_axes<'py>(py: Python<'py>, axes: &Axes) -> PyResult<Bound<'py, PyDict>> {
 /// The smallest rotation, as a matrix of three rows, after which the specific
 /// force of a level aircraft at rest points up. Raises `ValueError` if it points
 /// down.
+///
+/// >>> np.round(fcc.levelled([0.0, 0.0, -9.81]), 3).tolist()
+/// [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 #[pyfunction]
 pub(crate) fn levelled(force_mps2: &Bound<'_, PyAny>) -> PyResult<[[f64; 3]; 3]> {
     let force = vector("force_mps2", force_mps2)?;
@@ -140,6 +158,10 @@ pub(crate) fn levelled(force_mps2: &Bound<'_, PyAny>) -> PyResult<[[f64; 3]; 3]>
 /// The rotation of sensors in the aircraft, as a matrix of three rows from their
 /// axes to the body's, by the specific force of the aircraft at rest: level, and
 /// with its nose raised. Raises `ValueError` if both are parallel.
+///
+/// >>> level, nose_up = [0.0, 0.0, -9.81], [1.7, 0.0, -9.66]
+/// >>> (np.round(fcc.level_and_nose_up(level, nose_up), 3) + 0.0).tolist()
+/// [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 #[pyfunction]
 pub(crate) fn level_and_nose_up(
     level_mps2: &Bound<'_, PyAny>,
@@ -158,6 +180,12 @@ pub(crate) fn level_and_nose_up(
 /// The rotation of a magnetometer, as a matrix of three rows, after which the
 /// field has the same dip in all attitudes: `down` and `field` are (n, 3), of the
 /// same instants. Raises `ValueError` if they do not determine it.
+///
+/// >>> rng = np.random.default_rng(1)
+/// >>> down, across = np.linalg.qr(rng.normal(size=(20, 3, 2)))[0].transpose(2, 0, 1)
+/// >>> found = np.array(fcc.constant_dip(down, 43.0 * down + 21.0 * across))
+/// >>> (found.round(3) + 0.0).tolist()
+/// [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 #[pyfunction]
 pub(crate) fn constant_dip(
     down: &Bound<'_, PyAny>,

@@ -21,6 +21,10 @@ const NAME: &str = "config";
 /// `Config()` is the default, `Config(text)` reads TOML; where a text has
 /// neither `[x-plane]` nor `[built-in]`, the aircraft is the built-in one.
 /// Raises `ConfigError` with every problem, its line and its key.
+///
+/// >>> config = fcc.Config("[loop]\nrate_hz = 50.0")
+/// >>> config.replace({"loop.rate_hz": 100.0})["loop.rate_hz"]
+/// 100.0
 #[pyclass(name = "Config", module = "fcc", frozen)]
 #[derive(Clone)]
 pub(crate) struct PyConfig {

@@ -11,6 +11,9 @@ use crate::values::code;
 /// An event: the number of its tick, the time of that tick in s and in ns on
 /// the loop's clock (0 and None before the first tick), its kind, and a
 /// description.
+///
+/// >>> fcc.fly(seconds=1.0).events[0].text
+/// 'standby -> engaged'
 #[pyclass(name = "Event", module = "fcc", frozen, get_all)]
 #[derive(Clone)]
 pub struct PyEvent {

@@ -16,6 +16,15 @@ use crate::values::{PySetpoints, PySurfaces, Values as _, as_row, checked, from_
 /// of an array belongs to autopilot i.
 ///
 /// `configs` is a sequence of `Config` or of texts as for `Autopilot`.
+///
+/// >>> fleet = fcc.Fleet(["", "[autopilot.heading]\nroll_gain_per_s = 2.0"])
+/// >>> aircraft = fcc.BuiltInAircraft()
+/// >>> for _ in range(100):
+/// ...     measured = [aircraft.step(None).to_array()] * 2
+/// ...     fleet.observe(measured)
+/// >>> fleet.engage(measured, [aircraft.controls.to_array()] * 2)
+/// >>> fleet.step(measured).shape == (2, len(fcc.SURFACES))
+/// True
 #[pyclass(name = "Fleet", module = "fcc")]
 pub(crate) struct PyFleet {
     autopilots: Vec<Stepped>,
@@ -59,7 +68,7 @@ impl PyFleet {
         Ok(())
     }
 
-    /// Engages all, or none. `surfaces`, of shape (n, 4) with the columns
+    /// Engages all, or none. `surfaces`, of shape (n, s) with the columns
     /// `fcc.SURFACES`, contains the present positions of the controls.
     ///
     /// Raises `EngageError` with the engage inhibits of the first that has any.
@@ -86,7 +95,7 @@ impl PyFleet {
     }
 
     /// One tick of all, `dt` s after the previous one: measurements of shape
-    /// (n, m); returns surfaces of shape (n, 4).
+    /// (n, m); returns surfaces of shape (n, s).
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn step<'py>(
         &mut self,

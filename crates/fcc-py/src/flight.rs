@@ -44,6 +44,10 @@ const NOT_REAL_TIME: &CStr =
 /// (dtypes `fcc.RECORD` and `fcc.TRUTH_RECORD`), empty if they were not to be kept;
 /// `events` are its events; `score` the flight's score by the truth, None
 /// without a whole leg of a pattern; `timing` the loop's timing statistics.
+///
+/// >>> flight = fcc.fly(seconds=10.0)
+/// >>> flight.state, flight.ending, len(flight.truth) == len(flight.records)
+/// ('engaged', 'finished', True)
 #[pyclass(name = "Flight", module = "fcc", frozen)]
 pub(crate) struct PyFlight {
     #[pyo3(get)]
@@ -145,6 +149,10 @@ impl PyFlight {
 /// engaged with what the autopilot would do, and gives `Surfaces`. With one of
 /// them the loop is not real time, which a `RuntimeWarning` reports. An exception
 /// of theirs ends the flight and is raised here.
+///
+/// >>> slow = '[autopilot]\nreference_airspeed_kt = 90.0'
+/// >>> fcc.fly(slow, seconds=5.0).state
+/// 'engaged'
 #[pyfunction]
 #[pyo3(signature = (config = None, *, seconds = None, sensor = None, controller = None,
                     real_time = false, keep = true))]

@@ -46,12 +46,18 @@ fn altitude(name: &str, altitude_m: f64) -> PyResult<f64> {
 
 /// Static pressure in Pa at a pressure altitude in m, -500 to 20,000 (ISO
 /// 2533:1975; above 11,000 m that of 11,000 m).
+///
+/// >>> round(fcc.pressure_pa(1_000.0))
+/// 89875
 #[pyfunction]
 pub(crate) fn pressure_pa<'py>(altitude_m: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     each("altitude_m", altitude_m, altitude, atmosphere::pressure_pa)
 }
 
 /// Pressure altitude in m from static pressure in Pa, 1,000 to 120,000.
+///
+/// >>> round(fcc.pressure_altitude_m(89_875.0))
+/// 1000
 #[pyfunction]
 pub(crate) fn pressure_altitude_m<'py>(
     pressure_pa: &Bound<'py, PyAny>,
@@ -67,6 +73,9 @@ pub(crate) fn pressure_altitude_m<'py>(
 
 /// Air density over its sea-level value (1.225 kg/m³) at a pressure altitude
 /// in m, -500 to 20,000.
+///
+/// >>> fcc.density_ratio([0.0, 5_000.0]).round(3)
+/// array([1.   , 0.601])
 #[pyfunction]
 pub(crate) fn density_ratio<'py>(altitude_m: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     each(
@@ -79,6 +88,9 @@ pub(crate) fn density_ratio<'py>(altitude_m: &Bound<'py, PyAny>) -> PyResult<Bou
 
 /// True airspeed in m/s from equivalent airspeed in m/s at a pressure altitude
 /// in m.
+///
+/// >>> round(fcc.true_airspeed_mps(50.0, 3_000.0), 1)
+/// 58.0
 #[pyfunction]
 pub(crate) fn true_airspeed_mps<'py>(
     equivalent_mps: &Bound<'py, PyAny>,
@@ -91,12 +103,18 @@ pub(crate) fn true_airspeed_mps<'py>(
 }
 
 /// The angle wrapped to -π..π, rad.
+///
+/// >>> round(fcc.wrap_pi(4.0), 4)
+/// -2.2832
 #[pyfunction]
 pub(crate) fn wrap_pi<'py>(angle_rad: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     each("angle_rad", angle_rad, finite, blocks::wrap_pi)
 }
 
 /// The angle wrapped to 0..2π, rad.
+///
+/// >>> round(fcc.wrap_two_pi(-1.0), 4)
+/// 5.2832
 #[pyfunction]
 pub(crate) fn wrap_two_pi<'py>(angle_rad: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     each("angle_rad", angle_rad, finite, blocks::wrap_two_pi)
@@ -104,6 +122,9 @@ pub(crate) fn wrap_two_pi<'py>(angle_rad: &Bound<'py, PyAny>) -> PyResult<Bound<
 
 /// The quaternion [w, x, y, z] from body axes (forward, right, down) to earth
 /// axes (north, east, down), for roll, pitch and heading in rad.
+///
+/// >>> fcc.quaternion_from_euler(0.0, 0.0, np.pi).round(6)
+/// array([0., 0., 0., 1.])
 #[pyfunction]
 pub(crate) fn quaternion_from_euler(
     py: Python<'_>,
@@ -120,6 +141,9 @@ pub(crate) fn quaternion_from_euler(
 }
 
 /// Roll, pitch and heading in rad of a quaternion [w, x, y, z] of any length.
+///
+/// >>> fcc.euler_from_quaternion([1.0, 0.0, 0.0, 0.0])
+/// (0.0, 0.0, 0.0)
 #[pyfunction]
 pub(crate) fn euler_from_quaternion(quaternion: &Bound<'_, PyAny>) -> PyResult<(f64, f64, f64)> {
     let angles = orientation::euler_from_quaternion(self::quaternion(quaternion)?);
@@ -128,6 +152,10 @@ pub(crate) fn euler_from_quaternion(quaternion: &Bound<'_, PyAny>) -> PyResult<(
 
 /// A vector in body axes (forward, right, down), in earth axes (north, east,
 /// down). `vector` is of shape (3,) or (n, 3).
+///
+/// >>> east = fcc.quaternion_from_euler(0.0, 0.0, np.pi / 2)
+/// >>> fcc.body_to_earth(east, [1.0, 0.0, 0.0]).round(6)
+/// array([0., 1., 0.])
 #[pyfunction]
 pub(crate) fn body_to_earth<'py>(
     quaternion: &Bound<'py, PyAny>,
@@ -139,6 +167,10 @@ pub(crate) fn body_to_earth<'py>(
 
 /// A vector in earth axes (north, east, down), in body axes (forward, right,
 /// down). `vector` is of shape (3,) or (n, 3).
+///
+/// >>> east = fcc.quaternion_from_euler(0.0, 0.0, np.pi / 2)
+/// >>> fcc.earth_to_body(east, [0.0, 1.0, 0.0]).round(6)
+/// array([1., 0., 0.])
 #[pyfunction]
 pub(crate) fn earth_to_body<'py>(
     quaternion: &Bound<'py, PyAny>,

@@ -14,6 +14,12 @@ use crate::json::to_python;
 ///
 /// `Plan(text)` reads a text of either format, `Plan.read(path)` a file. Raises
 /// `PlanError` with every problem and its item.
+///
+/// >>> plan = fcc.Plan("""QGC WPL 110
+/// ... 0 1 0 16 0 0 0 0 45.00 8.0 120 1
+/// ... 1 0 3 16 0 0 0 0 45.05 8.0 700 1""")
+/// >>> plan.items[0]["place"], plan.check()
+/// ({'latitude_deg': 45.05, 'longitude_deg': 8.0}, [])
 #[pyclass(name = "Plan", module = "fcc", frozen)]
 pub(crate) struct PyPlan {
     plan: Plan,

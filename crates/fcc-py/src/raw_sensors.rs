@@ -50,6 +50,13 @@ const POSSIBLE: [(&str, f64, f64); 14] = [
 /// without it (21.1, 0, 45.3). `seed` is a whole number, 0 to 2⁶⁴ - 1.
 ///
 /// Raises `ValueError` for what is out of its range, with the range.
+///
+/// >>> at_rest = {"specific_force_z_mps2": -9.81, "static_pressure_pa": 101_325.0}
+/// >>> sensors = fcc.RawSensors("board", fcc.RawTruth(**at_rest), seed=1)
+/// >>> sensors.step(fcc.RawTruth(time_s=0.1, **at_rest))
+/// >>> read = fcc.Measurements()
+/// >>> sorted(sensors.read(read))[:2], round(read.raw_specific_force_z_mps2)
+/// (['differential_pressure', 'magnetic_field'], -10)
 #[pyclass(name = "RawSensors", module = "fcc")]
 pub(crate) struct PyRawSensors {
     inner: Mutex<Inner>,

@@ -13,6 +13,9 @@ use crate::errors;
 
 /// One deadline: its number (from 1), when it was due and when the thread woke,
 /// in ns on `CLOCK_MONOTONIC`, and how many deadlines were missed before it.
+///
+/// >>> next(iter(fcc.Timer(0.01))).number
+/// 1
 #[pyclass(name = "Expiry", module = "fcc", frozen, get_all)]
 pub(crate) struct PyExpiry {
     number: u64,
@@ -53,6 +56,9 @@ impl From<Expiry> for PyExpiry {
 /// Timing statistics: periods in ms, lateness in µs, the share (0..1) of periods
 /// within 2 % of the nominal one. The values of periods are NaN before the
 /// second tick, those of lateness before the first.
+///
+/// >>> fcc.Timer(0.02).summary().rate_hz
+/// 50.0
 #[pyclass(name = "TimingSummary", module = "fcc", frozen)]
 pub(crate) struct PyTimingSummary(TimingSummary);
 
@@ -98,6 +104,13 @@ attributes! {
 ///
 /// Iterating starts the timer if it was not started, and gives an `Expiry` for
 /// each deadline, without an end.
+///
+/// >>> timer = fcc.Timer(0.01)
+/// >>> for expiry in timer:
+/// ...     if expiry.number == 3:
+/// ...         break
+/// >>> timer.summary().ticks
+/// 3
 #[pyclass(name = "Timer", module = "fcc")]
 pub(crate) struct PyTimer {
     timer: Mutex<Started>,

@@ -73,6 +73,11 @@ macro_rules! filter_class {
 filter_class! {
     /// First-order low pass with a time constant in s (0 for none); its initial
     /// output is its first input.
+    ///
+    /// >>> low_pass = fcc.LowPass(1.0)
+    /// >>> low_pass.reset(0.0)
+    /// >>> round(low_pass.step(1.0, 1.0), 4)  # 1 - 1/e
+    /// 0.6321
     #[pyclass(name = "LowPass", module = "fcc")]
     struct PyLowPass(LowPass), new(tau_s: not_negative), reset(output);
 
@@ -86,6 +91,9 @@ filter_class! {
 filter_class! {
     /// First-order high pass with a time constant in s: the input minus its low
     /// pass.
+    ///
+    /// >>> fcc.HighPass(1.0).run(np.ones(3), 0.1)
+    /// array([0., 0., 0.])
     #[pyclass(name = "HighPass", module = "fcc")]
     struct PyHighPass(HighPass), new(tau_s: not_negative), reset(constant);
 }
@@ -93,12 +101,21 @@ filter_class! {
 filter_class! {
     /// Limits the rate of change of a signal, in units per second; its initial
     /// output is its first input.
+    ///
+    /// >>> fcc.RateLimit(2.0).run([0.0, 10.0, 10.0], 0.5)
+    /// array([0., 1., 2.])
     #[pyclass(name = "RateLimit", module = "fcc")]
     struct PyRateLimit(RateLimit), new(rate_per_s: positive), reset(output);
 }
 
 /// First-order complementary filter: integrates a rate, and is corrected by a
 /// measurement with a time constant in s.
+///
+/// >>> angle = fcc.Complementary(1.0)
+/// >>> angle.reset(0.0)
+/// >>> angle.predict(0.1, 1.0)
+/// >>> round(angle.value, 3)
+/// 0.1
 #[pyclass(name = "Complementary", module = "fcc")]
 pub(crate) struct PyComplementary(Complementary);
 
@@ -138,6 +155,9 @@ impl PyComplementary {
 /// The closing speed for an error from which a constant deceleration reaches
 /// the target: proportional to the error near the target (`gain_per_s`, 1/s),
 /// to its square root further away (`deceleration`, units/s²).
+///
+/// >>> fcc.SquareRootProfile(1.0, 2.0).speed(0.5)
+/// 0.5
 #[pyclass(name = "SquareRootProfile", module = "fcc", frozen)]
 pub(crate) struct PySquareRootProfile(SquareRootProfile);
 

@@ -15,6 +15,10 @@ use crate::arguments::finite;
 /// derivative's low pass. In a limit the integral is held, or, if
 /// `tracking_tau_s` is given, reduced with that time constant (Åström and
 /// Hägglund 1995, section 3.5).
+///
+/// >>> pid = fcc.Pid(2.0, output_max=1.0)
+/// >>> round(pid.step(1.0, 0.8, 0.1), 3), pid.step(5.0, 0.8, 0.1)
+/// (0.4, 1.0)
 #[pyclass(name = "Pid", module = "fcc")]
 pub(crate) struct PyPid(Pid);
 

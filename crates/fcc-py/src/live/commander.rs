@@ -19,6 +19,9 @@ use crate::errors;
 ///
 /// Raises `CommandError` with the daemon's reason if it refuses, and
 /// `TelemetryError` if it cannot be reached.
+///
+/// >>> fcc.Commander("lab").set(airspeed_mps=50.0) > 0
+/// True
 #[pyclass(name = "Commander", module = "fcc")]
 pub(crate) struct PyCommander {
     commander: Mutex<Commander>,

@@ -30,6 +30,9 @@ const SIGNALS_EVERY: Duration = Duration::from_millis(50);
 /// version, and when it has ended. Iterating gives each record as it comes, as
 /// a row (of a flight: of `fcc.RECORD`), and raises `TelemetryError` when the
 /// daemon ends.
+///
+/// >>> int(fcc.Watcher("lab").latest()["tick"]) > 0
+/// True
 #[pyclass(name = "Watcher", module = "fcc")]
 pub(crate) struct PyWatcher {
     watcher: Mutex<RowWatcher>,

@@ -33,6 +33,14 @@ machine_class! {
     ///
     /// `config` is a `Config`, or the text of a configuration file as `fccd` reads
     /// it. Its aircraft is not used: the plant is in Python.
+    ///
+    /// >>> machine, aircraft = fcc.Machine(), fcc.BuiltInAircraft()
+    /// >>> surfaces = None
+    /// >>> for _ in range(400):
+    /// ...     measured = aircraft.step(surfaces)
+    /// ...     surfaces = machine.step(measured, switch=machine.time_s > 5.0)
+    /// >>> machine.state, len(machine.records())
+    /// ('engaged', 400)
     #[pyclass(name = "Machine", module = "fcc")]
     struct PyMachine(Autopilot) {
         /// What is flown.

@@ -39,6 +39,12 @@ const LONGEST_WAIT_S: f64 = 0.05;
 /// second and more between its samples, are a `ValueError`; samples mostly at other times a
 /// `UserWarning`. Units, signs and axes are taken as they are: `normalised_innovations` shows
 /// by source how well they agree, by RMS of 1 or less if they do.
+///
+/// >>> t = np.arange(0.0, 10.0, 0.01)
+/// >>> still, up = np.zeros((t.size, 3)), np.tile([0.0, 0.0, -9.81], (t.size, 1))
+/// >>> found = fcc.navigate(gyroscope=(t, still), accelerometer=(t, up))
+/// >>> round(float(found["pitch_rad"][-1]), 3)
+/// 0.0
 #[pyfunction]
 #[pyo3(signature = (
     *,

@@ -12,6 +12,9 @@ use crate::json;
 
 /// The recordings in a folder, oldest first, each as a dict. A file that cannot
 /// be read has only the keys `path` and `error`.
+///
+/// >>> [one["path"] for one in fcc.list_recordings("recordings")]
+/// ['recordings/flight.mcap']
 #[pyfunction]
 pub(crate) fn list_recordings(py: Python<'_>, folder: PathBuf) -> PyResult<Bound<'_, PyAny>> {
     let listed = py.detach(|| -> Result<Vec<Listed>, String> {
@@ -29,6 +32,9 @@ pub(crate) fn list_recordings(py: Python<'_>, folder: PathBuf) -> PyResult<Bound
 
 /// Replaces a recording that was cut off or damaged by a whole one; a whole one
 /// is unchanged. Returns the result as a dict.
+///
+/// >>> fcc.recover("recordings/flight.mcap")["was_whole"]
+/// True
 #[pyfunction]
 pub(crate) fn recover(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyAny>> {
     let recovered = py

@@ -16,6 +16,9 @@ use crate::json;
 /// Reports on a recording as `fccd report` does: all statistics as a dict.
 /// `html` is a page to write with all plots, `svg` a folder for each of them
 /// as a file, `csv` a folder for every tick and event as tables.
+///
+/// >>> fcc.report("recordings/flight.mcap")["damages"]
+/// []
 #[pyfunction]
 #[pyo3(signature = (path, *, html = None, svg = None, csv = None))]
 pub(crate) fn report(
@@ -43,6 +46,9 @@ pub(crate) fn report(
 /// Replays a recording with the code that flew it, as `fccd replay` does;
 /// returns a dict with `identical`, and the differences. With another `config`
 /// the dict contains the deviation of its commands. `paths` is a file, or the parts of a recording, oldest first.
+///
+/// >>> fcc.replay("recordings/flight.mcap")["identical"]
+/// True
 #[pyfunction]
 #[pyo3(signature = (paths, config = None))]
 pub(crate) fn replay<'py>(

@@ -28,6 +28,10 @@ const ROOM: u64 = 144_000;
 /// Opening reads its two ends; the first use of `records`, `events` or `cut`
 /// reads all of it, with the GIL released. Raises `RecordingError` if a file
 /// cannot be read or is not a recording.
+///
+/// >>> recording = fcc.Recording("recordings/flight.mcap")
+/// >>> len(recording.records), recording.cut
+/// (400, None)
 #[pyclass(name = "Recording", module = "fcc", frozen)]
 pub(crate) struct PyRecording {
     recording: Recording,

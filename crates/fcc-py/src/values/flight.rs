@@ -20,6 +20,9 @@ values_class! {
     /// that no aircraft of this kind can reach is treated in the same way. The raw
     /// readings, from `raw_specific_force_x_mps2` on, are flown by if the
     /// configuration's `[navigation]` says so.
+    ///
+    /// >>> fcc.Measurements(airspeed_mps=50.0).altitude_m
+    /// nan
     #[pyclass(name = "Measurements", module = "fcc")]
     struct PyMeasurements(Measurements)
         without ["surfaces", "engage_switch", "plant", "other_control", "suspect"],
@@ -48,6 +51,9 @@ values_class! {
 values_class! {
     /// Throttle 0..1 and surfaces -1..1: +elevator raises the nose, +aileron
     /// rolls right, +rudder yaws right; 0 if not given.
+    ///
+    /// >>> fcc.Surfaces(throttle=0.5).to_array()[:4]
+    /// array([0.5, 0. , 0. , 0. ])
     #[pyclass(name = "Surfaces", module = "fcc", frozen)]
     struct PySurfaces(Surfaces),;
 
@@ -66,12 +72,24 @@ values_class! {
 
 values_class! {
     /// The set points of the autopilot, and the mode and progress of guidance.
+    ///
+    /// >>> aircraft, machine = fcc.BuiltInAircraft(), fcc.Machine()
+    /// >>> for _ in range(200):
+    /// ...     _ = machine.step(aircraft.step(None), switch=machine.time_s > 4.0)
+    /// >>> abs(machine.setpoints.altitude_m - aircraft.truth.altitude_m) < 10.0
+    /// True
     #[pyclass(name = "Setpoints", module = "fcc", frozen)]
     struct PySetpoints(Setpoints),;
 }
 
 values_class! {
     /// Navigation's estimate.
+    ///
+    /// >>> aircraft, autopilot = fcc.BuiltInAircraft(), fcc.Autopilot()
+    /// >>> for _ in range(200):
+    /// ...     autopilot.observe(aircraft.step(None))
+    /// >>> abs(autopilot.estimate.altitude_m - aircraft.truth.altitude_m) < 3.0
+    /// True
     #[pyclass(name = "Estimate", module = "fcc", frozen)]
     struct PyEstimate(Estimate),;
 }
@@ -79,12 +97,18 @@ values_class! {
 values_class! {
     /// The true state of the built-in aircraft, without sensor errors: for
     /// scoring, never for flying.
+    ///
+    /// >>> round(fcc.BuiltInAircraft().truth.altitude_m)  # 3,000 ft
+    /// 914
     #[pyclass(name = "Truth", module = "fcc", frozen)]
     struct PyTruth(Truth),;
 }
 
 values_class! {
     /// The truth that raw sensors measure, at one moment; 0 if not given.
+    ///
+    /// >>> fcc.RawTruth(specific_force_z_mps2=-9.81).time_s
+    /// 0.0
     #[pyclass(name = "RawTruth", module = "fcc", frozen)]
     struct PyRawTruth(RawTruth),;
 
