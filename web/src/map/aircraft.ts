@@ -11,6 +11,8 @@ import type { FlightState } from "../live/flight-state";
 const OUTLINE =
   "0,-17 2.6,-11 2.8,-5 17,1 17,4.2 2.8,2.6 1.9,11 6.5,14 6.5,16.5 0,15 -6.5,16.5 -6.5,14 -1.9,11 -2.8,2.6 -17,4.2 -17,1 -2.8,-5 -2.6,-11";
 const AHEAD_S = 60;
+/** The line's width in the style sheet. */
+const AHEAD_PX = 64;
 const MOVING_MPS = 3;
 const EQUATOR_M = 40_075_017;
 
@@ -67,8 +69,8 @@ export class AircraftLayer extends L.Layer {
     this.#ahead.classList.toggle("hidden", !shown);
     if (!shown) return;
     const px_per_m = (256 * 2 ** map.getZoom()) / EQUATOR_M / Math.max(0.05, Math.cos((pose.latitude_deg * Math.PI) / 180));
-    // In steps of its dots: another width is laid out anew.
-    this.#ahead.style.width = `${4 * Math.round((speed * AHEAD_S * px_per_m) / 4)}px`;
-    this.#ahead.style.transform = `rotate(${Math.atan2(-pose.north_mps, pose.east_mps).toFixed(2)}rad)`;
+    // Scaled: another width would be laid out anew.
+    const length = (speed * AHEAD_S * px_per_m) / AHEAD_PX;
+    this.#ahead.style.transform = `rotate(${Math.atan2(-pose.north_mps, pose.east_mps).toFixed(2)}rad) scaleX(${length.toFixed(2)})`;
   }
 }

@@ -23,7 +23,7 @@ import "../../design/fly.css";
 /** Values age also when nothing arrives. */
 const AGED_EVERY_MS = 250;
 /** Faster changes of a text are not readable, and each one is laid out anew. */
-const TEXTS_EVERY_MS = 100;
+const TEXTS_EVERY_MS = 200;
 const PLAN_EVERY_MS = 5000;
 const FIRST_ZOOM = 13;
 const STANDS_MPS = 1;
