@@ -11,8 +11,7 @@ import type { FlightState } from "../live/flight-state";
 const OUTLINE =
   "0,-17 2.6,-11 2.8,-5 17,1 17,4.2 2.8,2.6 1.9,11 6.5,14 6.5,16.5 0,15 -6.5,16.5 -6.5,14 -1.9,11 -2.8,2.6 -17,4.2 -17,1 -2.8,-5 -2.6,-11";
 const AHEAD_S = 60;
-/** The line's width in the style sheet. */
-const AHEAD_PX = 64;
+const AHEAD_PX = 64; // Its width in the style sheet.
 const MOVING_MPS = 3;
 const EQUATOR_M = 40_075_017;
 
@@ -67,9 +66,8 @@ export class AircraftLayer extends L.Layer {
     const speed = Math.hypot(pose.north_mps, pose.east_mps);
     const shown = this.ahead && speed > MOVING_MPS;
     this.#ahead.classList.toggle("hidden", !shown);
-    if (!shown) return;
+    if (!shown) return; // Scaled: another width would be laid out anew.
     const px_per_m = (256 * 2 ** map.getZoom()) / EQUATOR_M / Math.max(0.05, Math.cos((pose.latitude_deg * Math.PI) / 180));
-    // Scaled: another width would be laid out anew.
     const length = (speed * AHEAD_S * px_per_m) / AHEAD_PX;
     this.#ahead.style.transform = `rotate(${Math.atan2(-pose.north_mps, pose.east_mps).toFixed(2)}rad) scaleX(${length.toFixed(2)})`;
   }
