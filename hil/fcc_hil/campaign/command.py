@@ -8,6 +8,7 @@ from functools import partial
 from typing import Any
 
 from .. import documents, ranges, replacement
+from ..measured import measured
 from ..printable import say
 from ..progress import bar
 from ..workers import all_workers
@@ -117,7 +118,9 @@ def _campaign(parser: argparse.ArgumentParser, options: argparse.Namespace) -> i
     say(f"{text}\n\n{report.flights(outcomes)}")
     say(f"took {time.monotonic() - began_s:.0f} s")
     if options.results:
-        head = f"# Campaign: {options.kind}\n\n    {_repeated(options, bounds)}\n\n"
+        head = (
+            f"# Campaign: {options.kind}\n\n    {_repeated(options, bounds)}\n\n{measured()}.\n\n"
+        )
         replacement.write(options.results, head + text + "\n")
     if options.json:
         document = report.document(outcomes, options.seed, bounds)
