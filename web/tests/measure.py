@@ -28,6 +28,7 @@ from pathlib import Path
 from typing import Any
 
 from daemon_under_test import DaemonUnderTest
+from fcc_hil.measured import measured as this_is
 from ground_station import ROOT, Station
 from playwright.sync_api import Browser, Page, sync_playwright
 from rich.progress import Progress

@@ -122,9 +122,17 @@ fn item_problem(
         Item::Takeoff { .. } | Item::Land { .. } | Item::Return => {
             runway_problem(plan, number, item)
         }
-        Item::Loiter(loiter) => {
-            let message = loiter_problem(&loiter, airspeed_mps, conditions)?;
-            Some(("radius", message))
+        Item::Loiter(Loiter { radius_m, .. }) => {
+            let radius_m = radius_m.unwrap_or(conditions.loiter_radius_m);
+            Some((
+                "radius",
+                circle_problem(radius_m, airspeed_mps, conditions)?,
+            ))
+        }
+        // After its last item the aircraft circles there.
+        Item::Waypoint { .. } if number == plan.items.len() => {
+            let message = circle_problem(conditions.loiter_radius_m, airspeed_mps, conditions)?;
+            Some(("plan.loiter_radius_m, of the circle after it", message))
         }
         _ => None,
     }
@@ -149,8 +157,7 @@ fn jump_problem(plan: &Plan, number: usize, to: usize) -> Option<String> {
         .then(|| format!("to {to}: nothing is flown between: jump to an item with a place"))
 }
 
-fn loiter_problem(loiter: &Loiter, airspeed_mps: f64, conditions: &Conditions) -> Option<String> {
-    let radius_m = loiter.radius_m.unwrap_or(conditions.loiter_radius_m);
+fn circle_problem(radius_m: f64, airspeed_mps: f64, conditions: &Conditions) -> Option<String> {
     let least_m = smallest_circle_m(airspeed_mps, conditions.wind_mps, conditions.bank_rad)?;
     (radius_m < least_m).then(|| {
         format!(

@@ -45,7 +45,8 @@ pub fn unusual(plan: &Plan, conditions: &Conditions, usual: &Usual) -> Vec<Probl
     let items = plan.items.iter().enumerate();
     let endless = items.filter_map(|(n, item)| {
         let what = match item {
-            Item::Jump { times: None, .. } => "jump",
+            // Forward, it leaves out what it passes, and the plan has its end.
+            Item::Jump { times: None, to } if *to <= n + 1 => "jump",
             Item::Loiter(Loiter {
                 end: LoiterEnd::Never,
                 ..

@@ -34,8 +34,8 @@ pub struct Items<M> {
     end: Option<End>,
     being_written: bool,
     last_tick: Option<Tick>,
-    first_tick: Option<u64>,
-    /// Events that were read, and whether there was damage.
+    /// Ticks and events that were read, and whether there was damage.
+    ticks: u64,
     events: u64,
     is_damaged: bool,
     /// Damage after which no tick was read yet.
@@ -60,7 +60,7 @@ impl<M: RecordedMessage> Items<M> {
             end,
             being_written,
             last_tick: None,
-            first_tick: None,
+            ticks: 0,
             events: 0,
             is_damaged: false,
             damage: None,
@@ -133,7 +133,7 @@ impl<M: RecordedMessage> Items<M> {
                 if tick.is_some() || self.held_back.len() >= MAX_HELD_BACK {
                     self.locate_damage(tick.as_ref());
                 }
-                self.first_tick = self.first_tick.or(tick.map(|tick| tick.number));
+                self.ticks += u64::from(tick.is_some());
                 self.last_tick = tick.or(self.last_tick);
                 if self.damage.is_none() && self.held_back.is_empty() {
                     return Some(item);
@@ -159,19 +159,12 @@ impl<M: RecordedMessage> Items<M> {
     /// What another program has left out of a file without damage, by the statistics in it.
     fn left_out(&self) -> Option<String> {
         let end = self.end.as_ref().filter(|_| !self.is_damaged)?;
-        let last_tick = self.last_tick?.number;
-        if last_tick < end.last_tick {
-            let first = last_tick + 1;
-            return Some(format!("ticks {first} to {} were left out", end.last_tick));
-        }
-        // One that begins late is told by its ticks.
-        let is_from_first = self.first_tick == Some(end.first_tick);
-        let missing = end.events.checked_sub(self.events);
-        let missing = missing.filter(|n| *n > 0 && is_from_first)?;
-        Some(format!(
-            "{missing} of its {} events were left out; commands are events",
-            end.events
-        ))
+        let missing = |all: u64, read: u64, what: &str| {
+            let missing = all.checked_sub(read).filter(|missing| *missing > 0)?;
+            Some(format!("copied without {missing} of its {all} {what}"))
+        };
+        missing(end.ticks, self.ticks, "ticks")
+            .or_else(|| missing(end.events, self.events, "events; commands are events"))
     }
 
     fn locate_damage(&mut self, next: Option<&Tick>) {

@@ -47,7 +47,7 @@ pub enum Wholeness {
     Whole,
     /// Something in it is damaged: `fccd recover` saves the rest.
     Damaged,
-    /// Unfinished: `fccd recover` finishes it.
+    /// Unfinished, or copied without some ticks or events: `fccd recover` finishes it.
     Cut,
     /// It is being written.
     BeingWritten,
@@ -102,7 +102,7 @@ fn describe(recording: &Recording, verified: Verified) -> Entry {
         Wholeness::BeingWritten
     } else if !verified.damages.is_empty() {
         Wholeness::Damaged
-    } else if recording.is_whole() {
+    } else if recording.is_whole() && verified.cut.is_none() {
         Wholeness::Whole
     } else {
         Wholeness::Cut

@@ -246,7 +246,7 @@ impl Recording {
     ) -> Result<Option<Verified>, OpenError> {
         match &self.end {
             // Without damage there is no need to decode every message.
-            Some(end) if self.is_undamaged(end.ticks, &mut go_on)? => Ok(Some(Verified {
+            Some(end) if self.is_undamaged(end, &mut go_on)? => Ok(Some(Verified {
                 account: end.clone(),
                 ..Verified::default()
             })),
@@ -255,19 +255,22 @@ impl Recording {
     }
 
     /// Whether every checksum matches, the file is finished, and no program has left
-    /// out a record.
+    /// out a record or an event.
     fn is_undamaged(
         &self,
-        ticks: u64,
+        end: &End,
         go_on: &mut impl FnMut(u64) -> bool,
     ) -> Result<bool, OpenError> {
         let mut raw = self.raw()?;
         let mut channels = Channels::default();
-        let (mut all, mut records) = (0_u64, 0_u64);
+        let (mut all, mut records, mut events) = (0_u64, 0_u64, 0_u64);
         loop {
             match raw.next(|record| channels.message(&record).map(|(topic, ..)| topic)) {
-                Ok(Next::Record(topic)) => records += u64::from(topic == Some(Topic::Record)),
-                Ok(Next::End) => return Ok(records == ticks),
+                Ok(Next::Record(topic)) => {
+                    records += u64::from(topic == Some(Topic::Record));
+                    events += u64::from(topic == Some(Topic::Event));
+                }
+                Ok(Next::End) => return Ok(records == end.ticks && events >= end.events),
                 Ok(Next::Damage(_)) | Err(_) => return Ok(false),
             }
             all += 1;

@@ -49,7 +49,10 @@ impl Values {
         };
         Ok(Self {
             nodata: nodata.map(|text| number("GDAL_NODATA", text)).transpose()?,
-            scale: role("scale", 1.0)?,
+            scale: role("scale", 1.0).and_then(|scale| match scale {
+                0.0 => Err("its scale is 0".to_owned()),
+                scale => Ok(scale),
+            })?,
             offset: role("offset", 0.0)?,
             unit_m,
         })

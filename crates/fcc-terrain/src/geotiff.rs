@@ -21,6 +21,14 @@ const GDAL_METADATA: u16 = 42_112;
 /// What puts an image into degrees of WGS-84 with heights above mean sea level.
 const WARP: &str = "convert it by gdalwarp -t_srs EPSG:4326";
 
+/// About a tile whose voids are in a mask.
+pub(crate) const MASKED: &str = "has its voids in a mask: put them into the heights, by gdalwarp \
+                                 -dstnodata -32768";
+/// Of an image that is the mask of another one (TIFF 6.0, `NewSubfileType`).
+const IS_MASK: u32 = 4;
+/// Images in a file, more than heights, overviews and their masks are.
+const MOST_IMAGES: usize = 64;
+
 /// A GeoTIFF whose header was read.
 pub(crate) struct GeoTiff<R: Read + Seek> {
     pub(crate) lattice: Lattice,
@@ -195,6 +203,22 @@ fn lattice((columns, rows): (u32, u32), is_area: bool, raster: &Raster) -> Resul
     Ok(lattice)
 }
 
+/// Whether one of the images behind the first one is a mask.
+fn has_mask<R: Read + Seek>(decoder: &mut Decoder<R>) -> Result<bool, TiffError> {
+    let mut next = decoder.image_ifd().directory().next();
+    for _ in 0..MOST_IMAGES {
+        let Some(pointer) = next else { break };
+        let image = decoder.read_directory(pointer)?;
+        let mut tags = decoder.read_directory_tags(&image);
+        let kind = tags.find_tag_unsigned::<u32>(Tag::NewSubfileType)?;
+        if kind.is_some_and(|kind| kind & IS_MASK != 0) {
+            return Ok(true);
+        }
+        next = image.next();
+    }
+    Ok(false)
+}
+
 impl<R: Read + Seek> GeoTiff<R> {
     /// Reads the header.
     pub(crate) fn read(from: R) -> Result<Self, String> {
@@ -217,9 +241,13 @@ impl<R: Read + Seek> GeoTiff<R> {
                 size.0, size.1
             ));
         }
+        if has_mask(&mut decoder).map_err(|error| broken(&error))? {
+            return Err(MASKED.to_owned());
+        }
         let color = decoder.colortype().map_err(|error| broken(&error))?;
         if !matches!(color, ColorType::Gray(_)) {
-            return Err(format!("has {color:?}, not one band of heights: select it"));
+            let many = "has several bands, not one of heights: select it, by gdal_translate -b";
+            return Err(many.to_owned());
         }
         let mut tag = |tag: Tag| decoder.find_tag(tag).map_err(|error| broken(&error));
         let mut numbers = |of: Tag| {

@@ -131,7 +131,8 @@ impl<C: Recorded> Observer<C> for FlightRecorder<C> {
         }
         // Finding the one that the last flight left takes seconds in a full folder, and
         // repairing an hour's too: neither delays the flight.
-        self.repair = Repair::begin(&self.settings.folder, facts.started_unix_ns);
+        let (started_ns, offset_ns) = (facts.started_unix_ns, facts.clock_offset_ns);
+        self.repair = Repair::begin(&self.settings.folder, started_ns, offset_ns);
     }
 
     fn record(&mut self, record: &RecordOf<C>, _: &FlightTime) {

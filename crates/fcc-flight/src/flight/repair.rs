@@ -24,7 +24,7 @@ const POLL: Duration = Duration::from_millis(5);
 impl Repair {
     /// Looks for the recording that the flight before this one left, and repairs it.
     /// Without a thread, it is left to `fccd recover`.
-    pub(super) fn begin(folder: &Path, started_unix_ns: u64) -> Option<Self> {
+    pub(super) fn begin(folder: &Path, started_unix_ns: u64, clock_offset_ns: i64) -> Option<Self> {
         let is_stopped = Arc::new(AtomicBool::new(false));
         let stop = Arc::clone(&is_stopped);
         let folder = folder.to_owned();
@@ -34,7 +34,7 @@ impl Repair {
             // With locked memory, all of a stack is resident.
             .stack_size(512 << 10)
             .spawn(move || {
-                let path = last_unfinished(&looked_in, started_unix_ns)?;
+                let path = last_unfinished(&looked_in, started_unix_ns, clock_offset_ns)?;
                 Some(recover_while(&path, |_| !stop.load(Ordering::Relaxed)))
             })
             .ok()?;

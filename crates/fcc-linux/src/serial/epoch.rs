@@ -144,6 +144,7 @@ impl Epochs {
             (0, 0) => (span > SENT_WITHIN).then_some(NEITHER),
             (2.., 0) => Some(NO_RMC),
             (0, 2..) => Some(NO_GGA),
+            _ if self.motion.is_none() && self.place.is_some() => Some(NO_SPEED),
             // Those of one time would have been taken.
             _ if self.motion.is_some() && self.place.is_some() => Some(NOT_TOGETHER),
             _ => Some(NO_FIX),
@@ -155,6 +156,8 @@ const NO_RMC: &str = "GGA arrives and no RMC, which has the speed: switch RMC on
                       receiver's port that is used";
 const NO_GGA: &str = "RMC arrives and no GGA, which has the altitude: switch GGA on, at the \
                       receiver's port that is used";
+const NO_SPEED: &str = "GGA has a place, and RMC no valid speed and course: wait until the receiver \
+                        knows them, or set its binary protocol";
 const NEITHER: &str = "sentences arrive, and neither GGA nor RMC: switch both on, at the \
                        receiver's port that is used";
 const NOT_TOGETHER: &str = "GGA and RMC never have the same time: set both to the same rate";

@@ -90,6 +90,25 @@ fn a_loiter_is_refused_with_the_smallest_radius_of_this_wind() {
     assert!(said.ends_with("give at least 619 m"), "{said}");
 }
 
+/// The same for the circle after the last waypoint, of the usual radius.
+#[test]
+fn the_circle_that_ends_a_plan_is_refused_if_it_cannot_be_flown() {
+    let small = Conditions {
+        loiter_radius_m: 600.0,
+        ..conditions(15.0)
+    };
+    let refused = check(&plan(8.0), &small).unwrap_err();
+    assert_eq!(refused.len(), 1);
+    let said = refused[0].to_string();
+    assert!(said.starts_with("item 3: plan.loiter_radius_m, of the circle after it: 600 m is too"));
+    assert!(said.ends_with("give at least 619 m"), "{said}");
+    let enough = Conditions {
+        loiter_radius_m: 619.0,
+        ..small
+    };
+    assert_eq!(check(&plan(8.0), &enough), Ok(()));
+}
+
 #[test]
 fn a_turn_needs_room_and_a_climb_time() {
     assert_eq!(check(&plan(8.0), &conditions(20.0)), Ok(()));

@@ -77,6 +77,26 @@ fn a_leg_as_by_exchanged_coordinates_is_remarked_on() {
     assert_eq!(long, [words]);
 }
 
+/// A jump forward leaves out what it passes: the plan has its end.
+#[test]
+fn a_jump_back_for_ever_is_remarked_on() {
+    let said = |to: usize| {
+        let text = format!(
+            "QGC WPL 110\n0 1 0 16 0 0 0 0 47 8 430 1\n1 0 3 16 0 0 0 0 47.1 8 300 1\n\
+             2 0 2 177 {to} -1 0 0 0 0 0 1\n3 0 3 16 0 0 0 0 47.2 8 300 1\n\
+             4 0 3 16 0 0 0 0 47.2 8.1 300 1\n"
+        );
+        let usual = Usual {
+            ground: None,
+            ceiling_m: 3_962.4,
+        };
+        let found = unusual(&read(&text).unwrap(), &CONDITIONS, &usual);
+        found.iter().map(ToString::to_string).collect::<String>()
+    };
+    assert!(said(1).starts_with("item 2: jump: for ever: "));
+    assert_eq!(said(4), "");
+}
+
 /// Ground stations write 0 for an elevation that they do not know.
 #[test]
 fn a_home_at_exactly_0_m_is_remarked_on_where_heights_are_above_it() {

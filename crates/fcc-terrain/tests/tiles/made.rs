@@ -3,7 +3,7 @@
 use std::io::Cursor;
 
 use fcc_terrain::{Area, Elevations, TerrainError};
-use tiff::encoder::colortype::{Gray16, Gray32Float, GrayI16};
+use tiff::encoder::colortype::{Gray8, Gray16, Gray32Float, GrayI16};
 use tiff::encoder::{Compression, TiffEncoder, TiffValue};
 use tiff::tags::Tag;
 
@@ -38,6 +38,8 @@ pub(crate) struct Made {
     pub(crate) matrix: Vec<f64>,
     /// Items of `GDAL_METADATA`.
     pub(crate) metadata: &'static str,
+    /// `NewSubfileType` of a second image, if there is one.
+    pub(crate) second: Option<u32>,
 }
 
 impl Default for Made {
@@ -53,6 +55,7 @@ impl Default for Made {
             size: (COLUMNS, ROWS),
             matrix: Vec::new(),
             metadata: "",
+            second: None,
         }
     }
 }
@@ -107,21 +110,29 @@ macro_rules! written {
                 tag(Tag::GdalNodata, &nodata);
             }
             image.write_data(heights_m).unwrap();
+            if let Some(kind) = self.second {
+                let mut second = encoder.new_image::<Gray8>(2, 2).unwrap();
+                second
+                    .encoder()
+                    .write_tag(Tag::NewSubfileType, kind)
+                    .unwrap();
+                second.write_data(&[255; 4]).unwrap();
+            }
             bytes.into_inner()
         }
     };
 }
 
-type Encoder<'a> =
-    tiff::encoder::DirectoryEncoder<'a, &'a mut Cursor<Vec<u8>>, tiff::encoder::TiffKindStandard>;
+type Encoder<'a, 'w> =
+    tiff::encoder::DirectoryEncoder<'a, &'w mut Cursor<Vec<u8>>, tiff::encoder::TiffKindStandard>;
 
 /// What a tag may have.
 trait Value {
-    fn write(&self, encoder: &mut Encoder<'_>, tag: Tag);
+    fn write(&self, encoder: &mut Encoder<'_, '_>, tag: Tag);
 }
 
 impl<T: TiffValue + Copy> Value for T {
-    fn write(&self, encoder: &mut Encoder<'_>, tag: Tag) {
+    fn write(&self, encoder: &mut Encoder<'_, '_>, tag: Tag) {
         encoder.write_tag(tag, *self).unwrap();
     }
 }

@@ -90,6 +90,19 @@ fn geotiff_that_is_not_of_wgs_84_in_degrees_above_mean_sea_level() {
             "its scale is no number: ten",
         ),
         (
+            geotiff(|made| made.metadata = r#"<Item role="scale" sample="0">0</Item>"#),
+            "its scale is 0",
+        ),
+        // A mask, and that of an overview (TIFF 6.0).
+        (
+            geotiff(|made| made.second = Some(4)),
+            "has its voids in a mask: put them into the heights, by gdalwarp -dstnodata",
+        ),
+        (
+            geotiff(|made| made.second = Some(5)),
+            "has its voids in a mask",
+        ),
+        (
             geotiff(|made| made.matrix = matrix([0.01, 0.001, 8.0], [0.0, -0.01, 47.0])),
             "is rotated: convert it by gdalwarp",
         ),
@@ -102,6 +115,11 @@ fn geotiff_that_is_not_of_wgs_84_in_degrees_above_mean_sea_level() {
     }
     let void = refused("a.tif", &Made::default().i16(&heights(|_, _| -9_999)));
     assert!(void.contains("-9999 is no height in m"), "{void}");
+    let with_overview = Made {
+        second: Some(1),
+        ..Made::default()
+    };
+    read("a.tif", &with_overview.i16(&heights(|_, _| 100))).unwrap();
     let cut = Made::default().i16(&heights(|_, _| 100));
     let text = refused("a.tif", &cut[..cut.len() / 2]);
     assert!(text.contains("can be read: failed"), "{text}");

@@ -69,6 +69,11 @@ fn what_is_missing_in_the_sentences_is_said() {
             1,
             "GGA and RMC never have the same time",
         ),
+        (
+            &[GGA, "GNRMC,1015#.00,A,4500.0,N,00800.0,E,,,271126,,,R"],
+            1,
+            "GGA has a place, and RMC no valid speed",
+        ),
         (&[GGA, RMC], 2, SLOW_FIXES),
         (&[RMC, GGA], 5, SLOW_FIXES),
     ] {

@@ -118,7 +118,10 @@ fn a_clock_that_goes_back_changes_no_order() {
     let bytes = fs::read(&last[1]).unwrap();
     fs::write(&last[1], &bytes[..bytes.len() / 2]).unwrap();
     let now = 12 * 1_000_000_000;
-    assert_eq!(last_unfinished(folder.path(), now).as_ref(), Some(&last[1]));
+    assert_eq!(
+        last_unfinished(folder.path(), now, 0).as_ref(),
+        Some(&last[1])
+    );
     let total: u64 = [&month_ago, &yesterday, &last]
         .into_iter()
         .flatten()
