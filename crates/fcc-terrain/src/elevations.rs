@@ -10,7 +10,7 @@ use sha2::{Digest as _, Sha256};
 
 use crate::area::Area;
 use crate::error::TerrainError;
-use crate::geotiff::GeoTiff;
+use crate::geotiff::{GeoTiff, MASKED};
 use crate::hgt::{Hgt, corner};
 use crate::lattice::{Grid, Lattice, Overlap, bytes};
 
@@ -26,6 +26,8 @@ enum Kind {
     Hgt,
     GeoTiff,
     Packed,
+    /// GDAL's mask beside a GeoTIFF.
+    Mask,
     Other,
 }
 
@@ -38,6 +40,8 @@ fn kind(name: &str) -> Kind {
         Kind::GeoTiff
     } else if ends(".hgt.zip") || ends(".hgt.gz") {
         Kind::Packed
+    } else if ends(".tif.msk") || ends(".tiff.msk") {
+        Kind::Mask
     } else {
         Kind::Other
     }
@@ -122,6 +126,7 @@ impl Builder {
                 }
             }
             Kind::Packed => return Err(invalid("is packed: unpack it".to_owned())),
+            Kind::Mask => return Err(invalid(MASKED.to_owned())),
             Kind::Other => return Ok(()),
         }
         self.elevations.tiles.push(name.to_owned());

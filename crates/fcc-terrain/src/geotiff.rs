@@ -22,8 +22,8 @@ const GDAL_METADATA: u16 = 42_112;
 const WARP: &str = "convert it by gdalwarp -t_srs EPSG:4326";
 
 /// About a tile whose voids are in a mask.
-pub(crate) const MASKED: &str = "has its voids in a mask: put them into the heights, by gdalwarp \
-                                 -dstnodata -32768";
+pub(crate) const MASKED: &str = "has voids in a mask: put them into the heights, by gdalwarp -dstnodata \
+                                 -32768";
 /// Of an image that is the mask of another one (TIFF 6.0, `NewSubfileType`).
 const IS_MASK: u32 = 4;
 /// Images in a file, more than heights, overviews and their masks are.

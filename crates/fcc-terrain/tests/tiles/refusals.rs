@@ -96,12 +96,9 @@ fn geotiff_that_is_not_of_wgs_84_in_degrees_above_mean_sea_level() {
         // A mask, and that of an overview (TIFF 6.0).
         (
             geotiff(|made| made.second = Some(4)),
-            "has its voids in a mask: put them into the heights, by gdalwarp -dstnodata",
+            "has voids in a mask: put them into the heights, by gdalwarp -dstnodata",
         ),
-        (
-            geotiff(|made| made.second = Some(5)),
-            "has its voids in a mask",
-        ),
+        (geotiff(|made| made.second = Some(5)), "has voids in a mask"),
         (
             geotiff(|made| made.matrix = matrix([0.01, 0.001, 8.0], [0.0, -0.01, 47.0])),
             "is rotated: convert it by gdalwarp",
@@ -120,6 +117,7 @@ fn geotiff_that_is_not_of_wgs_84_in_degrees_above_mean_sea_level() {
         ..Made::default()
     };
     read("a.tif", &with_overview.i16(&heights(|_, _| 100))).unwrap();
+    assert!(refused("a.tif.msk", b"").contains("has voids in a mask"));
     let cut = Made::default().i16(&heights(|_, _| 100));
     let text = refused("a.tif", &cut[..cut.len() / 2]);
     assert!(text.contains("can be read: failed"), "{text}");
