@@ -23,6 +23,10 @@
 //! compiled: `examples/pendulum` is a module of its own on it, with the same
 //! `Recording` and `Watcher`.
 
+#![allow(
+    clippy::doc_link_with_quotes,
+    reason = "documents have examples of Python"
+)]
 #![cfg_attr(
     not(feature = "flight"),
     allow(dead_code, reason = "the aircraft uses more of it than other plants")

@@ -113,6 +113,10 @@ impl Gpsd {
             device: device.clone(),
             what,
         };
+        let malformed = |what| {
+            let device = device.clone();
+            Some(DeviceError::Malformed { device, what })
+        };
         let mut take = |report| match report {
             Ok(Report::Fix {
                 device,
@@ -146,11 +150,10 @@ impl Gpsd {
                 (newest, waits_for) = (Some(Sample::new(taken, fix)), None);
             }
             Ok(Report::Impossible { device: of }) if wanted.is_none() || of.as_ref() == wanted => {
-                trouble = Some(DeviceError::Malformed {
-                    device: device.clone(),
-                    what: "the position of its fix is impossible, with a latitude beyond 90° or a \
-                           longitude beyond 180°: check what its receiver sends (`gpsmon`)",
-                });
+                trouble = malformed(
+                    "the position of its fix is impossible, with a latitude beyond 90° or a \
+                     longitude beyond 180°: check what its receiver sends (`gpsmon`)",
+                );
             }
             Ok(Report::Devices(all)) => {
                 if let Some(path) = wanted.filter(|path| !all.contains(path)) {
@@ -172,10 +175,8 @@ impl Gpsd {
             }
             Ok(_) => {}
             Err(_) => {
-                trouble = Some(DeviceError::Malformed {
-                    device: device.clone(),
-                    what: "a line is not of gpsd's JSON: check that gpsd has this address",
-                });
+                trouble =
+                    malformed("a line is not of gpsd's JSON: check that gpsd has this address");
             }
         };
         let mut reports = 0;
@@ -196,18 +197,21 @@ impl Gpsd {
             )));
         }
         if self.traffic.is_flood(bytes.len(), reports) {
-            return Err(refused(format!(
-                "it sends more than {} reports or {} bytes in a second, and gpsd does not: \
-                 {NO_GPSD}",
-                Traffic::MOST_MESSAGES,
-                Traffic::MOST_BYTES
-            )));
+            return Err(refused(flood()));
         }
         match (newest, trouble) {
             (None, Some(trouble)) => Err(trouble),
             (newest, _) => Ok(newest),
         }
     }
+}
+
+fn flood() -> String {
+    format!(
+        "it sends more than {} reports or {} bytes in a second, and gpsd does not: {NO_GPSD}",
+        Traffic::MOST_MESSAGES,
+        Traffic::MOST_BYTES
+    )
 }
 
 /// By the first of the host's addresses that answers.
