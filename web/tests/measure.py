@@ -473,8 +473,8 @@ def main() -> None:
     said: Any = [dict(zip(("figure", "seen", "wanted"), row, strict=True)) for row in rows]
     print(json.dumps({"machine": machine, "figures": said}) if given.json else "\n".join(table))
     if given.results:
-        part = f', "{given.only}" of it' if given.only else ""
-        head = f"# Ground station\n\n    make bench-ground\n\n{this_is()}{part}. {machine}.\n\n"
+        which = f", {', '.join(given.only)} of it" if given.only else ""
+        head = f"# Ground station\n\n    make bench-ground\n\n{this_is()}{which}. {machine}.\n\n"
         given.results.write_text(head + "\n".join(table) + "\n")
 
 
