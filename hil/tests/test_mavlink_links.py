@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import socket
 import time
 import tty
@@ -12,8 +13,17 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import fcc
 import pytest
-from mavlink_vehicle import IN_THE_AIR, free_port, mavproxy, mavsdk_system, until, vehicle
+from mavlink_vehicle import (
+    IN_THE_AIR,
+    Pymavlink,
+    free_port,
+    mavproxy,
+    mavsdk_system,
+    until,
+    vehicle,
+)
 from mavsdk.plugins.log_files import LogFiles
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import common
@@ -182,3 +192,19 @@ def test_mavsdk_downloads_a_recording_as_it_is_on_the_board(tmp_path: Path, fccd
         assert downloaded == files[0].read_bytes()[: entry.size_bytes]
         mavsdk.destroy()
         assert ground.process.poll() is None
+
+
+def test_of_a_daemon_that_hangs_no_motion_is_told(tmp_path: Path, fccd: Path) -> None:
+    with vehicle(tmp_path / "ground", fccd, IN_THE_AIR) as (ground, port):
+        station = Pymavlink(port)
+        process_id = fcc.Watcher(ground.instance).info["process_id"]
+        os.kill(process_id, signal.SIGSTOP)
+        try:
+            until("it is told", lambda: "sends nothing" in station.receive("STATUSTEXT", 5.0).text)
+            beat = station.receive("HEARTBEAT", 3.0)
+            assert beat.system_status == common.MAV_STATE_CRITICAL
+            assert station.receive(["ATTITUDE", "GLOBAL_POSITION_INT"], 1.0) is None
+        finally:
+            os.kill(process_id, signal.SIGCONT)
+        assert station.receive("ATTITUDE", 5.0)
+        station.close()

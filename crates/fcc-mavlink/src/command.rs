@@ -277,6 +277,7 @@ fn number(command: &Received, parameter: usize) -> Result<u32, Refusal> {
     command.whole(parameter).ok_or_else(why)
 }
 
+const LANDED: &str = "the aircraft has landed: disarm first";
 const NOT_ENGAGED: &str = "control is not taken: arm first";
 
 fn in_flight(situation: &Situation<'_>, command: Command) -> Judged {
@@ -294,7 +295,7 @@ fn in_flight(situation: &Situation<'_>, command: Command) -> Judged {
 fn engage(situation: &Situation<'_>) -> Judged {
     let missions = situation.missions;
     if missions.total() == 0 {
-        return denied("there is no mission: upload one");
+        return denied(missions.why_none());
     }
     let start = missions.current(situation.state);
     let item = (start > 0).then(|| set("plan_item", f64::from(start + 1)));
@@ -306,6 +307,7 @@ fn engage(situation: &Situation<'_>) -> Judged {
 fn take_off(situation: &Situation<'_>) -> Judged {
     match situation.state.flight {
         flight if flight.is_airborne => not_now("the aircraft is in the air"),
+        _ if situation.state.has_landed() => not_now(LANDED),
         flight if flight.is_engaged => Ok(Todo::Nothing),
         // The mission says where to and how high.
         _ => engage(situation),
@@ -346,6 +348,9 @@ fn start_mission(command: &Received, situation: &Situation<'_>) -> Judged {
             "parameter 1: the mission has {total} items, from 0"
         ));
     }
+    if state.has_landed() {
+        return not_now(LANDED);
+    }
     if !state.flight.is_engaged {
         let Some(first) = first else {
             return engage(situation);
@@ -366,7 +371,7 @@ fn set_current(command: &Received, situation: &Situation<'_>) -> Judged {
     let total = missions.total();
     let failed = |why: String| Err((Code::MAV_RESULT_FAILED, why));
     if total == 0 {
-        return failed("there is no mission: upload one".to_owned());
+        return failed(missions.why_none().to_owned());
     }
     let resets = match command.given(2) {
         None | Some(0.0) => false,
@@ -430,6 +435,10 @@ pub(crate) fn choose(row: Option<&ModeRow>, situation: &Situation<'_>) -> Judged
             Ok(Todo::Protocol(OfProtocol::Choose(mode)))
         }
         mode @ Mode::Standby if !flight.is_engaged => Ok(Todo::Protocol(OfProtocol::Choose(mode))),
+        // MAVSDK chooses it before it arms.
+        Mode::Loiter if !flight.is_engaged && !flight.is_airborne => {
+            Ok(Todo::Protocol(OfProtocol::Choose(Mode::Standby)))
+        }
         Mode::Standby if flight.is_airborne => {
             denied("in the air: nothing would hold the aircraft; land, or disarm by force")
         }

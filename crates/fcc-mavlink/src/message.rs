@@ -72,8 +72,23 @@ pub(crate) fn body(number: u32, scene: &Scene<'_>) -> Option<Body> {
     message(number, scene).map(Body::from)
 }
 
+/// What tells how it moves: an old state does not.
+const OF_MOTION: [u32; 8] = [
+    id::GPS_RAW_INT,
+    id::ATTITUDE,
+    id::GLOBAL_POSITION_INT,
+    id::NAV_CONTROLLER_OUTPUT,
+    id::VFR_HUD,
+    id::WIND_COV,
+    id::HIGH_LATENCY2,
+    id::EXTENDED_SYS_STATE,
+];
+
 fn message(number: u32, scene: &Scene<'_>) -> Option<MavMessage> {
     let state = scene.state;
+    if state.is_old && OF_MOTION.contains(&number) {
+        return None;
+    }
     let ms = scene.now.ms as u32;
     let us = scene.now.utc_us;
     Some(match number {
@@ -169,7 +184,7 @@ fn heartbeat(scene: &Scene<'_>) -> HEARTBEAT_DATA {
         base_mode,
         system_status: match (
             scene.state.is_connected,
-            flight.is_failsafe,
+            flight.is_failsafe || scene.state.is_old,
             flight.is_engaged,
         ) {
             (false, ..) => MavState::MAV_STATE_UNINIT,
@@ -205,7 +220,12 @@ fn sys_status(state: &VehicleState) -> SYS_STATUS_DATA {
         .fold(Sensor::empty(), |all, (_, bits)| all | bits)
     });
     let check = Sensor::MAV_SYS_STATUS_PREARM_CHECK;
-    let may = state.health.may_engage || state.flight.is_engaged;
+    let may = !state.is_old && (state.health.may_engage || state.flight.is_engaged);
+    let healthy = if state.is_old {
+        Sensor::empty()
+    } else {
+        healthy
+    };
     let charge = state.health.battery_charge;
     // MAVProxy takes a fence that is not healthy for a breach, also where there is none.
     let healthy = healthy | Sensor::MAV_SYS_STATUS_GEOFENCE;
@@ -270,7 +290,7 @@ fn global_position_int(state: &VehicleState, ms: u32) -> Option<GLOBAL_POSITION_
     })
 }
 
-fn mission_current(scene: &Scene<'_>) -> MISSION_CURRENT_DATA {
+pub(crate) fn mission_current(scene: &Scene<'_>) -> MISSION_CURRENT_DATA {
     let [mission_id, fence_id, rally_points_id] = scene.missions.opaque_ids();
     MISSION_CURRENT_DATA {
         seq: scene.missions.current(scene.state),

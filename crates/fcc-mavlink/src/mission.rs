@@ -47,8 +47,12 @@ pub(crate) struct Missions {
     /// The vehicle's plan, and its hash.
     plan: Plan,
     hash: u64,
-    /// The item that is flown first when control is taken, from 0.
+    /// The vehicle has a plan, and its content is not known.
+    is_unknown: bool,
+    /// The item that is flown first when control is taken, from 0, and the last one that was
+    /// flown: another mode goes on with it.
     start: u16,
+    last: u16,
     upload: Option<Upload>,
     /// The end of the last upload, in case its answer is lost.
     ended: Option<(Peer, Part, u16, Code)>,
@@ -89,9 +93,29 @@ struct Reader {
 impl Missions {
     /// The vehicle has another plan than this one knows; none: its content is not known.
     pub(crate) fn set_plan(&mut self, hash: u64, plan: Option<&Plan>) {
+        let is_unknown = hash != 0 && plan.is_none();
         let plan = plan.cloned().unwrap_or_default();
         let items = lists(&plan).map(Items::from);
         self.keep(hash, plan, items);
+        self.is_unknown = is_unknown;
+    }
+
+    /// The newest state of the vehicle.
+    pub(crate) const fn note(&mut self, state: &VehicleState) {
+        self.last = match state.flight.item.checked_sub(1) {
+            _ if !state.flight.is_engaged => self.start,
+            Some(item) => item,
+            None => self.last,
+        };
+    }
+
+    /// Why there is no mission here.
+    pub(crate) const fn why_none(&self) -> &'static str {
+        if self.is_unknown {
+            "the vehicle's plan was not uploaded here, and is not known: upload one"
+        } else {
+            "there is no mission: upload one"
+        }
     }
 
     pub(crate) const fn hash(&self) -> u64 {
@@ -109,7 +133,8 @@ impl Missions {
                 items,
             };
         }
-        self.start = 0;
+        (self.start, self.last) = (0, 0);
+        self.is_unknown = false;
         self.hash = hash;
         self.plan = plan;
     }
@@ -127,6 +152,7 @@ impl Missions {
     pub(crate) const fn current(&self, state: &VehicleState) -> u16 {
         match state.flight.item.checked_sub(1) {
             Some(item) if state.flight.is_engaged => item,
+            _ if state.flight.is_engaged => self.last,
             _ => self.start,
         }
     }
@@ -137,7 +163,9 @@ impl Missions {
     }
 
     pub(crate) fn state(&self, state: &VehicleState) -> MissionState {
-        if self.total() == 0 {
+        if self.is_unknown {
+            MissionState::MISSION_STATE_UNKNOWN
+        } else if self.total() == 0 {
             MissionState::MISSION_STATE_NO_MISSION
         } else if !state.flight.is_engaged {
             MissionState::MISSION_STATE_NOT_STARTED
@@ -171,6 +199,10 @@ impl Missions {
         let Some(part) = Self::part(peer, number, fx) else {
             return;
         };
+        if self.is_unknown {
+            let why = self.why_none().to_owned();
+            return refuse(peer, number, &(Code::MAV_MISSION_ERROR, why), fx);
+        }
         let list = self.list(part).clone();
         self.readers
             .retain(|reader| reader.peer != peer && now.ms < reader.heard_ms + SILENT_MS);
@@ -296,6 +328,14 @@ impl Missions {
         now: Now,
         fx: &mut Effects,
     ) {
+        // Sent again while the vehicle clears it.
+        let is_its = |upload: &Upload| {
+            let is_clear = upload.end == 0 && upload.taken.is_some();
+            is_clear && upload.peer == peer && upload.part as u8 == number
+        };
+        if self.upload.as_ref().is_some_and(is_its) {
+            return;
+        }
         if number != ALL {
             return self.begin(peer, (number, 0), state, now, fx);
         }
@@ -455,7 +495,9 @@ impl Missions {
             return Err((Code::MAV_MISSION_ERROR, text));
         }
         let is_held = self.list(upload.part).items[..] == upload.items[..];
-        let is_flown_now = self.total() > 0 && is_held;
+        // In standby the same mission begins anew, on its runway.
+        let is_begun = upload.part != Part::Mission || state.flight.is_engaged;
+        let is_flown_now = self.total() > 0 && is_held && is_begun;
         Ok((!is_flown_now).then_some(plan))
     }
 

@@ -172,7 +172,15 @@ impl Parameters {
         };
         match (outcome, self.all.get_mut(index)) {
             (Ok(_), Some(parameter)) => parameter.value = value,
-            (Err(why), Some(_)) => fx.tell(peer, MavSeverity::MAV_SEVERITY_WARNING, why),
+            (Err(why), Some(parameter)) => {
+                let mut name = [0; 16];
+                for (to, from) in name.iter_mut().zip(parameter.name.bytes()) {
+                    *to = from;
+                }
+                let code = Error::MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE;
+                fx.answer(peer, error(peer, (-1, name), code));
+                fx.tell(peer, MavSeverity::MAV_SEVERITY_WARNING, why);
+            }
             _ => {}
         }
         self.answer(peer, index, fx);

@@ -14,7 +14,7 @@ use crate::frame::{Body, Frame};
 use crate::item::MissionItem;
 use crate::link::{COMPONENT, LinkOptions, Links};
 use crate::log::{Log, LogWanted, Logs};
-use crate::message::{Scene, id, requested};
+use crate::message::{Scene, id, mission_current, requested};
 use crate::mission::{Missions, denied};
 use crate::mode::by_custom_mode;
 use crate::parameter::{Parameter, Parameters};
@@ -72,6 +72,8 @@ pub struct Protocol {
     has_twin: bool,
     /// The mission was chosen in standby: that mode is shown until control is taken.
     has_chosen: bool,
+    /// `MISSION_SET_CURRENT` that is being carried out, and its item.
+    setting_current: Option<(u32, Peer, u16)>,
 }
 
 impl Protocol {
@@ -91,6 +93,7 @@ impl Protocol {
             fx: Effects::default(),
             has_twin: false,
             has_chosen: false,
+            setting_current: None,
         }
     }
 
@@ -113,6 +116,16 @@ impl Protocol {
         self.has_chosen &= !state.flight.is_engaged && state.flight.mode == Mode::Standby;
         if self.has_chosen {
             self.state.flight.mode = Mode::Plan;
+        }
+        self.missions.note(&state);
+    }
+
+    /// No record has come for some time: what is known is old, and is not told as new.
+    pub fn set_old(&mut self) {
+        if self.state.is_connected && !self.state.is_old {
+            self.state.is_old = true;
+            let text = "fccd sends nothing: where the aircraft is, is not known";
+            self.fx.announce(MavSeverity::MAV_SEVERITY_CRITICAL, text);
         }
     }
 
@@ -196,6 +209,14 @@ impl Protocol {
 
     /// What became of a request.
     pub fn finish(&mut self, ticket: u32, outcome: &Outcome) {
+        let set = self.setting_current.take_if(|one| one.0 == ticket);
+        if let Some((_, peer, item)) = set {
+            match outcome {
+                Ok(_) => self.answer_current(peer, Some(item)),
+                Err(why) => self.fx.tell(peer, MavSeverity::MAV_SEVERITY_WARNING, why),
+            }
+            return;
+        }
         let fx = &mut self.fx;
         if !self.missions.finish(ticket, outcome, fx)
             && !self.parameters.finish(ticket, outcome, fx)
@@ -317,15 +338,7 @@ impl Protocol {
                 let range = (fields.u8(6), fields.i16(0), fields.i16(2));
                 missions.begin_partial(peer, range, now, fx);
             }
-            41 => {
-                let item = fields.u16(0);
-                let command = Received::of(224, [item.into(), f64::NAN]);
-                let _ = self.carry_out(peer, &command, now);
-                let current = requested(id::MISSION_CURRENT, 0, &self.scene(now));
-                for body in current {
-                    self.fx.answer(peer, body);
-                }
-            }
+            41 => self.set_current(peer, fields.u16(0), now),
             44 => missions.begin(peer, (fields.u8(4), fields.u16(0)), state, now, fx),
             45 => missions.clear(peer, fields.u8(2), state, now, fx),
             39 | 73 => {
@@ -359,6 +372,26 @@ impl Protocol {
             self.control.owner().unwrap_or(0)
         );
         self.fx.tell(peer, MavSeverity::MAV_SEVERITY_WARNING, &text);
+    }
+
+    /// `MISSION_SET_CURRENT`: the answer is the current item, once it is that one. Stations
+    /// send it again at each answer with another one.
+    fn set_current(&mut self, peer: Peer, item: u16, now: Now) {
+        if self.setting_current.is_some_and(|(_, _, set)| set == item) {
+            return;
+        }
+        let command = Received::of(224, [item.into(), f64::NAN]);
+        match self.carry_out(peer, &command, now) {
+            Ok(Some(ticket)) => self.setting_current = Some((ticket, peer, item)),
+            Ok(None) => self.answer_current(peer, None),
+            Err((_, why)) => self.fx.tell(peer, MavSeverity::MAV_SEVERITY_WARNING, &why),
+        }
+    }
+
+    fn answer_current(&mut self, peer: Peer, item: Option<u16>) {
+        let mut current = mission_current(&self.scene(Now::default()));
+        current.seq = item.unwrap_or(current.seq);
+        self.fx.answer(peer, MavMessage::MISSION_CURRENT(current));
     }
 
     /// `SET_MODE`, which has no answer but a text.

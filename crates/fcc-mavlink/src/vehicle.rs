@@ -156,6 +156,8 @@ pub struct Sensors {
 pub struct VehicleState {
     /// A daemon is there, and this is its state.
     pub is_connected: bool,
+    /// Its records have stopped: the state is an old one.
+    pub is_old: bool,
     /// The attitude.
     pub attitude: Attitude,
     /// How it moves.
@@ -171,6 +173,11 @@ pub struct VehicleState {
 }
 
 impl VehicleState {
+    /// Whether it stands after a landing, and control is still held.
+    pub(crate) fn has_landed(&self) -> bool {
+        self.flight.is_engaged && !self.flight.is_airborne && self.flight.mode == Mode::Land
+    }
+
     /// Whether it flies its mission.
     pub(crate) const fn flies_mission(&self) -> bool {
         let is_of_plan = matches!(

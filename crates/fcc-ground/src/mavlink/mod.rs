@@ -46,6 +46,8 @@ const STEP: Duration = Duration::from_millis(5);
 const KEEP_EVERY: Duration = Duration::from_secs(30);
 /// How often a daemon is looked for, and the magnetic field is looked up.
 const LOOK_EVERY: Duration = Duration::from_secs(1);
+/// Without a record for so long, what is known of the aircraft is old.
+const OLD_AFTER: Duration = Duration::from_millis(1_500);
 /// The longest file of a key.
 const KEY_BYTES: u64 = 1_024;
 /// A year of the World Magnetic Model, s.
@@ -160,6 +162,8 @@ struct Watched {
     records: watch::Receiver<Newest>,
     events: broadcast::Receiver<Utf8Bytes>,
     variation_rad: f64,
+    /// When the newest record came.
+    came: Instant,
 }
 
 /// The thread that owns the protocol.
@@ -244,6 +248,7 @@ impl Face {
                 records,
                 events,
                 variation_rad: 0.0,
+                came: Instant::now(),
             });
         }
         let year = 1_970.0 + self.clock.now().utc_us as f64 * 1e-6 / YEAR_S;
@@ -270,7 +275,11 @@ impl Face {
             });
             return;
         }
+        if watched.came.elapsed() > OLD_AFTER {
+            self.protocol.set_old();
+        }
         if watched.records.has_changed().unwrap_or(false) {
+            watched.came = Instant::now();
             let newest = watched.records.borrow_and_update().clone();
             if let Ok(record) = read_words::<FlightRecord>(&newest.row) {
                 let state = state::state(&record, self.plan.as_deref(), watched.variation_rad);

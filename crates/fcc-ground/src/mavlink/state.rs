@@ -76,6 +76,7 @@ pub(super) fn state(
     };
     VehicleState {
         is_connected: true,
+        is_old: false,
         attitude: Attitude {
             roll_rad: estimate.roll_rad,
             pitch_rad: estimate.pitch_rad,

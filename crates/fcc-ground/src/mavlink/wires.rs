@@ -2,6 +2,7 @@
 //!
 //! Nothing here waits. What a peer sends too much is left to the system, which drops it.
 
+use core::mem::replace;
 use std::collections::BTreeMap;
 use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream, UdpSocket};
@@ -310,14 +311,23 @@ fn serial(settings: LineSettings) -> io::Result<Wire> {
         .name("ground-mav-line".to_owned())
         .spawn(move || {
             let mut buffer = [0; BUFFER_BYTES];
+            let mut said = false;
             loop {
-                let Ok(mut line) = SerialLine::open(&settings) else {
-                    thread::sleep(AGAIN_AFTER);
-                    match to_write.try_recv() {
-                        Err(std::sync::mpsc::TryRecvError::Disconnected) => return,
-                        _ => continue,
+                let mut line = match SerialLine::open(&settings) {
+                    Ok(line) => line,
+                    Err(error) => {
+                        if !replace(&mut said, true) {
+                            let text = format!("fcc-ground: --mavlink: {error}; tried again");
+                            let _ = writeln!(io::stderr(), "{text}");
+                        }
+                        thread::sleep(AGAIN_AFTER);
+                        match to_write.try_recv() {
+                            Err(std::sync::mpsc::TryRecvError::Disconnected) => return,
+                            _ => continue,
+                        }
                     }
                 };
+                said = false;
                 while let Ok(length) = line.read(&mut buffer) {
                     let bytes = buffer.get(..length).unwrap_or_default();
                     if length > 0 {

@@ -56,7 +56,7 @@ pub(crate) fn frame(
     bytes
 }
 
-struct Station<'a> {
+pub(crate) struct Station<'a> {
     world: &'a mut World,
     sequence: u8,
 }
@@ -76,7 +76,7 @@ impl Station<'_> {
             .collect()
     }
 
-    fn long(&mut self, number: u16, parameters: &[f32]) -> Code {
+    pub(crate) fn long(&mut self, number: u16, parameters: &[f32]) -> Code {
         let mut all = [0.0; 7];
         all[..parameters.len()].copy_from_slice(parameters);
         let codes = self.give(76, &long(number, all, 0));
@@ -85,11 +85,11 @@ impl Station<'_> {
     }
 }
 
-fn station(world: &mut World) -> Station<'_> {
+pub(crate) fn station(world: &mut World) -> Station<'_> {
     Station { world, sequence: 0 }
 }
 
-fn world_with_mission() -> World {
+pub(crate) fn world_with_mission() -> World {
     let mut world = World::new();
     let items: Vec<_> = (0..4).map(waypoint).collect();
     upload(&mut world, 1, &items).expect("an answer");

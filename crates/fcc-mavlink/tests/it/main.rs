@@ -14,6 +14,7 @@ mod lossy;
 mod missions;
 mod opening;
 mod signing;
+mod states;
 mod stream;
 mod world;
 

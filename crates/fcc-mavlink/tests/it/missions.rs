@@ -18,7 +18,7 @@ fn mission(count: u16) -> Vec<MISSION_ITEM_INT_DATA> {
     (0..count).map(waypoint).collect()
 }
 
-fn corner(n: i32) -> MISSION_ITEM_INT_DATA {
+pub(crate) fn corner(n: i32) -> MISSION_ITEM_INT_DATA {
     MISSION_ITEM_INT_DATA {
         param1: 3.0,
         param4: 0.0,
