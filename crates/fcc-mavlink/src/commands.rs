@@ -14,6 +14,8 @@ type Code = MavResult;
 /// What takes longer is in progress first, and again every so often, ms: in time for MAVSDK,
 /// which sends again after 500 ms, and seldom, for its missions take that for a failure.
 const IN_PROGRESS_MS: u64 = 400;
+/// Of these the vehicle refuses the value, which is the same when it is sent again.
+const OF_VALUES: [u16; 6] = [178, 186, 192, 43_000, 43_001, 43_002];
 const AGAIN_MS: u64 = 1_000;
 /// A frame that comes twice, or is sent again with a higher `confirmation`, ms.
 const REPEATED_MS: u64 = 5_000;
@@ -148,7 +150,12 @@ impl Commands {
         let Some(running) = at.map(|at| self.running.remove(at)) else {
             return;
         };
-        let refused = |why: &String| (Code::MAV_RESULT_TEMPORARILY_REJECTED, why.clone());
+        let code = if OF_VALUES.contains(&running.number) {
+            Code::MAV_RESULT_DENIED
+        } else {
+            Code::MAV_RESULT_TEMPORARILY_REJECTED
+        };
+        let refused = |why: &String| (code, why.clone());
         let result = outcome.as_ref().map(|_| ()).map_err(refused);
         self.end(running.peer, running.number, &result, fx);
     }

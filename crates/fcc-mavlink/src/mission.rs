@@ -13,7 +13,7 @@ use mavlink::dialects::common::{MavMissionResult, MavSeverity, MissionState};
 use crate::effects::{Effects, Peer};
 use crate::frame::Body;
 use crate::item::{MissionItem, Part, Refused, lists, opaque_id, put};
-use crate::vehicle::{Action, LinkId, Now, Outcome, VehicleState};
+use crate::vehicle::{Action, LinkId, Now, Outcome, Position, VehicleState};
 
 type Code = MavMissionResult;
 type Items = Arc<[MissionItem]>;
@@ -485,8 +485,12 @@ impl Missions {
         }
         if plan.items.is_empty() {
             if state.flight.is_engaged {
-                let text = "in flight a mission is not cleared: upload another one".to_owned();
-                return Err((Code::MAV_MISSION_DENIED, text));
+                let text = if self.is_unknown {
+                    self.why_none()
+                } else {
+                    "in flight a mission is not cleared: upload another one"
+                };
+                return Err((Code::MAV_MISSION_DENIED, text.to_owned()));
             }
             return Ok(None);
         }
@@ -503,15 +507,21 @@ impl Missions {
 
     /// That of the plan before, if the aircraft is near it; or where it stands.
     fn home(&self, state: &VehicleState) -> Option<Home> {
-        let known = self.plan.home;
+        let place_of = |position: Position| Place {
+            latitude_deg: position.latitude_rad.to_degrees(),
+            longitude_deg: position.longitude_rad.to_degrees(),
+        };
+        // Of a plan that is not known here, too.
+        let shown = state.home.map(|home| Home {
+            place: place_of(home),
+            altitude_m: home.altitude_m,
+        });
+        let known = self.plan.home.or(shown);
         let stands = !state.flight.is_engaged && !state.flight.is_airborne;
         let Some(position) = state.motion.position.filter(|_| stands) else {
             return known;
         };
-        let place = Place {
-            latitude_deg: position.latitude_rad.to_degrees(),
-            longitude_deg: position.longitude_rad.to_degrees(),
-        };
+        let place = place_of(position);
         let is_near = |home: &Home| distance_m(home.place, place) < SAME_FIELD_M;
         if known.as_ref().is_some_and(is_near) {
             return known;

@@ -236,6 +236,18 @@ fn arming_takes_control_and_starts_the_mission() {
 }
 
 #[test]
+fn a_value_that_the_vehicle_refuses_is_denied() {
+    let mut world = world_with_mission();
+    world.set_state(|state| {
+        flying(state);
+        state.flight.mode = Mode::Hold;
+    });
+    world.refuses = Some("an airspeed of 33 to 69 m/s".to_owned());
+    let code = station(&mut world).long(178, &[0.0, 500.0]);
+    assert_eq!(code, Code::MAV_RESULT_DENIED);
+}
+
+#[test]
 fn a_refusal_of_the_vehicle_goes_back_with_its_text() {
     let mut world = world_with_mission();
     world.refuses = Some("too slow, bank or pitch beyond 60 degrees".to_owned());

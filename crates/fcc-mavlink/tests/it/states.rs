@@ -79,6 +79,12 @@ fn a_plan_that_is_not_known_is_no_empty_one() {
         Code::MAV_RESULT_ACCEPTED
     );
     assert_eq!(current(&mut world).1, MissionState::MISSION_STATE_UNKNOWN);
+    // Above the home that is shown.
+    let items: Vec<_> = (0..2).map(crate::world::waypoint).collect();
+    let ack = crate::lossy::upload(&mut world, 1, &items).expect("an answer");
+    assert_eq!(ack.mavtype, MavMissionResult::MAV_MISSION_ACCEPTED);
+    let home = world.plan.home.expect("a home");
+    assert!((home.place.latitude_deg - 47.5).abs() < 1e-9);
 }
 
 /// `MISSION_CURRENT`: its item and state.
