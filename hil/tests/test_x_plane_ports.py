@@ -35,10 +35,11 @@ def bound() -> socket.socket:
 def test_a_port_without_a_program_is_distinguished_from_one_that_does_not_answer(
     fccd: Path, tmp_path: Path
 ) -> None:
-    """Beacons of other tests would tell another port."""
+    """Beacons of other tests would tell another port; their marks would be of this one."""
     with bound() as nobody:
         port = nobody.getsockname()[1]
-    with start(fccd, tmp_path, write_config(tmp_path, port)) as daemon:
+    apart = {"XDG_RUNTIME_DIR": str(tmp_path)}
+    with start(fccd, tmp_path, write_config(tmp_path, port), apart) as daemon:
         daemon.wait_for(f"does not answer: no program listens on UDP port {port}")
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as mute:
             mute.bind(("127.0.0.1", port))
