@@ -35,7 +35,8 @@ libfuzzer_sys::fuzz_target!(|input: &[u8]| {
         let Ok(command) = read_request(bytes) else {
             continue;
         };
-        match commands.send(PendingCommand { id, command }, |command| {
+        let sender = "fuzz".to_owned();
+        match commands.send(PendingCommand { id, sender, command }, |command| {
             sent.push(command);
             Ok(())
         }) {

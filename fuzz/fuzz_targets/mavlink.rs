@@ -85,7 +85,7 @@ impl World {
             let options = LinkOptions { bytes_per_s: 5_760.0, is_datagram, is_high_latency };
             protocol.open(link, options, now);
         }
-        let parameter = |name, setpoint| Parameter { name, value: 1_013.25, setpoint };
+        let parameter = |name, setpoint| Parameter { name, value: 1_013.25, origin: String::new(), setpoint };
         protocol.set_parameters(vec![
             parameter("QNH_HPA", Some(("altimeter_setting_pa", 100.0))),
             parameter("SPD_STALL_MPS", None),
