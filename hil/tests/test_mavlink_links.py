@@ -200,7 +200,7 @@ def test_of_a_daemon_that_hangs_no_motion_is_told(tmp_path: Path, fccd: Path) ->
         process_id = fcc.Watcher(ground.instance).info["process_id"]
         os.kill(process_id, signal.SIGSTOP)
         try:
-            until("it is told", lambda: "sends nothing" in station.receive("STATUSTEXT", 5.0).text)
+            until("the text", lambda: "sends nothing" in station.receive("STATUSTEXT", 5.0).text)
             beat = station.receive("HEARTBEAT", 3.0)
             assert beat.system_status == common.MAV_STATE_CRITICAL
             assert station.receive(["ATTITUDE", "GLOBAL_POSITION_INT"], 1.0) is None

@@ -15,12 +15,12 @@ use crate::vehicle::{Action, Now, Outcome};
 type Error = MavParamError;
 
 /// `PARAM_ERROR`.
-fn error(peer: Peer, (param_index, name): (i16, [u8; 16]), error: Error) -> Body {
+fn error(peer: Peer, (param_index, param_id): (i16, CharArray<16>), error: Error) -> Body {
     Body::from(MavMessage::PARAM_ERROR(PARAM_ERROR_DATA {
         param_index,
         target_system: peer.system,
         target_component: peer.component,
-        param_id: CharArray::new(name),
+        param_id,
         error,
     }))
 }
@@ -110,7 +110,7 @@ impl Parameters {
                 peer,
                 error(
                     peer,
-                    (fields.i16(0), fields.bytes(4)),
+                    (fields.i16(0), CharArray::new(fields.bytes(4))),
                     Error::MAV_PARAM_ERROR_DOES_NOT_EXIST,
                 ),
             ),
@@ -131,7 +131,11 @@ impl Parameters {
             .by_name(&name)
             .and_then(|index| Some((index, self.all.get(index)?)));
         let Some((index, parameter)) = found else {
-            let unknown = error(peer, (-1, name), Error::MAV_PARAM_ERROR_DOES_NOT_EXIST);
+            let unknown = error(
+                peer,
+                (-1, CharArray::new(name)),
+                Error::MAV_PARAM_ERROR_DOES_NOT_EXIST,
+            );
             return fx.answer(peer, unknown);
         };
         let value = f64::from(fields.f32(0));
@@ -154,7 +158,7 @@ impl Parameters {
             Some(_) => Error::MAV_PARAM_ERROR_READ_FAIL,
         };
         self.answer(peer, index, fx);
-        fx.answer(peer, error(peer, (-1, name), code));
+        fx.answer(peer, error(peer, (-1, CharArray::new(name)), code));
         fx.tell(peer, MavSeverity::MAV_SEVERITY_WARNING, &text);
     }
 
@@ -173,10 +177,7 @@ impl Parameters {
         match (outcome, self.all.get_mut(index)) {
             (Ok(_), Some(parameter)) => parameter.value = value,
             (Err(why), Some(parameter)) => {
-                let mut name = [0; 16];
-                for (to, from) in name.iter_mut().zip(parameter.name.bytes()) {
-                    *to = from;
-                }
+                let name = CharArray::from(parameter.name);
                 let code = Error::MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE;
                 fx.answer(peer, error(peer, (-1, name), code));
                 fx.tell(peer, MavSeverity::MAV_SEVERITY_WARNING, why);

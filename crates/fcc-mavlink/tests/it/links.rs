@@ -148,6 +148,34 @@ fn a_parameter_that_cannot_change_in_flight_is_answered_with_its_old_value() {
     );
 }
 
+/// Stations that get the old value alone ask again until they give up.
+#[test]
+fn a_parameter_that_the_vehicle_refuses_is_answered_with_an_error() {
+    let mut world = World::new();
+    world.protocol.set_parameters(parameters());
+    world.refuses = Some("94000 to 106000 Pa".to_owned());
+    let set = PARAM_SET_DATA {
+        param_value: 5.0,
+        target_system: 1,
+        target_component: 1,
+        param_id: CharArray::from("QNH_HPA"),
+        ..PARAM_SET_DATA::default()
+    };
+    world.send(1, &MavMessage::PARAM_SET(set));
+    let all = world.all(500);
+    let is_out = |one: &MavMessage| match one {
+        MavMessage::PARAM_ERROR(error) => {
+            error.param_id == CharArray::from("QNH_HPA")
+                && error.error == MavParamError::MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE
+        }
+        _ => false,
+    };
+    assert!(all.iter().any(is_out), "{all:?}");
+    let is_old =
+        |one: &MavMessage| matches!(one, MavMessage::PARAM_VALUE(now) if now.param_value == 2.0);
+    assert!(all.iter().any(is_old));
+}
+
 #[test]
 fn a_long_text_comes_in_numbered_pieces() {
     let mut world = World::new();
