@@ -82,14 +82,16 @@ impl UdpPort {
     }
 
     /// Joins the multicast group of the beacons. Other programs on this
-    /// machine may listen on the same port.
+    /// machine may listen on the same port. Bound to the group, so the port may be
+    /// that of another program on an address of this machine: it lies within Linux'
+    /// range of automatic ports.
     ///
     /// # Errors
     /// When the operating system refuses.
     pub(crate) fn listen(group: SocketAddrV4) -> io::Result<Self> {
         let socket = socket(Domain::IPV4)?;
         socket.set_reuse_address(true)?;
-        socket.bind(&SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, group.port()).into())?;
+        socket.bind(&group.into())?;
         if group.ip().is_multicast() {
             let outside = socket.join_multicast_v4(group.ip(), &Ipv4Addr::UNSPECIFIED);
             // A machine without a network can still receive on its loopback
@@ -247,6 +249,27 @@ mod tests {
         IpAddr::V4(Ipv4Addr::LOCALHOST),
         IpAddr::V6(Ipv6Addr::LOCALHOST),
     ];
+
+    #[test]
+    fn beacons_arrive_whoever_has_their_port_on_an_address_of_this_machine() {
+        let other = UdpSocket::bind("127.0.0.1:0").unwrap();
+        let port = other.local_addr().unwrap().port();
+        let group = SocketAddrV4::new(Ipv4Addr::new(239, 255, 1, 1), port);
+        let listens = UdpPort::listen(group).unwrap();
+        socket2::SockRef::from(&other)
+            .set_multicast_if_v4(&Ipv4Addr::LOCALHOST)
+            .unwrap();
+        other.send_to(b"to the group", group).unwrap();
+        other.send_to(b"to one", ("127.0.0.1", port)).unwrap();
+        let socket = listens.socket();
+        socket.set_nonblocking(false).unwrap();
+        socket
+            .set_read_timeout(Some(Duration::from_millis(500)))
+            .unwrap();
+        let mut buffer = [0; 16];
+        assert_eq!(socket.recv(&mut buffer).unwrap(), 12);
+        assert!(socket.recv(&mut buffer).is_err());
+    }
 
     /// Four datagrams, each filled with its number, as another socket receives
     /// them.
