@@ -35,8 +35,10 @@ def test_it_is_installed_beside_the_daemon_and_not_started(package: Path, tmp_pa
     with_daemon = told("dpkg-deb", "--contents", os.environ["DEB"])
     assert [file for file in installed if f"./{file}\n" in with_daemon] == []
     assert "fccd" in told("dpkg-deb", "--field", package, "Depends").split(", ")
-    # Without scripts nothing starts it.
-    assert {path.name for path in (tmp_path / "DEBIAN").iterdir()} == {"control"}
+    # It is started by nobody but its user, and stopped before it is removed.
+    scripts = {path.name: path for path in (tmp_path / "DEBIAN").iterdir()}
+    assert "start" not in scripts["postinst"].read_text().replace("deb-systemd-helper", "")
+    assert "deb-systemd-invoke stop" in scripts["prerm"].read_text()
 
 
 def test_its_page_is_in_it(package: Path, tmp_path: Path) -> None:
