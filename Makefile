@@ -159,6 +159,9 @@ test-page: tested $(STAMPS)/browser ## Check the page, and test it in a browser 
 test-ground: tested $(STAMPS)/browser ## Test the page beside real flights, and in flights that are made up (6 minutes)
 	$(WITH_TESTED) $(IN_BROWSER)
 
+pictures: tested $(STAMPS)/browser ## Take the pictures of the ground station in the documents anew (4 minutes)
+	FCC_PICTURES=web/pictures $(WITH_TESTED) $(PYTHON) -m pytest web/tests/test_pictures.py
+
 WITH_RELEASED := FCC_RELEASED=1 FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) FCC_GROUND=$(abspath $(TARGET))/release/fcc-ground
 
 test-release: faulty station $(STAMPS)/python-module $(STAMPS)/browser $(STAMPS)/strace $(STAMPS)/systemd $(STAMPS)/node ## Run the tests in Python and in a browser with what ships (40 minutes)

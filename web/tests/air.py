@@ -51,3 +51,8 @@ class Air:
         ]
         self.station = Station([program, *options], fccd, instance)
         ends.callback(self.station.end)
+
+    def landed(self) -> str:
+        """Return the name of the flight that has ended."""
+        flights = self.station.ask("GET", "/api/flights")[1]
+        return str(next(one["file"] for one in flights if not one["being_written"]))

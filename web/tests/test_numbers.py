@@ -13,7 +13,6 @@ from ground_station import waited
 from playwright.sync_api import Page
 
 from air import Air, Visit
-from test_views import landed
 
 M_FT = 1 / 0.3048
 # Columns of a recording.
@@ -103,7 +102,7 @@ def values(page: Page) -> dict[str, str]:
 
 
 def test_a_replay_shows_the_recorded_numbers(cruise: Air, visit: Visit) -> None:
-    file = landed(cruise)
+    file = cruise.landed()
     rows = recorded(cruise, file)
     page = visit(cruise.station).open(f"flights/{file}")
     page.wait_for_selector(".plot canvas")

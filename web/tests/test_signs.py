@@ -16,7 +16,6 @@ from playwright.sync_api import Page
 
 from air import Air, Visit
 from test_numbers import recorded, seek
-from test_views import landed
 
 # Around the horizon: the tapes left and right, the heading below, and degrees over the height.
 TAPE_PX, HEADING_PX, SHOWN_DEG = 72, 50, 44.0
@@ -84,7 +83,7 @@ def on_screen(page: Page) -> float:
 
 
 def test_each_attitude_of_a_flight_is_drawn_as_in_the_reference(cruise: Air, visit: Visit) -> None:
-    file = landed(cruise)
+    file = cruise.landed()
     rows = recorded(cruise, file)
     page = visit(cruise.station).open(f"flights/{file}")
     page.wait_for_selector(".plot canvas")
@@ -108,7 +107,7 @@ PITCH, ROLL, HEADING = "estimated_pitch_rad", "estimated_roll_rad", "estimated_h
 
 
 def test_the_aircraft_on_the_map_points_to_its_heading(cruise: Air, visit: Visit) -> None:
-    file = landed(cruise)
+    file = cruise.landed()
     rows = recorded(cruise, file)
     page = visit(cruise.station).open(f"flights/{file}")
     page.wait_for_selector(".plot canvas")

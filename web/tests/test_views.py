@@ -27,19 +27,13 @@ CUT_OFF = """() => [...document.querySelectorAll('.pfd')].filter(one => {
 )).map(one => one.className)"""
 
 
-def landed(air: Air) -> str:
-    """Return the name of the flight that has ended."""
-    flights = air.station.ask("GET", "/api/flights")[1]
-    return str(next(one["file"] for one in flights if not one["being_written"]))
-
-
 @pytest.mark.parametrize("size", SIZES)
 @pytest.mark.parametrize("view", SHOWN)
 def test_a_view_has_no_finding_and_fits(cruise: Air, visit: Visit, view: str, size: str) -> None:
-    draft = {"plan": cruise.station.ask("GET", f"/api/flights/{landed(cruise)}/plan")[1]["plan"]}
+    draft = {"plan": cruise.station.ask("GET", f"/api/flights/{cruise.landed()}/plan")[1]["plan"]}
     cruise.station.ask("PUT", "/api/drafts/circuit", draft)
     visitor = visit(cruise.station, size)
-    page = visitor.open(f"flights/{landed(cruise)}" if view == "replay" else view)
+    page = visitor.open(f"flights/{cruise.landed()}" if view == "replay" else view)
     page.wait_for_selector(SHOWN[view])
     PICTURES.mkdir(parents=True, exist_ok=True)
     for theme in THEMES:
@@ -73,7 +67,7 @@ def test_every_target_is_large_enough_for_a_finger(cruise: Air, visit: Visit) ->
 def test_no_request_leaves_the_station(cruise: Air, visit: Visit) -> None:
     visitor = visit(cruise.station)
     page = visitor.open()
-    routes = ["plan", "flights", f"flights/{landed(cruise)}", "health"]
+    routes = ["plan", "flights", f"flights/{cruise.landed()}", "health"]
     for route, view in zip(routes, list(SHOWN)[1:], strict=True):
         visitor.go(route)
         page.wait_for_selector(SHOWN[view])
