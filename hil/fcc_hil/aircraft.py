@@ -37,6 +37,7 @@ _TABLE = (
     Aircraft("c172x", 100, 3_000),
     Aircraft("c172r", 100, 3_000),
     Aircraft("J3Cub", 65, 3_000, drop_ft=4.0),
+    Aircraft("rascal110", 45, 1_000, trims=False, drop_ft=0.5),
     Aircraft("OV10", 160, 5_000, retractable_gear=True),
     Aircraft("t6texan2", 200, 8_000, retractable_gear=True),
     Aircraft("T37", 220, 10_000, retractable_gear=True),

@@ -15,6 +15,7 @@ import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import jsbsim
 
@@ -40,6 +41,9 @@ STEP_S = 1.0 / STEPS_PER_SECOND
 
 _ELEVATOR_TRIM = "fcs/pitch-trim-cmd-norm"
 """Positive lowers the nose."""
+
+_MODELS = Path(__file__).with_name("models")
+"""Aircraft that JSBSim lacks."""
 
 _ENGINE_RPM = "propulsion/engine/engine-rpm"
 
@@ -103,6 +107,8 @@ class Plant:
         weather = weather or Weather()
         self.fdm = fdm = jsbsim.FGFDMExec(None)
         fdm.set_debug_level(0)
+        if (_MODELS / self.aircraft.name).is_dir():
+            fdm.set_aircraft_path(str(_MODELS))
         if not fdm.load_model(self.aircraft.name):
             raise ValueError(f"JSBSim has no aircraft '{self.aircraft.name}'")
         self._silence_output()

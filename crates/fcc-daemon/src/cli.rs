@@ -1,5 +1,6 @@
 //! The command line.
 
+mod airframe;
 mod calibrate;
 #[cfg(feature = "live")]
 mod command;
@@ -17,6 +18,7 @@ use fcc_telemetry::Instance;
 use fcc_timer::TimerKind;
 
 use crate::exit::exit_codes;
+pub use airframe::AirframeArgs;
 pub use calibrate::CalibrateArgs;
 #[cfg(feature = "live")]
 pub use command::{CommandArgs, CommandChoice, SetArgs};
@@ -74,6 +76,8 @@ pub enum Action {
     Check(CheckArgs),
     /// Move each control of an aircraft that stands still, and check its direction
     CheckControls(CheckControlsArgs),
+    /// Scale the keys of an airframe from its span, stalling speed and thrust
+    Airframe(AirframeArgs),
     /// Check whether this machine suits a real-time loop
     Doctor(DoctorArgs),
     /// List the sensors that are connected to this board

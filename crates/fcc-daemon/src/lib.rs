@@ -3,7 +3,6 @@
 //! | module | what it does |
 //! |---|---|
 //! | [`cli`], [`commands`], [`exit`] | what people type, what it does, how it ends |
-//! | [`doctor`] | checks whether the machine suits a real-time loop |
 //! | `process`, `observers` | what a flight needs of the process around it, and who observes it there |
 //! | `output` | prints, and never panics where that fails |
 //!
@@ -11,7 +10,6 @@
 
 pub mod cli;
 pub mod commands;
-pub mod doctor;
 pub mod exit;
 mod observers;
 mod output;

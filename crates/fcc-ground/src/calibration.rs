@@ -1,21 +1,19 @@
 //! The guided calibration of a sensor, by `fccd calibrate`: one at a time.
 
+use std::io;
+use std::path::Path;
 use std::process::Stdio;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use axum::Json;
-use axum::extract::State;
-use fcc_telemetry::Instance;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use serde_json::{Value, json};
 use tokio::io::{AsyncBufReadExt as _, AsyncRead, AsyncReadExt as _, BufReader};
 use tokio::process::{Child, Command};
 use tokio::sync::Notify;
 
-use crate::failure::{Failure, Sent};
-use crate::station::Station;
+use crate::failure::Failure;
 
 /// Lines that are kept of its output.
 const MOST_LINES: usize = 50;
@@ -45,16 +43,59 @@ struct Course {
     interrupt: Option<Arc<Notify>>,
 }
 
-/// The body of a request to begin.
-#[derive(Debug, Deserialize)]
-pub(crate) struct Begin {
-    instance: Instance,
-    kind: String,
-}
-
 impl Calibration {
     fn locked(&self) -> MutexGuard<'_, Course> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// How far it is.
+    pub(crate) fn course(&self) -> Value {
+        json!(*self.locked())
+    }
+
+    /// Begins one.
+    ///
+    /// # Errors
+    /// When another one runs, or the program cannot be started, which `not_started` words.
+    pub(crate) fn begin(
+        &self,
+        fccd: &Path,
+        kind: String,
+        config: &Path,
+        not_started: impl FnOnce(&io::Error) -> Failure,
+    ) -> Result<Value, Failure> {
+        let mut course = self.locked();
+        if course.interrupt.is_some() {
+            return Err(Failure::refused("another calibration runs: end it first"));
+        }
+        let mut command = Command::new(fccd);
+        let command = command.arg("calibrate").arg(&kind).arg(config);
+        let command = command.stdin(Stdio::null()).kill_on_drop(true);
+        let child = command
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn();
+        let child = child.map_err(|error| not_started(&error))?;
+        let interrupt = Arc::new(Notify::new());
+        *course = Course {
+            kind,
+            interrupt: Some(Arc::clone(&interrupt)),
+            ..Course::default()
+        };
+        tokio::spawn(self.clone().run_to_end(child, interrupt));
+        Ok(json!(*course))
+    }
+
+    /// Ends the one that runs; nothing is changed.
+    ///
+    /// # Errors
+    /// When none runs.
+    pub(crate) fn end(&self) -> Result<Value, Failure> {
+        let course = self.locked();
+        let running = course.interrupt.as_ref();
+        let running = running.ok_or_else(|| Failure::missing("no calibration runs"))?;
+        running.notify_one();
+        Ok(json!(*course))
     }
 
     /// Reads what a child prints until it has ended.
@@ -108,59 +149,4 @@ impl Course {
         }
         self.lines.push(line);
     }
-}
-
-/// `GET /api/calibration`.
-pub(crate) async fn course(State(station): State<Arc<Station>>) -> Json<Value> {
-    Json(json!(*station.calibration.locked()))
-}
-
-/// `POST /api/calibration`.
-pub(crate) async fn begin(
-    State(station): State<Arc<Station>>,
-    Sent(begin): Sent<Begin>,
-) -> Result<Json<Value>, Failure> {
-    let Begin { instance, kind } = begin;
-    let config = station.configs.file(&instance).ok_or_else(|| {
-        Failure::refused(format!(
-            "the station does not know the configuration of '{instance}': start it with --config"
-        ))
-    })?;
-    if station.daemons.feed(&instance).is_some() {
-        return Err(Failure::refused(format!(
-            "fccd '{instance}' reads these sensors: stop it first"
-        )));
-    }
-    if kind.starts_with('-') {
-        return Err(Failure::bad("kind: is the name of a calibration"));
-    }
-    let mut course = station.calibration.locked();
-    if course.interrupt.is_some() {
-        return Err(Failure::refused("another calibration runs: end it first"));
-    }
-    let mut command = Command::new(&station.fccd);
-    let command = command.arg("calibrate").arg(&kind).arg(config);
-    let command = command.stdin(Stdio::null()).kill_on_drop(true);
-    let child = command
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn();
-    let child = child.map_err(|error| station.without_fccd(&error))?;
-    let interrupt = Arc::new(Notify::new());
-    *course = Course {
-        kind,
-        interrupt: Some(Arc::clone(&interrupt)),
-        ..Course::default()
-    };
-    tokio::spawn(station.calibration.clone().run_to_end(child, interrupt));
-    Ok(Json(json!(*course)))
-}
-
-/// `DELETE /api/calibration`: nothing is changed.
-pub(crate) async fn end(State(station): State<Arc<Station>>) -> Result<Json<Value>, Failure> {
-    let course = station.calibration.locked();
-    let running = course.interrupt.as_ref();
-    let running = running.ok_or_else(|| Failure::missing("no calibration runs"))?;
-    running.notify_one();
-    Ok(Json(json!(*course)))
 }

@@ -4,27 +4,18 @@
 use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
-use axum::Json;
-use axum::body::Bytes;
-use axum::extract::ws::rejection::WebSocketUpgradeRejection;
-use axum::extract::ws::{Message, Utf8Bytes, WebSocketUpgrade};
-use axum::extract::{Path, State};
-use axum::http::StatusCode;
-use axum::response::{IntoResponse as _, Response};
+use axum::extract::ws::Utf8Bytes;
 use fcc_plan::Plan;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use tokio::sync::broadcast;
-use tokio::time::{Instant, interval, timeout};
 
-use crate::commands::utc_ms;
-use crate::failure::{Failure, Sent, aside, reading};
+use crate::failure::Failure;
 use crate::files;
-use crate::live::{PATIENCE, PING_EVERY};
+use crate::orders::utc_ms;
 use crate::plans::{hash_text, within_limits};
-use crate::station::Station;
 
 const MOST_DRAFTS: usize = 500;
 const LONGEST_NAME: usize = 64;
@@ -37,12 +28,12 @@ pub(crate) struct Draft {
     pub(crate) name: String,
     /// Grows with each edit, also when a draft is removed and made again.
     pub(crate) revision: u64,
-    changed_utc_s: f64,
+    pub(crate) changed_utc_s: f64,
     pub(crate) plan: Plan,
 }
 
 impl Draft {
-    fn to_json(&self) -> Value {
+    pub(crate) fn to_json(&self) -> Value {
         json!({
             "name": self.name,
             "revision": self.revision,
@@ -59,11 +50,11 @@ pub(crate) struct Drafts {
     folder: PathBuf,
     /// Held while a draft is changed.
     turn: Mutex<()>,
-    changes: broadcast::Sender<Utf8Bytes>,
+    pub(crate) changes: broadcast::Sender<Utf8Bytes>,
 }
 
 /// Why a draft is not changed.
-enum Refused {
+pub(crate) enum Refused {
     Newer(Box<Draft>),
     Other(Failure),
 }
@@ -128,7 +119,7 @@ impl Drafts {
         Ok(names)
     }
 
-    fn list(&self) -> Result<Vec<Value>, Failure> {
+    pub(crate) fn list(&self) -> Result<Vec<Value>, Failure> {
         let names = self.names().map_err(Failure::internal)?;
         let drafts = names
             .iter()
@@ -145,7 +136,7 @@ impl Drafts {
         Ok(listed.collect())
     }
 
-    fn put(&self, name: &str, based_on: u64, plan: Plan) -> Result<Draft, Refused> {
+    pub(crate) fn put(&self, name: &str, based_on: u64, plan: Plan) -> Result<Draft, Refused> {
         let path = self.path(name).map_err(Refused::Other)?;
         within_limits(&plan).map_err(|problem| Refused::Other(Failure::bad(problem)))?;
         let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
@@ -173,7 +164,7 @@ impl Drafts {
         Ok(draft)
     }
 
-    fn delete(&self, name: &str) -> Result<(), Failure> {
+    pub(crate) fn delete(&self, name: &str) -> Result<(), Failure> {
         let path = self.path(name)?;
         let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
         match files::remove(&path) {
@@ -193,103 +184,4 @@ impl Drafts {
         // Perhaps nobody listens.
         let _ = self.changes.send(text.into());
     }
-}
-
-/// `GET /api/drafts`: the list, or a WebSocket of changes.
-pub(crate) async fn list_or_socket(
-    State(station): State<Arc<Station>>,
-    upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
-) -> Result<Response, Failure> {
-    let Ok(upgrade) = upgrade else {
-        let list = reading(move || station.drafts.list()).await?;
-        return Ok(Json(list).into_response());
-    };
-    let place = station.socket_place()?;
-    let mut changes = station.drafts.changes.subscribe();
-    let upgrade = upgrade.max_message_size(4 << 10);
-    Ok(upgrade.on_upgrade(async move |mut socket| {
-        let _place = place;
-        let mut pings = interval(PING_EVERY);
-        let mut heard = Instant::now();
-        loop {
-            tokio::select! {
-                _ = pings.tick() => {
-                    let ping = socket.send(Message::Ping(Bytes::new()));
-                    if heard.elapsed() > PATIENCE || !matches!(timeout(PATIENCE, ping).await, Ok(Ok(()))) {
-                        return;
-                    }
-                }
-                change = changes.recv() => match change {
-                    Ok(text) => {
-                        if socket.send(Message::Text(text)).await.is_err() {
-                            return;
-                        }
-                    }
-                    // The page asks for the drafts again when it connects again.
-                    Err(_) => return,
-                },
-                received = socket.recv() => match received {
-                    Some(Ok(Message::Close(_)) | Err(_)) | None => return,
-                    Some(Ok(_)) => heard = Instant::now(),
-                },
-            }
-        }
-    }))
-}
-
-/// `GET /api/drafts/{name}`.
-pub(crate) async fn get(
-    State(station): State<Arc<Station>>,
-    Path(name): Path<String>,
-) -> Result<Json<Value>, Failure> {
-    let draft = reading(move || station.drafts.get(&name)).await?;
-    Ok(Json(draft.to_json()))
-}
-
-/// The body of an edit.
-#[derive(Debug, Deserialize)]
-pub(crate) struct Edit {
-    /// The revision that was edited; 0 or null for a new draft.
-    based_on: Option<u64>,
-    plan: Plan,
-}
-
-/// `PUT /api/drafts/{name}`.
-pub(crate) async fn put(
-    State(station): State<Arc<Station>>,
-    Path(name): Path<String>,
-    Sent(edit): Sent<Edit>,
-) -> Result<Json<Value>, Failure> {
-    let draft = aside(move || {
-        let put = station
-            .drafts
-            .put(&name, edit.based_on.unwrap_or(0), edit.plan);
-        put.map_err(|refused| match refused {
-            Refused::Other(failure) => failure,
-            Refused::Newer(newer) => {
-                let mut body = newer.to_json();
-                if let Some(body) = body.as_object_mut() {
-                    let what = "another page has changed this draft: this is its newest revision";
-                    body.insert("error".to_owned(), what.into());
-                }
-                Failure::with(StatusCode::CONFLICT, body)
-            }
-        })
-    })
-    .await?;
-    Ok(Json(json!({
-        "name": draft.name,
-        "revision": draft.revision,
-        "changed_utc_s": draft.changed_utc_s,
-        "hash": hash_text(&draft.plan),
-    })))
-}
-
-/// `DELETE /api/drafts/{name}`.
-pub(crate) async fn delete(
-    State(station): State<Arc<Station>>,
-    Path(name): Path<String>,
-) -> Result<StatusCode, Failure> {
-    aside(move || station.drafts.delete(&name)).await?;
-    Ok(StatusCode::NO_CONTENT)
 }

@@ -1,23 +1,11 @@
-//! Flight plans: checked, read from files and written to them.
+//! Flight plans: their hash, limits and check.
 
-use std::sync::Arc;
-
-use axum::Json;
-use axum::extract::State;
-use axum::http::StatusCode;
-use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
-use axum::response::{IntoResponse as _, Response};
 use fcc_core::flight::terrain::Terrain;
 use fcc_flight::config::Config;
 use fcc_plan::{
     AltitudeDatum, Format, Item, Loiter, LoiterEnd, Place, Plan, Problem, Speed, limits,
 };
-use fcc_telemetry::Instance;
-use serde::Deserialize;
 use serde_json::{Value, json};
-
-use crate::failure::{Failure, Sent, reading};
-use crate::station::Station;
 
 /// Between points of a height profile, m, and how many at most.
 const STEP_M: f64 = 50.0;
@@ -60,26 +48,8 @@ pub(crate) fn checked(plan: &Plan, config: &Config) -> Result<Plan, Vec<Problem>
     config.checked_plan(&read)
 }
 
-/// The body of a check.
-#[derive(Debug, Deserialize)]
-pub(crate) struct ToCheck {
-    plan: Plan,
-    instance: Option<Instance>,
-}
-
-/// `POST /api/plan/check`.
-pub(crate) async fn check(
-    State(station): State<Arc<Station>>,
-    Sent(asked): Sent<ToCheck>,
-) -> Result<Json<Value>, Failure> {
-    let answer = reading(move || {
-        let config = station.configs.of(asked.instance.as_ref());
-        Ok(check_answer(&asked.plan, config))
-    });
-    Ok(Json(answer.await?))
-}
-
-fn check_answer(plan: &Plan, config: &Config) -> Value {
+/// The answer to a check: problems, remarks, way and ground below it.
+pub(crate) fn check_answer(plan: &Plan, config: &Config) -> Value {
     let (flown, problems) = match checked(plan, config) {
         Ok(flown) => (flown, Vec::new()),
         Err(problems) => (plan.clone(), problems),
@@ -238,70 +208,6 @@ fn loiter_s(loiter: &Loiter, radius_m: f64, mps: f64) -> f64 {
         LoiterEnd::Seconds(seconds) => seconds,
         LoiterEnd::Never | LoiterEnd::Altitude => 0.0,
     }
-}
-
-/// The body of an import.
-#[derive(Debug, Deserialize)]
-pub(crate) struct Imported {
-    text: String,
-    #[serde(default)]
-    name: String,
-}
-
-/// `POST /api/plan/import`.
-pub(crate) async fn import(Sent(imported): Sent<Imported>) -> Result<Json<Value>, Failure> {
-    reading(move || {
-        if imported.text.len() as u64 > limits::FILE_BYTES {
-            return Err(Failure::bad(format!(
-                "{}: is larger than 4 MiB",
-                imported.name
-            )));
-        }
-        let plan = fcc_plan::read(&imported.text).map_err(|problems| {
-            let error = format!("{}: is no plan that can be flown", imported.name);
-            let body = json!({ "error": error, "problems": problems });
-            Failure::with(StatusCode::BAD_REQUEST, body)
-        })?;
-        Ok(Json(json!({ "plan": plan })))
-    })
-    .await
-}
-
-/// The body of an export.
-#[derive(Debug, Deserialize)]
-pub(crate) struct Exported {
-    plan: Plan,
-    format: ExportFormat,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum ExportFormat {
-    Plan,
-    Waypoints,
-}
-
-/// `POST /api/plan/export`.
-pub(crate) async fn export(Sent(exported): Sent<Exported>) -> Result<Response, Failure> {
-    within_limits(&exported.plan).map_err(Failure::bad)?;
-    let (format, kind, name) = match exported.format {
-        ExportFormat::Plan => (
-            Format::QgcPlan,
-            "application/json",
-            "attachment; filename=\"flight.plan\"",
-        ),
-        ExportFormat::Waypoints => (
-            Format::QgcWpl,
-            "text/plain; charset=utf-8",
-            "attachment; filename=\"flight.waypoints\"",
-        ),
-    };
-    let text = fcc_plan::write(&exported.plan, format).map_err(|problems| {
-        let error = "this format has no place for a part of the plan: choose .plan";
-        let body = json!({ "error": error, "problems": problems });
-        Failure::with(StatusCode::BAD_REQUEST, body)
-    })?;
-    Ok(([(CONTENT_TYPE, kind), (CONTENT_DISPOSITION, name)], text).into_response())
 }
 
 #[cfg(test)]

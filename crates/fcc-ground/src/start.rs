@@ -23,11 +23,12 @@ use crate::cli::{Cli, MavlinkIdentity};
 use crate::daemon_config::DaemonConfigs;
 use crate::exit::Exit;
 use crate::failure::THREADS;
-use crate::guard::Hosts;
-use crate::map::MapFile;
+use crate::hosts::Hosts;
+use crate::map_file::MapFile;
 use crate::mavlink;
+use crate::requests::router;
 use crate::server;
-use crate::station::{self, router};
+use crate::station;
 use crate::token::Token;
 
 /// Why the station does not start.

@@ -20,12 +20,13 @@ use fcc_telemetry::Instance;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::commands::{Order, send, utc_ms};
 use crate::failure::{Failure, Sent, aside, reading};
 use crate::files;
 use crate::guard::Peer;
 use crate::live::Feed;
+use crate::orders::{Order, utc_ms};
 use crate::plans::{checked, hash_text};
+use crate::requests::commands::send;
 use crate::station::{Station, instance_of};
 
 const HASH: &str = "desired_plan_hash";

@@ -11,8 +11,9 @@ use fcc_xplane::{DiscoverError, PlantId, XPlaneConfig, discover, plant_at};
 use crate::bench::{Bench, Stop};
 use crate::link::Link;
 use crate::report::{Report, Simulator};
+use crate::result::{Outcome, StepResult};
 use crate::screen::Screen;
-use crate::step::{Outcome, Step, StepResult};
+use crate::step::Step;
 use crate::steps::{NO_ANSWER, STEPS};
 use crate::waits::{FULL, SHORT};
 
@@ -179,7 +180,7 @@ const NOT_READY: &str = "The step could not begin. docs/troubleshooting.md says 
 
 /// Does one step. Returns its result, and whether the check shall end.
 fn carry_out(step: &Step, bench: &mut Bench<'_>) -> (StepResult, bool) {
-    bench.screen.begin(step);
+    bench.screen.begin(step.number, step.title, step.action);
     bench.begin(step.number);
     let began = Instant::now();
     let done = (step.run)(bench);

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 
 use crate::link::Link;
-use crate::step::{Outcome, StepResult};
+use crate::result::{Outcome, StepResult};
 use crate::watched::Watched;
 
 /// The stretch of time from which rates are computed.

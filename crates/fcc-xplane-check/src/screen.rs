@@ -1,7 +1,7 @@
 //! What a program that runs the check provides: where it is shown, and what the
 //! person answers.
 
-use crate::step::{Step, StepResult};
+use crate::result::StepResult;
 
 /// What a person answered.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -16,8 +16,8 @@ pub enum Answer {
 
 /// Shows the check, and passes on answers.
 pub trait Screen {
-    /// A step begins.
-    fn begin(&mut self, step: &Step);
+    /// A step begins: its number, name, and what happens in it.
+    fn begin(&mut self, number: u8, title: &str, action: &str);
     /// Tells the person what to do. `confirm` is whether the check waits for
     /// [`Answer::Done`]; otherwise it sees by itself that it was done.
     fn instruct(&mut self, text: &str, confirm: bool);

@@ -81,7 +81,7 @@ pub(super) fn number(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "give a number".to_owned())
 }
 
-fn number_within(text: &str, least: f64, most: f64, unit: &str) -> Result<f64, String> {
+pub(super) fn number_within(text: &str, least: f64, most: f64, unit: &str) -> Result<f64, String> {
     text.parse::<f64>()
         .ok()
         .filter(|number| (least..=most).contains(number))

@@ -5,9 +5,9 @@ use fcc_timer::RealtimeRequest;
 
 use super::failure::Failure;
 use crate::cli::DoctorArgs;
-use crate::doctor::Diagnosis;
 use crate::exit::Exit;
 use crate::output;
+use fcc_doctor::Diagnosis;
 
 /// Checks the machine, for the configured loop.
 pub(super) fn doctor(args: &DoctorArgs) -> Result<Exit, Failure> {

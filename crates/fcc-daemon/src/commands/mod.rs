@@ -1,6 +1,7 @@
 //! The commands: each prints its result on standard output and messages on
 //! standard error, and returns an exit code.
 
+mod airframe;
 mod answers;
 mod calibrate;
 mod check;
@@ -115,6 +116,7 @@ fn carry_out(command: Action) -> Result<Exit, Failure> {
         Action::Calibrate(args) => calibrate::calibrate(&args)?,
         Action::Check(args) => check::check(&args),
         Action::CheckControls(args) => check_controls::check_controls(&args)?,
+        Action::Airframe(args) => airframe::airframe(&args)?,
         Action::Doctor(args) => doctor::doctor(&args)?,
         Action::Probe(args) => probe::probe(&args)?,
         Action::Plan(args) => plan::plan(&args)?,

@@ -2,6 +2,5 @@
 #![cfg(test)]
 
 mod command_line;
-mod doctor;
 mod replay;
 mod report;

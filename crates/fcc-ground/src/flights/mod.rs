@@ -3,7 +3,7 @@
 mod compare;
 mod export;
 mod scan;
-mod summaries;
+pub(crate) mod summaries;
 mod summary;
 
 use std::collections::BTreeSet;
@@ -35,7 +35,6 @@ use crate::plans::hash_text;
 use crate::station::Station;
 use export::PART_BYTES;
 use scan::MOST_VALUES;
-pub(crate) use summaries::Summaries;
 
 /// Of a report: what it may do where it is shown. It has its styles and scripts in itself,
 /// and texts of a recording; it gets nothing of this page.

@@ -16,9 +16,9 @@ use fcc_plan::Plan;
 use fcc_telemetry::Instance;
 use fcc_telemetry::units::number;
 
-use crate::commands::{Order, utc_ms};
 use crate::failure::Failure;
 use crate::files;
+use crate::orders::{Order, utc_ms};
 use crate::station::Station;
 use crate::upload::{Upload, content};
 

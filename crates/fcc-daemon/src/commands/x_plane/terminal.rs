@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Receiver;
 
-use fcc_xplane_check::{Answer, Outcome, Screen, Step, StepResult};
+use fcc_xplane_check::{Answer, Outcome, Screen, StepResult};
 use indicatif::ProgressBar;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP};
 
@@ -73,10 +73,10 @@ impl Drop for Terminal {
 }
 
 impl Screen for Terminal {
-    fn begin(&mut self, step: &Step) {
-        self.print(&format!("\n{:2}. {}", step.number, step.title));
+    fn begin(&mut self, number: u8, title: &str, action: &str) {
+        self.print(&format!("\n{number:2}. {title}"));
         if self.answers.is_some() {
-            self.print(&format!("    {}", step.action));
+            self.print(&format!("    {action}"));
         }
     }
 

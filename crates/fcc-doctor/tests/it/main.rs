@@ -1,4 +1,5 @@
 //! `fccd doctor`, on machines modelled by folders.
+#![cfg(test)]
 
 mod cpus;
 mod kernel;
@@ -6,7 +7,7 @@ mod machines;
 
 use std::path::Path;
 
-use fcc_daemon::doctor::{Diagnosis, Finding, Grade};
+use fcc_doctor::{Diagnosis, Finding, Grade};
 use fcc_timer::{CpuRequest, RealtimeRequest};
 use machines::{BEAGLEBONE, PI_4, VIRTUAL, machine, put};
 use proptest::prelude::*;

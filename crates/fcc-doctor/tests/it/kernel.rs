@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use fcc_daemon::doctor::Grade;
+use fcc_doctor::Grade;
 
-use crate::doctor::machines::{BEAGLEBONE, PI_4, VIRTUAL, machine, put};
-use crate::doctor::{check, finding, ids, lines};
+use crate::machines::{BEAGLEBONE, PI_4, VIRTUAL, machine, put};
+use crate::{check, finding, ids, lines};
 
 /// The options are from the kernel's admin-guide/kernel-parameters.
 #[test]

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use fcc_daemon::doctor::{Diagnosis, Grade};
+use fcc_doctor::{Diagnosis, Grade};
 use fcc_timer::CpuRequest;
 
-use crate::doctor::machines::{PI_4, VIRTUAL, machine, put};
-use crate::doctor::{check, check_for, finding, lines};
+use crate::machines::{PI_4, VIRTUAL, machine, put};
+use crate::{check, check_for, finding, lines};
 
 const DISK_ON_CPU_1: &str = "           CPU0       CPU1\n\
      \x2034:        404          0 PCI-MSIX-0000:00:05.0   1-edge      virtio4-input\n\

@@ -1,8 +1,6 @@
 //! The user's own map, and the ground below.
 
-use std::fs::File;
 use std::os::unix::fs::FileExt as _;
-use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use axum::Json;
@@ -23,33 +21,6 @@ const MOST_BYTES: u64 = 4 << 20;
 const MOST_CELLS: usize = 256;
 /// Degrees of an area, at most.
 const MOST_DEGREES: f64 = 4.0;
-
-/// A map in one file.
-#[derive(Debug)]
-pub(crate) struct MapFile {
-    path: PathBuf,
-    file: File,
-    attribution: String,
-}
-
-impl MapFile {
-    /// # Errors
-    /// When it cannot be opened, or is none.
-    pub(crate) fn open(path: &Path, attribution: &str) -> Result<Self, String> {
-        let failed = |error| format!("{}: {error}", path.display());
-        let file = File::open(path).map_err(failed)?;
-        let mut begin = [0_u8; 7];
-        file.read_exact_at(&mut begin, 0).map_err(failed)?;
-        if begin != *b"PMTiles" {
-            return Err(format!("{}: is no PMTiles file", path.display()));
-        }
-        Ok(Self {
-            path: path.to_owned(),
-            file,
-            attribution: attribution.to_owned(),
-        })
-    }
-}
 
 /// `GET /api/map`.
 pub(crate) async fn map(State(station): State<Arc<Station>>) -> Json<Value> {
