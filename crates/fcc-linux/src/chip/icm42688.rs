@@ -41,6 +41,10 @@ const GYRO_CONFIG: u8 = 0x4F;
 const ACCEL_CONFIG: u8 = 0x50;
 /// ±2000 °/s or ±16 g, and 1 kHz.
 const WIDEST_1_KHZ: u8 = 0x06;
+const INTF_CONFIG1: u8 = 0x4D;
+/// What it has after a reset (0x91), but never another noise mode: at that change, near
+/// 100 °/s, it repeats its samples (ArduPilot #25025, bits 7 and 6).
+const ONE_NOISE_MODE: u8 = 0x51;
 const FIFO_CONFIG1: u8 = 0x5F;
 /// Packets with acceleration, turn rates and temperature: structure 3.
 const FIFO_ALL: u8 = 0x07;
@@ -195,6 +199,7 @@ impl<R: Registers> Icm42688<R> {
         registers.configure(&[
             (GYRO_CONFIG, WIDEST_1_KHZ),
             (ACCEL_CONFIG, WIDEST_1_KHZ),
+            (INTF_CONFIG1, ONE_NOISE_MODE),
             (FIFO_CONFIG1, FIFO_ALL),
             (FIFO_CONFIG, FIFO_STREAM),
             (POWER, LOW_NOISE),

@@ -53,6 +53,7 @@ fn an_icm42688_gives_the_mean_of_its_fifo() {
         (0x4F, 0x06),
         (0x50, 0x06),
         (0x16, 0x40),
+        (0x4D, 0x51),
         (0x5F, 0x07),
     ] {
         assert_eq!(board.state().registers[&register], value, "{register:#x}");
