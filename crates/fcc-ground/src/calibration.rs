@@ -132,7 +132,7 @@ pub(crate) async fn begin(
         )));
     }
     if kind.starts_with('-') {
-        return Err(Failure::bad("kind: is the name of a calibration"));
+        return Err(Failure::bad("kind: give the name of a calibration"));
     }
     let mut course = station.calibration.locked();
     if course.interrupt.is_some() {
