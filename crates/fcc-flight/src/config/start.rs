@@ -17,8 +17,8 @@ impl Config {
         {
             remarks.push(
                 "navigation.method computes attitude from raw readings, and built-in.raw_sensors \
-                 is \"none\": nothing will engage; choose \"board\" or \"phone\" for them, or \
-                 \"measured\" for the method"
+                 is \"none\", its default: nothing will engage; choose \"board\" or \"phone\" for \
+                 them, or \"measured\" for the method"
                     .to_owned(),
             );
         }
@@ -35,8 +35,8 @@ impl Config {
             && self.navigation.method == NavigationMethod::Measured
         {
             remarks.push(
-                "the sensors of a board give raw readings, and navigation.method is \"measured\": \
-                 nothing will engage; choose \"kalman\""
+                "the sensors of a board give raw readings, and navigation.method is \"measured\", \
+                 its default: nothing will engage; choose \"kalman\""
                     .to_owned(),
             );
         }
