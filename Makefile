@@ -282,6 +282,7 @@ clippy: $(STAMPS)/rust
 	cargo fmt --all --check
 	./scripts/structure
 	./scripts/words
+	./scripts/messages --check
 	cargo clippy --locked --workspace --all-targets --all-features -- -D warnings
 
 lint-rust: clippy
@@ -289,9 +290,9 @@ lint-rust: clippy
 
 lint-python: tested $(STAMPS)/playwright
 	$(PYTHON) -m ruff check hil deploy web
-	$(PYTHON) -m ruff check --config hil/pyproject.toml crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check scripts/structure scripts/words scripts/book
+	$(PYTHON) -m ruff check --config hil/pyproject.toml crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check scripts/structure scripts/words scripts/messages scripts/book
 	$(PYTHON) -m ruff format --check hil deploy web
-	$(PYTHON) -m ruff format --config hil/pyproject.toml --check crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check scripts/structure scripts/words scripts/book
+	$(PYTHON) -m ruff format --config hil/pyproject.toml --check crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check scripts/structure scripts/words scripts/messages scripts/book
 	cd hil && ../$(PYTHON) -m mypy
 	cd deploy/vm && MYPYPATH=../../hil/tests ../../$(PYTHON) -m mypy --config-file ../../hil/pyproject.toml .
 	cd web/tests && MYPYPATH=../../hil/tests ../../$(PYTHON) -m mypy --config-file ../../hil/pyproject.toml *.py

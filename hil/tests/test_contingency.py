@@ -67,7 +67,7 @@ def test_a_commander_is_lost(seed: int) -> None:
     reckoned, watch = contingency_flight.lose_commander(seed, wind_kt=WIND_KT, promised_s=10.0)
     print(f"\nseed {seed}, lost after {watch.lost_after_s:.0f} s: {reckoned}")
     assert watch.modes == ["plan", "return"]
-    assert "the commander is not heard as promised: returning" in watch.events
+    assert "command link lost, no heartbeat in time: returning" in watch.events
     assert reckoned.off_circle_m <= 0.05 * contingency_flight.CIRCLE_M
 
 

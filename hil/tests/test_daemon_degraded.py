@@ -198,7 +198,7 @@ def test_what_is_good_again_is_flown_on(flown: dict[str, Degraded], name: str) -
     lasted_s = flight.times("failsafe -> engaged")[0] - flight.times("engaged -> failsafe")[0]
     # Good for 2 s.
     assert LOST_FOR_S + 1.2 < lasted_s < LOST_FOR_S + 3.0
-    assert flight.times("all is good again")
+    assert flight.times("failsafe cleared")
     # It turns on.
     turns_deg = flight.since(LOST_AT_S + LOST_FOR_S).between("roll_deg", 5.5, 6.5)
     assert np.min(turns_deg) > 25.0

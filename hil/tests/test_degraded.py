@@ -104,7 +104,7 @@ def test_what_is_left_is_held_and_then_the_pattern_is_flown_on(name: str) -> Non
     if name in PITCH_AND_POWER:
         assert np.ptp(flight.between("throttle", LEVEL_AFTER_S, LOST_FOR_S)) < 0.01
     # Good for 2 s: the same leg, its heading and its altitude.
-    assert flight.when("all is good again") == pytest.approx(LOST_FOR_S + 2.0, abs=0.1)
+    assert flight.when("failsafe cleared") == pytest.approx(LOST_FOR_S + 2.0, abs=0.1)
     assert flight.when("failsafe -> engaged") == pytest.approx(LOST_FOR_S + 2.0, abs=0.1)
     assert not [text for _, text in flight.events() if text.startswith("mode: ")]
     captured = flight.rig.truth().captured_at(flight.began_s)

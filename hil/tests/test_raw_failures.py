@@ -332,7 +332,7 @@ def test_what_repeats_itself_is_named(fault: Fault, named: str) -> None:
 def test_what_returns_is_flown_with_again(fault: Fault, for_s: float) -> None:
     machine, rig, most = fly(fault, for_s)
     assert machine.state == "engaged"
-    assert any("all is good again" in event.text for event in rig.events)
+    assert any("failsafe cleared" in event.text for event in rig.events)
     assert most["bank"] <= 60.0
     assert most["height"] >= 500.0
 

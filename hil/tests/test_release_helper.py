@@ -158,7 +158,7 @@ def test_a_helper_that_does_not_read_is_replaced(fccd: Path, tmp_path: Path) -> 
         (helper,) = daemon.helpers()
         os.kill(helper, signal.SIGSTOP)
         engage(simulator, daemon)
-        daemon.wait_for("the release helper did not read what it was told, and was started again")
+        daemon.wait_for("the release helper did not read its input, and was started again")
         (other,) = daemon.helpers()
         assert other != helper
         daemon.end(signal.SIGKILL)

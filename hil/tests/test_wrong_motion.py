@@ -98,7 +98,7 @@ def test_a_wrong_attitude_is_doubted_and_flown_on_without(break_it: Break, sever
     flown.stayed_inside()
     assert flown.said(*OTHERS, RATES) == []
     assert BEGINS_S < flown.when(ATTITUDE) < BEGINS_S + 10.0
-    assert flown.when("all is good again") < BEGINS_S + LASTS_S + 20.0
+    assert flown.when("failsafe cleared") < BEGINS_S + LASTS_S + 20.0
 
 
 @pytest.mark.parametrize("severity", [0, 3])
@@ -118,7 +118,7 @@ def test_wrong_body_rates_are_doubted_and_flown_on_without(break_it: Break, seve
     flown.stayed_inside()
     assert flown.said(*OTHERS, ATTITUDE) == []
     assert BEGINS_S < flown.when(RATES) < BEGINS_S + LASTS_S
-    assert flown.when("all is good again") < BEGINS_S + LASTS_S + 20.0
+    assert flown.when("failsafe cleared") < BEGINS_S + LASTS_S + 20.0
 
 
 def test_an_offset_of_2_degrees_per_second_is_flown() -> None:

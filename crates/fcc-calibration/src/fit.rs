@@ -73,8 +73,8 @@ impl core::fmt::Display for FitError {
             Self::NotFinite => f.write_str("a sample is not finite"),
             Self::OtherUnit(given, wanted) => write!(
                 f,
-                "the samples have a strength of about {given:.3}, and strength is {wanted}: give \
-                 both in one unit, such as m/s² (not g) or µT (not gauss or nT)"
+                "the samples have a strength of about {given:.3}, and {wanted} was given as \
+                 strength: give both in one unit, such as m/s² (not g) or µT (not gauss or nT)"
             ),
             Self::Outlier(at, by) => write!(
                 f,

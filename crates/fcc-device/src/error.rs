@@ -63,7 +63,7 @@ pub enum DeviceError {
         age_s: f64,
     },
     /// It gives nothing any more.
-    #[error("{device}: it has given nothing for {after:?}, and is opened anew")]
+    #[error("{device}: it has given nothing for {} s, and is opened anew", after.as_secs_f64())]
     Stalled {
         /// Which.
         device: String,

@@ -248,7 +248,7 @@ impl<'a> Upload<'a> {
         again.ok_or_else(|| {
             let seconds = BACK_WITHIN.as_secs();
             let restored = match restore() {
-                Ok(()) => "its plan is the one before again".to_owned(),
+                Ok(()) => "its file has the plan from before again".to_owned(),
                 Err(error) => format!("{}: cannot be restored: {error}", plan_file.display()),
             };
             Failure::refused(format!(

@@ -225,7 +225,7 @@ impl EventQueue {
             (0.., 0..) => Ok(1e6 / f64::from(period_us.max(1))),
             (error, 0..) | (_, error) => Err(refused(
                 self.device,
-                format!("Android refuses {rate_hz} events a second (error {error})"),
+                format!("Android refuses {rate_hz:.0} events a second (error {error})"),
             )),
         }
     }

@@ -104,7 +104,7 @@ fn room(leg: &Leg, next: &Leg, begins_m: f64, turn: &Turn) -> Option<(&'static s
         // Of a leg that the turn before it fills, that one is told.
         let room_m = room_m.max(0.0);
         let has = if which == "before" && begins_m > 0.0 {
-            "of which the turn at its begin leaves"
+            "of which the turn at its start leaves"
         } else {
             "which has"
         };

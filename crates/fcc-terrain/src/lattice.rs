@@ -117,7 +117,7 @@ impl Grid {
         }
         if !(LOWEST_M..=HIGHEST_M).contains(&height_m) {
             return Err(format!(
-                "row {row}, column {column}: {height_m} is no height in m: are the bytes in \
+                "row {row}, column {column}: {height_m:.0} is no height in m: are the bytes in \
                  another order, the unit another one, or a void not declared?"
             ));
         }

@@ -138,7 +138,7 @@ pub enum TimerError {
         source: std::io::Error,
     },
     /// The period is outside what a timer can serve.
-    #[error("a period of {0:?} cannot be timed: choose one between 10 µs and 1 hour")]
+    #[error("a period of {} s cannot be timed: choose one between 10 µs and 1 hour", .0.as_secs_f64())]
     Period(Duration),
     /// An early-wake value that is out of its range.
     #[error("early wake: {0}")]

@@ -97,7 +97,8 @@ pub(crate) fn open<'a>(
     }
     let daemons = request.x_plane.local_port;
     UdpSocket::bind((Ipv4Addr::UNSPECIFIED, daemons)).map_err(io(format!(
-        "fccd cannot receive on x-plane.local_port, {daemons}"
+        "fccd cannot receive on x-plane.local_port, {daemons}: end the program that has it, or \
+         choose another port"
     )))?;
     let port = request.local_port;
     let link = Link::open(address, &request.x_plane, port)

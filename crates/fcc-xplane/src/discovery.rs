@@ -32,8 +32,9 @@ pub enum DiscoverError {
     },
     /// No beacon arrived.
     #[error(
-        "no X-Plane announced itself on {group} within {waited:?}: start X-Plane, or give its \
-         address (some networks do not carry multicast)"
+        "no X-Plane announced itself on {group} within {} s: start X-Plane, or give its address \
+         (some networks do not carry multicast)",
+        waited.as_secs_f64()
     )]
     NotFound {
         /// The multicast group and port.

@@ -115,7 +115,7 @@ impl fmt::Display for Refusal {
             ),
             Self::Turned { turned_rad } => write!(
                 f,
-                "it was turned by {:.1}° while it was to lie still",
+                "it was turned by {:.1}° while it was to lie still: take your hands off",
                 turned_rad.to_degrees()
             ),
             Self::TooLarge { axis, given, most } => write!(
@@ -136,12 +136,12 @@ impl fmt::Display for Refusal {
             ),
             Self::Strength { measured, expected } => write!(
                 f,
-                "the strength is {measured:.2}, and {expected:.2} is there: go away from steel and \
-                 magnets, or calibrate the accelerometer first"
+                "a strength of {measured:.2} is measured, and {expected:.2} is expected here: go \
+                 away from steel and magnets, or calibrate the accelerometer first"
             ),
             Self::Gaps { most_s } => write!(
                 f,
-                "readings of the gyroscope were more than {most_s} s apart in a turn: its rate, or \
+                "readings of the gyroscope were more than {most_s:.2} s apart in a turn: its rate, or \
                  that of the loop, is too low, or the machine is busy"
             ),
             Self::NotTurned => f.write_str(
@@ -149,7 +149,7 @@ impl fmt::Display for Refusal {
                  range (turn it slower), or mounted in another way than the accelerometer",
             ),
             Self::NotRaised => f.write_str(
-                "the attitudes are not those of a level aircraft and one with its nose up",
+                "the attitudes are not those of a level aircraft and one with its nose up: repeat both",
             ),
             Self::Fit(error) => error.fmt(f),
             Self::Poor { error, limit } => write!(

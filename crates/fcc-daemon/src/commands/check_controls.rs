@@ -18,7 +18,7 @@ use crate::output;
 use crate::process::Process;
 
 const KEYS: &str = "y, Enter: yes; o, Enter: it went the other way; n, Enter: it did not move, or \
-                    another control did; q, Enter: end.";
+                    another control did; q, Enter: end";
 
 /// Moves the controls, and prints what they did.
 pub(super) fn check_controls(args: &CheckControlsArgs) -> Result<Exit, Failure> {

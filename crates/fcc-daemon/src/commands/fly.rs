@@ -162,9 +162,10 @@ pub(super) fn use_plan(config: &mut Config, file: Option<&Path>) -> Result<(), F
     }
     let now = SystemTime::now().duration_since(UNIX_EPOCH);
     let now_s = now.map_or(0, |since| since.as_secs());
-    config
-        .load_plan(now_s)
-        .map_err(|error| Failure::of(Exit::Usage, error))
+    config.load_plan(now_s).map_err(|error| match file {
+        Some(_) => Failure::of(Exit::Usage, error),
+        None => Failure::of(Exit::Usage, format_args!("plan.file: {error}")),
+    })
 }
 
 /// The command line has priority over the file.

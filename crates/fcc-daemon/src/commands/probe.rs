@@ -40,7 +40,11 @@ fn text(found: &[Connected]) -> String {
         lengths.max().unwrap_or_default()
     };
     let (at, name) = (width(|one| &one.at), width(|one| &one.name));
-    let mut text = String::new();
+    let usable = found.iter().filter(|one| one.entry.is_some()).count();
+    let mut text = format!(
+        "{usable} of {} devices found can be configured:\n\n",
+        found.len()
+    );
     for one in found {
         let _ = writeln!(text, "{:at$}  {:name$}  {}", one.at, one.name, one.remark);
         for line in one.values.iter().flat_map(measured) {

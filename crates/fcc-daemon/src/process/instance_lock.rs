@@ -173,7 +173,7 @@ impl InstanceLock {
         let told = PlantFile::open(&folder, &unique).map_err(|error| error.to_string())?;
         reserve(&told, plant);
         if !self.notice.replace_file(plant, told, held) {
-            return Err("that happened too often".to_owned());
+            return Err("it was removed too often: find the program that removes it".to_owned());
         }
         self.folder = Some(folder);
         Ok(locked)

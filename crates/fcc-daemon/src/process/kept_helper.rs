@@ -89,7 +89,7 @@ impl KeptHelper {
         let ended = match self.helper.as_mut().map(ReleaseHelper::has_ended) {
             Some(true) => Some("the release helper had ended, and was started again"),
             Some(false) if !self.has_read(notice) => {
-                Some("the release helper did not read what it was told, and was started again")
+                Some("the release helper did not read its input, and was started again")
             }
             Some(false) => return false,
             None => None,

@@ -324,7 +324,7 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
     let what = match Contingency::from_number(which).unwrap_or_default() {
         Contingency::None => "there is a position again",
         Contingency::PositionLost => "there is no position for too long",
-        Contingency::CommanderLost => "the commander is not heard as promised",
+        Contingency::CommanderLost => "command link lost, no heartbeat in time",
         Contingency::Fence if notice.item == ContingencyAction::Continue as u16 + 1 => {
             "the fence is crossed"
         }

@@ -22,12 +22,10 @@ pub(super) fn write(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result 
         ),
         degraded::GOOD_AGAIN => write!(
             f,
-            "all is good again: back to what was flown {lasted_s:.1} s ago"
+            "failsafe cleared after {lasted_s:.1} s: back to what was flown before"
         ),
         degraded::FLOWN_OTHERWISE => receiver::write(notice, f).unwrap_or_else(|| {
-            f.write_str(
-                "nothing can be held any longer: gliding in a gentle turn, with idle throttle",
-            )
+            f.write_str("no control law is left: gliding in a gentle turn, with idle throttle")
         }),
         routing::ITEM_REACHED if notice.item == 0 => {
             f.write_str("the plan is flown to its end: circling")

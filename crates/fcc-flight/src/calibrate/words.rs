@@ -9,7 +9,7 @@ pub const fn beforehand(kind: CalibrationKind, extent: Extent) -> &'static str {
     match kind {
         CalibrationKind::Accelerometer => {
             "Hold the sensor still with each of its six faces up, and with six of its edges, 3 s \
-             each. Lean it against something firm: a hand trembles."
+             each. Lean it against something firm: no hand is still enough."
         }
         CalibrationKind::Gyroscope => match extent {
             Extent::Whole => {

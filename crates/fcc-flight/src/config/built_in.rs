@@ -169,7 +169,7 @@ impl BuiltInSection {
         let (airspeed_kt, altitude_ft) = (self.airspeed_kt, self.altitude_ft);
         let why = match error {
             TrimError::Throttle { throttle, .. } => format!(
-                "at {altitude_ft} ft level flight takes a throttle of {throttle:.2}, and there is \
+                "at {altitude_ft:.0} ft level flight takes a throttle of {throttle:.2}, and there is \
                  0 to 1: choose a lower airspeed or altitude"
             ),
             other => other.to_string(),

@@ -263,7 +263,8 @@ mod tests {
     fn a_contradiction_of_two_keys_is_at_the_one_that_is_written() {
         let never = "[built-in]\n[autopilot.envelope]\nnever_exceed_airspeed_kt = 100\n";
         let words = "test:3: autopilot.envelope.never_exceed_airspeed_kt: contradicts \
-                     autopilot.envelope.max_airspeed_kt, which is 135: choose at most";
+                     autopilot.envelope.max_airspeed_kt, which is 135 by default, not in the file: \
+                     choose at most";
         assert!(message(never).contains(words), "{}", message(never));
     }
 
@@ -272,7 +273,10 @@ mod tests {
     fn a_tick_reads_all_datagrams_that_arrive_in_a_period() {
         let few = message("[x-plane]\nrate_hz = 1000\n[loop]\nrate_hz = 20\n");
         assert!(
-            few.starts_with("test:1: x-plane.datagrams_per_tick: is 128: choose at least 200 ="),
+            few.starts_with(
+                "test:1: x-plane.datagrams_per_tick: is 128 by default, not in \
+                 the file: choose at least 200 ="
+            ),
             "{few}"
         );
         let one = "[built-in]\n[[sensor]]\nkind = \"x-plane\"\ndatagrams_per_tick = ";

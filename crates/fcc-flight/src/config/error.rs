@@ -47,7 +47,7 @@ impl ConfigError {
             problems: vec![Problem {
                 line: Some(line),
                 key: None,
-                message: "is not UTF-8: save the file as UTF-8 text".to_owned(),
+                message: "is not UTF-8: give a configuration, saved as UTF-8 text".to_owned(),
             }],
         }
     }

@@ -200,8 +200,8 @@ impl Config {
                         .map(|problem| of_key(format!("{file}: {problem}")))
                         .collect(),
                     other => vec![of_key(format!(
-                        "{other}: a relative path begins in the folder where the program is \
-                         started"
+                        "{other} (a relative path begins in the folder where the program is \
+                         started)"
                     ))],
                 },
             }),

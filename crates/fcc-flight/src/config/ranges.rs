@@ -171,10 +171,21 @@ pub(super) fn check(config: &Config, places: &Places<'_>, unread: &[Problem]) ->
                 [_, other] if !places.has(first) && places.has(other) => other,
                 _ => first,
             };
+            // One key alone contradicts no other.
+            let mut absent = if keys.len() > 1 { keys } else { &[] };
+            if let [_, rest @ ..] = absent
+                && !places.has(first)
+                && message.starts_with("is ")
+            {
+                // Behind the value, with which the message begins.
+                let end = message.find([':', ',']).unwrap_or(message.len());
+                message.insert_str(end, " by default, not in the file");
+                absent = rest;
+            }
             if written != first {
                 message = format!("contradicts {first}, which {message}");
             }
-            message.push_str(&defaults(config, places, keys));
+            message.push_str(&defaults(config, places, absent));
             others.push(problem_at(places, written, message));
         }
     });
@@ -188,8 +199,7 @@ pub(super) fn check(config: &Config, places: &Places<'_>, unread: &[Problem]) ->
 
 /// The values of these keys that the text does not contain, for the end of a message.
 fn defaults(config: &Config, places: &Places<'_>, keys: &[&str]) -> String {
-    // One key alone contradicts no other.
-    let absent = keys.iter().filter(|key| keys.len() > 1 && !places.has(key));
+    let absent = keys.iter().filter(|key| !places.has(key));
     let values = absent.filter_map(|key| Some((key, config.value(key).ok()?)));
     let texts = values.map(|(key, value)| format!("; {key} = {value} by default, not in the file"));
     texts.collect()

@@ -105,7 +105,7 @@ pub(super) fn without_effect(config: &Config, places: &Places<'_>) -> Vec<String
         }
     };
     if config.built_in.is_some() && !has_raw {
-        let why = "built-in.raw_sensors is \"none\", so there is nothing to calibrate";
+        let why = "built-in.raw_sensors is \"none\", its default: there is nothing to calibrate";
         say("built-in.calibration", why);
     }
     let of_the_filter = [
@@ -116,7 +116,8 @@ pub(super) fn without_effect(config: &Config, places: &Places<'_>) -> Vec<String
     match config.navigation.method {
         NavigationMethod::Measured => {
             for key in of_the_filter {
-                let why = "navigation.method is \"measured\", so sensors measure attitude";
+                let why =
+                    "navigation.method is \"measured\", its default: sensors measure attitude";
                 say(key, why);
             }
         }

@@ -39,7 +39,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     if silent_s * 1e3 < max_age_ms as f64 {
         let message = format!(
             "is {silent_s}: choose at least {}, which is failsafe.sensor_max_age_ms in s",
-            max_age_ms as f64 * 1e-3
+            max_age_ms as f64 / 1e3
         );
         let keys = ["failsafe.all_silent_s", "failsafe.sensor_max_age_ms"];
         report(&keys, message);
@@ -126,27 +126,29 @@ const MARGINS: f64 = 3.0;
 /// Whether there is an airspeed to hold below the never-exceed speed.
 fn has_airspeeds(
     envelope: &EnvelopeSection,
-    least_never_kt: f64,
+    least_never: f64,
     at: &mut impl FnMut(&[&str], f64, String),
 ) -> bool {
     let (never, stall) = (
         envelope.never_exceed_airspeed_kt,
         envelope.stall_airspeed_kt,
     );
-    if never >= least_never_kt {
+    if never >= least_never {
         return true;
     }
     let wanted = format!(
-        "at least {least_never_kt:.1}: {OVER_STALL} times stall_airspeed_kt, {stall}, and \
-         {MARGINS} times airspeed_margin_kt, {}, or there is no airspeed to hold",
+        "at least {least_never}, which is {OVER_STALL} times stall_airspeed_kt ({stall}) and \
+         {MARGINS} times airspeed_margin_kt ({}), or no airspeed is left to hold",
         envelope.airspeed_margin_kt
     );
-    at(
-        &["never_exceed_airspeed_kt", "stall_airspeed_kt"],
-        never,
-        wanted,
-    );
+    let [never_kt, stall_kt] = ["never_exceed_airspeed_kt", "stall_airspeed_kt"];
+    at(&[never_kt, stall_kt, "airspeed_margin_kt"], never, wanted);
     false
+}
+
+/// A limit as it is shown, so that what a message permits is accepted.
+fn tenths(kt: f64) -> f64 {
+    (kt * 10.0).round() / 10.0
 }
 
 /// Of `[autopilot.envelope]`: an envelope in which an aircraft can fly, and of the airspeeds
@@ -165,8 +167,9 @@ fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&[&str], Strin
         let keys: Vec<_> = keys.iter().map(String::as_str).collect();
         report(&keys, format!("is {value}: choose {wanted}"));
     };
-    let (above_stall, room) = (OVER_STALL * stall, MARGINS * envelope.airspeed_margin_kt);
-    if !has_airspeeds(envelope, above_stall + room, &mut at) {
+    let above_stall = tenths(OVER_STALL * stall);
+    let room = MARGINS * envelope.airspeed_margin_kt;
+    if !has_airspeeds(envelope, tenths(above_stall + room), &mut at) {
         return;
     }
     if least >= most {
@@ -177,14 +180,14 @@ fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&[&str], Strin
         );
         return;
     }
-    if most < least + room {
+    if most < tenths(least + room) {
         at(
             &["max_airspeed_kt", "min_airspeed_kt", "airspeed_margin_kt"],
             most,
             format!(
-                "at least {:.1}: min_airspeed_kt, {least}, and {MARGINS} times airspeed_margin_kt, \
-                 {}, or there is no airspeed to hold",
-                least + room,
+                "at least {}, which is min_airspeed_kt ({least}) and {MARGINS} times \
+                 airspeed_margin_kt ({}), or no airspeed is left to hold",
+                tenths(least + room),
                 envelope.airspeed_margin_kt
             ),
         );
@@ -193,7 +196,7 @@ fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&[&str], Strin
         at(
             &["min_airspeed_kt", "stall_airspeed_kt"],
             least,
-            format!("at least {above_stall:.1}: {OVER_STALL} times stall_airspeed_kt, {stall}"),
+            format!("at least {above_stall}: {OVER_STALL} times stall_airspeed_kt, {stall}"),
         );
     }
     if most > never {
@@ -206,8 +209,8 @@ fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&[&str], Strin
     loads(envelope, &mut at);
     let runway = &autopilot.runway;
     let over_stall = |times: f64| {
-        let times_of = format!("{times} times ");
-        (times * stall, times_of, "envelope.stall_airspeed_kt")
+        let (lowest, times) = (tenths(times * stall), format!("{times} times "));
+        (lowest, times, "envelope.stall_airspeed_kt")
     };
     let slowest = (least, String::new(), "envelope.min_airspeed_kt");
     let mut approach = over_stall(APPROACH_OVER_STALL);
@@ -245,7 +248,7 @@ fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&[&str], Strin
     ] {
         if lowest <= highest && !(lowest..=highest).contains(&value) {
             let keys = [key, of, to].map(|key| format!("autopilot.{key}"));
-            let range = format!("{lowest:.1} to {highest}: {times}{of} to {to}");
+            let range = format!("{lowest} to {highest}: {times}{of} to {to}");
             report(
                 &keys.each_ref().map(String::as_str),
                 format!("is {value}: choose {range}"),
@@ -354,7 +357,7 @@ fn built_in(config: &Config, report: &mut impl FnMut(&[&str], String)) {
 
 fn overload(config: &Config, report: &mut impl FnMut(&[&str], String)) {
     let section = &config.overload;
-    let skip_after_s = section.skip_after_ms as f64 * 1e-3;
+    let skip_after_s = section.skip_after_ms as f64 / 1e3;
     if section.stop_after_s > 0.0 && section.stop_after_s < skip_after_s {
         report(
             &["overload.stop_after_s", "overload.skip_after_ms"],

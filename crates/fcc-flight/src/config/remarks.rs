@@ -34,6 +34,7 @@ impl Config {
         }
         let sensors: Vec<_> = self.sensors().enumerate().collect();
         let most = self.failsafe.sensor_max_age_ms;
+        let by_default = |key: &str| if places.has(key) { "" } else { " by default" };
         // After the last there is no other to fall back to.
         for (at, sensor) in sensors.iter().rev().skip(1).rev() {
             let of_x_plane = |section: &XPlaneSection| section.fallback_after_ms;
@@ -58,8 +59,10 @@ impl Config {
             };
             if let Some(fallback_ms) = fallback_ms.filter(|after_ms| *after_ms >= most) {
                 remarks.push(format!(
-                    "{key}.fallback_after_ms is {fallback_ms}, failsafe.sensor_max_age_ms is {most}: if this \
-                     sensor is lost, failsafe comes before the next sensor is used; choose less"
+                    "{key}.fallback_after_ms is {fallback_ms}{}, failsafe.sensor_max_age_ms is {most}{}: if this \
+                     sensor is lost, failsafe comes before the next sensor is used; choose less",
+                    by_default(&format!("{key}.fallback_after_ms")),
+                    by_default("failsafe.sensor_max_age_ms")
                 ));
             }
         }

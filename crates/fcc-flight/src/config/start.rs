@@ -3,7 +3,7 @@
 use fcc_fixed_wing::AutopilotConfig;
 
 use super::x_plane::InputChoice;
-use super::{Config, NavigationMethod, RawSensorsChoice};
+use super::{BuiltInSection, Config, NavigationMethod, RawSensorsChoice};
 
 impl Config {
     /// What keeps the aircraft from engaging, what is watched and not measured, and what is
@@ -17,8 +17,8 @@ impl Config {
         {
             remarks.push(
                 "navigation.method computes attitude from raw readings, and built-in.raw_sensors \
-                 is \"none\": nothing will engage; choose \"board\" or \"phone\" for them, or \
-                 \"measured\" for the method"
+                 is \"none\", its default: nothing will engage; choose \"board\" or \"phone\" for \
+                 them, or \"measured\" for the method"
                     .to_owned(),
             );
         }
@@ -35,8 +35,8 @@ impl Config {
             && self.navigation.method == NavigationMethod::Measured
         {
             remarks.push(
-                "the sensors of a board give raw readings, and navigation.method is \"measured\": \
-                 nothing will engage; choose \"kalman\""
+                "the sensors of a board give raw readings, and navigation.method is \"measured\", \
+                 its default: nothing will engage; choose \"kalman\""
                     .to_owned(),
             );
         }
@@ -63,9 +63,11 @@ impl Config {
             envelope.min_airspeed_kt,
             envelope.max_airspeed_kt,
         );
+        let is_default = at == BuiltInSection::default().airspeed_kt;
+        let default = if is_default { ", the default" } else { "" };
         (!(least..=most).contains(&at)).then(|| {
             format!(
-                "built-in.airspeed_kt is {at}, and the envelope's airspeeds are {least} to {most} \
+                "built-in.airspeed_kt is {at}{default}, and the envelope's airspeeds are {least} to {most} \
                  kt: engaging is refused until the aircraft flies within them"
             )
         })

@@ -40,7 +40,7 @@ pub(crate) async fn begin(
         )));
     }
     if kind.starts_with('-') {
-        return Err(Failure::bad("kind: is the name of a calibration"));
+        return Err(Failure::bad("kind: give the name of a calibration"));
     }
     let not_started = |error: &_| station.without_fccd(error);
     let began = station

@@ -171,7 +171,7 @@ impl IioConfig {
             several => Err(DeviceError::Refused {
                 device: sysfs.display().to_string(),
                 what: format!(
-                    "{} devices are called {:?}: give one of {}",
+                    "{} devices are called \"{}\": give one of {}",
                     several.len(),
                     self.device,
                     listed(several.iter().map(|found| found.node.as_str())),

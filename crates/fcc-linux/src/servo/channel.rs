@@ -106,7 +106,10 @@ pub struct ServoChannel {
 #[non_exhaustive]
 pub enum ServoError {
     /// The pulses are not in order.
-    #[error("pulses of {min_us}, {centre_us} and {max_us} us are not in order: shortest first")]
+    #[error(
+        "min_us is {min_us}, centre_us is {centre_us} and max_us is {max_us}: give the shortest \
+         pulse as min_us, the longest as max_us"
+    )]
     Pulses {
         /// The shortest.
         min_us: f64,

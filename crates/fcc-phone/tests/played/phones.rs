@@ -81,7 +81,7 @@ fn a_sensor_that_stalls_is_a_fault_and_is_opened_anew() {
     phone.until("the reason", |phone, _| {
         phone
             .trouble(Kind::Magnetometer)
-            .contains("has given nothing for 1s")
+            .contains("has given nothing for 1 s")
     });
     // The others are read.
     let gyroscope = phone.measured.raw_body_rates.taken;

@@ -32,8 +32,12 @@ const JSON_WITH_COMMENTS: ParseOptions = ParseOptions {
 /// All problems, at most [`limits::PROBLEMS`].
 pub(crate) fn read(text: &str) -> Result<Plan, Vec<Problem>> {
     let text = text.trim_start_matches('\u{feff}');
-    let value: Value = parse_to_serde_value(text, &JSON_WITH_COMMENTS)
-        .map_err(|error| vec![Problem::of("", format!("is not JSON: {error}"))])?;
+    let value: Value = parse_to_serde_value(text, &JSON_WITH_COMMENTS).map_err(|error| {
+        vec![Problem::of(
+            "",
+            format!("is not JSON: {error}: give a .plan or a QGC WPL 110 file"),
+        )]
+    })?;
     let mut reader = Reader::default();
     let root = Node::root(&value);
     let done = reader.root(&root);

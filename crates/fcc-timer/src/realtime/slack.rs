@@ -20,10 +20,11 @@ pub(super) fn set(slack_ns: u64) -> Result<(), DeniedRequest> {
     }
     // SAFETY: the call takes a number and no pointer.
     let answer = unsafe { libc::prctl(libc::PR_SET_TIMERSLACK, slack_ns as libc::c_ulong) };
-    Errno::result(answer).map_err(|errno| denied(format!("{errno:?}")))?;
+    Errno::result(answer).map_err(|errno| denied(errno.to_string()))?;
     match get() {
         Some(granted_ns) if granted_ns <= slack_ns => Ok(()),
-        granted => Err(denied(format!("reads back as {granted:?}"))),
+        Some(granted_ns) => Err(denied(format!("reads back as {granted_ns} ns"))),
+        None => Err(denied("cannot be read back".to_owned())),
     }
 }
 

@@ -28,7 +28,7 @@ pub(super) fn prefault(bytes: usize) -> Result<(), DeniedRequest> {
     };
     let left = left_over().map_err(|errno| {
         denied(
-            format!("the size of the stack is not known: {errno:?}"),
+            format!("the size of the stack is not known: {errno}"),
             "do not ask for it".to_owned(),
         )
     })?;

@@ -115,7 +115,7 @@ export class Commands {
     this.#phase = phase;
     const may = writable.get() && phase.fresh;
     const { engaged, mode } = phase;
-    const label = phase.landed ? "Landed: slide to disengage" : engaged ? "Slide to disengage" : phase.inhibits.length > 0 ? "Engaging is inhibited" : "Slide to go!";
+    const label = phase.landed ? "Landed: slide to disengage" : engaged ? "Slide to disengage" : phase.inhibits.length > 0 ? "Engaging is inhibited" : "Slide to engage";
     this.#slide.set(writable.get() ? label : "View only: open the printed link", may && (engaged || phase.inhibits.length === 0), engaged ? "stop" : "go");
     this.#pause.disabled = !(may && engaged && mode !== "loiter");
     this.#resume.disabled = !(may && engaged && ["loiter", "go to", "return", "hold"].includes(mode));

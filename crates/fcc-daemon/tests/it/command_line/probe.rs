@@ -30,7 +30,7 @@ fn what_is_connected_is_listed_with_its_configuration() {
     let listed = fccd(root.path(), &words).output().unwrap();
     assert!(listed.status.success(), "{listed:?}");
     let text = String::from_utf8(listed.stdout).unwrap();
-    let expected = "iio:device0  bmp388  pressure\n    static pressure 101325.00 Pa\n\n\
+    let expected = "1 of 1 devices found can be configured:\n\niio:device0  bmp388  pressure\n    static pressure 101325.00 Pa\n\n\
                     in a configuration, the most preferred first:\n\n\
                     [[sensor]]\nkind = \"iio\"\ndevice = \"bmp388\"\n";
     assert_eq!(text, expected);

@@ -57,13 +57,15 @@ pub enum OtherUserError {
     NotAccepted,
     /// The daemon is stopped, or hangs.
     #[error(
-        "fccd did not answer within {} s, so it is not known whether it was carried out; it will \
-         not be any more",
+        "fccd did not answer within {} s, so it is not known whether the command was carried out; \
+         if it was not, it will not be",
         PATIENCE.as_secs()
     )]
     NoAnswer,
     /// The connection failed.
-    #[error("the connection to fccd failed, so it is not known whether it was carried out: {0}")]
+    #[error(
+        "the connection to fccd failed, so it is not known whether the command was carried out: {0}"
+    )]
     Io(#[from] io::Error),
 }
 

@@ -153,7 +153,7 @@ fn prepare(path: &Path) -> Result<(Option<File>, Option<String>), String> {
     };
     let user = other_user(&lock_path).ok_or(refused)?;
     let foreign = format!(
-        "{}: belongs to the user {user}, who prevents that it is locked: it is not heeded; use a \
+        "{}: belongs to the user {user}, and cannot be locked here: it is ignored; use a \
          restart.state_file in a folder of this user",
         lock_path.display()
     );

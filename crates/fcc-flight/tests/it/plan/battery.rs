@@ -117,7 +117,7 @@ fn the_worst_acts_and_a_command_ends_it() {
     let mut flight = draining(&plan, keys, 0.005);
     flight.fly_until(20.0, |flight| flight.record.state.state() == State::Engaged);
     flight.command(AutopilotCommand::Heartbeat(2.0));
-    let lost = "the commander is not heard as promised: circling";
+    let lost = "command link lost, no heartbeat in time: circling";
     flight.fly_until(10.0, |flight| flight.happened(lost));
     let low = "the battery is low: returning";
     flight.fly_until(60.0, |flight| flight.happened(low));

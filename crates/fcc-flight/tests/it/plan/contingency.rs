@@ -215,7 +215,7 @@ fn a_commander_that_is_silent_is_lost() {
         flight.mode() == Mode::Return
     });
     assert!((5.0..5.1).contains(&silent_s), "{silent_s}");
-    let told = "the commander is not heard as promised: returning";
+    let told = "command link lost, no heartbeat in time: returning";
     flight.fly_until(1.0, |flight| flight.happened(told));
     assert_eq!(
         flight.record.setpoints.contingency,

@@ -105,7 +105,7 @@ impl fmt::Display for RunwayReason {
                  engine_out_below_rpm below the speed at which it idles"
             }
             Self::NoClimb => {
-                "the climb has not reached its altitude in two minutes: there is not the power \
+                "the climb has not reached its altitude in two minutes: there is not enough power \
                  for it; take over, and land ahead"
             }
             Self::NoLiftOff => {
@@ -113,8 +113,7 @@ impl fmt::Display for RunwayReason {
                  look at the engine, the load and rotate_kt"
             }
             Self::TailWind => {
-                "the landing needs more than half as much way again; go around, and land the \
-                 other way"
+                "the landing needs over 50 % more runway; go around, and land the other way"
             }
             Self::Strays => {
                 "the roll-out leaves the centre line: brakes released, and half of them from \

@@ -66,7 +66,7 @@ fn another_users_file_in_place_of_the_lock_is_not_heeded() {
         let _ = fs::remove_file(&lock).or_else(|_| fs::remove_dir(&lock));
         assert!(recovered && said.contains("recovering it"), "{said}");
         assert!(
-            said.contains("user 65534") && said.contains("not heeded"),
+            said.contains("user 65534") && said.contains("it is ignored"),
             "{said}"
         );
     }
