@@ -14,6 +14,7 @@ from .campaign import command as campaign
 from .printable import say
 from .progress import bar
 from .soak import Soak, soak
+from .table import markdown
 from .workers import all_workers
 
 _LARGEST_SEEDS = 1_000
@@ -293,8 +294,7 @@ def _soak(options: argparse.Namespace) -> int:
             else f"; not bound to the loop's CPU, which is any of {result.cpus}"
         ),
     }
-    for name, figures in rows.items():
-        say(f"{name:12} {figures}")
+    say(markdown(["what", "figure"], rows.items()))
     failures = result.failures()
     for failure in failures:
         say(f"failed: {failure}", to=sys.stderr)
