@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import fnmatch
+import os
 import sys
 from pathlib import Path
 from typing import Any
@@ -196,6 +197,9 @@ def _suite(options: argparse.Namespace) -> int:
             notify(len(flown), outcome.case.name)
     outcomes = [flown[case.name] for case in chosen]
     say(report.text(outcomes))
+    if path := os.environ.get("FCC_MEASURED"):
+        seeds = sorted({seed for case in chosen for seed in case.seeds})
+        Path(path).write_text("".join(f"seed\t{seed}\n" for seed in seeds))
     if options.json:
         documents.write(options.json, report.document(outcomes))
     if options.picture:

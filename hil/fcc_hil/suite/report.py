@@ -30,9 +30,7 @@ def text(outcomes: Sequence[Outcome]) -> str:
     flown_s, cpu_s = (
         sum(getattr(outcome, name) for outcome in outcomes) for name in ("simulated_s", "cpu_s")
     )
-    seeds = sorted({seed for outcome in outcomes for seed in outcome.case.seeds})
-    times = f"{flown_s / cpu_s:.0f} times real time on one processor"
-    parts.append(f"Seeds {', '.join(map(str, seeds))}: {flown_s:.0f} s flown, {times}.")
+    parts.append(f"{flown_s:.0f} s flown, {flown_s / cpu_s:.0f} times real time on one processor")
     bad = [outcome for outcome in outcomes if outcome.broken]
     for outcome in bad:
         parts.append("\n".join([f"{outcome.case.name}:", *(f"    {it}" for it in outcome.broken)]))
