@@ -242,7 +242,7 @@ test-navigation: tested ## Fly the pattern by the raw sensors of a phone and of 
 test-calibration: $(STAMPS)/rust $(STAMPS)/python ## Calibrate the simulated sensors with 8 seeds (1 minute)
 	$(call result,calibration,'Errors that are left') cargo test --locked -p fcc-sim --test it handling
 
-test-drawn-fences: $(STAMPS)/rust $(STAMPS)/python ## Fly the built-in aircraft against 1,100 drawn fences (MINUTES minutes)
+test-drawn-fences: $(STAMPS)/rust $(STAMPS)/python ## Fly the built-in aircraft against 1,100 drawn fences (5 minutes)
 	$(call result,plans,'Drawn fences') cargo test --locked --profile ci -p fcc-flight --test it drawn_fences
 
 test-plan-real-time: tested ## Fly legs by a plan with JSBSim over X-Plane's protocol, longer than in `make test` (2 minutes)

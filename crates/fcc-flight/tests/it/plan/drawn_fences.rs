@@ -223,6 +223,7 @@ fn a_fence_is_kept_in_severe_gusts() {
             .iter()
             .map(|seed| fly_in_gusts(*seed, wind_kt, down))
             .collect();
+        println!("{wind_kt} kt, severe gusts: {nearest_m:.0?} m inside");
         for (seed, nearest_m) in drawn.iter().zip(&nearest_m) {
             measured("seed", seed);
             let what = format!("round fence, severe gusts, {wind_kt} kt");
@@ -284,6 +285,7 @@ fn it_returns_from_a_fence_in_strong_wind() {
                     (seed, nearest_m, home_s)
                 })
                 .collect();
+            println!("{wind_kt} kt {gusts:?}: {flown:.0?}");
             for (seed, nearest_m, home_s) in &flown {
                 measured("seed", seed);
                 let what = format!("drawn fence, {wind_kt} kt");
@@ -332,9 +334,10 @@ fn fly_drawn_headings(seed: u64) -> f64 {
 #[test]
 fn headings_that_are_commanded_near_a_fence_do_not_cross_it() {
     let from = first_seed();
-    let seeds = from.map_or(vec![5, 14, 15, 24], |from| (from..from + 150).collect());
-    let flown: Vec<f64> = seeds.into_iter().map(fly_drawn_headings).collect();
-    for nearest_m in &flown {
+    let seeds: Vec<u64> = from.map_or(vec![5, 14, 15, 24], |from| (from..from + 150).collect());
+    let flown: Vec<f64> = seeds.iter().copied().map(fly_drawn_headings).collect();
+    for (seed, nearest_m) in seeds.iter().zip(&flown) {
+        measured("seed", seed);
         measured("headings near a fence: not crossed", *nearest_m > 0.0);
         measured(
             "headings near a fence: inside, m",
