@@ -20,6 +20,14 @@ TIMING   ?=
 # For soak, such as SOAK="--minutes 5 --rate 1000".
 SOAK     ?=
 
+# Where a goal that measures writes its section of a page: RESULTS=docs/results replaces it there.
+RESULTS  ?= target/results
+# The first seed of flights that are reported (docs/campaign.md).
+REPORTED := 200201
+# $(call result,PAGE,TITLE,VARIABLE) runs what follows, and writes its section.
+result    = FCC_FIRST_SEED=$(REPORTED) $(PYTHON) scripts/results $(RESULTS)/$(1).md $(2) \
+    'make $@$(if $($(3)), $(3)="$($(3))")'
+
 # The target folder of `cargo`.
 TARGET   := $(or $(CARGO_TARGET_DIR),target)
 FCCD     := $(TARGET)/release/fccd
@@ -50,10 +58,11 @@ GOALS := advisories android android-check android-package bench bench-android be
     bench-flood bench-ground bench-live bench-peer bench-timing book build campaign check-boards \
     check-cross clean clippy deb deny doc faulty fly fly-jsbsim fly-plan fly-plan-jsbsim fuzz \
     ground help lint lint-python lint-rust lock package-check python reproducible soak soundness \
-    station test test-android test-attacks test-contingencies test-cross test-deb test-fences \
-    test-full test-glides test-ground test-guidance test-landings test-landings-beside test-mavlink \
-    test-page test-plan-real-time test-python test-quick test-raw-edges test-recordings \
-    test-release test-rust test-seeds test-upsets test-vm test-x-plane tested wheels
+    station test test-android test-attacks test-calibration test-contingencies test-cross test-deb \
+    test-drawn-fences test-fences test-full test-glides test-ground test-guidance test-landings \
+    test-landings-beside test-mavlink test-navigation test-page test-plan-real-time test-python \
+    test-quick test-raw-edges test-recordings test-release test-rust test-seeds test-upsets \
+    test-vm test-x-plane tested wheels
 
 .PHONY: $(GOALS)
 
@@ -211,22 +220,33 @@ test-raw-edges: tested ## Fly the edges of flight by the raw sensors of a board,
 SEVERAL := -m pytest --numprocesses auto -rA --show-capture=stdout
 
 test-fences: tested ## Fly 20 times against a fence with JSBSim, in 20 kt and turbulence (10 minutes)
-	FCC_FENCES=20 $(PYTHON) $(SEVERAL) hil/tests/test_contingency.py
+	FCC_FENCES=20 $(call result,plans,Fences) $(PYTHON) $(SEVERAL) hil/tests/test_contingency.py
 
 test-contingencies: tested ## Lose position, commander and battery, and meet ridges, each 20 times with JSBSim (40 minutes)
-	FCC_CONTINGENCIES=20 $(PYTHON) $(SEVERAL) hil/tests/test_contingency.py
+	FCC_FENCES=0 FCC_CONTINGENCIES=20 $(call result,plans,Contingencies) $(PYTHON) $(SEVERAL) hil/tests/test_contingency.py
 
 test-glides: tested ## Stop the engine at 3,000 ft and glide down 20 times with JSBSim (10 minutes)
-	FCC_GLIDES=20 $(PYTHON) -m pytest --capture=no hil/tests/test_glide.py
+	FCC_GLIDES=20 $(call result,landings,Glides) $(PYTHON) -m pytest --capture=no hil/tests/test_glide.py
 
 test-guidance: tested ## Fly 12 legs in five winds and circles with JSBSim, by both laws (15 minutes)
-	FCC_GUIDANCE=1 $(PYTHON) $(SEVERAL) hil/tests/test_guidance.py
+	FCC_GUIDANCE=1 $(call result,plans,Guidance) $(PYTHON) $(SEVERAL) hil/tests/test_guidance.py
 
 test-landings: tested ## Take off, fly a circuit and land 100 times with JSBSim, in five winds (25 minutes)
-	FCC_LANDINGS=20 FCCD=$(TESTED)/fccd $(PYTHON) $(SEVERAL) hil/tests/test_landing.py
+	FCC_LANDINGS=20 FCCD=$(TESTED)/fccd $(call result,landings,Circuits) $(PYTHON) $(SEVERAL) hil/tests/test_landing.py
 
 test-landings-beside: tested ## The same 60 times: other aircraft, a plain receiver without a range finder (20 minutes)
-	FCC_LANDINGS_BESIDE=4 FCCD=$(TESTED)/fccd $(PYTHON) $(SEVERAL) hil/tests/test_landing.py
+	FCC_LANDINGS=0 FCC_LANDINGS_BESIDE=4 FCCD=$(TESTED)/fccd \
+	    $(call result,landings,'Other aircraft and sensors') $(PYTHON) $(SEVERAL) hil/tests/test_landing.py
+
+test-navigation: tested ## Fly the pattern by the raw sensors of a phone and of a board, with 6 seeds (5 minutes)
+	FCC_NAVIGATION=6 $(call result,navigation,'The timed pattern') $(PYTHON) $(SEVERAL) \
+	    hil/tests/test_raw_sensors.py hil/tests/test_raw_without_airspeed.py
+
+test-calibration: $(STAMPS)/rust $(STAMPS)/python ## Calibrate the simulated sensors with 8 seeds (1 minute)
+	$(call result,calibration,'Errors that are left') cargo test --locked -p fcc-sim --test it handling
+
+test-drawn-fences: $(STAMPS)/rust $(STAMPS)/python ## Fly the built-in aircraft against 1,100 drawn fences (5 minutes)
+	$(call result,plans,'Drawn fences') cargo test --locked --profile ci -p fcc-flight --test it drawn_fences
 
 test-plan-real-time: tested ## Fly legs by a plan with JSBSim over X-Plane's protocol, longer than in `make test` (2 minutes)
 	FCC_PLAN_REAL_TIME=1 FCCD=$(TESTED)/fccd $(PYTHON) -m pytest hil/tests/test_plan_real_time.py
@@ -260,7 +280,8 @@ ANDROID_TIMING ?=
 bench-android: build $(STAMPS)/python $(STAMPS)/java $(STAMPS)/aapt ## Compare the loop's timing in the app with the daemon's, in turn (35 minutes; ANDROID_TIMING=)
 	cargo build --locked --release -p fcc-android
 	cd android/host-tests && mvn --quiet --batch-mode test-compile
-	FCC_ANDROID_LIBRARY=$(abspath $(TARGET))/release $(PYTHON) -m fcc_hil bench-android --fccd $(FCCD) \
+	FCC_ANDROID_LIBRARY=$(abspath $(TARGET))/release $(call result,android,'The loop in the app',ANDROID_TIMING) \
+	    $(PYTHON) -m fcc_hil bench-android --fccd $(FCCD) \
 	    --app android/host-tests/timing-flight --json target/bench-android.json $(ANDROID_TIMING)
 
 android: $(STAMPS)/rust ## Build the app for phones: needs Android's SDK and NDK, cargo-ndk and Gradle (docs/android.md)
@@ -290,9 +311,9 @@ lint-rust: clippy
 
 lint-python: tested $(STAMPS)/playwright
 	$(PYTHON) -m ruff check hil deploy web
-	$(PYTHON) -m ruff check --config hil/pyproject.toml crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check scripts/structure scripts/words scripts/messages scripts/book
+	$(PYTHON) -m ruff check --config hil/pyproject.toml crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check scripts/messages scripts/results scripts/structure scripts/words scripts/book
 	$(PYTHON) -m ruff format --check hil deploy web
-	$(PYTHON) -m ruff format --config hil/pyproject.toml --check crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check scripts/structure scripts/words scripts/messages scripts/book
+	$(PYTHON) -m ruff format --config hil/pyproject.toml --check crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check scripts/messages scripts/results scripts/structure scripts/words scripts/book
 	cd hil && ../$(PYTHON) -m mypy
 	cd deploy/vm && MYPYPATH=../../hil/tests ../../$(PYTHON) -m mypy --config-file ../../hil/pyproject.toml .
 	cd web/tests && MYPYPATH=../../hil/tests ../../$(PYTHON) -m mypy --config-file ../../hil/pyproject.toml *.py
@@ -386,40 +407,48 @@ test-vm: deb $(VM_IMAGE)/root.img $(STAMPS)/vm $(STAMPS)/python ## Boot a Debian
 $(VM_IMAGE)/root.img: deploy/vm/build-image | $(STAMPS)/vm
 	./deploy/vm/build-image $(VM_IMAGE)
 
-bench: $(STAMPS)/rust build $(STAMPS)/strace $(STAMPS)/valgrind ## Measure the cost of a tick: time, instructions, memory, system calls (4 minutes)
+bench: $(STAMPS)/rust build $(STAMPS)/python $(STAMPS)/strace $(STAMPS)/valgrind ## Measure the cost of a tick and of recording: time, instructions, memory, system calls (8 minutes)
 	@test "$$(gungraun-runner --version 2>/dev/null)" = "gungraun-runner $(GUNGRAUN)" || \
 	    cargo install --locked --version $(GUNGRAUN) gungraun-runner
-	cargo bench --locked -p bench-tick --bench time
+	$(call result,timing,'Time of a tick') cargo bench --locked -p bench-tick --bench time -- --output-format bencher
 	cargo bench --locked -p bench-tick --bench instructions
 	cargo build --locked --release -p bench-tick
-	$(TARGET)/release/costs
-	$(TARGET)/release/latency --fccd $(FCCD)
-	$(TARGET)/release/latency --fccd $(FCCD) --with 'early_wake = { enabled = false }'
+	$(call result,timing,'System calls and memory of a tick') $(TARGET)/release/costs
+	$(call result,timing,Latency) $(TARGET)/release/latency --fccd $(FCCD)
+	$(call result,timing,'Latency without early wake') \
+	    $(TARGET)/release/latency --fccd $(FCCD) --with 'early_wake = { enabled = false }'
+	$(call result,timing,"The thesis' experiment") $(FCCD) timing --timer posix --early-wake off --seconds 15
+	FCC_RELEASED=1 FCCD=$(abspath $(FCCD)) $(call result,timing,Memory) \
+	    $(PYTHON) -m pytest hil/tests/test_daemon_memory.py
+	FCCD=$(abspath $(FCCD)) $(call result,recordings,'Bytes of a tick') \
+	    $(PYTHON) -m pytest -k bytes hil/tests/test_recording_cost.py
+	FCC_RECORDING_SECONDS=20 FCCD=$(abspath $(FCCD)) $(call result,recordings,'Processor time') \
+	    $(PYTHON) -m pytest -k processor_time hil/tests/test_recording_cost.py
 
-bench-timing: $(STAMPS)/rust $(STAMPS)/rt-tests ## Compare the clocks with other programs, idle and under stress (22 minutes; TIMING=)
+bench-timing: $(STAMPS)/rust $(STAMPS)/python $(STAMPS)/rt-tests ## Compare the clocks with other programs, idle and under stress (22 minutes; TIMING=)
 	$(BENCH_TIMING) -p copper --features copper/high-precision
 	cp $(TIMING_TARGET)/release/peer-copper $(TIMING_TARGET)/release/peer-copper-precise
 	$(BENCH_TIMING)
-	$(TIMING_TARGET)/release/bench-timing --json target/bench-timing.json \
-	    --markdown target/bench-timing.md --plot target/bench-timing.svg $(TIMING)
+	$(call result,timing,'Clocks and their peers',TIMING) $(TIMING_TARGET)/release/bench-timing \
+	    --json target/bench-timing.json --plot $(if $(filter docs/results,$(RESULTS)),docs,target)/bench-timing.svg $(TIMING)
 
 soak: $(STAMPS)/rust build $(STAMPS)/python $(STAMPS)/rt-tests ## Fly for half an hour at 100 Hz under stress, with cyclictest (SOAK=)
 	@mkdir -p target
-	$(PYTHON) -m fcc_hil soak --fccd $(FCCD) --json target/soak.json $(SOAK)
+	$(call result,timing,'Under stress',SOAK) $(PYTHON) -m fcc_hil soak --fccd $(FCCD) --json target/soak.json $(SOAK)
 
 bench-peer: $(STAMPS)/rust $(STAMPS)/python-module ## Fly the suite's two Cessnas and JSBSim's own autopilot
 	$(PYTHON) -m fcc_hil suite --only 'c172[px]: *'
 
 bench-flight: $(STAMPS)/rust $(STAMPS)/python-module ## Fly the suite: ten aircraft, all weathers, against stated limits
 	@mkdir -p target
-	$(PYTHON) -m fcc_hil suite --json target/suite.json --picture target/suite.png
+	$(call result,flight,Suite) $(PYTHON) -m fcc_hil suite --json target/suite.json --picture target/suite.png
 
 # For campaign, such as CAMPAIGN="--flights 60 --seed 1".
 CAMPAIGN ?=
 
 campaign: $(STAMPS)/rust $(STAMPS)/python-module ## Fly 300 healthy flights, then 300 at the edges of the envelope, and say what failed (CAMPAIGN=)
-	@mkdir -p target
-	$(PYTHON) -m fcc_hil campaign --healthy --seed 200000 --json target/healthy.json --results target/healthy.md $(CAMPAIGN)
+	@mkdir -p target $(RESULTS)
+	$(PYTHON) -m fcc_hil campaign --healthy --seed 200000 --json target/healthy.json --results $(RESULTS)/healthy.md $(CAMPAIGN)
 	$(PYTHON) -m fcc_hil campaign --seed 200000 --json target/campaign.json --picture target/campaign.png $(CAMPAIGN)
 
 bench-live: $(STAMPS)/rust build $(STAMPS)/python ## Fly with and without 1,000 watchers, alternately (50 minutes)
@@ -430,11 +459,12 @@ bench-live: $(STAMPS)/rust build $(STAMPS)/python ## Fly with and without 1,000 
 MEASURE ?=
 
 bench-ground: build station $(STAMPS)/python $(STAMPS)/browser ## Measure the ground station and its page; soak it (50 minutes; MEASURE=)
+	@mkdir -p $(RESULTS)
 	PYTHONPATH=web/tests:hil/tests $(PYTHON) web/tests/measure.py --fccd $(FCCD) \
-	    --station $(TARGET)/release/fcc-ground --results docs/results/ground.md $(MEASURE)
+	    --station $(TARGET)/release/fcc-ground --results $(RESULTS)/ground.md $(MEASURE)
 
 bench-flood: build $(STAMPS)/python ## Fly among 100,000 datagrams a second of another host (1 minute)
-	$(PYTHON) -m fcc_hil bench-flood --fccd $(FCCD)
+	$(call result,timing,'Among datagrams of others') $(PYTHON) -m fcc_hil bench-flood --fccd $(FCCD)
 
 book: $(STAMPS)/rust ## Build the documents as a book with search: target/book/html
 	@command -v mdbook >/dev/null || cargo install --locked --version 0.5.4 mdbook

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 from pathlib import Path
 
@@ -37,7 +38,9 @@ def test_it_is_installed_beside_the_daemon_and_not_started(package: Path, tmp_pa
     assert "fccd" in told("dpkg-deb", "--field", package, "Depends").split(", ")
     # It is started by nobody but its user, and stopped before it is removed.
     scripts = {path.name: path for path in (tmp_path / "DEBIAN").iterdir()}
-    assert "start" not in scripts["postinst"].read_text().replace("deb-systemd-helper", "")
+    assert re.findall("deb-systemd-invoke (.*) fcc", scripts["postinst"].read_text()) == [
+        "try-restart"
+    ]
     assert "deb-systemd-invoke stop" in scripts["prerm"].read_text()
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import fnmatch
+import os
 import sys
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from .campaign import command as campaign
 from .printable import say
 from .progress import bar
 from .soak import Soak, soak
+from .table import markdown
 from .workers import all_workers
 
 _LARGEST_SEEDS = 1_000
@@ -195,6 +197,9 @@ def _suite(options: argparse.Namespace) -> int:
             notify(len(flown), outcome.case.name)
     outcomes = [flown[case.name] for case in chosen]
     say(report.text(outcomes))
+    if path := os.environ.get("FCC_MEASURED"):
+        seeds = sorted({seed for case in chosen for seed in case.seeds})
+        Path(path).write_text("".join(f"seed\t{seed}\n" for seed in seeds))
     if options.json:
         documents.write(options.json, report.document(outcomes))
     if options.picture:
@@ -293,8 +298,7 @@ def _soak(options: argparse.Namespace) -> int:
             else f"; not bound to the loop's CPU, which is any of {result.cpus}"
         ),
     }
-    for name, figures in rows.items():
-        say(f"{name:12} {figures}")
+    say(markdown(["what", "figure"], rows.items()))
     failures = result.failures()
     for failure in failures:
         say(f"failed: {failure}", to=sys.stderr)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+from collections.abc import Callable
 from pathlib import Path
 
 from daemon_under_test import start
@@ -15,7 +16,9 @@ PROGRAM_KB = 15_872
 IS_RELEASED = "FCC_RELEASED" in os.environ
 
 
-def test_a_flight_takes_less_than_23_mb_and_no_page_fault(fccd: Path, tmp_path: Path) -> None:
+def test_a_flight_takes_less_than_23_mb_and_no_page_fault(
+    fccd: Path, tmp_path: Path, measured: Callable[[str, object], None]
+) -> None:
     """Of all with `make test-release`; of the data with any build, whose program may be larger."""
     config = tmp_path / "fccd.toml"
     config.write_text(f'[built-in]\n[recording]\nfolder = "{tmp_path}/recordings"\n')
@@ -29,6 +32,8 @@ def test_a_flight_takes_less_than_23_mb_and_no_page_fault(fccd: Path, tmp_path: 
             int(status[name].removesuffix("kB")) for name in ("VmRSS", "RssFile")
         )
         ending = daemon.end(signal.SIGTERM)
+    measured("resident, MB", f"{resident_kb / 1024:.1f}")
+    measured("of this the program's file, MB", f"{program_kb / 1024:.1f}")
     assert resident_kb - program_kb < MOST_RESIDENT_KB - PROGRAM_KB
     if IS_RELEASED:
         assert resident_kb < MOST_RESIDENT_KB

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 import drawn_plan
@@ -20,7 +21,7 @@ from fcc_hil.units import FT_TO_M
 TWELVE_LEGS = Path(__file__).parents[2] / "config/plans/twelve-legs.waypoints"
 SEEDS = int(os.environ.get("FCC_GUIDANCE", "0"))
 """Of each: they are slow. Some legs are flown in each run (test_plan)."""
-FIRST = 401
+FIRST = int(os.environ.get("FCC_FIRST_SEED", "401"))
 each_seed = pytest.mark.parametrize("seed", range(FIRST, FIRST + SEEDS))
 FLY_OVERS = (5, 8, 11)
 WITHIN_M = 60.0
@@ -34,12 +35,16 @@ _LOITER_TURNS = 18
 @pytest.mark.parametrize(
     "wind", [(0.0, 0.0), *((20.0, from_deg) for from_deg in (0, 90, 180, 270))]
 )
-def test_twelve_legs(wind: tuple[float, float], seed: int) -> None:
+def test_twelve_legs(
+    wind: tuple[float, float], seed: int, measured: Callable[[str, object], None]
+) -> None:
     """Issue: 5 m calm, 10 m in 20 kt; 15 ft on level legs, 2 kt, fly-overs within 60 m."""
     wind_kt, from_deg = wind
     weather = Weather(wind_kt=wind_kt, wind_from_deg=from_deg)
     score, _ = plan_flight.fly(TWELVE_LEGS, PlanConditions(weather=weather, seed=seed))
-    print(f"\n{wind_kt:.0f} kt from {from_deg:.0f} | {seed} | {_cells(score)}")
+    measured("seed", seed)
+    for what, value in _figures(score).items():
+        measured(f"{wind_kt:.0f} kt: {what}", f"{value:.1f}")
     assert all(waypoint.passed for waypoint in score.waypoints)
     assert [leg.item for leg in score.legs] == list(range(2, 13))
     for leg in score.legs:
@@ -52,23 +57,20 @@ def test_twelve_legs(wind: tuple[float, float], seed: int) -> None:
             assert waypoint.closest_m <= WITHIN_M, waypoint
 
 
-def _cells(score: PlanScore) -> str:
-    """Return a row of a table of legs and turns."""
+def _figures(score: PlanScore) -> dict[str, float]:
+    """Return the largest of legs and turns."""
     level = [leg for leg in score.legs if leg.item not in CLIMBS]
     over = [waypoint for waypoint in score.waypoints if waypoint.item in FLY_OVERS]
-    turns = score.turns
-    return " | ".join(
-        [
-            f"{max(leg.cross_track_rms_m for leg in score.legs):.1f} m",
-            f"{max(leg.cross_track_max_m for leg in score.legs):.1f} m",
-            f"{max(leg.altitude_max_ft for leg in level):.1f} ft",
-            f"{max(leg.airspeed_error_kt for leg in score.legs):.1f} kt",
-            f"{max(waypoint.closest_m for waypoint in over):.1f} m",
-            f"{max(turn.cross_track_rms_m for turn in turns):.1f} m",
-            f"{max(turn.cross_track_max_m for turn in turns):.1f} m",
-            f"{max(turn.bank_max_deg for turn in turns):.1f} deg",
-        ]
-    )
+    return {
+        "off a leg, m RMS": max(leg.cross_track_rms_m for leg in score.legs),
+        "off a leg, m": max(leg.cross_track_max_m for leg in score.legs),
+        "off the altitude of a level leg, ft": max(leg.altitude_max_ft for leg in level),
+        "off the airspeed, kt": max(leg.airspeed_error_kt for leg in score.legs),
+        "past a fly-over, m": max(waypoint.closest_m for waypoint in over),
+        "off a turn, m RMS": max(turn.cross_track_rms_m for turn in score.turns),
+        "off a turn, m": max(turn.cross_track_max_m for turn in score.turns),
+        "bank in a turn, °": max(turn.bank_max_deg for turn in score.turns),
+    }
 
 
 def _circles(*radii_m: float) -> str:
@@ -82,7 +84,9 @@ def _circles(*radii_m: float) -> str:
 
 @each_seed
 @pytest.mark.parametrize("from_deg", [0.0, 90.0])
-def test_circles_in_15_kt(from_deg: float, seed: int, tmp_path: Path) -> None:
+def test_circles_in_15_kt(
+    from_deg: float, seed: int, tmp_path: Path, measured: Callable[[str, object], None]
+) -> None:
     """Issue: 750 m and 1,000 m at 100 kt, within 5 % of the radius, at most 30 degrees of bank."""
     plan = tmp_path / "circles.waypoints"
     plan.write_text(_circles(750.0, 1_000.0, -750.0))
@@ -90,7 +94,8 @@ def test_circles_in_15_kt(from_deg: float, seed: int, tmp_path: Path) -> None:
     score, _ = plan_flight.fly(plan, PlanConditions(weather=weather, seed=seed))
     assert [circle.radius_m for circle in score.circles] == [750.0, 1_000.0, 750.0]
     for circle in score.circles:
-        print(f"\n15 kt from {from_deg:.0f}, seed {seed}: {circle}")
+        error = circle.radius_error_max_percent
+        measured(f"circle of {circle.radius_m:.0f} m in 15 kt: off the radius, %", f"{error:.1f}")
         assert circle.seconds > math.tau * circle.radius_m / 60.0
         assert circle.radius_error_max_percent <= 5.0
         assert circle.bank_max_deg <= 30.0

@@ -6,6 +6,7 @@ import json
 import math
 import os
 import subprocess
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,7 +22,7 @@ from fcc_hil.plant import Weather
 CIRCUIT = Path(__file__).parents[2] / "config/plans/circuit.waypoints"
 """To the north."""
 SEEDS = int(os.environ.get("FCC_LANDINGS", "1"))
-FIRST = int(os.environ.get("FCC_LANDINGS_FROM", "201"))
+FIRST = int(os.environ.get("FCC_FIRST_SEED", "201"))
 BESIDE = int(os.environ.get("FCC_LANDINGS_BESIDE", "0"))
 """Of other aircraft, and without a precise receiver and a range finder."""
 WINDS = {
@@ -49,6 +50,22 @@ def _fly(wind: str, seed: int, conditions: PlanConditions, plan: Path = CIRCUIT)
     return plan_flight.fly(plan, replace(conditions, weather=weather, seed=seed))[0]
 
 
+Measured = Callable[[str, object], None]
+
+
+def _keep(measured: Measured, what: str, seed: int, score: PlanScore) -> None:
+    takeoff, landing = score.takeoff, score.landing
+    measured("seed", seed)
+    is_good = takeoff is not None and landing is not None and _is_good(takeoff, landing)
+    measured(f"{what}: good", is_good)
+    measured("all: good", is_good)
+    if takeoff is not None:
+        measured(f"{what}: take-off run, m", f"{takeoff.run_m:.0f}")
+    if landing is not None:
+        measured(f"{what}: touchdown, ft/min", f"{landing.sink_fpm:.0f}")
+        measured(f"{what}: off the centre line, m", f"{abs(landing.centre_line_m):.1f}")
+
+
 def _is_good(takeoff: TakeoffScore, landing: LandingScore) -> bool:
     return (
         max(takeoff.centre_line_m, abs(landing.centre_line_m)) <= 5.0
@@ -58,13 +75,14 @@ def _is_good(takeoff: TakeoffScore, landing: LandingScore) -> bool:
 
 
 @pytest.mark.parametrize("wind", FLOWN)
-def test_take_off_circuit_and_landing(wind: str) -> None:
+def test_take_off_circuit_and_landing(wind: str, measured: Measured) -> None:
     """Issue: all on 30 m of runway, below 400 ft/min; 90 % on its middle, slower and straight."""
     good = 0
     for seed in range(FIRST, FIRST + SEEDS):
         score = _fly(wind, seed, PRECISE)
         takeoff, landing = score.takeoff, score.landing
         print(f"\n{wind}, seed {seed}: {takeoff}, {landing}")
+        _keep(measured, wind, seed, score)
         assert takeoff is not None
         assert landing is not None
         assert takeoff.centre_line_m < HALF_RUNWAY_M
@@ -109,23 +127,29 @@ def _with_speeds_of(aircraft: str, tmp_path: Path) -> tuple[PlanConditions, Path
         *(("J3Cub", wind) for wind in ("calm", "10 kt head")),
     ],
 )
-def test_other_aircraft_land(aircraft: str, wind: str, seed: int, tmp_path: Path) -> None:
+def test_other_aircraft_land(
+    aircraft: str, wind: str, seed: int, tmp_path: Path, measured: Measured
+) -> None:
     """Issue: with the same gains and their speeds; on 30 m of runway, below 400 ft/min.
 
     JSBSim's J3Cub tips over where it stands, its brakes set, in 8 kt across; in 5 kt from behind
     it does not take off.
     """
     conditions, plan = _with_speeds_of(aircraft, tmp_path)
-    landing = _on_the_runway(wind, seed, _fly(wind, seed, conditions, plan))
-    assert landing.sink_fpm < 400.0
+    score = _fly(wind, seed, conditions, plan)
+    _keep(measured, f"{aircraft}, {wind}", seed, score)
+    assert _on_the_runway(wind, seed, score).sink_fpm < 400.0
 
 
 @pytest.mark.parametrize("seed", range(FIRST, FIRST + BESIDE))
 @pytest.mark.parametrize("wind", WINDS)
-def test_by_a_plain_receiver_without_a_range_finder(wind: str, seed: int) -> None:
+def test_by_a_plain_receiver_without_a_range_finder(
+    wind: str, seed: int, measured: Measured
+) -> None:
     """Issue: on 30 m of runway, below 300 ft/min."""
-    landing = _on_the_runway(wind, seed, _fly(wind, seed, PLAIN))
-    assert landing.sink_fpm < 300.0
+    score = _fly(wind, seed, PLAIN)
+    _keep(measured, f"c172p, plain receiver, no range finder, {wind}", seed, score)
+    assert _on_the_runway(wind, seed, score).sink_fpm < 300.0
 
 
 @pytest.mark.parametrize("off_ft", [-30.0, 30.0])

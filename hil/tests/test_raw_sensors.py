@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import fcc
@@ -20,6 +22,8 @@ from fcc_hil.raw_sensors import FIELD_UT
 from fcc_hil.raw_turning import turned_over
 from fcc_hil.standin import Settings
 
+FIRST = int(os.environ.get("FCC_FIRST_SEED", "21"))
+FLIGHTS = int(os.environ.get("FCC_NAVIGATION", "1"))
 EARTH_M = 6_378_137.0
 
 Array = npt.NDArray[np.float64]
@@ -81,11 +85,17 @@ def test_pressures_give_altitude_and_airspeed(flown: raw_flight.Arrays) -> None:
     assert np.std(error_pa) < 15.0
 
 
+@pytest.mark.parametrize("seed", range(FIRST, FIRST + FLIGHTS))
 @pytest.mark.parametrize("sensors", ["phone", "board"])
-def test_the_pattern_is_flown_by_raw_sensors_alone(sensors: str) -> None:
+def test_the_pattern_is_flown_by_raw_sensors_alone(
+    sensors: str, seed: int, measured: Callable[[str, object], None]
+) -> None:
     """Seeds on which no parameter was chosen."""
-    flight = raw_flight.fly(sensors, navigation="kalman", seed=21)
+    flight = raw_flight.fly(sensors, navigation="kalman", seed=seed)
     errors, worst = flight.errors(), flight.score["worst"]
+    measured("seed", seed)
+    for what, error in errors.items():
+        measured(f"{sensors}: {' RMS, '.join(what.split('_'))}", f"{error:.2f}")
     assert len(flight.score["legs"]) == 8
     assert errors["roll_deg"] <= 1.5
     assert errors["pitch_deg"] <= 1.5

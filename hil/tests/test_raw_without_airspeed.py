@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +12,8 @@ import pytest
 from fcc_hil.raw_flight import fly, read_learned, write_learned
 from fcc_hil.rig import FlightError
 
-SEED = 33
+SEED = int(os.environ.get("FCC_FIRST_SEED", "33"))
+FLIGHTS = int(os.environ.get("FCC_NAVIGATION", "1"))
 LEGS = 3
 LEARNED = {
     "axial_offset": -0.112,
@@ -21,8 +24,13 @@ LEARNED = {
 """Of JSBSim's c172p, in a flight of the pattern with the sensors of a board and seed 7."""
 
 
-def test_the_pattern_is_flown_without_an_airspeed_sensor() -> None:
-    flight = fly("board", navigation="kalman", seed=SEED, legs=LEGS, airframe=LEARNED)
+@pytest.mark.parametrize("seed", range(SEED, SEED + FLIGHTS))
+def test_the_pattern_is_flown_without_an_airspeed_sensor(
+    seed: int, measured: Callable[[str, object], None]
+) -> None:
+    flight = fly("board", navigation="kalman", seed=seed, legs=LEGS, airframe=LEARNED)
+    error_kt = flight.errors()["airspeed_kt"]
+    measured("board, no airspeed sensor, 3 legs: airspeed RMS, kt", f"{error_kt:.2f}")
     arrays = flight.arrays
     flown = arrays["truth_time_s"] > arrays["engaged_s"]
     errors_mps = (arrays["estimate_airspeed_mps"] - arrays["truth_airspeed_mps"])[flown]

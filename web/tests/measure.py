@@ -12,7 +12,6 @@ import contextlib
 import json
 import math
 import os
-import platform
 import random
 import selectors
 import shutil
@@ -28,7 +27,8 @@ from pathlib import Path
 from typing import Any
 
 from daemon_under_test import DaemonUnderTest
-from fcc_hil.measured import measured as this_is
+from fcc_hil.measured import machine, write
+from fcc_hil.table import markdown
 from ground_station import ROOT, Station
 from playwright.sync_api import Browser, Page, sync_playwright
 from rich.progress import Progress
@@ -53,7 +53,8 @@ THROTTLED = 6
 VIEWERS = 200
 MAVLINK_STATIONS = 3
 MAVLINK_COMMANDS = 300
-PARTS = ("viewers", "page", "soak", "mavlink")
+TITLES = {"viewers": "Viewers", "page": "The page", "soak": "Soak", "mavlink": "MAVLink"}
+HEAD = ("figure", "seen", "wanted")
 TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 MAPS = ("land-50m", "detail-", "coast-")
 FRAMES = """seconds => new Promise(done => {
@@ -439,14 +440,14 @@ def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--fccd", type=Path, required=True)
     options.add_argument("--station", type=Path, required=True)
-    options.add_argument("--results", type=Path, help="write the table here, as Markdown")
+    options.add_argument("--results", type=Path, help="write a section for each part here")
     options.add_argument("--json", action="store_true", help="print the figures as JSON")
     seconds_of = "of a flight with viewers, or MAVLink stations"
     options.add_argument("--seconds", type=float, default=60.0, help=seconds_of)
     options.add_argument("--rounds", type=int, default=3)
     options.add_argument("--heap-minutes", type=float, default=10.0)
     options.add_argument("--soak-minutes", type=float, default=20.0)
-    options.add_argument("--only", nargs="+", choices=PARTS, help="parts")
+    options.add_argument("--only", nargs="+", choices=TITLES, help="parts")
     given = options.parse_args()
     rows: list[Row] = []
     with Progress(disable=not sys.stderr.isatty()) as progress:
@@ -461,21 +462,15 @@ def main() -> None:
                 continue
             with tempfile.TemporaryDirectory() as folder:
                 measured = Measured(Path(folder), given.fccd.resolve(), given.station.resolve())
-                rows += part(measured)
-    machine = f"{os.cpu_count()} processors, {platform.machine()}, kernel {platform.release()}"
-    table = ["| figure | seen | wanted |", "|---|---|---|"]
-    lines = {what: f"| {what} | {seen} | {wanted} |" for what, seen, wanted in rows}
-    if given.only and given.results and given.results.exists():
-        # The other parts stay as they were.
-        before = [line for line in given.results.read_text().splitlines() if line.startswith("| ")]
-        lines = {line.split(" | ")[0].removeprefix("| "): line for line in before[1:]} | lines
-    table += lines.values()
-    said: Any = [dict(zip(("figure", "seen", "wanted"), row, strict=True)) for row in rows]
-    print(json.dumps({"machine": machine, "figures": said}) if given.json else "\n".join(table))
-    if given.results:
-        which = f", {', '.join(given.only)} of it" if given.only else ""
-        head = f"# Ground station\n\n    make bench-ground\n\n{this_is()}{which}. {machine}.\n\n"
-        given.results.write_text(head + "\n".join(table) + "\n")
+                found = part(measured)
+            rows += found
+            if given.results:
+                command = f'make bench-ground MEASURE="--only {name}"'
+                write(given.results, TITLES[name], command, markdown(HEAD, found))
+    said: Any = [dict(zip(HEAD, row, strict=True)) for row in rows]
+    print(
+        json.dumps({"machine": machine(), "figures": said}) if given.json else markdown(HEAD, rows)
+    )
 
 
 main()

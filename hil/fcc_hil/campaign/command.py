@@ -7,8 +7,7 @@ import time
 from functools import partial
 from typing import Any
 
-from .. import documents, ranges, replacement
-from ..measured import measured
+from .. import documents, measured, ranges
 from ..printable import say
 from ..progress import bar
 from ..workers import all_workers
@@ -80,7 +79,7 @@ def add(commands: Any) -> None:
     ranges.add_files(
         campaign,
         json="write everything here",
-        results="write the tables here, as Markdown",
+        results="write the tables here, as a section of a page",
         picture="write a picture here",
         record="with --flight: write its recording here (.mcap)",
     )
@@ -118,10 +117,9 @@ def _campaign(parser: argparse.ArgumentParser, options: argparse.Namespace) -> i
     say(f"{text}\n\n{report.flights(outcomes)}")
     say(f"took {time.monotonic() - began_s:.0f} s")
     if options.results:
-        head = (
-            f"# Campaign: {options.kind}\n\n    {_repeated(options, bounds)}\n\n{measured()}.\n\n"
-        )
-        replacement.write(options.results, head + text + "\n")
+        title = f"Campaign: {options.kind}{f', {options.raw}' if options.raw else ''}"
+        command = _repeated(options, bounds)
+        measured.write(options.results, title, command, text, f"seed {options.seed}")
     if options.json:
         document = report.document(outcomes, options.seed, bounds)
         documents.write(options.json, document)

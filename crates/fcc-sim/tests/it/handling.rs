@@ -1,5 +1,10 @@
 //! Guided calibration of the simulated raw sensors, against their true errors.
 
+use std::fmt::Display;
+use std::fs::File;
+use std::io::Write as _;
+use std::ops::Range;
+
 use fcc_calibration::{
     Axes, AxesCalibration, EarthField, Found, GuidedCalibration, GuidedKind, MountingWay, Refusal,
     Rotation, Values,
@@ -10,7 +15,29 @@ use fcc_sim::units::DEGREE_RAD;
 use fcc_sim::{HandledSensors, HandlingFault, HandlingTask, RawSensorSet, SimConfig, TrueErrors};
 
 const G: f64 = 9.806_65;
-const SEEDS: u64 = 2;
+
+/// Appends a figure to the file that results are written from.
+fn measured(what: &str, value: impl Display) {
+    let Some(path) = std::env::var_os("FCC_MEASURED") else {
+        return;
+    };
+    let mut file = File::options()
+        .append(true)
+        .create(true)
+        .open(path)
+        .unwrap();
+    // One write, so that tests that run at once do not mix their lines.
+    file.write_all(format!("{what}\t{value}\n").as_bytes())
+        .unwrap();
+}
+
+/// Some, or the eight that results are measured with.
+fn seeds(some: u64) -> Range<u64> {
+    let first = std::env::var("FCC_FIRST_SEED").map(|first| first.parse().unwrap());
+    let seeds = first.map_or(1..some + 1, |first| first..first + 8);
+    seeds.clone().for_each(|seed| measured("seed", seed));
+    seeds
+}
 
 fn config(set: &RawSensorSet, seed: u64) -> SimConfig {
     SimConfig {
@@ -105,7 +132,7 @@ fn worst(axes: &Axes, errors: &TrueErrors<3>, strength: f64) -> f64 {
 #[test]
 fn an_accelerometers_bias_scale_and_misalignment_are_found() {
     for ((name, set), most_mps2) in sets().into_iter().zip([0.06, 0.015]) {
-        for seed in 1..=SEEDS {
+        for seed in seeds(2) {
             let config = config(&set, seed);
             let places = HandlingTask::Places;
             let (found, sensors) = calibrate(&config, &GuidedKind::Accelerometer, places, None);
@@ -115,8 +142,12 @@ fn an_accelerometers_bias_scale_and_misalignment_are_found() {
             };
             let [errors, ..] = sensors.sensors().true_errors();
             let left_mps2 = worst(&axes, &errors, G);
+            let left = format!("{left_mps2:.4}");
+            measured(&format!("{name}: accelerometer's strength, m/s²"), left);
             assert!(left_mps2 < most_mps2, "{name} {seed}: {left_mps2}");
             for (found, truth) in axes.bias.into_iter().zip(errors.bias) {
+                let left = format!("{:.4}", (found - truth).abs());
+                measured(&format!("{name}: accelerometer's bias, m/s²"), left);
                 assert!((found - truth).abs() < most_mps2, "{name} {seed}: {axes:?}");
             }
         }
@@ -128,7 +159,7 @@ fn an_accelerometers_bias_scale_and_misalignment_are_found() {
 #[test]
 fn a_gyroscopes_bias_is_found() {
     for ((name, set), most_degps) in sets().into_iter().zip([0.05, 0.006]) {
-        for seed in 1..=SEEDS {
+        for seed in seeds(2) {
             let alone = HandlingTask::LeaveAlone;
             let config = config(&set, seed);
             let (found, sensors) = calibrate(&config, &GuidedKind::GyroscopeBias, alone, None);
@@ -138,6 +169,8 @@ fn a_gyroscopes_bias_is_found() {
             let [_, errors, _] = sensors.sensors().true_errors();
             for (found, truth) in bias_radps.into_iter().zip(errors.bias) {
                 let left_degps = (found - truth).abs() / DEGREE_RAD;
+                let left = format!("{left_degps:.4}");
+                measured(&format!("{name}: gyroscope's bias, °/s"), left);
                 assert!(left_degps < most_degps, "{name} {seed}: {left_degps}");
             }
         }
@@ -170,7 +203,7 @@ fn worst_rate(rates: &Axes, forces: &Axes, errors: &[TrueErrors<3>; 3]) -> f64 {
 #[test]
 fn a_gyroscopes_scale_and_misalignment_are_found() {
     for ((name, set), most) in sets().into_iter().zip([3e-3, 5e-4]) {
-        for seed in 1..=3 {
+        for seed in seeds(3) {
             let config = config(&set, seed);
             let accelerometer = accelerometer(&config);
             let kind = turned(accelerometer);
@@ -182,6 +215,8 @@ fn a_gyroscopes_scale_and_misalignment_are_found() {
             let errors = sensors.sensors().true_errors();
             let before = worst_rate(&Axes::default(), &accelerometer, &errors);
             let left = worst_rate(&axes, &accelerometer, &errors);
+            let what = format!("{name}: gyroscope's scale and cross axes, %");
+            measured(&what, format!("{:.3}", 100.0 * left));
             assert!(
                 before > 0.01 && left < most,
                 "{name} {seed}: {before} {left}"
@@ -201,7 +236,7 @@ fn turned(accelerometer: Axes) -> GuidedKind {
 #[test]
 fn a_magnetometer_is_found_and_aligned() {
     for ((name, set), most_ut) in sets().into_iter().zip([0.6, 0.05]) {
-        for seed in 1..=SEEDS {
+        for seed in seeds(2) {
             let config = config(&set, seed);
             let accelerometer = accelerometer(&config);
             let kind = GuidedKind::Magnetometer {
@@ -215,6 +250,8 @@ fn a_magnetometer_is_found_and_aligned() {
             };
             let [_, _, errors] = sensors.sensors().true_errors();
             let left_ut = worst(&axes, &errors, 50.0);
+            let left = format!("{left_ut:.3}");
+            measured(&format!("{name}: magnetometer's strength, µT"), left);
             assert!(left_ut < most_ut, "{name} {seed}: {left_ut} {found:?}");
             let (mounting, rotation) = mounting.unwrap();
             assert_eq!(mounting.to_string(), "forward-right-down");
@@ -227,7 +264,7 @@ fn a_magnetometer_is_found_and_aligned() {
 #[test]
 fn a_pitot_tubes_zero_is_found() {
     for (name, set) in sets() {
-        for seed in 1..=SEEDS {
+        for seed in seeds(2) {
             let alone = HandlingTask::LeaveAlone;
             let config = config(&set, seed);
             let (found, sensors) = calibrate(&config, &GuidedKind::Airspeed, alone, None);
@@ -235,6 +272,8 @@ fn a_pitot_tubes_zero_is_found() {
                 panic!("{name}");
             };
             let [truth] = sensors.sensors().pitot_errors().bias;
+            let left = format!("{:.2}", (bias_pa - truth).abs());
+            measured(&format!("{name}: pitot tube's zero, Pa"), left);
             // 2 Pa of noise, and 0.1 Pa of warming.
             assert!((bias_pa - truth).abs() < 0.7, "{name} {seed}: {bias_pa}");
         }
@@ -243,7 +282,7 @@ fn a_pitot_tubes_zero_is_found() {
 
 #[test]
 fn a_mounting_is_found_to_what_misalignment_leaves() {
-    for seed in 1..=SEEDS {
+    for seed in seeds(2) {
         let config = config(&RawSensorSet::board(), seed);
         let accelerometer = accelerometer(&config);
         let kind = GuidedKind::Mounting {

@@ -20,7 +20,7 @@ const LONGEST_SUSPENSION: u32 = 65_536;
 
 /// This part of the longest recent duration is reserved in addition. With the
 /// whole duration most ticks of one run of two on a busy machine appeared to have
-/// no time for a warm-up (`docs/results/timing.md`).
+/// no time for a warm-up.
 const RESERVE: i64 = 4;
 
 /// How long warm-ups took.
