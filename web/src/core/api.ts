@@ -92,13 +92,14 @@ export interface Difference {
   sentence: string;
 }
 
+// As `fccd doctor --json` prints it.
 export interface Finding {
   name: string;
-  state: string;
+  grade: string;
   found: string;
-  advice: string | null;
+  why: string;
   /** Lines that mend it, and where each is written. */
-  remedies?: { place: string; line: string }[] | null;
+  remedies: { place: string; line: string }[];
 }
 
 export class Refused extends Error {

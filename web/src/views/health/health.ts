@@ -103,7 +103,7 @@ export function openHealth(): View {
     try {
       const found = await getJson<Finding[]>("/doctor");
       replace(findings, ...found.map(finding));
-      const good = found.filter((one) => isGood(one.state)).length;
+      const good = found.filter((one) => one.grade === "ok").length;
       setText(doctor_note, `${good} of ${found.length} are good.`);
     } catch (error) {
       setText(doctor_note, `The doctor does not answer: ${message(error)}`);
@@ -142,15 +142,13 @@ export function openHealth(): View {
   };
 }
 
-const isGood = (state: string): boolean => /^(good|ok|fine|yes)/i.test(state);
-
 function finding(one: Finding): HTMLElement {
-  const good = isGood(one.state);
-  const known = !/not.known/.test(one.state);
+  const good = one.grade === "ok";
+  const known = !/not.known/.test(one.grade);
   return h(
     "li",
     { class: good ? "good" : known ? "wrong" : "unknown" },
-    h("span", { class: "finding-state" }, good || !known ? null : icon("warning"), one.state.replaceAll("_", " ")),
-    h("div", {}, h("strong", {}, one.name), h("span", { class: "note" }, ` ${one.found}`), one.advice ? h("code", { class: "mends" }, one.advice) : null, ...(one.remedies ?? []).map((remedy) => h("code", { class: "mends", title: remedy.place }, `${remedy.place}: ${remedy.line}`))),
+    h("span", { class: "finding-state" }, good || !known ? null : icon("warning"), one.grade.replaceAll("_", " ")),
+    h("div", {}, h("strong", {}, one.name), h("span", { class: "note" }, ` ${one.found}`), one.why ? h("code", { class: "mends" }, one.why) : null, ...one.remedies.map((remedy) => h("code", { class: "mends", title: remedy.place }, `${remedy.place}: ${remedy.line}`))),
   );
 }
