@@ -37,5 +37,6 @@ pub(crate) async fn doctor(State(station): State<Arc<Station>>) -> Result<Json<V
             "{program} doctor --json: is not understood: {error}"
         ))
     })?;
-    Ok(Json(found["findings"].clone()))
+    let findings = found.get("findings").cloned();
+    Ok(Json(findings.unwrap_or_default()))
 }

@@ -43,7 +43,7 @@ const ACCEL_CONFIG: u8 = 0x50;
 const WIDEST_1_KHZ: u8 = 0x06;
 const INTF_CONFIG1: u8 = 0x4D;
 /// What it has after a reset (0x91), but never another noise mode: at that change, near
-/// 100 °/s, it repeats its samples (ArduPilot #25025, bits 7 and 6).
+/// 100 °/s, it repeats its samples (`ArduPilot` #25025, bits 7 and 6).
 const ONE_NOISE_MODE: u8 = 0x51;
 const FIFO_CONFIG1: u8 = 0x5F;
 /// Packets with acceleration, turn rates and temperature: structure 3.
