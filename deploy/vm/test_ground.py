@@ -57,7 +57,7 @@ def test_the_page_and_the_daemon_are_found(flying: Flying) -> None:
     (daemon,) = json.loads(answer)["daemons"]
     assert (status, daemon["process_id"]) == (200, service.pid)
     (file,) = service.recordings()
-    listed = json.loads(ask(service.guest, "GET", "/api/flights")[1])["flights"]
+    listed = json.loads(ask(service.guest, "GET", "/api/flights")[1])
     assert [one["file"] for one in listed] == [Path(file).name]
 
 
