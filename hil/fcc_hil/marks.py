@@ -105,7 +105,8 @@ class AutopilotMark:
             f"[failsafe]\nhold_s = {self.failsafe_hold_s!r}\nall_silent_s = {self.all_silent_s!r}\n"
             f"degraded_s = {self.degraded_s!r}"
         )
-        return f"[guidance]\n{flown}\n{failsafe}\n{self.config}\n"
+        more = self.config if "[failsafe]" in self.config else f"[failsafe]\n{self.config}"
+        return f"[guidance]\n{flown}\n{more.replace('[failsafe]', failsafe, 1)}\n"
 
 
 def autopilot_mark(  # noqa: PLR0913 - the settings of a mark

@@ -43,6 +43,14 @@ def test_the_daemon_accepts_what_a_mark_accepts(mode: str, **others: float) -> N
     fcc.Machine(autopilot_mark(mode, **others).toml())  # type: ignore[arg-type]
 
 
+def test_keys_of_failsafe_are_added_to_those_of_the_mark() -> None:
+    more = '[loop]\nrate_hz = 100\n[failsafe]\nend = "glide"\n[engage]\nstick_takeover = 0.5\n'
+    config = fcc.Config(autopilot_mark("hold", degraded_s=60, config=more).toml())
+    assert config["failsafe.degraded_s"] == 60
+    assert config["failsafe.end"] == "glide"
+    assert config["engage.stick_takeover"] == 0.5
+
+
 BAD: st.SearchStrategy[Any] = st.sampled_from(
     [math.nan, math.inf, -math.inf, 1e9, -1e9, "1", None, []]
 )
