@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from fcc_hil.process import StandInProcess
+
 from guest import INSTALL_S, Guest
 from service import Service, flight
 

@@ -82,6 +82,7 @@ class Plant:
 
     _wind: WindOnWheels | None = None
     """That of an aircraft that began on its wheels."""
+    _terrain: Tiles | None = None
 
     def __init__(
         self,
@@ -102,7 +103,6 @@ class Plant:
         """
         self.aircraft = by_name(aircraft) if isinstance(aircraft, str) else aircraft
         self.seed = seed
-        self._terrain: Tiles | None = None
         self.battery = Battery()
         weather = weather or Weather()
         self.fdm = fdm = jsbsim.FGFDMExec(None)
