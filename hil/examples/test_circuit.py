@@ -1,6 +1,6 @@
 """A whole plan: take-off, circuit, landing.
 
-pytest hil/examples/test_landing.py     in lockstep, from the clone's folder, in 10 s
+pytest hil/examples/test_circuit.py     in lockstep, from the clone's folder, in 10 s
 """
 
 import pytest
