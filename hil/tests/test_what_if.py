@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-DOCS = Path(__file__).parents[2] / "docs"
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
 PAGE = (DOCS / "what-if.md").read_text()
 LINK = re.compile(r"\]\(([\w.-]+\.md)(?:#([\w-]+))?\)")
 NUMBER = re.compile(r"(?<![\w.])(\d[\d,]*(?:\.\d+)?)(?: (?:of|to) (\d[\d.]*))?")
@@ -81,3 +84,7 @@ def test_each_phase_has_the_hazard(hazard: str) -> None:
 
 def test_the_phases_are_those_of_a_flight() -> None:
     assert tuple(TABLES) == ("In every phase", *PHASES)
+
+
+def test_the_page_is_made_from_causes_and_hazards() -> None:
+    subprocess.run([sys.executable, ROOT / "scripts/what-if", "--check"], check=True)
