@@ -309,11 +309,15 @@ clippy: $(STAMPS)/rust
 lint-rust: clippy
 	RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps --all-features
 
+# Scripts in Python.
+LINTED := $(addprefix scripts/,known-advisories android-check messages reference results structure words \
+    book what-if)
+
 lint-python: tested $(STAMPS)/playwright
 	$(PYTHON) -m ruff check hil deploy web
-	$(PYTHON) -m ruff check --config hil/pyproject.toml crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check scripts/messages scripts/results scripts/structure scripts/words scripts/book
+	$(PYTHON) -m ruff check --config hil/pyproject.toml crates/fcc-py/fcc.pyi $(LINTED)
 	$(PYTHON) -m ruff format --check hil deploy web
-	$(PYTHON) -m ruff format --config hil/pyproject.toml --check crates/fcc-py/fcc.pyi scripts/known-advisories scripts/android-check scripts/messages scripts/results scripts/structure scripts/words scripts/book
+	$(PYTHON) -m ruff format --config hil/pyproject.toml --check crates/fcc-py/fcc.pyi $(LINTED)
 	cd hil && ../$(PYTHON) -m mypy
 	cd deploy/vm && MYPYPATH=../../hil/tests ../../$(PYTHON) -m mypy --config-file ../../hil/pyproject.toml .
 	cd web/tests && MYPYPATH=../../hil/tests ../../$(PYTHON) -m mypy --config-file ../../hil/pyproject.toml *.py
@@ -466,9 +470,10 @@ bench-ground: build station $(STAMPS)/python $(STAMPS)/browser ## Measure the gr
 bench-flood: build $(STAMPS)/python ## Fly among 100,000 datagrams a second of another host (1 minute)
 	$(call result,timing,'Among datagrams of others') $(PYTHON) -m fcc_hil bench-flood --fccd $(FCCD)
 
-book: $(STAMPS)/rust ## Build the documents as a book with search: target/book/html
+book: build ## Build the documents as a book with search: target/book/html
 	@command -v mdbook >/dev/null || cargo install --locked --version 0.5.4 mdbook
 	./scripts/book target/book
+	./scripts/reference $(FCCD) target/book/src/reference
 	mdbook build target/book
 	./scripts/book --check target/book/html
 
