@@ -224,8 +224,11 @@ SEVERAL := -m pytest --numprocesses auto -rA --show-capture=stdout
 test-fences: tested ## Fly 20 times against a fence with JSBSim, in 20 kt and turbulence (10 minutes)
 	FCC_FENCES=20 $(call result,plans,Fences) $(PYTHON) $(SEVERAL) hil/tests/test_contingency.py
 
-test-contingencies: tested ## Lose position, commander and battery, and meet ridges, each 20 times with JSBSim (40 minutes)
-	FCC_FENCES=0 FCC_CONTINGENCIES=20 $(call result,plans,Contingencies) $(PYTHON) $(SEVERAL) hil/tests/test_contingency.py
+# How often each contingency is flown.
+EACH ?= 20
+
+test-contingencies: tested ## Lose position, commander and battery, and meet ridges, each 20 times with JSBSim (EACH=, 40 minutes)
+	FCC_FENCES=0 FCC_CONTINGENCIES=$(EACH) $(call result,plans,Contingencies,EACH) $(PYTHON) $(SEVERAL) hil/tests/test_contingency.py
 
 test-glides: tested ## Stop the engine at 3,000 ft and glide down 20 times with JSBSim (10 minutes)
 	FCC_GLIDES=20 $(call result,landings,Glides) $(PYTHON) -m pytest --capture=no hil/tests/test_glide.py
