@@ -159,6 +159,32 @@ def test_a_plan_with_a_problem_is_not_uploaded(ground: Station, visit: Visit) ->
     assert ground.vehicle()["hash"] == before
 
 
+def test_a_plan_and_its_problems_are_seen_whole_on_a_phone(ground: Station, visit: Visit) -> None:
+    page = visit(ground, "phone").open("plan")
+    page.get_by_role("button", name="Copy into draft").click()
+    page.wait_for_function(MANY, arg=9)
+    saved(page, ground, "plan-1", lambda plan: len(plan["items"]) == 9)
+    # A QGroundControl plan has its default cruise speed, and loiters of few metres.
+    page.get_by_label("Action of item 4").select_option("loiter")
+    page.get_by_label("Radius of item 4, m").fill("30")
+    page.keyboard.press("Tab")
+    problem = page.locator("tr.problem.error span").first
+    problem.wait_for()
+    text, table = problem.bounding_box(), page.locator(".tables").bounding_box()
+    assert text is not None and table is not None
+    assert table["x"] <= text["x"] and text["x"] + text["width"] <= table["x"] + table["width"]
+    # As it is opened, no tool covers a point, and only the panels scroll.
+    page.reload()
+    page.wait_for_function(MANY, arg=9)
+    page.wait_for_selector(".point:text-is('8')")
+    tools = page.locator(".plan-tools").bounding_box()
+    assert tools is not None
+    for point in page.locator(".plan .point:visible").all():
+        box = point.bounding_box()
+        assert box is not None and box["y"] >= tools["y"] + tools["height"]
+    assert page.evaluate("document.documentElement.scrollHeight === innerHeight")
+
+
 def test_a_refused_value_says_at_its_cell_how_to_mend_it(air: Air, visit: Visit) -> None:
     page = visit(air.station).open("plan")
     draw(page)
