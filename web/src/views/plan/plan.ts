@@ -106,9 +106,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
     else if (tool === "home") edit({ ...now, home: { place, altitude_m: now.home?.altitude_m ?? 0 } }, "home");
     else addItem(tool, place);
   };
-  map.on("click", (event: L.LeafletMouseEvent) => {
-    if (may()) tapped(toPlace(event.latlng));
-  });
+  map.on("click", (event: L.LeafletMouseEvent) => { if (may()) tapped(toPlace(event.latlng)); });
   const finishFence = () => {
     const now = plan();
     if (corners.length >= 3) edit({ ...now, fence: { ...now.fence, polygons: [...now.fence.polygons, { corners, inclusion: true, group: 0 }] } }, "add a fence polygon");
@@ -283,17 +281,9 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
       select({ of: "item", index: to });
     },
     select: (index: number) => select({ of: "item", index }),
-    get writable() {
-      return may();
-    },
+    get writable() { return may(); },
   };
-  const zone_actions = {
-    edit,
-    centre,
-    get writable() {
-      return may();
-    },
-  };
+  const zone_actions = { edit, centre, get writable() { return may(); } };
 
   const draw = () => {
     const now = plan();
