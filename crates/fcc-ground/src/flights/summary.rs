@@ -195,11 +195,12 @@ struct Reading<'a> {
     missed: f64,
 }
 
+const RADIAN_DEG: f64 = 1_f64.to_degrees();
 /// Values whose largest is compared, and what one of the column is in the figure's unit.
 const LARGEST: [(&str, &str, f64); 4] = [
     ("highest_altitude_m", "estimated_altitude_m", 1.0),
     ("greatest_airspeed_mps", "estimated_airspeed_mps", 1.0),
-    ("greatest_bank_deg", "estimated_roll_rad", 1_f64.to_degrees()),
+    ("greatest_bank_deg", "estimated_roll_rad", RADIAN_DEG),
     ("greatest_load_factor", "estimated_load_factor", 1.0),
 ];
 
