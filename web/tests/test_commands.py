@@ -122,6 +122,22 @@ def test_who_has_no_token_watches_and_commands_nothing(air: Air, visit: Visit) -
     )
     assert answer.status == 401
     assert air.station.tick()["state"] == "standby"
+    # Set points have no field, and a draft no tool, that would be refused.
+    air.station.carried_out("engage")
+    page.wait_for_selector(".readout:has-text('engaged')")
+    page.wait_for_selector(".set-points tr:has-text('Airspeed') .set:not(:text-is('\u2013'))")
+    assert page.locator(".set-points").locator("input:visible, button:visible").count() == 0
+    page.goto(f"{air.station.address}/#/plan")
+    page.wait_for_selector(".save-state:text-is('View only')")
+    for name in (
+        "New draft",
+        "Delete draft",
+        "Import",
+        "Copy draft",
+        "Upload to vehicle",
+        "Waypoint",
+    ):
+        assert page.get_by_role("button", name=name, exact=True).is_disabled()
 
 
 def test_the_token_leaves_the_address(air: Air, visit: Visit) -> None:

@@ -141,6 +141,26 @@ def test_two_pages_share_a_draft(air: Air, visit: Visit) -> None:
     assert one.get_by_label("Altitude of item 3, m").input_value() == "260"
 
 
+def test_a_table_drawn_anew_keeps_what_is_being_typed(air: Air, visit: Visit) -> None:
+    """As by the edit of another page."""
+    page = visit(air.station).open("plan")
+    draw(page)
+    page.get_by_label("Altitude of item 3, m").click()
+    page.keyboard.press("Control+a")
+    for digits, other in (("2", 310), ("71", 320)):
+        page.keyboard.type(digits)
+        draft = saved(page, air.station, "plan-1", lambda plan: altitudes(plan)[2:3] == [260])
+        draft["plan"]["items"][1]["altitude"]["m"] = other
+        edit = {"based_on": draft["revision"], "plan": draft["plan"]}
+        air.station.ask("PUT", "/api/drafts/plan-1", edit)
+        page.wait_for_function(
+            "shown => document.querySelector('[data-key=item-1-altitude]').value === shown",
+            arg=str(other),
+        )
+    page.keyboard.press("Enter")
+    saved(page, air.station, "plan-1", lambda plan: altitudes(plan)[1:3] == [320, 271])
+
+
 def test_a_plan_with_a_problem_is_not_uploaded(ground: Station, visit: Visit) -> None:
     page = visit(ground).open("plan")
     draw(page)
@@ -157,6 +177,35 @@ def test_a_plan_with_a_problem_is_not_uploaded(ground: Station, visit: Visit) ->
     )
     assert page.get_by_role("button", name="Upload to vehicle").is_disabled()
     assert ground.vehicle()["hash"] == before
+
+
+def test_a_plan_and_its_problems_are_seen_whole_on_a_phone(ground: Station, visit: Visit) -> None:
+    page = visit(ground, "phone").open("plan")
+    page.get_by_role("button", name="Copy into draft").click()
+    page.wait_for_function(MANY, arg=9)
+    saved(page, ground, "plan-1", lambda plan: len(plan["items"]) == 9)
+    # A QGroundControl plan has its default cruise speed, and loiters of few metres.
+    page.get_by_label("Action of item 4").select_option("loiter")
+    page.get_by_label("Radius of item 4, m").fill("30")
+    page.keyboard.press("Tab")
+    problem = page.locator("tr.problem.error span").first
+    problem.wait_for()
+    text, table = problem.bounding_box(), page.locator(".tables").bounding_box()
+    assert text is not None
+    assert table is not None
+    assert table["x"] <= text["x"]
+    assert text["x"] + text["width"] <= table["x"] + table["width"]
+    # As it is opened, no tool covers a point, and only the panels scroll.
+    page.reload()
+    page.wait_for_function(MANY, arg=9)
+    page.wait_for_selector(".point:text-is('8')")
+    tools = page.locator(".plan-tools").bounding_box()
+    assert tools is not None
+    for point in page.locator(".plan .point:visible").all():
+        box = point.bounding_box()
+        assert box is not None
+        assert box["y"] >= tools["y"] + tools["height"]
+    assert page.evaluate("document.documentElement.scrollHeight === innerHeight")
 
 
 def test_a_refused_value_says_at_its_cell_how_to_mend_it(air: Air, visit: Visit) -> None:

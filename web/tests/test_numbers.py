@@ -118,6 +118,15 @@ def test_a_replay_shows_the_recorded_numbers(cruise: Air, visit: Visit) -> None:
         assert number(shown["Ground speed"].split("\u202f")[0]) == pytest.approx(speed, abs=0.3)
 
 
+def test_two_flights_are_compared_in_degrees(cruise: Air) -> None:
+    file = cruise.landed()
+    found = cruise.station.ask("GET", f"/api/flights/{file}/compare/{file}")[1]
+    bank = next(one for one in found if one["what"] == "greatest bank")
+    most = max(abs(math.degrees(tick["estimated_roll_rad"])) for tick in recorded(cruise, file))
+    assert bank["unit"] == "degrees"
+    assert bank["a"] == bank["b"] == pytest.approx(most, rel=1e-6)
+
+
 def columns(air: Air) -> dict[str, Any]:
     found = air.station.ask("GET", f"/api/live/{air.station.instance}/columns")[1]["columns"]
     return {one["name"]: one for one in found}

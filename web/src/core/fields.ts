@@ -52,11 +52,12 @@ export function numberField(field: NumberField): HTMLElement {
   const show = () => {
     let one = typed.get(field.key);
     if (one && one.before !== before) one = void typed.delete(field.key);
-    input.value = one?.text ?? before;
+    input.defaultValue = input.value = one?.text ?? before;
     input.setAttribute("aria-invalid", String(one !== undefined));
     setText(why, one ? `${one.text || "Nothing"} is refused: ${one.why}. The plan keeps ${before || field.empty}; Esc brings it back.` : "");
   };
-  input.addEventListener("change", () => {
+  const commit = () => {
+    if (input.value === input.defaultValue) return;
     const given = input.value.trim();
     const reason = refused(field, given);
     typed.delete(field.key);
@@ -65,10 +66,12 @@ export function numberField(field: NumberField): HTMLElement {
     refusal.set(why.textContent && `${field.label}: ${why.textContent}`);
     if (reason !== null || given === before) return;
     // Until it is drawn anew.
-    input.value = given;
+    input.defaultValue = input.value = given;
     field.changed(given === "" ? null : Number(given.replace(",", ".")));
-  });
+  };
+  for (const end of ["change", "blur"]) input.addEventListener(end, commit);
   input.addEventListener("keydown", (event) => {
+    if (event.key === "Enter") commit();
     if (event.key !== "Escape") return;
     typed.delete(field.key);
     show();
@@ -103,15 +106,22 @@ export function selectField<T extends string>(
   return select;
 }
 
-/** Replaces children, and gives the focus back to the field of the same key. */
+/** Replaces children, and gives the focus and what is typed back to the field of the same key. */
 export function keepingFocus(root: HTMLElement, rebuild: () => void): void {
   const active = document.activeElement;
   const key = active instanceof HTMLElement && root.contains(active) ? active.dataset["key"] : undefined;
   const scroll = root.scrollTop;
+  const typing = key !== undefined && active instanceof HTMLInputElement && active.value !== active.defaultValue ? { text: active.value, at: active.selectionStart, before: active.defaultValue } : null;
+  // A field that is removed reports a change: what is typed is not given yet.
+  if (typing) (active as HTMLInputElement).value = typing.before;
   rebuild();
   root.scrollTop = scroll;
   if (key === undefined) return;
   const again = root.querySelector<HTMLElement>(`[data-key="${CSS.escape(key)}"]`);
   again?.focus({ preventScroll: true });
-  if (again instanceof HTMLInputElement) again.select();
+  if (!(again instanceof HTMLInputElement)) return;
+  again.select();
+  if (typing?.before !== again.defaultValue) return;
+  again.value = typing.text;
+  again.setSelectionRange(typing.at, typing.at);
 }

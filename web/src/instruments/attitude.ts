@@ -72,7 +72,7 @@ function ladder(context: CanvasRenderingContext2D, box: Box, pitch_deg: number, 
   context.lineWidth = 1.4;
   context.font = `600 11px ${FONT}`;
   context.textBaseline = "middle";
-  const limit = box.height * 0.36;
+  const limit = Math.min(box.height * 0.36, box.width * 0.38);
   const wide = Math.min(box.width * 0.16, 46);
   context.beginPath();
   for (let mark = -90; mark <= 90; mark += 2.5) {

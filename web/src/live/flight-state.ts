@@ -10,6 +10,9 @@ export function freshness(age_s: number): Freshness {
   return age_s >= LOST_S ? "lost" : age_s >= STALE_S ? "stale" : "fresh";
 }
 
+/** A mode, with the item where a plan is flown. */
+export const modeText = (mode: string, item: number): string => `${mode.replace("takeoff", "take-off")}${item > 0 && ["plan", "takeoff", "land"].includes(mode) ? `, item ${item}` : ""}`;
+
 /** A row of columns by name; NaN without such a column. */
 export interface Row {
   number(name: string): number;

@@ -58,8 +58,8 @@ const FIGURES: [Figure; 12] = [
         ("higher", "lower"),
     ),
     figure(
-        "greatest_bank_rad",
-        ("greatest bank", "rad", 2),
+        "greatest_bank_deg",
+        ("greatest bank", "degrees", 1),
         ("larger", "smaller"),
     ),
     figure(

@@ -195,12 +195,13 @@ struct Reading<'a> {
     missed: f64,
 }
 
-/// Values whose largest is compared.
-const LARGEST: [(&str, &str); 4] = [
-    ("highest_altitude_m", "estimated_altitude_m"),
-    ("greatest_airspeed_mps", "estimated_airspeed_mps"),
-    ("greatest_bank_rad", "estimated_roll_rad"),
-    ("greatest_load_factor", "estimated_load_factor"),
+const RADIAN_DEG: f64 = 1_f64.to_degrees();
+/// Values whose largest is compared, and what one of the column is in the figure's unit.
+const LARGEST: [(&str, &str, f64); 4] = [
+    ("highest_altitude_m", "estimated_altitude_m", 1.0),
+    ("greatest_airspeed_mps", "estimated_airspeed_mps", 1.0),
+    ("greatest_bank_deg", "estimated_roll_rad", RADIAN_DEG),
+    ("greatest_load_factor", "estimated_load_factor", 1.0),
 ];
 
 impl<'a> Reading<'a> {
@@ -264,8 +265,8 @@ impl<'a> Reading<'a> {
                 self.cross_track.take(value("desired_cross_track_m"));
             }
         }
-        for (name, column) in LARGEST {
-            let now = value(column).abs();
+        for (name, column, factor) in LARGEST {
+            let now = value(column).abs() * factor;
             if now.is_finite() {
                 let most = self.most.entry(name).or_insert(now);
                 *most = most.max(now);

@@ -142,7 +142,7 @@ export class Plots {
       cursor: { sync: { key: sync }, drag: { x: true, y: false, setScale: false }, points: { show: false } },
       scales: { x: { time: false, range: () => this.#range } },
       axes: [
-        { ...axis, size: 22, values: (_, ticks) => ticks.map(minutes) },
+        { ...axis, size: 22, incrs: [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200], values: (_, ticks) => ticks.map(minutes) },
         { ...axis, size: 46 },
       ],
       series: [{}, ...plot.lines.map((one) => line(colours[one.colour], one.colour === "set" ? [6, 4] : [])), ...(this.#other ? [line(colours.second, [3, 3])] : [])],

@@ -5,7 +5,7 @@ import { getJson, message, part, type Difference, type Flight } from "../../core
 import { button, h, replace, setText } from "../../core/dom";
 import { fixed, shown, unitSystem, utc, withUnit } from "../../core/units";
 import { FlightDisplay } from "../../instruments/display";
-import { flightState, type FlightState } from "../../live/flight-state";
+import { flightState, modeText, type FlightState } from "../../live/flight-state";
 import { daemons } from "../../live/session";
 import { AircraftLayer } from "../../map/aircraft";
 import { createChart } from "../../map/chart";
@@ -33,7 +33,7 @@ export async function openReplay(file: string, other_file: string | undefined): 
   const aircraft = new AircraftLayer().addTo(map);
   const ghost = new AircraftLayer(true, false).addTo(map);
   const display = new FlightDisplay();
-  display.setLimits(daemons.get()[0]?.aircraft ?? null);
+  display.setLimits(daemons.get().find((one) => one.instance === flights.find((flight) => flight.file === file)?.instance)?.aircraft ?? null);
   const values = h("dl", { class: "readouts", "aria-label": "Flight values" });
   const cells = ["State", "Mode", "To go", "Off path", "Ground speed", "Wind", "UTC"].map((label) => {
     const value = h("dd", {});
@@ -73,11 +73,11 @@ export async function openReplay(file: string, other_file: string | undefined): 
     plan.mark(engaged && ["plan", "takeoff", "land"].includes(mode) ? item : 0);
     const texts = [
       recording.named("state", time_s),
-      item > 0 && engaged ? `${mode}, item ${item}` : mode,
+      modeText(mode, item),
       engaged && row.number("desired_to_go_m") > 0 ? withUnit("distance", row.number("desired_to_go_m")) : "–",
       engaged ? withUnit("length", row.number("desired_cross_track_m")) : "–",
       withUnit("speed", state.ground_speed_mps),
-      `${shown("heading", state.wind_from_rad)}° ${withUnit("wind", state.wind_mps)}`,
+      state.wind_mps <= 0.2 ? "calm" : `${shown("heading", state.wind_from_rad)}° ${withUnit("wind", state.wind_mps)}`,
       utc(recording.start_utc_s + time_s).slice(11, 19),
     ];
     cells.forEach((cell, at) => setText(cell, texts[at] ?? ""));

@@ -72,7 +72,7 @@ export class Commands {
       const tick = await sendCommand(instance, command);
       this.#say(`${name}: carried out at tick ${tick}`, "good");
     } catch (error) {
-      this.#say(`${name} refused: ${inUnits(message(error))}`, "bad");
+      this.#say(`${name} refused: ${inUnits(message(error)).replace(/^refused: /, "")}`, "bad");
     }
   }
 
@@ -96,7 +96,7 @@ export class Commands {
     this.#marker = L.circleMarker(at, { radius: 9, color: "#d94fe6", weight: 3, fillOpacity: 0.2, interactive: false }).addTo(this.map);
     const place = toPlace(at);
     setText(this.#where, `${place.latitude_deg.toFixed(5)}°, ${place.longitude_deg.toFixed(5)}°`);
-    setText(this.#altitude_unit, unitOf("altitude"));
+    setText(this.#altitude_unit, `${unitOf("altitude")} above sea level`);
     if (this.#altitude.value === "") this.#altitude.value = toShown("altitude", this.#phase.altitude_m).toFixed(0);
     setClass(this.#target, "hidden", false);
     this.#altitude.focus();

@@ -1,13 +1,13 @@
 /** Fly: where the aircraft is, what it does, what it is told. */
 
 import L from "leaflet";
-import { getJson, part, type VehiclePlan } from "../../core/api";
+import { getJson, part, writable, type VehiclePlan } from "../../core/api";
 import { button, h, replace, setClass, setText } from "../../core/dom";
 import { notOnNextFrame, onNextFrame } from "../../core/frame";
 import { duration, fixed, shown, unitSystem, withUnit } from "../../core/units";
 import { FlightDisplay } from "../../instruments/display";
 import { daemon, events, flown, linkAge, linkProblem, newest, onEvent, onRecord, run_started_utc_s } from "../../live/session";
-import { flightState, freshness, type FlightState } from "../../live/flight-state";
+import { flightState, freshness, modeText, type FlightState } from "../../live/flight-state";
 import type { LiveRecord } from "../../live/record";
 import { AircraftLayer } from "../../map/aircraft";
 import { createChart } from "../../map/chart";
@@ -27,6 +27,9 @@ const TEXTS_EVERY_MS = 200;
 const PLAN_EVERY_MS = 5000;
 const FIRST_ZOOM = 13;
 const STANDS_MPS = 1;
+/** What began and has not ended, also what is no fault: events alone tell it. */
+const present = (names: readonly string[], told = events.filter((one) => /^(now|no longer): /.test(one.text))): string[] =>
+  names.filter((name) => told.findLast((one) => one.text.includes(name))?.text.split("no longer: ")[0]?.includes(name));
 /** As the daemon reports this command, whoever gave it. */
 const GO_TO = /go to (-?[\d.]+)°, (-?[\d.]+)°/;
 
@@ -42,14 +45,7 @@ const CHARGE_LOW = 0.25;
 
 const READOUTS: readonly Readout[] = [
   { label: "State", text: (r) => r.named("state"), tone: (r) => ({ engaged: "good", failsafe: "bad" })[r.named("state")] ?? "" },
-  {
-    label: "Mode",
-    text: (r) => {
-      const mode = r.named("desired_guidance_mode");
-      const item = r.number("desired_guidance_item");
-      return item > 0 && ["plan", "takeoff", "land"].includes(mode) ? `${mode.replace("takeoff", "take-off")}, item ${item}` : mode;
-    },
-  },
+  { label: "Mode", text: (r) => modeText(r.named("desired_guidance_mode"), r.number("desired_guidance_item")) },
   { label: "To go", text: (r) => (r.number("state") === 1 && r.number("desired_to_go_m") > 0 ? withUnit("distance", r.number("desired_to_go_m")) : "–") },
   { label: "Off path", text: (r) => (r.number("state") === 1 ? withUnit("length", r.number("desired_cross_track_m")) : "–"), age: (s) => s.ages.position },
   { label: "Ground speed", text: (_, s) => withUnit("speed", s.ground_speed_mps), age: (s) => s.ages.position },
@@ -109,7 +105,7 @@ export function openFly(): View {
 
   let shown_conditions = "";
   const showConditions = (record: LiveRecord, engaged: boolean) => {
-    const found = record.flags(engaged ? "faults" : "engage_inhibits");
+    const found = engaged ? [...new Set([...record.flags("faults"), ...present(record.layout.at(record.layout.indexOf("faults"))?.names ?? [])])] : record.flags("engage_inhibits");
     const key = `${engaged}${found.join("|")}`;
     if (key === shown_conditions) return;
     shown_conditions = key;
@@ -150,8 +146,8 @@ export function openFly(): View {
     set_points.show(state);
     const mode = record.named("desired_guidance_mode");
     const fresh = freshness(age) !== "lost";
-    set_points.setEditable(state.engaged && fresh, !state.engaged ? "Nothing is held: not engaged." : mode === "hold" ? "" : `A set point ends mode ${mode.replace("takeoff", "take-off")}, and is held.`);
-    commands.show({ engaged: state.engaged, mode, inhibits: record.flags("engage_inhibits"), fresh, landed: state.engaged && mode === "land" && state.ground_speed_mps < STANDS_MPS, altitude_m: state.altitude_m });
+    set_points.setEditable(state.engaged && fresh && writable.get(), !state.engaged ? "Nothing is held: not engaged." : mode === "hold" || !writable.get() ? "" : `A set point ends mode ${modeText(mode, 0)}, and is held.`);
+    commands.show({ engaged: state.engaged, mode, inhibits: record.flags("engage_inhibits"), fresh, landed: state.engaged && mode === "land" && state.ground_speed_mps < STANDS_MPS && !(state.airspeed_mps > (daemon.get()?.aircraft?.stall_mps ?? Infinity)), altitude_m: state.altitude_m });
     showConditions(record, state.engaged);
     for (const { one, value, box } of cells) {
       setText(value, one.text(record, state));

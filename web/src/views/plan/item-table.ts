@@ -30,7 +30,7 @@ export class ItemTable {
         this.#row(item, index, items, selected === index, active === index + 1, actions),
         ...problems.filter((one) => one.item === index + 1).map((one) => problemRow(one)),
       ]);
-      const head = h("tr", {}, ...["", "Action", "Latitude °", "Longitude °", "Altitude", "above", "Details"].map((text) => h("th", { scope: "col" }, text || h("span", { class: "visually-hidden" }, "Number"))), h("th", { scope: "col" }, h("span", { class: "visually-hidden" }, "Order")));
+      const head = h("tr", {}, ...["", "Action", "Altitude", "above", "Latitude °", "Longitude °", "Details"].map((text) => h("th", { scope: "col" }, text || h("span", { class: "visually-hidden" }, "Number"))), h("th", { scope: "col" }, h("span", { class: "visually-hidden" }, "Order")));
       replace(
         this.element,
         items.length > 0
@@ -53,8 +53,8 @@ export class ItemTable {
       { class: classes, "aria-current": active ? "step" : null, focusin: () => actions.select(index) },
       h("th", { scope: "row", class: "number" }, h("button", { type: "button", class: "item-number", "data-key": key("number"), "aria-label": `Select item ${number}`, "aria-pressed": String(selected), click: () => actions.select(index) }, number)),
       h("td", {}, kind),
-      ...this.#place(item, key, number, off, change),
       ...this.#altitude(item, key, number, off, change),
+      ...this.#place(item, key, number, off, change),
       h("td", { class: "details" }, ...details(item, key, number, off, change)),
       h(
         "td",

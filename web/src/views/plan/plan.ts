@@ -106,9 +106,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
     else if (tool === "home") edit({ ...now, home: { place, altitude_m: now.home?.altitude_m ?? 0 } }, "home");
     else addItem(tool, place);
   };
-  map.on("click", (event: L.LeafletMouseEvent) => {
-    if (may()) tapped(toPlace(event.latlng));
-  });
+  map.on("click", (event: L.LeafletMouseEvent) => { if (may()) tapped(toPlace(event.latlng)); });
   const finishFence = () => {
     const now = plan();
     if (corners.length >= 3) edit({ ...now, fence: { ...now.fence, polygons: [...now.fence.polygons, { corners, inclusion: true, group: 0 }] } }, "add a fence polygon");
@@ -131,6 +129,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
   const save_state = h("span", { class: "save-state", role: "status" });
   const undo = button("Undo", () => editor?.undo(), { icon: "undo", bare: true });
   const redo = button("Redo", () => editor?.redo(), { icon: "redo", bare: true });
+  const changing = [button("New draft", () => newDraft(null), { icon: "add", bare: true }), button("Delete draft", () => removeDraft(), { icon: "trash", bare: true }), button("Import", () => file.click(), { icon: "upload" }), button("Copy draft", () => newDraft(plan()))] as const;
   const name_input = h("input", { type: "text", "aria-label": "Name of the new draft", maxlength: 40, pattern: "[A-Za-z0-9][A-Za-z0-9_.\\-]*", placeholder: "name", required: true });
   const asking = h("div", { class: "notice hidden" });
   const conflict = h("div", { class: "notice bad hidden", role: "alert" });
@@ -282,17 +281,9 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
       select({ of: "item", index: to });
     },
     select: (index: number) => select({ of: "item", index }),
-    get writable() {
-      return may();
-    },
+    get writable() { return may(); },
   };
-  const zone_actions = {
-    edit,
-    centre,
-    get writable() {
-      return may();
-    },
-  };
+  const zone_actions = { edit, centre, get writable() { return may(); } };
 
   const draw = () => {
     const now = plan();
@@ -315,16 +306,16 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
         ["Items", String(now.items.length)],
         ["Distance", total?.distance_m ? withUnit("distance", total.distance_m) : "–"],
         ["Time", total?.duration_s ? duration(total.duration_s) : "–"],
-        ["Problems", current ? (errors.length > 0 ? `${errors.length} ${errors.length === 1 ? "error" : "errors"}` : problems.length > 0 ? `${problems.length} ${problems.length === 1 ? "remark" : "remarks"}` : "none") : "checking"],
-      ].map(([name = "", value = ""]) => h("div", { "data-tone": name === "Problems" && errors.length > 0 ? "bad" : "" }, h("dt", {}, name), h("dd", {}, value))),
+        ["Problems", now.items.length === 0 ? "–" : current ? (errors.length > 0 ? `${errors.length} ${errors.length === 1 ? "error" : "errors"}` : problems.length > 0 ? `${problems.length} ${problems.length === 1 ? "remark" : "remarks"}` : "none") : "checking"],
+      ].map(([name = "", value = ""]) => h("div", { "data-tone": name === "Problems" && value.includes("error") ? "bad" : "" }, h("dt", {}, name), h("dd", {}, value))),
     );
-    replace(plan_problems, ...problems.filter((one) => one.item === null || one.item > now.items.length).map((one) => h("li", { class: `notice ${one.level === "error" ? "bad" : "remark"}` }, icon("warning"), " ", one.field ? `${one.field}: ` : null, one.message)));
+    replace(plan_problems, ...problems.filter((one) => now.items.length > 0 && (one.item === null || one.item > now.items.length)).map((one) => h("li", { class: `notice ${one.level === "error" ? "bad" : "remark"}` }, icon("warning"), " ", one.field ? `${one.field}: ` : null, one.message)));
     drawState();
     fitOnce();
   };
   const fit = () => {
     const bounds = layer.bounds();
-    if (bounds) map.fitBounds(bounds, { animate: false });
+    if (bounds) map.fitBounds(bounds, { animate: false, paddingTopLeft: [20, tool_choice.offsetHeight + 20], paddingBottomRight: [64, 20] });
   };
   // As it was opened: what is drawn into it moves no map.
   const fitOnce = () => {
@@ -334,10 +325,11 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
   };
   map.on("resize", fitOnce);
   const drawState = () => {
-    const state = editor?.state ?? "saved";
+    const state = writable.get() ? (editor?.state ?? "saved") : "read only";
+    for (const one of [...changing, ...tool_choice.querySelectorAll("button")]) one.disabled = !writable.get();
     setText(save_state, editor ? (state === "saved" ? (editor.revision > 0 ? SAVED[state] : "Empty: saved with the first edit") : SAVED[state]) : "No draft");
     save_state.title = editor?.reason || `Revision ${editor?.revision ?? 0}`;
-    save_state.dataset["tone"] = state === "saved" ? "good" : state === "saving" ? "" : "bad";
+    save_state.dataset["tone"] = state === "saved" ? "good" : state === "saving" || state === "read only" ? "" : "bad";
     undo.disabled = !may() || editor?.history.undoes === null;
     redo.disabled = !may() || editor?.history.redoes === null;
     undo.title = `Undo: ${editor?.history.undoes ?? "nothing"}`;
@@ -415,7 +407,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
   const side = h(
     "div",
     { class: "plan-side" },
-    h("div", { class: "row plan-head" }, picker, button("New draft", () => newDraft(null), { icon: "add", bare: true }), button("Delete draft", removeDraft, { icon: "trash", bare: true }), undo, redo, save_state),
+    h("div", { class: "row plan-head" }, picker, changing[0], changing[1], undo, redo, save_state),
     asking,
     conflict,
     totals,
@@ -423,7 +415,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
     h("div", { class: "row end" }, tab_choice, h("div", { class: "row" }, add_here, fence_done)),
     h("div", { class: "tables panel" }, table.element, zones.element),
     vehicle.element,
-    h("div", { class: "row files" }, button("Import", () => file.click(), { icon: "upload" }), file, button("Export .plan", () => void exportFile("plan"), { icon: "download" }), button(".waypoints", () => void exportFile("waypoints"), { icon: "download", title: "Export .waypoints" }), button("Copy draft", () => newDraft(plan())), overlay),
+    h("div", { class: "row files" }, changing[2], file, button("Export .plan", () => void exportFile("plan"), { icon: "download" }), button(".waypoints", () => void exportFile("waypoints"), { icon: "download", title: "Export .waypoints" }), changing[3], overlay),
     notice,
   );
   const element = h("div", { class: "plan" }, h("h1", { class: "visually-hidden" }, "Plan"), h("div", { class: "plan-map" }, h("div", { class: "plan-chart" }, chart.element, h("div", { class: "plan-tools" }, tool_choice)), profile.element), side);

@@ -67,7 +67,7 @@ export class Vehicle {
     const age = plan ? Date.now() / 1000 - plan.uploaded_utc_s : NaN;
     const ago = age < 100 ? `${Math.max(0, age).toFixed(0)} s ago` : age < 86_400 ? `${duration(age)} ago` : utc(plan?.uploaded_utc_s ?? 0);
     const items = plan?.plan ? `${plan.plan.items.length} items` : "content not known to the station";
-    setText(this.#summary, plan ? `Plan ${plan.hash}, ${items}, uploaded ${ago}` : daemon.get() ? "The vehicle has no plan." : "No vehicle is connected.");
+    setText(this.#summary, plan ? `Plan ${plan.hash}, ${items}, loaded ${ago}` : daemon.get() ? "The vehicle has no plan." : "No vehicle is connected.");
     const hash = this.#state.checked_hash ?? this.#draft?.hash ?? null;
     const same = plan !== null && hash !== null && plan.hash === hash;
     setText(this.#differs, !this.#draft || !plan ? "" : same ? "Draft is the vehicle's plan" : "Draft differs from vehicle");

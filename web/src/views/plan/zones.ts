@@ -64,7 +64,7 @@ function home(plan: Plan, { edit, centre, writable }: ZoneActions): HTMLElement 
   const rows = one
     ? [h("tr", {}, ...places("home", "home", one.place, off, (place) => edit({ ...plan, home: { ...one, place } }, "home")), h("td", {}, quantityField("altitude", { key: "home-altitude", label: "Altitude of home above sea level", value: one.altitude_m, disabled: off, lowest: -1000, highest: 9000, changed: (altitude_m) => altitude_m !== null && edit({ ...plan, home: { ...one, altitude_m } }, "home's altitude") })))]
     : [];
-  const cruise = h("label", { class: "labelled" }, h("span", { class: "unit" }, "first airspeed"), quantityField("speed", { key: "cruise", label: "Airspeed of the first leg", value: plan.cruise_mps, empty: "usual", lowest: 0, highest: 340, disabled: off, changed: (cruise_mps) => edit({ ...plan, cruise_mps }, "first airspeed") }));
+  const cruise = h("label", { class: "labelled" }, h("span", { class: "unit" }, "cruise speed"), quantityField("speed", { key: "cruise", label: "Airspeed of the first leg", value: plan.cruise_mps, empty: "usual", lowest: 0, highest: 340, disabled: off, changed: (cruise_mps) => edit({ ...plan, cruise_mps }, "cruise speed") }));
   return section("Home", ["Latitude °", "Longitude °", "Above sea level"], rows, cruise, ...(one ? [] : [adder("Set home at centre", off, () => edit({ ...plan, home: { place: centre(), altitude_m: 0 } }, "home"))]));
 }
 
