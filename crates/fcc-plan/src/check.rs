@@ -49,8 +49,12 @@ pub fn check(plan: &Plan, conditions: &Conditions) -> Result<(), Vec<Problem>> {
         let begins_m = begins_with.map_or(0.0, |turn| turn.after_m());
         let ends_m = ends_with.map_or(0.0, |turn| turn.before_m());
         let turn_away = TurnAway::new(leg, conditions, begins_m, ends_m);
+        // A leg to a wrong place has no climb.
+        let is_misplaced =
+            |problem: &Problem| problem.item == Some(leg.item) && problem.field == "place";
+        let has_climb = !problems.iter().any(is_misplaced);
         let found = [
-            climb(leg, conditions),
+            has_climb.then(|| climb(leg, conditions)).flatten(),
             next.zip(ends_with)
                 .and_then(|(next, turn)| room(leg, next, begins_m, &turn)),
             last_leg(plan, leg, begins_m, conditions),

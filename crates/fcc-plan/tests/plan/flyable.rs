@@ -135,6 +135,9 @@ fn a_runway_without_a_direction_is_refused() {
         refused.starts_with("item 1: place: is 0 m from home"),
         "{refused}"
     );
+    // 0.5 m away: a leg that cannot be climbed on is no second problem.
+    let refused = said(&plan(vec![takeoff(45.000_005), way]));
+    assert_eq!(refused.matches("item 1").count(), 1, "{refused}");
     assert_eq!(said(&plan(vec![takeoff(45.02), way])), "");
     let refused = said(&plan(vec![waypoint(45.1, 8.0, 120.0), way, land(45.2)]));
     assert!(
