@@ -1338,7 +1338,6 @@ def navigate(
     gnss_velocity: _Source | None = None,
     delays_s: dict[str, float] | None = None,
     mounting: npt.ArrayLike | dict[str, npt.ArrayLike] | None = None,
-    method: str = "kalman",
     year: float | None = None,
 ) -> dict[str, Any]:
     """Compute attitude, velocity, position and wind from raw samples: arrays with sigmas."""

@@ -25,7 +25,7 @@ def add(commands: Any) -> None:
     ranges.add_seed(raw)
     raw.add_argument(
         "--navigation",
-        choices=("measured", "kalman", "thesis"),
+        choices=("measured", "kalman"),
         default="measured",
         help="fly by ideal sensors, or by attitude from the raw ones (default: measured)",
     )

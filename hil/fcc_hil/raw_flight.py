@@ -149,7 +149,7 @@ def fly(
     """Fly the timed pattern; return the raw readings, the truth and the estimate.
 
     `navigation` is `measured` for ideal sensors, or how attitude is computed from the raw ones:
-    `kalman`, `thesis`. It is flown in 12 kt of wind, and turbulence of JSBSim's severity, 0 to 7.
+    `kalman`. It is flown in 12 kt of wind, and turbulence of JSBSim's severity, 0 to 7.
     With `airframe`, what another flight has learned (`RawFlight.learned`), there is no pitot tube.
     With `board` the pitot tube, the switch and the surfaces are a servo board's, at the other end
     of this line.

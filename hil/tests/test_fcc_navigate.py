@@ -25,14 +25,12 @@ def still(vector: Any) -> tuple[np.ndarray, np.ndarray]:
 GYROSCOPE, ACCELEROMETER = still([0.01, 0.0, -0.01]), still(FORCE)
 
 
-@pytest.mark.parametrize("method", ["kalman", "thesis"])
-def test_at_rest_the_orientation_is_that_of_gravity_and_field(method: str) -> None:
+def test_at_rest_the_orientation_is_that_of_gravity_and_field() -> None:
     found = fcc.navigate(
         gyroscope=GYROSCOPE,
         accelerometer=ACCELEROMETER,
         magnetometer=still(FIELD_UT),
         static_pressure=(TIMES_S, np.full(len(TIMES_S), 89_874.6)),
-        method=method,
     )
     assert found["heading_reference"] == "magnetic"
     np.testing.assert_allclose(found["t_s"], TIMES_S, atol=1e-6)

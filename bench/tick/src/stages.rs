@@ -8,7 +8,7 @@ use std::time::Duration;
 use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Actuator, Controller, Message, MessageOf, RecordOf, Sensor, Tick};
 use fcc_fixed_wing::{Autopilot, AutopilotConfig};
-use fcc_navigation::inertial::{MagneticNorth, RawNavigationConfig, RawNavigationMethod};
+use fcc_navigation::inertial::{MagneticNorth, RawNavigationConfig};
 use fcc_sim::{Channels, RawSensorSet, SensorConfig, Severity, SimConfig, Simulation};
 use fcc_xplane::{Errno, Port, XPlane, XPlaneActuator, XPlaneSensor};
 use rtrb::{Consumer, Producer, RingBuffer};
@@ -106,7 +106,6 @@ impl Stages {
             ..SimConfig::default()
         };
         let raw_navigation = aircraft.raw_sensors.is_some().then(|| RawNavigationConfig {
-            method: RawNavigationMethod::Kalman,
             delay: LONGEST_DELAY,
             north: MagneticNorth::Field(aircraft.magnetic_field_ut()),
         });

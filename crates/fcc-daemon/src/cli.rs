@@ -13,7 +13,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
-use fcc_flight::config::{CpuChoice, EarlyWakeChoice, GustsChoice, NavigationMethod};
+use fcc_flight::config::{CpuChoice, EarlyWakeChoice, GustsChoice};
 use fcc_telemetry::Instance;
 use fcc_timer::TimerKind;
 
@@ -24,7 +24,7 @@ pub use calibrate::CalibrateArgs;
 pub use command::{CommandArgs, CommandChoice, SetArgs};
 use plan::PlanArgs;
 use values::{
-    cpu_cap_percent, early_wake, gusts, margin_us, navigation, output, positive_seconds, rate_hz,
+    cpu_cap_percent, early_wake, gusts, margin_us, output, positive_seconds, rate_hz,
 };
 use x_plane::XPlaneArgs;
 
@@ -271,11 +271,10 @@ pub struct ReplayArgs {
     /// `[autopilot.airframe]` of a configuration for flights without an airspeed sensor
     #[arg(long, conflicts_with_all = ["config", "csv"])]
     pub airframe: bool,
-    /// Run the recorded raw readings through navigation by this method, or several
-    /// with commas, and show its differences and its innovations
-    #[arg(long, value_name = "METHOD", value_delimiter = ',', value_parser = navigation(),
-          conflicts_with_all = ["config", "csv", "airframe"])]
-    pub navigation: Vec<NavigationMethod>,
+    /// Run the recorded raw readings through navigation, and show its differences and
+    /// its innovations
+    #[arg(long, conflicts_with_all = ["config", "csv", "airframe"])]
+    pub navigation: bool,
     /// With --navigation: write a page with its plots beside those of the flight
     #[arg(long, value_name = "OUT.html", requires = "navigation", value_parser = output())]
     pub html: Option<PathBuf>,

@@ -59,11 +59,10 @@ pub fn recorded_plan(about: &About) -> Option<(String, fcc_plan::Plan)> {
     Some((which, plan.clone()))
 }
 
-/// How navigation computes by a method, with the rest of this configuration; none
-/// of [`NavigationMethod::Measured`].
-pub fn navigation_by(config: &Config, method: NavigationMethod) -> Option<RawNavigationConfig> {
+/// How navigation computes from raw readings, with the rest of this configuration.
+pub fn navigation_by_raw(config: &Config) -> Option<RawNavigationConfig> {
     let mut config = config.clone();
-    config.navigation.method = method;
+    config.navigation.method = NavigationMethod::Kalman;
     config.autopilot_config().raw_navigation
 }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser};
 use fcc_flight::calibrate::{CalibrationKind, HandlingFault};
-use fcc_flight::config::{EarlyWakeChoice, GustsChoice, NavigationMethod};
+use fcc_flight::config::{EarlyWakeChoice, GustsChoice};
 
 pub(super) fn gusts() -> impl TypedValueParser<Value = GustsChoice> {
     PossibleValuesParser::new(GustsChoice::ALL.map(|(name, _)| name)).try_map(|given| {
@@ -40,13 +40,6 @@ pub(super) fn early_wake() -> impl TypedValueParser<Value = EarlyWakeChoice> {
         "on" => EarlyWakeChoice::On,
         "off" => EarlyWakeChoice::Off,
         _ => EarlyWakeChoice::Auto,
-    })
-}
-
-pub(super) fn navigation() -> impl TypedValueParser<Value = NavigationMethod> {
-    PossibleValuesParser::new(["kalman", "thesis"]).map(|given| match given.as_str() {
-        "kalman" => NavigationMethod::Kalman,
-        _ => NavigationMethod::Thesis,
     })
 }
 

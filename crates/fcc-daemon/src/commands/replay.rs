@@ -37,7 +37,7 @@ struct Outcome {
 
 /// Replays a recording.
 pub(super) fn replay(args: &ReplayArgs) -> Result<Exit, Failure> {
-    if !args.navigation.is_empty() {
+    if args.navigation {
         return replay_navigation(args);
     }
     let chain = Chain::open::<Autopilot>(&args.files).map_err(not_opened)?;

@@ -1,8 +1,8 @@
-//! `fccd replay --navigation METHOD FILE`: runs the raw readings of a recording
+//! `fccd replay --navigation FILE`: runs the raw readings of a recording
 //! through navigation.
 
 use fcc_fixed_wing::Autopilot;
-use fcc_flight::replay::{navigation_by, recorded_config, recorded_pattern};
+use fcc_flight::replay::{navigation_by_raw, recorded_config, recorded_pattern};
 use fcc_record::Recording;
 use fcc_replay::Chain;
 use fcc_report::{FlightAddition, FlightSurvey, NavigationReplay};
@@ -27,11 +27,9 @@ pub(super) fn replay_navigation(args: &ReplayArgs) -> Result<Exit, Failure> {
     };
     let chain = Chain::open::<Autopilot>(&args.files).map_err(not_opened)?;
     let config = recorded_config(&chain).map_err(|error| Failure::of(Exit::NotReplayed, error))?;
-    let methods = args.navigation.iter();
-    let methods = methods.filter_map(|method| navigation_by(&config, *method));
     let recording = Recording::open_as::<FlightMessage>(file)?;
     let addition = FlightAddition::new(recorded_pattern(recording.about()))
-        .with_navigation(NavigationReplay::new(methods));
+        .with_navigation(NavigationReplay::new(navigation_by_raw(&config)));
     let bar = progress::bar(recording.bytes(), "replaying");
     let report = FlightSurvey::read(&recording, addition, None, |read| bar.set_position(read))
         .map_err(Failure::new)?;

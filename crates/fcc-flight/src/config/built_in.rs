@@ -141,7 +141,7 @@ impl BuiltInSection {
     pub fn engages_at_s(&self, navigation: NavigationMethod) -> f64 {
         self.engage_at_s.unwrap_or(match navigation {
             NavigationMethod::Measured => ENGAGES_AT_S,
-            NavigationMethod::Kalman | NavigationMethod::Thesis => ENGAGES_BY_RAW_AT_S,
+            NavigationMethod::Kalman => ENGAGES_BY_RAW_AT_S,
         })
     }
 
@@ -237,7 +237,6 @@ mod tests {
         for (text, expected_s) in [
             ("[built-in]\n", 2.0),
             ("[built-in]\n[navigation]\nmethod = \"kalman\"\n", 15.0),
-            ("[built-in]\n[navigation]\nmethod = \"thesis\"\n", 15.0),
             (
                 "[built-in]\nengage_at_s = 3\n[navigation]\nmethod = \"kalman\"\n",
                 3.0,

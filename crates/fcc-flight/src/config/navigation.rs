@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use fcc_navigation::inertial::{MagneticNorth, RawNavigationConfig, RawNavigationMethod};
+use fcc_navigation::inertial::{MagneticNorth, RawNavigationConfig};
 use serde::{Deserialize, Serialize};
 
 use super::{Config, DeviceEntry, RawSensorsChoice, SensorEntry};
@@ -41,8 +41,6 @@ pub enum NavigationMethod {
     Measured,
     /// From raw readings, by a Kalman filter.
     Kalman,
-    /// From raw readings, as in the thesis.
-    Thesis,
 }
 
 impl Default for NavigationSection {
@@ -62,17 +60,12 @@ pub(super) const LONGEST_DELAY_MS: f64 = 500.0;
 /// Reports a method that has nothing to compute attitude from. A program's own
 /// aircraft stands in the place of a simulator's, and gives what it likes.
 pub(super) fn check(config: &Config, report: &mut impl FnMut(&[&str], String)) {
-    let needs = match config.navigation.method {
-        NavigationMethod::Measured => return,
-        NavigationMethod::Kalman => "gyroscopes",
-        NavigationMethod::Thesis => "an accelerometer",
-    };
-    if config.is_without_simulator() && !config.has_inertial_unit() {
-        let message = format!(
-            "computes attitude with {needs}, and no sensor has them: add one with kind = \"icm42688\", \
-             \"mpu6050\" or \"iio\", or choose \"measured\" to read the others without engaging"
-        );
-        report(&["navigation.method"], message);
+    let is_by_filter = config.navigation.is_by_filter();
+    if is_by_filter && config.is_without_simulator() && !config.has_inertial_unit() {
+        let message = "computes attitude with gyroscopes, and no sensor has them: add one with \
+                       kind = \"icm42688\", \"mpu6050\" or \"iio\", or choose \"measured\" to read \
+                       the others without engaging";
+        report(&["navigation.method"], message.to_owned());
     }
 }
 
@@ -102,8 +95,7 @@ impl Config {
             Some(_) => false,
             None => matches!(entry, SensorEntry::XPlane(_) | SensorEntry::ServoBoard(_)),
         };
-        let is_by_board =
-            self.is_without_simulator() && self.navigation.method != NavigationMethod::Measured;
+        let is_by_board = self.is_without_simulator() && self.navigation.is_by_filter();
         if !is_by_board || self.sensor.iter().any(gives_airspeed) {
             return None;
         }
@@ -136,14 +128,8 @@ impl NavigationSection {
     /// The core's configuration; none if sensors measure everything. Of a
     /// simulation the magnetic field is known.
     pub(super) fn to_core(self, simulated_ut: Option<[f64; 3]>) -> Option<RawNavigationConfig> {
-        let method = match self.method {
-            NavigationMethod::Measured => return None,
-            NavigationMethod::Kalman => RawNavigationMethod::Kalman,
-            NavigationMethod::Thesis => RawNavigationMethod::Thesis,
-        };
         let delay = Duration::try_from_secs_f64(self.longest_delay_ms * 1e-3);
-        Some(RawNavigationConfig {
-            method,
+        self.is_by_filter().then(|| RawNavigationConfig {
             // The table of ranges refuses what is no delay.
             delay: delay.unwrap_or_default(),
             north: match self.magnetic_field_ut.or(simulated_ut) {
@@ -158,7 +144,7 @@ impl NavigationSection {
 mod tests {
     use std::time::Duration;
 
-    use fcc_navigation::inertial::{MagneticNorth, RawNavigationMethod};
+    use fcc_navigation::inertial::MagneticNorth;
 
     use crate::config::Config;
 
@@ -179,10 +165,9 @@ mod tests {
                     magnetic_field_ut = [19.0, -1.0, 49.0]";
         let raw = parsed(text).unwrap().autopilot_config().raw_navigation;
         let raw = raw.unwrap();
-        assert_eq!(raw.method, RawNavigationMethod::Kalman);
         assert_eq!(raw.delay, Duration::from_millis(150));
         assert_eq!(raw.north, MagneticNorth::Field([19.0, -1.0, 49.0]));
-        let raw = parsed("method = \"thesis\"").unwrap().autopilot_config();
+        let raw = parsed("method = \"kalman\"").unwrap().autopilot_config();
         let north = raw.raw_navigation.unwrap().north;
         assert_eq!(north, MagneticNorth::ModelOf(2027.5));
     }
@@ -229,8 +214,6 @@ mod tests {
                      them: add one with kind = \"icm42688\"";
         let refused = with("kalman", &others).unwrap_err();
         assert!(refused.starts_with(words), "{refused}");
-        let refused = with("thesis", &others).unwrap_err();
-        assert!(refused.contains("with an accelerometer"), "{refused}");
         with("measured", &others).unwrap();
         for unit in ["icm42688", "mpu6050", "iio\"\ndevice = \"mpu6050"] {
             with("kalman", &["bmp388", unit]).unwrap();

@@ -121,12 +121,6 @@ pub(super) fn without_effect(config: &Config, places: &Places<'_>) -> Vec<String
                 say(key, why);
             }
         }
-        NavigationMethod::Thesis => {
-            for key in of_the_filter {
-                let why = "the thesis' way uses the latest samples and the compass alone";
-                say(key, why);
-            }
-        }
         NavigationMethod::Kalman if config.navigation.magnetic_field_ut.is_some() => {
             let why = "navigation.magnetic_field_ut is given, so no model is needed";
             say("navigation.year", why);
@@ -220,9 +214,7 @@ mod tests {
         let all = "longest_delay_ms = 100\nmagnetic_field_ut = [21.1, 0, 45.3]\nyear = 2026\n";
         assert_eq!(remarks(&format!("{RAW}{all}")), ["navigation.year"]);
         assert_eq!(remarks(&format!("{RAW}year = 2026\n")), ["navigation.year"]);
-        for method in ["measured", "thesis"] {
-            let text = format!("{RAW}{all}").replace("kalman", method);
-            assert_eq!(remarks(&text).len(), 3, "{method}");
-        }
+        let text = format!("{RAW}{all}").replace("kalman", "measured");
+        assert_eq!(remarks(&text).len(), 3);
     }
 }

@@ -2,15 +2,9 @@
 //! sensors' biases from gyroscopes, accelerometers, magnetometers, pressures
 //! and a satellite receiver.
 //!
-//! One interface, [`InertialNavigation`], and two methods:
-//!
-//! | method | is |
-//! |---|---|
-//! | [`KalmanNavigation`] | an error-state Kalman filter, which uses what arrives and says how sure it is |
-//! | [`ThesisNavigation`] | the way of the thesis (section 5.6): gravity by a low pass, orientation from gravity and the magnetic field. The reference |
-//!
-//! Both compute from samples alone: no clock, no heap, the same bits on every
-//! machine.
+//! [`KalmanNavigation`] is an error-state Kalman filter, which uses what arrives and
+//! says how sure it is. It computes from samples alone: no clock, no heap, the same
+//! bits on every machine.
 
 mod field_rates;
 mod field_turning;
@@ -21,17 +15,15 @@ mod observation;
 mod raw_navigation;
 mod receiver_witness;
 mod stuck;
-mod thesis;
 mod units;
 
 pub use kalman::{Innovation, KalmanConfig, KalmanNavigation, Spikes};
 pub use magnetism::{MAGNETIC_MODEL_YEARS, earth_field_ut};
 pub use observation::{GeodeticPosition, Observation, ObservationKind, Sigma, Solution};
 pub use raw_navigation::{
-    FoundBy, MagneticNorth, RawNavigation, RawNavigationConfig, RawNavigationMethod, SensorKind,
+    FoundBy, MagneticNorth, RawNavigation, RawNavigationConfig, SensorKind,
     WrongSensor,
 };
-pub use thesis::{PHONE_BELOW, ThesisNavigation};
 
 use fcc_core::framework::Time;
 

@@ -131,9 +131,6 @@ pub struct Solution {
     pub wind_mps: [f64; 2],
     /// By how much a receiver's fixes are later than they say.
     pub fixes_late_s: f64,
-    /// Angle of attack, as the thesis approximates it: the pitch. NaN of other
-    /// methods.
-    pub angle_of_attack_rad: f64,
     /// The standard deviation of each.
     pub sigma: Sigma,
 }
@@ -189,7 +186,6 @@ impl Solution {
         body_field_ut: [f64::NAN; 3],
         wind_mps: [f64::NAN; 2],
         fixes_late_s: f64::NAN,
-        angle_of_attack_rad: f64::NAN,
         sigma: Sigma::UNKNOWN,
     };
 }

@@ -17,7 +17,7 @@ mod sensor_monitor;
 mod several;
 mod trial;
 
-pub use config::{MagneticNorth, RawNavigationConfig, RawNavigationMethod};
+pub use config::{MagneticNorth, RawNavigationConfig};
 use late_fixes::LateFixes;
 use libm::atan2;
 use outliers::Outliers;
@@ -37,7 +37,6 @@ use super::gyroscope_monitor::GyroscopeMonitor;
 use super::units::Units;
 use super::{
     InertialNavigation, Innovation, KalmanConfig, KalmanNavigation, Observation, Solution,
-    ThesisNavigation,
 };
 use crate::{RATES_RADPS, SPECIFIC_FORCE_MPS2, is_possible_fix};
 use fcc_core::blocks::wrap_two_pi;
@@ -53,11 +52,11 @@ const USABLE_HEADING: f64 = 0.35;
 ///
 /// | of | from |
 /// |---|---|
-/// | attitude, heading | the method, at the time of the latest sample of the gyroscopes |
-/// | body rates, specific force | gyroscopes and accelerometers, without the biases that the method found |
+/// | attitude, heading | the filter, at the time of the latest sample of the gyroscopes |
+/// | body rates, specific force | gyroscopes and accelerometers, without the biases that the filter found |
 /// | altitude | static pressure, by the standard atmosphere |
 /// | airspeed | differential pressure |
-/// | position, velocity | the satellite receiver, as it gives them; the method, if they come more than half a second late |
+/// | position, velocity | the satellite receiver, as it gives them; the filter, if they come more than half a second late |
 ///
 /// Readings that sensors give of these themselves are not used, except airspeed
 /// and altitude where there is no raw reading of their pressure, and position
@@ -67,14 +66,11 @@ const USABLE_HEADING: f64 = 0.35;
 ///
 /// ```
 /// use core::time::Duration;
-/// use fcc_navigation::inertial::{
-///     MagneticNorth, RawNavigation, RawNavigationConfig, RawNavigationMethod,
-/// };
+/// use fcc_navigation::inertial::{MagneticNorth, RawNavigation, RawNavigationConfig};
 /// use fcc_core::flight::{BodyRates, MagneticField, Measurements, SpecificForce};
 /// use fcc_core::framework::{Reading, Time};
 ///
 /// let mut navigation = RawNavigation::new(RawNavigationConfig {
-///     method: RawNavigationMethod::Kalman,
 ///     delay: Duration::from_millis(200),
 ///     north: MagneticNorth::Field([20.0, 0.0, 40.0]),
 /// });
@@ -98,7 +94,7 @@ const USABLE_HEADING: f64 = 0.35;
 #[derive(Clone, Debug)]
 pub struct RawNavigation {
     config: RawNavigationConfig,
-    method: Method,
+    filter: KalmanNavigation,
     /// Those that were used last.
     used: Measurements,
     repeats: Repeats,
@@ -121,18 +117,11 @@ pub struct RawNavigation {
     by_field_since: Time,
     /// Whether the model has given the field at the first fix.
     knows_field: bool,
-    /// How far magnetic north is to the east of the method's, rad.
+    /// How far magnetic north is to the east of the filter's, rad.
     declination_rad: f64,
     /// That of the last step.
     solution: Solution,
     found: Measurements,
-}
-
-#[derive(Clone, Debug)]
-#[allow(clippy::large_enum_variant, reason = "there is no heap, and one of it")]
-enum Method {
-    Kalman(KalmanNavigation),
-    Thesis(ThesisNavigation),
 }
 
 impl RawNavigation {
@@ -148,10 +137,7 @@ impl RawNavigation {
         };
         Self {
             config,
-            method: match config.method {
-                RawNavigationMethod::Kalman => Method::Kalman(KalmanNavigation::new(kalman)),
-                RawNavigationMethod::Thesis => Method::Thesis(ThesisNavigation::new()),
-            },
+            filter: KalmanNavigation::new(kalman),
             used: Measurements::default(),
             repeats: Repeats::default(),
             force_outliers: Outliers::beyond(&SPECIFIC_FORCE_MPS2),
@@ -203,25 +189,22 @@ impl RawNavigation {
         self.gyroscope.awaits_field(self.latest_inertial())
     }
 
-    /// What the method found at the latest inertial sample; its headings are true
+    /// What the filter found at the latest inertial sample; its headings are true
     /// if the declination is known.
     pub const fn solution(&self) -> &Solution {
         &self.solution
     }
 
-    /// The standard deviation of roll and pitch, rad; 0 if the method states none.
+    /// The standard deviation of roll and pitch, rad; 0 before it is known.
     pub fn tilt_sigma_rad(&self) -> f64 {
         let sigma = &self.solution.sigma;
         sigma.roll_rad.max(sigma.pitch_rad).max(0.0)
     }
 
     /// How the measurements differed from what was expected of them, since the
-    /// inertial sample before that; none by the thesis' way.
+    /// inertial sample before that.
     pub fn innovations(&self) -> &[Innovation] {
-        match &self.method {
-            Method::Kalman(navigation) => navigation.innovations(),
-            Method::Thesis(_) => &[],
-        }
+        self.filter.innovations()
     }
 
     /// Takes the measurements of a tick; those, with what they say in the place
@@ -236,10 +219,7 @@ impl RawNavigation {
         let (mut attitude, mut heading) = (self.found.attitude, self.found.heading_rad);
         let (mut rates, mut force) = (self.found.body_rates, self.found.specific_force);
         if at > before {
-            let solution = match &mut self.method {
-                Method::Kalman(navigation) => navigation.step(at),
-                Method::Thesis(navigation) => navigation.step(at),
-            };
+            let solution = self.filter.step(at);
             if self.doubts_gyroscopes() && !self.settled_by_field(at) {
                 (attitude, heading) = (Reading::default(), Reading::default());
             } else {
@@ -249,10 +229,8 @@ impl RawNavigation {
             rates = rates_of(&self.used.raw_body_rates, &solution);
             force = force_of(&self.used.raw_specific_force, &solution);
             self.solution = solution;
-            if let Method::Kalman(navigation) = &self.method {
-                let witness = &mut self.gyroscope.witness;
-                witness.add_innovations(navigation.innovations());
-            }
+            let witness = &mut self.gyroscope.witness;
+            witness.add_innovations(self.filter.innovations());
             self.judge_sensors(at);
         }
         self.follow_late_fixes(now);
@@ -359,21 +337,14 @@ impl RawNavigation {
 
     fn take(&mut self, taken: Time, observation: Observation) {
         self.sensors.share(taken, observation);
-        match &mut self.method {
-            Method::Kalman(navigation) => navigation.observe(taken, observation),
-            Method::Thesis(navigation) => navigation.observe(taken, observation),
-        }
+        self.filter.observe(taken, observation);
     }
 
     fn heading_of(&self, solution: &Solution, at: Time) -> Option<Reading<f64>> {
-        let north_rad = match self.method {
-            Method::Kalman(_) => self.declination_rad,
-            Method::Thesis(_) => 0.0,
-        };
         let heading_rad = euler_from_quaternion(solution.quaternion).heading_rad;
         let is_known =
             heading_rad.is_finite() && is_certain(solution.sigma.heading_rad, USABLE_HEADING);
-        is_known.then(|| Reading::new(wrap_two_pi(heading_rad - north_rad), at))
+        is_known.then(|| Reading::new(wrap_two_pi(heading_rad - self.declination_rad), at))
     }
 }
 

@@ -9,7 +9,7 @@ use fcc_core::flight::orientation::earth_to_body;
 use fcc_core::flight::{BodyRates, GnssFix, MagneticField, Measurements, SpecificForce};
 use fcc_core::framework::{Reading, Time};
 use fcc_navigation::inertial::{
-    MagneticNorth, RawNavigation, RawNavigationConfig, RawNavigationMethod,
+    MagneticNorth, RawNavigation, RawNavigationConfig,
 };
 
 use super::flight::Flight;
@@ -124,7 +124,6 @@ fn changes_of(
 ) -> Vec<f64> {
     let mut random = Random::new(7);
     let mut navigation = RawNavigation::new(RawNavigationConfig {
-        method: RawNavigationMethod::Kalman,
         delay: Duration::from_millis(150),
         north: MagneticNorth::Field(FIELD_UT),
     });

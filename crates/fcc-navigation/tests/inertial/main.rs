@@ -19,6 +19,5 @@ mod matched;
 mod noise;
 mod sensors;
 mod several;
-mod thesis;
 mod units;
 mod velocities;

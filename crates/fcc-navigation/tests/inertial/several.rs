@@ -8,7 +8,7 @@ use fcc_core::flight::Measurements;
 use fcc_core::flight::orientation::{earth_to_body, euler_from_quaternion};
 use fcc_core::framework::Time;
 use fcc_navigation::inertial::{
-    MagneticNorth, RawNavigation, RawNavigationConfig, RawNavigationMethod, SensorKind,
+    MagneticNorth, RawNavigation, RawNavigationConfig, SensorKind,
 };
 
 use super::chosen::chosen;
@@ -177,7 +177,6 @@ fn fly(seed: u64, sets: u8, until_s: f64, fix_ticks: u32, fails: Option<(u8, Fau
 
 fn navigation() -> RawNavigation {
     RawNavigation::new(RawNavigationConfig {
-        method: RawNavigationMethod::Kalman,
         delay: Duration::from_millis(200),
         north: MagneticNorth::Field(FIELD_UT),
     })

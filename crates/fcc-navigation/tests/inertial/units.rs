@@ -6,7 +6,7 @@ use fcc_core::flight::orientation::{earth_to_body, euler_from_quaternion};
 use fcc_core::flight::{BodyRates, Measurements};
 use fcc_core::framework::Reading;
 use fcc_navigation::inertial::{
-    MagneticNorth, RawNavigation, RawNavigationConfig, RawNavigationMethod,
+    MagneticNorth, RawNavigation, RawNavigationConfig,
 };
 
 use super::chosen::chosen;
@@ -43,7 +43,6 @@ fn fly(units: usize, fault: Fault) -> Flown {
     let mut flight = Flight::new(turns, 0.5, [4.0, -3.0]);
     let mut random = Random::new(7);
     let mut navigation = RawNavigation::new(RawNavigationConfig {
-        method: RawNavigationMethod::Kalman,
         delay: Duration::from_millis(150),
         north: MagneticNorth::Field(FIELD_UT),
     });

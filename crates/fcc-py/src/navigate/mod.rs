@@ -13,7 +13,6 @@ use std::time::Duration;
 use fcc_core::framework::Time;
 use fcc_navigation::inertial::{
     InertialNavigation, Innovation, KalmanConfig, KalmanNavigation, Observation, Solution,
-    ThesisNavigation,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -58,7 +57,6 @@ const LONGEST_WAIT_S: f64 = 0.05;
     gnss_velocity = None,
     delays_s = None,
     mounting = None,
-    method = "kalman",
     year = None,
 ))]
 #[allow(clippy::too_many_arguments, reason = "named arguments of Python")]
@@ -74,18 +72,8 @@ pub(crate) fn navigate<'py>(
     gnss_velocity: Option<Bound<'py, PyAny>>,
     delays_s: Option<&Bound<'py, PyAny>>,
     mounting: Option<&Bound<'py, PyAny>>,
-    method: &str,
     year: Option<f64>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let is_thesis = match method {
-        "kalman" => false,
-        "thesis" => true,
-        other => {
-            return Err(PyValueError::new_err(format!(
-                "method is {other:?}: choose \"kalman\" or \"thesis\""
-            )));
-        }
-    };
     let mounting = Mounting::read(mounting)?;
     let given = Given {
         gyroscope,
@@ -99,7 +87,7 @@ pub(crate) fn navigate<'py>(
     };
     let sources = Sources::read(py, &given, delays_s, &mounting)?;
     let field = match sources.first_place() {
-        Some(place) if sources.has_field() && !is_thesis => Some(earth_field_ut(place, year)?),
+        Some(place) if sources.has_field() => Some(earth_field_ut(place, year)?),
         _ => {
             magnetism::check(year)?;
             None
@@ -107,7 +95,7 @@ pub(crate) fn navigate<'py>(
     };
     let reference = match (sources.has_field(), field.is_some(), sources.has_receiver()) {
         (true, true, _) => "true",
-        (false, _, true) if !is_thesis => "true",
+        (false, _, true) => "true",
         (true, ..) => "magnetic",
         _ => "none",
     };
@@ -115,10 +103,11 @@ pub(crate) fn navigate<'py>(
         delay: Duration::from_secs_f64(sources.delay_s(LONGEST_WAIT_S)),
         earth_field_ut: field,
     };
-    let mut run = if is_thesis {
-        Run::new(Method::Thesis(ThesisNavigation::new()))
-    } else {
-        Run::new(Method::Kalman(Box::new(KalmanNavigation::new(config))))
+    let mut run = Run {
+        filter: Box::new(KalmanNavigation::new(config)),
+        next: 0,
+        solutions: Vec::new(),
+        innovations: Vec::new(),
     };
     for piece in sources.steps.chunks(PIECE) {
         py.detach(|| run.steps(&sources.events, piece));
@@ -129,7 +118,6 @@ pub(crate) fn navigate<'py>(
         &sources,
         &run.solutions,
         &run.innovations,
-        method,
         reference,
     )
 }
@@ -153,51 +141,24 @@ pub(crate) fn inertial_samples<'py>(
         .collect())
 }
 
-enum Method {
-    Kalman(Box<KalmanNavigation>),
-    Thesis(ThesisNavigation),
-}
-
 struct Run {
-    method: Method,
+    filter: Box<KalmanNavigation>,
     next: usize,
     solutions: Vec<Solution>,
     innovations: Vec<Innovation>,
 }
 
 impl Run {
-    fn new(method: Method) -> Self {
-        Self {
-            method,
-            next: 0,
-            solutions: Vec::new(),
-            innovations: Vec::new(),
-        }
-    }
-
     /// Steps at each of these times, with the samples that have arrived.
     fn steps(&mut self, events: &[Event], times: &[Time]) {
         for now in times {
             while let Some(event) = events.get(self.next).filter(|event| event.arrived <= *now) {
-                self.observe(event.taken, event.observation);
+                self.filter.observe(event.taken, event.observation);
                 self.next += 1;
             }
-            let solution = match &mut self.method {
-                Method::Kalman(navigation) => {
-                    let solution = navigation.step(*now);
-                    self.innovations.extend_from_slice(navigation.innovations());
-                    solution
-                }
-                Method::Thesis(navigation) => navigation.step(*now),
-            };
-            self.solutions.push(solution);
-        }
-    }
-
-    fn observe(&mut self, taken: Time, observation: Observation) {
-        match &mut self.method {
-            Method::Kalman(navigation) => navigation.observe(taken, observation),
-            Method::Thesis(navigation) => navigation.observe(taken, observation),
+            self.solutions.push(self.filter.step(*now));
+            self.innovations
+                .extend_from_slice(self.filter.innovations());
         }
     }
 }

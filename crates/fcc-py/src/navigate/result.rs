@@ -82,12 +82,11 @@ const COLUMNS: [Column; 12] = [
 /// The same without standard deviations of their own.
 type Plain = (&'static str, fn(&Solution) -> Vec<f64>);
 
-const PLAIN: [Plain; 5] = [
+const PLAIN: [Plain; 4] = [
     ("quaternion", |s| s.quaternion.to_vec()),
     ("latitude_rad", |s| vec![s.position.latitude_rad]),
     ("longitude_rad", |s| vec![s.position.longitude_rad]),
     ("altitude_m", |s| vec![s.position.altitude_m]),
-    ("angle_of_attack_rad", |s| vec![s.angle_of_attack_rad]),
 ];
 
 /// The sources that are compared with what is expected of them, with their columns.
@@ -109,7 +108,6 @@ pub(super) fn dict<'py>(
     sources: &Sources,
     solutions: &[Solution],
     innovations: &[Innovation],
-    method: &str,
     reference: &str,
 ) -> PyResult<Bound<'py, PyDict>> {
     let result = PyDict::new(py);
@@ -119,7 +117,6 @@ pub(super) fn dict<'py>(
         .map(|s| seconds(s.time.as_nanos()))
         .collect();
     result.set_item("t_s", times.to_pyarray(py))?;
-    result.set_item("method", method)?;
     result.set_item("heading_reference", reference)?;
     for (name, value, sigma) in COLUMNS {
         let sigma_name = format!("{name}_sigma");
@@ -128,10 +125,6 @@ pub(super) fn dict<'py>(
     }
     for (name, value) in PLAIN {
         set(&result, name, solutions.iter().map(value))?;
-    }
-    if reference == "none" && method == "thesis" {
-        let unknown = vec![f64::NAN; solutions.len()];
-        result.set_item("heading_rad", unknown.to_pyarray(py))?;
     }
     let (by_sensor, normalised) = (PyDict::new(py), PyDict::new(py));
     for (kind, name, width) in SENSORS {

@@ -45,7 +45,7 @@ fn a_missing_file_has_one_exit_code_in_all_commands() {
         "probe --root no-folder",
         "recover no.mcap",
         "replay no.mcap",
-        "replay --navigation kalman no.mcap",
+        "replay --navigation no.mcap",
         "report no.mcap",
     ] {
         let words: Vec<&str> = words.split(' ').collect();

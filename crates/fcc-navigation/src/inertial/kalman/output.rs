@@ -53,7 +53,6 @@ impl KalmanNavigation {
             body_field_ut: filter.body_field.into(),
             wind_mps: filter.wind.into(),
             fixes_late_s: filter.late_s,
-            angle_of_attack_rad: f64::NAN,
             sigma: filter.sigmas(&motion.attitude),
         }
     }

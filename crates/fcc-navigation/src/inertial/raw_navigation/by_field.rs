@@ -3,7 +3,7 @@
 use core::time::Duration;
 
 use super::super::Observation;
-use super::{Method, RawNavigation};
+use super::RawNavigation;
 use fcc_core::framework::Time;
 
 /// By how much longer than the delay there is no attitude after gyroscopes began to be
@@ -16,9 +16,7 @@ impl RawNavigation {
         let is_doubted = self.doubts_gyroscopes();
         if is_doubted == self.by_field_since.is_never() {
             self.by_field_since = if is_doubted { taken } else { Time::NEVER };
-            if let Method::Kalman(navigation) = &mut self.method {
-                navigation.turn_by_field(is_doubted);
-            }
+            self.filter.turn_by_field(is_doubted);
         }
         let rates = self.field_rates.step(taken, field, &self.solution);
         if let Some(rates) = rates.filter(|_| is_doubted) {

@@ -2,15 +2,6 @@
 
 use core::time::Duration;
 
-/// How attitude is computed from raw readings.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum RawNavigationMethod {
-    /// By [`KalmanNavigation`](crate::inertial::KalmanNavigation).
-    Kalman,
-    /// By [`ThesisNavigation`](crate::inertial::ThesisNavigation).
-    Thesis,
-}
-
 /// What is known of the earth's magnetic field: headings are magnetic, and
 /// velocities of a satellite receiver refer to true north.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -25,8 +16,6 @@ pub enum MagneticNorth {
 /// The configuration of [`RawNavigation`](super::RawNavigation).
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct RawNavigationConfig {
-    /// The method.
-    pub method: RawNavigationMethod,
     /// As [`KalmanConfig::delay`](crate::inertial::KalmanConfig::delay).
     pub delay: Duration,
     /// The magnetic field.

@@ -3,7 +3,7 @@
 use core::time::Duration;
 
 use super::readings::is_new;
-use super::{Method, RawNavigation};
+use super::RawNavigation;
 use fcc_core::flight::{GnssFix, Position, Velocity};
 use fcc_core::framework::{Reading, Time};
 
@@ -39,11 +39,7 @@ impl RawNavigation {
     }
 
     pub(super) fn follow_late_fixes(&mut self, now: Time) {
-        let is_contradicted = match &self.method {
-            Method::Kalman(navigation) => navigation.refuses_velocity(),
-            Method::Thesis(_) => false,
-        };
-        let is_refused = is_contradicted || self.repeats.is_velocity_old();
+        let is_refused = self.filter.refuses_velocity() || self.repeats.is_velocity_old();
         let late = &mut self.late_fixes;
         if is_refused {
             late.refused = now;

@@ -2,7 +2,7 @@
 
 use super::super::{Observation, earth_field_ut};
 use super::readings::{place_in, velocity_in};
-use super::{MagneticNorth, Method, RawNavigation, declination_rad};
+use super::{MagneticNorth, RawNavigation, declination_rad};
 use fcc_core::flight::GnssFix;
 use fcc_core::framework::Time;
 
@@ -11,12 +11,11 @@ impl RawNavigation {
     /// field of the place.
     pub(super) fn take_fix(&mut self, taken: Time, fix: &GnssFix) {
         let place = place_in(fix);
-        if let (MagneticNorth::ModelOf(year), Method::Kalman(navigation)) =
-            (self.config.north, &mut self.method)
+        if let MagneticNorth::ModelOf(year) = self.config.north
             && !self.knows_field
             && let Some(field) = earth_field_ut(place, year)
         {
-            navigation.learn_earth_field(field);
+            self.filter.learn_earth_field(field);
             self.sensors.learn_earth_field(field);
             self.declination_rad = declination_rad(field);
             // Where else it flies, the filter follows the field by itself.

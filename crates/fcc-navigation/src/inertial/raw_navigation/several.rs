@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::readings::{force_in, rates_in};
-use super::{FoundBy, Method, RawNavigation, Units, WrongSensor};
+use super::{FoundBy, RawNavigation, Units, WrongSensor};
 use fcc_core::flight::{MagneticField, Measurements};
 use fcc_core::framework::{Reading, ReadingSet, Readings, Time};
 
@@ -59,15 +59,10 @@ impl RawNavigation {
 
     /// Compares the sensors after a step of the method at a time.
     pub(super) fn judge_sensors(&mut self, at: Time) {
-        let filter = match &self.method {
-            Method::Kalman(navigation) if !self.gyroscope.is_doubted() => Some(navigation),
-            _ => None,
-        };
+        let filter = (!self.gyroscope.is_doubted()).then_some(&self.filter);
         self.sensors.follow(&self.used);
         self.sensors.judge(at, filter);
-        if let Method::Kalman(navigation) = &mut self.method {
-            navigation.set_compared(self.sensors.is_trying());
-        }
+        self.filter.set_compared(self.sensors.is_trying());
         self.wrong = self.sensors.take_found().or(self.wrong);
     }
 
@@ -86,9 +81,9 @@ impl RawNavigation {
         };
         let left_force = other(&mut self.accelerometers, force.taken, force.source);
         let left_rates = other(&mut self.gyroscopes, rates.taken, rates.source);
-        if let (Some(_), Method::Kalman(navigation)) = (left_force, &mut self.method) {
+        if left_force.is_some() {
             let before = force_in(&self.used.raw_specific_force.value);
-            navigation.change_accelerometers(distance(force_in(&force.value), before));
+            self.filter.change_accelerometers(distance(force_in(&force.value), before));
         }
         if left_rates.is_some() {
             self.gyroscope.change();
@@ -112,12 +107,10 @@ impl RawNavigation {
     /// From here on the rates are those of other gyroscopes.
     fn change_gyroscopes(&mut self, rates: [f64; 3]) {
         let before = rates_in(&self.used.raw_body_rates.value);
-        if let Method::Kalman(navigation) = &mut self.method {
-            if self.fastest_radps > SPINS_RADPS {
-                navigation.restart();
-            } else {
-                navigation.change_gyroscopes(distance(rates, before));
-            }
+        if self.fastest_radps > SPINS_RADPS {
+            self.filter.restart();
+        } else {
+            self.filter.change_gyroscopes(distance(rates, before));
         }
         self.fastest_radps = 0.0;
     }
@@ -127,9 +120,8 @@ impl RawNavigation {
     pub(super) fn follow_magnetometers(&mut self, before: &Reading<MagneticField>) {
         if !before.is_never()
             && before.source != self.used.magnetic_field.source
-            && let Method::Kalman(navigation) = &mut self.method
         {
-            navigation.change_magnetometer();
+            self.filter.change_magnetometer();
         }
     }
 }

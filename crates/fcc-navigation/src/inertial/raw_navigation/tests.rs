@@ -28,7 +28,6 @@ fn raw(now: Time, [north_ut, down_ut]: [f64; 2]) -> Measurements {
 
 fn config() -> RawNavigationConfig {
     RawNavigationConfig {
-        method: RawNavigationMethod::Kalman,
         delay: Duration::from_millis(200),
         north: MagneticNorth::ModelOf(2027.5),
     }

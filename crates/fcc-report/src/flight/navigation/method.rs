@@ -3,7 +3,7 @@
 use fcc_core::framework::{RecordOf, Time};
 use fcc_fixed_wing::Autopilot;
 use fcc_navigation::inertial::{
-    Innovation, ObservationKind, RawNavigation, RawNavigationConfig, RawNavigationMethod,
+    Innovation, ObservationKind, RawNavigation, RawNavigationConfig,
 };
 use serde::Serialize;
 
@@ -14,11 +14,11 @@ use crate::turns::Turns;
 /// What one method gave.
 #[derive(Clone, Debug, Serialize)]
 pub struct MethodResult {
-    /// `kalman` or `thesis`.
+    /// `kalman`.
     pub method: &'static str,
     /// Of each quantity how far it is from the others.
     pub differences: Vec<Difference>,
-    /// Of each source; none by the thesis' way.
+    /// Of each source.
     pub innovations: Vec<SourceConsistency>,
 }
 
@@ -97,10 +97,7 @@ impl MethodRun {
             ]
         };
         Self {
-            method: match config.method {
-                RawNavigationMethod::Kalman => "kalman",
-                RawNavigationMethod::Thesis => "thesis",
-            },
+            method: "kalman",
             navigation: RawNavigation::new(config),
             last: Time::NEVER,
             from_measured: [MeanSquare::default(); ALL.len()],

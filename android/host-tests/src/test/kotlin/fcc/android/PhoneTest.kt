@@ -51,16 +51,6 @@ class PhoneTest {
     }
 
     @Test
-    fun `the thesis' way of navigation has the same attitude of a phone at rest`() {
-        FlightComputer(byPhone.replace("\"kalman\"", "\"thesis\""), folder()).use { computer ->
-            computer.start()
-            eventually("attitude is known") { computer.now()?.isNull("roll_rad") == false }
-            eventually("upside down") { Math.PI - Math.abs(computer.now()!!.getDouble("roll_rad")) < 0.1 }
-            assertEquals(0.0, computer.now()!!.getDouble("pitch_rad"), 0.1)
-        }
-    }
-
-    @Test
     fun `what the phone lacks inhibits engaging, with the reason`() {
         val heard = Heard()
         FlightComputer(byPhone, folder(), heard, "fcc.without.gyroscope").use { computer ->
