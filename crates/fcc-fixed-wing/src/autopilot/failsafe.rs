@@ -227,7 +227,7 @@ impl Autopilot {
         };
         Surfaces {
             throttle,
-            elevator: self.loops.actuation.elevator(vertical.elevator),
+            elevator: vertical.elevator,
             aileron: lateral.aileron,
             rudder: lateral.rudder,
             ..Surfaces::IDLE

@@ -38,7 +38,7 @@ impl Autopilot {
         };
         Some(Surfaces {
             throttle: (self.loops.last.throttle + by * dt_s).clamp(0.0, 1.0),
-            elevator: self.loops.actuation.elevator(vertical.elevator),
+            elevator: vertical.elevator,
             aileron: lateral.aileron,
             rudder: lateral.rudder,
             ..Surfaces::IDLE
