@@ -17,7 +17,7 @@ mod receiver_witness;
 mod stuck;
 mod units;
 
-pub use kalman::{Innovation, KalmanConfig, KalmanNavigation, Spikes};
+pub use kalman::{Innovation, KalmanConfig, KalmanNavigation};
 pub use magnetism::{MAGNETIC_MODEL_YEARS, earth_field_ut};
 pub use observation::{GeodeticPosition, Observation, ObservationKind, Sigma, Solution};
 pub use raw_navigation::{

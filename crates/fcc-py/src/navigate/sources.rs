@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use fcc_core::framework::Time;
-use fcc_navigation::inertial::{GeodeticPosition, Observation, Spikes};
+use fcc_navigation::inertial::{GeodeticPosition, Observation};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -147,25 +147,11 @@ impl Sources {
     ) -> PyResult<()> {
         self.delay_s = self.delay_s.max(delay_s);
         let mut kept = 0;
-        let mut spikes = match kind.name {
-            "gyroscope" => Some(Spikes::OF_RATES),
-            "accelerometer" => Some(Spikes::OF_FORCE),
-            _ => None,
-        };
-        let samples: Vec<_> = series.times_s.iter().zip(&series.rows).collect();
-        let mut before: Option<(f64, [f64; 3])> = None;
-        for (at, &(time_s, row)) in samples.iter().enumerate() {
+        for (time_s, row) in series.times_s.iter().zip(&series.rows) {
             if !kind.is_possible(row) {
                 continue;
             }
             kept += 1;
-            let beside = before.zip(samples.get(at + 1));
-            if let (Some(spikes), Some(((from_s, before), (to_s, after)))) = (&mut spikes, beside)
-                && spikes.is_one(before, *row, **after, *to_s - from_s)
-            {
-                continue;
-            }
-            before = Some((*time_s, *row));
             if kind.is_of_receiver() && no_fix.contains(&time_s.to_bits()) {
                 continue;
             }

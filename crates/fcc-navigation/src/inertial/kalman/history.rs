@@ -92,22 +92,6 @@ impl History {
         (skip..self.length).filter_map(|at| self.get(at))
     }
 
-    /// Those of a sensor among the latest `looked_at`, the latest first, with their places.
-    pub(super) fn latest(
-        &self,
-        looked_at: usize,
-        kind: ObservationKind,
-    ) -> impl Iterator<Item = (usize, Sample)> {
-        let places = (self.length.saturating_sub(looked_at)..self.length).rev();
-        places.filter_map(move |at| {
-            let sample = self.get(at).copied();
-            Some((
-                at,
-                sample.filter(|sample| sample.observation.kind() == kind)?,
-            ))
-        })
-    }
-
     fn get(&self, at: usize) -> Option<&Sample> {
         if at >= self.length {
             return None;
@@ -115,7 +99,7 @@ impl History {
         self.samples.get((self.first + at) % CAPACITY)
     }
 
-    pub(super) fn set(&mut self, at: usize, sample: Sample) {
+    fn set(&mut self, at: usize, sample: Sample) {
         if let Some(place) = self.samples.get_mut((self.first + at) % CAPACITY) {
             *place = sample;
         }

@@ -42,7 +42,6 @@ mod receiver;
 mod refused_velocity;
 mod rest;
 mod scatter;
-mod spikes;
 mod states;
 mod track;
 mod trend;
@@ -60,7 +59,6 @@ use rest::Rest;
 
 pub use innovations::Innovation;
 pub(super) use motion::turn;
-pub use spikes::Spikes;
 
 use super::{GeodeticPosition, InertialNavigation, Observation, ObservationKind, Solution};
 use fcc_core::framework::Time;
@@ -103,8 +101,6 @@ pub struct KalmanConfig {
 pub struct KalmanNavigation {
     config: KalmanConfig,
     history: History,
-    force_spikes: Spikes,
-    rate_spikes: Spikes,
     inputs: Inputs,
     /// `None` once the filter runs.
     alignment: Option<Alignment>,
@@ -119,8 +115,6 @@ impl KalmanNavigation {
         Self {
             config,
             history: History::new(),
-            force_spikes: Spikes::OF_FORCE,
-            rate_spikes: Spikes::OF_RATES,
             inputs: Inputs::new(),
             alignment: Some(Alignment::new()),
             rest: Rest::new(),
@@ -316,11 +310,6 @@ impl InertialNavigation for KalmanNavigation {
         // A full history: more samples than it is for, so the oldest are used
         // before their time.
         let sample = Sample { taken, observation };
-        match observation {
-            Observation::SpecificForce(_) => self.force_spikes.replace(&mut self.history, &sample),
-            Observation::Rates(_) => self.rate_spikes.replace(&mut self.history, &sample),
-            _ => {}
-        }
         if !self.history.insert(sample)
             && let Some(oldest) = self.history.pop(Time::NEVER)
         {

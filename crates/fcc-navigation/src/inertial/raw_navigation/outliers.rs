@@ -1,8 +1,5 @@
 //! Single readings of an inertial sensor that no aircraft makes, as a bus under interference
-//! gives: taken as if they had not arrived, before the control loops and the method see them.
-//!
-//! The filter's own search ([`Spikes`](crate::inertial::Spikes)) needs the sample
-//! after it, and is for hands and models, too, which turn faster than an aircraft.
+//! gives: taken as if they had not arrived, before the control loops and the filter see them.
 
 use crate::PlausibilityLimit;
 use fcc_core::framework::Time;
