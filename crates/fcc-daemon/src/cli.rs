@@ -23,9 +23,7 @@ pub use calibrate::CalibrateArgs;
 #[cfg(feature = "live")]
 pub use command::{CommandArgs, CommandChoice, SetArgs};
 use plan::PlanArgs;
-use values::{
-    cpu_cap_percent, early_wake, gusts, margin_us, output, positive_seconds, rate_hz,
-};
+use values::{cpu_cap_percent, early_wake, gusts, margin_us, output, positive_seconds, rate_hz};
 use x_plane::XPlaneArgs;
 
 /// A real-time flight control computer in software.

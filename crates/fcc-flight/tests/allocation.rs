@@ -36,7 +36,7 @@ fn fly(
             engage_at_s: Some(25.0),
             raw_sensors: match navigation {
                 NavigationMethod::Measured => RawSensorsChoice::None,
-                _ => RawSensorsChoice::Board,
+                NavigationMethod::Kalman => RawSensorsChoice::Board,
             },
             ..BuiltInSection::default()
         }),

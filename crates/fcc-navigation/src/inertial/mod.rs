@@ -21,8 +21,7 @@ pub use kalman::{Innovation, KalmanConfig, KalmanNavigation};
 pub use magnetism::{MAGNETIC_MODEL_YEARS, earth_field_ut};
 pub use observation::{GeodeticPosition, Observation, ObservationKind, Sigma, Solution};
 pub use raw_navigation::{
-    FoundBy, MagneticNorth, RawNavigation, RawNavigationConfig, SensorKind,
-    WrongSensor,
+    FoundBy, MagneticNorth, RawNavigation, RawNavigationConfig, SensorKind, WrongSensor,
 };
 
 use fcc_core::framework::Time;

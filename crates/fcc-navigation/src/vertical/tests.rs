@@ -1,31 +1,10 @@
-//! Of a marked altitude and of the accelerometer's bias.
+//! Of the accelerometer's bias.
 
 use super::*;
 use fcc_core::flight::SpecificForce;
 use fcc_core::framework::Reading;
 
 const DT_S: f64 = 0.025;
-/// The noise of a phone's sensors, one sigma in every sample.
-const ALTITUDE_SIGMA_M: f64 = 0.762;
-const FORCE_SIGMA_MPS2: f64 = 0.183;
-
-/// Normal numbers: twelve uniform ones, of a linear congruential generator.
-struct Noise(u64);
-
-impl Noise {
-    fn next(&mut self) -> f64 {
-        let sum: f64 = (0..12)
-            .map(|_| {
-                self.0 = self
-                    .0
-                    .wrapping_mul(6_364_136_223_846_793_005)
-                    .wrapping_add(1_442_695_040_888_963_407);
-                (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-            })
-            .sum();
-        sum - 6.0
-    }
-}
 
 /// A bias of 0.2 m/s² is estimated within a minute.
 #[test]

@@ -8,9 +8,7 @@ use fcc_core::flight::atmosphere::pressure_pa;
 use fcc_core::flight::orientation::earth_to_body;
 use fcc_core::flight::{BodyRates, GnssFix, MagneticField, Measurements, SpecificForce};
 use fcc_core::framework::{Reading, Time};
-use fcc_navigation::inertial::{
-    MagneticNorth, RawNavigation, RawNavigationConfig,
-};
+use fcc_navigation::inertial::{MagneticNorth, RawNavigation, RawNavigationConfig};
 
 use super::flight::Flight;
 use super::noise::Random;

@@ -7,9 +7,7 @@ use std::time::Duration;
 use fcc_core::flight::Measurements;
 use fcc_core::flight::orientation::{earth_to_body, euler_from_quaternion};
 use fcc_core::framework::Time;
-use fcc_navigation::inertial::{
-    MagneticNorth, RawNavigation, RawNavigationConfig, SensorKind,
-};
+use fcc_navigation::inertial::{MagneticNorth, RawNavigation, RawNavigationConfig, SensorKind};
 
 use super::chosen::chosen;
 use super::flight::{Flight, Truth};

@@ -5,9 +5,7 @@ use std::time::Duration;
 use fcc_core::flight::orientation::{earth_to_body, euler_from_quaternion};
 use fcc_core::flight::{BodyRates, Measurements};
 use fcc_core::framework::Reading;
-use fcc_navigation::inertial::{
-    MagneticNorth, RawNavigation, RawNavigationConfig,
-};
+use fcc_navigation::inertial::{MagneticNorth, RawNavigation, RawNavigationConfig};
 
 use super::chosen::chosen;
 use super::flight::Flight;

@@ -14,7 +14,6 @@ use fcc_core::framework::Time;
 use fcc_navigation::inertial::{
     InertialNavigation, Innovation, KalmanConfig, KalmanNavigation, Observation, Solution,
 };
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -94,8 +93,7 @@ pub(crate) fn navigate<'py>(
         }
     };
     let reference = match (sources.has_field(), field.is_some(), sources.has_receiver()) {
-        (true, true, _) => "true",
-        (false, _, true) => "true",
+        (true, true, _) | (false, _, true) => "true",
         (true, ..) => "magnetic",
         _ => "none",
     };
@@ -113,13 +111,7 @@ pub(crate) fn navigate<'py>(
         py.detach(|| run.steps(&sources.events, piece));
         py.check_signals()?;
     }
-    result::dict(
-        py,
-        &sources,
-        &run.solutions,
-        &run.innovations,
-        reference,
-    )
+    result::dict(py, &sources, &run.solutions, &run.innovations, reference)
 }
 
 /// The samples of a gyroscope and an accelerometer, each as a tuple of times and

@@ -2,8 +2,8 @@
 
 use core::time::Duration;
 
-use super::readings::is_new;
 use super::RawNavigation;
+use super::readings::is_new;
 use fcc_core::flight::{GnssFix, Position, Velocity};
 use fcc_core::framework::{Reading, Time};
 

@@ -83,7 +83,8 @@ impl RawNavigation {
         let left_rates = other(&mut self.gyroscopes, rates.taken, rates.source);
         if left_force.is_some() {
             let before = force_in(&self.used.raw_specific_force.value);
-            self.filter.change_accelerometers(distance(force_in(&force.value), before));
+            self.filter
+                .change_accelerometers(distance(force_in(&force.value), before));
         }
         if left_rates.is_some() {
             self.gyroscope.change();
@@ -118,9 +119,7 @@ impl RawNavigation {
     /// Follows which magnetometer is used, after a sample of another one perhaps than the one
     /// before.
     pub(super) fn follow_magnetometers(&mut self, before: &Reading<MagneticField>) {
-        if !before.is_never()
-            && before.source != self.used.magnetic_field.source
-        {
+        if !before.is_never() && before.source != self.used.magnetic_field.source {
             self.filter.change_magnetometer();
         }
     }

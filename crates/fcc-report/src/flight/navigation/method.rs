@@ -2,9 +2,7 @@
 
 use fcc_core::framework::{RecordOf, Time};
 use fcc_fixed_wing::Autopilot;
-use fcc_navigation::inertial::{
-    Innovation, ObservationKind, RawNavigation, RawNavigationConfig,
-};
+use fcc_navigation::inertial::{Innovation, ObservationKind, RawNavigation, RawNavigationConfig};
 use serde::Serialize;
 
 use super::quantities::{self, ALL, HEADING, Values};
