@@ -91,15 +91,8 @@ impl SimSensor {
     }
 
     fn switch(&self) -> Switch {
-        if let Some(switch) = self.link.switch() {
-            return switch;
-        }
-        let reached = |time: Option<f64>| time.is_some_and(|at_s| self.aircraft.time_s() >= at_s);
-        if reached(self.script.on_at_s) && !reached(self.script.off_at_s) {
-            Switch::On
-        } else {
-            Switch::Off
-        }
+        let scripted = || self.script.position(self.aircraft.time_s());
+        self.link.switch().unwrap_or_else(scripted)
     }
 }
 
