@@ -91,7 +91,7 @@ impl Default for Airframe {
             rotors: [None; MOST_ROTORS],
             mass_kg: 1.4,
             inertia_kgm2: Vector3::new(0.019, 0.019, 0.0252),
-            rotor_thrust_n: 8.5,
+            rotor_thrust_n: 11.8,
             torque_ratio_m: 0.016,
             motor_lag_s: 0.03,
             thrust_curve: 1.0,

@@ -227,7 +227,7 @@ mod tests {
         let refused = Allocator::new(&Airframe { rotors, ..airframe });
         assert_eq!(refused, Err(Refusal::NotControllable));
         let heavy = Airframe {
-            mass_kg: 3.0,
+            mass_kg: 4.2,
             ..airframe
         };
         let text = std::string::ToString::to_string(&Allocator::new(&heavy).unwrap_err());

@@ -15,13 +15,14 @@ const HEADING_WAITS_RAD: f64 = FRAC_PI_3;
 /// points along a heading, rad.
 pub fn attitude_of_thrust(thrust: &Vector3<f64>, heading_rad: f64) -> UnitQuaternion<f64> {
     let down = -thrust.normalize();
-    let ahead = Vector3::new(cos(heading_rad), sin(heading_rad), 0.0);
-    let right = down.cross(&ahead);
-    let right = right.try_normalize(1e-6).unwrap_or_else(|| {
-        // The nose would point straight up or down: any heading is as good.
-        Vector3::new(-sin(heading_rad), cos(heading_rad), 0.0)
-    });
-    let axes = Matrix3::from_columns(&[right.cross(&down), right, down]);
+    // Level, and square to the heading: the nose is in the vertical plane of the heading.
+    let level = Vector3::new(-sin(heading_rad), cos(heading_rad), 0.0);
+    // Where the thrust is level and to the side, any nose is as good.
+    let ahead = level
+        .cross(&down)
+        .try_normalize(1e-6)
+        .unwrap_or_else(Vector3::z);
+    let axes = Matrix3::from_columns(&[ahead, down.cross(&ahead), down]);
     UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes))
 }
 
@@ -74,6 +75,8 @@ mod tests {
         assert!(attitude.angle_to(&euler(0.0, -45.0, 0.0)) < 1e-9);
         let attitude = attitude_of_thrust(&Vector3::new(0.0, 1.0, -1.0), 0.0);
         assert!(attitude.angle_to(&euler(45.0, 0.0, 0.0)) < 1e-9);
+        let attitude = attitude_of_thrust(&Vector3::new(-3.0, 5.0, -6.0), 0.7);
+        assert!((attitude.euler_angles().2 - 0.7).abs() < 1e-9);
         let attitude = attitude_of_thrust(&Vector3::new(0.0, 0.0, -9.8), 2.0);
         assert!(attitude.angle_to(&euler(0.0, 0.0, 2.0_f64.to_degrees())) < 1e-9);
     }

@@ -27,7 +27,7 @@ use crate::values::{Command, Estimate, GroundContact, Mode, Setpoints, Shortfall
 pub mod flags {
     use fcc_core::framework::Flags;
 
-    /// Attitude, heading or turn rates are silent: nothing can be controlled.
+    /// Attitude, heading, turn rates or acceleration are silent: it falls slowly.
     pub const NO_ATTITUDE: Flags = Flags::bit(0);
     /// Position or velocity are silent: it descends.
     pub const NO_POSITION: Flags = Flags::bit(1);
@@ -41,13 +41,11 @@ pub mod flags {
 const POSITION_AGES: u32 = 5;
 /// The cosine of the tilt from which it does not engage: 30°.
 const COS_ENGAGES: f64 = 0.866;
-/// A descent without a velocity: thrust over hover thrust. The drag of the rotors' flow ends
-/// its acceleration at less than 1 m/s.
-const DESCENDS: f64 = 0.93;
 /// Without an attitude, what is left is to turn slowly and to fall slowly.
 const FALLS: f64 = 0.8;
-/// On the ground the collective falls to this share of hovering, by 1 in a second.
+/// On the ground the collective falls to this share of hovering, by so much in a second.
 const SETTLED: f64 = 0.1;
+const SETTLES_PER_S: f64 = 2.0;
 /// A reference that sinks by less does not look for the ground, m/s.
 const SINKS_MPS: f64 = 0.3;
 /// Above home by more than this, or faster, it flies when it engages, m and m/s.
@@ -118,7 +116,7 @@ impl Multicopter {
     ///
     /// # Errors
     /// When it cannot be flown as configured: see [`Refusal`].
-    pub fn new(config: MulticopterConfig) -> Result<Self, Refusal> {
+    pub fn new(config: &MulticopterConfig) -> Result<Self, Refusal> {
         let gains = Gains::of(&config.airframe, config.period_s, config.latency_s)?;
         let lag_s = config.airframe.motor_lag_s + config.latency_s;
         Ok(Self {
@@ -132,22 +130,26 @@ impl Multicopter {
             landing: LandingDetector::LANDED,
             given: Given::default(),
             notice: None,
-            config,
+            config: *config,
         })
     }
 
     fn is_attitude_fresh(&self, tick: &Tick, measured: &Measurements) -> bool {
-        let age = self.config.max_age;
-        measured.attitude.is_fresh(tick.woke, age) && measured.heading_rad.is_fresh(tick.woke, age)
+        let (now, age) = (tick.woke, self.config.max_age);
+        self.are_rates_fresh(tick, measured)
+            && measured.attitude.is_fresh(now, age)
+            && measured.heading_rad.is_fresh(now, age)
+            && measured.specific_force.is_fresh(now, age)
     }
 
     fn are_rates_fresh(&self, tick: &Tick, measured: &Measurements) -> bool {
-        measured.body_rates.is_fresh(tick.woke, self.config.max_age)
+        let age = self.config.max_age;
+        measured.body_rates.is_fresh(tick.woke, age)
     }
 
-    fn is_velocity_fresh(&self, tick: &Tick, measured: &Measurements) -> bool {
-        let age = self.config.max_age * POSITION_AGES;
-        measured.velocity.is_fresh(tick.woke, age)
+    fn is_position_fresh(&self, tick: &Tick, measured: &Measurements) -> bool {
+        let (now, age) = (tick.woke, self.config.max_age * POSITION_AGES);
+        measured.velocity.is_fresh(now, age) && measured.position.is_fresh(now, age)
     }
 
     /// All motors off.
@@ -169,18 +171,16 @@ impl Multicopter {
     }
 
     /// The motors for a reference.
-    fn fly(&mut self, reference: &Reference, holds_velocity: bool, dt_s: f64) -> Motors {
-        let state = *self.estimator.state();
+    fn fly(&mut self, reference: &Reference, dt_s: f64) -> Motors {
+        let mut state = *self.estimator.state();
         let hover = self.hover.share();
-        let touches = self.landing.stage() != GroundContact::Flying;
-        let mut thrust = if !holds_velocity {
-            Vector3::new(0.0, 0.0, -DESCENDS * GRAVITY_MPS2)
-        } else {
-            let tan_tilt = tan(self.config.limits.tilt_rad);
-            self.position.step(&state, reference, tan_tilt, hover, dt_s)
-        };
-        if touches {
-            let falls = (self.given.thrust - dt_s).max(SETTLED);
+        state.drag_mps2 -= state.attitude * Vector3::z() * self.hover.surplus_mps2();
+        let tan_tilt = tan(self.config.limits.tilt_rad);
+        let mut thrust = self.position.step(&state, reference, tan_tilt, hover, dt_s);
+        let free = 1.0 - self.landing.suspicion();
+        thrust = Vector3::new(thrust.x * free, thrust.y * free, thrust.z);
+        if self.landing.stage() != GroundContact::Flying {
+            let falls = (self.given.thrust - SETTLES_PER_S * dt_s).max(SETTLED);
             thrust = Vector3::new(0.0, 0.0, -falls * GRAVITY_MPS2);
         }
         self.given.reference = *reference;
@@ -210,9 +210,9 @@ impl Multicopter {
         dt_s: f64,
     ) -> Motors {
         let missing = self.given.missing.fixed_rows::<3>(1).into_owned();
-        let turn = self
-            .rate
-            .step(rates_radps, &state.rates_radps, &missing, dt_s);
+        let learns = self.landing.suspicion() <= 0.0;
+        let rates = &state.rates_radps;
+        let turn = self.rate.step(rates_radps, rates, &missing, learns, dt_s);
         // The allocation knows the thrust by the airframe, and the hover thrust what is left.
         let nominal = self.hover.share() / self.config.airframe.hover_share();
         let demand = Demand::new(collective_mps2 * nominal, turn.x, turn.y, turn.z);
@@ -247,11 +247,8 @@ impl Controller for Multicopter {
     }
 
     fn faults(&self, tick: &Tick, measured: &Measurements) -> Flags {
-        let age = self.config.max_age * POSITION_AGES;
-        let attitude =
-            self.is_attitude_fresh(tick, measured) && self.are_rates_fresh(tick, measured);
-        let position =
-            self.is_velocity_fresh(tick, measured) && measured.position.is_fresh(tick.woke, age);
+        let attitude = self.is_attitude_fresh(tick, measured);
+        let position = self.is_position_fresh(tick, measured);
         Flags::NONE
             .with(flags::NO_ATTITUDE, !attitude)
             .with(flags::NO_POSITION, !position)
@@ -300,7 +297,7 @@ impl Controller for Multicopter {
 
     fn flag_name(bit: u32) -> &'static str {
         match Flags::bit(bit) {
-            flags::NO_ATTITUDE => "attitude or turn rates are lost",
+            flags::NO_ATTITUDE => "attitude, turn rates or acceleration are lost",
             flags::NO_POSITION => "position or velocity is lost",
             flags::TILTED => "tilted by more than 30°",
             flags::BATTERY_LOW => "the battery is below 20 %",
@@ -340,7 +337,7 @@ impl Controller for Multicopter {
         self.rate.reset();
     }
 
-    fn control(&mut self, tick: &Tick, measured: &Measurements) -> Motors {
+    fn control(&mut self, tick: &Tick, _: &Measurements) -> Motors {
         let state = *self.estimator.state();
         let has_landed = self.landing.stage() == GroundContact::Landed;
         if has_landed && !self.guidance.descends() {
@@ -356,8 +353,7 @@ impl Controller for Multicopter {
             self.landing = LandingDetector::LANDED;
             return self.off();
         };
-        let holds_velocity = self.is_velocity_fresh(tick, measured);
-        let motors = self.fly(&reference, holds_velocity, tick.dt_s);
+        let motors = self.fly(&reference, tick.dt_s);
         let thrust = self.given.thrust;
         if self.landing.stage() == GroundContact::Flying {
             let given = thrust * self.hover.share();

@@ -44,7 +44,7 @@ impl Gains {
             return Err(Refusal::TooSlow { delay_s, longest_s });
         }
         let rate = 0.5 / delay_s;
-        let velocity = Vector3::new(0.125, 0.125, 0.25) / delay_s;
+        let velocity = Vector3::new(0.125, 0.125, 0.35) / delay_s;
         Ok(Self {
             delay_s,
             rate,

@@ -16,6 +16,11 @@ use crate::values::{Command, Mode};
 pub const ITEM_REACHED: u8 = 1;
 /// A place counts as reached if both the path and the vehicle are this near, m.
 const REACHED_M: f64 = 0.3;
+/// And it is as fast as the path up to this, m/s.
+const SETTLED_MPS: f64 = 0.5;
+/// From this distance on the path waits for the vehicle, and stops at the other one, m.
+const WAITS_FROM_M: f64 = 0.5;
+const STOPS_AT_M: f64 = 2.0;
 /// The lowest take-off, m.
 const LOWEST_M: f64 = 1.0;
 /// Below this height above home it sinks slowly, m.
@@ -53,13 +58,13 @@ pub struct Limits {
 impl Default for Limits {
     fn default() -> Self {
         Self {
-            speed_mps: 8.0,
+            speed_mps: 6.0,
             climb_mps: 3.0,
             sink_mps: 1.5,
             touchdown_mps: 0.5,
             acceleration_mps2: 3.5,
             jerk_mps3: 25.0,
-            tilt_rad: 40.0_f64.to_radians(),
+            tilt_rad: 45.0_f64.to_radians(),
             rate_radps: 220.0_f64.to_radians(),
             yaw_rate_radps: 60.0_f64.to_radians(),
             rounding_m: 0.5,
@@ -370,6 +375,11 @@ impl Guidance {
     pub(crate) fn step(&mut self, state: &State, has_landed: bool, dt_s: f64) -> Option<Reference> {
         self.reached = None;
         let off_m = (self.path.position_m - state.position_m).norm();
+        let off_mps = (self.path.velocity_mps - state.velocity_mps).norm();
+        // Time on the path runs slower while the vehicle cannot follow it.
+        let pace = ((STOPS_AT_M - off_m) / (STOPS_AT_M - WAITS_FROM_M)).clamp(0.05, 1.0);
+        let pace = if self.descends() { 1.0 } else { pace };
+        let path_s = pace * dt_s;
         match self.activity {
             Activity::Idle => return None,
             Activity::Land | Activity::Descend if has_landed => {
@@ -378,23 +388,25 @@ impl Guidance {
                 return None;
             }
             Activity::Land | Activity::Descend => self.sink(state, dt_s),
-            Activity::Circle(circle) => self.circle(circle, dt_s),
+            Activity::Circle(circle) => self.circle(circle, path_s),
             Activity::Hover(left_s) => {
-                self.follow(dt_s);
+                self.follow(path_s);
                 self.activity = Activity::Hover(left_s - dt_s);
                 if left_s <= 0.0 {
                     self.end_item();
                 }
             }
             Activity::TakeOff | Activity::GoTo | Activity::Return(_) => {
-                let left_m = self.follow(dt_s);
-                let is_passed = self.leg.exit_mps > 0.0 && left_m <= self.passes_m.max(REACHED_M);
-                if is_passed || left_m.max(off_m) < REACHED_M {
+                let left_m = self.follow(path_s);
+                let ahead_m = (self.leg.to_m - self.path.position_m).dot(&self.leg.direction());
+                let is_passed = self.leg.exit_mps > 0.0 && ahead_m <= self.passes_m;
+                let is_there = left_m.max(off_m) < REACHED_M && off_mps < SETTLED_MPS;
+                if is_passed || is_there {
                     self.reach();
                 }
             }
         }
-        Some(self.reference(dt_s))
+        Some(self.reference(pace, dt_s))
     }
 
     fn reach(&mut self) {
@@ -427,18 +439,22 @@ impl Guidance {
     fn sink(&mut self, state: &State, dt_s: f64) {
         let limits = &self.limits;
         // From the height at which it has to brake.
-        let sink_mps = if -state.position_m.z < SLOWLY_BELOW_M {
+        let is_low = -state.position_m.z < SLOWLY_BELOW_M;
+        let sink_mps = if is_low || self.activity == Activity::Descend {
             limits.touchdown_mps
         } else {
             limits.sink_mps
         };
-        let mut place = self.leg;
-        place.to_m.z = self.path.position_m.z;
-        place.from_m = place.to_m;
+        if self.activity == Activity::Descend {
+            // Without a position, the velocity of the accelerometer is brought to nothing.
+            self.path.position_m = state.position_m;
+            self.leg.to_m = state.position_m;
+        }
         let (most, jerk) = (limits.acceleration_mps2, limits.jerk_mps3);
-        let mut wanted_mps = self.path.wanted_mps(&place, most);
-        wanted_mps.z = sink_mps;
-        self.path.accelerate(&wanted_mps, most, jerk, dt_s);
+        let level = Vector3::new(1.0, 1.0, 0.0);
+        let off_m = (self.leg.to_m - self.path.position_m).component_mul(&level);
+        let down = Vector3::new(0.0, 0.0, sink_mps);
+        self.path.accelerate(&down, &off_m, most, jerk, dt_s);
     }
 
     fn circle(&mut self, mut circle: Circle, dt_s: f64) {
@@ -473,15 +489,15 @@ impl Guidance {
         }
     }
 
-    fn reference(&mut self, dt_s: f64) -> Reference {
+    fn reference(&mut self, pace: f64, dt_s: f64) -> Reference {
         let most_rad = self.limits.yaw_rate_radps * dt_s;
         let turn_rad =
             wrap_pi(self.wanted_heading_rad - self.heading_rad).clamp(-most_rad, most_rad);
         self.heading_rad = wrap_two_pi(self.heading_rad + turn_rad);
         Reference {
             position_m: self.path.position_m,
-            velocity_mps: self.path.velocity_mps,
-            acceleration_mps2: self.path.acceleration_mps2,
+            velocity_mps: self.path.velocity_mps * pace,
+            acceleration_mps2: self.path.acceleration_mps2 * (pace * pace),
             heading_rad: self.heading_rad,
             heading_rate_radps: turn_rad / dt_s.max(1e-6),
             descends: self.descends(),

@@ -4,12 +4,17 @@ use fcc_core::units::GRAVITY_MPS2;
 
 /// How fast it can change, 1/√s: a battery that sags within minutes (PX4: 0.0036).
 const NOISE_PER_ROOT_S: f64 = 0.003_6;
-/// Of the measured specific force: vibration and gusts, m/s².
-const MEASURED_MPS2: f64 = 1.0;
-/// Beyond so many standard deviations it is a gust or the ground.
+/// Of the measured specific force: gusts of this size, m/s², that last so long, s. With the above
+/// it follows within some 10 s (`ArduPilot`: 10 s).
+const GUSTS_MPS2: f64 = 2.0;
+const GUSTS_S: f64 = 0.2;
+/// Beyond so many times a gust it is the ground.
 const GATE: f64 = 3.0;
+/// The time constant of the surplus, s, and the most of it, m/s².
+const SURPLUS_S: f64 = 0.05;
+const MOST_SURPLUS_MPS2: f64 = 4.0;
 /// Uncertainty at the start.
-const START: f64 = 0.1;
+const START: f64 = 0.02;
 
 /// Estimates the hover thrust h from f = g u / h: u is the share of thrust that is given, f the
 /// specific force along the thrust. A Kalman filter of one state.
@@ -20,6 +25,7 @@ pub struct HoverThrust {
     /// The share given, as late as the motors and the sensors are.
     given: f64,
     lag_s: f64,
+    surplus_mps2: f64,
 }
 
 impl HoverThrust {
@@ -30,12 +36,18 @@ impl HoverThrust {
             variance: START * START,
             given: 0.0,
             lag_s,
+            surplus_mps2: 0.0,
         }
     }
 
     /// The share of full thrust that hovering takes.
     pub const fn share(&self) -> f64 {
         self.share
+    }
+
+    /// What the air gives beyond what thrust does, smoothed, m/s²: gusts along the rotors' axes.
+    pub const fn surplus_mps2(&self) -> f64 {
+        self.surplus_mps2
     }
 
     /// Takes a tick in flight; returns the share before over that after it.
@@ -47,11 +59,12 @@ impl HoverThrust {
         }
         let expected = GRAVITY_MPS2 * self.given / self.share;
         let slope = -expected / self.share;
-        // White noise of this size in each hundredth of a second.
-        let noise = MEASURED_MPS2 * MEASURED_MPS2 * (0.01 / dt_s).max(1.0);
+        let noise = GUSTS_MPS2 * GUSTS_MPS2 * (GUSTS_S / dt_s).max(1.0);
         let spread = slope * slope * self.variance + noise;
         let innovation = specific_mps2 - expected;
-        if innovation * innovation > GATE * GATE * spread {
+        let surplus = innovation.clamp(-MOST_SURPLUS_MPS2, MOST_SURPLUS_MPS2);
+        self.surplus_mps2 += (surplus - self.surplus_mps2) * (dt_s / (SURPLUS_S + dt_s));
+        if innovation.abs() > GATE * GUSTS_MPS2 {
             return 1.0;
         }
         let before = self.share;
@@ -90,6 +103,6 @@ mod tests {
         }
         let settled = hover.share();
         hover.update(0.7, GRAVITY_MPS2, 0.0025);
-        assert_eq!(hover.share(), settled);
+        assert_eq!(hover.share(), settled, "{settled}");
     }
 }

@@ -43,6 +43,16 @@ impl LandingDetector {
         self.stage
     }
 
+    /// How probable it is that something touches the ground, 0..=1: what presses it sideways
+    /// would tip it over.
+    pub fn suspicion(&self) -> f64 {
+        if self.stage == GroundContact::Flying {
+            self.since_s / TOUCHING_S
+        } else {
+            1.0
+        }
+    }
+
     /// Takes a tick: whether a descent is commanded, and thrust over hover thrust.
     pub fn step(&mut self, descends: bool, thrust: f64, state: &State, dt_s: f64) {
         let sinks = state.velocity_mps.z.abs() >= SINKS_MPS;

@@ -2,7 +2,7 @@
 
 use fcc_core::units::GRAVITY_MPS2;
 use libm::{hypot, sqrt};
-use nalgebra::{Vector2, Vector3};
+use nalgebra::Vector3;
 
 use crate::estimator::State;
 use crate::gains::Gains;
@@ -11,6 +11,8 @@ use crate::gains::Gains;
 const LEAST_SHARE: f64 = 0.12;
 /// And at most this one: the rest is for roll and pitch.
 const MOST_SHARE: f64 = 0.9;
+/// Of full thrust, this share is kept for sideways if it is wanted.
+const SIDEWAYS_SHARE: f64 = 0.3;
 /// Of the integral: the drag in a storm, m/s².
 const MOST_INTEGRAL_MPS2: f64 = 6.0;
 
@@ -95,11 +97,13 @@ impl PositionLoop {
 fn limited(wanted_mps2: &Vector3<f64>, tan_tilt: f64, hover: f64) -> Vector3<f64> {
     let per_share = GRAVITY_MPS2 / hover;
     let most = MOST_SHARE * per_share;
-    let up = (GRAVITY_MPS2 - wanted_mps2.z).clamp(LEAST_SHARE * per_share, most);
+    let level = hypot(wanted_mps2.x, wanted_mps2.y);
+    let kept = level.min(SIDEWAYS_SHARE * per_share);
+    let highest = sqrt(most * most - kept * kept);
+    let up = (GRAVITY_MPS2 - wanted_mps2.z).clamp(LEAST_SHARE * per_share, highest);
     let sideways = (tan_tilt * up).min(sqrt(most * most - up * up));
-    let level = Vector2::new(wanted_mps2.x, wanted_mps2.y);
-    let scale = (sideways / hypot(level.x, level.y).max(1e-9)).min(1.0);
-    Vector3::new(level.x * scale, level.y * scale, -up)
+    let scale = (sideways / level.max(1e-9)).min(1.0);
+    Vector3::new(wanted_mps2.x * scale, wanted_mps2.y * scale, -up)
 }
 
 #[cfg(test)]
@@ -112,12 +116,12 @@ mod tests {
     }
 
     /// Full thrust is 1/0.3 g, of which 0.9 are used: 29.4 m/s². A climb that takes all of it
-    /// leaves nothing to go sideways.
+    /// leaves 0.3 of full thrust to go sideways, 9.8 m/s².
     #[test]
     fn height_comes_before_place() {
         let thrust = limited(&Vector3::new(50.0, 0.0, -30.0), 1.0, 0.3);
         assert!(
-            (thrust.z + 0.9 * GRAVITY_MPS2 / 0.3).abs() < 1e-9 && thrust.x < 1e-6,
+            (thrust.norm() - 29.42).abs() < 0.01 && (thrust.x - 9.81).abs() < 0.01,
             "{thrust}"
         );
         let thrust = limited(&Vector3::new(0.0, -50.0, 0.0), 1.0, 0.3);

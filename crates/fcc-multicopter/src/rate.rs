@@ -32,19 +32,20 @@ impl RateLoop {
     }
 
     /// The angular acceleration, rad/s², that leads to the wanted rates; `missing` is what was
-    /// not allocated last: the integral does not grow towards it.
+    /// not allocated last: the integral does not grow towards it. With `learns` false it stays.
     pub(crate) fn step(
         &mut self,
         wanted_radps: &Vector3<f64>,
         rates_radps: &Vector3<f64>,
         missing_radps2: &Vector3<f64>,
+        learns: bool,
         dt_s: f64,
     ) -> Vector3<f64> {
         let error = wanted_radps - rates_radps;
         let growth = self.integral_gain.component_mul(&error) * dt_s;
         let axes = self.integral_radps2.iter_mut().zip(growth.iter());
         for ((integral, growth), missing) in axes.zip(missing_radps2.iter()) {
-            if growth * missing <= 0.0 || missing.abs() < 1e-6 {
+            if learns && (growth * missing <= 0.0 || missing.abs() < 1e-6) {
                 *integral = (*integral + growth).clamp(-MOST_INTEGRAL_RADPS2, MOST_INTEGRAL_RADPS2);
             }
         }

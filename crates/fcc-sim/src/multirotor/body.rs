@@ -322,10 +322,10 @@ mod tests {
         let mut body = Multirotor::new(&frame, &world()).unwrap();
         after(&mut body, 1.0, 0.15);
         let up = -body.truth().specific_force.z_mps2;
-        let (full_n, weight_n) = (4.0 * frame.thrust_n_s2 * 820.0_f64.powi(2), 13.73);
-        // A battery that gives 60 A has 14 % less voltage.
+        let (full_n, weight_n) = (4.0 * frame.thrust_n_s2 * 960.0_f64.powi(2), 13.73);
+        // A battery that gives so much has 14 % less voltage.
         assert!((up * 1.4 / full_n - 0.74).abs() < 0.06, "{up}");
-        assert!((full_n / weight_n - 2.5).abs() < 0.1);
+        assert!((full_n / weight_n - 3.4).abs() < 0.1);
         let hover_radps = (weight_n / 4.0 / frame.thrust_n_s2).sqrt();
         let disc_m2 = core::f64::consts::PI * 0.127_f64.powi(2);
         let induced_mps = (weight_n / 4.0 / (2.0 * SEA_LEVEL_DENSITY_KGPM3 * disc_m2)).sqrt();

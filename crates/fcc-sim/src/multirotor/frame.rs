@@ -50,7 +50,7 @@ pub struct Frame {
 
 impl Frame {
     /// 1.4 kg, arms of 0.225 m, propellers of 10 inches: the size of a DJI F450, whose mass and
-    /// inertia JSBSim's model has; thrust to weight 2.5. In 8 m/s it leans by 17°.
+    /// inertia JSBSim's model has; thrust to weight 3.4. In 8 m/s it leans by 17°.
     pub fn quadrotor() -> Self {
         Self::ring(4, 0.225)
     }
@@ -74,7 +74,7 @@ impl Frame {
             drag_n_s2pm: share * 1.8e-4,
             torque_ratio_m: 0.016,
             rotor_inertia_kgm2: share * 5.0e-5,
-            full_speed_radps: 820.0,
+            full_speed_radps: 960.0,
             motor_lag_s: 0.035,
             drag_area_m2: 0.02,
             foot_m: Vector3::new(0.12, 0.12, 0.12),

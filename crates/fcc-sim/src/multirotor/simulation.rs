@@ -36,7 +36,7 @@ impl Default for MultirotorConfig {
                     ..SensorConfig::default()
                 },
                 switch: SwitchScript {
-                    on_at_s: Some(2.0),
+                    on_at_s: Some(4.0),
                     off_at_s: None,
                 },
                 ..SimConfig::default()
