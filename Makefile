@@ -79,8 +79,10 @@ BUILD_FCCD := cargo build --locked --release -p fcc-daemon -p fcc-py --bin fccd
 build: $(STAMPS)/rust ## Build target/release/fccd
 	$(BUILD_FCCD)
 
-fly: build ## Fly the built-in aircraft through the timed pattern, in real time
-	$(FCCD) fly
+VEHICLE ?= aeroplane
+
+fly: build ## Fly a built-in vehicle in real time: aeroplane or multicopter (VEHICLE=)
+	$(FCCD) fly --vehicle $(VEHICLE)
 
 # For ground, such as GROUND_STATION="--listen 0.0.0.0:8460".
 GROUND_STATION ?=
@@ -145,7 +147,7 @@ test-rust: $(STAMPS)/rust $(STAMPS)/gpsd
 	cargo check --locked -p fcc-daemon -p fcc-ground -p fcc-py
 	cargo check --locked -p fcc-daemon -p fcc-py --no-default-features
 	@for crate in fcc-runtime fcc-telemetry fcc-record fcc-live fcc-replay fcc-report fcc-top thermostat pendulum; do \
-	    ! cargo tree --locked -p $$crate -e no-dev | grep -E 'fcc-(navigation|guidance|calibration|fixed-wing)' || \
+	    ! cargo tree --locked -p $$crate -e no-dev | grep -E 'fcc-(navigation|guidance|calibration|fixed-wing|multicopter)' || \
 	    { echo "$$crate is compiled with an aircraft: see above"; exit 1; }; done
 	@for crate in fcc-daemon fcc-ground fcc-py fcc-android; do \
 	    ! cargo tree --locked -p $$crate -e no-dev,features | grep -E 'fault-injection|fcc-conformance' || \

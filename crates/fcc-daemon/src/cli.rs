@@ -18,6 +18,7 @@ use fcc_telemetry::Instance;
 use fcc_timer::TimerKind;
 
 use crate::exit::exit_codes;
+use crate::vehicles::names;
 pub use airframe::AirframeArgs;
 pub use calibrate::CalibrateArgs;
 #[cfg(feature = "live")]
@@ -52,7 +53,8 @@ pub struct GroundArgs {
 /// The commands of `fccd`.
 #[derive(Subcommand, Debug)]
 pub enum Action {
-    /// Fly the built-in aircraft through the timed pattern; failsafe ends it
+    /// Fly a built-in vehicle: an aeroplane through the timed pattern, a multicopter through a
+    /// plan; failsafe ends it
     Fly(FlyArgs),
     /// Fly the aircraft of a configuration file until stopped
     Run(RunArgs),
@@ -117,8 +119,12 @@ pub enum Action {
 /// `fccd fly`.
 #[derive(Args, Debug)]
 pub struct FlyArgs {
+    /// The vehicle [default: that of the configuration, or aeroplane]
+    #[arg(long, value_name = "NAME",
+          value_parser = clap::builder::PossibleValuesParser::new(names()))]
+    pub vehicle: Option<String>,
     /// Configuration file with a [built-in] section [default: as
-    /// config/built-in.toml]
+    /// config/built-in.toml, or config/multicopter.toml]
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
     /// How long to fly from the first engagement on; standby after it counts

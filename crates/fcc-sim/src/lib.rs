@@ -84,5 +84,5 @@ pub use multirotor::{MultirotorConfig, MultirotorSimulation};
 pub use raw::{AxisErrors, RawSensor, RawSensorSet, RawSensors, RawTruth, TrueErrors};
 pub use simulation::{SimActuator, SimSensor, Simulation};
 pub use trim::{Trim, TrimError, trim};
-pub use truth::Truth;
+pub use truth::{HasTruth, Truth};
 pub use turbulence::Severity;

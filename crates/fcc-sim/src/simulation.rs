@@ -12,6 +12,7 @@ use crate::config::{SimConfig, SimError, SwitchScript};
 use crate::link::{SharedState, SwitchHandle, TruthHandle};
 use crate::sensing::{BuiltInRaw, History, Sensors};
 use crate::trim::Trim;
+use crate::truth::{HasTruth, Truth};
 
 /// Beyond this the range finder gives nothing, m.
 const LONGEST_RANGE_M: f64 = 40.0;
@@ -93,6 +94,12 @@ impl SimSensor {
     fn switch(&self) -> Switch {
         let scripted = || self.script.position(self.aircraft.time_s());
         self.link.switch().unwrap_or_else(scripted)
+    }
+}
+
+impl HasTruth for SimSensor {
+    fn truth(&self) -> Truth {
+        self.aircraft.truth()
     }
 }
 

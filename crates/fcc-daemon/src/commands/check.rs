@@ -10,6 +10,7 @@ use crate::cli::CheckArgs;
 use crate::exit::Exit;
 use crate::output;
 use crate::process::unknown_names;
+use crate::vehicles::Kind;
 use fcc_flight::calibrate::{CalibrationFileError, apply, not_calibrated};
 use fcc_flight::config::{Aircraft, Config, ConfigError, CpuChoice, Problem};
 use fcc_timer::realtime::cpus::Cpus;
@@ -51,6 +52,21 @@ pub(super) fn check(args: &CheckArgs) -> Exit {
 /// it.
 fn check_file(path: &Path) -> (Checked, Result<String, ConfigError>) {
     let file = path.display().to_string();
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    if let Some(kind) = Kind::of_text(&text) {
+        let found = (kind.check)(&text, &file);
+        let found = found.map(|flies| format!("{file}: valid: {flies}"));
+        let checked = Checked {
+            file,
+            ok: found.is_ok(),
+            problems: found
+                .as_ref()
+                .err()
+                .map_or_else(Vec::new, ConfigError::problems),
+            remarks: Vec::new(),
+        };
+        return (checked, found);
+    }
     let loaded = Config::load_with_text(path)
         .and_then(|(config, text)| Ok((config.with_plan(&file)?, text)))
         .and_then(|(mut config, text)| {

@@ -10,7 +10,7 @@ mod check_controls;
 mod command;
 mod doctor;
 mod failure;
-mod fly;
+pub(crate) mod fly;
 mod ground;
 mod list;
 mod lookup;
@@ -23,9 +23,9 @@ mod progress;
 mod publisher;
 mod recover;
 mod release_helper;
-mod replay;
+pub(crate) mod replay;
 mod replay_navigation;
-mod report;
+pub(crate) mod report;
 mod run;
 mod timing;
 #[cfg(feature = "live")]
@@ -40,12 +40,13 @@ use clap_complete::Shell;
 use fcc_flight::flight::Pace;
 use fcc_record::create_folder;
 
-use failure::Failure;
+pub(crate) use failure::{Failure, not_opened};
 
 use crate::cli::{Action, Cli};
 use crate::exit::Exit;
 use crate::output;
 use crate::process::{raise_stack_limit, survive_file_size_limit};
+use crate::vehicles::Kind;
 
 /// Runs the command of the command line.
 pub fn run() -> Exit {
@@ -103,12 +104,20 @@ fn complete(command: Action, json: bool) -> Exit {
 
 fn carry_out(command: Action) -> Result<Exit, Failure> {
     Ok(match command {
-        Action::Fly(args) => fly::fly(&args)?,
+        Action::Fly(args) => match Kind::of_flight(&args) {
+            Some(kind) => (kind.fly)(&args)?,
+            None => fly::fly(&args)?,
+        },
         Action::Run(args) => run::run(&args)?,
         Action::List(args) => list::list(&args)?,
         Action::Recover(args) => recover::recover(&args)?,
         Action::Timing(args) => timing::timing(&args)?,
-        Action::Replay(args) => replay::replay(&args)?,
+        Action::Replay(args) => {
+            match args.files.first().and_then(|file| Kind::of_recording(file)) {
+                Some(kind) => (kind.replay)(&args)?,
+                None => replay::replay(&args)?,
+            }
+        }
         #[cfg(feature = "live")]
         Action::Command(args) => command::command(&args)?,
         #[cfg(feature = "live")]
@@ -121,7 +130,10 @@ fn carry_out(command: Action) -> Result<Exit, Failure> {
         Action::Probe(args) => probe::probe(&args)?,
         Action::Plan(args) => plan::plan(&args)?,
         Action::XPlane(args) => x_plane::x_plane(&args)?,
-        Action::Report(args) => report::report(&args)?,
+        Action::Report(args) => match Kind::of_recording(&args.file) {
+            Some(kind) => (kind.report)(&args)?,
+            None => report::report(&args)?,
+        },
         Action::Ground(args) => ground::ground(&args)?,
         #[cfg(feature = "live")]
         Action::Publisher => publisher::publisher()?,

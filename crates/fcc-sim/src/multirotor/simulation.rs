@@ -12,7 +12,7 @@ use crate::aircraft::LONGEST_STEP_S;
 use crate::config::{Channels, SensorConfig, SimConfig, SimError, SwitchScript};
 use crate::link::{SharedState, SwitchHandle, TruthHandle};
 use crate::sensing::{BuiltInRaw, History, Sensors};
-use crate::truth::Truth;
+use crate::truth::{HasTruth, Truth};
 
 /// The configuration of a simulated multicopter.
 #[derive(Clone, PartialEq, Debug)]
@@ -105,9 +105,10 @@ impl MultirotorSensor {
     pub const fn body_mut(&mut self) -> &mut Multirotor {
         &mut self.body
     }
+}
 
-    /// The truth after the last sample.
-    pub fn truth(&self) -> Truth {
+impl HasTruth for MultirotorSensor {
+    fn truth(&self) -> Truth {
         self.body.truth()
     }
 }
