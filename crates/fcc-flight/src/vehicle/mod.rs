@@ -11,7 +11,7 @@ mod multicopter_score;
 
 use std::path::Path;
 
-use fcc_core::framework::{Actuator, Controller, RecordOf, Sensor};
+use fcc_core::framework::{Actuator, Controller, RecordOf, Sensor, Switch};
 use fcc_record::Recorded;
 use fcc_replay::{Chain, Replay};
 use fcc_sim::TruthHandle;
@@ -68,6 +68,9 @@ pub trait Vehicle: Recorded + Sized {
 
     /// What a line a second shows of it.
     fn describe(record: &RecordOf<Self>) -> Option<String>;
+
+    /// Whether the engage switch is read, and its position.
+    fn switch(record: &RecordOf<Self>) -> Option<Switch>;
 
     /// Whether it rests: the flight is over if it rests after it has moved.
     fn rests(record: &RecordOf<Self>) -> bool;

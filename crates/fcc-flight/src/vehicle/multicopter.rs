@@ -2,8 +2,7 @@
 
 use std::time::Duration;
 
-use fcc_core::framework::RecordOf;
-use fcc_core::framework::State;
+use fcc_core::framework::{Controller as _, RecordOf, State, Switch};
 use fcc_multicopter::{
     Airframe, Gains, GroundContact, Limits, Mode, Multicopter, MulticopterConfig,
 };
@@ -417,20 +416,28 @@ impl Vehicle for Multicopter {
         }
         let (is, wanted) = (&record.estimate, &record.setpoints);
         let speed_mps = is.north_mps.hypot(is.east_mps);
-        let place = format!("{:6.1} m N {:6.1} m E", is.north_m, is.east_m);
+        // Without the sign of a zero.
+        let tenths = |value: f64| (value * 10.0).round() / 10.0 + 0.0;
+        let (north_m, east_m) = (tenths(is.north_m), tenths(is.east_m));
+        let (height_m, wanted_m) = (tenths(is.height_m), tenths(wanted.height_m));
+        let place = format!("{north_m:6.1} m N {east_m:6.1} m E");
         Some(if record.state.state() == State::Engaged {
-            let name = <Self as fcc_core::framework::Controller>::mode_name(wanted.mode as u8);
+            let name = Self::mode_name(wanted.mode as u8);
             let item = match wanted.item {
                 0 => String::new(),
                 item => item.to_string(),
             };
             format!(
-                "{name:<8} {item:>2} {place} {:5.1}→{:5.1} m {speed_mps:4.1} m/s",
-                is.height_m, wanted.height_m
+                "{name:<8} {item:>2} {place} {height_m:5.1}→{wanted_m:5.1} m {speed_mps:4.1} m/s"
             )
         } else {
-            format!("{place} {:5.1} m {speed_mps:4.1} m/s", is.height_m)
+            format!("{place} {height_m:5.1} m {speed_mps:4.1} m/s")
         })
+    }
+
+    fn switch(record: &RecordOf<Self>) -> Option<Switch> {
+        let switch = &record.measurements.engage_switch;
+        (!switch.is_never()).then_some(switch.value)
     }
 
     fn rests(record: &RecordOf<Self>) -> bool {
