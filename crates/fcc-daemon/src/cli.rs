@@ -18,7 +18,6 @@ use fcc_telemetry::Instance;
 use fcc_timer::TimerKind;
 
 use crate::exit::exit_codes;
-use crate::vehicles::names;
 pub use airframe::AirframeArgs;
 pub use calibrate::CalibrateArgs;
 #[cfg(feature = "live")]
@@ -119,9 +118,8 @@ pub enum Action {
 /// `fccd fly`.
 #[derive(Args, Debug)]
 pub struct FlyArgs {
-    /// The vehicle [default: that of the configuration, or aeroplane]
-    #[arg(long, value_name = "NAME",
-          value_parser = clap::builder::PossibleValuesParser::new(names()))]
+    /// The vehicle: aeroplane or multicopter [default: that of the configuration, or aeroplane]
+    #[arg(long, value_name = "NAME")]
     pub vehicle: Option<String>,
     /// Configuration file with a [built-in] section [default: as
     /// config/built-in.toml, or config/multicopter.toml]

@@ -4,7 +4,6 @@
 //! |---|---|
 //! | [`cli`], [`commands`], [`exit`] | what people type, what it does, how it ends |
 //! | `process`, `observers` | what a flight needs of the process around it, and who observes it there |
-//! | `vehicles` | the vehicles beside the aeroplane |
 //! | `output` | prints, and never panics where that fails |
 //!
 //! Assembling and running a flight is in [`fcc_flight`].
@@ -15,7 +14,6 @@ pub mod exit;
 mod observers;
 mod output;
 mod process;
-mod vehicles;
 
 #[cfg(fuzzing)]
 pub use process::use_plant_file;

@@ -6,11 +6,11 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::calibrate::unix_s;
+use super::vehicles::Kind;
 use crate::cli::CheckArgs;
 use crate::exit::Exit;
 use crate::output;
 use crate::process::unknown_names;
-use crate::vehicles::Kind;
 use fcc_flight::calibrate::{CalibrationFileError, apply, not_calibrated};
 use fcc_flight::config::{Aircraft, Config, ConfigError, CpuChoice, Problem};
 use fcc_timer::realtime::cpus::Cpus;

@@ -11,25 +11,25 @@ use crate::exit::Exit;
 use crate::output;
 
 /// Why a command gives no result, and its exit code.
-pub(crate) struct Failure {
+pub(super) struct Failure {
     exit: Exit,
     message: String,
 }
 
 impl Failure {
     /// Something failed.
-    pub(crate) fn new(message: impl Display) -> Self {
+    pub(super) fn new(message: impl Display) -> Self {
         Self::of(Exit::Failure, message)
     }
 
     /// Something failed, with an exit code of its own.
-    pub(crate) fn of(exit: Exit, message: impl Display) -> Self {
+    pub(super) fn of(exit: Exit, message: impl Display) -> Self {
         let message = format!("fccd: {message}");
         Self { exit, message }
     }
 
     /// The command line is wrong, with the message of its parser.
-    pub(crate) fn usage(message: impl Display) -> Self {
+    pub(super) fn usage(message: impl Display) -> Self {
         Self {
             exit: Exit::Usage,
             message: message.to_string(),
@@ -70,7 +70,7 @@ impl From<ConfigError> for Failure {
 }
 
 /// Why files are no recording that can be replayed.
-pub(crate) fn not_opened(error: ChainError) -> Failure {
+pub(super) fn not_opened(error: ChainError) -> Failure {
     let exit = match error {
         ChainError::Open(OpenError::CutInDescription { .. }) => Exit::NotReplayed,
         ChainError::Open(error) => return error.into(),

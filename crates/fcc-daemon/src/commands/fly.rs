@@ -49,7 +49,7 @@ pub(super) fn fly(args: &FlyArgs) -> Result<Exit, Failure> {
 }
 
 /// The pace of `fccd fly`.
-pub(crate) const fn pace(args: &FlyArgs) -> Pace {
+pub(super) const fn pace(args: &FlyArgs) -> Pace {
     if args.lockstep {
         Pace::Lockstep
     } else {
@@ -130,7 +130,7 @@ pub(super) fn conduct(
     Ok(report(&outcome, &flown_plan.0.borrow(), json))
 }
 
-pub(crate) fn report(outcome: &Outcome, flown_plan: &FlownPlan, json: bool) -> Exit {
+pub(super) fn report(outcome: &Outcome, flown_plan: &FlownPlan, json: bool) -> Exit {
     #[derive(Serialize)]
     struct Printed<'a> {
         #[serde(flatten)]

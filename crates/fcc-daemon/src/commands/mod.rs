@@ -10,7 +10,7 @@ mod check_controls;
 mod command;
 mod doctor;
 mod failure;
-pub(crate) mod fly;
+mod fly;
 mod ground;
 mod list;
 mod lookup;
@@ -23,13 +23,14 @@ mod progress;
 mod publisher;
 mod recover;
 mod release_helper;
-pub(crate) mod replay;
+mod replay;
 mod replay_navigation;
-pub(crate) mod report;
+mod report;
 mod run;
 mod timing;
 #[cfg(feature = "live")]
 mod top;
+mod vehicles;
 mod x_plane;
 
 use std::path::Path;
@@ -40,13 +41,13 @@ use clap_complete::Shell;
 use fcc_flight::flight::Pace;
 use fcc_record::create_folder;
 
-pub(crate) use failure::{Failure, not_opened};
+use failure::Failure;
+use vehicles::Kind;
 
 use crate::cli::{Action, Cli};
 use crate::exit::Exit;
 use crate::output;
 use crate::process::{raise_stack_limit, survive_file_size_limit};
-use crate::vehicles::Kind;
 
 /// Runs the command of the command line.
 pub fn run() -> Exit {
@@ -104,7 +105,7 @@ fn complete(command: Action, json: bool) -> Exit {
 
 fn carry_out(command: Action) -> Result<Exit, Failure> {
     Ok(match command {
-        Action::Fly(args) => match Kind::of_flight(&args) {
+        Action::Fly(args) => match Kind::of_flight(&args)? {
             Some(kind) => (kind.fly)(&args)?,
             None => fly::fly(&args)?,
         },

@@ -21,7 +21,7 @@ use crate::output;
 
 /// Result of a replay.
 #[derive(Serialize)]
-pub(crate) struct Outcome {
+pub(super) struct Outcome {
     /// The program that recorded.
     recorded_by: String,
     #[serde(flatten)]
@@ -91,7 +91,7 @@ fn run(
 }
 
 /// Replays the recording of any vehicle, and compares.
-pub(crate) fn compare<C: Telemetry>(
+pub(super) fn compare<C: Telemetry>(
     chain: &Chain,
     replay: &mut Replay<C>,
     mut comparison: Comparison,
@@ -161,7 +161,7 @@ fn remarks(chain: &Chain) -> Vec<String> {
 }
 
 impl Outcome {
-    pub(crate) fn print(&self, json: bool) -> Exit {
+    pub(super) fn print(&self, json: bool) -> Exit {
         if json {
             output::json(self, self.exit())
         } else {

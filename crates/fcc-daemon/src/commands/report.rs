@@ -22,7 +22,7 @@ pub(super) fn report(args: &ReportArgs) -> Result<Exit, Failure> {
 }
 
 /// Reports on the recording of any vehicle.
-pub(crate) fn print<C: Reported>(
+pub(super) fn print<C: Reported>(
     args: &ReportArgs,
     recording: &Recording,
     addition: C::Addition,

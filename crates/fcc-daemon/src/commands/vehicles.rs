@@ -14,8 +14,9 @@ use fcc_replay::{Chain, Comparison, Identity};
 use fcc_report::Reported;
 use fcc_runtime::SpawnError;
 
+use super::failure::{Failure, not_opened};
+use super::{fly, replay, report};
 use crate::cli::{FlyArgs, ReplayArgs, ReportArgs};
-use crate::commands::{Failure, fly, not_opened, replay, report};
 use crate::exit::Exit;
 use crate::observers::{Announcer, Service, StatusLine};
 use crate::process::Process;
@@ -24,16 +25,16 @@ use crate::process::Process;
 const KINDS: &[Kind] = &[Kind::of::<Multicopter>()];
 
 /// The name of the vehicle whose configurations have no key `vehicle`.
-pub(crate) const AEROPLANE: &str = "aeroplane";
+const AEROPLANE: &str = "aeroplane";
 
 /// A vehicle, and what the commands do with it.
-pub(crate) struct Kind {
+pub(super) struct Kind {
     name: &'static str,
-    pub(crate) fly: fn(&FlyArgs) -> Result<Exit, Failure>,
-    pub(crate) replay: fn(&ReplayArgs) -> Result<Exit, Failure>,
-    pub(crate) report: fn(&ReportArgs) -> Result<Exit, Failure>,
+    pub(super) fly: fn(&FlyArgs) -> Result<Exit, Failure>,
+    pub(super) replay: fn(&ReplayArgs) -> Result<Exit, Failure>,
+    pub(super) report: fn(&ReportArgs) -> Result<Exit, Failure>,
     /// What is said of a valid configuration.
-    pub(crate) check: fn(&str, &str) -> Result<String, ConfigError>,
+    pub(super) check: fn(&str, &str) -> Result<String, ConfigError>,
 }
 
 impl Kind {
@@ -56,29 +57,32 @@ impl Kind {
 
     /// The vehicle of a configuration's text; none for an aeroplane, and for a name that no
     /// vehicle has: the aeroplane's reader says what is wrong with it.
-    pub(crate) fn of_text(text: &str) -> Option<&'static Self> {
+    pub(super) fn of_text(text: &str) -> Option<&'static Self> {
         Self::named(&vehicle_in(text)?)
     }
 
     /// The vehicle of a recording.
-    pub(crate) fn of_recording(file: &Path) -> Option<&'static Self> {
+    pub(super) fn of_recording(file: &Path) -> Option<&'static Self> {
         Self::named(&Recording::open(file).ok()?.about().plant)
     }
 
     /// The vehicle of a command line, or of the configuration that it names.
-    pub(crate) fn of_flight(args: &FlyArgs) -> Option<&'static Self> {
-        match &args.vehicle {
-            Some(name) => Self::named(name),
-            None => Self::of_text(&std::fs::read_to_string(args.config.as_ref()?).ok()?),
+    pub(super) fn of_flight(args: &FlyArgs) -> Result<Option<&'static Self>, Failure> {
+        let Some(name) = &args.vehicle else {
+            let text = args.config.as_ref().map(std::fs::read_to_string);
+            return Ok(text
+                .and_then(Result::ok)
+                .and_then(|text| Self::of_text(&text)));
+        };
+        let kind = Self::named(name);
+        if kind.is_none() && name != AEROPLANE {
+            let names: Vec<_> = KINDS.iter().map(|kind| kind.name).collect();
+            let names = names.join(", ");
+            let message = format_args!("there is no vehicle {name:?}: choose {AEROPLANE}, {names}");
+            return Err(Failure::of(Exit::Usage, message));
         }
+        Ok(kind)
     }
-}
-
-/// The names of all vehicles.
-pub(crate) fn names() -> impl Iterator<Item = &'static str> {
-    [AEROPLANE]
-        .into_iter()
-        .chain(KINDS.iter().map(|kind| kind.name))
 }
 
 fn fly_it<V: Vehicle>(args: &FlyArgs) -> Result<Exit, Failure> {
