@@ -156,7 +156,8 @@ test-rust: $(STAMPS)/rust $(STAMPS)/gpsd
 # One more than there are processors: a third of the tests wait for flights in real time.
 WORKERS := $(shell expr $$(nproc) + 1)
 
-WITH_TESTED := FCCD=$(TESTED)/fccd FCCD_INJECTION=$(TESTED)/fccd FCC_GROUND=$(TESTED)/fcc-ground
+WITH_TESTED := FCCD=$(TESTED)/fccd FCCD_INJECTION=$(TESTED)/fccd FCC_GROUND=$(TESTED)/fcc-ground \
+    FCC_LOCKSTEP=$(TESTED)/examples/lockstep
 
 test-python: tested $(STAMPS)/strace $(STAMPS)/systemd $(STAMPS)/node
 	$(WITH_TESTED) $(PYTHON) -m pytest hil --numprocesses $(WORKERS) --dist loadfile
@@ -624,6 +625,7 @@ $(STAMPS)/python-module: $(STAMPS)/python
 tested: $(STAMPS)/rust $(STAMPS)/page $(STAMPS)/python
 	cargo build --locked --profile ci -p fcc-daemon -p fcc-ground -p thermostat -p fcc-py \
 	    --lib --bins --features fcc-daemon/fault-injection,fcc-py/conformance,pyo3/extension-module
+	cargo build --locked --profile ci -p fcc-multicopter --example lockstep
 	cargo build --locked -p pendulum --lib --features pyo3/extension-module
 	./scripts/install-module $(VENV) $(TESTED)/libfcc.so fcc crates/fcc-py/fcc.pyi
 	./scripts/install-module $(VENV) $(TARGET)/debug/libpendulum.so pendulum

@@ -139,6 +139,12 @@ impl Airframe {
         columns
     }
 
+    /// The lag of a motor that is led: of one slower than 30 ms a third is left, since a lead by
+    /// more amplifies the noise of turn rates as much.
+    pub(crate) fn led_lag_s(&self) -> f64 {
+        self.motor_lag_s.min((self.motor_lag_s / 3.0).max(0.03))
+    }
+
     /// The share of full thrust that hovering takes by mass and thrust.
     pub fn hover_share(&self) -> f64 {
         GRAVITY_MPS2 / self.effectiveness().row(0).sum()

@@ -124,7 +124,7 @@ impl Multicopter {
             estimator: Estimator::new(config.magnetic_variation_rad),
             guidance: Guidance::new(config.limits, config.plan),
             position: PositionLoop::new(gains),
-            rate: RateLoop::new(&gains),
+            rate: RateLoop::new(&gains, &config.airframe),
             allocator: Allocator::new(&config.airframe)?,
             hover: HoverThrust::new(config.airframe.hover_share(), lag_s),
             landing: LandingDetector::LANDED,

@@ -15,7 +15,7 @@ const MOST_DISPLACED_M: f64 = 1.0;
 /// delay of the next one, so the gains are 1/2θ, 1/4θ, 1/8θ and 1/16θ.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Gains {
-    /// θ: motors, sensors and the loop's period, s.
+    /// θ: motors as far as they are not led, sensors and the loop's period, s.
     pub delay_s: f64,
     /// Angular acceleration per rate, 1/s; of yaw the half.
     pub rate: f64,
@@ -38,13 +38,16 @@ impl Gains {
     /// When a gust would displace it by more than a metre: the displacement is 1/(position
     /// gain · velocity gain) = 128 θ² for 1 m/s².
     pub fn of(airframe: &Airframe, period_s: f64, latency_s: f64) -> Result<Self, Refusal> {
-        let delay_s = airframe.motor_lag_s + latency_s + period_s;
+        let delay_s = airframe.led_lag_s() + latency_s + period_s;
+        // Thrust is not led.
+        let climb_delay_s = airframe.motor_lag_s + latency_s + period_s;
         let longest_s = sqrt(MOST_DISPLACED_M / 128.0);
         if delay_s.is_nan() || delay_s <= 0.0 || delay_s > longest_s {
             return Err(Refusal::TooSlow { delay_s, longest_s });
         }
         let rate = 0.5 / delay_s;
-        let velocity = Vector3::new(0.125, 0.125, 0.35) / delay_s;
+        let sideways = 0.125 / delay_s;
+        let velocity = Vector3::new(sideways, sideways, 0.35 / climb_delay_s);
         Ok(Self {
             delay_s,
             rate,

@@ -309,9 +309,14 @@ impl Guidance {
     }
 
     fn stop_here(&mut self) {
-        let velocity = self.path.velocity_mps;
+        let (place_m, velocity) = (self.path.position_m, self.path.velocity_mps);
         let way_m = velocity * (velocity.norm() / self.limits.acceleration_mps2);
-        self.leg_to(self.path.position_m + way_m);
+        let arrives = self.leg.exit_mps <= 0.0 && (self.leg.to_m - place_m).norm() < REACHED_M;
+        self.leg_to(if arrives {
+            self.leg.to_m
+        } else {
+            place_m + way_m
+        });
         self.leg.from_m = self.leg.to_m;
         self.wanted_heading_rad = self.heading_rad;
     }

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use crate::airframe::Airframe;
 use crate::gains::Gains;
 
 /// Of the integral, rad/s²: trims what a displaced load or a weak motor does.
@@ -14,21 +15,30 @@ pub(crate) struct RateLoop {
     gain: Vector3<f64>,
     integral_gain: Vector3<f64>,
     integral_radps2: Vector3<f64>,
+    /// Of the motors, s, and what is left of it.
+    lag_s: f64,
+    led_lag_s: f64,
+    /// What is demanded, as late as the led motors give it.
+    given_radps2: Vector3<f64>,
 }
 
 impl RateLoop {
-    pub(crate) fn new(gains: &Gains) -> Self {
+    pub(crate) fn new(gains: &Gains, airframe: &Airframe) -> Self {
         // Yaw has a tenth of the others' torque, and is not to use it up on noise.
         let axes = Vector3::new(1.0, 1.0, 0.5);
         Self {
             gain: axes * gains.rate,
             integral_gain: axes * gains.rate_integral,
             integral_radps2: Vector3::zeros(),
+            lag_s: airframe.motor_lag_s,
+            led_lag_s: airframe.led_lag_s(),
+            given_radps2: Vector3::zeros(),
         }
     }
 
     pub(crate) fn reset(&mut self) {
         self.integral_radps2 = Vector3::zeros();
+        self.given_radps2 = Vector3::zeros();
     }
 
     /// The angular acceleration, rad/s², that leads to the wanted rates; `missing` is what was
@@ -49,6 +59,10 @@ impl RateLoop {
                 *integral = (*integral + growth).clamp(-MOST_INTEGRAL_RADPS2, MOST_INTEGRAL_RADPS2);
             }
         }
-        self.gain.component_mul(&error) + self.integral_radps2
+        let wanted = self.gain.component_mul(&error) + self.integral_radps2;
+        // (1 + lag s)/(1 + led lag s), so that a slow motor answers like a faster one.
+        let late = wanted - self.given_radps2;
+        self.given_radps2 += late * (dt_s / (self.led_lag_s + dt_s));
+        wanted + (wanted - self.given_radps2) * (self.lag_s / self.led_lag_s - 1.0)
     }
 }

@@ -250,6 +250,26 @@ fn late_sensors_are_flown() {
     assert!(height < 0.3 && place < 0.3, "{height}, {place}");
 }
 
+/// The motors of JSBSim's F450 take 0.1 s for 63 %; with 25 ms of latency besides, they are led.
+#[test]
+fn slow_motors_are_flown() {
+    let config = MulticopterConfig {
+        airframe: Airframe {
+            motor_lag_s: 0.1,
+            ..Airframe::default()
+        },
+        latency_s: 0.025,
+        ..MulticopterConfig::default()
+    };
+    let mut simulated = windy(316);
+    simulated.frame.motor_lag_s = 0.1;
+    simulated.world.sensors.delay_ms = 25;
+    let (heights, places) = hover(&config, &simulated);
+    let (height, place) = (rms(&heights), rms(&places));
+    println!("0.1 s and 25 ms: height {height:.3} m RMS, place {place:.3} m RMS");
+    assert!(height < 0.3 && place < 0.5, "{height}, {place}");
+}
+
 /// 30 ms of the motors, 50 ms of the sensors and 10 ms of the period are more than the 88 ms
 /// at which a gust of 1 m/s² displaces it by a metre.
 #[test]

@@ -106,7 +106,11 @@ fn fly_it<V: Vehicle>(args: &FlyArgs) -> Result<Exit, Failure> {
     let mut observers: Vec<Box<dyn fcc_flight::flight::Observer<V>>> =
         vec![Box::new(Announcer::default())];
     if !args.quiet {
-        observers.push(Box::new(StatusLine::new(V::describe, V::switch, true)));
+        observers.push(Box::new(StatusLine::new(
+            V::describe,
+            V::switch_position,
+            true,
+        )));
     }
     observers.push(Box::new(Service::from_environment()));
     let aeroplane = Config::default();

@@ -40,7 +40,7 @@ impl RecordingRequest {
     ) -> Option<Self> {
         let settings = RecorderSettings::from(section);
         let capacity = tick.ticks_in(WRITTEN_WITHIN_S, settings.capacity);
-        section.enabled.then(|| Self {
+        section.enabled.then_some(Self {
             settings: RecorderSettings {
                 capacity,
                 ..settings

@@ -123,7 +123,7 @@ pub fn fly_vehicle<V: Vehicle>(
     } else if let Some(by) = interrupted_by {
         outcome.ending = format!("interrupted by {by}");
     } else if flight.flown.is_over && matches!(report.ending, Ending::StopFlag) {
-        outcome.ending = "it has landed".to_owned();
+        "it has landed".clone_into(&mut outcome.ending);
     }
     let ending = outcome.ending.clone();
     flight.list.end(&ending, &mut outcome);

@@ -70,7 +70,7 @@ pub trait Vehicle: Recorded + Sized {
     fn describe(record: &RecordOf<Self>) -> Option<String>;
 
     /// Whether the engage switch is read, and its position.
-    fn switch(record: &RecordOf<Self>) -> Option<Switch>;
+    fn switch_position(record: &RecordOf<Self>) -> Option<Switch>;
 
     /// Whether it rests: the flight is over if it rests after it has moved.
     fn rests(record: &RecordOf<Self>) -> bool;

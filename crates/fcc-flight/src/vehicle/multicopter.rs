@@ -281,7 +281,7 @@ impl MulticopterFile {
     /// The core's; the plan stays in memory until the program ends.
     fn to_core(&self) -> MulticopterConfig {
         let keys = &self.limits;
-        let plan: Vec<_> = self.plan.iter().map(PlanItem::to_core).collect();
+        let plan: Vec<_> = self.plan.iter().map(|item| item.to_core()).collect();
         MulticopterConfig {
             airframe: self.airframe(),
             period_s: self.tick.period().as_secs_f64(),
@@ -435,7 +435,7 @@ impl Vehicle for Multicopter {
         })
     }
 
-    fn switch(record: &RecordOf<Self>) -> Option<Switch> {
+    fn switch_position(record: &RecordOf<Self>) -> Option<Switch> {
         let switch = &record.measurements.engage_switch;
         (!switch.is_never()).then_some(switch.value)
     }

@@ -75,8 +75,8 @@ pub(super) fn tour() -> Vec<PlanItem> {
 }
 
 impl PlanItem {
-    pub(super) fn to_core(&self) -> Item {
-        match *self {
+    pub(super) fn to_core(self) -> Item {
+        match self {
             Self::TakeOff { height_m } => Item::TakeOff(height_m),
             Self::Waypoint {
                 north_m,
