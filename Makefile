@@ -79,8 +79,10 @@ BUILD_FCCD := cargo build --locked --release -p fcc-daemon -p fcc-py --bin fccd
 build: $(STAMPS)/rust ## Build target/release/fccd
 	$(BUILD_FCCD)
 
-fly: build ## Fly the built-in aircraft through the timed pattern, in real time
-	$(FCCD) fly
+VEHICLE ?= aeroplane
+
+fly: build ## Fly a built-in vehicle in real time: aeroplane or multicopter (VEHICLE=)
+	$(FCCD) fly --vehicle $(VEHICLE)
 
 # For ground, such as GROUND_STATION="--listen 0.0.0.0:8460".
 GROUND_STATION ?=
@@ -147,7 +149,7 @@ test-rust: $(STAMPS)/rust $(STAMPS)/gpsd
 	cargo check --locked -p fcc-daemon -p fcc-ground -p fcc-py
 	cargo check --locked -p fcc-daemon -p fcc-py --no-default-features
 	@for crate in fcc-runtime fcc-telemetry fcc-record fcc-live fcc-replay fcc-report fcc-top thermostat pendulum; do \
-	    ! cargo tree --locked -p $$crate -e no-dev | grep -E 'fcc-(navigation|guidance|calibration|fixed-wing)' || \
+	    ! cargo tree --locked -p $$crate -e no-dev | grep -E 'fcc-(navigation|guidance|calibration|fixed-wing|multicopter)' || \
 	    { echo "$$crate is compiled with an aircraft: see above"; exit 1; }; done
 	@for crate in fcc-daemon fcc-ground fcc-py fcc-android; do \
 	    ! cargo tree --locked -p $$crate -e no-dev,features | grep -E 'fault-injection|fcc-conformance' || \
@@ -156,7 +158,8 @@ test-rust: $(STAMPS)/rust $(STAMPS)/gpsd
 # One more than there are processors: a third of the tests wait for flights in real time.
 WORKERS := $(shell expr $$(nproc) + 1)
 
-WITH_TESTED := FCCD=$(TESTED)/fccd FCCD_INJECTION=$(TESTED)/fccd FCC_GROUND=$(TESTED)/fcc-ground
+WITH_TESTED := FCCD=$(TESTED)/fccd FCCD_INJECTION=$(TESTED)/fccd FCC_GROUND=$(TESTED)/fcc-ground \
+    FCC_LOCKSTEP=$(TESTED)/examples/lockstep
 
 test-python: tested $(STAMPS)/strace $(STAMPS)/systemd $(STAMPS)/node
 	$(WITH_TESTED) $(PYTHON) -m pytest hil --numprocesses $(WORKERS) --dist loadfile
@@ -632,6 +635,7 @@ $(STAMPS)/python-module: $(STAMPS)/python
 tested: $(STAMPS)/rust $(STAMPS)/page $(STAMPS)/python
 	cargo build --locked --profile ci -p fcc-daemon -p fcc-ground -p thermostat -p fcc-py \
 	    --lib --bins --features fcc-daemon/fault-injection,fcc-py/conformance,pyo3/extension-module
+	cargo build --locked --profile ci -p fcc-multicopter --example lockstep
 	cargo build --locked -p pendulum --lib --features pyo3/extension-module
 	./scripts/install-module $(VENV) $(TESTED)/libfcc.so fcc crates/fcc-py/fcc.pyi
 	./scripts/install-module $(VENV) $(TARGET)/debug/libpendulum.so pendulum

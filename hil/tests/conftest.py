@@ -56,6 +56,12 @@ def faulty_fccd() -> Path:
     return _program("FCCD_INJECTION", "make tested")
 
 
+@pytest.fixture(scope="session")
+def lockstep() -> Path:
+    """Return the multicopter's controller as a process."""
+    return _program("FCC_LOCKSTEP", "make tested")
+
+
 @pytest.fixture
 def scratch() -> Iterator[Path]:
     """Give a folder that other users can enter; those of pytest are closed to them."""

@@ -50,7 +50,8 @@ pub struct GroundArgs {
 /// The commands of `fccd`.
 #[derive(Subcommand, Debug)]
 pub enum Action {
-    /// Fly the built-in aircraft through the timed pattern; failsafe ends it
+    /// Fly a built-in vehicle: an aeroplane through the timed pattern, a multicopter through a
+    /// plan; failsafe ends it
     Fly(FlyArgs),
     /// Fly the aircraft of a configuration file until stopped
     Run(RunArgs),
@@ -115,8 +116,11 @@ pub enum Action {
 /// `fccd fly`.
 #[derive(Args, Debug)]
 pub struct FlyArgs {
+    /// The vehicle: aeroplane or multicopter [default: that of the configuration, or aeroplane]
+    #[arg(long, value_name = "NAME")]
+    pub vehicle: Option<String>,
     /// Configuration file with a [built-in] section [default: as
-    /// config/built-in.toml]
+    /// config/built-in.toml, or config/multicopter.toml]
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
     /// How long to fly from the first engagement on; standby after it counts

@@ -9,6 +9,7 @@
 //! | [`probe`] | what is connected to the machine |
 //! | [`release`] | releases the controls on behalf of a process that was killed |
 //! | [`replay`] | prepares the replay of a recorded flight |
+//! | [`vehicle`] | vehicles beside the aeroplane |
 
 pub mod calibrate;
 pub mod config;
@@ -17,3 +18,4 @@ pub mod probe;
 pub mod release;
 pub mod replay;
 mod sealed;
+pub mod vehicle;

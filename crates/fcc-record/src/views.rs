@@ -8,6 +8,7 @@ use std::f64::consts::FRAC_PI_2;
 use fcc_core::flight::{Attitude, Position};
 use fcc_core::framework::Reading;
 use fcc_fixed_wing::Autopilot;
+use fcc_multicopter::Multicopter;
 use prost::Message as _;
 
 use super::foxglove::timestamp;
@@ -29,6 +30,10 @@ pub struct FoxgloveViews {
     position: RateLimit,
     transform: Option<FrameTransform>,
     location: Option<LocationFix>,
+}
+
+impl Recorded for Multicopter {
+    type Views = ();
 }
 
 impl Recorded for Autopilot {

@@ -50,13 +50,13 @@ impl<C: Controller> Machine<C> {
             self.telemetry.events.push(tick, kind);
         }
         if edge == Some(SwitchEdge::Off) || switch_forbids || is_taken_over {
-            self.apply_input(Input::SwitchedOff, tick);
+            self.release_by(Input::SwitchedOff, tick);
             if self.state == State::Stopped {
                 self.end_by(Ending::SwitchedOff);
             }
         }
         if command == StateRequest::Disengage {
-            self.apply_input(Input::Disengage, tick);
+            self.release_by(Input::Disengage, tick);
         }
         let faults = self.record.faults;
         if self.state == State::Engaged && !faults.is_empty() {
@@ -73,7 +73,7 @@ impl<C: Controller> Machine<C> {
         {
             self.end_failsafe(tick);
         }
-        self.follow_commanded_stop(tick);
+        self.follow_release(tick);
         if command == StateRequest::Engage && switch_forbids {
             let kind = EventKind::EngageRefusedBySwitch;
             self.telemetry.events.push(tick, kind);
@@ -158,7 +158,7 @@ impl<C: Controller> Machine<C> {
 
     /// Applies an input to the transition table, and performs the actions of the
     /// transition.
-    fn apply_input(&mut self, input: Input, tick: &Tick) {
+    pub(crate) fn apply_input(&mut self, input: Input, tick: &Tick) {
         let from = self.state;
         let to = from.after(input, self.switch_off);
         if to == from {
@@ -203,7 +203,7 @@ impl<C: Controller> Machine<C> {
     }
 
     /// Keeps the first reason to end, except that a later panic replaces it.
-    fn end_by(&mut self, ending: Ending) {
+    pub(crate) fn end_by(&mut self, ending: Ending) {
         let keep = match &self.ending {
             None => false,
             Some(Ending::Panicked(_)) => true,

@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use fcc_core::framework::{
-    AfterRelease, Cause, Controller, EventKind, Flags, LoopCommand, Record, RecordOf, StageTimes,
-    State, Tick, Time,
+    AfterRelease, Cause, Controller, EventKind, Flags, Input, LoopCommand, Record, RecordOf,
+    StageTimes, State, Tick, Time,
 };
 use fcc_timer::{Expiry, Timer, TimerError, TimingStats, Wake, usage};
 use rtrb::{Consumer, RingBuffer};
@@ -55,8 +55,10 @@ pub struct Machine<C: Controller> {
     pub(crate) conditions: Flags,
     pub(crate) measurements: C::Measurements,
     pub(crate) failsafe_since: Time,
-    /// When a stop was commanded whose release is being prepared.
+    /// When a release began that is being prepared.
     pub(crate) stopping_since: Time,
+    /// What that release follows; a commanded stop if there is none.
+    pub(crate) release_by: Option<Input>,
     pub(crate) record: RecordOf<C>,
     pub(crate) overruns: Overruns,
     pub(crate) load: Load,
@@ -111,6 +113,7 @@ impl<C: Controller> Machine<C> {
             measurements: C::Measurements::default(),
             failsafe_since: Time::NEVER,
             stopping_since: Time::NEVER,
+            release_by: None,
             record: Record::new(Tick::default(), State::Standby),
             overruns: Overruns::new(config.budget, period),
             load: Load::new(config.overload, period),

@@ -1,6 +1,7 @@
 //! The configuration of a simulation.
 
 use fcc_core::flight::terrain::Terrain;
+use fcc_core::framework::Switch;
 use thiserror::Error;
 
 use crate::airframe::Airframe;
@@ -84,6 +85,18 @@ pub struct SwitchScript {
     pub on_at_s: Option<f64>,
     /// The time at which it is switched off again.
     pub off_at_s: Option<f64>,
+}
+
+impl SwitchScript {
+    /// Its position at a time, s.
+    pub(crate) fn position(&self, time_s: f64) -> Switch {
+        let reached = |at_s: Option<f64>| at_s.is_some_and(|at_s| time_s >= at_s);
+        if reached(self.on_at_s) && !reached(self.off_at_s) {
+            Switch::On
+        } else {
+            Switch::Off
+        }
+    }
 }
 
 /// The longest delay of the sensors, ms.

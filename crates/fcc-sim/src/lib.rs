@@ -37,6 +37,7 @@
 //! | [`propeller`] | the engine's speed |
 //! | [`electrical`] | battery and alternator |
 //! | [`motion`] | the equations of motion and their integration |
+//! | [`multirotor`] | a multicopter |
 //! | [`turbulence`] | Dryden gusts |
 //!
 //! Not modelled: flaps, a retractable gear, the propeller's torque on the airframe,
@@ -58,6 +59,7 @@ mod handling;
 mod link;
 mod local_earth;
 pub mod motion;
+pub mod multirotor;
 pub mod propeller;
 mod raw;
 mod sensing;
@@ -78,8 +80,9 @@ pub use config::{
 pub use electrical::Electrical;
 pub use handling::{HandledSensors, HandlingFault, HandlingTask};
 pub use link::{SwitchHandle, TruthHandle};
+pub use multirotor::{MultirotorConfig, MultirotorSimulation};
 pub use raw::{AxisErrors, RawSensor, RawSensorSet, RawSensors, RawTruth, TrueErrors};
 pub use simulation::{SimActuator, SimSensor, Simulation};
 pub use trim::{Trim, TrimError, trim};
-pub use truth::Truth;
+pub use truth::{HasTruth, Truth};
 pub use turbulence::Severity;

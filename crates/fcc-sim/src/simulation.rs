@@ -12,6 +12,7 @@ use crate::config::{SimConfig, SimError, SwitchScript};
 use crate::link::{SharedState, SwitchHandle, TruthHandle};
 use crate::sensing::{BuiltInRaw, History, Sensors};
 use crate::trim::Trim;
+use crate::truth::{HasTruth, Truth};
 
 /// Beyond this the range finder gives nothing, m.
 const LONGEST_RANGE_M: f64 = 40.0;
@@ -91,15 +92,14 @@ impl SimSensor {
     }
 
     fn switch(&self) -> Switch {
-        if let Some(switch) = self.link.switch() {
-            return switch;
-        }
-        let reached = |time: Option<f64>| time.is_some_and(|at_s| self.aircraft.time_s() >= at_s);
-        if reached(self.script.on_at_s) && !reached(self.script.off_at_s) {
-            Switch::On
-        } else {
-            Switch::Off
-        }
+        let scripted = || self.script.position(self.aircraft.time_s());
+        self.link.switch().unwrap_or_else(scripted)
+    }
+}
+
+impl HasTruth for SimSensor {
+    fn truth(&self) -> Truth {
+        self.aircraft.truth()
     }
 }
 

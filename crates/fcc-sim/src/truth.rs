@@ -67,6 +67,12 @@ schema! {
     }
 }
 
+/// What knows the truth of a simulated vehicle.
+pub trait HasTruth {
+    /// The truth after the last step.
+    fn truth(&self) -> Truth;
+}
+
 /// Numbers in a [`Truth`].
 pub(crate) const NUMBERS: usize = Truth::TYPE.leaves();
 

@@ -9,6 +9,7 @@ pub use of_flights::{FlightEvent, FlightMessage, FlightRecord};
 mod of_flights {
     use fcc_core::framework::{EventOf, MessageOf, RecordOf};
     use fcc_fixed_wing::Autopilot;
+    use fcc_multicopter::Multicopter;
 
     use crate::telemetry::Telemetry;
     use crate::units::{AVIATION, Shown};
@@ -21,6 +22,8 @@ mod of_flights {
 
     /// A record or an event of a flight.
     pub type FlightMessage = MessageOf<Autopilot>;
+
+    impl Telemetry for Multicopter {}
 
     impl Telemetry for Autopilot {
         const UNITS: &'static [Shown] = AVIATION;

@@ -5,6 +5,7 @@ mod altimeter;
 pub mod atmosphere;
 pub mod earth;
 mod measurements;
+mod motors;
 pub mod orientation;
 mod plant;
 mod raw_readings;
@@ -15,6 +16,7 @@ pub use altimeter::{ALTIMETER_SETTINGS_PA, Altimeter, AltitudeReference};
 pub use measurements::{
     Attitude, BodyRates, Measurements, PilotControls, Position, SpecificForce, Suspect, Velocity,
 };
+pub use motors::{MOST_ROTORS, Motors};
 pub use plant::{OtherControl, Plant, PlantState};
 pub use raw_readings::{Battery, GnssFix, MagneticField};
 pub use surfaces::Surfaces;

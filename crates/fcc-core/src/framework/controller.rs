@@ -162,6 +162,14 @@ pub trait Controller: Send {
         true
     }
 
+    /// Whether control that is ended by the switch or by a command is given back like before a
+    /// commanded stop, by [`prepare_release`](Self::prepare_release) and however long that
+    /// takes: what falls without control is brought to the ground first. By default it is given
+    /// back at once.
+    fn releases_on_the_ground(&self) -> bool {
+        false
+    }
+
     /// Whether this tick's outputs are not to be sent although the loop holds
     /// control: the plant does not take them at present, and keeps the last.
     /// The state does not change. By default they are sent.

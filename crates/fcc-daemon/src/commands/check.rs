@@ -6,6 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::calibrate::unix_s;
+use super::vehicles::Kind;
 use crate::cli::CheckArgs;
 use crate::exit::Exit;
 use crate::output;
@@ -51,6 +52,21 @@ pub(super) fn check(args: &CheckArgs) -> Exit {
 /// it.
 fn check_file(path: &Path) -> (Checked, Result<String, ConfigError>) {
     let file = path.display().to_string();
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    if let Some(kind) = Kind::of_text(&text) {
+        let found = (kind.check)(&text, &file);
+        let found = found.map(|flies| format!("{file}: valid: {flies}"));
+        let checked = Checked {
+            file,
+            ok: found.is_ok(),
+            problems: found
+                .as_ref()
+                .err()
+                .map_or_else(Vec::new, ConfigError::problems),
+            remarks: Vec::new(),
+        };
+        return (checked, found);
+    }
     let loaded = Config::load_with_text(path)
         .and_then(|(config, text)| Ok((config.with_plan(&file)?, text)))
         .and_then(|(mut config, text)| {

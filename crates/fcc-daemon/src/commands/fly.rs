@@ -130,7 +130,7 @@ pub(super) fn conduct(
     Ok(report(&outcome, &flown_plan.0.borrow(), json))
 }
 
-fn report(outcome: &Outcome, flown_plan: &FlownPlan, json: bool) -> Exit {
+pub(super) fn report(outcome: &Outcome, flown_plan: &FlownPlan, json: bool) -> Exit {
     #[derive(Serialize)]
     struct Printed<'a> {
         #[serde(flatten)]

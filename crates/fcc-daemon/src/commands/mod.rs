@@ -30,6 +30,7 @@ mod run;
 mod timing;
 #[cfg(feature = "live")]
 mod top;
+mod vehicles;
 mod x_plane;
 
 use std::path::Path;
@@ -41,6 +42,7 @@ use fcc_flight::flight::Pace;
 use fcc_record::create_folder;
 
 use failure::Failure;
+use vehicles::Kind;
 
 use crate::cli::{Action, Cli};
 use crate::exit::Exit;
@@ -103,12 +105,20 @@ fn complete(command: Action, json: bool) -> Exit {
 
 fn carry_out(command: Action) -> Result<Exit, Failure> {
     Ok(match command {
-        Action::Fly(args) => fly::fly(&args)?,
+        Action::Fly(args) => match Kind::of_flight(&args)? {
+            Some(kind) => (kind.fly)(&args)?,
+            None => fly::fly(&args)?,
+        },
         Action::Run(args) => run::run(&args)?,
         Action::List(args) => list::list(&args)?,
         Action::Recover(args) => recover::recover(&args)?,
         Action::Timing(args) => timing::timing(&args)?,
-        Action::Replay(args) => replay::replay(&args)?,
+        Action::Replay(args) => {
+            match args.files.first().and_then(|file| Kind::of_recording(file)) {
+                Some(kind) => (kind.replay)(&args)?,
+                None => replay::replay(&args)?,
+            }
+        }
         #[cfg(feature = "live")]
         Action::Command(args) => command::command(&args)?,
         #[cfg(feature = "live")]
@@ -121,7 +131,10 @@ fn carry_out(command: Action) -> Result<Exit, Failure> {
         Action::Probe(args) => probe::probe(&args)?,
         Action::Plan(args) => plan::plan(&args)?,
         Action::XPlane(args) => x_plane::x_plane(&args)?,
-        Action::Report(args) => report::report(&args)?,
+        Action::Report(args) => match Kind::of_recording(&args.file) {
+            Some(kind) => (kind.report)(&args)?,
+            None => report::report(&args)?,
+        },
         Action::Ground(args) => ground::ground(&args)?,
         #[cfg(feature = "live")]
         Action::Publisher => publisher::publisher()?,

@@ -24,6 +24,16 @@ pub(super) fn text(outcome: &Outcome, plan: &FlownPlan) -> String {
             }
         }
     }
+    for figure in &outcome.figures {
+        let _ = writeln!(
+            text,
+            "{:<32} {:6.2} {}",
+            figure.name, figure.value, figure.unit
+        );
+    }
+    if !outcome.figures.is_empty() {
+        text.push('\n');
+    }
     if let Some(why) = &outcome.not_scored {
         let _ = writeln!(text, "no score: {why}\n");
     }

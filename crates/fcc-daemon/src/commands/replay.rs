@@ -8,7 +8,8 @@ use fcc_fixed_wing::Autopilot;
 use fcc_flight::config::{AirframeSection, Config};
 use fcc_flight::replay::{recorded_config, replay as replay_of};
 use fcc_record::{create_output, unless_left};
-use fcc_replay::{Chain, Comparison, Csv, Deviation, Identity, Replayed};
+use fcc_replay::{Chain, Comparison, Csv, Deviation, Identity, Replay, Replayed};
+use fcc_telemetry::Telemetry;
 use serde::Serialize;
 
 use super::failure::{Failure, not_opened};
@@ -20,7 +21,7 @@ use crate::output;
 
 /// Result of a replay.
 #[derive(Serialize)]
-struct Outcome {
+pub(super) struct Outcome {
     /// The program that recorded.
     recorded_by: String,
     #[serde(flatten)]
@@ -79,20 +80,36 @@ fn run(
             config.tick.rate_hz = recorded.tick.rate_hz;
         }
     }
+    let mut replay = replay_of(&config).map_err(|error| format!("the loop's timer: {error}"))?;
+    let began = Instant::now();
+    let mut outcome = compare(chain, &mut replay, comparison, args, began)?;
+    remarks.append(&mut outcome.remarks);
+    if args.airframe {
+        remarks.push(learned(replay.controller()));
+    }
+    Ok(Outcome { remarks, ..outcome })
+}
+
+/// Replays the recording of any vehicle, and compares.
+pub(super) fn compare<C: Telemetry>(
+    chain: &Chain,
+    replay: &mut Replay<C>,
+    mut comparison: Comparison,
+    args: &ReplayArgs,
+    began: Instant,
+) -> Result<Outcome, String> {
     let csv = args.csv.as_deref();
     let inputs: Vec<&PathBuf> = args.files.iter().chain(&args.config).collect();
     let refused = |error: io::Error| {
         let name = csv.unwrap_or(Path::new("")).display();
         format!("{name}: cannot be written: {error}")
     };
-    let begin = |path| Csv::begin::<Autopilot>(BufWriter::new(create_output(path, &inputs)?));
+    let begin = |path| Csv::begin::<C>(BufWriter::new(create_output(path, &inputs)?));
     let mut table = csv.map(begin).transpose().map_err(refused)?;
     let mut written = Ok(());
-    let mut replay = replay_of(&config).map_err(|error| format!("the loop's timer: {error}"))?;
     let bar = progress::bar(chain.bytes(), "replaying");
-    let began = Instant::now();
     let replayed = chain.replay(
-        &mut replay,
+        replay,
         |recorded, again| {
             comparison.take(recorded, again);
             if let (Some(table), Ok(())) = (&mut table, &written) {
@@ -104,10 +121,6 @@ fn run(
     bar.finish_and_clear();
     let finished = written.and_then(|()| table.map_or(Ok(()), Csv::finish));
     unless_left(finished).map_err(refused)?;
-    remarks.extend(csv.map(|csv| format!("written: {}", csv.display())));
-    if args.airframe {
-        remarks.push(learned(replay.controller()));
-    }
     let took_s = began.elapsed().as_secs_f64();
     let about = chain.about();
     Ok(Outcome {
@@ -116,7 +129,10 @@ fn run(
         replayed,
         took_s,
         comparison,
-        remarks,
+        remarks: csv
+            .map(|csv| format!("written: {}", csv.display()))
+            .into_iter()
+            .collect(),
     })
 }
 
@@ -145,7 +161,7 @@ fn remarks(chain: &Chain) -> Vec<String> {
 }
 
 impl Outcome {
-    fn print(&self, json: bool) -> Exit {
+    pub(super) fn print(&self, json: bool) -> Exit {
         if json {
             output::json(self, self.exit())
         } else {

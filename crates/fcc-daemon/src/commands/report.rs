@@ -1,8 +1,9 @@
 //! `fccd report FILE`: a report on a recording.
 
+use fcc_fixed_wing::Autopilot;
 use fcc_flight::replay::{recorded_pattern, recorded_plan};
 use fcc_record::Recording;
-use fcc_report::{FlightAddition, FlightReport, FlightSurvey, TABLES};
+use fcc_report::{FlightAddition, Report, Reported, Survey, TABLES};
 use fcc_telemetry::FlightMessage;
 
 use super::failure::Failure;
@@ -15,7 +16,18 @@ use crate::output;
 /// Reads a recording and reports on it.
 pub(super) fn report(args: &ReportArgs) -> Result<Exit, Failure> {
     let recording = Recording::open_as::<FlightMessage>(&args.file)?;
-    let (report, written) = make(args, &recording).map_err(Failure::new)?;
+    let addition = FlightAddition::new(recorded_pattern(recording.about()))
+        .with_plan(recorded_plan(recording.about()).map(|(which, plan)| (which, lines(&plan))));
+    print::<Autopilot>(args, &recording, addition)
+}
+
+/// Reports on the recording of any vehicle.
+pub(super) fn print<C: Reported>(
+    args: &ReportArgs,
+    recording: &Recording,
+    addition: C::Addition,
+) -> Result<Exit, Failure> {
+    let (report, written) = make::<C>(args, recording, addition).map_err(Failure::new)?;
     let exit = if report.is_complete() {
         Exit::Success
     } else {
@@ -30,11 +42,13 @@ pub(super) fn report(args: &ReportArgs) -> Result<Exit, Failure> {
 }
 
 /// The report, and a line on each file or folder that was written.
-fn make(args: &ReportArgs, recording: &Recording) -> Result<(FlightReport, Vec<String>), String> {
+fn make<C: Reported>(
+    args: &ReportArgs,
+    recording: &Recording,
+    addition: C::Addition,
+) -> Result<(Report<C::Addition>, Vec<String>), String> {
     let bar = progress::bar(recording.bytes(), "reading");
-    let addition = FlightAddition::new(recorded_pattern(recording.about()))
-        .with_plan(recorded_plan(recording.about()).map(|(which, plan)| (which, lines(&plan))));
-    let report = FlightSurvey::read(recording, addition, args.csv.as_deref(), |read| {
+    let report = Survey::<C>::read(recording, addition, args.csv.as_deref(), |read| {
         bar.set_position(read);
     })?;
     bar.finish_and_clear();

@@ -100,6 +100,16 @@ impl GustsChoice {
         ("moderate", Self::Moderate),
         ("severe", Self::Severe),
     ];
+
+    /// The core's; none for still air.
+    pub(crate) const fn severity(self) -> Option<Severity> {
+        match self {
+            Self::None => None,
+            Self::Light => Some(Severity::Light),
+            Self::Moderate => Some(Severity::Moderate),
+            Self::Severe => Some(Severity::Severe),
+        }
+    }
 }
 
 impl Default for BuiltInSection {
@@ -193,12 +203,7 @@ impl From<&BuiltInSection> for SimConfig {
                 from_rad: section.wind_from_deg.to_radians(),
                 speed_mps: section.wind_kt * KNOT_MPS,
             },
-            gusts: match section.gusts {
-                GustsChoice::None => None,
-                GustsChoice::Light => Some(Severity::Light),
-                GustsChoice::Moderate => Some(Severity::Moderate),
-                GustsChoice::Severe => Some(Severity::Severe),
-            },
+            gusts: section.gusts.severity(),
             sensors: SensorConfig {
                 noise: if section.noise {
                     Channels::TYPICAL_NOISE

@@ -12,7 +12,7 @@ const MOST_EVENTS: usize = 10_000;
 
 /// Stores events, for the outcome.
 #[derive(Default)]
-pub(super) struct EventLog {
+pub(crate) struct EventLog {
     events: Vec<EventEntry>,
     flapping: Flapping,
     at: FlightTime,

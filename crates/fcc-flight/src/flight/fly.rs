@@ -16,7 +16,8 @@ use super::ground::GroundWatch;
 use super::hang::HangWatch;
 use super::host::Host;
 use super::observer::{Facts, Observer};
-use super::observers::{Names, Observers};
+use super::observer_list::Names;
+use super::observers::Observers;
 use super::outcome::{Outcome, Over};
 use super::pilot::Pilot;
 use super::plan::{Length, Pace, Plan};
@@ -70,12 +71,12 @@ pub fn fly(
         Pace::Lockstep => Box::new(ManualTimer::new(period)?),
     };
     let timer_name = timer.name();
-    let names = Names::of(&assembly);
+    let names = Names::of(&assembly.sensors, &assembly.actuators);
     let autopilot = assembly.autopilot.config();
     let flies_plan = autopilot.guidance.mode() == Mode::Plan;
     let has_end = autopilot.plan.is_none_or(|route| route.has_end());
     let mut observers = Observers::new(observers, names.clone());
-    observers.prepare();
+    observers.list.prepare();
     let started_unix_ns = SystemTime::now()
         .duration_since(UNIX_EPOCH)
         .map_or(0, |since| since.as_nanos() as u64);
@@ -122,7 +123,7 @@ pub fn fly(
         Pace::Lockstep => {
             let (machine, mut link) = Machine::new(parts, &assembly.loop_config)?;
             host.attach(&link.stop).map_err(FlyError::Host)?;
-            observers.begin(&facts);
+            observers.list.begin(&facts);
             host.started();
             run_in_lockstep(
                 machine,
@@ -140,10 +141,10 @@ pub fn fly(
     if let Some(impact) = ground.impact {
         outcome.hit_ground(impact);
     } else if matches!(report.ending, Ending::StopFlag) {
-        let over = observers.monitor.over(plan.length);
+        let over = observers.list.monitor.over(plan.length);
         let interrupted = host.interrupted_by();
         outcome.explain(interrupted, over, observers.refusal.as_deref());
-        let is_flown = !flies_plan || observers.monitor.plan.is_flown;
+        let is_flown = !flies_plan || observers.list.monitor.plan.is_flown;
         let over = over.filter(|over| match over {
             Over::Time => has_end,
             over => *over == Over::GivenUp,
@@ -154,7 +155,7 @@ pub fn fly(
     }
     // The controls have been released; writing to the disk may take time now.
     let ending = outcome.ending.clone();
-    observers.end(&ending, &mut outcome);
+    observers.list.end(&ending, &mut outcome);
     // A beacon may have led to a simulator that another program controls.
     if released {
         refuse_if_taken(host)?;
@@ -201,13 +202,13 @@ impl RealTime<'_> {
         // Before the first tick: of a simulator on this machine only what is its user's
         // is received.
         if let Some(authority) = self.authority {
-            authority.report(&mut |words| observers.remark(words.to_string()));
+            authority.report(&mut |words| observers.list.remark(words.to_string()));
         }
         let handle = self.flight_loop.spawn()?;
         let granted = handle.granted().clone();
         // Reported at once, not only at the end of a flight that may take days.
         report_denied(&granted, watchdog_granted.as_ref(), observers);
-        observers.begin(&Facts {
+        observers.list.begin(&Facts {
             granted: Some(&granted),
             ..facts
         });
@@ -221,7 +222,7 @@ impl RealTime<'_> {
             ground: self.ground,
         }
         .follow(self.authority, watchdog.as_mut());
-        observers.stopping();
+        observers.list.stopping();
         Ok(match hung {
             None => handle.join(),
             Some(hung) => {
@@ -238,10 +239,10 @@ fn report_denied(
     observers: &mut Observers,
 ) {
     for denied in &granted.denied {
-        observers.remark(denied.to_string());
+        observers.list.remark(denied.to_string());
     }
     for denied in of_watchdog.iter().flat_map(|granted| &granted.denied) {
-        observers.remark(format!("watchdog: {denied}"));
+        observers.list.remark(format!("watchdog: {denied}"));
     }
 }
 
@@ -291,7 +292,7 @@ fn await_release(
         host.end(Released::Unconfirmed);
         return report;
     }
-    let released = release_by(authority, &mut |words| observers.remark(words), host);
+    let released = release_by(authority, &mut |words| observers.list.remark(words), host);
     LoopReport {
         released: report.released && released.is_over(),
         ..report

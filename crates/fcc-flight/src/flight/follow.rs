@@ -39,7 +39,7 @@ impl Follower<'_> {
     pub(super) fn drain(&mut self) {
         while let Some(message) = self.link.messages.receive() {
             self.take(&message);
-            if let Some(over) = self.observers.monitor.over(self.length) {
+            if let Some(over) = self.observers.list.monitor.over(self.length) {
                 self.link.stop.stop();
                 if over == Over::Ground {
                     self.ground.touch();
@@ -47,10 +47,10 @@ impl Follower<'_> {
             }
         }
         if let Some(impact) = self.ground.hits() {
-            self.observers.remark(impact.to_string());
+            self.observers.list.remark(impact.to_string());
             self.link.stop.stop();
         }
-        self.observers.poll(&mut self.link.commands, self.host);
+        self.observers.list.poll(&mut self.link.commands, self.host);
     }
 
     /// Follows a loop in its own thread until it ends or hangs.
@@ -66,15 +66,16 @@ impl Follower<'_> {
             #[cfg(feature = "fault-injection")]
             pause.look();
             self.drain();
-            self.host.poll(&mut |words| self.observers.remark(words));
+            self.host
+                .poll(&mut |words| self.observers.list.remark(words));
             if self.host.taken_by_another().is_some() {
                 self.link.stop.stop();
             }
             if let Some(authority) = authority {
-                authority.report(&mut |words| self.observers.remark(words.to_string()));
+                authority.report(&mut |words| self.observers.list.remark(words.to_string()));
             }
             hung = watchdog.as_mut().and_then(|watchdog| {
-                watchdog.look(self.link, &mut |words| self.observers.remark(words))
+                watchdog.look(self.link, &mut |words| self.observers.list.remark(words))
             });
             thread::sleep(FETCH_EVERY);
         }
@@ -99,7 +100,7 @@ impl Follower<'_> {
                 silent_ns: hung.silent.as_nanos() as u64,
             },
         }));
-        self.observers.remark(if hung.released {
+        self.observers.list.remark(if hung.released {
             "the watchdog released the controls and ends the program".to_owned()
         } else {
             format!(

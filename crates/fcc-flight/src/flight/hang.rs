@@ -17,12 +17,11 @@ use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::time::Duration;
 use std::{io, thread};
 
-use fcc_core::framework::ControlAuthority;
+use fcc_core::framework::{ControlAuthority, Controller};
 use fcc_runtime::{Hang, HeartbeatReading, Link, WatchdogConfig, watch};
 use fcc_timer::RealtimeGranted;
 
 use super::host::Host;
-use super::pilot::Pilot;
 
 /// How long the watchdog waits for the plant to confirm the release of its
 /// controls.
@@ -36,15 +35,15 @@ const STACK_BYTES: usize = 128 << 10;
 
 /// A hang of the loop, and the result of the release.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Hung {
+pub(crate) struct Hung {
     /// How long it had made no progress.
-    pub(super) silent: Duration,
+    pub(crate) silent: Duration,
     /// Whether the plant confirmed the release of its controls.
-    pub(super) released: bool,
+    pub(crate) released: bool,
 }
 
 /// Receives a hang of the loop from the watchdog.
-pub(super) struct HangWatch {
+pub(crate) struct HangWatch {
     receiver: Receiver<Hung>,
     is_over: bool,
 }
@@ -55,9 +54,9 @@ impl HangWatch {
     ///
     /// # Errors
     /// When no thread can be created.
-    pub(super) fn start(
+    pub(crate) fn start<C: Controller>(
         config: &WatchdogConfig,
-        link: &Link<Pilot>,
+        link: &Link<C>,
         authority: Option<Arc<dyn ControlAuthority>>,
         host: &dyn Host,
     ) -> io::Result<(Self, RealtimeGranted)> {
@@ -88,9 +87,9 @@ impl HangWatch {
     }
 
     /// The hang, after the release of the controls.
-    pub(super) fn look(
+    pub(crate) fn look<C: Controller>(
         &mut self,
-        link: &Link<Pilot>,
+        link: &Link<C>,
         report: &mut dyn FnMut(String),
     ) -> Option<Hung> {
         match self.receiver.try_recv() {

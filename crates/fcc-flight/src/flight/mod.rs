@@ -12,12 +12,12 @@ mod check_controls;
 pub mod conformance;
 mod control_override;
 mod device;
-mod event_log;
+pub(crate) mod event_log;
 mod flapping;
 mod fly;
 mod follow;
 mod ground;
-mod hang;
+pub(crate) mod hang;
 mod host;
 #[cfg(feature = "fault-injection")]
 mod injection;
@@ -25,8 +25,9 @@ mod limits;
 mod line_watch;
 #[cfg(feature = "live")]
 mod live;
-mod monitor;
+pub(crate) mod monitor;
 mod observer;
+pub(crate) mod observer_list;
 mod observers;
 #[cfg(feature = "live")]
 mod other_users;
@@ -36,13 +37,13 @@ mod pilot;
 mod plan;
 #[cfg(feature = "live")]
 mod plan_reader;
-mod recording;
+pub(crate) mod recording;
 mod repair;
 mod restart;
-mod run_statistics;
+pub(crate) mod run_statistics;
 mod scorer;
 mod servos;
-mod truth_recorder;
+pub(crate) mod truth_recorder;
 
 pub use assemble::{Assembly, assemble, assemble_on_phone, authority_without_connection};
 pub use assembly_error::AssemblyError;
@@ -61,7 +62,7 @@ pub use observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 pub use other_users::{OtherUserError, command_another_users, command_of};
 #[cfg(all(fuzzing, feature = "live"))]
 pub use other_users::{answer_as_received, line_of_parts};
-pub use outcome::{Conclusion, EventEntry, Outcome, RecordingOutcome};
+pub use outcome::{Conclusion, EventEntry, Figure, Outcome, RecordingOutcome};
 pub use phone::{OpenPhone, PhoneHost};
 pub use pilot::Pilot;
 pub use plan::{Length, Pace, Plan};

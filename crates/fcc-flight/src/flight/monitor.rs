@@ -8,30 +8,30 @@ use super::plan::Length;
 
 /// How a plan is flown, by the events.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct PlanProgress {
+pub(crate) struct PlanProgress {
     /// Whether its plan is flown to its end: it has landed, or circles there.
-    pub(super) is_flown: bool,
+    pub(crate) is_flown: bool,
     /// Whether its take-off was given up, or it has glided without power, and it stands.
-    pub(super) gave_up: bool,
+    pub(crate) gave_up: bool,
     /// Whether the wheels touched the ground outside of a take-off and a landing.
-    pub(super) touched: bool,
+    pub(crate) touched: bool,
 }
 
 /// Determines the flight's time from the loop's messages.
 #[derive(Default)]
-pub(super) struct Monitor {
+pub(crate) struct Monitor {
     start_ns: Option<i64>,
     at: FlightTime,
     /// Of the first engagement, s.
     engaged_at_s: Option<f64>,
     failed: bool,
     refused: bool,
-    pub(super) plan: PlanProgress,
+    pub(crate) plan: PlanProgress,
 }
 
 impl Monitor {
     /// Processes a message of the loop; returns its time.
-    pub(super) fn take<M, E, S, O, R>(&mut self, message: &Message<M, E, S, O, R>) -> FlightTime {
+    pub(crate) fn take<M, E, S, O, R>(&mut self, message: &Message<M, E, S, O, R>) -> FlightTime {
         match message {
             Message::Tick(record) => {
                 let woke_ns = record.tick.woke.as_nanos();
@@ -68,13 +68,13 @@ impl Monitor {
     }
 
     /// The time of the last tick.
-    pub(super) const fn at(&self) -> FlightTime {
+    pub(crate) const fn at(&self) -> FlightTime {
         self.at
     }
 
     /// Why a flight of this length is over, if it is: its time has passed, or it
     /// cannot be flown.
-    pub(super) fn over(&self, length: Length) -> Option<Over> {
+    pub(crate) fn over(&self, length: Length) -> Option<Over> {
         // Tolerance for the sum of ticks at a whole second.
         const ROUNDING_S: f64 = 1e-6;
         let time_s = self.at.time_s;

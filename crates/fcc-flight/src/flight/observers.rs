@@ -1,62 +1,40 @@
-//! All observers of a flight.
+//! The observers of an aeroplane's flight, and how far its plan is flown.
 
 use fcc_core::framework::{EventKind, Message, Notice};
-use fcc_fixed_wing::{Autopilot, AutopilotCommand, ITEM_REACHED, gives_up_runway, touches_ground};
+use fcc_fixed_wing::{Autopilot, ITEM_REACHED, gives_up_runway, touches_ground};
 use fcc_guidance::{Mode, Progress};
-use fcc_runtime::CommandSender;
-use fcc_telemetry::{FlightMessage, describe_event};
+use fcc_telemetry::FlightMessage;
 
-use super::assemble::Assembly;
-use super::host::Host;
-use super::monitor::Monitor;
-use super::observer::{Access, Facts, Observer, Reports};
-use super::outcome::Outcome;
-use crate::config::NO_ACTUATOR;
+use super::observer::Observer;
+use super::observer_list::{Names, ObserverList};
 
 /// Slower than this over the ground it stands, m/s.
 const STANDS_MPS: f64 = 0.3;
 
-/// All observers of a flight, each called in turn.
+/// All observers of a flight.
 pub(super) struct Observers {
-    all: Vec<Box<dyn Observer<Autopilot>>>,
-    names: Names,
-    pub(super) monitor: Monitor,
+    pub(super) list: ObserverList<Autopilot>,
     /// Of the last record that was engaged.
     pub(super) flown: Progress,
     /// Why a take-off or a landing was given up since an item was reached.
     pub(super) given_up: Option<String>,
     /// Why engaging was refused last.
     pub(super) refusal: Option<String>,
-    reports: Reports,
 }
 
 impl Observers {
     pub(super) fn new(all: Vec<Box<dyn Observer<Autopilot>>>, names: Names) -> Self {
         Self {
-            all,
-            names,
-            monitor: Monitor::default(),
+            list: ObserverList::new(all, names),
             flown: Progress::default(),
             given_up: None,
             refusal: None,
-            reports: Reports::default(),
-        }
-    }
-
-    pub(super) fn prepare(&mut self) {
-        self.each(|observer, reports| observer.prepare(reports));
-    }
-
-    pub(super) fn begin(&mut self, facts: &Facts<'_>) {
-        self.each(|observer, reports| observer.begin(facts, reports));
-        if facts.actuators.is_empty() {
-            self.remark(NO_ACTUATOR);
         }
     }
 
     /// Passes on a message of the loop.
     pub(super) fn take(&mut self, message: &FlightMessage) {
-        let at = self.monitor.take(message);
+        let words = self.list.take(message);
         match message {
             Message::Tick(record) => {
                 self.follow_progress(record.setpoints.guidance);
@@ -66,19 +44,12 @@ impl Observers {
                     self.given_up = Some("it has glided without power, and stands".to_owned());
                 }
                 let ends = matches!(self.flown.mode, Mode::Takeoff | Mode::Glide);
-                self.monitor.plan.gave_up |= stands && ends && self.given_up.is_some();
-                for observer in &mut self.all {
-                    observer.record(record, &at);
-                }
+                self.list.monitor.plan.gave_up |= stands && ends && self.given_up.is_some();
             }
             Message::Event(event) => {
-                let words =
-                    describe_event::<Autopilot>(event, &self.names.sensors, &self.names.actuators);
+                let words = words.unwrap_or_default();
                 if let EventKind::Noticed(notice) = &event.kind {
                     self.follow_plan(notice, &words);
-                }
-                for observer in &mut self.all {
-                    observer.event(event, &words, &at);
                 }
                 if matches!(
                     event.kind,
@@ -96,14 +67,14 @@ impl Observers {
             return;
         }
         if now.item > 0 && now.item != self.flown.item {
-            self.monitor.plan.is_flown = false;
+            self.list.monitor.plan.is_flown = false;
         }
         self.flown = now;
     }
 
     /// Follows how far the plan is flown.
     fn follow_plan(&mut self, notice: &Notice, words: &str) {
-        self.monitor.plan.touched |= touches_ground(notice);
+        self.list.monitor.plan.touched |= touches_ground(notice);
         if gives_up_runway(notice) {
             self.given_up = Some(words.to_owned());
         }
@@ -112,94 +83,10 @@ impl Observers {
             // may be reached in the tick in which the landing begins.
             let (mode, item) = (self.flown.mode, self.flown.item);
             let has_landed = mode == Mode::Land && u32::from(notice.item) == item;
-            self.monitor.plan.is_flown = has_landed || notice.item == 0;
+            self.list.monitor.plan.is_flown = has_landed || notice.item == 0;
             self.given_up = None;
         }
     }
-
-    /// Polls each observer.
-    pub(super) fn poll(
-        &mut self,
-        commands: &mut CommandSender<AutopilotCommand>,
-        host: &mut dyn Host,
-    ) {
-        self.each(|observer, reports| {
-            observer.poll(&mut Access {
-                commands,
-                reports,
-                before_control: &mut || host.before_control(),
-            });
-        });
-    }
-
-    /// Passes on a remark that is not from an observer.
-    pub(super) fn remark(&mut self, words: impl Into<String>) {
-        self.reports.remark(words);
-        self.deliver(None);
-    }
-
-    pub(super) fn stopping(&mut self) {
-        self.each(|observer, _| observer.stopping());
-    }
-
-    /// Ends each, in their order, so that the following ones receive what one
-    /// reports at its end.
-    pub(super) fn end(mut self, ending: &str, outcome: &mut Outcome) {
-        self.each(|observer, reports| observer.end(ending, outcome, reports));
-    }
-
-    fn each(&mut self, mut act: impl FnMut(&mut dyn Observer<Autopilot>, &mut Reports)) {
-        for number in 0..self.all.len() {
-            if let Some(observer) = self.all.get_mut(number) {
-                act(observer.as_mut(), &mut self.reports);
-            }
-            self.deliver(Some(number));
-        }
-    }
-
-    /// Passes on what was reported, except to its reporter.
-    fn deliver(&mut self, reporter: Option<usize>) {
-        let at = self.monitor.at();
-        for report in self.reports.take() {
-            for (number, observer) in self.all.iter_mut().enumerate() {
-                if Some(number) != reporter {
-                    observer.report(&report, &at);
-                }
-            }
-        }
-    }
-}
-
-/// The names of sensors and actuators, which the loop identifies by their
-/// index.
-#[derive(Clone)]
-pub(super) struct Names {
-    pub(super) sensors: Vec<String>,
-    pub(super) actuators: Vec<String>,
-}
-
-impl Names {
-    pub(super) fn of(assembly: &Assembly) -> Self {
-        Self {
-            sensors: distinct(assembly.sensors.iter().map(|s| s.name())),
-            actuators: distinct(assembly.actuators.iter().map(|a| a.name())),
-        }
-    }
-}
-
-/// Unique names: of several devices with one name, all but the first get a
-/// number.
-fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let mut seen: Vec<&str> = Vec::new();
-    names
-        .map(|name| {
-            seen.push(name);
-            match seen.iter().filter(|other| **other == name).count() {
-                1 => name.to_owned(),
-                number => format!("{name} {number}"),
-            }
-        })
-        .collect()
 }
 
 #[cfg(test)]
@@ -244,7 +131,7 @@ mod tests {
              [[actuator.channel]]\ndrives = \"elevator\"\noutput = 0\n\
              [[actuator.channel]]\ndrives = \"aileron\"\noutput = 1\n";
         let assembly = assemble(&Config::parse(text, "test").unwrap()).unwrap();
-        let names = Names::of(&assembly);
+        let names = Names::of(&assembly.sensors, &assembly.actuators);
         let expected = [
             "BMP388 at /nowhere/i2c-1 0x76",
             "BMP388 at /nowhere/i2c-1 0x77",

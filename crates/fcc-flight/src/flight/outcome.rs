@@ -22,6 +22,9 @@ pub struct Outcome {
     /// Why a pattern has no score.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub not_scored: Option<String>,
+    /// What matters for a vehicle that is no aeroplane.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub figures: Vec<Figure>,
     /// The basis of the score.
     pub scored_by: ScoredBy,
     /// The events, in order.
@@ -53,6 +56,17 @@ pub struct Outcome {
     pub conclusion: Conclusion,
 }
 
+/// A figure of a flight.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+pub struct Figure {
+    /// What it is.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// Its unit.
+    pub unit: &'static str,
+}
+
 /// The conclusion of a flight for the user; of several the worst.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Conclusion {
@@ -81,7 +95,7 @@ pub enum Conclusion {
 
 /// Why a flight is over.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Over {
+pub(crate) enum Over {
     /// Its time has passed.
     Time,
     /// Its plan is flown to its end.
@@ -124,7 +138,7 @@ pub struct RecordingOutcome {
 }
 
 impl Outcome {
-    pub(super) fn new(timer: &'static str, pace: Pace, report: &LoopReport) -> Self {
+    pub(crate) fn new(timer: &'static str, pace: Pace, report: &LoopReport) -> Self {
         let conclusion = match report.ending {
             _ if !report.released => Conclusion::NotReleased,
             Ending::Panicked(_) => Conclusion::Panicked,
@@ -143,6 +157,7 @@ impl Outcome {
             .with_spin_time(report.timing.spun_s),
             flight: None,
             not_scored: None,
+            figures: Vec::new(),
             scored_by: ScoredBy::Measurement,
             events: Vec::new(),
             ending: report.ending.to_string(),
@@ -168,7 +183,7 @@ impl Outcome {
     }
 
     /// The flight ended on the ground: the loop was stopped.
-    pub(super) fn hit_ground(&mut self, impact: Impact) {
+    pub(crate) fn hit_ground(&mut self, impact: Impact) {
         if matches!(
             self.conclusion,
             Conclusion::Completed | Conclusion::Failed | Conclusion::Failsafe

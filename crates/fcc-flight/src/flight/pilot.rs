@@ -56,6 +56,10 @@ impl Controller for Pilot {
         self.autopilot.must_release(tick, measurements)
     }
 
+    fn releases_on_the_ground(&self) -> bool {
+        self.autopilot.releases_on_the_ground()
+    }
+
     /// A controller in place of the autopilot's is released at once: it is not
     /// known to level.
     fn prepare_release(&mut self, tick: &Tick, measurements: &Measurements) -> bool {

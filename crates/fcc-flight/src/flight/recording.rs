@@ -6,12 +6,13 @@ use fcc_core::framework::{EventOf, MessageOf, RecordOf};
 use fcc_record::{About, Notice, Recorded, RecorderOf, RecorderSettings, RecordingPace};
 use fcc_telemetry::Realtime;
 use nix::sys::utsname::{UtsName, uname};
+use serde::Serialize;
 
 use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 use super::outcome::{Outcome, RecordingOutcome};
 use super::plan::Pace;
 use super::repair::Repair;
-use crate::config::{Aircraft, Config, keyed};
+use crate::config::{Aircraft, Config, LoopSection, RecordingSection, keyed};
 
 /// How long a disk may be delayed before records are lost, at 136 Hz or less.
 const WRITTEN_WITHIN_S: f64 = 60.0;
@@ -27,15 +28,24 @@ impl RecordingRequest {
     /// The request for a configuration, if it enables recording; `as_given` is
     /// the text of its file.
     pub fn of(config: &Config, as_given: Option<String>) -> Option<Self> {
-        let section = &config.recording;
+        let (section, tick) = (&config.recording, &config.tick);
+        Self::new(section, tick, about(config, as_given))
+    }
+
+    /// The request for a section of a configuration, if it enables recording.
+    pub(crate) fn new(
+        section: &RecordingSection,
+        tick: &LoopSection,
+        about: About,
+    ) -> Option<Self> {
         let settings = RecorderSettings::from(section);
-        let capacity = config.tick.ticks_in(WRITTEN_WITHIN_S, settings.capacity);
-        section.enabled.then(|| Self {
+        let capacity = tick.ticks_in(WRITTEN_WITHIN_S, settings.capacity);
+        section.enabled.then_some(Self {
             settings: RecorderSettings {
                 capacity,
                 ..settings
             },
-            about: about(config, as_given),
+            about,
         })
     }
 }
@@ -47,6 +57,16 @@ pub fn about(config: &Config, as_given: Option<String>) -> About {
         Some(Aircraft::BuiltIn(_)) => "built-in",
         None => "none",
     };
+    about_of(plant, config.tick.rate_hz, config, as_given)
+}
+
+/// The same for any vehicle's configuration.
+pub(crate) fn about_of(
+    plant: &str,
+    rate_hz: f64,
+    config: &impl Serialize,
+    as_given: Option<String>,
+) -> About {
     // A configuration that was read can be written.
     let values = toml::Value::try_from(config);
     let values = values.iter().flat_map(keyed);
@@ -72,7 +92,7 @@ pub fn about(config: &Config, as_given: Option<String>) -> About {
         ]
         .join(" "),
         plant: plant.to_owned(),
-        rate_hz: config.tick.rate_hz,
+        rate_hz,
         config_as_given: as_given,
         config: toml::to_string(config).unwrap_or_default(),
         parameters: values.filter_map(parameter).collect(),
@@ -84,7 +104,7 @@ pub fn about(config: &Config, as_given: Option<String>) -> About {
 const REPORT_EVERY: Duration = Duration::from_secs(1);
 
 /// Records the run of a loop.
-pub(super) struct FlightRecorder<C: Recorded> {
+pub(crate) struct FlightRecorder<C: Recorded> {
     settings: RecorderSettings,
     about: About,
     recorder: Option<RecorderOf<C>>,
@@ -94,7 +114,7 @@ pub(super) struct FlightRecorder<C: Recorded> {
 }
 
 impl<C: Recorded> FlightRecorder<C> {
-    pub(super) fn new(request: RecordingRequest) -> Self {
+    pub(crate) fn new(request: RecordingRequest) -> Self {
         Self {
             settings: request.settings,
             about: request.about,

@@ -11,7 +11,7 @@ use super::hang::Hung;
 
 /// Collects, from the loop's messages, the statistics that the loop would
 /// return at its end: for one that hangs.
-pub(super) struct RunStatistics<C: Controller> {
+pub(crate) struct RunStatistics<C: Controller> {
     timing: TimingStats,
     ticks: u64,
     failsafes: u64,
@@ -24,7 +24,7 @@ impl<C: Controller> RunStatistics<C> {
     ///
     /// # Errors
     /// When no statistics can be kept for the period.
-    pub(super) fn new(period: Duration) -> Result<Self, TimerError> {
+    pub(crate) fn new(period: Duration) -> Result<Self, TimerError> {
         Ok(Self {
             timing: TimingStats::new(period)?,
             ticks: 0,
@@ -35,7 +35,7 @@ impl<C: Controller> RunStatistics<C> {
     }
 
     /// Processes a message of the loop.
-    pub(super) fn take(&mut self, message: &MessageOf<C>) {
+    pub(crate) fn take(&mut self, message: &MessageOf<C>) {
         match message {
             Message::Tick(record) => {
                 self.timing.record(&expiry_of(record));
@@ -56,12 +56,12 @@ impl<C: Controller> RunStatistics<C> {
     }
 
     /// The last record.
-    pub(super) const fn last(&self) -> &RecordOf<C> {
+    pub(crate) const fn last(&self) -> &RecordOf<C> {
         &self.last
     }
 
     /// The report of a loop that hung.
-    pub(super) fn report(
+    pub(crate) fn report(
         &self,
         hung: Hung,
         timer: &'static str,

@@ -1,26 +1,26 @@
-//! The truth of the built-in aircraft, tick by tick, for scoring.
+//! The truth of a built-in vehicle, tick by tick, for scoring.
 
 use std::time::Duration;
 
 use fcc_core::flight::Measurements;
 use fcc_core::framework::{Sensor, SensorFault, Tick};
-use fcc_sim::{SimSensor, Truth};
+use fcc_sim::{HasTruth, Truth};
 use rtrb::{Consumer, Producer, RingBuffer};
 
-/// The built-in aircraft's sensor, which also writes the truth of each tick to
+/// A built-in vehicle's sensor, which also writes the truth of each tick to
 /// a ring. A full ring drops truths: scoring must not delay a flight.
-pub(super) struct TruthRecorder {
-    sensor: SimSensor,
+pub(crate) struct TruthRecorder<S> {
+    sensor: S,
     truth: Producer<(u64, Truth)>,
 }
 
 /// The other end of the ring.
-pub(super) struct TruthReceiver {
+pub struct TruthReceiver {
     truth: Consumer<(u64, Truth)>,
 }
 
 /// Records the truth of a sensor; the ring holds `capacity` ticks.
-pub(super) fn tap(sensor: SimSensor, capacity: usize) -> (TruthRecorder, TruthReceiver) {
+pub(crate) fn tap<S>(sensor: S, capacity: usize) -> (TruthRecorder<S>, TruthReceiver) {
     let (producer, consumer) = RingBuffer::new(capacity);
     (
         TruthRecorder {
@@ -35,12 +35,10 @@ pub(super) fn tap(sensor: SimSensor, capacity: usize) -> (TruthRecorder, TruthRe
     clippy::missing_trait_methods,
     reason = "a method that is not passed on would have its default"
 )]
-impl Sensor<Measurements> for TruthRecorder {
+impl<S: Sensor<Measurements> + HasTruth> Sensor<Measurements> for TruthRecorder<S> {
     fn sample(&mut self, tick: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
         let sampled = self.sensor.sample(tick, into);
-        let _ = self
-            .truth
-            .push((tick.number, self.sensor.aircraft().truth()));
+        let _ = self.truth.push((tick.number, self.sensor.truth()));
         sampled
     }
 
@@ -59,7 +57,7 @@ impl Sensor<Measurements> for TruthRecorder {
 
 impl TruthReceiver {
     /// The truth of a tick, if it is in the ring; earlier ones are skipped.
-    pub(super) fn of_tick(&mut self, number: u64) -> Option<Truth> {
+    pub(crate) fn of_tick(&mut self, number: u64) -> Option<Truth> {
         while let Ok((tick, truth)) = self.truth.peek().copied() {
             if tick > number {
                 return None;

@@ -8,4 +8,5 @@ mod examples;
 mod order;
 mod plan;
 mod simulator_silence;
+mod vehicle;
 mod warm_up;

@@ -14,6 +14,7 @@ use comfy_table::Table;
 use fcc_core::framework::{EventKind, EventOf, RecordOf};
 use fcc_fixed_wing::Autopilot;
 use fcc_guidance::TimedPatternConfig;
+use fcc_multicopter::Multicopter;
 use fcc_telemetry::units::{AVIATION, M_FT, MPS_KT, PA_HPA};
 use fcc_telemetry::{FlightScore, PatternScorer, Sample, ScoredBy};
 use serde::Serialize;
@@ -165,6 +166,16 @@ impl Addition for FlightAddition {
         let legs = flight.map(|flight| ("Legs of the timed pattern", CAPTION, legs::legs(flight)));
         legs.chain(self.flown_plan.tables()).collect()
     }
+}
+
+impl Reported for Multicopter {
+    type Addition = ();
+
+    const TERMS: Terms = Terms {
+        run: "flight",
+        plant: "Multicopter",
+        controller: "autopilot",
+    };
 }
 
 impl Reported for Autopilot {
