@@ -183,7 +183,7 @@ def test_degraded_flight_ends_with_a_trimmed_aircraft() -> None:
 
 
 @pytest.mark.parametrize("aircraft", ["c172p", "c182"])
-def test_a_trim_that_runs_away_and_is_stuck_is_harmless_when_free(
+def test_a_trim_that_runs_away_and_is_stuck_is_reported_and_harmless_when_free(
     aircraft: str,
 ) -> None:
     flight = Flight(100.0, aircraft=aircraft, plant=FaultyTrim)
@@ -194,13 +194,28 @@ def test_a_trim_that_runs_away_and_is_stuck_is_harmless_when_free(
     flight.fly(4.0)
     plant.fault = "stuck"
     flight.fly(15.0)
+    texts = [event.text for event in flight.rig.events]
+    assert any("now: the elevator trim does not follow" in text for text in texts)
     # What is commanded stays near what is measured, so that little happens later.
     assert abs(plant.commanded - (plant.controls.elevator_trim or 0.0)) < 0.06
     plant.fault = "none"
     flight.fly(25.0)
+    texts = [event.text for event in flight.rig.events]
+    assert any("no longer: the elevator trim does not follow" in text for text in texts)
     assert abs(plant.controls.elevator) < 0.06
     truth = flight.rig.truth()
     assert np.abs(truth["altitude_ft"] - truth["altitude_ft"][0]).max() < 20.0
+
+
+def test_a_release_that_cannot_trim_says_so() -> None:
+    flight = Flight(100.0, plant=FaultyTrim)
+    plant = flight.plant
+    assert isinstance(plant, FaultyTrim)
+    plant.fault = "runs up"
+    flight.fly(3.0)
+    plant.fault = "stuck"
+    assert 9.9 < flight.stop() < 10.1
+    assert any("the release cannot trim" in event.text for event in flight.rig.events)
 
 
 @edge_sensors.measured

@@ -36,7 +36,7 @@ _WITH_COMMAS = (
 )
 """Events list conditions with commas between them."""
 
-_OF_SURFACES = ("the outputs do not reach the aircraft",)
+_OF_SURFACES = ("the outputs do not reach the aircraft", "the elevator trim does not follow")
 
 _CHANNELS = (
     *("airspeed", "altitude", "heading", "attitude", "body rates", "acceleration"),

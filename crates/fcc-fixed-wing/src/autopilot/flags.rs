@@ -95,6 +95,10 @@ pub const SOURCE_CLOCK: Flags = Flags::bit(42);
 pub const DOUBTED_ALTITUDE: Flags = Flags::bit(43);
 /// A release is being prepared: the aircraft is levelled and trimmed.
 pub const RELEASING: Flags = Flags::bit(44);
+/// The measured elevator trim does not move as commanded.
+pub const TRIM_NOT_FOLLOWED: Flags = Flags::bit(45);
+/// A release is being prepared, and the trim does not follow.
+pub const UNTRIMMED: Flags = Flags::bit(46);
 /// The wing has stalled above the configured stalling speed.
 pub const STALLS_FASTER: Flags = Flags::bit(48);
 /// The body rates are not the derivatives of pitch, roll and heading.
@@ -235,8 +239,8 @@ pub(super) const NAMES: [&str; 64] = [
     "readings arrive too old, by their source's own clock",
     "altitude contradicts the other sensors and is not used",
     "levelling and trimming before the release",
-    "not used (bit 45)",
-    "not used (bit 46)",
+    "the elevator trim does not follow",
+    "the release cannot trim: hold the elevator",
     "not used (bit 47)",
     "the wing stalls above the configured speed: flying faster",
     "body rates contradict attitude or heading: check signs, axes, units and offsets of both",

@@ -153,7 +153,8 @@ impl Controller for Autopilot {
     }
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        let of_parts = self.loops.actuation.conditions() | self.estimator.doubted();
+        let of_parts =
+            self.loops.actuation.conditions() | self.estimator.doubted() | self.trim_conditions();
         let unused = self.estimator.unused_sensors(measurements) | self.route_conditions();
         (self.external(tick.woke, self.estimator.seen(measurements)) | of_parts | unused)
             .with(flags::RECOVERING, self.loops.recovery.is_active())

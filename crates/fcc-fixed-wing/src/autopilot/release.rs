@@ -178,6 +178,15 @@ impl Autopilot {
         outputs
     }
 
+    /// What is reported of the trim.
+    pub(super) fn trim_conditions(&self) -> Flags {
+        let is_lost = self.loops.trim.does_not_follow();
+        Flags::NONE.with(flags::TRIM_NOT_FOLLOWED, is_lost).with(
+            flags::UNTRIMMED,
+            is_lost && self.supervisor.release.is_some(),
+        )
+    }
+
     fn is_steady(&self, estimate: &Estimate) -> bool {
         let (bank, pitch_rate, airspeed) = STEADY;
         estimate.roll_rad.abs() < bank

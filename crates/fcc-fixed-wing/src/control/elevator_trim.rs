@@ -25,6 +25,11 @@ const QUICK_MEAN_TAU_S: f64 = 0.3;
 /// again.
 const REACH: f64 = 0.05;
 const REACH_S: f64 = 1.0;
+/// A trim that is farther than the first from its command, and has not come
+/// nearer by the second for so long, does not follow.
+const AWAY: f64 = 0.04;
+const NEARER: f64 = 0.02;
+const FOR_S: f64 = 3.0;
 
 /// How the trim may move.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -51,10 +56,11 @@ pub enum Trimming {
 ///     trim.step(elevator, trim.position(), Trimming::Steady, 0.025);
 /// }
 /// assert!((trim.position().unwrap_or(0.0) - 0.3).abs() < 0.02);
-/// // One that is stuck is not commanded far away.
+/// // One that is stuck is not commanded far away, and is reported.
 /// for _ in 0..40 * 10 {
 ///     trim.step(-0.2, Some(0.4), Trimming::Steady, 0.025);
 /// }
+/// assert!(trim.does_not_follow());
 /// assert!((trim.position().unwrap_or(0.0) - 0.35).abs() < 1e-9);
 /// // An aircraft without a trim, or whose trim is not measured, keeps it.
 /// let mut none = ElevatorTrim::new(None);
@@ -66,6 +72,10 @@ pub struct ElevatorTrim {
     position: Option<f64>,
     mean: LowPass,
     held_s: f64,
+    /// Where the measured trim was when it last came nearer to the command, or
+    /// farthest from it since, and for how long it has not come nearer, s.
+    from: f64,
+    away_s: f64,
 }
 
 impl ElevatorTrim {
@@ -75,6 +85,8 @@ impl ElevatorTrim {
             position,
             mean: LowPass::new(MEAN_TAU_S),
             held_s: 0.0,
+            from: 0.0,
+            away_s: 0.0,
         }
     }
 
@@ -95,8 +107,15 @@ impl ElevatorTrim {
         self.mean.output()
     }
 
+    /// Whether the measured trim does not move when it is commanded to, or moves
+    /// by itself.
+    pub fn does_not_follow(&self) -> bool {
+        self.away_s >= FOR_S
+    }
+
     /// One step with the elevator, -1..=1, that was commanded last, and with the
-    /// measured trim: while it is not measured the trim is not moved.
+    /// measured trim: while it is not measured, or does not follow, the trim is
+    /// not moved farther.
     pub fn step(&mut self, elevator: f64, measured: Option<f64>, trimming: Trimming, dt_s: f64) {
         let is_quick = trimming == Trimming::Quick;
         let faster = if is_quick {
@@ -107,7 +126,15 @@ impl ElevatorTrim {
         let mean = self.mean.step(elevator, faster * dt_s);
         let rate_per_s = self.rate_per_s(mean, trimming, dt_s);
         let (Some(measured), Some(position)) = (measured, self.position) else {
+            self.away_s = 0.0;
             return;
+        };
+        self.compare(measured, position, dt_s);
+        let is_farther = rate_per_s * (position - measured) > 0.0;
+        let rate_per_s = if self.does_not_follow() && is_farther {
+            0.0
+        } else {
+            rate_per_s
         };
         let reach = REACH + rate_per_s.abs() * REACH_S;
         let near = limit(
@@ -138,6 +165,21 @@ impl ElevatorTrim {
                 limit_abs(mean / TAU_S, RATE_PER_S)
             }
             Trimming::Quick => limit_abs(mean / QUICK_TAU_S, QUICK_RATE_PER_S),
+        }
+    }
+
+    /// Compares the measured trim with its command.
+    fn compare(&mut self, measured: f64, command: f64, dt_s: f64) {
+        let away = command - measured;
+        let nearer = (measured - self.from) * away.signum();
+        if away.abs() < AWAY || nearer > NEARER {
+            self.from = measured;
+            self.away_s = 0.0;
+        } else {
+            if nearer < 0.0 {
+                self.from = measured;
+            }
+            self.away_s += dt_s;
         }
     }
 }
