@@ -11,7 +11,7 @@ use crate::Setpoints;
 use crate::control::Trimming;
 use fcc_core::blocks::LowPass;
 use fcc_core::flight::{Measurements, Surfaces};
-use fcc_core::framework::Time;
+use fcc_core::framework::{Flags, Time};
 use fcc_navigation::{Estimate, Quantities};
 
 /// In flight the trim moves within this bank, rad, pitch rate, rad/s, and
