@@ -59,7 +59,7 @@ GOALS := advisories android android-check android-package bench bench-android be
     check-cross clean clippy deb deny doc faulty fly fly-jsbsim fly-plan fly-plan-jsbsim fuzz \
     ground help lint lint-python lint-rust lock package-check python reproducible soak soundness \
     station test test-android test-attacks test-calibration test-contingencies test-cross test-deb \
-    test-drawn-fences test-fences test-full test-glides test-ground test-guidance test-landings \
+    test-drawn-fences test-fences test-multicopter test-full test-glides test-ground test-guidance test-landings \
     test-landings-beside test-mavlink test-navigation test-page test-plan-real-time test-python \
     test-quick test-raw-edges test-recordings test-release test-rust test-seeds test-upsets \
     test-vm test-x-plane tested wheels
@@ -252,6 +252,9 @@ test-navigation: tested ## Fly the pattern by the raw sensors of a phone and of 
 
 test-calibration: $(STAMPS)/rust $(STAMPS)/python ## Calibrate the simulated sensors with 8 seeds (1 minute)
 	$(call result,calibration,'Errors that are left') cargo test --locked -p fcc-sim --test it handling
+
+test-multicopter: $(STAMPS)/rust $(STAMPS)/python ## Hover, step, fly a plan and land the built-in multicopter, in wind (1 minute)
+	$(call result,vehicles,Multicopter) cargo test --locked -p fcc-multicopter --test flights
 
 test-drawn-fences: $(STAMPS)/rust $(STAMPS)/python ## Fly the built-in aircraft against 1,100 drawn fences (5 minutes)
 	$(call result,plans,'Drawn fences') cargo test --locked --profile ci -p fcc-flight --test it drawn_fences

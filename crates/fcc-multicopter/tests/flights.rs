@@ -4,6 +4,8 @@
 
 #![cfg(test)]
 
+use std::fs::OpenOptions;
+use std::io::Write;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -21,6 +23,16 @@ use nalgebra::{Vector2, Vector3};
 
 /// Of the loop, s: 400 Hz.
 const PERIOD_S: f64 = 0.002_5;
+
+/// Prints a figure of a flight, and appends it to the file that `scripts/results` reads.
+fn measured(what: &str, value: f64) {
+    let value = (100.0 * value).round() / 100.0;
+    println!("{what}: {value}");
+    if let Some(path) = std::env::var_os("FCC_MEASURED") {
+        let mut file = OpenOptions::new().append(true).open(path).unwrap();
+        writeln!(file, "{what}\t{value}").unwrap();
+    }
+}
 
 /// A flight in lockstep.
 struct Flight {
@@ -192,7 +204,12 @@ fn it_hovers_with_true_states() {
         let simulated = without_noise(gusty(seed));
         let (heights, places) = hover(&MulticopterConfig::default(), &simulated);
         let (height, place) = (most(&heights), rms(&places));
-        println!("seed {seed}: height {height:.3} m, place {place:.3} m RMS");
+        measured("seed", seed as f64);
+        measured(
+            "hover, true states, turbulence 3 m/s: height, most, m",
+            height,
+        );
+        measured("hover, true states, turbulence 3 m/s: place, m RMS", place);
         assert!(
             height < 0.15 && place < 0.1,
             "seed {seed}: {height}, {place}"
@@ -206,7 +223,8 @@ fn it_hovers_with_noisy_sensors() {
     for seed in 301..305 {
         let (heights, places) = hover(&MulticopterConfig::default(), &gusty(seed));
         let (height, place) = (rms(&heights), rms(&places));
-        println!("seed {seed}: height {height:.3} m RMS, place {place:.3} m RMS");
+        measured("hover, noisy sensors: height, m RMS", height);
+        measured("hover, noisy sensors: place, m RMS", place);
         assert!(
             height < 0.15 && place < 0.5,
             "seed {seed}: {height}, {place}"
@@ -246,7 +264,8 @@ fn late_sensors_are_flown() {
     simulated.world.sensors.delay_ms = 25;
     let (heights, places) = hover(&config, &simulated);
     let (height, place) = (most(&heights), rms(&places));
-    println!("25 ms: height {height:.3} m, place {place:.3} m RMS");
+    measured("hover, 25 ms late: height, most, m", height);
+    measured("hover, 25 ms late: place, m RMS", place);
     assert!(height < 0.3 && place < 0.3, "{height}, {place}");
 }
 
@@ -266,7 +285,8 @@ fn slow_motors_are_flown() {
     simulated.world.sensors.delay_ms = 25;
     let (heights, places) = hover(&config, &simulated);
     let (height, place) = (rms(&heights), rms(&places));
-    println!("0.1 s and 25 ms: height {height:.3} m RMS, place {place:.3} m RMS");
+    measured("hover, motors of 0.1 s, 25 ms late: height, m RMS", height);
+    measured("hover, motors of 0.1 s, 25 ms late: place, m RMS", place);
     assert!(height < 0.3 && place < 0.5, "{height}, {place}");
 }
 
@@ -306,7 +326,8 @@ fn a_step_of_five_metres() {
             }
             beyond_m = beyond_m.max(place.x - 5.0);
         });
-        println!("seed {seed}: within 0.3 m after {within_s:.2} s, overshoot {beyond_m:.3} m");
+        measured("step of 5 m: within 0.3 m after, s", within_s);
+        measured("step of 5 m: overshoot, m", beyond_m);
         assert!(
             within_s < 3.0 && beyond_m < 0.1,
             "seed {seed}: {within_s}, {beyond_m}"
@@ -372,11 +393,7 @@ fn a_plan_of_twelve_points() {
             assert!(items.len() < 120 * 400, "it does not arrive: {items:?}");
         }
         items.dedup();
-        println!(
-            "seed {seed}: {:.2} m at most from the legs, {:.0} s",
-            most(&off_m),
-            off_m.len() as f64 * PERIOD_S
-        );
+        measured("plan of 12 points: off the legs, most, m", most(&off_m));
         assert!(most(&off_m) < 1.0, "seed {seed}: {}", most(&off_m));
         assert_eq!(items[..12], [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13]);
         flight.until(Mode::Idle, 40.0);
@@ -413,7 +430,8 @@ fn landings() {
             "seed {seed}: off after {time_s} s"
         );
         let off_m = flight.place().xy().norm();
-        println!("seed {seed}: {off_m:.2} m, {sink_mps:.2} m/s");
+        measured("landing: off the place, m", off_m);
+        measured("landing: sink, m/s", sink_mps);
         good += u32::from(off_m < 1.0 && sink_mps < 0.7);
     }
     assert!(good >= 19, "{good} of 20");
@@ -503,10 +521,8 @@ fn without_a_position_it_descends() {
         tilt_rad = tilt_rad.max(truth.roll_rad.hypot(truth.pitch_rad));
         assert!(time_s < 60.0, "it does not come down");
     }
-    println!(
-        "{sink_mps:.2} m/s, {:.0} deg, {time_s:.0} s",
-        tilt_rad.to_degrees()
-    );
+    measured("position lost: sink, m/s", sink_mps);
+    measured("position lost: tilt, deg", tilt_rad.to_degrees());
     assert!(sink_mps < 2.5 && tilt_rad < 0.9, "{sink_mps}, {tilt_rad}");
     assert!(flight.place().z < 0.02);
 }
