@@ -136,7 +136,7 @@ fn fly_it<V: Vehicle>(args: &FlyArgs) -> Result<Exit, Failure> {
 }
 
 fn replay_it<V: Vehicle>(args: &ReplayArgs) -> Result<Exit, Failure> {
-    if args.config.is_some() || args.airframe || !args.navigation.is_empty() {
+    if args.config.is_some() || args.airframe || args.navigation {
         return Err(Failure::usage(format_args!(
             "--config, --airframe and --navigation are of aeroplanes: this is the recording of a {}",
             V::NAME
