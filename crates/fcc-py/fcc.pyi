@@ -648,6 +648,9 @@ class Estimate:
     def output_latency_s(self) -> float:
         """The time from an output to its effect, s, measured by the elevator."""
 
+    @property
+    def elevator_play(self) -> float:
+        """The play of the elevator, in the elevator's units of -1 to 1."""
 
     @property
     def airspeed_source(self) -> str:

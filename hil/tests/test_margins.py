@@ -1,4 +1,4 @@
-"""Latency and servos between the commands and the surfaces, against JSBSim's truth."""
+"""Latency, servos and play between the commands and the surfaces, against JSBSim's truth."""
 
 from __future__ import annotations
 
@@ -34,6 +34,7 @@ class _Flight:
     load_g: list[float] = field(default_factory=list)
     events: list[str] = field(default_factory=list)
     latency_ms: float = 0.0
+    play: float = 0.0
 
 
 def _fly(
@@ -80,6 +81,7 @@ def _fly(
             flown.load_g.append(-state.specific_force_z_mps2 / 9.80665)
     flown.events = [event.text for event in machine.events()]
     flown.latency_ms = 1e3 * machine.estimate.output_latency_s
+    flown.play = machine.estimate.elevator_play
     assert machine.holds_control
     return flown
 
@@ -111,9 +113,17 @@ def test_late_commands_without_a_gyroscope_do_not_oscillate(airspeed_kt: float) 
     assert np.std(flown.pitch_rate_degps) <= 2.0
 
 
+@pytest.mark.parametrize("airspeed_kt", [80, 100, 120])
+def test_play_in_the_elevator_is_found_and_inverted(airspeed_kt: float) -> None:
+    """JSBSim's c172x: hysteresis of 0.05 rad, of 0.40 to 0.49 rad of travel."""
+    flown = _fly("c172x", airspeed_kt, seconds=30.0, judged_after_s=20.0)
+    assert np.max(np.abs(np.array(flown.load_g) - 1.0)) <= 0.1
+    assert 0.05 / 0.49 - 0.02 <= flown.play <= 0.05 / 0.40
+
+
 @pytest.mark.parametrize(("seed", "number"), first_of((31, 291), (33, 81), (33, 196), (33, 226)))
-def test_a_hysteresis_of_the_elevator_is_flown(seed: int, number: int) -> None:
-    """JSBSim's c172x at 69 and 74 kt: 0.05 rad, of 0.40 to 0.49 rad of travel."""
+def test_play_that_is_seldom_crossed_is_not_taken_for_latency(seed: int, number: int) -> None:
+    """The c172x at 69 and 74 kt: 175 to 250 ms before, and an oscillation to the end."""
     flown, _ = fly(draw(number, seed, Bounds()))
     assert not flown.verdict.broken
 
@@ -125,6 +135,7 @@ def test_the_latency_is_measured_in_flight(delay_s: float, least_ms: float, most
     assert least_ms <= flown.latency_ms <= most_ms
     late = "the outputs take effect too late for the gains"
     assert any(late in text for text in flown.events) == (delay_s > 0.12)
+    assert flown.play == 0.0
 
 
 @pytest.mark.parametrize("airspeed_kt", [70, 125])

@@ -80,6 +80,9 @@ schema! {
         /// until then the assumed one.
         #[field(14)]
         pub output_latency_s: f64,
+        /// The play of the elevator, in the elevator's units of -1 to 1.
+        #[field(15)]
+        pub elevator_play: f64,
         /// Where the airspeed comes from.
         #[field(16)]
         pub airspeed_source: AirspeedSource,
@@ -136,6 +139,7 @@ impl Estimate {
         climb_rate_mps: 0.0,
         side_force_mps2: 0.0,
         output_latency_s: 0.0,
+        elevator_play: 0.0,
         load_factor: 1.0,
         gust_load: 0.0,
         angle_of_attack_rad: 0.0,

@@ -1,7 +1,7 @@
-//! What is between the outputs and their effect: latency, oscillation.
+//! What is between the outputs and their effect: latency, play, oscillation.
 
 use super::{Autopilot, AutopilotConfig, flags};
-use crate::control::{ElevatorResponse, LEAST_PACE, OscillationMonitor, Schedule};
+use crate::control::{ElevatorResponse, LEAST_PACE, OscillationMonitor, PlayInverse, Schedule};
 use fcc_core::blocks::limit;
 use fcc_core::flight::Surfaces;
 use fcc_core::framework::Flags;
@@ -34,6 +34,7 @@ impl AutopilotConfig {
 pub(super) struct Actuation {
     elevator: ElevatorResponse,
     oscillation: OscillationMonitor,
+    inverse: PlayInverse,
     is_late: bool,
     /// The latency that the age of the readings shows, s.
     known_s: f64,
@@ -51,6 +52,7 @@ impl Actuation {
         Self {
             elevator: ElevatorResponse::new(assumed_latency_s),
             oscillation: OscillationMonitor::new(),
+            inverse: PlayInverse::new(0.0),
             is_late: false,
             known_s: 0.0,
             assumed_s: assumed_latency_s,
@@ -59,10 +61,12 @@ impl Actuation {
         }
     }
 
-    /// What was found before may be another aircraft's.
-    pub(super) fn engage(&mut self) {
+    /// Begins with the present surfaces; what was found before may be another
+    /// aircraft's.
+    pub(super) fn engage(&mut self, standing: &Surfaces) {
         self.elevator.reset();
         self.oscillation = OscillationMonitor::new();
+        self.inverse = PlayInverse::new(standing.elevator);
     }
 
     /// One step with what was sent before, and the load along the body's z axis.
@@ -119,6 +123,11 @@ impl Actuation {
         limit(pace, LEAST_PACE, 1.0)
     }
 
+    /// The elevator to send for the one that the loops want.
+    pub(super) fn elevator(&mut self, wanted: f64) -> f64 {
+        self.inverse.step(wanted, self.elevator.play())
+    }
+
     /// What is reported.
     pub(super) fn conditions(&self) -> Flags {
         Flags::NONE
@@ -130,6 +139,7 @@ impl Actuation {
     pub(super) fn shown_in(&self, estimate: &Estimate) -> Estimate {
         Estimate {
             output_latency_s: self.elevator.latency_s(),
+            elevator_play: self.elevator.play(),
             ..*estimate
         }
     }

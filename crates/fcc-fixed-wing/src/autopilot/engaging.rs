@@ -92,7 +92,7 @@ impl Autopilot {
         let trim = standing.elevator_trim.filter(|_| self.config.trims);
         self.loops.trim = ElevatorTrim::new(trim);
         self.supervisor.release = None;
-        self.loops.actuation.engage();
+        self.loops.actuation.engage(&standing);
         self.take_over(&standing);
         self.begin_straight_trims();
         self.begin_watching_for_upsets();

@@ -63,7 +63,7 @@ impl Autopilot {
         );
         Surfaces {
             throttle,
-            elevator: vertical.elevator,
+            elevator: self.loops.actuation.elevator(vertical.elevator),
             aileron: lateral.aileron,
             rudder: lateral.rudder,
             ..Surfaces::IDLE

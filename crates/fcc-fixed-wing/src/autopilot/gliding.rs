@@ -38,7 +38,7 @@ impl Autopilot {
         };
         Some(Surfaces {
             throttle: (self.loops.last.throttle + by * dt_s).clamp(0.0, 1.0),
-            elevator: vertical.elevator,
+            elevator: self.loops.actuation.elevator(vertical.elevator),
             aileron: lateral.aileron,
             rudder: lateral.rudder,
             ..Surfaces::IDLE

@@ -120,7 +120,7 @@ impl Autopilot {
         };
         Some(Surfaces {
             throttle,
-            elevator: vertical.elevator,
+            elevator: self.loops.actuation.elevator(vertical.elevator),
             aileron: lateral.aileron,
             rudder: lateral.rudder,
             ..Surfaces::IDLE

@@ -330,13 +330,14 @@ impl Autopilot {
             }
             RunwayPhase::Approach if demand.is_powerless => {
                 let vertical = self.hold_glide(&envelope, estimate, dt_s);
+                let elevator = self.loops.actuation.elevator(vertical.elevator);
                 let tries = demand.height_m > TRIES_ABOVE_M
                     && self.supervisor.engine.opens(&self.config.contingency, dt_s);
                 (
                     if tries { opening } else { closing },
                     vertical.climb_rate_mps,
                     vertical.pitch_rad,
-                    vertical.elevator,
+                    elevator,
                 )
             }
             RunwayPhase::Approach | RunwayPhase::Flare => {
@@ -363,11 +364,12 @@ impl Autopilot {
                 } else {
                     self.loops.airspeed.step(&airspeed, estimate, dt_s)
                 };
+                let elevator = self.loops.actuation.elevator(vertical.elevator);
                 (
                     throttle,
                     vertical.climb_rate_mps,
                     vertical.pitch_rad,
-                    vertical.elevator,
+                    elevator,
                 )
             }
             RunwayPhase::Rotate | RunwayPhase::Climb | RunwayPhase::GoAround => {
@@ -376,11 +378,12 @@ impl Autopilot {
                     .loops
                     .altitude
                     .hold_pitch(pitch_rad, estimate, &envelope, schedule, dt_s);
+                let elevator = self.loops.actuation.elevator(vertical.elevator);
                 (
                     opening,
                     vertical.climb_rate_mps,
                     vertical.pitch_rad,
-                    vertical.elevator,
+                    elevator,
                 )
             }
         }

@@ -1,4 +1,5 @@
-//! The latency between the elevator command and its effect, from the flight itself.
+//! The latency and the play between the elevator command and its effect, from
+//! the flight itself.
 
 mod regression;
 
@@ -8,6 +9,8 @@ use fcc_core::blocks::{HighPass, LowPass, smoothing_factor};
 
 /// The number of delays compared, one sample each.
 const DELAYS: usize = 12;
+/// The widths of play compared, in the elevator's units of -1 to 1.
+const PLAYS: [f64; 4] = [0.0, 0.06, 0.09, 0.12];
 /// Samples are at least this far apart, s.
 const LEAST_PERIOD_S: f64 = 0.02;
 /// After a longer gap the memory begins anew, s.
@@ -33,9 +36,23 @@ const LEAST_MOTION: f64 = 4e-4;
 const LEAST_MOVED: f64 = 1e-4;
 /// The part of the acceleration that the elevator must explain.
 const LEAST_EXPLAINED: f64 = 0.2;
-/// Another delay is believed if it leaves less than this part of what the
+/// Another model is believed if it leaves less than this part of what the
 /// present one leaves unexplained.
 const BETTER: f64 = 0.94;
+/// One with play, if it is better than the best one without, and the elevator explains at
+/// least this part of all.
+const PLAY_EXPLAINS: f64 = 0.25;
+/// And does so for as long, s: one manoeuvre may be explained by chance.
+const PLAY_AFTER_S: f64 = 1.0;
+/// A delay of more samples than this is not believed while a model with play leaves
+/// less than this part of what it does.
+const LONG_DELAY: f64 = 6.0;
+const PLAY_MAY_BE: f64 = 1.05;
+/// Play is no longer believed if a model without it leaves less than this part.
+const NO_PLAY_IS_BETTER: f64 = 0.9;
+/// And does so for as long, s: a gust moves the aircraft without the elevator,
+/// but play does not go away in flight. Twice the memory.
+const NO_PLAY_AFTER_S: f64 = 2.0 * MEMORY_S;
 /// The part of a change that is adopted at each comparison.
 const ADOPTED: f64 = 0.25;
 
@@ -77,29 +94,48 @@ impl BandFactors {
     }
 }
 
-/// Measures the latency between the elevator command and its effect: of some
-/// delays the one whose elevator explains the pitch acceleration best.
+/// A surface that moves only after its command has crossed the play.
+#[derive(Clone, Copy, Debug)]
+struct PlayedCommand {
+    half_width: f64,
+    /// Where the surface may be, the least and the most: the play is crossed after
+    /// the command has moved by its width.
+    within: (f64, f64),
+    band: BandPass,
+    /// The last positions between trim and noise, the latest first.
+    recent: [f64; DELAYS + 1],
+    sums: [Sums; DELAYS],
+}
+
+/// Measures the latency and the play between the elevator command and its
+/// effect: of a small bank of models, each with a delay and a width of play,
+/// the one whose elevator explains the pitch acceleration best.
 ///
 /// A model is q̇ = a q + b n + c δ, the short period (Etkin and Reid 1996, section
 /// 6.3) with the load n for the angle of attack: it is proportional to it in gusts,
 /// too. It is fitted by least squares with exponential forgetting (Åström and
 /// Wittenmark 1995, section 2.2). A servo's lag appears as delay. Flight in which
 /// the elevator has no visible effect, calm or in turbulence, changes nothing. A
-/// delay is eleven samples at most.
+/// play is 0.12 at most, a delay eleven samples.
 ///
 /// ```
 /// use fcc_fixed_wing::control::ElevatorResponse;
 ///
 /// // Until something has been measured, the latency is the assumed one.
 /// let response = ElevatorResponse::new(0.025);
-/// assert_eq!(response.latency_s(), 0.025);
+/// assert_eq!((response.latency_s(), response.play()), (0.025, 0.0));
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct ElevatorResponse {
     assumed_s: f64,
     latency_s: f64,
-    /// The delay in samples that is believed.
-    believed: f64,
+    play: f64,
+    /// The width of play and the delay in samples of the model that is believed.
+    believed: (f64, f64),
+    /// For how long a model without play has been better than the believed one with it, s.
+    without_play_s: f64,
+    /// For how long a model with play has been better than one without, s.
+    with_play_s: f64,
     /// Since the last sample, s.
     elapsed_s: f64,
     /// Mean time between samples, s.
@@ -110,10 +146,7 @@ pub struct ElevatorResponse {
     load: BandPass,
     acceleration: BandPass,
     motion: Motion,
-    command: BandPass,
-    /// The last commands between trim and noise, the latest first.
-    recent: [f64; DELAYS + 1],
-    sums: [Sums; DELAYS],
+    plays: [PlayedCommand; PLAYS.len()],
 }
 
 impl ElevatorResponse {
@@ -122,7 +155,10 @@ impl ElevatorResponse {
         Self {
             assumed_s,
             latency_s: assumed_s,
-            believed: 0.0,
+            play: 0.0,
+            believed: (0.0, 0.0),
+            without_play_s: 0.0,
+            with_play_s: 0.0,
             elapsed_s: 0.0,
             period_s: LEAST_PERIOD_S,
             samples: 0,
@@ -131,9 +167,13 @@ impl ElevatorResponse {
             load: BandPass::new(),
             acceleration: BandPass::new(),
             motion: Motion::default(),
-            command: BandPass::new(),
-            recent: [0.0; DELAYS + 1],
-            sums: [Sums::default(); DELAYS],
+            plays: PLAYS.map(|width| PlayedCommand {
+                half_width: 0.5 * width,
+                within: (0.0, 0.0),
+                band: BandPass::new(),
+                recent: [0.0; DELAYS + 1],
+                sums: [Sums::default(); DELAYS],
+            }),
         }
     }
 
@@ -145,6 +185,11 @@ impl ElevatorResponse {
     /// The time from a command to its effect, s.
     pub const fn latency_s(&self) -> f64 {
         self.latency_s
+    }
+
+    /// The width of the play, in the elevator's units.
+    pub const fn play(&self) -> f64 {
+        self.play
     }
 
     /// One step with the elevator command of the previous step, and the pitch rate
@@ -159,12 +204,16 @@ impl ElevatorResponse {
         if self.samples == 0 || period_s > LONGEST_PERIOD_S {
             *self = Self {
                 latency_s: self.latency_s,
+                play: self.play,
                 believed: self.believed,
                 period_s,
                 samples: 1,
                 before: (rate, load),
                 ..Self::new(self.assumed_s)
             };
+            for play in &mut self.plays {
+                play.within = (elevator - play.half_width, elevator + play.half_width);
+            }
             return;
         }
         self.samples = self.samples.saturating_add(1);
@@ -190,47 +239,88 @@ impl ElevatorResponse {
             0.0
         };
         self.motion.add(moved, new);
-        self.recent.rotate_right(1);
-        if let Some(first) = self.recent.first_mut() {
-            *first = self.command.step(elevator, factors);
-        }
-        // The latest cannot have acted yet; and noise of the rate is in
-        // both, so that it would seem to.
-        let late = self.recent.iter().skip(1);
-        for (sums, position) in self.sums.iter_mut().zip(late) {
-            sums.add(*position, moved, new);
+        for play in &mut self.plays {
+            let (least, most) = (elevator - play.half_width, elevator + play.half_width);
+            let inside = |position: f64| position.max(least).min(most);
+            play.within = (inside(play.within.0), inside(play.within.1));
+            let latest = play
+                .band
+                .step(0.5 * (play.within.0 + play.within.1), factors);
+            play.recent.rotate_right(1);
+            if let Some(first) = play.recent.first_mut() {
+                *first = latest;
+            }
+            // The latest cannot have acted yet; and noise of the rate is in
+            // both, so that it would seem to.
+            let late = play.recent.iter().skip(1);
+            for (sums, position) in play.sums.iter_mut().zip(late) {
+                sums.add(*position, moved, new);
+            }
         }
     }
 
-    /// Compares the delays, and follows the one that is believed.
+    /// Compares the models, and follows the one that is believed.
     fn compare(&mut self) {
         let explained = self.motion.explains();
+        let (believed_width, believed_delay) = self.believed;
         let mut present = explained.left;
-        let (mut left, mut best) = (explained.left, 0.0);
-        let mut delay = 0.0;
-        for sums in &self.sums {
-            delay += 1.0;
-            let left_with = explained.left_with(sums);
-            if left_with < left {
-                (left, best) = (left_with, delay);
-            }
-            if delay == self.believed {
-                present = left_with;
+        let nothing = (explained.left, 0.0, 0.0);
+        let (mut with_play, mut without) = (nothing, nothing);
+        for (play, width) in self.plays.iter().zip(PLAYS) {
+            let best = if width > 0.0 {
+                &mut with_play
+            } else {
+                &mut without
+            };
+            let mut delay = 0.0;
+            for sums in &play.sums {
+                delay += 1.0;
+                let left = explained.left_with(sums);
+                if left < best.0 {
+                    *best = (left, width, delay);
+                }
+                if width == believed_width && delay == believed_delay {
+                    present = left;
+                }
             }
         }
-        let moves = self
-            .sums
-            .first()
-            .is_some_and(|sums| sums.mean_square() > LEAST_MOVED);
+        let has_play = with_play.0 < BETTER * without.0
+            && with_play.0 < (1.0 - PLAY_EXPLAINS) * explained.left;
+        let between_s = f64::from(COMPARED_EVERY) * self.period_s;
+        self.with_play_s = if has_play {
+            self.with_play_s + between_s
+        } else {
+            0.0
+        };
+        self.without_play_s = if without.0 < NO_PLAY_IS_BETTER * present {
+            self.without_play_s + between_s
+        } else {
+            0.0
+        };
+        let had_play = believed_width > 0.0 && self.without_play_s < NO_PLAY_AFTER_S;
+        let (left, width, delay) = if self.with_play_s >= PLAY_AFTER_S || had_play {
+            with_play
+        } else {
+            without
+        };
+        let command = self.plays.first().and_then(|play| play.sums.first());
+        let moves = command.is_some_and(|sums| sums.mean_square() > LEAST_MOVED);
         let is_seen = moves
             && explained.left > LEAST_MOTION
             && explained.left - left > LEAST_EXPLAINED * explained.left;
+        // A play that is seldom crossed looks like a long delay.
+        let may_be_play = width == 0.0
+            && delay > LONG_DELAY
+            && with_play.2 < delay
+            && with_play.0 < PLAY_MAY_BE * left;
         // The longest delay may stand for any longer one.
-        if is_seen && left < BETTER * present && best < DELAYS as f64 {
-            self.believed = best;
+        if is_seen && left < BETTER * present && delay < DELAYS as f64 && !may_be_play {
+            self.believed = (width, delay);
         }
-        if self.believed > 0.0 {
-            self.latency_s += ADOPTED * (self.believed * self.period_s - self.latency_s);
+        let (width, delay) = self.believed;
+        if delay > 0.0 {
+            self.latency_s += ADOPTED * (delay * self.period_s - self.latency_s);
+            self.play += ADOPTED * (width - self.play);
         }
     }
 }
