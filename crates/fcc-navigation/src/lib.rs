@@ -27,6 +27,7 @@ mod force_sample;
 mod frozen;
 pub mod inertial;
 mod lift;
+mod marked_altitude;
 mod monitored;
 mod motion;
 mod motion_monitor;
@@ -307,10 +308,21 @@ impl Navigation {
         &self.estimate
     }
 
+    /// Marks the present altitude.
+    pub const fn mark_altitude(&mut self) {
+        self.vertical.mark();
+    }
+
     /// Counts the full turns of the heading so that it is the nearest to
     /// `near_rad`: after an upset they say nothing of the turn that was flown.
     pub fn count_heading_near(&mut self, near_rad: f64) {
         self.estimate.heading_rad = self.attitude.count_near(near_rad);
+    }
+
+    /// The present estimate of the altitude at the mark, m; none if nothing was
+    /// marked.
+    pub fn marked_altitude_m(&self) -> Option<f64> {
+        self.vertical.marked_altitude_m()
     }
 
     /// Nothing arrived for a time that counts as not passed: later readings

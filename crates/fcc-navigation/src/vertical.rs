@@ -5,6 +5,7 @@ use core::time::Duration;
 use libm::{cos, sin, tan};
 
 use super::attitude::Orientation;
+use super::marked_altitude::MarkedAltitude;
 use super::resolution::Resolution;
 use super::sample_tracker::{NewSample, SampleTracker, is_current};
 use super::vertical_covariance::{Gains, VerticalCovariance};
@@ -31,6 +32,10 @@ pub(super) struct Reference(pub(super) f64, pub(super) f64);
 /// barometric-inertial loop of Blanchard 1971, its gains from the covariance as
 /// in Gelb 1974, table 4.2-1). It begins with a high bandwidth, without prior
 /// knowledge, and settles at its final bandwidth.
+///
+/// An altitude can be marked: later measurements still carry information about
+/// it, and refine the marked altitude (a fixed-point smoother, Gelb 1974,
+/// section 5.3).
 ///
 /// The readings of a coarse altimeter are no noise: the estimate is free within
 /// half a step of them, and corrected by the moments in which they change.
@@ -60,6 +65,7 @@ pub struct VerticalChannel {
     state: VerticalState,
     bias_mps2: f64,
     covariance: VerticalCovariance,
+    mark: Option<MarkedAltitude>,
     news: SampleTracker,
     resolution: Resolution,
     /// The vertical acceleration that was integrated last, up, m/s².
@@ -105,6 +111,7 @@ impl VerticalChannel {
             },
             bias_mps2: 0.0,
             covariance: VerticalCovariance::new(bandwidth_radps),
+            mark: None,
             news: SampleTracker::new(),
             resolution: Resolution::new(COARSEST_M),
             felt_mps2: 0.0,
@@ -173,6 +180,9 @@ impl VerticalChannel {
                     (self.beyond, self.before_m) = (0, None);
                     self.has_stepped = true;
                     self.state.altitude_m = measured.value;
+                    if let Some(mark) = &mut self.mark {
+                        mark.keep();
+                    }
                 }
             }
         }
@@ -279,6 +289,19 @@ impl VerticalChannel {
         self.before_m = None;
         self.state.altitude_m += self.state.climb_rate_mps * passed_s;
         self.covariance.coast(passed_s);
+        if let Some(mark) = &mut self.mark {
+            mark.predict(false, passed_s);
+        }
+    }
+
+    /// Marks the present altitude.
+    pub const fn mark(&mut self) {
+        self.mark = Some(MarkedAltitude::new(self.state.altitude_m, &self.covariance));
+    }
+
+    /// The present estimate of the marked altitude, m.
+    pub fn marked_altitude_m(&self) -> Option<f64> {
+        self.mark.map(MarkedAltitude::altitude_m)
     }
 
     fn predict(&mut self, acceleration_mps2: f64, measured: bool, dt_s: f64) {
@@ -286,9 +309,13 @@ impl VerticalChannel {
         state.altitude_m += state.climb_rate_mps * dt_s + 0.5 * acceleration_mps2 * dt_s * dt_s;
         state.climb_rate_mps += acceleration_mps2 * dt_s;
         self.covariance.predict(measured, dt_s);
+        if let Some(mark) = &mut self.mark {
+            mark.predict(measured, dt_s);
+        }
     }
 
-    /// Adopts an altitude.
+    /// Adopts an altitude. A mark is kept unchanged: later measurements carry
+    /// no more information about it.
     fn begin(&mut self, altitude_m: f64) {
         self.before_m = None;
         self.state = VerticalState {
@@ -298,6 +325,9 @@ impl VerticalChannel {
         self.bias_mps2 = 0.0;
         self.covariance.restart();
         self.covariance.widen(self.resolution.step());
+        if let Some(mark) = &mut self.mark {
+            mark.keep();
+        }
     }
 
     /// By a coarse altimeter that changed by `change_m`.
@@ -321,6 +351,9 @@ impl VerticalChannel {
         self.state.altitude_m += gains.altitude * error;
         self.state.climb_rate_mps += gains.climb_rate_per_s * error;
         self.bias_mps2 = limit_abs(self.bias_mps2 + gains.bias_per_s2 * error, MAX_BIAS_MPS2);
+        if let Some(mark) = &mut self.mark {
+            mark.correct(gains, error);
+        }
     }
 }
 

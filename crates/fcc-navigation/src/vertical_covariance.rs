@@ -185,6 +185,44 @@ impl VerticalCovariance {
         self.hb *= left;
         gains
     }
+
+    /// The covariance of the present altitude with the state.
+    pub(super) const fn of_altitude(&self) -> CrossCovariance {
+        CrossCovariance {
+            h: self.hh,
+            v: self.hv,
+            b: self.hb,
+        }
+    }
+}
+
+/// Covariance of a past quantity with the present altitude, climb rate and
+/// bias.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct CrossCovariance {
+    h: f64,
+    v: f64,
+    b: f64,
+}
+
+impl CrossCovariance {
+    /// As [`VerticalCovariance::predict`].
+    pub(super) fn predict(&mut self, measured: bool, dt_s: f64) {
+        if measured {
+            self.v -= self.b * dt_s;
+        }
+        self.h += self.v * dt_s;
+    }
+
+    /// As [`VerticalCovariance::correct`]; returns the gain of the past
+    /// quantity per metre of altitude error.
+    pub(super) fn correct(&mut self, gains: &Gains) -> f64 {
+        let gain = self.h * gains.per_variance;
+        self.v -= self.h * gains.climb_rate_per_s;
+        self.b -= self.h * gains.bias_per_s2;
+        self.h -= self.h * gains.altitude;
+        gain
+    }
 }
 
 #[cfg(test)]

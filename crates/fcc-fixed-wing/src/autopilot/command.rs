@@ -203,6 +203,7 @@ impl Autopilot {
         {
             self.guidance.reference = reference;
             self.guidance.targets.altitude_m = altitude_m + datum_m;
+            self.guidance.capture = None;
             self.change_mode(ModeInput::SetPoint);
         }
     }

@@ -1,5 +1,6 @@
 //! When the autopilot may engage, and how it begins.
 
+use super::capture::Capture;
 use super::degraded::Degraded;
 use super::ground_contact::ToldOnce;
 use super::upset::is_far_from_level;
@@ -79,6 +80,8 @@ impl Autopilot {
             altitude_m: estimate.altitude_m,
         };
         self.guidance.reference = AltitudeReference::PressureLevel;
+        self.estimator.navigation.mark_altitude();
+        self.guidance.capture = Some(Capture::of(estimate.altitude_m));
         self.change_mode(ModeInput::Engage);
         let standing = self
             .intake

@@ -1,5 +1,6 @@
 //! Where to go next: mode and targets, the altimeter, and the set points that show them.
 
+use super::capture::Capture;
 use super::runway::RunwayControl;
 use super::{AutopilotConfig, Resume};
 use crate::Setpoints;
@@ -13,6 +14,7 @@ use fcc_guidance::{ActiveMode, Mode, ModeInput, OverGroundMode, Targets};
 pub(super) struct GuidanceState {
     pub(super) mode: ActiveMode,
     pub(super) targets: Targets,
+    pub(super) capture: Option<Capture>,
     pub(super) altimeter: Altimeter,
     /// What the target altitude refers to.
     pub(super) reference: AltitudeReference,
@@ -27,6 +29,7 @@ impl GuidanceState {
         Self {
             mode: ActiveMode::None,
             targets: Targets::default(),
+            capture: None,
             altimeter: config.altimeter,
             reference: AltitudeReference::PressureLevel,
             on_runway: RunwayControl::default(),

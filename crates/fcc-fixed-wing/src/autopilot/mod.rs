@@ -3,6 +3,7 @@
 mod actuation;
 mod airspeed_doubt;
 mod assembly;
+mod capture;
 mod command;
 mod config;
 mod contingency;
@@ -292,6 +293,7 @@ impl Controller for Autopilot {
         self.supervisor.left_plan = None;
         self.supervisor.contingencies.reset();
         self.guidance.is_at_floor = false;
+        self.guidance.capture = None;
         self.loops.recovery = Recovery::new();
         self.supervisor.release = None;
         self.loops.trim = ElevatorTrim::new(None);

@@ -92,6 +92,7 @@ impl Autopilot {
             AltitudeReference::PressureLevel
         };
         // The captured altitude is not refined any further.
+        self.guidance.capture = None;
         self.take_over(&resume.surfaces);
     }
 }

@@ -27,6 +27,12 @@ const LARGEST_OFF_M: f64 = u16::MAX as f64;
 impl Autopilot {
     /// Computes the targets.
     pub(super) fn set_targets(&mut self) {
+        let marked = self.estimator.navigation.marked_altitude_m();
+        let shift_m = match (&mut self.guidance.capture, marked) {
+            (Some(capture), Some(altitude_m)) => capture.shift_m(altitude_m),
+            _ => 0.0,
+        };
+        self.guidance.mode.shift_altitude(shift_m);
         if let Some(targets) = self.guidance.mode.targets() {
             self.guidance.targets = targets;
         }
@@ -349,6 +355,7 @@ impl Autopilot {
             self.loops.bank.reset(self.estimator.estimate().roll_rad);
         }
         self.guidance.reference = AltitudeReference::SeaLevel;
+        self.guidance.capture = None;
         self.guidance.mode = ActiveMode::OverGround(*mode);
     }
 

@@ -136,3 +136,27 @@ fn a_turn_starts_from_the_present_heading() {
     }
     assert!(cockpit.autopilot.setpoints().roll_rad < -0.5);
 }
+
+/// At engagement the altitude is known to about a foot; later measurements
+/// refine it for some seconds. A commanded altitude is not changed.
+#[test]
+fn the_captured_altitude_is_refined_and_a_commanded_one_is_kept() {
+    let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
+    cockpit.step();
+    let captured = cockpit.autopilot.setpoints().altitude_m;
+    cockpit.feel.altitude_m += 0.3;
+    for _ in 0..200 {
+        cockpit.step();
+    }
+    let learnt = cockpit.autopilot.setpoints().altitude_m - captured;
+    assert!((0.01..0.3).contains(&learnt), "{learnt}");
+
+    cockpit
+        .autopilot
+        .command(&AutopilotCommand::Altitude(950.0));
+    cockpit.feel.altitude_m += 0.3;
+    for _ in 0..200 {
+        cockpit.step();
+    }
+    assert_eq!(cockpit.autopilot.setpoints().altitude_m, 950.0);
+}
