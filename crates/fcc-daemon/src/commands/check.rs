@@ -52,7 +52,7 @@ pub(super) fn check(args: &CheckArgs) -> Exit {
 /// it.
 fn check_file(path: &Path) -> (Checked, Result<String, ConfigError>) {
     let file = path.display().to_string();
-    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let text = Config::read_text(path).unwrap_or_default();
     if let Some(kind) = Kind::of_text(&text) {
         let found = (kind.check)(&text, &file);
         let found = found.map(|flies| format!("{file}: valid: {flies}"));

@@ -69,7 +69,7 @@ impl Kind {
     /// The vehicle of a command line, or of the configuration that it names.
     pub(super) fn of_flight(args: &FlyArgs) -> Result<Option<&'static Self>, Failure> {
         let Some(name) = &args.vehicle else {
-            let text = args.config.as_ref().map(std::fs::read_to_string);
+            let text = args.config.as_deref().map(Config::read_text);
             return Ok(text
                 .and_then(Result::ok)
                 .and_then(|text| Self::of_text(&text)));
@@ -90,8 +90,7 @@ fn fly_it<V: Vehicle>(args: &FlyArgs) -> Result<Exit, Failure> {
         None => (V::Config::default(), None),
         Some(path) => {
             let file = path.display().to_string();
-            let text = std::fs::read_to_string(path)
-                .map_err(|error| Failure::usage(format_args!("{file}: cannot be read: {error}")))?;
+            let text = Config::read_text(path).map_err(|wrong| Failure::of(Exit::Usage, wrong))?;
             (parse::<V>(&text, &file)?, Some(text))
         }
     };

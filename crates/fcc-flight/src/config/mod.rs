@@ -233,16 +233,26 @@ impl Config {
     /// As [`Config::load`].
     pub fn load_with_text(path: &Path) -> Result<(Self, String), ConfigError> {
         let file = path.display().to_string();
+        let text = Self::read_text(path)?;
+        if fcc_plan::is_plan(&text) {
+            return Err(ConfigError::a_plan(file));
+        }
+        Ok((Self::parse(&text, &file)?, text))
+    }
+
+    /// Reads the text of a configuration of any vehicle.
+    ///
+    /// # Errors
+    /// When it is no regular file, too large, cannot be read, or is no text.
+    pub fn read_text(path: &Path) -> Result<String, ConfigError> {
+        let file = path.display().to_string();
         let bytes = match fcc_record::read_file(path, MOST_BYTES) {
             Ok(bytes) => bytes,
             Err(source) => return Err(ConfigError::Unreadable { file, source }),
         };
         let text = std::str::from_utf8(&bytes)
             .map_err(|error| ConfigError::not_text(&file, &bytes, error))?;
-        if fcc_plan::is_plan(text) {
-            return Err(ConfigError::a_plan(file));
-        }
-        Ok((Self::parse(text, &file)?, text.to_owned()))
+        Ok(text.to_owned())
     }
 
     /// Checks a text; `file` is its name in messages.
