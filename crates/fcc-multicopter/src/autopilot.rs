@@ -41,7 +41,7 @@ pub mod flags {
 const POSITION_AGES: u32 = 5;
 /// The cosine of the tilt from which it does not engage: 30°.
 const COS_ENGAGES: f64 = 0.866;
-/// Without an attitude, what is left is to turn slowly and to fall slowly.
+/// Without an attitude it only damps its turning, and descends: thrust over hover thrust.
 const FALLS: f64 = 0.8;
 /// On the ground the collective falls to this share of hovering, by so much in a second.
 const SETTLED: f64 = 0.1;
@@ -213,7 +213,7 @@ impl Multicopter {
         let learns = self.landing.suspicion() <= 0.0;
         let rates = &state.rates_radps;
         let turn = self.rate.step(rates_radps, rates, &missing, learns, dt_s);
-        // The allocation knows the thrust by the airframe, and the hover thrust what is left.
+        // The allocation takes the thrust from the airframe; the hover thrust corrects it.
         let nominal = self.hover.share() / self.config.airframe.hover_share();
         let demand = Demand::new(collective_mps2 * nominal, turn.x, turn.y, turn.z);
         let allocated = self.allocator.allocate(&demand);

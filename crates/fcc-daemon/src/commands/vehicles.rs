@@ -33,7 +33,7 @@ pub(super) struct Kind {
     pub(super) fly: fn(&FlyArgs) -> Result<Exit, Failure>,
     pub(super) replay: fn(&ReplayArgs) -> Result<Exit, Failure>,
     pub(super) report: fn(&ReportArgs) -> Result<Exit, Failure>,
-    /// What is said of a valid configuration.
+    /// Describes a valid configuration.
     pub(super) check: fn(&str, &str) -> Result<String, ConfigError>,
 }
 

@@ -45,7 +45,7 @@ pub trait Vehicle: Recorded + Sized {
     /// What cannot be flown.
     fn apply(config: &mut Self::Config, wishes: &Wishes<'_>) -> Result<(), String>;
 
-    /// What is said of a valid configuration.
+    /// Describes a valid configuration.
     ///
     /// # Errors
     /// What cannot be flown.
