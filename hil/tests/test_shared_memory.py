@@ -32,6 +32,14 @@ _ON_A_QUIET_MACHINE = 100
 ENDED = "the process that publishes live telemetry"
 
 
+@pytest.fixture(autouse=True)
+def apart(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Keep what is damaged here from the ground stations of other tests: they watch all daemons."""
+    with tempfile.TemporaryDirectory(prefix="fccd-test-", dir="/dev/shm") as folder:
+        monkeypatch.setenv("XDG_RUNTIME_DIR", folder)
+        yield
+
+
 @pytest.fixture
 def instance(request: pytest.FixtureRequest) -> str:
     """Return a name that no other daemon has."""
