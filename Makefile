@@ -322,7 +322,7 @@ lint-rust: clippy
 
 # Scripts in Python.
 LINTED := $(addprefix scripts/,known-advisories android-check messages reference results structure words \
-    book what-if)
+    book tables)
 
 lint-python: tested $(STAMPS)/playwright
 	$(PYTHON) -m ruff check hil deploy web

@@ -21,6 +21,14 @@ hypothesis.settings.register_profile(
 hypothesis.settings.load_profile("busy-machine")
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    config.addinivalue_line(
+        "markers",
+        "fault(section, fault, detection, after, reaction): a row of docs/faults.md; "
+        "`scripts/tables` writes it",
+    )
+
+
 # Under nohup a hang-up is ignored, and the started programs inherit that.
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 

@@ -136,6 +136,14 @@ def _fly(
     return _Flown(times_s, true_kt, true_ft, used_ft, measured_kt, estimated_kt, is_doubted, events)
 
 
+@pytest.mark.fault(
+    "Sensors",
+    "airspeed wrong: tube or drain blocked, decay, jump, slow drift",
+    "[forces](envelope.md#air-data) contradict it; a blocked tube: height",
+    "step: immediately; else 2.5 s; tube: some 2 s after 10 kt of error "
+    "([campaign](results/airspeed.md))",
+    "event; airspeed by forces and motion",
+)
 @pytest.mark.parametrize(
     ("break_it", "climb_ft", "reason"),
     [
@@ -193,6 +201,13 @@ def _block_static(faults: Faults) -> None:
     faults.noise(altitude("ft"), sigma=2.5, after=_PORT_S)
 
 
+@pytest.mark.fault(
+    "Sensors",
+    "altimeter frozen, static port blocked, in climb or descent",
+    "[accelerometers and path](envelope.md#altimeter)",
+    "12 m, for 1 s",
+    "event; altitude by ground velocity, or pitch and lift; with neither: *altitude lost*",
+)
 @pytest.mark.parametrize("climb_ft", [1_000.0, -1_000.0, 300.0])
 @pytest.mark.parametrize("receiver", [None, Receiver()], ids=["alone", "receiver"])
 def test_a_static_port_blocked_in_a_climb_or_descent_is_found(

@@ -175,6 +175,14 @@ def flown(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Deg
     return at_once({name: functools.partial(fly_one, name) for name in FLOWN})
 
 
+@pytest.mark.fault(
+    "Degraded flight",
+    "heading lost, replaced by the integrated gyroscope; body rates or attitude lost, "
+    "[replaced](control.md#without-a-quantity)",
+    "level",
+    "`failsafe.degraded_s`",
+    "end",
+)
 @pytest.mark.parametrize("name", FLOWN)
 def test_what_is_left_is_held(flown: dict[str, Degraded], name: str) -> None:
     flight = flown[name]
@@ -204,6 +212,13 @@ def test_what_is_good_again_is_flown_on(flown: dict[str, Degraded], name: str) -
     assert np.min(turns_deg) > 25.0
 
 
+@pytest.mark.fault(
+    "Degraded flight",
+    "attitude and body rates, or all lost",
+    "the trims found, of surfaces and throttle",
+    "0 s",
+    "end; half a second is flown through",
+)
 def test_without_attitude_and_rates_control_is_given_back(flown: dict[str, Degraded]) -> None:
     flight = flown[NO_ATTITUDE_AND_RATES]
     assert flight.ending.states[3:5] == ["engaged -> failsafe", "failsafe -> standby"]

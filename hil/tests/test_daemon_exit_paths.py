@@ -22,6 +22,14 @@ FAILSAFE = 3
 PANICKED = 6
 
 
+@pytest.mark.fault(
+    "Around the flight",
+    "SIGTERM, Ctrl-C (SIGINT), Ctrl-\\ (SIGQUIT), terminal hangs up (SIGHUP; continues under "
+    "`nohup`)",
+    "stop flag",
+    "next tick",
+    "centred, released, confirmed; exit 0",
+)
 @pytest.mark.parametrize(
     ("number", "by"),
     [
@@ -65,6 +73,13 @@ def test_signals_without_a_meaning_do_not_end_a_flight(fccd: Path, tmp_path: Pat
     assert ending.report["ending"] == "interrupted by SIGTERM"
 
 
+@pytest.mark.fault(
+    "The controller",
+    "controller panics",
+    "caught around tick",
+    "immediately",
+    "centred, released; exit 6",
+)
 def test_a_panic_in_control_centres_and_releases(faulty_fccd: Path, tmp_path: Path) -> None:
     with flight(faulty_fccd, tmp_path, environment={"FCCD_PANIC_AT_S": "1"}) as (simulator, daemon):
         engage(simulator, daemon)
@@ -80,6 +95,13 @@ def test_a_panic_in_control_centres_and_releases(faulty_fccd: Path, tmp_path: Pa
     assert_in_the_same_tick(flown, len(flown.records) - 1, after_s=1.0)
 
 
+@pytest.mark.fault(
+    "The controller",
+    "controller returns NaN",
+    "outputs checked",
+    "immediately",
+    "never sent; failsafe",
+)
 def test_an_output_that_is_not_a_number_is_never_sent(faulty_fccd: Path, tmp_path: Path) -> None:
     with flight(
         faulty_fccd,
@@ -101,6 +123,13 @@ def test_an_output_that_is_not_a_number_is_never_sent(faulty_fccd: Path, tmp_pat
     assert_in_the_same_tick(flown, flown.failsafes[0], after_s=1.0)
 
 
+@pytest.mark.fault(
+    "Around the flight",
+    "SIGKILL",
+    "release helper: its pipe ends",
+    "immediately",
+    "helper centres and releases",
+)
 def test_a_killed_daemon_leaves_a_helper_that_centres_and_releases(
     fccd: Path, tmp_path: Path
 ) -> None:

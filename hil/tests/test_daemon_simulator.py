@@ -61,6 +61,13 @@ def assert_released_at_once(flown: Flown, since_ns: int) -> None:
     assert not any(record.sent for record in later)
 
 
+@pytest.mark.fault(
+    "Simulator and link",
+    "requested value never arrives: mistyped, lacking in this version, row off",
+    "not arrived while others have",
+    "4 to 6 s; 5 s if it arrived before",
+    "reported once",
+)
 def test_an_engage_switch_that_x_plane_does_not_have_is_named(fccd: Path, tmp_path: Path) -> None:
     mistyped = "sim/cockpit2/switches/generic_light_switch[0]"
     with flight(fccd, tmp_path, x_plane=f'engage_switch = "{mistyped}"') as (_, daemon):
@@ -112,6 +119,20 @@ def test_a_host_name_without_an_address_is_reported_before_the_flight(
     assert "IP address" in ending.log
 
 
+@pytest.mark.fault(
+    "Simulator and link",
+    "simulator back",
+    "datagrams",
+    "first",
+    "ready; switch must go off and on",
+)
+@pytest.mark.fault(
+    "Simulator and link",
+    "simulator gone or hangs",
+    "nothing arrives",
+    "{failsafe.all_silent_s} s (`failsafe.all_silent_s`); reported after 1.5 s",
+    "failsafe",
+)
 def test_a_killed_simulator_and_its_return(fccd: Path, tmp_path: Path) -> None:
     with flight(fccd, tmp_path, others=SHORT_FAILSAFE) as (simulator, daemon):
         engage(simulator, daemon)
@@ -156,6 +177,13 @@ def test_a_killed_simulator_and_its_return(fccd: Path, tmp_path: Path) -> None:
     assert (recovered_ns[0] - back_ns) * NS < ASKED_EVERY_S + AT_ONCE_S
 
 
+@pytest.mark.fault(
+    "Simulator and link",
+    "release lost",
+    "overrides read back",
+    "250 ms",
+    "repeated until confirmed",
+)
 def test_a_release_lost_by_a_hung_simulator_is_repeated_until_confirmed(
     fccd: Path, tmp_path: Path
 ) -> None:
@@ -188,6 +216,13 @@ def test_a_killed_simulator_ends_the_program_if_configured(fccd: Path, tmp_path:
     assert ending.states[-1] == "failsafe -> stopped"
 
 
+@pytest.mark.fault(
+    "Simulator and link",
+    "simulator paused",
+    "reported by it",
+    "immediately",
+    "outputs held; continues afterwards",
+)
 def test_a_pause_is_waited_out(fccd: Path, tmp_path: Path) -> None:
     with flight(fccd, tmp_path) as (simulator, daemon):
         engage(simulator, daemon)
@@ -211,6 +246,13 @@ def test_a_pause_is_waited_out(fccd: Path, tmp_path: Path) -> None:
     assert len({str(record.outputs) for record in paused[1:]}) == 1, "they are held"
 
 
+@pytest.mark.fault(
+    "Simulator and link",
+    "simulator loads a flight, or jumps in time",
+    "two datagrams with the clock set back, or a second gained above twice our rate",
+    "second datagram; set back: 0.15 to 0.4 s",
+    "given back, event",
+)
 def test_a_simulator_that_hangs_is_a_failsafe_and_one_that_jumps_is_released(
     fccd: Path, tmp_path: Path
 ) -> None:

@@ -93,6 +93,27 @@ class Flight:
         return next(time_s for time_s, words in self.events() if text in words)
 
 
+@pytest.mark.fault(
+    "Degraded flight",
+    "altitude lost, replaced by the receiver's ground velocity, else by level flight",
+    "level; without receiver wings level, pitch, power",
+    "`failsafe.degraded_s`",
+    "end",
+)
+@pytest.mark.fault(
+    "Degraded flight",
+    "airspeed lost otherwise",
+    "wings level, pitch by altitude, level-flight power",
+    "`failsafe.degraded_s`",
+    "end",
+)
+@pytest.mark.fault(
+    "Degraded flight",
+    "acceleration lost, not replaced",
+    "wings level, airspeed, pitch by altitude",
+    "`failsafe.degraded_s`",
+    "end",
+)
 @pytest.mark.parametrize("name", ROWS)
 def test_what_is_left_is_held_and_then_the_pattern_is_flown_on(name: str) -> None:
     lost, limits = ROWS[name]
@@ -115,6 +136,14 @@ def test_what_is_left_is_held_and_then_the_pattern_is_flown_on(name: str) -> Non
     assert np.max(np.abs(climbed_ft - 150.0)) < 20.0
 
 
+@pytest.mark.fault(
+    "Degraded flight",
+    "airspeed lost, replaced by that [of forces](envelope.md#air-data): standard deviation "
+    "below 5 % of the reference airspeed; attitude, acceleration, altitude known",
+    "level",
+    "`failsafe.degraded_s`",
+    "end",
+)
 @pytest.mark.parametrize("aircraft", ["c172p", "c172x"])
 def test_a_lost_airspeed_is_replaced_by_forces(aircraft: str) -> None:
     flight = Flight(["airspeed"], LOST_FOR_S, aircraft=aircraft)
@@ -182,6 +211,13 @@ def test_without_attitude_and_rates_control_is_given_back() -> None:
     assert np.max(np.abs(flight.between("roll_deg", 0.0, 5.0))) < 40.0
 
 
+@pytest.mark.fault(
+    "Degraded flight",
+    "attitude and acceleration lost, replaced by the integrated gyroscope",
+    "wings level, pitch, power",
+    "30 s",
+    "end",
+)
 @pytest.mark.parametrize(
     ("lost", "degraded_s", "sound_s"),
     [

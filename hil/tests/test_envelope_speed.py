@@ -78,6 +78,13 @@ class _Flight:
         return [event.text for event in self.rig.events]
 
 
+@pytest.mark.fault(
+    "The aircraft",
+    "engine fails, air sinks, severe gusts",
+    "[energy, load](envelope.md#speed-and-stall)",
+    "immediately; gusts 10 s",
+    "lowest airspeed, or best glide if faster; height given up; gusts: faster, less bank",
+)
 @pytest.mark.parametrize("sink_mps", [0.0, 3.0, 5.0])
 def test_an_engine_that_fails_leaves_the_best_glide(sink_mps: float) -> None:
     """Before: 58.7, 48 and 50 kt, with full up elevator. The best glide is 65 KIAS (172N)."""
@@ -208,6 +215,13 @@ def test_a_rate_that_the_loops_cannot_fly_is_refused() -> None:
         fcc.Machine("[built-in]\n[loop]\nrate_hz = 5\n")
 
 
+@pytest.mark.fault(
+    "Sensors",
+    "wing stalls above configured speed",
+    "[a full stall](envelope.md#speed-and-stall)",
+    "2 s",
+    "recovered; higher stalling speed until release",
+)
 def test_a_wing_that_stalls_above_the_configured_speed_is_flown_faster() -> None:
     """As an iced or an overloaded one: 36 kt are configured, JSBSim's c172p stalls at 48 kt.
 

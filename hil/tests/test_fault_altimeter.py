@@ -78,6 +78,13 @@ def test_a_knob_turned_with_rows_as_input_moves_nothing(fccd: Path, tmp_path: Pa
     assert moved_ft < LARGEST_MOVE_FT
 
 
+@pytest.mark.fault(
+    "Simulator and link",
+    "altimeter setting missing or not 22 to 33 inHg, where altitude needs it",
+    "no altitude",
+    "{failsafe.sensor_max_age_ms} ms",
+    "failsafe",
+)
 def test_an_altimeter_without_a_plausible_setting_is_no_altitude(
     fccd: Path, tmp_path: Path
 ) -> None:

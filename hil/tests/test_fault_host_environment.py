@@ -158,6 +158,13 @@ def flights(
     return at_once(made)
 
 
+@pytest.mark.fault(
+    "Around the flight",
+    "disk full, nothing to delete",
+    "failing write",
+    "immediately; each 0.7 s",
+    "reported; recording cut off: `fccd recover` finishes it; exit 14",
+)
 def test_a_disk_that_is_full_ends_the_recording_and_not_the_flight(
     flights: dict[str, object],
 ) -> None:
@@ -176,6 +183,13 @@ def test_a_disk_that_is_full_ends_the_recording_and_not_the_flight(
     assert 0.0 <= ending.when("recording stopped") - last_s < WRITTEN_EVERY_S + AT_ONCE_S
 
 
+@pytest.mark.fault(
+    "Around the flight",
+    "configuration file changed in flight",
+    "none: read once",
+    "",
+    "nothing; used one is recorded",
+)
 def test_a_configuration_that_changes_in_flight_changes_nothing(
     fccd: Path, flights: dict[str, object]
 ) -> None:
@@ -186,6 +200,13 @@ def test_a_configuration_that_changes_in_flight_changes_nothing(
     assert_flown_again(fccd, flown)
 
 
+@pytest.mark.fault(
+    "Around the flight",
+    "telemetry reader hung",
+    "none",
+    "",
+    "only it misses records",
+)
 def test_a_watcher_that_hangs_loses_no_record_of_others(flights: dict[str, object]) -> None:
     flown = flights["watcher"]
     assert isinstance(flown, Flown)
@@ -195,6 +216,13 @@ def test_a_watcher_that_hangs_loses_no_record_of_others(flights: dict[str, objec
     assert_regular(flown.records, 1_000_000_000 // FAST_HZ)
 
 
+@pytest.mark.fault(
+    "Around the flight",
+    "ring full",
+    "ring's room",
+    "immediately",
+    "records dropped, counted; exit 14",
+)
 def test_a_full_ring_drops_and_counts_records(flights: dict[str, object]) -> None:
     flown = flights["ring"]
     assert isinstance(flown, Flown)
@@ -212,6 +240,13 @@ def test_a_full_ring_drops_and_counts_records(flights: dict[str, object]) -> Non
     assert all(record.state.phase != FAILSAFE for record in flown.records)
 
 
+@pytest.mark.fault(
+    "Around the flight",
+    "second instance started, same user and simulator",
+    "lock on simulator's file",
+    "immediately; with beacon: at the first",
+    "takes no control, exit 12",
+)
 def test_a_second_daemon_does_not_fly_the_same_simulator(fccd: Path, tmp_path: Path) -> None:
     scratch = tmp_path / "second"
     scratch.mkdir()
@@ -283,6 +318,13 @@ def test_a_local_port_in_use_has_its_own_exit_code(fccd: Path, tmp_path: Path) -
     assert f"cannot receive on UDP port {port}" in refused.log
 
 
+@pytest.mark.fault(
+    "Around the flight",
+    "Ctrl-Z (SIGTSTP), terminal stops (SIGTTIN, SIGTTOU); SIGUSR1, SIGUSR2, SIGALRM",
+    "signal; blocked",
+    "immediately",
+    "Ctrl-Z reported; flight or `fccd x-plane` continues",
+)
 def test_ctrl_z_does_not_stop_a_flight(fccd: Path, tmp_path: Path) -> None:
     with fly(fccd, tmp_path, "", "--recordings", tmp_path / "recordings") as daemon:
         daemon.wait_for("standby -> engaged")

@@ -193,6 +193,13 @@ def flights(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, F
     )
 
 
+@pytest.mark.fault(
+    "Simulator and link",
+    "link cut, nothing from simulator",
+    "nothing arrives",
+    "{failsafe.all_silent_s} s (`failsafe.all_silent_s`)",
+    "failsafe; release arrives",
+)
 def test_nothing_from_the_simulator_is_failsafe_and_the_release_arrives(
     flights: dict[str, Flown],
 ) -> None:
@@ -203,6 +210,21 @@ def test_nothing_from_the_simulator_is_failsafe_and_the_release_arrives(
     assert MAX_AGE_S < age_s < 2 * MAX_AGE_S
 
 
+@pytest.mark.fault(
+    "Simulator and link",
+    "writes do not arrive, controls are read back",
+    "an output moves by 0.1, the controls do not",
+    "1.5 s",
+    "`the outputs do not reach the aircraft`; loops follow the controls",
+)
+@pytest.mark.fault(
+    "Simulator and link",
+    "link cut, nothing to simulator",
+    "overrides and yoke read back",
+    "1 s; reported after 2 s",
+    "event; control retaken with the link; at program end exit 5, release helper continues "
+    "two minutes",
+)
 def test_nothing_to_the_simulator_is_reported_and_the_flight_continues(
     flights: dict[str, Flown],
 ) -> None:
@@ -225,6 +247,13 @@ def test_nothing_to_the_simulator_is_reported_and_the_flight_continues(
     assert flown.ending.report["released"] is True
 
 
+@pytest.mark.fault(
+    "Simulator and link",
+    "simulator slow",
+    "its time runs below 90 % of ours (95 % with frames above 50 ms)",
+    "2 s",
+    "reported; flown at its speed",
+)
 def test_a_slow_simulator_is_flown_at_its_own_speed(flights: dict[str, Flown]) -> None:
     flown = flights["slow"]
     assert flown.ending.exit_code == SUCCESS
@@ -243,6 +272,14 @@ def test_a_replay_is_identical(fccd: Path, flights: dict[str, Flown], name: str)
     assert_flown_again(fccd, flights[name])
 
 
+@pytest.mark.fault(
+    "Simulator and link",
+    "preferred one of two simulators gone, silent, or its altitude jumps",
+    "age; plausibility gate",
+    "100 ms (`fallback_after_ms`)",
+    "event; the other's readings are used; [without its engage "
+    "switch](architecture.md#several-sensors) failsafe after 1 s",
+)
 def test_one_of_two_simulators_is_lost_and_the_other_one_flown(flights: dict[str, Flown]) -> None:
     flown = flights["two"]
     assert flown.ending.exit_code == FAILSAFE
@@ -277,6 +314,13 @@ def test_one_of_two_simulators_is_lost_and_the_other_one_flown(flights: dict[str
     assert {reading.source for reading in altitudes[jumped:]} == {1}
 
 
+@pytest.mark.fault(
+    "Time",
+    "network queue: data late, in order",
+    "[the source's clock](envelope.md#time)",
+    "first late reading, from 250 ms",
+    "failsafe; continues 2 s after the queue is empty",
+)
 def test_a_queue_in_the_network_is_failsafe_until_it_is_empty(flights: dict[str, Flown]) -> None:
     flown = flights["queue"]
     assert flown.ending.exit_code == FAILSAFE
@@ -287,6 +331,13 @@ def test_a_queue_in_the_network_is_failsafe_until_it_is_empty(flights: dict[str,
     assert 0.0 < (record.tick.woke_ns - flown.injected_ns) * NS < 0.5 + AT_ONCE_S
 
 
+@pytest.mark.fault(
+    "Simulator and link",
+    "engage switch off, bouncing or noisy",
+    "[position](envelope.md#who-has-control): on from 0.75, off below 0.25",
+    "0.1 s at most",
+    "given back; on counts 0.5 s after the last off",
+)
 def test_a_switch_that_bounces_disengages_once(flights: dict[str, Flown]) -> None:
     flown = flights["switch"]
     assert flown.ending.states == [

@@ -146,6 +146,13 @@ def missed(flight: Flown) -> list[Any]:
     return [record for record in flight.records if record.tick.missed > 0]
 
 
+@pytest.mark.fault(
+    "Time",
+    "timer late by one period",
+    "missed deadlines counted",
+    "immediately",
+    "recorded, one event; phase kept",
+)
 @pytest.mark.parametrize(("name", "least"), [("late by one", 1), ("late by many", 10)])
 def test_a_late_timer_is_counted_and_reported(
     flights: dict[str, Flown], name: str, least: int
@@ -164,6 +171,13 @@ def test_a_late_timer_is_counted_and_reported(
     assert_regular(flight.records, PERIOD_NS)
 
 
+@pytest.mark.fault(
+    "Time",
+    "timer late by many periods",
+    "missed deadlines counted",
+    "immediately",
+    "recorded, one event; phase kept; half a second: failsafe",
+)
 def test_half_a_second_of_missed_periods_is_failsafe(flights: dict[str, Flown]) -> None:
     flight = flights["late by far too many"]
     assert flight.ending.exit_code == FAILSAFE_HAPPENED
@@ -175,6 +189,13 @@ def test_half_a_second_of_missed_periods_is_failsafe(flights: dict[str, Flown]) 
     assert_regular(flight.records, PERIOD_NS)
 
 
+@pytest.mark.fault(
+    "Time",
+    "tick overruns, or a stage",
+    "stage times against [`[budget]`](#overruns)",
+    "tick's end; `budget.failsafe_after` in a row",
+    "recorded, event with stage and duration; then failsafe",
+)
 def test_overruns_in_a_row_are_failsafe(flights: dict[str, Flown]) -> None:
     flight = flights["overruns"]
     assert flight.ending.exit_code == FAILSAFE_HAPPENED
@@ -222,6 +243,13 @@ def test_a_stopped_process_continues(flights: dict[str, Flown]) -> None:
     assert long.records[long.failsafes[0]].state.cause == OVERRUN
 
 
+@pytest.mark.fault(
+    "Time",
+    "clock stepped",
+    "none: loop reads no wall clock",
+    "",
+    "nothing",
+)
 def test_a_wall_clock_that_is_set_is_not_noticed(flights: dict[str, Flown]) -> None:
     flight = flights["wall clock"]
     assert flight.ending.exit_code == SUCCESS
@@ -233,6 +261,13 @@ def test_a_wall_clock_that_is_set_is_not_noticed(flights: dict[str, Flown]) -> N
     assert flight.ending.report["recording"]["stopped"] is None
 
 
+@pytest.mark.fault(
+    "The controller",
+    "controller hangs, on the only core, or in a sensor's read",
+    "[watchdog](#the-watchdog)",
+    "1 s",
+    "watchdog releases; recording saved, exit 9",
+)
 @pytest.mark.parametrize("name", ["control hangs", "a sensor blocks"])
 def test_a_loop_that_hangs_is_ended_and_its_recording_is_finished(
     flights: dict[str, Flown], name: str
@@ -252,6 +287,13 @@ def test_a_loop_that_hangs_is_ended_and_its_recording_is_finished(
     assert_regular(flight.records, PERIOD_NS)
 
 
+@pytest.mark.fault(
+    "The controller",
+    "controller hangs, main thread too",
+    "[watchdog](#the-watchdog)",
+    "1 s, plus 3 s",
+    "released; exit 9; recording unfinished",
+)
 def test_a_loop_that_hangs_is_ended_though_the_main_thread_hangs_too(
     faulty_fccd: Path, tmp_path: Path
 ) -> None:

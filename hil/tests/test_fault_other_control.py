@@ -6,6 +6,7 @@ import signal
 import time
 from pathlib import Path
 
+import pytest
 from daemon_under_test import (
     DaemonUnderTest,
     assert_released,
@@ -42,6 +43,13 @@ def truth_now(simulator: StandInProcess) -> dict[str, float]:
     return dict(zip(COLUMNS, simulator.progress().now, strict=True))
 
 
+@pytest.mark.fault(
+    "Simulator and link",
+    "X-Plane's autopilot, another program, reverse thrust, pitot ice, time above twice as fast",
+    "[what else acts](x-plane.md#what-else-acts-on-the-controls)",
+    "at most 3 s",
+    "engaging refused; in flight event or failsafe",
+)
 def test_x_planes_own_autopilot_refuses_engaging_and_is_reported_in_flight(
     fccd: Path, tmp_path: Path
 ) -> None:

@@ -264,6 +264,27 @@ def _taken_ns(record: Any, name: str) -> int:
     return taken
 
 
+@pytest.mark.fault(
+    "Sensors",
+    "sensor late",
+    "age of last reading; by 50 ms: none",
+    "{failsafe.sensor_max_age_ms} ms",
+    "failsafe; by 50 ms: continues",
+)
+@pytest.mark.fault(
+    "Sensors",
+    "sensor NaN, infinite or out of range",
+    "rejected",
+    "{failsafe.sensor_max_age_ms} ms",
+    "failsafe",
+)
+@pytest.mark.fault(
+    "Sensors",
+    "sensor silent",
+    "age of last reading",
+    "{failsafe.sensor_max_age_ms} ms (`failsafe.sensor_max_age_ms`)",
+    "failsafe",
+)
 @pytest.mark.parametrize("fault", LOSSES)
 @pytest.mark.parametrize("name", SENSED)
 def test_a_loss_is_failsafe_when_it_is_too_old(
@@ -276,6 +297,15 @@ def test_a_loss_is_failsafe_when_it_is_too_old(
     assert MAX_AGE_S < after_s < 2 * MAX_AGE_S
 
 
+@pytest.mark.fault(
+    "Sensors",
+    "sensor frozen, not the altimeter: identical bits, new times; each gyroscope axis by itself",
+    "unchanged for {failsafe.sensor_frozen_s} s (`failsafe.sensor_frozen_s`) while others "
+    "show a turn (5°), bank (10°), pitch (4°), for airspeed also 15 kt or 0.2 g, beyond its "
+    "[resolution](envelope.md#coarse-and-slow-sensors)",
+    "2 s, once it moves; coarse: 2 to 20 s",
+    "failsafe",
+)
 @pytest.mark.parametrize("name", [name for name in SENSED if "frozen" in FAULTS[name]])
 def test_a_frozen_sensor_is_failsafe_once_the_aircraft_moves(
     flown: dict[str, Flown], name: str
@@ -296,6 +326,13 @@ def test_a_frozen_sensor_is_failsafe_once_the_aircraft_moves(
     assert (last.tick.woke_ns - _taken_ns(last, name)) * 1e-9 < MAX_AGE_S
 
 
+@pytest.mark.fault(
+    "Sensors",
+    "sensor reordered; datagrams reordered, doubled, lost",
+    "time in each",
+    "",
+    "continues",
+)
 @pytest.mark.parametrize("name", SENSED)
 def test_reordered_or_slightly_late_samples_have_no_effect(
     flown: dict[str, Flown], name: str
@@ -305,6 +342,13 @@ def test_reordered_or_slightly_late_samples_have_no_effect(
     assert states[: len(through)] == through
 
 
+@pytest.mark.fault(
+    "Sensors",
+    "sensor jumping",
+    "rejected: farther than any light aircraft moves in that time",
+    "lasting: {failsafe.sensor_max_age_ms} ms",
+    "short: continues; lasting: failsafe",
+)
 @pytest.mark.parametrize("name", SENSED)
 def test_a_short_jump_is_flown_through(flown: dict[str, Flown], name: str) -> None:
     flight = flown[name]

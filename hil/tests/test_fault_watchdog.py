@@ -52,6 +52,13 @@ def endings(faulty_fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict
     )
 
 
+@pytest.mark.fault(
+    "The controller",
+    "controller hangs, watchdog's release panics or never returns",
+    "panic caught; separate thread",
+    "immediately, 5 s",
+    "exit 5; release helper releases",
+)
 def test_a_release_that_panics_or_never_returns_does_not_keep_the_program(
     endings: dict[str, Ending],
 ) -> None:

@@ -66,6 +66,13 @@ def began(rig: LockstepRig) -> list[float]:
     return [event.time_s for event in rig.events if event.text == f"now: {LIMITED}"]
 
 
+@pytest.mark.fault(
+    "The aircraft",
+    "descent to the floor, or engaged below it",
+    "[`autopilot.envelope.floor_ft`](envelope.md#who-has-control)",
+    "",
+    "captured `floor_margin_ft` above it; events",
+)
 @pytest.mark.parametrize(("turbulence", "seed"), [(0, 7701), (3, 7702), (4, 7703)])
 def test_a_descent_at_full_rate_ends_above_the_floor(turbulence: int, seed: int) -> None:
     rig = flown(HOLD, turbulence=turbulence, seed=seed)

@@ -88,6 +88,13 @@ def test_a_short_final_is_landed_without_a_position(
     assert not any("brakes" in text for text in told), told
 
 
+@pytest.mark.fault(
+    "Sensors",
+    "GNSS velocity lost",
+    "age",
+    "1 s",
+    "by the positions, between them by airspeed, heading, last wind",
+)
 def test_a_landing_without_a_velocity_is_flown_on() -> None:
     flight = _loses(GNSS[1:], 149.0)
     _lands(flight)
@@ -95,6 +102,13 @@ def test_a_landing_without_a_velocity_is_flown_on() -> None:
     assert not any("dead reckoning" in text or "going around" in text for text in told), told
 
 
+@pytest.mark.fault(
+    "Sensors",
+    "GNSS position lost, or position and velocity",
+    "age",
+    "3 s; `contingency.position_lost_after_s` ({contingency.position_lost_after_s} s)",
+    "`position is by dead reckoning`; then [`position_lost`](plan.md#contingencies)",
+)
 def test_a_position_lost_for_long_gives_a_landing_up_for_that_reason() -> None:
     """It is lost for 120 s (the default) 29 s before the touch-down, and comes back later."""
     flight = _loses(GNSS, 149.0)

@@ -11,6 +11,7 @@ import threading
 from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
 from daemon_under_test import DaemonUnderTest, engage, flight, wait_until
 from other_user import NOBODY, as_user, needs_two_users
 
@@ -162,6 +163,13 @@ def test_nobody_takes_the_place_of_a_flown_simulator_that_is_silent(
             wait_until(lambda: not simulator.progress().overridden, "the helper releases")
 
 
+@pytest.mark.fault(
+    "Simulator and link",
+    "flown simulator restarted, on another port",
+    "its old port is closed; else 30 s after release",
+    "0.2 s, other machine 3 s",
+    "event; given back",
+)
 def test_a_simulator_that_is_started_again_in_flight_is_flown_again(
     fccd: Path, tmp_path: Path
 ) -> None:

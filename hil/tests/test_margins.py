@@ -113,6 +113,13 @@ def test_late_commands_without_a_gyroscope_do_not_oscillate(airspeed_kt: float) 
     assert np.std(flown.pitch_rate_degps) <= 2.0
 
 
+@pytest.mark.fault(
+    "The aircraft",
+    "elevator has play",
+    "[explains it better than none](envelope.md#margins)",
+    "3 s of oscillation",
+    "inverse of play",
+)
 @pytest.mark.parametrize("airspeed_kt", [80, 100, 120])
 def test_play_in_the_elevator_is_found_and_inverted(airspeed_kt: float) -> None:
     """JSBSim's c172x: hysteresis of 0.05 rad, of 0.40 to 0.49 rad of travel."""
@@ -128,6 +135,13 @@ def test_play_that_is_seldom_crossed_is_not_taken_for_latency(seed: int, number:
     assert not flown.verdict.broken
 
 
+@pytest.mark.fault(
+    "The aircraft",
+    "outputs act late",
+    "[measured latency](envelope.md#margins) above 120 ms",
+    "3 s, with noise or manoeuvre",
+    "event; loops slower",
+)
 @pytest.mark.parametrize(("delay_s", "least_ms", "most_ms"), [(0.0, 0, 50), (0.15, 120, 230)])
 def test_the_latency_is_measured_in_flight(delay_s: float, least_ms: float, most_ms: float) -> None:
     """The truth is the delay and a tick, 25 and 175 ms; the bank's models are 25 ms apart."""

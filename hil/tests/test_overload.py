@@ -6,6 +6,7 @@ import os
 import signal
 from pathlib import Path
 
+import pytest
 from daemon_under_test import DaemonUnderTest, assert_released, engage, flight
 from fault_flights import Flown, assert_flown_again, assert_regular
 
@@ -23,6 +24,13 @@ RATE = f"[loop]\nrate_hz = {RATE_HZ}\n"
 SPINS = {"FCCD_SLOW_AT_S": "0", "FCCD_SLOW_MS": TAKES_MS, "FCCD_SLOW_SPINS": "1"}
 
 
+@pytest.mark.fault(
+    "Time",
+    "ticks leave no time to sleep",
+    "below 5 % of period left",
+    "{overload.skip_after_ms} ms (`overload.skip_after_ms`)",
+    "no early wake, then [deadlines skipped](#overload)",
+)
 def test_an_overloaded_core_answers_sigterm(fccd: Path, faulty_fccd: Path, tmp_path: Path) -> None:
     """On one CPU, with a real-time priority where it is granted."""
     config = tmp_path / "fccd.toml"
@@ -52,6 +60,13 @@ def test_an_overloaded_core_answers_sigterm(fccd: Path, faulty_fccd: Path, tmp_p
     assert_flown_again(fccd, flown)
 
 
+@pytest.mark.fault(
+    "Time",
+    "ticks leave no time to sleep for long",
+    "below 5 % of period left",
+    "{overload.stop_after_s} s (`overload.stop_after_s`)",
+    "released, exit 17",
+)
 def test_a_lasting_overload_ends_the_flight(fccd: Path, faulty_fccd: Path, tmp_path: Path) -> None:
     environment = {"FCCD_SLOW_AT_S": "1", "FCCD_SLOW_MS": "30"}
     others = f"{NEVER_FAILSAFE}[overload]\nstop_after_s = 1.0\n"

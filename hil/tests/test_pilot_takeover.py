@@ -42,6 +42,13 @@ def texts(rig: LockstepRig) -> str:
     return "\n".join(event.text for event in rig.events)
 
 
+@pytest.mark.fault(
+    "Simulator and link",
+    "pilot moves stick or pedals (`engage.stick_takeover`)",
+    "[threshold](envelope.md#who-has-control)",
+    "{engage.stick_takeover_s} s (`stick_takeover_s`)",
+    "given back; event",
+)
 @pytest.mark.parametrize(("rest", "held"), [(0.0, -0.35), (0.4, 0.75), (0.4, 0.0)])
 def test_the_stick_takes_over_and_keeps_control(rest: float, held: float) -> None:
     rig = engaged(rest=rest)

@@ -213,6 +213,13 @@ def test_it_is_flown_on(fault: Fault, for_s: float) -> None:
     assert most["bank"] <= 45.0
 
 
+@pytest.mark.fault(
+    "Sensors",
+    "raw inertial sensor: one bad reading, 0.3 % random",
+    "[outliers](raw-sensors.md#flown-by); two in a row at most",
+    "",
+    "ignored",
+)
 @pytest.mark.parametrize(
     ("fault", "for_s"),
     [
@@ -347,6 +354,13 @@ def test_without_its_only_gyroscope_control_is_given_back(fault: Fault) -> None:
     assert most["height"] >= 500.0
 
 
+@pytest.mark.fault(
+    "Sensors",
+    "raw gyroscope inverted, stuck, clipped, swapped, late, frozen with noise",
+    "[magnetic field](navigation.md#gyroscopes-against-the-magnetic-field)",
+    "mostly 0.4 to 2 s",
+    "failsafe, then given back",
+)
 @pytest.mark.parametrize(
     "fault",
     [

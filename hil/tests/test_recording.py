@@ -105,6 +105,13 @@ def kill_in_flight(daemon: DaemonUnderTest) -> int:
     return killed_ns
 
 
+@pytest.mark.fault(
+    "Around the flight",
+    "recording deleted, renamed, truncated",
+    "place, length",
+    "next write, 0.7 s",
+    "reported; next part; exit 14",
+)
 def test_a_recording_deleted_in_flight_is_reported_and_continued(
     fccd: Path, tmp_path: Path
 ) -> None:

@@ -152,6 +152,13 @@ def test_a_helper_does_not_wait_for_a_debugger_that_is_stopped(fccd: Path, tmp_p
                 tracer.kill()
 
 
+@pytest.mark.fault(
+    "Around the flight",
+    "release helper ends, is killed or hangs",
+    "its end; pipe not emptied",
+    "20 ms; 5 s",
+    "event; restarted, five times a flight, once a second at most",
+)
 def test_a_helper_that_does_not_read_is_replaced(fccd: Path, tmp_path: Path) -> None:
     with flight(fccd, tmp_path) as (simulator, daemon):
         daemon.wait_until_ready()
@@ -245,6 +252,14 @@ def _daemon_then_helper(daemon: DaemonUnderTest, dice: random.Random) -> None:
 ORDERS: list[Kill] = [_daemon, _helper_then_daemon, _daemon_then_helper, _helper]
 
 
+@pytest.mark.fault(
+    "Around the flight",
+    "daemon and helper killed, overrides stay set",
+    "simulator's file, state file",
+    "next start; `warm`: 5 s at most",
+    "released until confirmed; only reported with `restart.release_left_held = false`, or if "
+    "the yoke stands still after a reboot or without either file",
+)
 def test_whoever_is_killed_the_controls_are_released_in_the_end(fccd: Path, tmp_path: Path) -> None:
     """Daemon, helper, both, in every order; after both, by the next start, which is cold."""
     dice = random.Random(12)

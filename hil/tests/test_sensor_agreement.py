@@ -166,6 +166,14 @@ def test_right_sensors_are_engaged_when_navigation_has_settled() -> None:
             assert machine.holds_control, "with the second reading of the switch"
 
 
+@pytest.mark.fault(
+    "Sensors",
+    "before engaging: wrong sign or unit of attitude, heading, rates, acceleration; pitch off "
+    "by 5°",
+    "[mutual contradiction](envelope.md#sensors-against-each-other)",
+    "1 to 5 s, partly only with motion",
+    "engaging refused",
+)
 @pytest.mark.parametrize("noisy", [False, True], ids=["exact", "noisy"])
 @pytest.mark.parametrize(
     ("wrong", "text"),

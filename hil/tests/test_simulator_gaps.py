@@ -135,6 +135,13 @@ def assert_lengths(flown: Flown, text: str) -> None:
         assert any(length_s - 0.11 < lasted_s < length_s + AT_ONCE_S for lasted_s in found), found
 
 
+@pytest.mark.fault(
+    "Simulator and link",
+    "simulator freezes briefly",
+    "silence, after which its time has not run on",
+    "immediately",
+    "[waited for](#silence-of-a-simulator), continues; event with length",
+)
 def test_a_freeze_is_flown_through(flights: dict[str, Flown]) -> None:
     flown = flights["freezes"]
     assert_engaged_throughout(flown)
@@ -142,6 +149,13 @@ def test_a_freeze_is_flown_through(flights: dict[str, Flown]) -> None:
     assert max(lengths_s(flown, LINK_LOST), default=0.0) < 1.0
 
 
+@pytest.mark.fault(
+    "Simulator and link",
+    "link cut briefly, aircraft flew on",
+    "its time ran on",
+    "first datagram",
+    "navigation settles anew, continues; event with length",
+)
 def test_a_cut_is_distinguished_from_a_freeze(flights: dict[str, Flown]) -> None:
     flown = flights["cuts"]
     assert_engaged_throughout(flown)
@@ -149,6 +163,20 @@ def test_a_cut_is_distinguished_from_a_freeze(flights: dict[str, Flown]) -> None
     assert max(lengths_s(flown, STOOD_STILL), default=0.0) < 1.0
 
 
+@pytest.mark.fault(
+    "Time",
+    "simulator's time and aircraft stand still while it sends, not paused",
+    "its clock",
+    "reported after 250 ms; {failsafe.all_silent_s} s (`failsafe.all_silent_s`)",
+    "waited for, then failsafe",
+)
+@pytest.mark.fault(
+    "Simulator and link",
+    "simulator shows map, menu, alert or replay",
+    "clock; silence; `sim/time/is_in_replay`",
+    "250 ms",
+    "waited for, a replay without writes; continues, or given back if elsewhere",
+)
 def test_a_map_and_a_replay_are_waited_out(flights: dict[str, Flown]) -> None:
     flown = flights["waits"]
     assert_engaged_throughout(flown)
@@ -161,6 +189,14 @@ def test_a_switch_moved_in_a_silence_is_reported(flights: dict[str, Flown]) -> N
     assert [event.startswith(UNSEEN) for event in flown.texts()].count(True) == 1
 
 
+@pytest.mark.fault(
+    "Simulator and link",
+    "simulator reloads or moves aircraft",
+    "both overrides cleared in two ticks; two unreachable positions; after a gap, an "
+    "unreachable altitude",
+    "second; 0.1 s; immediately",
+    "given back, event",
+)
 @pytest.mark.parametrize("action", RELOADS)
 def test_a_reload_is_released_at_once(flights: dict[str, Flown], action: str) -> None:
     flown = flights[action]

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 from daemon_under_test import engage, start, wait_until
 from other_user import NOBODY, as_user, needs_two_users
 
@@ -44,6 +45,14 @@ def write_beacon_config(scratch: Path) -> Path:
     return path
 
 
+@pytest.mark.fault(
+    "Simulator and link",
+    "flown simulator hangs, another announces itself",
+    "beacon",
+    "with beacon",
+    "first kept until 5 s after its confirmed release, or its port is closed; machine off: "
+    "restart `fccd`",
+)
 def test_a_simulator_that_hangs_is_kept_until_its_controls_are_released(
     fccd: Path, tmp_path: Path, beacon: tuple[str, int]
 ) -> None:

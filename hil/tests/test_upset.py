@@ -70,6 +70,13 @@ def test_full_aileron_for_seconds(
     _flown_on(flown)
 
 
+@pytest.mark.fault(
+    "The aircraft",
+    "upset, spin",
+    "[limits](envelope.md#upset-recovery)",
+    "immediately; stall 0.6 s, spin 0.1 s",
+    "recovery; events at begin and end",
+)
 @pytest.mark.parametrize(
     ("script", "most_lost_ft"),
     [

@@ -77,6 +77,13 @@ def _fly(break_it: Break, severity: int = 0) -> Flown:
     return Flown(rig.truth(), events, is_released=not rig.holds_control)
 
 
+@pytest.mark.fault(
+    "Sensors",
+    "attitude wrong in flight: offset, drift",
+    "[3.5° off the integrated rates](envelope.md#attitude-and-body-rates)",
+    "2 to 10 s",
+    "failsafe, *attitude lost*",
+)
 @pytest.mark.parametrize("severity", [0, 3])
 @pytest.mark.parametrize(
     "break_it",
@@ -101,6 +108,13 @@ def test_a_wrong_attitude_is_doubted_and_flown_on_without(break_it: Break, sever
     assert flown.when("failsafe cleared") < BEGINS_S + LASTS_S + 20.0
 
 
+@pytest.mark.fault(
+    "Sensors",
+    "body rates wrong in flight by more than 4 °/s",
+    "[3.5° off the integrated rates](envelope.md#attitude-and-body-rates)",
+    "2 to 6 s",
+    "failsafe, *body rates lost*",
+)
 @pytest.mark.parametrize("severity", [0, 3])
 @pytest.mark.parametrize(
     "break_it",
@@ -121,6 +135,13 @@ def test_wrong_body_rates_are_doubted_and_flown_on_without(break_it: Break, seve
     assert flown.when("failsafe cleared") < BEGINS_S + LASTS_S + 20.0
 
 
+@pytest.mark.fault(
+    "Sensors",
+    "body rates wrong by up to 4 °/s",
+    "[3.5° off the integrated rates](envelope.md#attitude-and-body-rates)",
+    "2 to 10 s",
+    "the offset is learned",
+)
 def test_an_offset_of_2_degrees_per_second_is_flown() -> None:
     flown = _fly(lambda f: f.bias("body_rates", by=2.0, after=BEGINS_S, lasts=LASTS_S))
     flown.stayed_inside()

@@ -31,6 +31,13 @@ def bound() -> socket.socket:
     return opened
 
 
+@pytest.mark.fault(
+    "Simulator and link",
+    "no traffic to or from X-Plane",
+    "ICMP, beacons",
+    "1.5 s of silence; 3 s if nothing at all",
+    "causes reported once; [ports](troubleshooting.md#ports-and-firewalls)",
+)
 @pytest.mark.usefixtures("beacon")
 def test_a_port_without_a_program_is_distinguished_from_one_that_does_not_answer(
     fccd: Path, tmp_path: Path
@@ -52,6 +59,13 @@ def test_a_port_without_a_program_is_distinguished_from_one_that_does_not_answer
         assert sum(cause in text for text in ending.events) == 1
 
 
+@pytest.mark.fault(
+    "Simulator and link",
+    "datagrams of another program or machine",
+    "[address, port](security.md#the-network)",
+    "immediately",
+    "not read",
+)
 def test_forged_values_of_another_port_are_not_read(fccd: Path, tmp_path: Path) -> None:
     with bound() as free:
         port = free.getsockname()[1]

@@ -76,10 +76,8 @@ schema! {
         /// Conditions that the controller reports while control is held changed
         /// (those that began, those that ended).
         ConditionsChanged = 19,
-        /// The controller noticed something (how long it lasted, ns, how large it was,
-        /// which one of several); the index is which. An autopilot's: 1 the simulator
-        /// stood still, 2 the link was lost, 5 the simulator's clock is missing, 10 an
-        /// item of the plan was reached.
+        /// The controller noticed something (how long it lasted, ns; how large it was,
+        /// in thousandths; which one of several); the index is which.
         Noticed = 20,
         /// Control is given back at once (why, one bit each, as in the flags of a
         /// state).
