@@ -318,6 +318,23 @@ impl Controller for Multicopter {
             Command::Circle(radius_m) => write!(f, "circle with a radius of {radius_m:.1} m"),
             Command::Return => f.write_str("return home"),
             Command::Land => f.write_str("land"),
+            Command::Move(to) => write!(
+                f,
+                "move by {:.1} m/s forward, {:.1} m/s right, {:.1} m/s up, {:.0}°/s of yaw",
+                to.forward_mps,
+                to.right_mps,
+                to.climb_mps,
+                to.yaw_radps.to_degrees()
+            ),
+            Command::Tilt(to) => write!(
+                f,
+                "tilt by {:.1}° of roll, {:.1}° of pitch, {:.1} m/s up, {:.0}°/s of yaw",
+                to.roll_rad.to_degrees(),
+                to.pitch_rad.to_degrees(),
+                to.climb_mps,
+                to.yaw_radps.to_degrees()
+            ),
+            Command::StopMotors => f.write_str("stop the motors"),
         }
     }
 
@@ -449,6 +466,7 @@ impl Controller for Multicopter {
             Some(Mode::Return) => "return",
             Some(Mode::Land) => "land",
             Some(Mode::Descend) => "descend",
+            Some(Mode::Stick) => "stick",
             None => "a mode of another version",
         }
     }

@@ -3,14 +3,15 @@
 use core::f64::consts::{FRAC_PI_2, TAU};
 
 use fcc_core::blocks::{wrap_pi, wrap_two_pi};
-use libm::{atan2, cos, hypot, sin, sqrt};
+use fcc_core::units::GRAVITY_MPS2;
+use libm::{atan2, cos, hypot, sin, sqrt, tan};
 use nalgebra::Vector3;
 
 use crate::estimator::State;
 use crate::plan::{Item, Waypoint};
 use crate::position::Reference;
-use crate::trajectory::{Leg, Trajectory, corner};
-use crate::values::{Command, Mode};
+use crate::trajectory::{Leg, SPEED_PER_S, Trajectory, corner};
+use crate::values::{Command, Mode, Velocity};
 
 /// The number of the notice that an item of the plan was reached.
 pub const ITEM_REACHED: u8 = 1;
@@ -25,6 +26,10 @@ const STOPS_AT_M: f64 = 2.0;
 const LOWEST_M: f64 = 1.0;
 /// Below this height above home it sinks slowly, m.
 const SLOWLY_BELOW_M: f64 = 4.0;
+/// A stick that is not given again for so long is let go, s.
+const LET_GO_AFTER_S: f64 = 2.0;
+/// How fast the speed approaches that of a tilted stick, 1/s.
+const TILT_PER_S: f64 = 0.5;
 /// Shorter legs do not turn the nose, m.
 const TURNS_FROM_M: f64 = 1.0;
 
@@ -85,6 +90,15 @@ enum Activity {
     Return(HomeLeg),
     Land,
     Descend,
+    Stick(Stick),
+}
+
+#[derive(Clone, Copy, PartialEq, Debug)]
+struct Stick {
+    wanted: Velocity,
+    /// How fast the speed over the ground approaches it, 1/s.
+    follows_per_s: f64,
+    age_s: f64,
 }
 
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -154,6 +168,7 @@ impl Guidance {
             Activity::Return(_) => Mode::Return,
             Activity::Land => Mode::Land,
             Activity::Descend => Mode::Descend,
+            Activity::Stick(_) => Mode::Stick,
         };
         (mode, self.item as u16)
     }
@@ -243,11 +258,33 @@ impl Guidance {
                 },
                 Command::Return => Item::Return,
                 Command::Land => Item::Land,
+                Command::StopMotors => return self.stop(),
+                Command::Move(wanted) => return self.take_stick(wanted, SPEED_PER_S),
+                Command::Tilt(tilt) => {
+                    let speed = |rad: f64| GRAVITY_MPS2 * tan(rad) / TILT_PER_S;
+                    let wanted = Velocity {
+                        forward_mps: -speed(tilt.pitch_rad),
+                        right_mps: speed(tilt.roll_rad),
+                        climb_mps: tilt.climb_mps,
+                        yaw_radps: tilt.yaw_radps,
+                    };
+                    return self.take_stick(wanted, TILT_PER_S);
+                }
                 Command::TakeOff(_) | Command::Plan(_) => return,
             };
             self.item = 0;
             self.begin(&item);
         }
+    }
+
+    fn take_stick(&mut self, wanted: Velocity, follows_per_s: f64) {
+        self.item = 0;
+        self.leg = Leg::default();
+        self.activity = Activity::Stick(Stick {
+            wanted,
+            follows_per_s,
+            age_s: 0.0,
+        });
     }
 
     fn fly_item(&mut self, item: usize) {
@@ -394,6 +431,7 @@ impl Guidance {
             }
             Activity::Land | Activity::Descend => self.sink(state, dt_s),
             Activity::Circle(circle) => self.circle(circle, path_s),
+            Activity::Stick(stick) => self.steer(stick, state, dt_s),
             Activity::Hover(left_s) => {
                 self.follow(path_s);
                 self.activity = Activity::Hover(left_s - dt_s);
@@ -460,6 +498,37 @@ impl Guidance {
         let off_m = (self.leg.to_m - self.path.position_m).component_mul(&level);
         let down = Vector3::new(0.0, 0.0, sink_mps);
         self.path.accelerate(&down, &off_m, most, jerk, dt_s);
+    }
+
+    fn steer(&mut self, mut stick: Stick, state: &State, dt_s: f64) {
+        let limits = &self.limits;
+        let wanted = &stick.wanted;
+        let (ahead, aside) = (wanted.forward_mps, wanted.right_mps);
+        let (sin, cos) = (sin(self.heading_rad), cos(self.heading_rad));
+        let level = Vector3::new(cos * ahead - sin * aside, sin * ahead + cos * aside, 0.0);
+        let level = level.cap_magnitude(limits.speed_mps);
+        if stick.follows_per_s < SPEED_PER_S {
+            // The tilt is the stick's: no error of place or speed adds to it.
+            let (place_m, speed_mps) = (&state.position_m, &state.velocity_mps);
+            (self.path.position_m.x, self.path.position_m.y) = (place_m.x, place_m.y);
+            (self.path.velocity_mps.x, self.path.velocity_mps.y) = (speed_mps.x, speed_mps.y);
+        }
+        let path = Vector3::new(self.path.velocity_mps.x, self.path.velocity_mps.y, 0.0);
+        let mut to_mps = path + (level - path) * (stick.follows_per_s / SPEED_PER_S);
+        // Brakes above the lowest height, by 1 m/s for each metre.
+        let sinks_mps = (-state.position_m.z - LOWEST_M).clamp(0.0, limits.sink_mps);
+        to_mps.z = -wanted.climb_mps.clamp(-sinks_mps, limits.climb_mps);
+        let most_radps = limits.yaw_rate_radps;
+        let yaw_radps = wanted.yaw_radps.clamp(-most_radps, most_radps);
+        self.wanted_heading_rad = wrap_two_pi(self.heading_rad + yaw_radps * dt_s);
+        let (most, jerk) = (limits.acceleration_mps2, limits.jerk_mps3);
+        let none = Vector3::zeros();
+        self.path.accelerate(&to_mps, &none, most, jerk, dt_s);
+        stick.age_s += dt_s;
+        self.activity = Activity::Stick(stick);
+        if stick.age_s > LET_GO_AFTER_S {
+            self.hold(f64::INFINITY);
+        }
     }
 
     fn circle(&mut self, mut circle: Circle, dt_s: f64) {

@@ -43,4 +43,6 @@ pub use landing::LandingDetector;
 pub use plan::{Item, Waypoint};
 pub use position::{PositionLoop, Reference};
 pub use trajectory::{Leg, Trajectory};
-pub use values::{Command, Estimate, GoTo, GroundContact, Mode, Setpoints, Shortfall};
+pub use values::{
+    Command, Estimate, GoTo, GroundContact, Mode, Setpoints, Shortfall, Tilt, Velocity,
+};

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 /// Of the way that is left, speed is at most this share per second, 1/s.
 const APPROACH_PER_S: f64 = 2.0;
 /// How fast a difference in speed disappears, 1/s: the approach is critically damped.
-const SPEED_PER_S: f64 = 4.0 * APPROACH_PER_S;
+pub(crate) const SPEED_PER_S: f64 = 4.0 * APPROACH_PER_S;
 /// The share of the acceleration that braking uses; the rest is for turning.
 const BRAKING: f64 = 0.6;
 

@@ -25,6 +25,8 @@ schema! {
         Land = 7,
         /// Descend without a position.
         Descend = 8,
+        /// Follow a stick.
+        Stick = 9,
     }
 }
 
@@ -164,6 +166,45 @@ schema! {
 }
 
 schema! {
+    /// A stick that demands velocities. Not given again for 2 s it is let go: it hovers.
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub struct Velocity {
+        /// Along the nose.
+        #[field(1)]
+        pub forward_mps: f64,
+        /// To its right.
+        #[field(2)]
+        pub right_mps: f64,
+        /// Upwards.
+        #[field(3)]
+        pub climb_mps: f64,
+        /// Clockwise from above.
+        #[field(4)]
+        pub yaw_radps: f64,
+    }
+}
+
+schema! {
+    /// A stick that tilts: it speeds up by g tan of the tilt, less as it gets faster. Not given
+    /// again for 2 s it is let go: it hovers.
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub struct Tilt {
+        /// Right side down.
+        #[field(1, range = -FRAC_PI_2..=FRAC_PI_2)]
+        pub roll_rad: f64,
+        /// Nose up.
+        #[field(2, range = -FRAC_PI_2..=FRAC_PI_2)]
+        pub pitch_rad: f64,
+        /// Upwards.
+        #[field(3)]
+        pub climb_mps: f64,
+        /// Clockwise from above.
+        #[field(4)]
+        pub yaw_radps: f64,
+    }
+}
+
+schema! {
     /// A command to a multicopter. One that is not possible now is ignored: all but the take-off
     /// and the plan on the ground, the take-off in the air.
     #[derive(Clone, Copy, PartialEq, Debug)]
@@ -191,5 +232,14 @@ schema! {
         /// Land where it is.
         #[field(7)]
         Land,
+        /// Follow a stick that demands velocities.
+        #[field(8)]
+        Move(velocity: Velocity),
+        /// Follow a stick that tilts.
+        #[field(9)]
+        Tilt(tilt: Tilt),
+        /// Stop the motors at once, also in the air.
+        #[field(10)]
+        StopMotors,
     }
 }

@@ -13,7 +13,7 @@ use std::time::Duration;
 use fcc_core::flight::Measurements;
 use fcc_core::framework::{AfterRelease, LoopCommand, Sensor, SensorFault, State, Switch, Tick};
 use fcc_multicopter::{
-    Airframe, Command, GoTo, Item, Mode, Multicopter, MulticopterConfig, Waypoint,
+    Airframe, Command, GoTo, Item, Mode, Multicopter, MulticopterConfig, Tilt, Velocity, Waypoint,
 };
 use fcc_runtime::{Link, LoopConfig, Machine, Parts};
 use fcc_sim::multirotor::{Frame, MultirotorConfig, MultirotorSensor, MultirotorSimulation};
@@ -472,6 +472,68 @@ fn circle_and_return() {
     );
     flight.until(Mode::Idle, 40.0);
     assert!(flight.place().xy().norm() < 1.0, "{}", flight.place());
+}
+
+/// It begins to the north, with its nose there. A stick that is let go brings it to a hover
+/// after 2 s.
+#[test]
+fn a_stick_that_demands_velocities() {
+    let mut flight = Flight::new(&HOVER, &windy(315));
+    flight.until(Mode::Hover, 20.0);
+    let right = Command::Move(Velocity {
+        forward_mps: 3.0,
+        right_mps: -1.5,
+        climb_mps: 1.0,
+        yaw_radps: 0.0,
+    });
+    flight.send(right);
+    flight.during(1.0, |_| ());
+    let before = flight.place();
+    flight.during(0.9, |_| ());
+    let moved = (flight.place() - before) / 0.9;
+    assert!(
+        (moved - Vector3::new(3.0, -1.5, 1.0)).norm() < 0.3,
+        "{moved}"
+    );
+    assert_eq!(flight.mode(), Mode::Stick);
+    flight.until(Mode::Hover, 0.2);
+    flight.during(4.0, |_| ());
+    let held = flight.place();
+    flight.during(1.0, |_| ());
+    assert!((flight.place() - held).norm() < 0.3);
+}
+
+/// A tilt of 0.2 rad speeds it up by g tan 0.2, 1.99 m/s², at first; sinking ends 1 m above home.
+#[test]
+fn a_stick_that_tilts() {
+    let mut flight = Flight::new(&HOVER, &without_noise(MultirotorConfig::default()));
+    flight.until(Mode::Hover, 20.0);
+    flight.during(5.0, |_| ());
+    let tilt = Tilt {
+        roll_rad: 0.2,
+        pitch_rad: 0.0,
+        climb_mps: -2.0,
+        yaw_radps: 0.0,
+    };
+    let from = flight.place();
+    flight.send(Command::Tilt(tilt));
+    flight.during(1.5, |_| ());
+    // s = ∫ v with v = a/k (1 - e^-kt), k = 0.5/s, a quarter of a second late.
+    let moved = flight.place() - from;
+    assert!(
+        moved.x.abs() < 0.1 && (moved.y - 1.49).abs() < 0.4,
+        "{moved}"
+    );
+    for _ in 0..20 {
+        flight.send(Command::Tilt(Tilt {
+            roll_rad: 0.0,
+            ..tilt
+        }));
+        flight.during(0.5, |_| ());
+    }
+    assert!((flight.place().z - 1.0).abs() < 0.4, "{}", flight.place());
+    flight.send(Command::StopMotors);
+    flight.until(Mode::Idle, 0.1);
 }
 
 /// Released means a descent, and motors off on the ground: switched off, disengaged or stopped in

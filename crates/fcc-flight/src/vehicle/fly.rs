@@ -55,6 +55,16 @@ pub fn fly_vehicle<V: Vehicle>(
     let sections = V::sections(config);
     let loop_config = loop_config(&sections);
     let unopened = |why: String| FlyError::Host(std::io::Error::other(why));
+    let ends_at_rest = V::ends_at_rest(config);
+    let commanders = match pace {
+        Pace::RealTime => V::commanders(config).map_err(unopened)?,
+        Pace::Lockstep if ends_at_rest => Vec::new(),
+        Pace::Lockstep => {
+            return Err(unopened(
+                "others command this flight, in real time: fly it without --lockstep".to_owned(),
+            ));
+        }
+    };
     let opened = V::open(config).map_err(unopened)?;
     host.prepare(None).map_err(FlyError::Host)?;
     let timer: Box<dyn Timer> = match pace {
@@ -69,6 +79,7 @@ pub fn fly_vehicle<V: Vehicle>(
         all.push(Box::new(FlightRecorder::<V>::new(request)));
     }
     all.push(V::scorer(opened.truth));
+    all.extend(commanders);
     all.extend(observers);
     // The last, so that it receives what the others report at their end.
     all.push(Box::new(EventLog::default()));
@@ -96,6 +107,7 @@ pub fn fly_vehicle<V: Vehicle>(
     let wish = StopHandle::default();
     host.attach(&wish).map_err(FlyError::Host)?;
     let flown = Flown {
+        ends_at_rest,
         seconds: seconds.unwrap_or(LONGEST_S),
         wish,
         ..Flown::default()
@@ -133,6 +145,7 @@ pub fn fly_vehicle<V: Vehicle>(
 /// What is known of the flight so far.
 #[derive(Default)]
 struct Flown {
+    ends_at_rest: bool,
     seconds: f64,
     /// The host stops the flight.
     wish: StopHandle,
@@ -163,7 +176,8 @@ impl<V: Vehicle> Flight<'_, V> {
             if let Message::Tick(record) = &message {
                 let rests = V::rests(record);
                 self.flown.has_moved |= !rests;
-                self.flown.is_over |= self.flown.has_moved && rests;
+                let ends = self.flown.ends_at_rest || self.flown.ends;
+                self.flown.is_over |= ends && self.flown.has_moved && rests;
                 if record.state == State::Engaged {
                     let now_s = self.list.monitor.at().time_s;
                     self.flown.engaged_since_s.get_or_insert(now_s);

@@ -4,6 +4,7 @@
 //! how its parts are opened. All else is generic: the loop, the observers, the recording and its
 //! replay. A program lists the vehicles that it knows, one line each.
 
+mod ardrone;
 mod fly;
 mod multicopter;
 mod multicopter_plan;
@@ -18,6 +19,7 @@ use fcc_sim::TruthHandle;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+pub use ardrone::ArDroneKeys;
 pub use fly::fly_vehicle;
 pub use multicopter::MulticopterFile;
 
@@ -62,6 +64,19 @@ pub trait Vehicle: Recorded + Sized {
     /// # Errors
     /// What cannot be opened.
     fn open(config: &Self::Config) -> Result<Opened<Self>, String>;
+
+    /// Who flies it in real time beside its plan: observers that command.
+    ///
+    /// # Errors
+    /// What cannot be opened.
+    fn commanders(_config: &Self::Config) -> Result<Vec<Box<dyn Observer<Self>>>, String> {
+        Ok(Vec::new())
+    }
+
+    /// Whether the flight is over when it has landed: not if others command it.
+    fn ends_at_rest(_config: &Self::Config) -> bool {
+        true
+    }
 
     /// Scores a flight by the truth.
     fn scorer(truth: TruthReceiver) -> Box<dyn Observer<Self>>;

@@ -11,6 +11,7 @@ use fcc_sim::{Channels, MultirotorConfig, MultirotorSimulation, SimConfig, Wind}
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use super::ardrone::{ArDrone, ArDroneKeys};
 use super::multicopter_plan::{PlanItem, of_file, tour};
 use super::multicopter_score::Score;
 use super::{Opened, Sections, Vehicle, Wishes};
@@ -40,6 +41,8 @@ pub struct MulticopterFile {
     /// The built-in multicopter.
     #[serde(rename = "built-in")]
     pub built_in: BuiltInKeys,
+    /// Clients of the AR.Drone.
+    pub ardrone: ArDroneKeys,
     /// What is flown.
     pub plan: Vec<PlanItem>,
 }
@@ -138,6 +141,7 @@ impl Default for MulticopterFile {
             limits: LimitKeys::default(),
             sensors: SensorKeys::default(),
             built_in: BuiltInKeys::default(),
+            ardrone: ArDroneKeys::default(),
             plan: tour(),
         }
     }
@@ -281,7 +285,12 @@ impl MulticopterFile {
     /// The core's; the plan stays in memory until the program ends.
     fn to_core(&self) -> MulticopterConfig {
         let keys = &self.limits;
-        let plan: Vec<_> = self.plan.iter().map(|item| item.to_core()).collect();
+        let flown = if self.ardrone.address.is_some() {
+            &[]
+        } else {
+            self.plan.as_slice()
+        };
+        let plan: Vec<_> = flown.iter().map(|item| item.to_core()).collect();
         MulticopterConfig {
             airframe: self.airframe(),
             period_s: self.tick.period().as_secs_f64(),
@@ -404,6 +413,18 @@ impl Vehicle for Multicopter {
             truth,
             true_now: simulation.truth,
         })
+    }
+
+    fn commanders(config: &MulticopterFile) -> Result<Vec<Box<dyn Observer<Self>>>, String> {
+        let variation_rad = config.sensors.magnetic_variation_deg.to_radians();
+        let ardrone = config.ardrone.address;
+        let ardrone = ardrone.map(|address| ArDrone::open(address, variation_rad));
+        let ardrone = ardrone.transpose()?;
+        Ok(ardrone.into_iter().map(|one| Box::new(one) as _).collect())
+    }
+
+    fn ends_at_rest(config: &MulticopterFile) -> bool {
+        config.ardrone.address.is_none()
     }
 
     fn scorer(truth: TruthReceiver) -> Box<dyn Observer<Self>> {
