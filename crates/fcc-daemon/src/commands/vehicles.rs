@@ -6,20 +6,25 @@ use std::time::Instant;
 use fcc_core::framework::MessageOf;
 
 use fcc_flight::config::{Config, ConfigError};
-use fcc_flight::flight::FlyError;
-use fcc_flight::vehicle::{Vehicle, Wishes, fly_vehicle, parse, replay_vehicle, vehicle_in};
+use fcc_flight::flight::{FlyError, Pace};
+use fcc_flight::vehicle::{
+    Vehicle, Wishes, fly_vehicle, live_vehicle, parse, replay_vehicle, vehicle_in,
+};
+use fcc_live::{Commandable, RowWatcher};
 use fcc_multicopter::Multicopter;
 use fcc_record::Recording;
 use fcc_replay::{Chain, Comparison, Identity};
 use fcc_report::Reported;
 use fcc_runtime::SpawnError;
+use fcc_telemetry::Instance;
+use fcc_top::Watched;
 
 use super::failure::{Failure, not_opened};
-use super::{fly, replay, report};
+use super::{fly, replay, report, top};
 use crate::cli::{FlyArgs, ReplayArgs, ReportArgs};
 use crate::exit::Exit;
 use crate::observers::{Announcer, Service, StatusLine};
-use crate::process::Process;
+use crate::process::{Process, own_program};
 
 /// All of them.
 const KINDS: &[Kind] = &[Kind::of::<Multicopter>()];
@@ -33,17 +38,19 @@ pub(super) struct Kind {
     pub(super) fly: fn(&FlyArgs) -> Result<Exit, Failure>,
     pub(super) replay: fn(&ReplayArgs) -> Result<Exit, Failure>,
     pub(super) report: fn(&ReportArgs) -> Result<Exit, Failure>,
+    pub(super) top: fn(&Instance, bool) -> Result<Exit, Failure>,
     /// Describes a valid configuration.
     pub(super) check: fn(&str, &str) -> Result<String, ConfigError>,
 }
 
 impl Kind {
-    const fn of<V: Vehicle + Reported<Addition = ()>>() -> Self {
+    const fn of<V: Vehicle + Reported<Addition = ()> + Commandable + Watched>() -> Self {
         Self {
             name: V::NAME,
             fly: fly_it::<V>,
             replay: replay_it::<V>,
             report: report_it::<V>,
+            top: top::watch::<V>,
             check: |text, file| {
                 let config = parse::<V>(text, file)?;
                 Ok(V::check(&config).unwrap_or_default())
@@ -66,6 +73,12 @@ impl Kind {
         Self::named(&Recording::open(file).ok()?.about().plant)
     }
 
+    /// The vehicle that is published under a name.
+    pub(super) fn of_instance(instance: &Instance) -> Option<&'static Self> {
+        let watcher = RowWatcher::open(instance).ok()?;
+        Self::named(&watcher.info().plant.to_string())
+    }
+
     /// The vehicle of a command line, or of the configuration that it names.
     pub(super) fn of_flight(args: &FlyArgs) -> Result<Option<&'static Self>, Failure> {
         let Some(name) = &args.vehicle else {
@@ -85,7 +98,7 @@ impl Kind {
     }
 }
 
-fn fly_it<V: Vehicle>(args: &FlyArgs) -> Result<Exit, Failure> {
+fn fly_it<V: Vehicle + Commandable>(args: &FlyArgs) -> Result<Exit, Failure> {
     let (mut config, as_given) = match &args.config {
         None => (V::Config::default(), None),
         Some(path) => {
@@ -100,10 +113,16 @@ fn fly_it<V: Vehicle>(args: &FlyArgs) -> Result<Exit, Failure> {
         plan: args.plan.as_deref(),
         recordings: args.recording.recordings.as_deref(),
         not_recorded: args.recording.no_recording,
+        instance: args.instance.as_ref(),
     };
     V::apply(&mut config, &wishes).map_err(|wrong| Failure::of(Exit::Usage, wrong))?;
     let mut observers: Vec<Box<dyn fcc_flight::flight::Observer<V>>> =
         vec![Box::new(Announcer::default())];
+    let pace = fly::pace(args);
+    if pace == Pace::RealTime {
+        let publisher = Box::new(|| Ok(own_program("publisher")));
+        observers.extend(live_vehicle::<V>(&config, publisher));
+    }
     if !args.quiet {
         observers.push(Box::new(StatusLine::new(
             V::describe,
@@ -116,7 +135,7 @@ fn fly_it<V: Vehicle>(args: &FlyArgs) -> Result<Exit, Failure> {
     let outcome = fly_vehicle::<V>(
         &config,
         as_given,
-        (fly::pace(args), args.seconds),
+        (pace, args.seconds),
         observers,
         &mut Process::new(&aeroplane),
     )

@@ -20,7 +20,7 @@ use super::event_log::EventLog;
 use super::limits::setpoint_limits;
 use super::line_watch::LineWatch;
 #[cfg(feature = "live")]
-use super::live::Live;
+use super::live::{FlightPlans, Live};
 use super::observer::Observer;
 #[cfg(feature = "live")]
 use super::other_users::CommandSocket;
@@ -268,10 +268,13 @@ impl Assembly {
         // In lockstep there is no real time for live telemetry.
         if cfg!(feature = "live") && config.telemetry.enabled && pace == Pace::RealTime {
             #[cfg(feature = "live")]
-            observers.push(Box::new(Live::<Autopilot>::new(
-                config,
+            observers.push(Box::new(Live::new(
+                &config.telemetry,
+                &config.tick,
+                None,
                 SentCommands::new(setpoint_limits(autopilot)),
                 self.publisher.take(),
+                FlightPlans::new(config),
             )));
             #[cfg(feature = "live")]
             if config.telemetry.commands && config.rights.has_commanders() {

@@ -4,75 +4,127 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use fcc_core::framework::{Controller, EventOf, RecordOf};
-use fcc_fixed_wing::{AutopilotCommand, Setpoints};
+use fcc_fixed_wing::Autopilot;
 use fcc_live::{
-    Command, Commandable, Event, Info, PublisherOf, RecorderState, RecorderStatus, SentCommands,
-    StartPublisher, Text, Verdict,
+    Command, Commandable, Event, Info, PendingCommand, PublisherOf, RecorderState, RecorderStatus,
+    SentCommands, StartPublisher, Text, Verdict,
 };
 use fcc_record as recording;
-use fcc_telemetry::Instance;
 
 use super::limits::FlownPlan;
 use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 use super::outcome::Outcome;
 use super::plan_reader::{PlanReader, first_of};
-use crate::config::Config;
+use crate::config::{Config, LoopSection, PreparedPlan, TelemetrySection};
 
 /// How long the publishing thread may be delayed before records are left out, at
 /// 1 kHz or less.
 const PUBLISHED_WITHIN_S: f64 = 2.0;
 const MOST_WAITING: usize = 2_048;
 
+/// The plans that commands replace; `()` has none.
+pub(crate) trait Plans<C: Commandable> {
+    /// Follows what is flown.
+    fn follow(&mut self, _record: &RecordOf<C>, _commands: &mut SentCommands<C>) {}
+
+    /// Begins to read a plan; an answer if that is not possible.
+    fn begin(&mut self, asked: PendingCommand, _: PathBuf, _: u16) -> Option<(u64, Verdict)> {
+        let refused = "the plan of this vehicle is not replaced in flight".to_owned();
+        Some((asked.id, Verdict::Refused(refused)))
+    }
+
+    /// A plan that was read, and its command.
+    fn read(&mut self) -> Option<(PendingCommand, Result<Prepared<C>, String>)> {
+        None
+    }
+}
+
+type Prepared<C> = (PreparedPlan, <C as Controller>::Command);
+
+impl<C: Commandable> Plans<C> for () {}
+
+/// Those of an aeroplane.
+pub(super) struct FlightPlans {
+    reader: PlanReader,
+    flown: FlownPlan,
+}
+
+impl FlightPlans {
+    pub(super) fn new(config: &Config) -> Self {
+        Self {
+            reader: PlanReader::new(config),
+            flown: FlownPlan::default(),
+        }
+    }
+}
+
+impl Plans<Autopilot> for FlightPlans {
+    fn follow(&mut self, record: &RecordOf<Autopilot>, commands: &mut SentCommands<Autopilot>) {
+        self.flown.follow(&record.setpoints, commands);
+    }
+
+    fn begin(&mut self, asked: PendingCommand, file: PathBuf, item: u16) -> Option<(u64, Verdict)> {
+        self.reader.begin(asked, file, item)
+    }
+
+    fn read(&mut self) -> Option<(PendingCommand, Result<Prepared<Autopilot>, String>)> {
+        let (asked, read) = self.reader.take()?;
+        let with_command = |plan: PreparedPlan| {
+            let command = plan.command();
+            (plan, command)
+        };
+        Some((asked, read.map(with_command)))
+    }
+}
+
 /// Publishes the run of a loop and receives commands; without effect if that is
 /// not possible.
-pub(super) struct Live<C: Commandable> {
-    instance: Instance,
-    takes_commands: bool,
+pub(crate) struct Live<C: Commandable, P = ()> {
+    telemetry: TelemetrySection,
+    /// The vehicle; without a name, that of the sensors.
+    plant: Option<&'static str>,
     /// The most records that wait to be published.
     waiting: usize,
     /// Starts the process that publishes; a thread does without it.
     process: Option<StartPublisher>,
     publisher: Option<PublisherOf<C>>,
     commands: SentCommands<C>,
-    plans: PlanReader,
-    flown: FlownPlan,
+    plans: P,
     /// The newest tick.
     at: FlightTime,
 }
 
-impl<C: Commandable> Live<C> {
-    pub(super) fn new(
-        config: &Config,
+impl<C: Commandable, P: Plans<C>> Live<C, P> {
+    pub(crate) fn new(
+        telemetry: &TelemetrySection,
+        tick: &LoopSection,
+        plant: Option<&'static str>,
         commands: SentCommands<C>,
         process: Option<StartPublisher>,
+        plans: P,
     ) -> Self {
         Self {
-            instance: config.telemetry.instance.clone(),
-            takes_commands: config.telemetry.commands,
-            waiting: config.tick.ticks_in(PUBLISHED_WITHIN_S, MOST_WAITING),
+            telemetry: telemetry.clone(),
+            plant,
+            waiting: tick.ticks_in(PUBLISHED_WITHIN_S, MOST_WAITING),
             process,
             publisher: None,
             commands,
-            plans: PlanReader::new(config),
-            flown: FlownPlan::default(),
+            plans,
             at: FlightTime::default(),
         }
     }
 }
 
-impl<C> Observer<C> for Live<C>
-where
-    C: Commandable + Controller<Command = AutopilotCommand, Setpoints = Setpoints>,
-{
+impl<C: Commandable, P: Plans<C>> Observer<C> for Live<C, P> {
     /// Begins to publish. Without shared memory the flight continues, and this
     /// is reported.
     fn prepare(&mut self, reports: &mut Reports) {
-        let (instance, waiting) = (&self.instance, self.waiting);
+        let (instance, waiting) = (&self.telemetry.instance, self.waiting);
+        let takes_commands = self.telemetry.commands;
         let started = match self.process.take() {
-            Some(process) => {
-                PublisherOf::start_process(process, instance, waiting, self.takes_commands)
-            }
-            None if self.takes_commands => PublisherOf::start_with_commands(instance, waiting),
+            Some(process) => PublisherOf::start_process(process, instance, waiting, takes_commands),
+            None if takes_commands => PublisherOf::start_with_commands(instance, waiting),
             None => PublisherOf::start(instance, waiting),
         };
         match started {
@@ -97,8 +149,10 @@ where
             memory_locked: granted.memory_locked.into(),
             requests_denied: refusals.len() as u32,
             refusals: Text::new(&refusals.join("\n")),
-            // Named by its sensors.
-            plant: Text::new(&facts.sensors.join(", ")),
+            plant: match self.plant {
+                Some(name) => Text::new(name),
+                None => Text::new(&facts.sensors.join(", ")),
+            },
             ..Info::of_this_process()
         });
     }
@@ -107,7 +161,7 @@ where
         self.at = *at;
         if let Some(publisher) = &mut self.publisher {
             publisher.record(record);
-            self.flown.follow(&record.setpoints, &mut self.commands);
+            self.plans.follow(record, &mut self.commands);
             let (tick, state) = (record.tick.number, record.state.state());
             while let Some((id, verdict)) = self.commands.verdict(tick, state) {
                 publisher.answer(id, verdict);
@@ -159,10 +213,9 @@ where
                 publisher.answer(id, verdict);
             }
         }
-        if let Some((asked, read)) = self.plans.take() {
+        if let Some((asked, read)) = self.plans.read() {
             let known = match read {
-                Ok(plan) => {
-                    let command = plan.command();
+                Ok((plan, command)) => {
                     for words in first_of(&plan.remarks) {
                         publisher.event(Event::remark(self.at.tick, self.at.woke_ns, &words));
                         access.reports.remark(words);

@@ -24,7 +24,7 @@ mod injection;
 mod limits;
 mod line_watch;
 #[cfg(feature = "live")]
-mod live;
+pub(crate) mod live;
 pub(crate) mod monitor;
 mod observer;
 pub(crate) mod observer_list;

@@ -95,7 +95,7 @@ mod tests {
     use super::super::conformance::observer_conforms;
     use super::super::event_log::EventLog;
     #[cfg(feature = "live")]
-    use super::super::live::Live;
+    use super::super::live::{FlightPlans, Live};
     use super::super::recording::{FlightRecorder, RecordingRequest};
     use super::super::restart::{RestartKeeper, RestartRequest};
     use super::super::scorer::Scorer;
@@ -170,7 +170,9 @@ mod tests {
         #[cfg(feature = "live")]
         observer_conforms(|| {
             let commands = SentCommands::new(vec![("airspeed_mps", Ok(30.0..=80.0))]);
-            Box::new(Live::<Autopilot>::new(&config, commands, None))
+            let plans = FlightPlans::new(&config);
+            let (telemetry, tick) = (&config.telemetry, &config.tick);
+            Box::new(Live::new(telemetry, tick, None, commands, None, plans))
         });
     }
 }

@@ -13,9 +13,12 @@ mod multicopter_score;
 use std::path::Path;
 
 use fcc_core::framework::{Actuator, Controller, RecordOf, Sensor, Switch};
+#[cfg(feature = "live")]
+use fcc_live::{Commandable, SentCommands, StartPublisher};
 use fcc_record::Recorded;
 use fcc_replay::{Chain, Replay};
 use fcc_sim::TruthHandle;
+use fcc_telemetry::Instance;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -25,8 +28,11 @@ pub use multicopter::MulticopterFile;
 
 use crate::config::{
     ConfigError, GustsChoice, LoopSection, Problem, RealtimeSection, RecordingSection,
+    TelemetrySection,
 };
 use crate::flight::Observer;
+#[cfg(feature = "live")]
+use crate::flight::live::Live;
 use crate::flight::truth_recorder::TruthReceiver;
 
 /// What a vehicle declares.
@@ -99,6 +105,8 @@ pub struct Sections<'a> {
     pub realtime: &'a RealtimeSection,
     /// Where flights are recorded.
     pub recording: &'a RecordingSection,
+    /// Live telemetry.
+    pub telemetry: &'a TelemetrySection,
 }
 
 /// What a command line says; what is none stays as configured.
@@ -114,6 +122,8 @@ pub struct Wishes<'a> {
     pub recordings: Option<&'a Path>,
     /// Whether nothing is recorded.
     pub not_recorded: bool,
+    /// The name under which it is published.
+    pub instance: Option<&'a Instance>,
 }
 
 /// The parts of a vehicle that a loop samples and drives.
@@ -126,6 +136,21 @@ pub struct Opened<V: Controller> {
     pub truth: TruthReceiver,
     /// The present truth.
     pub true_now: TruthHandle,
+}
+
+/// Publishes a flight in real time, by the process that `process` starts, and takes commands for
+/// it; none if its configuration does not want that.
+#[cfg(feature = "live")]
+pub fn live_vehicle<V: Vehicle + Commandable>(
+    config: &V::Config,
+    process: StartPublisher,
+) -> Option<Box<dyn Observer<V>>> {
+    let Sections {
+        telemetry, tick, ..
+    } = V::sections(config);
+    let commands = SentCommands::new(Vec::new());
+    let live = Live::new(telemetry, tick, Some(V::NAME), commands, Some(process), ());
+    telemetry.enabled.then(|| Box::new(live) as _)
 }
 
 /// The name of the vehicle in a configuration; none if it is an aeroplane's.

@@ -15,7 +15,9 @@ use super::ardrone::{ArDrone, ArDroneKeys};
 use super::multicopter_plan::{PlanItem, of_file, tour};
 use super::multicopter_score::Score;
 use super::{Opened, Sections, Vehicle, Wishes};
-use crate::config::{GustsChoice, LoopSection, RealtimeSection, RecordingSection};
+use crate::config::{
+    GustsChoice, LoopSection, RealtimeSection, RecordingSection, TelemetrySection,
+};
 use crate::flight::Observer;
 use crate::flight::truth_recorder::{TruthReceiver, tap};
 
@@ -32,6 +34,8 @@ pub struct MulticopterFile {
     pub realtime: RealtimeSection,
     /// Where flights are recorded.
     pub recording: RecordingSection,
+    /// Live telemetry, and commands.
+    pub telemetry: TelemetrySection,
     /// The rotors and the body.
     pub airframe: AirframeKeys,
     /// What is not exceeded.
@@ -137,6 +141,7 @@ impl Default for MulticopterFile {
             },
             realtime: RealtimeSection::default(),
             recording: RecordingSection::default(),
+            telemetry: TelemetrySection::default(),
             airframe: AirframeKeys::default(),
             limits: LimitKeys::default(),
             sensors: SensorKeys::default(),
@@ -350,6 +355,7 @@ impl Vehicle for Multicopter {
             tick: &config.tick,
             realtime: &config.realtime,
             recording: &config.recording,
+            telemetry: &config.telemetry,
         }
     }
 
@@ -369,6 +375,9 @@ impl Vehicle for Multicopter {
             recording.enabled = true;
         }
         recording.enabled &= !wishes.not_recorded;
+        if let Some(instance) = wishes.instance {
+            config.telemetry.instance = instance.clone();
+        }
         Self::check(config).map(|_| ())
     }
 

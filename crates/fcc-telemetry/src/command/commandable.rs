@@ -287,6 +287,88 @@ mod flight {
     }
 }
 
+#[cfg(feature = "flight")]
+mod multicopter {
+    use fcc_multicopter::{Command, GoTo, Multicopter, Velocity};
+
+    use super::{Commandable, CommandableSetpoint, JointSetpoints};
+
+    const MODES: &str = "several modes are given: give one of take_off_m, plan_item, pause, circle_radius_m, \
+         return_home, land and stop_motors";
+
+    const fn mode(
+        name: &'static str,
+        (least, most): (f64, f64),
+        command: fn(f64) -> Command,
+    ) -> CommandableSetpoint<Command> {
+        CommandableSetpoint {
+            name,
+            limits: least..=most,
+            command,
+            needs_control: true,
+            alternatives: Some(MODES),
+        }
+    }
+
+    /// Without a value that matters.
+    const ORDER: (f64, f64) = (1.0, 1.0);
+    const MOST_MPS: f64 = 20.0;
+
+    impl Commandable for Multicopter {
+        const SETPOINTS: &'static [CommandableSetpoint<Command>] = &[
+            mode("take_off_m", (1.0, 120.0), Command::TakeOff),
+            mode("plan_item", (1.0, 1_000.0), |item| {
+                Command::Plan(item as u16)
+            }),
+            mode("pause", ORDER, |_| Command::Hover),
+            mode("circle_radius_m", (1.0, 500.0), Command::Circle),
+            mode("return_home", ORDER, |_| Command::Return),
+            mode("land", ORDER, |_| Command::Land),
+            mode("stop_motors", ORDER, |_| Command::StopMotors),
+        ];
+
+        const JOINT: &'static [JointSetpoints<Command>] = &[
+            JointSetpoints {
+                parts: &[
+                    ("go_to_north_m", -5_000.0..=5_000.0),
+                    ("go_to_east_m", -5_000.0..=5_000.0),
+                    ("go_to_height_m", 1.0..=120.0),
+                ],
+                command: |values| match *values {
+                    [north_m, east_m, height_m] => Some(Command::GoTo(GoTo {
+                        north_m,
+                        east_m,
+                        height_m,
+                        heading_rad: None,
+                    })),
+                    _ => None,
+                },
+                incomplete: "a place needs all of go_to_north_m, go_to_east_m and go_to_height_m",
+            },
+            JointSetpoints {
+                parts: &[
+                    ("forward_mps", -MOST_MPS..=MOST_MPS),
+                    ("right_mps", -MOST_MPS..=MOST_MPS),
+                    ("climb_mps", -MOST_MPS..=MOST_MPS),
+                    ("yaw_radps", -6.0..=6.0),
+                ],
+                command: |values| match *values {
+                    [forward_mps, right_mps, climb_mps, yaw_radps] => {
+                        Some(Command::Move(Velocity {
+                            forward_mps,
+                            right_mps,
+                            climb_mps,
+                            yaw_radps,
+                        }))
+                    }
+                    _ => None,
+                },
+                incomplete: "a stick needs all of forward_mps, right_mps, climb_mps and yaw_radps",
+            },
+        ];
+    }
+}
+
 #[cfg(all(test, feature = "flight"))]
 mod tests {
     use crate::units::AVIATION;

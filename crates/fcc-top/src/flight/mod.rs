@@ -6,12 +6,17 @@ mod table;
 
 use fcc_core::framework::{RecordOf, State};
 use fcc_fixed_wing::Autopilot;
+use fcc_multicopter::Multicopter;
 use fcc_telemetry::ShownAltitude;
 use fcc_telemetry::units::PA_HPA;
 use serde_json::{Map, Value, json};
 
 use self::table::Quantity;
 use super::watched::{ScreenPart, Watched};
+
+impl Watched for Multicopter {
+    const PROGRAM: &'static str = "fccd";
+}
 
 impl Watched for Autopilot {
     const PROGRAM: &'static str = "fccd";
