@@ -55,20 +55,8 @@ pub const PLANT_REPLAYING: Flags = Flags::bit(23);
 
 /// Another autopilot's servos move the controls.
 pub const OTHER_AUTOPILOT: Flags = Flags::bit(24);
-/// Another autothrottle moves the throttles.
-pub const OTHER_AUTOTHROTTLE: Flags = Flags::bit(25);
-/// Another flight control computer determines the control surfaces.
-pub const FLY_BY_WIRE: Flags = Flags::bit(26);
-/// Artificial stability adds to the controls.
-pub const STABILITY: Flags = Flags::bit(27);
-/// Another program writes the controls.
-pub const OTHER_WRITER: Flags = Flags::bit(28);
-/// Thrust is reversed.
-pub const REVERSE_THRUST: Flags = Flags::bit(29);
 /// The simulator's time runs more than twice as fast as ours.
 pub const PLANT_FAST: Flags = Flags::bit(30);
-/// The airspeed contradicts its source's other values.
-pub const SUSPECT_AIRSPEED: Flags = Flags::bit(31);
 /// The airspeed contradicts the other sensors and is not used.
 pub const DOUBTED_AIRSPEED: Flags = Flags::bit(32);
 /// The aircraft is recovered from an upset.
@@ -183,7 +171,6 @@ pub(super) const NOT_SENSED: Flags = Flags::from_bits(
         | FROZEN_SPECIFIC_FORCE.bits()
         | FROZEN_AIRSPEED.bits()
         | REJECTED.bits()
-        | SUSPECT_AIRSPEED.bits()
         | DOUBTED_AIRSPEED.bits()
         | DOUBTED_ALTITUDE.bits()
         | DOUBTED_MOTION.bits()
@@ -219,13 +206,13 @@ pub(super) const NAMES: [&str; 64] = [
     "the aircraft was moved",
     "the simulator shows a replay",
     "another autopilot is on",
-    "another autothrottle is on",
-    "another flight control computer moves the control surfaces",
-    "artificial stability moves the controls",
-    "another program writes the controls",
-    "thrust is reversed",
+    "not used (bit 25)",
+    "not used (bit 26)",
+    "not used (bit 27)",
+    "not used (bit 28)",
+    "not used (bit 29)",
     "simulator time runs more than twice as fast",
-    "airspeed contradicts the simulator's true airspeed",
+    "not used (bit 31)",
     "airspeed contradicts the other sensors and is not used",
     "recovering from an upset",
     "oscillation: gain is reduced",

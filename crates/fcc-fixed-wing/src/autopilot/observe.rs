@@ -54,7 +54,7 @@ impl Autopilot {
         self.note_throttle(now);
         self.follow_intermittent(step_s);
         let doubted = self.estimator.navigation.airspeed_doubt();
-        self.navigate(now, measured, step_s);
+        self.navigate(now, step_s);
         self.follow_ground(now, step_s);
         self.follow_battery(now, step_s);
         self.follow_engine(now, step_s);
@@ -77,7 +77,7 @@ impl Autopilot {
     }
 
     /// Estimates the aircraft's state, in failsafe without what is lost.
-    fn navigate(&mut self, now: Time, measured: &Measurements, step_s: f64) {
+    fn navigate(&mut self, now: Time, step_s: f64) {
         let silent = self.silent_or_frozen(now);
         let sigma_rad = self
             .estimator
@@ -95,7 +95,7 @@ impl Autopilot {
         if doubt != self.estimator.navigation.motion_doubt() {
             self.estimator.replacement.forget_offsets();
         }
-        let lost = self.lost(now, measured);
+        let lost = self.lost(now);
         self.estimator
             .navigation
             .knows_motion(self.known_motion(now, lost));
