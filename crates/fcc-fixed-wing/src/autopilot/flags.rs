@@ -48,8 +48,6 @@ pub const REJECTED: Flags = Flags::bit(19);
 pub const PLANT_SILENT: Flags = Flags::bit(20);
 /// The simulator took back the controls by itself: it was reloaded.
 pub const PLANT_RELOADED: Flags = Flags::bit(21);
-/// The aircraft was moved to another place.
-pub const RELOCATED: Flags = Flags::bit(22);
 /// The simulator shows a recorded flight.
 pub const PLANT_REPLAYING: Flags = Flags::bit(23);
 
@@ -203,7 +201,7 @@ pub(super) const NAMES: [&str; 64] = [
     "measured values are implausible",
     "nothing arrives from the simulator",
     "the simulator was reloaded",
-    "the aircraft was moved",
+    "not used (bit 22)",
     "the simulator shows a replay",
     "another autopilot is on",
     "not used (bit 25)",

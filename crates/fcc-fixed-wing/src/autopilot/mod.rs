@@ -68,7 +68,6 @@ pub use routing::ITEM_REACHED;
 pub use runway::{gives_up_runway, touches_ground};
 pub use scale::Scale;
 use supervisor::Supervisor;
-pub use whereabouts::can_be_reached;
 
 use crate::Setpoints;
 use crate::control::{ElevatorTrim, Recovery};
