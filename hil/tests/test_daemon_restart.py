@@ -213,15 +213,6 @@ def test_a_switch_that_went_off_since_prevents_recovery(cockpit: Cockpit) -> Non
         assert again.end(signal.SIGTERM).states == ["standby -> stopped"]
 
 
-def test_a_flight_is_not_recovered_elsewhere(cockpit: Cockpit) -> None:
-    cockpit.fly_and_kill(WARM)
-    cockpit.simulator.act("relocate")
-    with cockpit.daemon(WARM) as again:
-        again.wait_for("not recovered: the simulator's clock was set back since")
-        again.wait_until_ready()
-        assert again.end(signal.SIGTERM).states == ["standby -> stopped"]
-
-
 def test_a_flight_that_ended_regularly_is_not_recovered(cockpit: Cockpit) -> None:
     with cockpit.daemon(WARM) as daemon:
         cockpit.engage(daemon)

@@ -173,21 +173,6 @@ def test_a_killed_flight_loses_a_second_at_most(fccd: Path, tmp_path: Path) -> N
         assert run([fccd, "recover", path, "--json"])["was_whole"]
 
 
-def test_the_next_flight_repairs_the_last_recording(fccd: Path, tmp_path: Path) -> None:
-    config = write_config(tmp_path, 40)
-    words: Words = [fccd, "fly", "--config", config, "--recordings", tmp_path]
-    with DaemonUnderTest([*words, "--quiet"], tmp_path) as daemon:
-        daemon.wait_for("standby -> engaged")
-        time.sleep(1.5)
-        kill_in_flight(daemon)
-    left = only_recording(tmp_path)
-    run([*words, *IN_LOCKSTEP, "--seconds", "1"])
-    files = sorted(tmp_path.glob("*.mcap"))
-    assert len(files) == 2
-    assert_all_recorded([seen.content for seen in by_index(left) if seen.topic == RECORD])
-    assert ticks(by_index(files[1]))
-
-
 Limit = Callable[[], None]
 
 

@@ -14,6 +14,6 @@ mod setpoints;
 pub use autopilot::{
     Autopilot, AutopilotCommand, AutopilotConfig, COMMAND_ANSWER, Contingency, ContingencyAction,
     ContingencyConfig, FailsafeConfig, FailsafeEnd, ITEM_REACHED, PlanReplacement, Resume, Scale,
-    StickTakeover, can_be_reached, flags, gives_up_runway, touches_ground, why_refused,
+    StickTakeover, flags, gives_up_runway, touches_ground, why_refused,
 };
 pub use setpoints::Setpoints;

@@ -167,9 +167,7 @@ fn page_column(column: &DescribedColumn, letter: char) -> PageColumn {
 
 /// Numbers of a byte that are 0 or 1 and no code.
 fn is_bool(name: &str) -> bool {
-    let other = name
-        .strip_prefix("other_")
-        .or_else(|| name.strip_prefix("suspect_"));
+    let other = name.strip_prefix("other_");
     name == "sent" || other.is_some_and(|rest| !rest.ends_with("_source") && rest != "source")
 }
 

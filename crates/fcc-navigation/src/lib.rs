@@ -74,8 +74,8 @@ pub use motion::KnownMotion;
 pub use motion_monitor::MotionDoubt;
 pub use plausibility::{
     AIRSPEED, ENGAGE_SWITCH, GateLimits, HEIGHT_M, PlausibilityLimit, RATES_RADPS,
-    SPECIFIC_FORCE_MPS2, airspeed_can_follow, airspeed_is_suspect, is_possible_altitude,
-    is_possible_fix, plausibility_gate,
+    SPECIFIC_FORCE_MPS2, airspeed_can_follow, is_possible_altitude, is_possible_fix,
+    plausibility_gate,
 };
 pub use quantity::{Quantities, Quantity};
 pub use replacement::{DERIVED_RATES_LATE_S, Replacement};

@@ -198,7 +198,7 @@ pub fn plausibility_gate(
         &mut good.airspeed_mps,
         &new.airspeed_mps,
         convinced(Quantity::Airspeed),
-        |mps| within(*mps, MAX_AIRSPEED_MPS) && !airspeed_is_suspect(new),
+        |mps| within(*mps, MAX_AIRSPEED_MPS),
         |a, b, gap_s| {
             AIRSPEED_MPS.holds(b - a, gap_s)
                 || gap_s > AIRSPEED_RETURNS_AFTER_S && AIRSPEED_RETURNS.contains(&(b / a.max(1.0)))
@@ -217,7 +217,7 @@ pub fn plausibility_gate(
     let [angle, position, velocity, surfaces, plant, pilot] = take_others(good, new);
     [
         attitude, heading, rates, force, airspeed, altitude, angle, position, velocity, surfaces,
-        true, plant, true, true, pilot,
+        true, plant, true, pilot,
     ]
     .into_iter()
     .chain(take_raw(good, new))
@@ -275,7 +275,6 @@ fn take_others(good: &mut Measurements, new: &Measurements) -> [bool; 6] {
     );
     replace(&mut good.engage_switch, &new.engage_switch);
     replace(&mut good.other_control, &new.other_control);
-    replace(&mut good.suspect, &new.suspect);
     [angle, position, velocity, surfaces, plant, pilot]
 }
 
@@ -337,13 +336,6 @@ fn take_raw(good: &mut Measurements, new: &Measurements) -> [bool; 11] {
 pub fn airspeed_can_follow(before: &Reading<f64>, new: &Reading<f64>, passed_s: f64) -> bool {
     let most = AIRSPEED_MPS.at_once + AIRSPEED_MPS.per_s * passed_s.min(AIRSPEED_GROWS_FOR_S);
     before.is_never() || !new.is_never() && within(new.value - before.value, most)
-}
-
-/// Whether the source of the airspeed contradicts it: only that of the airspeed
-/// itself, since of several sources another one may be right.
-pub fn airspeed_is_suspect(measured: &Measurements) -> bool {
-    let suspect = measured.suspect;
-    suspect.value.airspeed && !suspect.is_never() && suspect.source == measured.airspeed_mps.source
 }
 
 fn take<T: Copy>(

@@ -36,7 +36,6 @@ mod about;
 mod any_plant;
 mod channels;
 mod chunk;
-mod crash;
 mod damage;
 mod description;
 mod disk;
@@ -80,7 +79,6 @@ mod writing;
 
 pub use about::About;
 pub use any_plant::{AnyPlantMessage, Unread};
-pub use crash::last_unfinished;
 pub use damage::Damage;
 pub use disk::{Disk, DiskFile, FileSystem, is_same_file, unless_left};
 pub use document::Document;
@@ -97,7 +95,7 @@ pub use recorded::{Recorded, TopicOf, Views};
 #[cfg(feature = "flight")]
 pub use recorder::Recorder;
 pub use recorder::RecorderOf;
-pub use recover::{RecoverError, Recovered, recover, recover_while};
+pub use recover::{RecoverError, Recovered, recover};
 pub use remark::Remark;
 pub use schema::{PACKAGE, messages};
 pub use settings::{Compression, RecorderSettings, RecordingPace};

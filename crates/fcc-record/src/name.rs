@@ -43,15 +43,6 @@ pub(super) fn is_recording(path: &Path) -> bool {
 pub(super) const MAX_NAMES: u64 = 100;
 pub(super) const NAMES_APART_NS: u64 = 1_000_000;
 
-/// Whether a recording's name is one of the flight that began then.
-pub(super) fn is_of_flight(path: &Path, started_unix_ns: u64) -> bool {
-    let name = path.file_name().and_then(|name| name.to_str());
-    let last = started_unix_ns.saturating_add(MAX_NAMES * NAMES_APART_NS);
-    let [first, last] = [started_unix_ns, last].map(utc::file_stamp);
-    name.and_then(|name| name.get(..first.len()))
-        .is_some_and(|stamp| (first.as_str()..=last.as_str()).contains(&stamp))
-}
-
 /// Writes a path into JSON: what is not UTF-8 is replaced.
 ///
 /// # Errors
@@ -102,9 +93,6 @@ mod tests {
         let name = file_name(1_795_148_493_512_000_000, "X-Plane: c172/2", 3);
         assert_eq!(name, "2026-11-20T04-21-33.512Z-X-Plane--c172-2-03.mcap");
         assert!(is_recording(Path::new(&name)));
-        let of = |started| is_of_flight(Path::new(&name), started);
-        assert!(of(1_795_148_493_512_000_000) && of(1_795_148_493_500_000_000));
-        assert!(!of(1_795_148_493_513_000_000) && !of(1_795_148_492_511_000_000));
         for other in [
             "flight.mcap",
             "2026-11-20T04-21-33.512Z-c172-01.mcap.unfinished",

@@ -235,32 +235,25 @@ impl Recording {
     /// # Errors
     /// When the file can no longer be read.
     pub fn verify(&self) -> Result<Verified, OpenError> {
-        self.verify_while(|_| true).map(Option::unwrap_or_default)
+        self.verify_with(|_| {})
     }
 
-    /// As [`verify`](Self::verify). `go_on` is called with the number of bytes
-    /// read; if it returns false, the result is none.
-    pub(super) fn verify_while(
-        &self,
-        mut go_on: impl FnMut(u64) -> bool,
-    ) -> Result<Option<Verified>, OpenError> {
+    /// As [`verify`](Self::verify). `progress` is called with the number of bytes
+    /// read.
+    pub(super) fn verify_with(&self, mut progress: impl FnMut(u64)) -> Result<Verified, OpenError> {
         match &self.end {
             // Without damage there is no need to decode every message.
-            Some(end) if self.is_undamaged(end, &mut go_on)? => Ok(Some(Verified {
+            Some(end) if self.is_undamaged(end, &mut progress)? => Ok(Verified {
                 account: end.clone(),
                 ..Verified::default()
-            })),
-            _ => self.count(go_on),
+            }),
+            _ => self.count(progress),
         }
     }
 
     /// Whether every checksum matches, the file is finished, and no program has left
     /// out a record or an event.
-    fn is_undamaged(
-        &self,
-        end: &End,
-        go_on: &mut impl FnMut(u64) -> bool,
-    ) -> Result<bool, OpenError> {
+    fn is_undamaged(&self, end: &End, progress: &mut impl FnMut(u64)) -> Result<bool, OpenError> {
         let mut raw = self.raw()?;
         let mut channels = Channels::default();
         let (mut all, mut records, mut events) = (0_u64, 0_u64, 0_u64);
@@ -274,20 +267,20 @@ impl Recording {
                 Ok(Next::Damage(_)) | Err(_) => return Ok(false),
             }
             all += 1;
-            if all.is_multiple_of(CHECK_EVERY) && !go_on(raw.bytes_read()) {
-                return Ok(false);
+            if all.is_multiple_of(CHECK_EVERY) {
+                progress(raw.bytes_read());
             }
         }
     }
 
     /// Decodes every message.
-    fn count(&self, mut go_on: impl FnMut(u64) -> bool) -> Result<Option<Verified>, OpenError> {
+    fn count(&self, mut progress: impl FnMut(u64)) -> Result<Verified, OpenError> {
         let mut run_statistics = RunStatistics::default();
         let mut messages = self.messages::<AnyMessage>()?;
         while let Some(message) = messages.next() {
             run_statistics.take(&message);
-            if run_statistics.ticks().is_multiple_of(CHECK_EVERY) && !go_on(messages.bytes_read()) {
-                return Ok(None);
+            if run_statistics.ticks().is_multiple_of(CHECK_EVERY) {
+                progress(messages.bytes_read());
             }
         }
         let cut = messages.cut().map(str::to_owned);
@@ -295,11 +288,11 @@ impl Recording {
             Some(end) => end.ending.clone(),
             None => cut.clone().unwrap_or_default(),
         };
-        Ok(Some(Verified {
+        Ok(Verified {
             account: run_statistics.end(&ending),
             damages: messages.into_damages(),
             cut,
-        }))
+        })
     }
 
     /// The path of the file.

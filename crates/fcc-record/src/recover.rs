@@ -73,9 +73,6 @@ pub enum RecoverError {
         /// The recording.
         target: PathBuf,
     },
-    /// It was told to stop.
-    #[error("{0}: the flight ended before it was recovered: run `fccd recover` on it")]
-    Stopped(PathBuf),
 }
 
 /// Finishes a file that is unfinished or damaged: it then contains all messages
@@ -94,20 +91,7 @@ pub fn recover(
     path: impl AsRef<Path>,
     mut progress: impl FnMut(u64),
 ) -> Result<Recovered, RecoverError> {
-    recover_while(path.as_ref(), |read| {
-        progress(read);
-        true
-    })
-}
-
-/// As [`recover`], and stops when `progress` returns false.
-///
-/// # Errors
-/// As [`recover`], or that it was stopped.
-pub fn recover_while(
-    path: &Path,
-    mut progress: impl FnMut(u64) -> bool,
-) -> Result<Recovered, RecoverError> {
+    let path = path.as_ref();
     let unread = |source| OpenError::Io {
         path: path.to_owned(),
         source,
@@ -121,15 +105,11 @@ pub fn recover_while(
         return Err(RecoverError::BeingWritten(path.to_owned()));
     }
     // It is read twice.
-    let mut go_on = |read| progress(read / 2);
-    let Some(Verified {
+    let Verified {
         account,
         damages,
         cut,
-    }) = recording.verify_while(&mut go_on)?
-    else {
-        return Err(RecoverError::Stopped(path.to_owned()));
-    };
+    } = recording.verify_with(|read| progress(read / 2))?;
     if damages.is_empty() && cut.is_none() {
         return Ok(Recovered {
             path: path.to_owned(),
@@ -168,7 +148,6 @@ pub fn recover_while(
                 kept,
             }),
         Ok(Rewritten::Unreadable(source)) => Err(unread(source).into()),
-        Ok(Rewritten::Stopped) => Err(RecoverError::Stopped(path.to_owned())),
         Err(error) => Err(failed(error)),
     };
     if result.is_err() {
@@ -195,17 +174,15 @@ fn replace(path: &Path, finished: &Path, keep: bool) -> io::Result<Option<PathBu
 enum Rewritten {
     Whole { ticks: u64 },
     Unreadable(io::Error),
-    Stopped,
 }
 
 /// Writes a finished file with all records that can be read; `damages` are the
-/// gaps. `go_on` is called with the number of bytes read and stops the work by
-/// returning false.
+/// gaps. `progress` is called with the number of bytes read.
 fn rewrite(
     from: &Path,
     to: &Path,
     damages: &[Damage],
-    mut go_on: impl FnMut(u64) -> bool,
+    mut progress: impl FnMut(u64),
 ) -> io::Result<Rewritten> {
     let mut raw = RawReader::new(opening::open(from)?)?;
     let mut copy = Copy::begin(opening::create_recording_anew(to)?).map_err(to_io)?;
@@ -227,8 +204,8 @@ fn rewrite(
         {
             copy.gaps.push(damage.clone());
         }
-        if copy.records % CHECK_EVERY == 0 && !go_on(raw.bytes_read()) {
-            return Ok(Rewritten::Stopped);
+        if copy.records % CHECK_EVERY == 0 {
+            progress(raw.bytes_read());
         }
     };
     let ticks = copy.run_statistics.ticks();

@@ -51,7 +51,6 @@ struct HeldControl {
     /// another address.
     simulator: SocketAddr,
     /// What was put first: where the controls were.
-    first: Surfaces,
     /// When the overrides were last set.
     asserted: Time,
     pace: WritePace,
@@ -98,7 +97,6 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
                 }
                 none.insert(HeldControl {
                     simulator,
-                    first: *outputs,
                     asserted: Time::NEVER,
                     pace: WritePace::begin(),
                     confirmation: Confirmation::begin(now),
@@ -127,12 +125,6 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
             held.asserted = now;
             sent = self.controls.take(write);
         }
-        let outputs = if held.confirmation.awaits_too_long() {
-            // No loop is closed yet: what would be put answers nothing.
-            &held.first
-        } else {
-            outputs
-        };
         let messages = self.controls.messages(outputs);
         if held.pace.take(now, messages, link.frame_period_s()) {
             sent = sent.and(self.controls.set(outputs, write));
@@ -140,11 +132,7 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
             link.sent_yoke.add(yoke_ratios(outputs));
         }
         held.confirmation.await_overrides(now, link);
-        link.set_other_writer(held.confirmation.is_contested(now, link));
-        link.set_cut(held.confirmation.is_cut());
-        link.set_round_trip_s(held.confirmation.round_trip().as_secs_f32());
-        link.set_too_late(held.confirmation.too_late());
-        let unconfirmed = held.confirmation.is_overdue(now, link) || link.is_cut();
+        let unconfirmed = held.confirmation.is_overdue(now, link);
         link.set_unconfirmed(unconfirmed);
         match sent {
             Err(errno) => Err(ActuatorFault::Io { errno }),
@@ -164,7 +152,6 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
         let mut confirmation = held.confirmation.clone();
         confirmation.wrote(tick.woke, yoke_ratios(outputs));
         black_box(confirmation.is_overdue(tick.woke, &self.link));
-        black_box(confirmation.is_contested(tick.woke, &self.link));
     }
 
     fn release(&mut self) -> Result<(), ActuatorFault> {
@@ -185,10 +172,6 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
             }
         }
         link.set_unconfirmed(false);
-        link.set_other_writer(false);
-        link.set_cut(false);
-        link.set_round_trip_s(0.0);
-        link.set_too_late(Duration::ZERO);
         link.set_control(Control::ReleaseMonitor);
         if released {
             self.held = None;

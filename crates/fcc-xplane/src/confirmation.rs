@@ -5,38 +5,21 @@
 //! read back while they are written. Writing is confirmed as long as every
 //! recent readback agrees with what was recently sent. The throttle itself is
 //! not compared, since the engine model may change it, but its override is.
-//!
-//! Another program that writes the yoke is found by the same comparison: the
-//! override is set, and the yoke is again and again where it was not put. A yoke
-//! that stands still where it was put before is nobody's: what is written does
-//! not arrive any more.
 
 use core::time::Duration;
 
 use fcc_core::framework::Time;
 
-use crate::lasting::Lasting;
 use crate::link::SharedState;
 use crate::quantity::Quantity;
-use crate::round_trip::{RoundTrip, TOO_LONG};
-use crate::simulator::SimulatorState;
-use crate::written::{ReadBack, Written};
 
 /// The longest time for which writing may be unconfirmed.
 pub(crate) const CONFIRMED_WITHIN: Duration = Duration::from_secs(1);
 /// A readback counts as recent for this long.
 const LATELY: Duration = Duration::from_millis(500);
-/// A difference of the yoke that is no rounding error.
-const STILL: f32 = 1e-6;
 /// How far a readback may lie outside the recently sent values: rounding, if
 /// the simulator stores the ratio in another form.
 const TOLERANCE: f32 = 0.02;
-
-/// Another program writes the yoke once it has been where it was not put at
-/// intervals of less than [`LATELY`] for this long: a freeze of the simulator,
-/// after which it processes what it had queued, is shorter.
-const CONTESTED_AFTER: Duration = Duration::from_millis(1500);
-const CONTESTED_UNTIL: Duration = Duration::from_secs(5);
 
 const YOKE: [Quantity; 3] = [
     Quantity::YokePitch,
@@ -85,20 +68,8 @@ pub(crate) struct Confirmation {
     /// half seconds: a readback is delayed by the round trip, up to a second.
     extents: [[Extent; 3]; 3],
     turned: Time,
-    written: Written,
-    /// What was last read of each axis.
-    shown: [Option<f32>; 3],
-    /// Where each axis was last read as it was put.
-    ours: [Option<f32>; 3],
-    /// The yoke stands there although something else was put.
-    cut: Lasting,
-    /// When the yoke was last read where it was not put.
-    moved_by_another: Time,
-    contested: Lasting,
-    round_trip: RoundTrip,
-    /// How long the overrides have been waited for while data arrived, and until when; none
-    /// once they were read back.
-    awaited: Option<(Duration, Time)>,
+    /// Whether the overrides were never read back.
+    awaits: bool,
 }
 
 impl Confirmation {
@@ -109,52 +80,25 @@ impl Confirmation {
             confirmed: now,
             extents: [[Extent::EMPTY; 3]; 3],
             turned: now,
-            written: Written::new(),
-            shown: [None; 3],
-            ours: [None; 3],
-            cut: Lasting::new(CONTESTED_AFTER, LATELY),
-            moved_by_another: Time::NEVER,
-            contested: Lasting::new(CONTESTED_AFTER, CONTESTED_UNTIL),
-            round_trip: RoundTrip::begin(now),
-            awaited: Some((Duration::ZERO, now)),
+            awaits: true,
         }
     }
 
     /// Whether the overrides were never read back.
     pub(crate) const fn awaits_overrides(&self) -> bool {
-        self.awaited.is_some()
+        self.awaits
     }
 
-    /// Whether they have been awaited for longer than a round trip over which an aircraft is
-    /// flown: what is written does not arrive, or too late to answer what is read.
-    pub(crate) fn awaits_too_long(&self) -> bool {
-        self.awaited.is_some_and(|(waited, _)| waited > TOO_LONG)
-    }
-
-    /// Waits until the overrides are read back for the first time: the first round trip. A
-    /// simulator that stops meanwhile says nothing of the network.
+    /// Waits until the overrides are read back for the first time.
     pub(crate) fn await_overrides(&mut self, now: Time, link: &SharedState) {
-        let Some((mut waited, before)) = self.awaited else {
-            return;
-        };
-        if matches!(link.state(), SimulatorState::Running | SimulatorState::Slow) {
-            waited += now.since(before);
-        }
-        let are_there = OVERRIDES.into_iter().all(|quantity| {
+        self.awaits &= !OVERRIDES.into_iter().all(|quantity| {
             self.recent(quantity, now, link)
                 .is_some_and(|(value, _)| value >= 0.5)
         });
-        self.awaited = if are_there {
-            self.round_trip.is_at_first(waited);
-            None
-        } else {
-            Some((waited, now))
-        };
     }
 
     /// Records what was written to elevator, aileron and rudder.
     pub(crate) fn wrote(&mut self, now: Time, yoke: [Option<f32>; 3]) {
-        self.written.add(now, yoke);
         if now.since(self.turned) >= LATELY {
             self.turned = now;
             for [present, before, earliest] in &mut self.extents {
@@ -177,68 +121,6 @@ impl Confirmation {
             self.confirmed = newest;
         }
         now.since(self.confirmed) > CONFIRMED_WITHIN
-    }
-
-    /// Whether another program writes the yoke, too.
-    pub(crate) fn is_contested(&mut self, now: Time, link: &SharedState) -> bool {
-        let overridden = self
-            .recent(Quantity::OverrideJoystick, now, link)
-            .is_some_and(|(value, _)| value >= 0.5);
-        let (mut elsewhere, mut stands, mut moved) = (false, false, false);
-        let extents = self.extents;
-        for ((index, axis), put) in YOKE.into_iter().enumerate().zip(extents) {
-            let Some((value, at)) = self.recent(axis, now, link) else {
-                continue;
-            };
-            let read_back = self.written.recognise(index, value, at);
-            if let (ReadBack::Own(ago), Some(shown)) = (read_back, self.shown.get_mut(index)) {
-                let changes = shown.is_some_and(|shown| (value - shown).abs() > STILL);
-                *shown = Some(value);
-                self.round_trip.add(now, ago, changes);
-            }
-            let Some(ours) = self.ours.get_mut(index) else {
-                continue;
-            };
-            let is_there = ours.is_some_and(|ours| (value - ours).abs() <= STILL);
-            moved |= !is_there;
-            let is_recent = match read_back {
-                ReadBack::Unknown => true,
-                ReadBack::Own(age) => age.least <= CONFIRMED_WITHIN,
-                ReadBack::Foreign => false,
-            };
-            if is_recent && Extent::of(put).holds(value) {
-                *ours = Some(value);
-            } else if is_there {
-                stands = true;
-            } else if is_recent || read_back == ReadBack::Foreign {
-                elsewhere = true;
-            }
-        }
-        // What is written may pass where the yoke stands.
-        stands |= self.cut.holds() && !moved;
-        self.cut.step(now, overridden && stands && !elsewhere);
-        if overridden && elsewhere {
-            self.moved_by_another = now;
-        }
-        let lately = !self.moved_by_another.is_never() && now.since(self.moved_by_another) < LATELY;
-        self.contested.step(now, lately)
-    }
-
-    /// From writing to reading back, in the last second that has passed; zero while
-    /// nothing is recognised.
-    pub(crate) const fn round_trip(&self) -> Duration {
-        self.round_trip.shown()
-    }
-
-    /// By how much what is read is too old to fly by; zero if it is not.
-    pub(crate) fn too_late(&self) -> Duration {
-        self.round_trip.too_late()
-    }
-
-    /// Whether the yoke stands still where it was put before: what is written does
-    /// not arrive.
-    pub(crate) const fn is_cut(&self) -> bool {
-        self.cut.holds()
     }
 
     /// The latest readback of a quantity, and its time.

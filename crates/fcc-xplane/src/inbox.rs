@@ -8,11 +8,10 @@
 //! the age of the oldest (`values`).
 //!
 //! A datagram with an earlier flight time than the last one was overtaken and
-//! is dropped as a whole; so is one that arrived before (`copies`). A position has no
-//! time: it is dropped if it arrived before, and for 0.4 s after a datagram that is a
-//! second old. For others without a flight time (rows sent one by one), and a position
-//! that arrives late but once, this cannot be detected: it gives a state up to a second
-//! old for one tick.
+//! is dropped as a whole. A position has no time: it is dropped for 0.4 s after a
+//! datagram that is a second old. For others without a flight time (rows sent one by
+//! one), and a position that arrives late but once, this cannot be detected: it gives
+//! a state up to a second old for one tick.
 
 use core::time::Duration;
 
@@ -23,13 +22,10 @@ use fcc_core::framework::{Reading, Switch, Time};
 
 use crate::aircraft_state;
 use crate::config::{DataRows, PlantKind};
-use crate::consistency::ConsistencyCheck;
-use crate::copies::Copies;
 use crate::counters::count;
 use crate::engage_switch::NONEXISTENT_INDEX;
-use crate::link::SharedState;
+use crate::link::{Control, SharedState};
 use crate::motion::Motion;
-use crate::other_control::OtherControlWatch;
 use crate::pressure_altitude::PressureAltitude;
 use crate::protocol::{Kind, Malformed, data, rpos, rref};
 use crate::quantity::Quantity;
@@ -37,13 +33,18 @@ use crate::reload_watch::ReloadWatch;
 use crate::rows;
 use crate::sending_clock::SendingClock;
 use crate::simulator::{SimulatorClock, SimulatorReport, SimulatorState};
-use crate::untimed_switch::UntimedSwitch;
 use crate::values::{Group, Values};
 
 /// The engage switch is on from here upwards, and off below [`SWITCH_OFF`]; in
 /// between it stays as it was, at first off. So noise on it does not switch.
 const SWITCH_ON: f64 = 0.75;
 const SWITCH_OFF: f64 = 0.25;
+
+/// An override that stays set for this long after a release was left.
+const LEFT_AFTER: Duration = Duration::from_secs(3);
+/// X-Plane's own autopilots: they act whatever is written to the yoke.
+const SERVOS: [Quantity; 3] = [Quantity::Servos, Quantity::Servos2, Quantity::Servos3];
+const OVERRIDES: [Quantity; 2] = [Quantity::OverrideJoystick, Quantity::OverrideThrottles];
 
 /// Converts datagrams to measurements.
 #[derive(Clone, Debug)]
@@ -53,18 +54,13 @@ pub(crate) struct Inbox {
     rows: Option<DataRows>,
     clock: SimulatorClock,
     sending: SendingClock,
-    /// Of datagrams with a flight time, and of positions.
-    timed: Copies,
-    positions: Copies,
     values: Values,
     position: Reading<Position>,
     motion: Motion,
     switch: Switch,
-    /// Of a board, while it sends no time.
-    untimed_switch: UntimedSwitch,
     altitude: PressureAltitude,
-    other_control: OtherControlWatch,
-    consistency: ConsistencyCheck,
+    /// Since when an override that is not this program's is set; never without.
+    overridden: Time,
     reload: ReloadWatch,
 }
 
@@ -75,25 +71,19 @@ impl Inbox {
             rows,
             clock: SimulatorClock::new(silent_after),
             sending: SendingClock::default(),
-            timed: Copies::default(),
-            positions: Copies::default(),
             values: Values::default(),
             position: Reading::default(),
             motion: Motion::new(rows),
             switch: Switch::Off,
-            untimed_switch: UntimedSwitch::default(),
             altitude: PressureAltitude::new(),
-            other_control: OtherControlWatch::default(),
-            consistency: ConsistencyCheck::default(),
+            overridden: Time::NEVER,
             reload: ReloadWatch::default(),
         }
     }
 
-    /// Begins a tick. What is read by `writing`, over which this program writes, may be too
-    /// old.
-    pub(crate) fn begin(&mut self, writing: &SharedState) {
+    /// Begins a tick.
+    pub(crate) fn begin(&mut self) {
         self.clock.begin();
-        self.sending.is_old_by_round_trip(writing.too_late());
     }
 
     /// From now on another simulator sends, whose clock is another one.
@@ -167,7 +157,7 @@ impl Inbox {
             PlantKind::ServoBoard => network_s,
         };
         let shows_replay = find(Quantity::Replay).is_some_and(|replay| replay >= 0.5);
-        if self.is_late(now, datagram, (time_s, shows_replay), link) {
+        if self.is_late(now, (time_s, shows_replay), link) {
             return Ok(false);
         }
         if let (Some(network_s), Some(flight_s)) = (network_s, flight_s) {
@@ -199,7 +189,7 @@ impl Inbox {
     ) -> Result<bool, Malformed> {
         let rows = data::parse(datagram)?;
         let time_s = rows.clone().find_map(|row| rows::flight_time(&row));
-        if self.is_late(now, datagram, (time_s, false), link) {
+        if self.is_late(now, (time_s, false), link) {
             return Ok(false);
         }
         let mut report = SimulatorReport {
@@ -232,9 +222,8 @@ impl Inbox {
             self.clock.receive(now, SimulatorReport::default());
             return Ok(false);
         }
-        let is_old = self.positions.is_old(datagram, now) || self.clock.delivers_old(now);
         // A replay may show a place again.
-        if is_old && !self.clock.is_replaying() {
+        if self.clock.delivers_old(now) && !self.clock.is_replaying() {
             count(&link.counters.late);
             return Ok(false);
         }
@@ -251,16 +240,10 @@ impl Inbox {
     fn is_late(
         &mut self,
         now: Time,
-        datagram: &[u8],
         (time_s, shows_replay): (Option<f64>, bool),
         link: &SharedState,
     ) -> bool {
-        let late = time_s.is_some_and(|time_s| {
-            // In a pause a value may go back to what it was.
-            let is_of_now = self.clock.time_s() == Some(time_s) || self.clock.is_replaying();
-            let is_old = self.timed.is_old(datagram, now) && !is_of_now;
-            is_old || self.clock.is_late(now, time_s, shows_replay)
-        });
+        let late = time_s.is_some_and(|time_s| self.clock.is_late(now, time_s, shows_replay));
         if late {
             count(&link.counters.late);
         }
@@ -287,11 +270,6 @@ impl Inbox {
             Quantity::FramePeriod => {
                 report.frame_period_s = Some(value);
                 link.set_frame_period_s(value);
-            }
-            Quantity::EngageSwitch if self.plant == PlantKind::ServoBoard => {
-                if let Some(position) = position(value) {
-                    self.untimed_switch.take(position, now);
-                }
             }
             Quantity::OnGround => link.set_on_ground(value >= 0.5),
             Quantity::Version => link.set_version(value as u32),
@@ -337,46 +315,28 @@ impl Inbox {
         }
         if let Some(([switch], taken)) = values.whole(Group::Switch) {
             self.switch = position(switch).unwrap_or(self.switch);
-            let is_timed = self.plant == PlantKind::Simulator || self.clock.time_s().is_some();
-            let position = if is_timed {
-                Some(self.switch)
-            } else {
-                self.untimed_switch.position(now)
-            };
-            if let Some(position) = position {
-                into.engage_switch = Reading::new(position, taken);
-            }
+            into.engage_switch = Reading::new(self.switch, taken);
         }
         if let Some(([pitch, roll, yaw], taken)) = values.whole(Group::PilotControls) {
             into.pilot_controls = Reading::new(PilotControls { pitch, roll, yaw }, taken);
         }
         if self.clock.last_received() == now {
-            self.publish_observations(there, into, link, writing);
+            let is_set = |of| {
+                let value = self.values.recent(of, there);
+                value.is_some_and(|value| value >= 0.5)
+            };
+            let autopilot = SERVOS.into_iter().any(is_set);
+            into.other_control = Reading::new(OtherControl { autopilot }, there);
+            let is_overridden = OVERRIDES.into_iter().any(is_set);
+            let is_left = is_overridden && writing.control() == Control::Free;
+            if !is_left {
+                self.overridden = Time::NEVER;
+            } else if self.overridden.is_never() {
+                self.overridden = now;
+            }
+            writing.set_left_overridden(is_left && now.since(self.overridden) >= LEFT_AFTER);
         }
         self.publish_plant(now, into, link)
-    }
-
-    /// What is known about the aircraft besides its measurements: in every tick
-    /// in which something arrived.
-    fn publish_observations(
-        &mut self,
-        now: Time,
-        into: &mut Measurements,
-        link: &SharedState,
-        writing: &SharedState,
-    ) {
-        // A board hears one computer, and answers it alone: what moves otherwise is a late
-        // copy of what this program wrote.
-        let other = match self.plant {
-            PlantKind::Simulator => self.other_control.step(now, &self.values, writing),
-            PlantKind::ServoBoard => OtherControl::default(),
-        };
-        into.other_control = Reading::new(other, now);
-        let accelerates = self.values.recent(Quantity::AccelerationUp, now);
-        let computed = accelerates.map(|_| self.motion.force());
-        let suspect = self.consistency.step(now, &self.values, computed);
-        into.suspect = Reading::new(suspect, now);
-        link.set_loads_differ(suspect.specific_force);
     }
 
     fn publish_attitude(&mut self, into: &mut Measurements) {
@@ -411,14 +371,12 @@ impl Inbox {
         let state = self.clock.state(now);
         if state == SimulatorState::Jumped {
             count(&link.counters.jumps);
-            // The flight may begin where it did before.
-            self.positions = Copies::default();
         }
         if self.plant == PlantKind::Simulator
             && self.clock.time_seen() == now
             && let (Some(time_s), Some(state)) = (self.clock.time_s(), state.plant_state())
         {
-            into.plant = Reading::new(Plant { time_s, state }, self.sending.sent(now));
+            into.plant = Reading::new(Plant { time_s, state }, self.sending.stamp(now));
         }
         state
     }

@@ -26,17 +26,16 @@
 //! | [`protocol`] | messages as bytes; no I/O |
 //! | `quantity`, `rows`, `units` | which dataref or column is what, and in which unit |
 //! | `simulator` | the simulator's clock compared with ours: [`SimulatorState`] |
-//! | `inbox`, `values`, `copies` | from datagrams to measurements; without those that arrive again |
+//! | `inbox`, `values`, `sending_clock` | from datagrams to measurements |
 //! | `motion`, `specific_force` | attitude, specific force and velocity from the local axes |
-//! | `other_control` | what acts on the controls besides this program |
-//! | `consistency`, `axial_load` | values compared with each other |
+//! | `axial_load` | the sign of a row's axial load |
 //! | `source_filter`, `reply_port`, `port_watch`, `udp_sockets`, `socket_diagnosis` | from which address and port of the simulator they are accepted |
 //! | `subscriptions`, `missing` | what to request, when to repeat it, and what does not arrive |
 //! | `traffic` | how much is sent to X-Plane |
 //! | `engage_switch` | the dataref that engages |
-//! | `controls`, `deflections`, `readbacks`, `confirmation`, `round_trip`, `release_monitor`, `release` | writing, confirmation that it takes effect, release |
+//! | `controls`, `deflections`, `readbacks`, `confirmation`, `release_monitor`, `release` | writing, confirmation that it takes effect, release |
 //! | `link`, `shared_address`, `counters` | what the sensor, the actuator and readers of the status share |
-//! | `authority`, `status`, `reported`, `old_datagrams`, `slow_network` | who has control, and the state of the connection, seen from outside the loop |
+//! | `authority`, `status`, `reported`, `old_datagrams` | who has control, and the state of the connection, seen from outside the loop |
 //! | `silence`, `no_answer` | why X-Plane does not answer |
 //! | `address`, `port`, `discovery` | where it is, sockets, the beacon |
 //!
@@ -62,22 +61,18 @@ mod axial_load;
 mod beacon_group;
 mod config;
 mod confirmation;
-mod consistency;
 mod controls;
-mod copies;
 mod counters;
 mod deflections;
 mod discovery;
 mod engage_switch;
 mod inbox;
-mod lasting;
 mod link;
 mod missing;
 mod motion;
 mod no_answer;
 mod old_datagrams;
 mod open;
-mod other_control;
 mod plant;
 mod port;
 mod port_watch;
@@ -92,7 +87,6 @@ mod release_monitor;
 mod reload_watch;
 mod reply_port;
 mod reported;
-mod round_trip;
 mod rows;
 mod sending_clock;
 mod sensor;
@@ -100,7 +94,6 @@ mod sent_yoke;
 mod shared_address;
 mod silence;
 mod simulator;
-mod slow_network;
 mod socket_diagnosis;
 mod source_filter;
 mod specific_force;
@@ -110,9 +103,7 @@ mod traffic;
 mod udp_port;
 mod udp_sockets;
 mod units;
-mod untimed_switch;
 mod values;
-mod written;
 
 pub use actuator::XPlaneActuator;
 pub use address::{AddressError, HostName, Simulator, USUAL_LOCAL_PORT, XPLANE_PORT};

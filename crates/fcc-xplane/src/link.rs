@@ -8,7 +8,6 @@
 mod ports;
 
 use core::sync::atomic::{AtomicBool, AtomicU8, AtomicU16, AtomicU32, AtomicU64, Ordering};
-use core::time::Duration;
 use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -68,17 +67,8 @@ pub(crate) struct SharedState {
     /// Both overrides were read as cleared, once.
     maybe_reloaded: AtomicBool,
     unconfirmed: AtomicBool,
-    /// What is written arrived before, and does not any more.
-    cut: AtomicBool,
-    /// From writing to reading back; an f32, s.
-    round_trip: AtomicU32,
-    /// By how much what is read is too old to fly by; ns.
-    too_late: AtomicU64,
-    /// Another program writes the held controls, too.
-    other_writer: AtomicBool,
-    /// An override is set, not by this program, and nothing moves the yoke.
+    /// An override is set, not by this program.
     left_overridden: AtomicBool,
-    loads_differ: AtomicBool,
     axial_backwards: AtomicBool,
     answers_anything: AtomicBool,
     version: AtomicU32,
@@ -116,12 +106,7 @@ impl SharedState {
             announced: SharedAddress::new(None),
             maybe_reloaded: AtomicBool::new(false),
             unconfirmed: AtomicBool::new(false),
-            cut: AtomicBool::new(false),
-            round_trip: AtomicU32::new(0),
-            too_late: AtomicU64::new(0),
-            other_writer: AtomicBool::new(false),
             left_overridden: AtomicBool::new(false),
-            loads_differ: AtomicBool::new(false),
             axial_backwards: AtomicBool::new(false),
             answers_anything: AtomicBool::new(false),
             version: AtomicU32::new(0),
@@ -256,61 +241,13 @@ impl SharedState {
         self.unconfirmed.store(unconfirmed, Ordering::Relaxed);
     }
 
-    /// Whether what is written arrived before, and does not any more.
-    pub(crate) fn is_cut(&self) -> bool {
-        self.cut.load(Ordering::Relaxed)
-    }
-
-    pub(crate) fn set_cut(&self, cut: bool) {
-        self.cut.store(cut, Ordering::Relaxed);
-    }
-
-    /// From writing the controls to reading them back, s; 0 until it is known.
-    pub(crate) fn round_trip_s(&self) -> f32 {
-        f32::from_bits(self.round_trip.load(Ordering::Relaxed))
-    }
-
-    pub(crate) fn set_round_trip_s(&self, round_trip_s: f32) {
-        self.round_trip
-            .store(round_trip_s.to_bits(), Ordering::Relaxed);
-    }
-
-    /// By how much what is read is too old to fly by, because it took too long from writing
-    /// to reading back; zero if it did not.
-    pub(crate) fn too_late(&self) -> Duration {
-        Duration::from_nanos(self.too_late.load(Ordering::Relaxed))
-    }
-
-    pub(crate) fn set_too_late(&self, by: Duration) {
-        self.too_late.store(by.as_nanos() as u64, Ordering::Relaxed);
-    }
-
-    /// Whether another program writes the held controls, too.
-    pub(crate) fn has_other_writer(&self) -> bool {
-        self.other_writer.load(Ordering::Relaxed)
-    }
-
-    pub(crate) fn set_other_writer(&self, writes: bool) {
-        self.other_writer.store(writes, Ordering::Relaxed);
-    }
-
-    /// Whether an override is set, not by this program, and nothing moves the
-    /// yoke.
+    /// Whether an override is set, not by this program.
     pub(crate) fn is_left_overridden(&self) -> bool {
         self.left_overridden.load(Ordering::Relaxed)
     }
 
     pub(crate) fn set_left_overridden(&self, left: bool) {
         self.left_overridden.store(left, Ordering::Relaxed);
-    }
-
-    /// Whether the local accelerations contradict the load factor.
-    pub(crate) fn do_loads_differ(&self) -> bool {
-        self.loads_differ.load(Ordering::Relaxed)
-    }
-
-    pub(crate) fn set_loads_differ(&self, differ: bool) {
-        self.loads_differ.store(differ, Ordering::Relaxed);
     }
 
     /// Whether the axial load in row 4 is positive backwards.

@@ -50,11 +50,6 @@ impl Motion {
         }
     }
 
-    /// The specific force last computed from accelerations.
-    pub(crate) const fn force(&self) -> SpecificForce {
-        self.force
-    }
-
     /// Publishes what was completed since the last call.
     pub(crate) fn publish(
         &mut self,

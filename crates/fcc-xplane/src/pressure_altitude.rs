@@ -4,20 +4,6 @@
 //! An altimeter indicates less than the pressure altitude by the pressure
 //! altitude of its setting ([`Altimeter`]); for X-Plane's this is assumed, no
 //! source was found.
-//!
-//! A change of the setting may reach us some frames before or after the
-//! indicated altitude that it changes: X-Plane may compute the altimeter before
-//! it reads the knob, and rows of Data Output come in other datagrams than
-//! datarefs. Neither leads to a step:
-//! - for [`SETTLES`] after a change, each indicated altitude is corrected by
-//!   that of the settings in this time that leaves it nearest to where the
-//!   aircraft is expected;
-//! - a jump that no known setting explains is passed on: the autopilot's
-//!   plausibility gate rejects it until its setting is there. It does not count
-//!   for what is expected before it has lasted for [`LASTS_FOR`].
-//!
-//! Where the aircraft is expected is tracked from the altitudes before by an
-//! alpha-beta filter (Benedict and Bordner 1962).
 
 use core::time::Duration;
 
@@ -32,30 +18,6 @@ const OWN_WITHIN: Duration = Duration::from_millis(300);
 /// The same once it has arrived: before the altitude is too old to be flown by.
 /// Both come in one datagram as a rule, so that slow frames do not matter.
 const OWN_LOST: Duration = Duration::from_millis(150);
-/// A setting that was changed may still be in the indicated altitude for this
-/// long: five frames at the lowest rate that is not slow.
-const SETTLES: Duration = Duration::from_millis(250);
-/// An altitude that was not expected counts from then on.
-const LASTS_FOR: Duration = Duration::from_millis(150);
-/// What an altitude may differ from the expected one: noise, and a click of the
-/// knob, 0.01 inHg or 2.8 m.
-const MOST_OFF_M: f64 = 4.0;
-/// The filter's gains: one altitude by the wrong setting moves it little, and
-/// beta is alpha²/(2 - alpha).
-const ALPHA: f64 = 0.2;
-const BETA: f64 = 0.022;
-/// More than are turned through in [`SETTLES`] at 20 frames a second.
-const SETTINGS: usize = 8;
-
-/// A setting of the pilot's altimeter.
-#[derive(Clone, Copy, Debug)]
-struct Setting {
-    pa: f64,
-    /// The pressure altitude of it, m.
-    datum_m: f64,
-    /// When another replaced it; never for the present one.
-    replaced: Time,
-}
 
 /// Finds the pressure altitude.
 #[derive(Clone, Debug)]
@@ -64,45 +26,6 @@ pub(crate) struct PressureAltitude {
     own: Time,
     /// When the altimeter first arrived.
     indicated_since: Time,
-    /// The present setting first.
-    settings: [Option<Setting>; SETTINGS],
-    /// Where the aircraft was, by the altimeter.
-    track: Option<Track>,
-}
-
-/// Altitude and climb rate at a time.
-#[derive(Clone, Copy, Debug)]
-struct Track {
-    altitude_m: f64,
-    climb_mps: f64,
-    at: Time,
-}
-
-impl Track {
-    const fn new(altitude_m: f64, at: Time) -> Self {
-        Self {
-            altitude_m,
-            climb_mps: 0.0,
-            at,
-        }
-    }
-
-    fn expected_m(&self, now: Time) -> f64 {
-        self.altitude_m + self.climb_mps * now.since(self.at).as_secs_f64()
-    }
-
-    fn after(&self, altitude_m: f64, now: Time) -> Self {
-        let passed_s = now.since(self.at).as_secs_f64();
-        let off_m = altitude_m - self.expected_m(now);
-        if passed_s <= 0.0 {
-            return *self;
-        }
-        Self {
-            altitude_m: self.expected_m(now) + ALPHA * off_m,
-            climb_mps: self.climb_mps + BETA / passed_s * off_m,
-            at: now,
-        }
-    }
 }
 
 impl PressureAltitude {
@@ -110,8 +33,6 @@ impl PressureAltitude {
         Self {
             own: Time::NEVER,
             indicated_since: Time::NEVER,
-            settings: [None; SETTINGS],
-            track: None,
         }
     }
 
@@ -152,67 +73,16 @@ impl PressureAltitude {
         if self.indicated_since.is_never() {
             self.indicated_since = taken;
         }
-        self.set(setting_pa, taken);
         let is_awaited = taken.since(self.indicated_since) < OWN_WITHIN;
         if is_awaited || taken.since(self.own) < OWN_LOST {
-            self.track = None;
             return None;
         }
-        let present = self.settings.first().copied().flatten()?;
-        let recent = self
-            .track
-            .filter(|track| taken.since(track.at) < SETTLES)
-            .map(|track| (track, track.expected_m(taken)));
-        let Some((track, expected_m)) = recent else {
-            let altitude_m = indicated_m + present.datum_m;
-            self.track = Some(Track::new(altitude_m, taken));
-            return Some(altitude_m);
-        };
-        let altitude_m = self.nearest(indicated_m, expected_m, taken)?;
-        if (altitude_m - expected_m).abs() <= MOST_OFF_M {
-            self.track = Some(track.after(altitude_m, taken));
-        } else if taken.since(track.at) >= LASTS_FOR {
-            self.track = Some(Track::new(altitude_m, taken));
-        }
-        Some(altitude_m)
-    }
-
-    /// Takes the present setting.
-    fn set(&mut self, pa: f64, now: Time) {
-        if let Some(Some(present)) = self.settings.first_mut() {
-            if present.pa.to_bits() == pa.to_bits() {
-                return;
-            }
-            present.replaced = now;
-        }
         let altimeter = Altimeter {
-            setting_pa: pa,
+            setting_pa,
             field_elevation_m: None,
         };
-        self.settings.rotate_right(1);
-        if let Some(present) = self.settings.first_mut() {
-            *present = altimeter
-                .datum_m(AltitudeReference::SeaLevel)
-                .map(|datum_m| Setting {
-                    pa,
-                    datum_m,
-                    replaced: Time::NEVER,
-                });
-        }
-    }
-
-    /// The pressure altitude nearest to the expected one, by the settings that
-    /// may be in the indicated altitude.
-    fn nearest(&self, indicated_m: f64, expected_m: f64, now: Time) -> Option<f64> {
-        let settings = self.settings.iter().flatten();
-        settings
-            .filter(|setting| setting.replaced.is_never() || now.since(setting.replaced) < SETTLES)
-            .map(|setting| indicated_m + setting.datum_m)
-            .min_by(|one, other| {
-                (one - expected_m)
-                    .abs()
-                    .total_cmp(&(other - expected_m).abs())
-            })
+        let datum_m = altimeter.datum_m(AltitudeReference::SeaLevel)?;
+        Some(indicated_m + datum_m)
     }
 }
 
@@ -265,72 +135,6 @@ mod tests {
             for found in found(|_| (reads(inhg), inhg)) {
                 assert!((found.unwrap() - 3_000.0).abs() < 1.0, "{inhg}: {found:?}");
             }
-        }
-    }
-
-    /// The knob is turned far at 5 s; its value comes up to four frames before
-    /// the altitude that it changes, or after it: then the frames between are off
-    /// by more than the autopilot's gate lets pass, 50 ft.
-    #[test]
-    fn no_step_comes_of_a_setting_from_another_frame() {
-        for (from, to) in [(29.9, 30.2), (30.2, 29.5), (31.0, 28.5)] {
-            for apart in -4..=4 {
-                let turned = |ms: i64, when: i64| if ms < when { from } else { to };
-                let found = found(|ms| {
-                    let indicated_m = reads(turned(ms, 5_000));
-                    (indicated_m, turned(ms, 5_000 + apart * FRAME_MS))
-                });
-                let off_ft = found.iter().map(|found| (found.unwrap() - 3_000.0).abs());
-                let off_ft: Vec<_> = off_ft.filter(|feet| *feet > 2.0).collect();
-                let case = format!("{from} to {to}, {apart}: {off_ft:?}");
-                assert_eq!(off_ft.len() as i64, apart.max(0), "{case}");
-                assert!(off_ft.iter().all(|feet| *feet > 50.0), "{case}");
-            }
-        }
-    }
-
-    /// A knob of a tenth of an inch a second, in clicks, for five seconds, in a
-    /// climb of 1,000 ft/min. 0.5 inHg are 460 ft here, by the table. The clicks
-    /// come with the altitude that they change, up to two frames later, or a
-    /// frame earlier: then one altitude for each is off by the click.
-    #[test]
-    fn no_step_comes_of_a_knob_that_is_turned_on() {
-        let clicks = |ms: i64| ((ms.clamp(4_000, 9_000) - 4_000) / 100) as f64;
-        for (late, wrong) in [(2, 0), (1, 0), (0, 0), (-1, 50)] {
-            let climbed_ft = |ms: i64| 1_000.0 / 60_000.0 * ms as f64;
-            let found = found(|ms| {
-                let indicated_ft = 2_980.0 + climbed_ft(ms) + 9.2 * clicks(ms - late * FRAME_MS);
-                (indicated_ft * FOOT_M, 29.9 + 0.01 * clicks(ms))
-            });
-            let off_ft = found.iter().zip((2_000 / FRAME_MS)..).map(|(found, n)| {
-                let feet = found.unwrap();
-                (feet - 3_000.0 - climbed_ft(n * FRAME_MS)).abs()
-            });
-            let off_ft: Vec<_> = off_ft.collect();
-            assert_eq!(
-                off_ft.iter().filter(|ft| **ft > 2.0).count(),
-                wrong,
-                "{late}"
-            );
-            assert!(off_ft.iter().all(|ft| *ft < 12.0));
-        }
-    }
-
-    /// Repositioned by 1,000 ft, and the knob is turned half a second later.
-    #[test]
-    fn a_jump_that_no_setting_explains_is_passed_on() {
-        let found = found(|ms| {
-            let higher_m = if ms < 5_000 { 0.0 } else { 304.8 };
-            let inhg = if ms < 5_500 { 29.9 } else { 30.2 };
-            (reads(inhg) + higher_m, inhg)
-        });
-        for (found, n) in found.iter().zip((2_000 / FRAME_MS)..) {
-            let feet = if n * FRAME_MS < 5_000 {
-                3_000.0
-            } else {
-                4_000.0
-            };
-            assert!((found.unwrap() - feet).abs() < 2.0, "{n}: {found:?}");
         }
     }
 

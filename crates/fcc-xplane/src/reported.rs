@@ -11,7 +11,6 @@ use crate::old_datagrams::OldDatagrams;
 use crate::program::Program;
 use crate::silence::Silence;
 use crate::simulator::SimulatorState;
-use crate::slow_network::{SLOW_S, SlowNetwork};
 use crate::status::{Trouble, XPlaneStatus};
 
 /// A problem is reported only after it has lasted this long: right after the
@@ -36,8 +35,6 @@ pub(crate) struct Reported {
     missing: Vec<Missing>,
     control: Control,
     old: OldDatagrams,
-    slow: SlowNetwork,
-    loads_differ: bool,
     axial_backwards: bool,
     left_overridden: bool,
     /// Another X-Plane that is not connected to.
@@ -63,8 +60,6 @@ impl Default for Reported {
             missing: Vec::new(),
             control: Control::Free,
             old: OldDatagrams::default(),
-            slow: SlowNetwork::default(),
-            loads_differ: false,
             axial_backwards: false,
             left_overridden: false,
             announced: None,
@@ -109,8 +104,7 @@ impl Reported {
                 .or_else(|| self.change_of_overrides(status))
                 .or_else(|| self.change_of_pace(status))
                 .or_else(|| self.change_of_old(status))
-                .or_else(|| self.change_of_round_trip(status))
-                .or_else(|| self.change_of_loads(status))
+                .or_else(|| self.change_of_axial_load(status))
                 .or_else(|| self.change_of_missing(status)),
         }
     }
@@ -161,8 +155,7 @@ impl Reported {
             LastReport::Good => None,
             // Without writing it is not known whether writing would take effect
             // now.
-            LastReport::Trouble(Trouble::Unconfirmed(_) | Trouble::Cut(_)) => (status.control()
-                == Control::Held)
+            LastReport::Trouble(Trouble::Unconfirmed(_)) => (status.control() == Control::Held)
                 .then(|| format!("the controls written to X-Plane at {simulator} take effect")),
             LastReport::Nothing => {
                 let ports = status.reply_port().zip(status.local_port());
@@ -273,33 +266,8 @@ impl Reported {
         ))
     }
 
-    /// That the controls take effect too late; once.
-    fn change_of_round_trip(&mut self, status: &XPlaneStatus) -> Option<String> {
-        let simulator = status.simulator()?;
-        let took_s = status.link().round_trip_s();
-        if !self.slow.step(Instant::now(), took_s) {
-            return None;
-        }
-        Some(format!(
-            "what is written to X-Plane at {simulator} is read back after {took_s:.1} s: the \
-             network is slow, and with more than {SLOW_S} s the aircraft is not flown well, with \
-             more than 0.5 s not at all. Connect both machines by a cable, or run this program on \
-             X-Plane's machine"
-        ))
-    }
-
-    /// That X-Plane's loads contradict each other, and which are used; each
-    /// once.
-    fn change_of_loads(&mut self, status: &XPlaneStatus) -> Option<String> {
-        if status.do_loads_differ() && !self.loads_differ {
-            self.loads_differ = true;
-            return Some(
-                "X-Plane's local accelerations contradict its load factor by more than 0.3 g; \
-                 the accelerations are used: fly by hand, and report it with X-Plane's version \
-                 and aircraft"
-                    .to_owned(),
-            );
-        }
+    /// That the axial load is turned round; once.
+    fn change_of_axial_load(&mut self, status: &XPlaneStatus) -> Option<String> {
         let turned = status.is_axial_backwards() && !self.axial_backwards;
         self.axial_backwards |= turned;
         turned.then(|| {

@@ -19,7 +19,7 @@ use fcc_core::flight::Position;
 use crate::config::{DataRows, RowsVersion};
 use crate::protocol::data::Row;
 use crate::quantity::Quantity;
-use crate::units::{FOOT_M, KNOT_MPS};
+use crate::units::FOOT_M;
 
 const TIMES: i32 = 1;
 const SPEEDS: i32 = 3;
@@ -44,10 +44,7 @@ pub(crate) fn quantities(rows: DataRows, row: &Row, mut found: impl FnMut(Quanti
     };
     match row.index {
         TIMES => give(Quantity::FlightTime, FLIGHT_TIME, 1.0),
-        SPEEDS => {
-            give(Quantity::Airspeed, 0, 1.0);
-            give(Quantity::TrueAirspeed, 2, KNOT_MPS);
-        }
+        SPEEDS => give(Quantity::Airspeed, 0, 1.0),
         LOADS => {
             give(Quantity::LoadNormal, 4, 1.0);
             give(Quantity::LoadAxial, 5, 1.0);

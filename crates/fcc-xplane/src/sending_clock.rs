@@ -6,9 +6,6 @@
 //! calls it the elapsed time synchronised across the network and does not say that
 //! it runs on, so it is used only once it has been seen to, and no longer when it
 //! stands still.
-//!
-//! A network whose delay grows slowly looks like an X-Plane that computes slowly; what is
-//! written and read back tells how old it is at least.
 
 use core::time::Duration;
 
@@ -42,8 +39,6 @@ pub(crate) struct SendingClock {
     network_s: f64,
     network_advanced: Time,
     stamp: Time,
-    sent: Time,
-    by_round_trip: Duration,
 }
 
 impl SendingClock {
@@ -58,8 +53,6 @@ impl SendingClock {
         if was.arrived.is_never() || network_s < self.network_s || flight_s < was.flight_s {
             *self = Self {
                 stamp: self.stamp,
-                sent: self.sent,
-                by_round_trip: self.by_round_trip,
                 flight_advanced: now,
                 network_advanced: arrived,
                 network_s,
@@ -93,23 +86,13 @@ impl SendingClock {
     pub(crate) fn map_anew(&mut self) {
         *self = Self {
             stamp: self.stamp,
-            sent: self.sent,
             ..Self::default()
         };
     }
 
-    /// From now on what arrives is so old by what was written and read back.
-    pub(crate) const fn is_old_by_round_trip(&mut self, by: Duration) {
-        self.by_round_trip = by;
-    }
-
     /// The age of what arrived last, relative to the fastest datagram; zero while
     /// it is not known.
-    pub(crate) fn age(&self) -> Duration {
-        self.age_by_its_clock().max(self.by_round_trip)
-    }
-
-    fn age_by_its_clock(&self) -> Duration {
+    fn age(&self) -> Duration {
         if self.runs_on {
             self.map.age()
         } else {
@@ -119,7 +102,8 @@ impl SendingClock {
 
     /// The time at which was sent what arrives now, as old as what arrived last.
     pub(crate) fn there(&self, now: Time) -> Time {
-        before(now, self.age())
+        let age_ns = i64::try_from(self.age().as_nanos()).unwrap_or(i64::MAX);
+        Time::from_nanos(now.as_nanos().saturating_sub(age_ns))
     }
 
     /// The same for what did arrive now: not before what arrived earlier.
@@ -127,19 +111,6 @@ impl SendingClock {
         self.stamp = self.there(now).max(self.stamp).min(now);
         self.stamp
     }
-
-    /// The same by X-Plane's clock alone. That a time arrives shows that X-Plane runs, however
-    /// old it is by the round trip.
-    pub(crate) fn sent(&mut self, now: Time) -> Time {
-        let sent = before(now, self.age_by_its_clock());
-        self.sent = sent.max(self.sent).min(now);
-        self.sent
-    }
-}
-
-fn before(now: Time, age: Duration) -> Time {
-    let age_ns = i64::try_from(age.as_nanos()).unwrap_or(i64::MAX);
-    Time::from_nanos(now.as_nanos().saturating_sub(age_ns))
 }
 
 #[cfg(test)]

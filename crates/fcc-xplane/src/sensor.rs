@@ -296,7 +296,7 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
         let simulator = self.link.address.simulator();
 
         self.follow_control();
-        self.inbox.begin(&self.writing);
+        self.inbox.begin();
         let missed_s = tick.dt_s - tick.dt_s / tick.missed.saturating_add(1) as f64;
         let received = if missed_s > OLD_AFTER_S {
             self.discard_rest(now);
@@ -342,7 +342,7 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
         let mut inbox = self.inbox.clone();
         let mut measurements = Measurements::default();
         let datagram = self.last_values.get(..self.last_values_bytes);
-        inbox.begin(&link);
+        inbox.begin();
         let _ = inbox.accept(datagram.unwrap_or_default(), tick.woke, &link);
         inbox.publish(tick.woke, &mut measurements, &link, &link);
         black_box((&inbox, &measurements, &link));

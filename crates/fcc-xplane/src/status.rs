@@ -120,8 +120,7 @@ impl XPlaneStatus {
         self.link.set_releasing_if_free();
     }
 
-    /// Whether an override is set that is not this program's, while nothing
-    /// moves the yoke.
+    /// Whether an override is set that is not this program's.
     pub fn is_left_overridden(&self) -> bool {
         self.link.is_left_overridden()
     }
@@ -153,11 +152,6 @@ impl XPlaneStatus {
     pub fn throttle_lever(&self) -> Option<f64> {
         let (lever, _) = self.link.read_back.shown(Quantity::ThrottleLever)?;
         Some(lever.into())
-    }
-
-    /// Whether the accelerations that are used contradict the load factor.
-    pub fn do_loads_differ(&self) -> bool {
-        self.link.do_loads_differ()
     }
 
     /// Whether the axial load in row 4 of Data Output is positive backwards: as
@@ -227,7 +221,6 @@ impl XPlaneStatus {
             Some(at) if self.rows.is_some() && self.link.missing().has_no_answer() => {
                 Some(Trouble::Unanswered(at))
             }
-            Some(at) if self.link.is_cut() => Some(Trouble::Cut(at)),
             Some(at) if self.is_unconfirmed() => Some(Trouble::Unconfirmed(at)),
             Some(_) => None,
         }
@@ -245,9 +238,6 @@ pub enum Trouble {
     Unanswered(SocketAddr),
     /// The simulator sends, but what is written to it has no effect.
     Unconfirmed(SocketAddr),
-    /// The simulator sends, and keeps the controls that were written before: what
-    /// is written now does not arrive.
-    Cut(SocketAddr),
 }
 
 impl fmt::Display for Trouble {
@@ -268,14 +258,6 @@ impl fmt::Display for Trouble {
                 "X-Plane at {at} sends Data Output, but answers no request: X-Plane does not hear \
                  this program. There, in X-Plane 12 switch on Settings > Network > Accept incoming \
                  connections, and let UDP port {} through the firewall of its machine.",
-                at.port()
-            ),
-            Self::Cut(at) => write!(
-                f,
-                "X-Plane at {at} sends its data, but nothing that is written to it arrives any \
-                 more, and it keeps the controls that arrived last: the network towards it is \
-                 interrupted. Check the network, and that a firewall on its machine lets UDP port \
-                 {} in; in X-Plane 12, Settings > Network > Accept incoming connections.",
                 at.port()
             ),
             Self::Unconfirmed(at) => write!(

@@ -22,7 +22,6 @@ pub(crate) enum Unit {
     MetresPerSecond,
     MetresPerSecondSquared,
     RadiansPerSecond,
-    KilogramsPerCubicMetre,
     Degrees,
     Knots,
     Feet,
@@ -45,7 +44,6 @@ impl Unit {
             | Self::MetresPerSecond
             | Self::MetresPerSecondSquared
             | Self::RadiansPerSecond
-            | Self::KilogramsPerCubicMetre
             | Self::Pascals
             | Self::Metres
             | Self::Volts => value,

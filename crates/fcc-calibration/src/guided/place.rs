@@ -42,11 +42,6 @@ impl Place {
         unit(self.0.map(f64::from))
     }
 
-    /// Whether it is along an axis.
-    pub fn is_face(self) -> bool {
-        self.0.iter().filter(|part| **part != 0).count() == 1
-    }
-
     /// The closest place to a direction.
     pub(super) fn closest(direction: [f64; 3]) -> Self {
         let [first, ..] = Self::ALL;

@@ -77,9 +77,6 @@ schema! {
         /// What else acts on the controls, if the source can tell.
         #[field(13, column = "other_*")]
         pub other_control: Reading<OtherControl>,
-        /// Readings of the same source that its own other values contradict.
-        #[field(14, column = "suspect_*")]
-        pub suspect: Reading<Suspect>,
         /// Where the pilot holds the controls, while another one moves the
         /// surfaces.
         #[field(15, column = "pilot_*")]
@@ -134,7 +131,6 @@ readings!(Measurements {
     engage_switch: "engage switch",
     plant: "the plant's state",
     other_control: "other control",
-    suspect: "suspect readings",
     pilot_controls: "the pilot's controls",
     raw_specific_force: "raw acceleration",
     raw_body_rates: "raw body rates",
@@ -288,26 +284,6 @@ schema! {
         /// Down.
         #[field(3)]
         pub down_mps: f64,
-    }
-}
-
-schema! {
-    /// Readings that the other values of their source contradict.
-    ///
-    /// ```
-    /// use fcc_core::flight::Suspect;
-    ///
-    /// let pitot_ice = Suspect { airspeed: true, ..Suspect::default() };
-    /// assert!(!pitot_ice.specific_force);
-    /// ```
-    #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-    pub struct Suspect {
-        /// Whether the airspeed is contradicted.
-        #[field(1)]
-        pub airspeed: bool,
-        /// Whether the specific force is contradicted.
-        #[field(2)]
-        pub specific_force: bool,
     }
 }
 

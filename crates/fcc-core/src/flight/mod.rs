@@ -14,7 +14,7 @@ pub mod terrain;
 
 pub use altimeter::{ALTIMETER_SETTINGS_PA, Altimeter, AltitudeReference};
 pub use measurements::{
-    Attitude, BodyRates, Measurements, PilotControls, Position, SpecificForce, Suspect, Velocity,
+    Attitude, BodyRates, Measurements, PilotControls, Position, SpecificForce, Velocity,
 };
 pub use motors::{MOST_ROTORS, Motors};
 pub use plant::{OtherControl, Plant, PlantState};

@@ -30,7 +30,7 @@ schema! {
     /// ```
     /// use fcc_core::flight::OtherControl;
     ///
-    /// let climbing_alone = OtherControl { autopilot: true, ..OtherControl::default() };
+    /// let climbing_alone = OtherControl { autopilot: true };
     /// assert_ne!(climbing_alone, OtherControl::default());
     /// ```
     #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -38,21 +38,6 @@ schema! {
         /// Another autopilot moves the controls by its servos.
         #[field(1)]
         pub autopilot: bool,
-        /// Another autothrottle moves the throttles.
-        #[field(2)]
-        pub autothrottle: bool,
-        /// Another flight control computer determines the control surfaces.
-        #[field(3)]
-        pub fly_by_wire: bool,
-        /// Artificial stability, such as a yaw damper, adds to the controls.
-        #[field(4)]
-        pub stability: bool,
-        /// Another program writes the controls that this one writes.
-        #[field(5)]
-        pub writer: bool,
-        /// Thrust is reversed.
-        #[field(6)]
-        pub reverse_thrust: bool,
     }
 }
 

@@ -5,7 +5,6 @@ use core::time::Duration;
 use crate::control::{AirspeedConfig, AltitudeConfig, Envelope, HeadingConfig};
 use fcc_core::flight::Altimeter;
 use fcc_core::flight::terrain::Terrain;
-use fcc_core::framework::Flags;
 use fcc_guidance::route::{Route, RouteConfig, RouteSource};
 use fcc_guidance::{GuidanceConfig, TimedPatternConfig};
 use fcc_navigation::inertial::RawNavigationConfig;
@@ -49,10 +48,8 @@ pub struct AutopilotConfig {
     /// The time that navigation needs to settle before the autopilot can
     /// engage.
     pub settling: Duration,
-    /// Conditions of [`flags`](super::flags) that are reported but do not
-    /// prevent engaging: of `OTHER_AUTOPILOT`, `OTHER_AUTOTHROTTLE`,
-    /// `FLY_BY_WIRE` and `UPSET`, from which it recovers first.
-    pub permitted: Flags,
+    /// Whether it may engage in an upset, from which it recovers first.
+    pub permits_upset: bool,
     /// When the pilot's controls end the engagement; `None` for never.
     pub stick_takeover: Option<StickTakeover>,
     /// Whether the elevator's trim is moved, where it is measured.
@@ -106,7 +103,7 @@ impl Default for AutopilotConfig {
             max_silence: Duration::from_secs(30),
             frozen_after: Duration::from_secs(2),
             settling: Duration::from_secs(1),
-            permitted: Flags::NONE,
+            permits_upset: false,
             stick_takeover: None,
             trims: true,
             level_and_trim: Duration::from_secs(10),

@@ -304,11 +304,8 @@ impl Degraded {
 
 impl Autopilot {
     /// The quantities that control cannot use: too old, frozen, or contradicted.
-    pub(super) fn lost(&self, now: Time, measured: &Measurements) -> Quantities {
-        let contradicted = self
-            .external(now, measured)
-            .contains(flags::SUSPECT_AIRSPEED)
-            || self.estimator.navigation.airspeed_doubt().is_some();
+    pub(super) fn lost(&self, now: Time) -> Quantities {
+        let contradicted = self.estimator.navigation.airspeed_doubt().is_some();
         let doubt = self.estimator.navigation.motion_doubt();
         let unusable = self
             .silent_or_frozen(now)
@@ -385,8 +382,8 @@ impl Autopilot {
             self.supervisor.degraded.forget_unsound(tick.dt_s);
             return;
         }
-        let faults = self.unsafe_now(tick.woke, measured) | self.not_flyable(tick.woke, measured);
-        let held = held_without(self.unreplaced(tick.woke, self.lost(tick.woke, measured)));
+        let faults = self.unsafe_now(tick.woke, measured);
+        let held = held_without(self.unreplaced(tick.woke, self.lost(tick.woke)));
         let config = &self.config.failsafe;
         let degraded = &mut self.supervisor.degraded;
         degraded.lasted_s += tick.dt_s;

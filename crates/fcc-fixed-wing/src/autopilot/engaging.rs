@@ -21,7 +21,7 @@ impl Autopilot {
         let is_slow = estimate.airspeed_mps < self.config.envelope.min_airspeed_mps
             && !stale.contains(Quantity::Airspeed);
         (self.unsafe_with(stale, now, measurements)
-            | self.not_permitted(now, measurements)
+            | self.external(now, measurements)
             | self.route_inhibits()
             | self.battery_inhibits(now))
         .with(

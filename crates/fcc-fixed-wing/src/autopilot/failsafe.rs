@@ -140,13 +140,13 @@ impl Autopilot {
     /// [returns](ReturningAltitude).
     pub(super) fn safest(&mut self, now: Time, measured: &Measurements) -> Surfaces {
         self.begin_or_go_on(measured);
-        let lost = self.unreplaced(now, self.lost(now, measured));
+        let lost = self.unreplaced(now, self.lost(now));
         let held = held_without(lost);
         let glides = self.supervisor.degraded.glides;
         self.guidance.setpoints.roll_rad = 0.0;
         self.guidance.setpoints.climb_rate_mps = 0.0;
         let silent = self.intake.is_silent(&self.config, now);
-        let idle = glides && !silent || measured.other_control.value.reverse_thrust;
+        let idle = glides && !silent;
         if held.lateral == Lateral::Trims {
             self.guidance.setpoints.pitch_rad = 0.0;
             self.loops.recovery.end();

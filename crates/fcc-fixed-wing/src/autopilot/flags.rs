@@ -48,33 +48,17 @@ pub const REJECTED: Flags = Flags::bit(19);
 pub const PLANT_SILENT: Flags = Flags::bit(20);
 /// The simulator took back the controls by itself: it was reloaded.
 pub const PLANT_RELOADED: Flags = Flags::bit(21);
-/// The aircraft was moved to another place.
-pub const RELOCATED: Flags = Flags::bit(22);
 /// The simulator shows a recorded flight.
 pub const PLANT_REPLAYING: Flags = Flags::bit(23);
 
 /// Another autopilot's servos move the controls.
 pub const OTHER_AUTOPILOT: Flags = Flags::bit(24);
-/// Another autothrottle moves the throttles.
-pub const OTHER_AUTOTHROTTLE: Flags = Flags::bit(25);
-/// Another flight control computer determines the control surfaces.
-pub const FLY_BY_WIRE: Flags = Flags::bit(26);
-/// Artificial stability adds to the controls.
-pub const STABILITY: Flags = Flags::bit(27);
-/// Another program writes the controls.
-pub const OTHER_WRITER: Flags = Flags::bit(28);
-/// Thrust is reversed.
-pub const REVERSE_THRUST: Flags = Flags::bit(29);
 /// The simulator's time runs more than twice as fast as ours.
 pub const PLANT_FAST: Flags = Flags::bit(30);
-/// The airspeed contradicts its source's other values.
-pub const SUSPECT_AIRSPEED: Flags = Flags::bit(31);
 /// The airspeed contradicts the other sensors and is not used.
 pub const DOUBTED_AIRSPEED: Flags = Flags::bit(32);
 /// The aircraft is recovered from an upset.
 pub const RECOVERING: Flags = Flags::bit(33);
-/// The loops or the airframe oscillate: gain is taken out.
-pub const OSCILLATION: Flags = Flags::bit(34);
 /// The outputs take effect too late for the configured gains.
 pub const LATE_EFFECT: Flags = Flags::bit(35);
 /// The outputs do not reach the aircraft.
@@ -183,7 +167,6 @@ pub(super) const NOT_SENSED: Flags = Flags::from_bits(
         | FROZEN_SPECIFIC_FORCE.bits()
         | FROZEN_AIRSPEED.bits()
         | REJECTED.bits()
-        | SUSPECT_AIRSPEED.bits()
         | DOUBTED_AIRSPEED.bits()
         | DOUBTED_ALTITUDE.bits()
         | DOUBTED_MOTION.bits()
@@ -216,19 +199,19 @@ pub(super) const NAMES: [&str; 64] = [
     "measured values are implausible",
     "nothing arrives from the simulator",
     "the simulator was reloaded",
-    "the aircraft was moved",
+    "not used (bit 22)",
     "the simulator shows a replay",
     "another autopilot is on",
-    "another autothrottle is on",
-    "another flight control computer moves the control surfaces",
-    "artificial stability moves the controls",
-    "another program writes the controls",
-    "thrust is reversed",
+    "not used (bit 25)",
+    "not used (bit 26)",
+    "not used (bit 27)",
+    "not used (bit 28)",
+    "not used (bit 29)",
     "simulator time runs more than twice as fast",
-    "airspeed contradicts the simulator's true airspeed",
+    "not used (bit 31)",
     "airspeed contradicts the other sensors and is not used",
     "recovering from an upset",
-    "oscillation: gain is reduced",
+    "not used (bit 34)",
     "the outputs take effect too late for the gains",
     "the outputs do not reach the aircraft",
     "too little energy: speed is held, height given up",

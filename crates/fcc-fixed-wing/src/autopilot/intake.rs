@@ -96,7 +96,6 @@ impl Intake {
         Flags::NONE
             .with(flags::PLANT_JUMPED, self.plant_is(PlantState::Jumped))
             .with(flags::PLANT_RELOADED, self.plant_is(PlantState::Reloaded))
-            .with(flags::RELOCATED, self.whereabouts.was_relocated())
     }
 
     pub(super) fn plant_is(&self, state: PlantState) -> bool {

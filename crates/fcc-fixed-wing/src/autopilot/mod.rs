@@ -26,7 +26,6 @@ mod journal;
 mod loops;
 mod notices;
 mod observe;
-mod other_control;
 mod pilot_takeover;
 mod place_monitor;
 mod plant_clock;
@@ -35,6 +34,7 @@ mod receiver;
 mod refusal;
 mod release;
 mod replacing;
+mod reported;
 mod resume;
 mod routing;
 mod runway;
@@ -68,7 +68,6 @@ pub use routing::ITEM_REACHED;
 pub use runway::{gives_up_runway, touches_ground};
 pub use scale::Scale;
 use supervisor::Supervisor;
-pub use whereabouts::can_be_reached;
 
 use crate::Setpoints;
 use crate::control::{ElevatorTrim, Recovery};
@@ -150,7 +149,7 @@ impl Controller for Autopilot {
 
     fn faults(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         let seen = self.estimator.seen(measurements);
-        self.unsafe_to_fly(tick.woke, seen) | self.not_flyable(tick.woke, seen)
+        self.unsafe_to_fly(tick.woke, seen)
     }
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
@@ -266,14 +265,10 @@ impl Controller for Autopilot {
     fn failsafe(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
         let seen = *self.estimator.seen(measurements);
         self.prepare_end_of_failsafe(tick.woke, &seen);
-        let lost = self.lost(tick.woke, &seen);
+        let lost = self.lost(tick.woke);
         let estimate = *self.estimator.estimate();
         if !lost.intersects(Quantity::BodyRates | Quantity::Attitude) {
             self.follow_outputs(&estimate);
-        } else if !lost.contains(Quantity::Attitude) {
-            self.loops
-                .actuation
-                .watch(&self.loops.last, &estimate, self.intake.clock.step_s());
         }
         let held = self.safest(tick.woke, &seen);
         let stops = self.stop_on_wheels(lost);

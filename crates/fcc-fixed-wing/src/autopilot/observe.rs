@@ -3,10 +3,9 @@
 
 use super::Autopilot;
 use super::future::{is_from_the_future, without_future};
-use super::place_monitor::PlaceDoubt;
 use super::plant_clock::Waiting;
 use super::whereabouts::Whereabouts;
-use fcc_core::flight::{Measurements, PlantState};
+use fcc_core::flight::Measurements;
 use fcc_core::framework::{Reading, Readings, Tick, Time};
 use fcc_navigation::inertial::RawNavigation;
 use fcc_navigation::{
@@ -30,11 +29,9 @@ impl Autopilot {
         self.report_clock_and_sensors();
         if self.intake.clock.waiting() == Waiting::Replaying {
             // What is measured is not the aircraft's state.
-            self.intake.whereabouts.skip(now);
             self.intake.before = now;
             return;
         }
-        self.follow(measured);
         self.follow_pilot(now, measured);
         if self.intake.is_elsewhere().is_empty() {
             self.accept(tick, measured);
@@ -47,14 +44,14 @@ impl Autopilot {
             self.intake.clock.ignore(tick);
         }
         if self.intake.clock.advances(now) {
-            self.intake.whereabouts.keep(&self.intake.accepted);
+            self.intake.whereabouts = Whereabouts::of(&self.intake.accepted);
         }
         self.intake.follow_ages(&self.config, now, measured);
         let step_s = self.intake.clock.step_s();
         self.note_throttle(now);
         self.follow_intermittent(step_s);
         let doubted = self.estimator.navigation.airspeed_doubt();
-        self.navigate(now, measured, step_s);
+        self.navigate(now, step_s);
         self.follow_ground(now, step_s);
         self.follow_battery(now, step_s);
         self.follow_engine(now, step_s);
@@ -77,7 +74,7 @@ impl Autopilot {
     }
 
     /// Estimates the aircraft's state, in failsafe without what is lost.
-    fn navigate(&mut self, now: Time, measured: &Measurements, step_s: f64) {
+    fn navigate(&mut self, now: Time, step_s: f64) {
         let silent = self.silent_or_frozen(now);
         let sigma_rad = self
             .estimator
@@ -95,7 +92,7 @@ impl Autopilot {
         if doubt != self.estimator.navigation.motion_doubt() {
             self.estimator.replacement.forget_offsets();
         }
-        let lost = self.lost(now, measured);
+        let lost = self.lost(now);
         self.estimator
             .navigation
             .knows_motion(self.known_motion(now, lost));
@@ -125,26 +122,6 @@ impl Autopilot {
             self.estimator
                 .navigation
                 .step(now, &self.intake.accepted, step_s);
-        }
-    }
-
-    /// Follows where the aircraft is.
-    fn follow(&mut self, measured: &Measurements) {
-        if self.intake.plant_is(PlantState::Jumped) || self.intake.plant_is(PlantState::Reloaded) {
-            self.intake.whereabouts = Whereabouts::default();
-        } else if self.intake.clock.state().is_some() {
-            let was_long = self.intake.clock.gap().is_some_and(|gap| gap.was_long);
-            // A place that stands still says nothing, and the next one is far away.
-            let by_receiver = self.estimator.raw.is_some() && !measured.gnss.is_never()
-                || matches!(
-                    self.estimator.ground.place_doubt(),
-                    Some(PlaceDoubt::Repeats | PlaceDoubt::Moves)
-                );
-            let passed_s = self.intake.clock.passed_s();
-            let step_m = self.estimator.navigation.resolutions().altitude_step_m;
-            self.intake
-                .whereabouts
-                .step(measured, passed_s, was_long, by_receiver, step_m);
         }
     }
 

@@ -13,7 +13,7 @@ use fcc_core::framework::{Notice, Reading, Tick, Time};
 
 /// The longest single step of the plant's time, s: after a gap the loops
 /// continue from the present state, not from an extrapolation.
-pub(super) const MAX_STEP_S: f64 = 0.2;
+const MAX_STEP_S: f64 = 0.2;
 /// A plant whose time does not advance for longer than this while it sends has
 /// stopped: five frames at 20 a second.
 const STOPPED_AFTER: Duration = Duration::from_millis(250);
@@ -58,8 +58,6 @@ pub(super) struct Gap {
     /// By how much readings have not aged: the plant's time stood still or was
     /// not heard.
     pub(super) excused: Duration,
-    /// Whether it was longer than usual: the aircraft may be elsewhere.
-    pub(super) was_long: bool,
     /// Whether the plant's time ran on.
     pub(super) ran_on: bool,
     /// Whether it ran on for so long that what was estimated before is no
@@ -294,7 +292,6 @@ impl PlantClock {
         if was_long || excused_s > 0.0 {
             self.gap = Some(Gap {
                 excused: Duration::from_secs_f64(excused_s),
-                was_long,
                 ran_on,
                 settles_anew,
             });

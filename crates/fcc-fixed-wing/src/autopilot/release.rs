@@ -64,9 +64,9 @@ impl Autopilot {
         measured: &Measurements,
     ) -> bool {
         let estimate = self.estimator.estimate();
-        let unsafe_now = self.unsafe_to_fly(now, measured) | self.not_flyable(now, measured);
+        let unsafe_now = self.unsafe_to_fly(now, measured);
         let is_flyable = !unsafe_now.intersects(flags::NOT_SENSED)
-            && held_without(self.lost(now, measured)).vertical != Vertical::Trim
+            && held_without(self.lost(now)).vertical != Vertical::Trim
             && !is_far_from_level(estimate)
             && !self.loops.recovery.is_active()
             && !self.intake.is_silent(&self.config, now)

@@ -2,7 +2,7 @@
 
 use libm::sin;
 
-use super::{Autopilot, flags};
+use super::Autopilot;
 use crate::Setpoints;
 use crate::control::{Change, Envelope, Recovery, RecoveryInputs};
 use fcc_core::flight::Surfaces;
@@ -46,7 +46,7 @@ pub(super) fn is_far_from_level(estimate: &Estimate) -> bool {
 impl Autopilot {
     /// Whether it may engage in an upset, to recover the aircraft from it.
     pub(super) const fn may_engage_in_upset(&self) -> bool {
-        self.config.permitted.contains(flags::UPSET)
+        self.config.permits_upset
     }
 
     /// Begins to watch for upsets, with the trims of the present flight unless it

@@ -205,3 +205,19 @@ fn a_clock_that_alone_is_missing_has_not_stopped() {
         }
     }
 }
+
+#[test]
+fn another_autopilot_and_time_more_than_twice_as_fast_prevent_engaging_only() {
+    let mut cockpit = Cockpit::new(GuidanceConfig::Hold);
+    cockpit.feel.plant = Some(PlantState::Fast);
+    cockpit.other_control.autopilot = true;
+    cockpit.observe();
+    let both = flags::PLANT_FAST | flags::OTHER_AUTOPILOT;
+    assert_eq!(cockpit.engage_inhibits(), both);
+    assert_eq!(cockpit.conditions(), both);
+    assert_eq!(cockpit.faults(), Flags::NONE);
+    cockpit.feel.plant = Some(PlantState::Running);
+    cockpit.other_control.autopilot = false;
+    cockpit.observe();
+    assert_eq!(cockpit.engage_inhibits(), Flags::NONE);
+}

@@ -4,7 +4,7 @@ use core::time::Duration;
 
 use fcc_core::flight::{
     Attitude, BodyRates, Measurements, OtherControl, Plant, PlantState, Position, SpecificForce,
-    Surfaces, Suspect,
+    Surfaces,
 };
 use fcc_core::framework::{Controller, Flags, Reading, Switch, Tick, Time};
 use fcc_fixed_wing::{Autopilot, AutopilotCommand, AutopilotConfig, flags};
@@ -41,7 +41,6 @@ pub(crate) struct Cockpit {
     /// Degrees north of the start.
     pub(crate) north_deg: f64,
     pub(crate) other_control: OtherControl,
-    pub(crate) suspect: Suspect,
 }
 
 #[derive(Clone, Copy)]
@@ -98,7 +97,6 @@ impl Cockpit {
             plant_source: 0,
             north_deg: 0.0,
             other_control: OtherControl::default(),
-            suspect: Suspect::default(),
         };
         for _ in 0..80 {
             cockpit.observe();
@@ -182,7 +180,6 @@ impl Cockpit {
                 Reading::new(position, now)
             }),
             other_control: Reading::new(self.other_control, now),
-            suspect: Reading::new(self.suspect, now),
             plant: feel.plant.map_or_else(Reading::default, |state| {
                 let time_s = now.as_nanos() as f64 * 1e-9 - self.stood_s;
                 Reading {

@@ -11,6 +11,5 @@ mod future;
 mod gate;
 mod link_loss;
 mod lost_altitude;
-mod other_control;
 mod resuming;
 mod silence;

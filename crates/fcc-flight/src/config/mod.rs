@@ -289,7 +289,7 @@ impl Config {
         AutopilotConfig {
             settling: self.restart.mode.settling(),
             max_silence: Duration::from_secs_f64(self.failsafe.all_silent_s),
-            permitted: self.engage.permitted(),
+            permits_upset: self.engage.permit_upset,
             stick_takeover: self.engage.takeover(),
             level_and_trim: Duration::from_secs_f64(self.release.level_and_trim_s),
             failsafe: (&self.failsafe).into(),

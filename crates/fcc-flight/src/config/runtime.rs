@@ -3,8 +3,8 @@
 
 use std::time::Duration;
 
-use fcc_core::framework::{AfterRelease, Flags};
-use fcc_fixed_wing::{AutopilotConfig, FailsafeConfig, FailsafeEnd, StickTakeover, flags};
+use fcc_core::framework::AfterRelease;
+use fcc_fixed_wing::{AutopilotConfig, FailsafeConfig, FailsafeEnd, StickTakeover};
 use fcc_timer::{CpuRequest, EarlyWake, RealtimeRequest, Strictness, Timer, TimerError, TimerKind};
 use serde::{Deserialize, Serialize};
 
@@ -187,10 +187,6 @@ impl From<Then> for AfterRelease {
 /// `[engage]`.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "four conditions, each permitted or not"
-)]
 pub struct EngageSection {
     /// The effect of switching off.
     pub switch_off: Then,
@@ -201,12 +197,6 @@ pub struct EngageSection {
     pub stick_takeover: Option<f64>,
     /// How long they must be beyond it.
     pub stick_takeover_s: f64,
-    /// Engage although another autopilot is on.
-    pub permit_autopilot: bool,
-    /// Engage although another autothrottle is on.
-    pub permit_autothrottle: bool,
-    /// Engage although another flight control computer moves the surfaces.
-    pub permit_fly_by_wire: bool,
     /// Engage beyond 60° of bank or pitch or in a spin, and recover from it first.
     pub permit_upset: bool,
 }
@@ -218,9 +208,6 @@ impl Default for EngageSection {
             command_needs_switch: true,
             stick_takeover: None,
             stick_takeover_s: 0.2,
-            permit_autopilot: false,
-            permit_autothrottle: false,
-            permit_fly_by_wire: false,
             permit_upset: false,
         }
     }
@@ -232,15 +219,6 @@ impl EngageSection {
         let after = Duration::from_secs_f64(self.stick_takeover_s);
         let threshold = self.stick_takeover?;
         Some(StickTakeover { threshold, after })
-    }
-
-    /// The conditions that do not prevent engaging.
-    pub(super) const fn permitted(&self) -> Flags {
-        Flags::NONE
-            .with(flags::OTHER_AUTOPILOT, self.permit_autopilot)
-            .with(flags::OTHER_AUTOTHROTTLE, self.permit_autothrottle)
-            .with(flags::FLY_BY_WIRE, self.permit_fly_by_wire)
-            .with(flags::UPSET, self.permit_upset)
     }
 }
 

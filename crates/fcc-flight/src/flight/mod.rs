@@ -38,7 +38,6 @@ mod plan;
 #[cfg(feature = "live")]
 mod plan_reader;
 pub(crate) mod recording;
-mod repair;
 mod restart;
 pub(crate) mod run_statistics;
 mod scorer;

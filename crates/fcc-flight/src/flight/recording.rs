@@ -11,7 +11,6 @@ use serde::Serialize;
 use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 use super::outcome::{Outcome, RecordingOutcome};
 use super::plan::Pace;
-use super::repair::Repair;
 use crate::config::{Aircraft, Config, LoopSection, RecordingSection, keyed};
 
 /// How long a disk may be delayed before records are lost, at 136 Hz or less.
@@ -108,7 +107,6 @@ pub(crate) struct FlightRecorder<C: Recorded> {
     settings: RecorderSettings,
     about: About,
     recorder: Option<RecorderOf<C>>,
-    repair: Option<Repair>,
     /// When its status was last reported.
     reported: Instant,
 }
@@ -119,7 +117,6 @@ impl<C: Recorded> FlightRecorder<C> {
             settings: request.settings,
             about: request.about,
             recorder: None,
-            repair: None,
             reported: Instant::now(),
         }
     }
@@ -149,10 +146,6 @@ impl<C: Recorded> Observer<C> for FlightRecorder<C> {
             Ok(recorder) => self.recorder = Some(recorder),
             Err(error) => reports.remark(format!("not recorded: no thread: {error}")),
         }
-        // Finding the one that the last flight left takes seconds in a full folder, and
-        // repairing an hour's too: neither delays the flight.
-        let (started_ns, offset_ns) = (facts.started_unix_ns, facts.clock_offset_ns);
-        self.repair = Repair::begin(&self.settings.folder, started_ns, offset_ns);
     }
 
     fn record(&mut self, record: &RecordOf<C>, _: &FlightTime) {
@@ -176,9 +169,6 @@ impl<C: Recorded> Observer<C> for FlightRecorder<C> {
     }
 
     fn poll(&mut self, access: &mut Access<'_, C::Command>) {
-        if let Some(repair) = self.repair.take_if(|repair| repair.is_over()) {
-            repair.end(access.reports);
-        }
         let Some(recorder) = &self.recorder else {
             return;
         };
@@ -193,9 +183,6 @@ impl<C: Recorded> Observer<C> for FlightRecorder<C> {
 
     /// Ends the recording and waits for the disk, for a limited time.
     fn end(&mut self, ending: &str, outcome: &mut Outcome, reports: &mut Reports) {
-        if let Some(repair) = self.repair.take() {
-            repair.end(reports);
-        }
         let Some(recorder) = self.recorder.take() else {
             outcome.was_not_recorded();
             return;
@@ -236,62 +223,5 @@ fn pass_on(notice: Notice, reports: &mut Reports) {
         reports.remark(notice.text);
     } else {
         reports.mention(notice.text);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::fs::{self, File};
-
-    use fcc_fixed_wing::Autopilot;
-    use fcc_record::Recorder;
-
-    use super::*;
-
-    /// After an hour's flight it takes seconds, in which nobody would fly.
-    #[test]
-    fn an_unfinished_recording_is_repaired_while_the_flight_goes_on() {
-        let folder = tempfile::tempdir().unwrap();
-        let mut config = Config::default();
-        config.recording.folder = folder.path().to_owned();
-        let request = RecordingRequest::of(&config, None).unwrap();
-        let settings = request.settings.clone();
-        let flown = Recorder::start(request.about.clone(), settings).unwrap();
-        let (status, _) = flown.finish("stopped");
-        let path = &status.files[0];
-        let bytes = fs::metadata(path).unwrap().len();
-        File::options()
-            .write(true)
-            .open(path)
-            .and_then(|file| file.set_len(bytes - 9))
-            .unwrap();
-        let is_whole = || fcc_record::Recording::open(path).unwrap().is_whole();
-
-        let (mut recording, mut reports) = (
-            FlightRecorder::<Autopilot>::new(request),
-            Reports::default(),
-        );
-        recording.prepare(&mut reports);
-        assert!(!is_whole());
-        let facts = Facts {
-            rate_hz: 40.0,
-            timer: "timerfd",
-            sensors: &[],
-            actuators: &[],
-            // The one that is left began in 1970.
-            started_unix_ns: 10_000_000_000,
-            clock_offset_ns: 0,
-            pace: Pace::RealTime,
-            granted: None,
-        };
-        recording.begin(&facts, &mut reports);
-        let repair = recording.repair.take().unwrap();
-        while !repair.is_over() {
-            std::thread::sleep(Duration::from_millis(1));
-        }
-        repair.end(&mut reports);
-        assert!(is_whole());
-        let said = format!("{:?}", reports.take());
-        assert!(said.contains("was unfinished, repaired: 0 ticks"), "{said}");
     }
 }

@@ -54,7 +54,7 @@ pub(super) struct Summary {
 /// Whether a column is kept: not the times and sources of readings, nor raw ones.
 fn is_kept(name: &str) -> bool {
     let ends = ["_taken_ns", "_source"];
-    let begins = ["raw_", "gnss_", "magnetic_", "suspect_", "other_", "pilot_"];
+    let begins = ["raw_", "gnss_", "magnetic_", "other_", "pilot_"];
     !ends.iter().any(|end| name.ends_with(end))
         && !begins.iter().any(|begin| name.starts_with(begin))
 }

@@ -70,7 +70,7 @@ pub(super) fn state(
     let healthy = Sensors {
         inertial: inertial && !has(flags::DOUBTED_ATTITUDE) && !has(flags::DOUBTED_BODY_RATES),
         barometer: barometer && !has(flags::DOUBTED_ALTITUDE),
-        airspeed: airspeed && !has(flags::DOUBTED_AIRSPEED) && !has(flags::SUSPECT_AIRSPEED),
+        airspeed: airspeed && !has(flags::DOUBTED_AIRSPEED),
         gnss: gnss && !has(flags::DEAD_RECKONING) && !has(flags::IMPOSSIBLE_FIX),
         compass: compass && !has(flags::HEADING) && !has(flags::FROZEN_HEADING),
     };

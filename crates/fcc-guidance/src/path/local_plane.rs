@@ -84,11 +84,6 @@ impl LocalPlane {
         self.turned(north * vector.x + east * vector.y, vector)
     }
 
-    /// The same for a vector in another plane.
-    pub fn direction_in(&self, other: &Self, vector: Vector2<f64>) -> Vector2<f64> {
-        self.turned(other.north * vector.x + other.east * vector.y, vector)
-    }
-
     fn turned(&self, on_earth: Vector3<f64>, vector: Vector2<f64>) -> Vector2<f64> {
         let flat = Vector2::new(on_earth.dot(&self.north), on_earth.dot(&self.east));
         let (length, wanted) = (hypot(flat.x, flat.y), hypot(vector.x, vector.y));

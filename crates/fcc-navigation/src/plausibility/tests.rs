@@ -3,7 +3,6 @@
 use std::vec::Vec;
 
 use super::*;
-use fcc_core::flight::Suspect;
 use fcc_core::framework::schema::{Field, Schema, Sink, Source, Value};
 use fcc_core::framework::{Readings, Time};
 
@@ -84,25 +83,6 @@ fn a_single_outlier_loses_one_reading() {
     plausibility_gate(&mut good, &new, &LIMITS);
     plausibility_gate(&mut good, &flying(ms(50)), &LIMITS);
     assert_eq!(good.airspeed_mps, Reading::new(51.0, ms(50)));
-}
-
-#[test]
-fn a_suspect_airspeed_is_not_used_unless_it_is_another_sensors() {
-    let mut good = flying(ms(0));
-    let mut new = flying(ms(25));
-    new.suspect = Reading::new(
-        Suspect {
-            airspeed: true,
-            ..Suspect::default()
-        },
-        ms(25),
-    );
-    plausibility_gate(&mut good, &new, &LIMITS);
-    assert_eq!(good.airspeed_mps.taken, ms(0));
-    assert_eq!(good.altitude_m.taken, ms(25));
-    new.airspeed_mps.source = 1;
-    plausibility_gate(&mut good, &new, &LIMITS);
-    assert_eq!(good.airspeed_mps.taken, ms(25));
 }
 
 /// Of a known altimeter of 100 ft.

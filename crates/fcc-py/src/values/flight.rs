@@ -25,7 +25,7 @@ values_class! {
     /// nan
     #[pyclass(name = "Measurements", module = "fcc")]
     struct PyMeasurements(Measurements)
-        without ["surfaces", "engage_switch", "plant", "other_control", "suspect"],
+        without ["surfaces", "engage_switch", "plant", "other_control"],
         settable;
 
     #[new]

@@ -207,34 +207,12 @@ pub(super) const TABLE: &[Entry] = &[
         .is("right wing down, from the horizontal below the aircraft").instead("`phi`"),
     Entry::new(Quantity::TrueHeading, Position("true_psi"), Unit::Degrees, [-360.0, 360.0]).in_rows().since("11.5")
         .is("clockwise from true north").instead("the local axes' north counts as true north"),
-    Entry::new(Quantity::LoadFactor, Dataref("sim/flightmodel/forces/g_nrml"), Unit::Gravities, [-100.0, 100.0]).in_rows().by(ListAndArduPilot)
-        .is("up along the aircraft's axis, 1 in level flight").instead("the local accelerations are not checked"),
-    Entry::new(Quantity::TrueAirspeed, Position("true_airspeed"), Unit::MetresPerSecond, [-1e4, 1e4]).in_rows()
-        .is("forwards").instead("the indicated airspeed is not checked"),
-    Entry::new(Quantity::AirDensity, Dataref("sim/weather/rho"), Unit::KilogramsPerCubicMetre, [0.0, 10.0])
-        .is("at the aircraft").instead("the indicated airspeed is not checked"),
     Entry::new(Quantity::Servos, Dataref("sim/cockpit2/autopilot/servos_on"), Unit::Flag, [0.0, 1.0])
         .is("X-Plane's autopilot moves the controls").instead(NOT_NOTICED),
     Entry::new(Quantity::Servos2, Dataref("sim/cockpit2/autopilot/servos2_on"), Unit::Flag, [0.0, 1.0]).since("11.5")
         .is("its second autopilot does").instead(NOT_NOTICED),
     Entry::new(Quantity::Servos3, Dataref("sim/cockpit2/autopilot/servos3_on"), Unit::Flag, [0.0, 1.0]).since("11.5")
         .is("its third autopilot does").instead(NOT_NOTICED),
-    Entry::new(Quantity::Autothrottle, Dataref("sim/cockpit2/autopilot/autothrottle_on"), Unit::Flag, [0.0, 1.0])
-        .is("X-Plane's autothrottle moves the throttles").instead(NOT_NOTICED),
-    Entry::new(Quantity::OverrideStability, Dataref("sim/operation/override/override_artstab"), Unit::Flag, [0.0, 1.0])
-        .is("a plugin computes the artificial stability").instead(NOT_NOTICED),
-    Entry::new(Quantity::OverrideFlightControl, Dataref("sim/operation/override/override_flightcontrol"), Unit::Flag, [0.0, 1.0])
-        .is("a plugin computes all of the flight control").instead(NOT_NOTICED),
-    Entry::new(Quantity::OverrideSurfaces, Dataref("sim/operation/override/override_control_surfaces"), Unit::Flag, [0.0, 1.0])
-        .is("a plugin moves the control surfaces").instead(NOT_NOTICED),
-    Entry::new(Quantity::StabilityPitch, Dataref("sim/joystick/artstab_pitch_ratio"), Unit::Ratio, [-1e3, 1e3])
-        .is("what artificial stability adds to the yoke, nose up").instead(NOT_NOTICED),
-    Entry::new(Quantity::StabilityRoll, Dataref("sim/joystick/artstab_roll_ratio"), Unit::Ratio, [-1e3, 1e3])
-        .is("the same, right").instead(NOT_NOTICED),
-    Entry::new(Quantity::StabilityHeading, Dataref("sim/joystick/artstab_heading_ratio"), Unit::Ratio, [-1e3, 1e3])
-        .is("the same, nose right").instead(NOT_NOTICED),
-    Entry::new(Quantity::EngineMode, Dataref("sim/flightmodel/engine/ENGN_propmode[0]"), Unit::Number, [0.0, 10.0])
-        .is("0 feathered, 1 normal, 2 beta, 3 reverse").instead("reverse thrust is known by a negative throttle only"),
     Entry::new(Quantity::ThrottleLever, Dataref("sim/cockpit2/engine/actuators/throttle_ratio[0]"), Unit::Ratio, [-2.0, 2.0])
         .is("0 idle, 1 full").instead("where the lever is is not said at a release"),
     Entry::new(Quantity::Replay, Dataref("sim/time/is_in_replay"), Unit::Flag, [0.0, 1.0])

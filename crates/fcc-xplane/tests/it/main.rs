@@ -9,8 +9,6 @@ mod observing;
 mod ports;
 mod properties;
 mod reading;
-mod repeated;
-mod round_trip;
 mod support;
 mod traffic;
 mod warm_up;

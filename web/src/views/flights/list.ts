@@ -83,7 +83,7 @@ interface CardActions {
 
 function card(flight: Flight, flights: Flight[], actions: CardActions): HTMLElement {
   const faults = flight.faults ? `${flight.faults} ${flight.faults === 1 ? "fault" : "faults"}` : "";
-  const state = flight.being_written ? "being recorded" : flight.whole ? `no faults${flight.ending ? `; ${flight.ending}` : ""}` : "unfinished recording";
+  const state = flight.being_written ? "being recorded" : flight.whole ? `no faults${flight.ending ? `; ${flight.ending}` : ""}` : "unfinished recording: fccd recover finishes it";
   const name = utc(flight.start_utc_s);
   const remove = button(`Delete the flight of ${name}`, () => actions.ask(true), { icon: "trash", bare: true, class: "button plain" });
   remove.disabled = !writable.get() || flight.being_written === true;

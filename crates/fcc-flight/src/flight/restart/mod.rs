@@ -12,7 +12,6 @@ mod found;
 mod keeper;
 mod kept_plan;
 mod observer;
-mod place;
 mod recovery;
 mod saved;
 mod state_file;
@@ -34,7 +33,6 @@ use found::{Found, Looked, Search};
 use keeper::Keeper;
 use kept_plan::NotedPlans;
 pub(super) use observer::RestartKeeper;
-use place::SavedPlace;
 use recovery::{Next, Recovery};
 use saved::{Saved, SavedCommands, SavedPlan, SavedSwitch};
 #[cfg(fuzzing)]
@@ -265,12 +263,11 @@ impl Restart {
                         altitude_reference: record.setpoints.altitude_reference,
                         took_off: record.setpoints.took_off,
                     };
-                    let place = SavedPlace::of(&record.measurements, record.tick.woke);
                     let plan = SavedPlan {
                         hash: record.setpoints.plan_hash,
                         uploaded_unix_s: record.setpoints.plan_uploaded_unix_s,
                     };
-                    self.keep(resume, place, plan);
+                    self.keep(resume, plan);
                 }
             }
         }
@@ -351,7 +348,7 @@ impl Restart {
         &mut self.plans
     }
 
-    fn keep(&mut self, resume: Resume, place: SavedPlace, plan: SavedPlan) {
+    fn keep(&mut self, resume: Resume, plan: SavedPlan) {
         let since = *self.engaged_since.get_or_insert_with(Instant::now);
         if self.recoveries > 0 && since.elapsed() >= STABLE_AFTER {
             self.recoveries = 0;
@@ -374,7 +371,6 @@ impl Restart {
             config: self.request.fingerprint,
             switch: self.switch,
             recoveries: self.recoveries,
-            place,
             plan,
             resume,
             commanded: self.commanded,

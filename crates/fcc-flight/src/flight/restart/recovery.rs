@@ -20,7 +20,6 @@ use fcc_telemetry::FlightMessage;
 use fcc_telemetry::units::{M_FT, MPS_KT};
 
 use super::boot_clock::BootInstant;
-use super::place::{Continuity, PresentPlace};
 use super::saved::{Saved, SavedCommands};
 use crate::config::PreparedPlan;
 use crate::flight::pilot::Pilot;
@@ -32,7 +31,6 @@ pub(super) struct Recovery {
     /// The plan that was flown, if it is not the configuration's.
     plan: Option<Arc<PreparedPlan>>,
     commanded: Option<Resume>,
-    place: PresentPlace,
     /// The status in the latest tick.
     status: Option<LoopStatus>,
     /// The first of the readings in a row of the switch that are off.
@@ -66,7 +64,6 @@ impl Recovery {
         Self {
             saved,
             plan,
-            place: PresentPlace::default(),
             commanded: None,
             status: None,
             off_taken: None,
@@ -93,7 +90,6 @@ impl Recovery {
     pub(super) fn take(&mut self, message: &FlightMessage) {
         match message {
             Message::Tick(record) => {
-                self.place.take(&record.measurements);
                 let switch = record.measurements.engage_switch;
                 let is_off = !switch.is_never()
                     && switch.source == self.saved.switch.source
@@ -145,16 +141,6 @@ impl Recovery {
         }
         if !status.engage_inhibits.is_empty() {
             return Next::Wait;
-        }
-        let why = match self.place.continues(&self.saved.place, age) {
-            Continuity::Given => None,
-            Continuity::Unknown => return Next::Wait,
-            Continuity::SetBack => Some("the simulator's clock was set back since"),
-            Continuity::Moved => Some("the aircraft was moved since"),
-        };
-        if let Some(why) = why {
-            let message = format!("the interrupted flight is not recovered: {why}");
-            return Next::NotRecovered(message);
         }
         // The mode's time continued during the interruption.
         let mut resume = self.saved.resume;
@@ -211,7 +197,6 @@ mod tests {
     use fcc_runtime::{LoopConfig, Machine, Parts};
     use fcc_timer::ManualTimer;
 
-    use super::super::place::SavedPlace;
     use super::super::saved::{SavedPlan, SavedSwitch};
     use super::*;
     use crate::config::Config;
@@ -230,7 +215,6 @@ mod tests {
             config: 0,
             switch: SavedSwitch::default(),
             recoveries: 0,
-            place: SavedPlace::default(),
             plan: SavedPlan::default(),
             resume,
             commanded: SavedCommands {

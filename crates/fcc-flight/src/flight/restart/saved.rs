@@ -5,7 +5,6 @@ use fcc_fixed_wing::{AutopilotCommand, Resume};
 use fcc_guidance::Mode;
 
 use super::boot_clock::BootInstant;
-use super::place::SavedPlace;
 
 /// The stored state of a flight.
 #[derive(Clone, PartialEq, Debug)]
@@ -18,8 +17,6 @@ pub(super) struct Saved {
     pub(super) switch: SavedSwitch,
     /// The number of consecutive recoveries of the flight.
     pub(super) recoveries: u32,
-    /// Where the aircraft was.
-    pub(super) place: SavedPlace,
     /// The plan that was flown.
     pub(super) plan: SavedPlan,
     /// What was flown.

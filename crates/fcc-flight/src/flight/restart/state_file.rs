@@ -94,7 +94,6 @@ mod tests {
     use proptest::prelude::*;
 
     use super::super::boot_clock::BootInstant;
-    use super::super::place::{SavedPlace, Sourced};
     use super::super::saved::{SavedCommands, SavedPlan, SavedSwitch};
     use super::*;
 
@@ -110,20 +109,6 @@ mod tests {
                 source: 1,
             },
             recoveries: 2,
-            place: SavedPlace {
-                plant_time_s: Some(Sourced {
-                    value: 65.25,
-                    source: 1,
-                }),
-                position: Some(Sourced {
-                    value: Position {
-                        latitude_rad: 0.75,
-                        longitude_rad: -1.53,
-                        altitude_m: 0.0,
-                    },
-                    source: 2,
-                }),
-            },
             plan: SavedPlan {
                 hash: u64::MAX - 1,
                 uploaded_unix_s: 1_790_000_000,

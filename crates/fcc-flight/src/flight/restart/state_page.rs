@@ -12,7 +12,6 @@ use fcc_telemetry::units::{COMMANDED_ALTIMETER_SETTING_PA, COMMANDED_HEADING_RAD
 use serde::{Deserialize, Serialize};
 
 use super::boot_clock::BootInstant;
-use super::place::{SavedPlace, Sourced};
 use super::saved::{Saved, SavedCommands, SavedPlan, SavedSwitch};
 
 /// The stored state of a flight as named numbers.
@@ -45,14 +44,6 @@ pub(super) struct Page {
     elevator: f64,
     aileron: f64,
     rudder: f64,
-    #[serde(default)]
-    plant_time_s: Option<f64>,
-    #[serde(default)]
-    plant_source: u8,
-    #[serde(default)]
-    position_rad: Option<[f64; 2]>,
-    #[serde(default)]
-    position_source: u8,
     /// Of the flight plan; not in the files of earlier versions.
     #[serde(default)]
     plan_hash: u64,
@@ -89,7 +80,6 @@ impl Page {
         } = saved.resume;
         let targets = progress.captured;
         let from = saved.resume.took_off;
-        let (plant, position) = (saved.place.plant_time_s, saved.place.position);
         Self {
             boot: saved.at.boot.clone(),
             boottime_ns: saved.at.ns,
@@ -109,10 +99,6 @@ impl Page {
             elevator: surfaces.elevator,
             aileron: surfaces.aileron,
             rudder: surfaces.rudder,
-            plant_time_s: plant.map(|plant| plant.value),
-            plant_source: plant.map_or(0, |plant| plant.source),
-            position_rad: position.map(|at| [at.value.latitude_rad, at.value.longitude_rad]),
-            position_source: position.map_or(0, |at| at.source),
             plan_hash: saved.plan.hash,
             plan_uploaded_unix_s: saved.plan.uploaded_unix_s,
             go_to: (saved.commanded.go_to)
@@ -138,7 +124,6 @@ impl Page {
             return None;
         }
         Some(Saved {
-            place: self.place(),
             at: BootInstant {
                 boot: self.boot,
                 ns: self.boottime_ns,
@@ -226,25 +211,6 @@ impl Page {
             rudder: self.rudder,
             // It stays where it is, and is measured.
             ..Surfaces::IDLE
-        }
-    }
-
-    fn place(&self) -> SavedPlace {
-        SavedPlace {
-            plant_time_s: self.plant_time_s.map(|value| Sourced {
-                value,
-                source: self.plant_source,
-            }),
-            position: self
-                .position_rad
-                .map(|[latitude_rad, longitude_rad]| Sourced {
-                    value: Position {
-                        latitude_rad,
-                        longitude_rad,
-                        altitude_m: 0.0,
-                    },
-                    source: self.position_source,
-                }),
         }
     }
 }

@@ -18,7 +18,6 @@ use super::super::observer::{Access, Facts, FlightTime, Observer, Reports};
 use super::super::plan::Pace;
 use super::*;
 
-mod elsewhere;
 mod flown;
 mod foreign_files;
 mod late_disk;
@@ -58,7 +57,6 @@ impl Folder {
                 source: 0,
             },
             recoveries: 0,
-            place: SavedPlace::default(),
             plan: SavedPlan::default(),
             resume: FLOWN,
             commanded: SavedCommands::default(),

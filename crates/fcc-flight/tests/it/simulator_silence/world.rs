@@ -356,11 +356,6 @@ impl World {
         }
     }
 
-    /// Moves the aircraft by degrees to the north.
-    pub(crate) fn relocate(&mut self, north_deg: f64) {
-        self.place_offset_deg += north_deg;
-    }
-
     pub(crate) fn is_overridden(&self) -> bool {
         OVERRIDES.iter().any(|path| self.values[*path] >= 0.5)
     }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use fcc_core::framework::Message;
 use fcc_record::{
     Compression, OpenError, Recorder, RecorderSettings, Recording, RecoverError, Wholeness, entry,
-    last_unfinished, recover, recover_while,
+    recover,
 };
 use fcc_telemetry::FlightMessage;
 use proptest::prelude::*;
@@ -80,65 +80,6 @@ fn a_finished_file_is_not_changed() {
     assert!(recovered.was_whole);
     assert_eq!(recovered.ticks, TICKS);
     assert_eq!(fs::read(&path).unwrap(), before);
-    assert_eq!(last_unfinished(folder.path(), NOW, 0), None);
-}
-
-/// 2090-01-01T00:00:00Z, s since 1970 by `date -u -d 2090-01-01 +%s`.
-const NOW: u64 = 3_786_912_000 * 1_000_000_000;
-
-#[test]
-fn a_start_finds_the_last_recording_only() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = whole(folder.path(), Compression::default());
-    let bytes = fs::read(&path).unwrap();
-    let cut = &bytes[..bytes.len() / 2];
-    let older = folder
-        .path()
-        .join("2020-01-01T00-00-00.000Z-built-in-01.mcap");
-    fs::write(&older, cut).unwrap();
-    fs::write(&path, cut).unwrap();
-    // The order of the names, then.
-    fs::remove_file(folder.path().join(".order")).unwrap();
-    assert_eq!(entry(&path).unwrap().file, Wholeness::Cut);
-    // Not a file: it is neither opened nor deleted.
-    fs::create_dir(
-        folder
-            .path()
-            .join("2099-01-01T00-00-00.000Z-built-in-01.mcap"),
-    )
-    .unwrap();
-    assert_eq!(last_unfinished(folder.path(), NOW, 0), Some(path.clone()));
-    // The end of the flight stops it.
-    let stopped = recover_while(&path, |_| false).unwrap_err().to_string();
-    assert!(stopped.contains("run `fccd recover` on it"), "{stopped}");
-    assert_eq!(fs::read(&path).unwrap(), cut);
-    // Another user's hides none; only root gives files to others.
-    let foreign = folder
-        .path()
-        .join("2089-01-01T00-00-00.000Z-built-in-01.mcap");
-    fs::write(&foreign, cut).unwrap();
-    if std::os::unix::fs::chown(&foreign, Some(65_534), None).is_ok() {
-        assert_eq!(last_unfinished(folder.path(), NOW, 0), Some(path.clone()));
-    }
-    fs::remove_file(&foreign).unwrap();
-    // A flight's own recording is none that was left, nor does it hide one.
-    let own = folder
-        .path()
-        .join("2090-01-01T00-00-00.000Z-built-in-01.mcap");
-    fs::write(&own, cut).unwrap();
-    let offset_ns = about().clock_offset_ns;
-    let found = last_unfinished(folder.path(), NOW, offset_ns);
-    assert_eq!(found, Some(path.clone()));
-    // One that a board without a clock has begun at the same time is.
-    let found = last_unfinished(folder.path(), NOW, offset_ns + 1);
-    assert_eq!(found, Some(own.clone()));
-    fs::write(&own, &cut[..20]).unwrap();
-    assert_eq!(last_unfinished(folder.path(), NOW, 0), Some(path.clone()));
-    fs::remove_file(&own).unwrap();
-    recover(&path, |_| {}).unwrap();
-    assert_eq!(entry(&path).unwrap().file, Wholeness::Whole);
-    assert_eq!(fs::read(&older).unwrap(), cut);
-    assert_eq!(last_unfinished(Path::new("/nowhere"), NOW, 0), None);
 }
 
 /// Another user can make one that claims 2 TB, in the name of a recording.
@@ -189,7 +130,6 @@ fn what_is_being_written_is_not_recovered() {
         recover(&path, |_| {}),
         Err(RecoverError::BeingWritten(_))
     ));
-    assert_eq!(last_unfinished(folder.path(), NOW, 0), None);
     let seen = entry(&path).unwrap();
     assert_eq!((seen.file, seen.ticks), (Wholeness::BeingWritten, 10));
     recorder.finish("stopped by command");
@@ -211,7 +151,6 @@ fn a_file_being_recovered_is_not_recovered_twice() {
                 recover(&path, |_| {}),
                 Err(RecoverError::BeingWritten(_))
             ));
-            assert_eq!(last_unfinished(folder.path(), NOW, 0), None);
         }
     })
     .unwrap();

@@ -28,7 +28,6 @@ fn row(entry: &Entry) -> Option<String> {
         Unit::MetresPerSecond => "m/s",
         Unit::MetresPerSecondSquared => "m/s²",
         Unit::RadiansPerSecond => "rad/s",
-        Unit::KilogramsPerCubicMetre => "kg/m³",
         Unit::Degrees => "°",
         Unit::Knots => "kt",
         Unit::Feet => "ft",
