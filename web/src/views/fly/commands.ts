@@ -2,7 +2,7 @@
 
 import L from "leaflet";
 import { message, sendCommand, writable, type Command } from "../../core/api";
-import { button, h, setClass, setText } from "../../core/dom";
+import { button, h, setClass, setText, tell } from "../../core/dom";
 import { slide } from "../../core/slide";
 import { inUnits, toShown, toSi, unitOf } from "../../core/units";
 import { toPlace } from "../../map/plan-layer";
@@ -67,18 +67,13 @@ export class Commands {
     const instance = daemon.get()?.instance;
     if (!instance) return;
     const name = typeof command === "string" ? command : "set" in command ? "set points" : "go to";
-    this.#say(`${name}: sent`, "");
+    tell(this.#result, `${name}: sent`);
     try {
       const tick = await sendCommand(instance, command);
-      this.#say(`${name}: carried out at tick ${tick}`, "good");
+      tell(this.#result, `${name}: carried out at tick ${tick}`, "good");
     } catch (error) {
-      this.#say(`${name} refused: ${inUnits(message(error)).replace(/^refused: /, "")}`, "bad");
+      tell(this.#result, `${name} refused: ${inUnits(message(error)).replace(/^refused: /, "")}`, "bad");
     }
-  }
-
-  #say(text: string, tone: string): void {
-    setText(this.#result, text);
-    this.#result.dataset["tone"] = tone;
   }
 
   #pick(on: boolean): void {
@@ -88,7 +83,7 @@ export class Commands {
     setClass(this.#target, "hidden", true);
     this.#marker?.remove();
     this.#marker = null;
-    this.#say(on ? "Tap the map where to fly, or press Enter on it for its centre." : "", "");
+    tell(this.#result, on ? "Tap the map where to fly, or press Enter on it for its centre." : "");
   }
 
   #place(at: L.LatLng): void {

@@ -204,7 +204,6 @@ export function openFly(): View {
     }),
     run_started_utc_s.watch(() => track.grow()),
   ];
-  for (const event of events) list.add(event);
   const timers = [
     setInterval(() => {
       if (linkAge() > AGED_EVERY_MS / 1000) onNextFrame(draw);

@@ -5,7 +5,7 @@ import { button, h, icon, replace, setText } from "../../core/dom";
 import { notOnNextFrame, onNextFrame } from "../../core/frame";
 import { bytes, fixed } from "../../core/units";
 import { freshness } from "../../live/flight-state";
-import { daemon, events, linkAge, newest, onEvent, onRecord, run } from "../../live/session";
+import { daemon, linkAge, newest, onEvent, onRecord, run } from "../../live/session";
 import type { RunStatus } from "../../live/connection";
 import type { LiveRecord } from "../../live/record";
 import type { View } from "../../shell";
@@ -110,7 +110,6 @@ export function openHealth(): View {
     }
   };
 
-  for (const event of events) list.add(event);
   const stops = [onRecord(() => onNextFrame(draw)), onEvent((event) => list.add(event)), run.watch(() => onNextFrame(draw))];
   const timer = setInterval(() => onNextFrame(draw), AGED_EVERY_MS);
 
@@ -119,7 +118,7 @@ export function openHealth(): View {
     "div",
     { class: "page health" },
     h("h1", { class: "visually-hidden" }, "Health"),
-    panel("Lateness of the loop", "lateness", histogram.element, timing.element),
+    panel("Lateness of the loop", "lateness", histogram.canvas, timing.element),
     panel("Stages of a tick", "stage-panel", stages.element),
     panel("Board", "board", board.element),
     panel("Recorder", "recorder", recorder.element, file),

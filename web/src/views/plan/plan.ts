@@ -2,7 +2,7 @@
 
 import L from "leaflet";
 import { getJson, message, part, postJson, Refused, request, writable, type Check, type DraftEntry, type Problem } from "../../core/api";
-import { button, choice, h, icon, replace, setClass, setText } from "../../core/dom";
+import { button, choice, h, icon, replace, setClass, setText, tell } from "../../core/dom";
 import { refusal } from "../../core/fields";
 import { notOnNextFrame, onNextFrame } from "../../core/frame";
 import { duration, unitSystem, withUnit } from "../../core/units";
@@ -134,10 +134,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
   const asking = h("div", { class: "notice hidden" });
   const conflict = h("div", { class: "notice bad hidden", role: "alert" });
   const notice = h("p", { class: "result", role: "status" });
-  const say = (text: string, tone = "") => {
-    setText(notice, text);
-    notice.dataset["tone"] = tone;
-  };
+  const say = (text: string, tone = "") => tell(notice, text, tone);
   const ask = (...content: Node[]) => {
     replace(asking, ...content, button("Cancel", () => setClass(asking, "hidden", true)));
     setClass(asking, "hidden", false);
@@ -376,7 +373,6 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
   const position = setInterval(() => {
     const state = pose();
     aircraft.show(state?.position_known ? { ...state } : null, (state?.ages.position ?? Infinity) > LOST_S);
-    vehicle.show(editor, { errors: (check?.problems ?? []).filter((one) => one.level === "error").length, checked_hash: checked === plan() ? (check?.hash ?? null) : null });
   }, 500);
   const stops = [
     unitSystem.watch(refresh),
