@@ -98,6 +98,11 @@ export function duration(seconds: number): string {
   return hours > 0 ? `${hours}:${rest}` : rest;
 }
 
+/** A time of the loop. */
+export function microseconds(us: number, digits: number): string {
+  return us >= 1000 ? `${fixed(us / 1000, 2)}\u202fms` : `${fixed(us, digits)}\u202fµs`;
+}
+
 export function bytes(count: number): string {
   if (!Number.isFinite(count)) return MISSING;
   const units = ["B", "kB", "MB", "GB", "TB"];
