@@ -58,8 +58,11 @@ export class Commands {
       if (this.#picking) this.#place(event.latlng);
     });
     this.map.getContainer().addEventListener("keydown", (event) => {
-      if (this.#picking && event.key === "Enter") this.#place(this.map.getCenter());
-      if (this.#picking && event.key === "Escape") this.#pick(false);
+      if (!this.#picking || !["Enter", "Escape"].includes(event.key)) return;
+      // The field that gets the focus would take the key, and send the form.
+      event.preventDefault();
+      if (event.key === "Enter") this.#place(this.map.getCenter());
+      else this.#pick(false);
     });
   }
 
@@ -80,6 +83,7 @@ export class Commands {
     this.#picking = on;
     this.#goTo.setAttribute("aria-pressed", String(on));
     setClass(this.map.getContainer(), "picking", on);
+    if (this.#target.contains(document.activeElement)) this.#goTo.focus();
     setClass(this.#target, "hidden", true);
     this.#marker?.remove();
     this.#marker = null;
@@ -116,5 +120,8 @@ export class Commands {
     this.#resume.disabled = !(may && engaged && ["loiter", "go to", "return", "hold"].includes(mode));
     for (const one of [this.#goTo, ...this.#others]) one.disabled = !(may && engaged);
     if (this.#picking && !engaged) this.#pick(false);
+    // A disabled button would lose the focus.
+    const at = document.activeElement;
+    if (at instanceof HTMLButtonElement && at.disabled && this.element.contains(at)) ([this.#pause, this.#resume].find((one) => !one.disabled) ?? this.#slide.element).focus();
   }
 }
