@@ -170,6 +170,11 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
       say(`The draft ${name} cannot be opened: ${message(error)}`, "bad");
     }
   };
+  /** A name that no draft has, nor one that is in this browser alone. */
+  const freeName = (name: string): string => {
+    const isFree = (one: string) => one !== editor?.name && !entries.some((known) => known.name === one) && localStorage.getItem(`fcc.draft.${one}`) === null;
+    return [name, ...entries.map((_, n) => `${name}-${n + 2}`), `${name}-${Date.now()}`].find(isFree) ?? name;
+  };
   const newDraft = (source: Plan | null) => {
     const form = h("form", { class: "row", submit: (event: Event) => {
       event.preventDefault();
@@ -183,7 +188,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
         if (source) editor?.edit(source, "copy");
       });
     } }, h("label", { class: "labelled" }, "Name ", name_input), h("button", { type: "submit", class: "button primary" }, "Create"));
-    name_input.value = source ? `${editor?.name ?? "plan"}-copy` : `plan-${entries.length + 1}`;
+    name_input.value = freeName(source ? `${editor?.name ?? "plan"}-copy` : `plan-${entries.length + 1}`);
     ask(form);
     name_input.select();
   };
@@ -213,9 +218,12 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
     if (!chosen) return;
     try {
       const { plan: found } = await postJson<{ plan: Plan }>("/plan/import", { text: await chosen.text(), name: chosen.name });
-      editor?.edit(found, `import ${chosen.name}`);
+      const name = freeName(chosen.name.replace(/\.\w+$/, "").replace(/[^\w.-]+/g, "-").replace(/^[^A-Za-z0-9]+/, "").slice(0, 40) || "import");
+      await open(name);
+      if (editor?.name !== name) return;
+      editor.edit(found, `import ${chosen.name}`);
       fitted = "";
-      say(`${chosen.name} is imported; undo brings back what was there.`, "good");
+      say(`${chosen.name} is imported as a new draft, ${name}; the others stay as they are.`, "good");
     } catch (error) {
       const body = error instanceof Refused ? (error.body as { problems?: Problem[] } | null) : null;
       say(`${chosen.name} is not imported: ${body?.problems?.map((one) => [one.item && `item ${one.item}`, one.field, one.message].filter(Boolean).join(": ")).join("; ") ?? message(error)}`, "bad");
