@@ -41,7 +41,11 @@ def test_the_speed_tape_has_its_bands_without_a_daemon(cruise: Air, visit: Visit
 def test_a_recording_opens_before_the_list_is_there(cruise: Air, visit: Visit) -> None:
     visitor = visit(cruise.station)
     held: list[Route] = []
-    visitor.page.route("**/api/flights", held.append)
+
+    def hold(route: Route) -> None:
+        held.append(route)
+
+    visitor.page.route("**/api/flights", hold)
     page = visitor.open()
     landed = cruise.landed()
     visitor.go(f"flights/{landed}")
