@@ -361,18 +361,17 @@ fn thumbnail(places: &[Place]) -> Vec<[f64; 2]> {
             [east * shrink, place.latitude_deg]
         })
         .collect();
-    let bounds = [0, 1].map(|axis| {
-        let values = || points.iter().map(|point| point[axis]);
+    let bounds = |axis: fn(&[f64; 2]) -> f64| {
+        let values = || points.iter().map(axis);
         let least = values().fold(f64::MAX, f64::min);
         (least, values().fold(f64::MIN, f64::max))
-    });
-    let sizes = bounds.iter().map(|(least, most)| most - least);
-    let size = sizes.fold(1e-9, f64::max);
+    };
+    let (east, north) = (bounds(|[x, _]| *x), bounds(|[_, y]| *y));
+    let size = (east.1 - east.0).max(north.1 - north.0).max(1e-9);
     let within = |value: f64, (least, most): (f64, f64)| {
         let at = 0.5 + (value - 0.5 * (least + most)) / size;
         (at * 1e4).round() / 1e4
     };
-    let [east, north] = bounds;
     let placed = points
         .iter()
         .map(|[x, y]| [within(*x, east), within(*y, north)]);
