@@ -139,6 +139,7 @@ const ROUTES = [
   ["GET", /^\/flights\/([^/]+)\/data$/, ({ match, query }) => data(need(flights.get(match[1])), query)],
   ["GET", /^\/flights\/([^/]+)\/events$/, ({ match }) => need(flights.get(match[1])).events],
   ["GET", /^\/flights\/([^/]+)\/plan$/, () => ({ hash: hashOf(CIRCUIT), uploaded_utc_s: started, plan: CIRCUIT })],
+  ["GET", /^\/flights\/([^/]+)\/aircraft$/, () => ({ stall_mps: 28, min_mps: 33, max_mps: 65, never_exceed_mps: 72 })],
   ["GET", /^\/flights\/([^/]+)\/download$/, () => Buffer.from("mock")],
   ["GET", /^\/flights\/([^/]+)\/report$/, () => Buffer.from("a report")],
   ["GET", /^\/flights\/([^/]+)\/compare\/([^/]+)$/, () => [

@@ -30,7 +30,7 @@ def slide(page: Page, part: float) -> None:
 
 def ready(air: Air, visit: Visit) -> Page:
     page = visit(air.station).open()
-    page.wait_for_selector(".slide:not([disabled])")
+    page.wait_for_selector(".slide[aria-disabled=false]")
     return page
 
 

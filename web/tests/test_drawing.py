@@ -199,6 +199,8 @@ def test_a_plan_and_its_problems_are_seen_whole_on_a_phone(ground: Station, visi
     page.reload()
     page.wait_for_function(MANY, arg=9)
     page.wait_for_selector(".point:text-is('8')")
+    # Points are drawn anew when the plan is checked.
+    page.locator(".totals div", has_text="Problems").get_by_text("error").wait_for()
     tools = page.locator(".plan-tools").bounding_box()
     assert tools is not None
     for point in page.locator(".plan .point:visible").all():

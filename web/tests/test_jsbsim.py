@@ -39,7 +39,7 @@ def test_jsbsim_is_engaged_watched_and_released_from_the_page(
         try:
             page = visit(station).open()
             page.get_by_role("button", name="ft", exact=True).click()
-            page.wait_for_selector(".slide:not([disabled])")
+            page.wait_for_selector(".slide[aria-disabled=false]")
             slide(page, 1.0)
             said(page, "engage: carried out at tick")
             wait_until(lambda: simulator.read(OVERRIDE_JOYSTICK) == 1.0, "the joystick is held")

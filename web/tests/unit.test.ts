@@ -6,7 +6,7 @@ import { worldX, worldY } from "../src/map/mercator";
 import { TrackPoints } from "../src/map/track-points";
 import { History } from "../src/plan/history";
 import { emptyPlan, inserted, newItem, removed, same, swapped, type Item, type Plan } from "../src/plan/model";
-import { duration, fixed, inUnits, shown, toSi, unitSystem, withUnit } from "../src/core/units";
+import { duration, fixed, inUnits, microseconds, shown, toSi, unitSystem, withUnit } from "../src/core/units";
 import { decimate } from "../src/views/flights/decimate";
 
 const at = { latitude_deg: 47, longitude_deg: 8 };
@@ -90,6 +90,14 @@ describe("units", () => {
     expect(shown("heading", 0)).toBe("360");
     expect(shown("heading", -0.001)).toBe("360");
     expect(shown("heading", Math.PI / 2)).toBe("090");
+  });
+
+  it("of the loop are microseconds, from 1 ms on milliseconds", () => {
+    expect(microseconds(0.02, 2)).toBe("0.02\u202fµs");
+    expect(microseconds(999, 0)).toBe("999\u202fµs");
+    expect(microseconds(1000, 0)).toBe("1.00\u202fms");
+    expect(microseconds(20_000, 1)).toBe("20.00\u202fms");
+    expect(microseconds(NaN, 1)).toBe("–\u202fµs");
   });
 
   it("show no minus before zero, and no number for what is missing", () => {

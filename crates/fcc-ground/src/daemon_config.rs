@@ -13,8 +13,7 @@ use serde_json::{Value, json};
 /// The configuration of each daemon, by its name; the built-in aircraft's for others.
 #[derive(Debug)]
 pub(crate) struct DaemonConfigs {
-    by_instance: BTreeMap<Instance, Config>,
-    files: BTreeMap<Instance, PathBuf>,
+    by_instance: BTreeMap<Instance, (PathBuf, Config)>,
     other: Config,
     first: Option<Instance>,
     /// The folder of recordings of the first.
@@ -24,14 +23,13 @@ pub(crate) struct DaemonConfigs {
 impl DaemonConfigs {
     pub(crate) fn load(files: &[PathBuf]) -> Result<Self, ConfigError> {
         let mut by_instance = BTreeMap::new();
-        let mut found = BTreeMap::new();
         let (mut first, mut recordings) = (None, None);
         for file in files {
             let config = Config::load(file)?;
+            let instance = config.telemetry.instance.clone();
             recordings.get_or_insert_with(|| config.recording.folder.clone());
-            first.get_or_insert_with(|| config.telemetry.instance.clone());
-            found.insert(config.telemetry.instance.clone(), file.clone());
-            by_instance.insert(config.telemetry.instance.clone(), config);
+            first.get_or_insert_with(|| instance.clone());
+            by_instance.insert(instance, (file.clone(), config));
         }
         let other = Config {
             built_in: Some(BuiltInSection::default()),
@@ -39,7 +37,6 @@ impl DaemonConfigs {
         };
         Ok(Self {
             by_instance,
-            files: found,
             other,
             first,
             recordings,
@@ -47,20 +44,18 @@ impl DaemonConfigs {
     }
 
     pub(crate) fn of(&self, instance: Option<&Instance>) -> &Config {
-        let known = instance.and_then(|instance| self.by_instance.get(instance));
-        known
-            .or_else(|| {
-                self.by_instance
-                    .values()
-                    .next()
-                    .filter(|_| instance.is_none())
-            })
-            .unwrap_or(&self.other)
+        let known = match instance {
+            Some(instance) => self.by_instance.get(instance),
+            None => self.by_instance.values().next(),
+        };
+        known.map_or(&self.other, |(_, config)| config)
     }
 
     /// The configuration's file.
     pub(crate) fn file(&self, instance: &Instance) -> Option<&Path> {
-        self.files.get(instance).map(PathBuf::as_path)
+        self.by_instance
+            .get(instance)
+            .map(|(file, _)| file.as_path())
     }
 
     /// The name of the daemon of the first configuration.
@@ -70,12 +65,12 @@ impl DaemonConfigs {
 
     /// The names of the daemons.
     pub(crate) fn instances(&self) -> impl Iterator<Item = &Instance> {
-        self.files.keys()
+        self.by_instance.keys()
     }
 
     /// The file that this daemon reads its plan from when it starts.
     pub(crate) fn plan_file(&self, instance: &Instance) -> Option<&Path> {
-        self.by_instance.get(instance)?.plan.file.as_deref()
+        self.by_instance.get(instance)?.1.plan.file.as_deref()
     }
 }
 

@@ -36,6 +36,12 @@ export function setText(element: Element, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }
 
+/** A result, good or bad. */
+export function tell(element: HTMLElement, text: string, tone = ""): void {
+  setText(element, text);
+  element.dataset["tone"] = tone;
+}
+
 export function setClass(element: Element, name: string, on: boolean): void {
   if (element.classList.contains(name) !== on) element.classList.toggle(name, on);
 }
@@ -87,13 +93,15 @@ export function icon(name: IconName): SVGElement {
 export function button(
   label: string,
   action: (event: MouseEvent) => void,
-  options: { icon?: IconName; bare?: boolean; class?: string; title?: string } = {},
+  options: { icon?: IconName; bare?: boolean; class?: string; title?: string; disabled?: boolean; key?: string } = {},
 ): HTMLButtonElement {
   const element = h("button", {
     type: "button",
     class: options.class ?? "button",
     title: options.title ?? (options.bare ? label : null),
     "aria-label": options.bare ? label : null,
+    disabled: options.disabled ?? false,
+    "data-key": options.key,
     click: action,
   });
   if (options.icon) element.append(icon(options.icon));

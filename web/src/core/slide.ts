@@ -22,6 +22,7 @@ export function slide(confirmed: () => void): Slide {
   let from_x: number | null = null;
   let part = 0;
   let held: number | null = null;
+  let enabled = false;
 
   const show = (now: number) => {
     part = now;
@@ -36,7 +37,7 @@ export function slide(confirmed: () => void): Slide {
     if (fire) confirmed();
   };
   element.addEventListener("pointerdown", (event) => {
-    if (element.disabled) return;
+    if (!enabled) return;
     from_x = event.clientX;
     element.setPointerCapture(event.pointerId);
     element.classList.add("held");
@@ -58,7 +59,7 @@ export function slide(confirmed: () => void): Slide {
   element.addEventListener("keydown", (event) => {
     if (event.key !== "Enter" && event.key !== " ") return;
     event.preventDefault();
-    if (element.disabled || event.repeat || held !== null) return;
+    if (!enabled || event.repeat || held !== null) return;
     held = performance.now();
     element.classList.add("held");
     requestAnimationFrame(progress);
@@ -71,9 +72,12 @@ export function slide(confirmed: () => void): Slide {
   });
   return {
     element,
-    set(label, enabled, tone) {
+    set(label, on, tone) {
       setText(text, label);
-      element.disabled = !enabled;
+      enabled = on;
+      if (!on && (from_x ?? held) !== null) end(false);
+      // It keeps the focus, which a disabled button loses.
+      element.setAttribute("aria-disabled", String(!on));
       element.dataset["tone"] = tone;
     },
   };

@@ -17,10 +17,10 @@ interface Unit {
 /** 1 kt = 1,852 m/h, 1 ft = 0.3048 m, 1 NM = 1,852 m: exact by definition. */
 const KNOT = 3600 / 1852;
 const FOOT = 1 / 0.3048;
-const DEGREE = 180 / Math.PI;
+export const DEGREES = 180 / Math.PI;
 
-const ANGLE: Unit = { unit: "°", factor: DEGREE, digits: 1 };
-const HEADING: Unit = { unit: "°", factor: DEGREE, digits: 0 };
+const ANGLE: Unit = { unit: "°", factor: DEGREES, digits: 1 };
+const HEADING: Unit = { unit: "°", factor: DEGREES, digits: 0 };
 
 const UNITS: Record<UnitSystem, Record<Quantity, Unit>> = {
   metric: {
@@ -64,7 +64,7 @@ export function fixed(value: number, digits: number): string {
 export function shown(quantity: Quantity, si: number): string {
   if (quantity === "heading") {
     if (!Number.isFinite(si)) return MISSING;
-    const degrees = ((Math.round(si * DEGREE) % 360) + 360) % 360;
+    const degrees = ((Math.round(si * DEGREES) % 360) + 360) % 360;
     return String(degrees === 0 ? 360 : degrees).padStart(3, "0");
   }
   return fixed(toShown(quantity, si), digitsOf(quantity));
@@ -96,6 +96,11 @@ export function duration(seconds: number): string {
   const hours = Math.floor(whole / 3600);
   const rest = `${part(Math.floor(whole / 60) % 60)}:${part(whole % 60)}`;
   return hours > 0 ? `${hours}:${rest}` : rest;
+}
+
+/** A time of the loop. */
+export function microseconds(us: number, digits: number): string {
+  return us >= 1000 ? `${fixed(us / 1000, 2)}\u202fms` : `${fixed(us, digits)}\u202fµs`;
 }
 
 export function bytes(count: number): string {

@@ -8,7 +8,7 @@ import { instrumentPalette, palette, FONT, type Palette } from "../design/theme"
 import { freshness, type FlightState, type Freshness } from "../live/flight-state";
 import { drawAttitude, type Box } from "./attitude";
 import { drawHeading } from "./heading";
-import { drawTape, type TapeLimits } from "./tape";
+import { drawTape } from "./tape";
 
 const TAPE_PX = 72;
 const HEADING_PX = 50;
@@ -20,7 +20,7 @@ export class FlightDisplay {
   readonly element: HTMLElement;
   readonly #canvas = h("canvas", { class: "pfd-canvas", role: "img", "aria-label": "Flight display: no data" });
   #state: FlightState | null = null;
-  #limits: TapeLimits = {};
+  #aircraft: Daemon["aircraft"] = null;
   #colours: Palette = palette.get();
   #described = 0;
   #width = 0;
@@ -47,12 +47,8 @@ export class FlightDisplay {
   }
 
   setLimits(aircraft: Daemon["aircraft"]): void {
-    this.#limits = {
-      lowest: aircraft?.stall_mps ?? undefined,
-      low: aircraft?.min_mps ?? undefined,
-      high: aircraft?.max_mps ?? undefined,
-      highest: aircraft?.never_exceed_mps ?? aircraft?.max_mps ?? undefined,
-    };
+    this.#aircraft = aircraft;
+    onNextFrame(this.#draw);
   }
 
   show(state: FlightState | null): void {
@@ -97,12 +93,13 @@ export class FlightDisplay {
       { pitch_rad: state.pitch_rad, roll_rad: state.roll_rad, side_force_mps2: state.side_force_mps2, set_pitch_rad: state.set.pitch_rad, set_roll_rad: state.set.roll_rad },
       colours,
     );
-    const shown_limit = (one: number | undefined) => (one === undefined ? undefined : toShown("speed", one));
+    const limit = (mps: number | null | undefined) => (typeof mps === "number" ? toShown("speed", mps) : undefined);
+    const aircraft = this.#aircraft;
     drawTape(context, speed, {
       value: toShown("speed", state.airspeed_mps), set: toShown("speed", state.set.airspeed_mps), step: unitSystem.get() === "aviation" ? 5 : 2,
       numbered: unitSystem.get() === "aviation" ? 10 : 4, span: unitSystem.get() === "aviation" ? 70 : 30, digits: unitSystem.get() === "aviation" ? 0 : 1,
       unit: unitOf("speed"), title: "IAS", side: "left",
-      limits: { lowest: shown_limit(this.#limits.lowest), low: shown_limit(this.#limits.low), high: shown_limit(this.#limits.high), highest: shown_limit(this.#limits.highest) },
+      limits: { lowest: limit(aircraft?.stall_mps), low: limit(aircraft?.min_mps), high: limit(aircraft?.max_mps), highest: limit(aircraft?.never_exceed_mps ?? aircraft?.max_mps) },
     }, colours);
     drawTape(context, altitude, {
       value: toShown("altitude", state.altitude_m), set: toShown("altitude", state.set.altitude_m), step: unitSystem.get() === "aviation" ? 20 : 10,

@@ -1,10 +1,9 @@
 /** The heading tape, with the set heading, the course over the ground and the wind. */
 
-import { shown, unitOf } from "../core/units";
+import { DEGREES, shown, unitOf } from "../core/units";
 import { FONT, type Palette } from "../design/theme";
 import type { Box } from "./attitude";
 
-const DEGREES = 180 / Math.PI;
 const SHOWN_DEG = 90;
 const POINTS: Record<number, string> = { 0: "N", 90: "E", 180: "S", 270: "W" };
 

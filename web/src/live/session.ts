@@ -37,7 +37,9 @@ export function onRecord(listener: RecordListener): () => void {
   return () => record_listeners.delete(listener);
 }
 
+/** Also tells those that were. */
 export function onEvent(listener: EventListener): () => void {
+  events.forEach(listener);
   event_listeners.add(listener);
   return () => event_listeners.delete(listener);
 }

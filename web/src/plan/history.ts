@@ -3,10 +3,11 @@
 import { same, type Plan } from "./model";
 
 const DEPTH = 500;
+type Step = { plan: Plan; what: string };
 
 export class History {
-  #past: { plan: Plan; what: string }[] = [];
-  #future: { plan: Plan; what: string }[] = [];
+  #past: Step[] = [];
+  #future: Step[] = [];
 
   constructor(private plan: Plan) {}
 
@@ -30,18 +31,13 @@ export class History {
     return true;
   }
 
-  undo(): string | null {
-    const step = this.#past.pop();
-    if (!step) return null;
-    this.#future.push({ plan: this.plan, what: step.what });
-    this.plan = step.plan;
-    return step.what;
-  }
+  undo = (): string | null => this.#step(this.#past, this.#future);
+  redo = (): string | null => this.#step(this.#future, this.#past);
 
-  redo(): string | null {
-    const step = this.#future.pop();
+  #step(from: Step[], to: Step[]): string | null {
+    const step = from.pop();
     if (!step) return null;
-    this.#past.push({ plan: this.plan, what: step.what });
+    to.push({ plan: this.plan, what: step.what });
     this.plan = step.plan;
     return step.what;
   }

@@ -2,6 +2,10 @@
 
 import time
 
+import pytest
+
+from visitor import SIZES
+
 
 def result(page) -> str:
     return page.locator(".commands .result").inner_text()
@@ -85,10 +89,96 @@ def test_inhibits_are_shown_with_what_to_do(visit, mock):
     page = visit().open("fly")
     mock.set(inhibits=1 << 8)
     panel = page.locator(".conditions")
-    panel.wait_for(state="visible")
+    panel.locator("li").wait_for()
     assert "too slow" in panel.inner_text()
     assert "upload a plan that takes off from here" in panel.inner_text()
     assert page.locator(".slide").is_disabled()
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_conditions_that_begin_and_end_move_no_control(visit, mock, size):
+    page = visit(size).open("fly")
+
+    def controls():
+        return page.locator("button:visible, input:visible, .set-points, .pfd").evaluate_all(
+            "all => all.map(one => JSON.stringify(one.getBoundingClientRect()))"
+        )
+
+    def conditions(bits: int, count: int, **pose) -> list[str]:
+        mock.set(inhibits=bits, pose=pose)
+        page.wait_for_function(
+            "n => document.querySelectorAll('.conditions li').length === n", arg=count
+        )
+        return page.locator(".conditions strong").all_inner_texts()
+
+    before = controls()
+    assert len(before) > 10
+    assert page.locator(".conditions h2").inner_text().lower() == "engaging is not inhibited"
+    assert conditions(0b10, 1) == ["heading is missing"]
+    assert controls() == before
+    # Five: the newest first, how many there are, and all of them within reach of the keyboard.
+    assert conditions(0b11111, 5)[-1] == "heading is missing"
+    assert page.locator(".conditions h2").inner_text().endswith(": 5")
+    assert controls() == before
+    page.locator(".conditions ul").focus()
+    page.keyboard.press("End")
+    page.wait_for_function("() => document.querySelector('.conditions ul').scrollTop > 0")
+    conditions(0, 0)
+    assert controls() == before
+    # In flight, too.
+    conditions(0, 0, state=1)
+    page.wait_for_selector(".conditions h2:text-is('No condition in flight')")
+    page.wait_for_selector(".buttons button:enabled")
+    before = controls()
+    for faults, count in [(1 << 8, 1), (0b11111, 5), (0, 0)]:
+        conditions(0, count, state=1, faults=faults)
+        assert controls() == before
+
+
+def focused(page) -> str:
+    return page.evaluate("document.activeElement.textContent")
+
+
+def test_the_focus_stays_when_its_control_is_disabled(visit, mock):
+    page = visit().open("fly")
+    engage(page)
+    assert focused(page).startswith("Slide to disengage")
+    # Pause cannot be given again: its opposite can.
+    page.get_by_role("button", name="Pause", exact=True).focus()
+    page.keyboard.press("Enter")
+    page.wait_for_selector("button:has-text('Pause'):disabled")
+    assert focused(page) == "Resume"
+    page.keyboard.press("Enter")
+    page.wait_for_selector("button:has-text('Resume'):disabled")
+    assert focused(page) == "Pause"
+    # Disengaged, and inhibited: nothing can be given, and the slide says so.
+    page.get_by_role("button", name="Land", exact=True).focus()
+    mock.set(inhibits=1)
+    mock.command("disengage")
+    page.wait_for_selector("button:has-text('Land'):disabled")
+    assert focused(page).startswith("Engaging is inhibited")
+    page.keyboard.down("Enter")
+    time.sleep(1.3)
+    page.keyboard.up("Enter")
+    assert result(page).startswith("resume")
+    assert state(page) == "standby"
+
+
+def test_a_go_to_gives_the_focus_back(visit, mock):
+    page = visit().open("fly")
+    engage(page)
+    for end in ("Cancel", "Fly there"):
+        page.get_by_role("button", name="Go to…").click()
+        page.locator(".chart-map").focus()
+        page.keyboard.press("Enter")
+        # The key chooses the place, and sends nothing.
+        page.get_by_label("Altitude of go-to").wait_for()
+        page.wait_for_timeout(300)
+        assert "go to" not in result(page)
+        page.get_by_role("button", name=end).focus()
+        page.keyboard.press("Enter")
+        page.locator(".target").wait_for(state="hidden")
+        assert focused(page) == "Go to…"
 
 
 def test_go_to_by_a_tap(visit, mock):

@@ -242,7 +242,7 @@ def test_names_and_problems_are_text(plan, mock):
     assert plan.title() != "owned"
 
 
-def test_import_and_export(plan, mock, tmp_path):
+def test_an_import_is_a_new_draft_and_the_open_one_keeps_its_edits(plan, mock, tmp_path):
     with plan.expect_download() as download:
         plan.get_by_role("button", name="Export .plan").click()
     path = tmp_path / "exported.plan"
@@ -251,16 +251,30 @@ def test_import_and_export(plan, mock, tmp_path):
     assert exported == mock.draft("circuit")["plan"]
     exported["items"] = exported["items"][:3]
     path.write_text(json.dumps(exported))
-    plan.locator("input[type=file]").set_input_files(path)
+    # Meanwhile an edit of the open draft cannot be saved.
+    plan.route("**/api/drafts/circuit", lambda route: route.abort())
+    altitude = plan.get_by_label("Altitude of item 3, m")
+    altitude.fill("293")
+    altitude.press("Enter")
     plan.wait_for_function(
-        "() => document.querySelectorAll('.items tbody tr:not(.problem)').length === 3",
-        timeout=4000,
+        "() => document.querySelector('.save-state').textContent.startsWith('Not saved')"
     )
-    plan.keyboard.press("Control+z")
+    for name in ("exported", "exported-2"):
+        plan.locator("input[type=file]").set_input_files(path)
+        plan.wait_for_selector(f".result:has-text('imported as a new draft, {name};')")
+        assert plan.get_by_label("Draft", exact=True).input_value() == name
+        assert items(plan) == 3
+        settled(plan)
+        assert mock.draft(name)["plan"] == exported
+    # The draft that was open has its edit, and saves it.
+    plan.unroute("**/api/drafts/circuit")
+    plan.get_by_label("Draft", exact=True).select_option("circuit")
     plan.wait_for_function(
-        "() => document.querySelectorAll('.items tbody tr:not(.problem)').length === 9",
-        timeout=4000,
+        "() => document.querySelectorAll('.items tbody tr:not(.problem)').length === 9"
     )
+    assert altitude.input_value() == "293"
+    settled(plan)
+    assert mock.draft("circuit")["plan"]["items"][2]["altitude"]["m"] == 293
 
 
 @pytest.mark.parametrize("seed", [1, 2])

@@ -4,91 +4,64 @@ use serde_json::{Value, json};
 
 use super::summary::Summary;
 
-/// A figure: its name in a summary, in words, its unit, digits, and the words for more and
-/// less of it.
-struct Figure {
-    name: &'static str,
-    what: &'static str,
-    unit: &'static str,
-    digits: usize,
-    more: &'static str,
-    less: &'static str,
-}
+/// A figure: its name in a summary; in words, its unit, digits; the words for more and less
+/// of it.
+type Figure = (&'static str, (&'static str, &'static str, usize), Words);
+type Words = (&'static str, &'static str);
 
-const fn figure(
-    name: &'static str,
-    (what, unit, digits): (&'static str, &'static str, usize),
-    (more, less): (&'static str, &'static str),
-) -> Figure {
-    Figure {
-        name,
-        what,
-        unit,
-        digits,
-        more,
-        less,
-    }
-}
+const LONGER: Words = ("longer", "shorter");
+const LARGER: Words = ("larger", "smaller");
+const HIGHER: Words = ("higher", "lower");
+const MORE: Words = ("more", "fewer");
 
 const FIGURES: [Figure; 12] = [
-    figure("engaged_s", ("time engaged", "s", 0), ("longer", "shorter")),
-    figure(
-        "distance_m",
-        ("distance flown", "m", 0),
-        ("longer", "shorter"),
-    ),
-    figure(
+    ("engaged_s", ("time engaged", "s", 0), LONGER),
+    ("distance_m", ("distance flown", "m", 0), LONGER),
+    (
         "cross_track_rms_m",
         ("distance from the path, RMS", "m", 1),
-        ("larger", "smaller"),
+        LARGER,
     ),
-    figure(
+    (
         "airspeed_rms_mps",
         ("airspeed off its set point, RMS", "m/s", 1),
-        ("larger", "smaller"),
+        LARGER,
     ),
-    figure(
-        "highest_altitude_m",
-        ("highest altitude", "m", 0),
-        ("higher", "lower"),
-    ),
-    figure(
+    ("highest_altitude_m", ("highest altitude", "m", 0), HIGHER),
+    (
         "greatest_airspeed_mps",
         ("greatest airspeed", "m/s", 1),
-        ("higher", "lower"),
+        HIGHER,
     ),
-    figure(
-        "greatest_bank_deg",
-        ("greatest bank", "degrees", 1),
-        ("larger", "smaller"),
-    ),
-    figure(
+    ("greatest_bank_deg", ("greatest bank", "degrees", 1), LARGER),
+    (
         "greatest_load_factor",
         ("greatest load factor", "g", 2),
-        ("larger", "smaller"),
+        LARGER,
     ),
-    figure("go_arounds", ("go-arounds", "", 0), ("more", "fewer")),
-    figure("failsafes", ("failsafes", "", 0), ("more", "fewer")),
-    figure(
+    ("go_arounds", ("go-arounds", "", 0), MORE),
+    ("failsafes", ("failsafes", "", 0), MORE),
+    (
         "lateness_p99_us",
         ("lateness of 99 % of the ticks", "µs", 1),
-        ("longer", "shorter"),
+        LONGER,
     ),
-    figure("missed", ("missed periods", "", 0), ("more", "fewer")),
+    ("missed", ("missed periods", "", 0), MORE),
 ];
 
 /// The figures of two flights, and how the second differs.
 pub(super) fn differences(a: &Summary, b: &Summary) -> Value {
     let rows = FIGURES.iter().filter_map(|figure| {
-        let (a, b) = (a.figures.get(figure.name), b.figures.get(figure.name));
+        let (name, (what, unit, _), _) = figure;
+        let (a, b) = (a.figures.get(*name), b.figures.get(*name));
         if a.is_none() && b.is_none() {
             return None;
         }
         Some(json!({
-            "what": figure.what,
+            "what": what,
             "a": a,
             "b": b,
-            "unit": figure.unit,
+            "unit": unit,
             "sentence": sentence(figure, a.copied(), b.copied()),
         }))
     });
@@ -96,9 +69,7 @@ pub(super) fn differences(a: &Summary, b: &Summary) -> Value {
 }
 
 fn sentence(figure: &Figure, a: Option<f64>, b: Option<f64>) -> String {
-    let Figure {
-        what, unit, digits, ..
-    } = figure;
+    let (_, (what, unit, digits), (more, less)) = figure;
     let (Some(a), Some(b)) = (a, b) else {
         let which = if a.is_some() { "first" } else { "second" };
         return format!("Only of the {which} flight the {what} is known.");
@@ -112,7 +83,7 @@ fn sentence(figure: &Figure, a: Option<f64>, b: Option<f64>) -> String {
             format!("The {what} is the same.")
         };
     }
-    let word = if b > a { figure.more } else { figure.less };
+    let word = if b > a { more } else { less };
     if unit.is_empty() {
         return format!("The second flight has {shown} {word} {what}.");
     }

@@ -20,6 +20,7 @@ use axum::http::header::{
     CONTENT_DISPOSITION, CONTENT_SECURITY_POLICY, CONTENT_TYPE, X_FRAME_OPTIONS,
 };
 use axum::response::{IntoResponse as _, Response};
+use fcc_flight::config::Config;
 use fcc_flight::replay::{recorded_pattern, recorded_plan};
 use fcc_plan::Item;
 use fcc_record::Recording;
@@ -30,6 +31,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 use tokio::sync::OwnedSemaphorePermit;
 
+use crate::daemon_config;
 use crate::failure::{Failure, Given, aside, reading};
 use crate::plans::hash_text;
 use crate::station::Station;
@@ -147,6 +149,21 @@ pub(crate) async fn plan(
             "replaced_by": replaced.collect::<Vec<_>>(),
             "plan": plan,
         })))
+    })
+    .await
+}
+
+/// `GET /api/flights/{file}/aircraft`: its limits by the configuration that was flown.
+pub(crate) async fn aircraft(
+    State(station): State<Arc<Station>>,
+    Path(file): Path<String>,
+) -> Result<Json<Value>, Failure> {
+    reading(move || {
+        let recording = open(&station, &file)?;
+        let flown = Some(&recording.about().config).filter(|text| !text.is_empty());
+        let config = flown.map(|text| Config::parse_without_aircraft(text, &file));
+        let known = config.and_then(Result::ok);
+        Ok(Json(known.as_ref().map(daemon_config::aircraft).into()))
     })
     .await
 }

@@ -72,12 +72,31 @@ pub(super) enum Found<'a> {
 
 /// Some columns of a recording, `time_s` first.
 pub(super) struct Table {
-    /// Of `time_s`, and of each further column.
-    header: Vec<Value>,
-    /// Whether it is thinned to its smallest and largest values; otherwise to samples.
-    has_range: Vec<bool>,
-    values: Vec<Vec<f64>>,
+    columns: Vec<TableColumn>,
     start_utc_s: f64,
+}
+
+#[derive(Clone)]
+struct TableColumn {
+    header: Value,
+    /// Whether it is thinned to its smallest and largest values; otherwise to samples.
+    has_range: bool,
+    values: Vec<f64>,
+}
+
+impl TableColumn {
+    /// Two values in place of many.
+    fn thinned(&self, part: &[f64]) -> [f64; 2] {
+        if self.has_range {
+            range(part)
+        } else {
+            samples(part)
+        }
+    }
+}
+
+fn no_column(name: &str) -> Failure {
+    Failure::bad(format!("{name:?}: there is no such column"))
 }
 
 /// Reads some columns, every tick.
@@ -113,19 +132,24 @@ pub(super) struct TableReader<'a> {
 impl<'a> TableReader<'a> {
     pub(super) fn new(columns: &'a Columns, names: &[&str], span: usize) -> Result<Self, Failure> {
         let wanted = names.iter().map(|name| {
-            let missing = || Failure::bad(format!("{name:?}: there is no such column"));
-            columns.index(name).ok_or_else(missing)
+            let found = columns.index(name);
+            found.ok_or_else(|| no_column(name))
         });
         let wanted: Vec<usize> = wanted.collect::<Result<_, _>>()?;
+        let column = |header, has_range| TableColumn {
+            header,
+            has_range,
+            values: Vec::new(),
+        };
+        let time = column(
+            json!({ "name": "time_s", "unit": "s", "kind": "f64" }),
+            false,
+        );
         let described = wanted.iter().filter_map(|index| columns.all.get(*index));
-        let time = json!({ "name": "time_s", "unit": "s", "kind": "f64" });
-        let header = described.clone().map(|column| json!(column));
-        let has_range = described.map(PageColumn::has_range);
+        let described = described.map(|one| column(json!(one), one.has_range()));
         let count = wanted.len() + 1;
         let table = Table {
-            header: std::iter::once(time).chain(header).collect(),
-            has_range: std::iter::once(false).chain(has_range).collect(),
-            values: vec![Vec::new(); count],
+            columns: std::iter::once(time).chain(described).collect(),
             start_utc_s: 0.0,
         };
         Ok(Self {
@@ -157,17 +181,14 @@ impl<'a> TableReader<'a> {
         {
             self.end_span();
         }
-        let rows = self.table.values.first().map_or(0, Vec::len);
-        rows * self.table.values.len() < MOST_VALUES
+        self.table.rows() * self.part.len() < MOST_VALUES
     }
 
     fn end_span(&mut self) {
-        let columns = self.table.values.iter_mut().zip(&mut self.part);
-        for ((values, part), has_range) in columns.zip(&self.table.has_range) {
+        for (column, part) in self.table.columns.iter_mut().zip(&mut self.part) {
             match part.len() {
-                0..=2 => values.append(part),
-                _ if *has_range => values.extend(range(part)),
-                _ => values.extend(samples(part)),
+                0..=2 => column.values.append(part),
+                _ => column.values.extend(column.thinned(part)),
             }
             part.clear();
         }
@@ -194,100 +215,81 @@ impl Table {
         let described = header.get("columns")?.as_array()?;
         let words = bytes.get((4 + length).next_multiple_of(8)..)?.as_chunks().0;
         let values: Vec<f64> = words.iter().map(|word| f64::from_le_bytes(*word)).collect();
-        let columns: Vec<PageColumn> = described
-            .iter()
-            .map(|column| serde_json::from_value(column.clone()).ok())
-            .collect::<Option<_>>()?;
-        let table = Self {
-            header: described.clone(),
-            has_range: columns.iter().map(PageColumn::has_range).collect(),
-            values: values.chunks(rows.max(1)).map(<[f64]>::to_vec).collect(),
+        (values.len() == rows * described.len()).then_some(())?;
+        let mut parts = values.chunks(rows.max(1));
+        let columns = described.iter().map(|header| {
+            let described: PageColumn = serde_json::from_value(header.clone()).ok()?;
+            Some(TableColumn {
+                header: header.clone(),
+                has_range: described.has_range(),
+                values: parts.next().unwrap_or_default().to_vec(),
+            })
+        });
+        Some(Self {
+            columns: columns.collect::<Option<_>>()?,
             start_utc_s: header.get("start_utc_s")?.as_f64()?,
-        };
-        (table.values.len() == table.header.len()).then_some(table)
+        })
     }
 
-    fn index(&self, name: &str) -> Option<usize> {
-        let is_it = |column: &Value| column.get("name").is_some_and(|found| found == name);
-        self.header.iter().position(is_it)
+    fn rows(&self) -> usize {
+        self.columns.first().map_or(0, |column| column.values.len())
+    }
+
+    fn column(&self, name: &str) -> Option<&TableColumn> {
+        let is_it =
+            |column: &&TableColumn| column.header.get("name").is_some_and(|found| found == name);
+        self.columns.iter().find(is_it)
     }
 
     pub(super) fn has(&self, names: &[&str]) -> bool {
-        names.iter().all(|name| self.index(name).is_some())
+        names.iter().all(|name| self.column(name).is_some())
     }
 
     /// The time and these columns.
     pub(super) fn select(&self, names: &[&str]) -> Result<Self, Failure> {
         let all = std::iter::once("time_s").chain(names.iter().copied());
-        let indices = all.map(|name| {
-            let missing = || Failure::bad(format!("{name:?}: there is no such column"));
-            self.index(name).ok_or_else(missing)
+        let columns = all.map(|name| {
+            let found = self.column(name).cloned();
+            found.ok_or_else(|| no_column(name))
         });
-        let indices: Vec<usize> = indices.collect::<Result<_, _>>()?;
-        let of = |index: &usize| {
-            let parts = (self.header.get(*index)?, self.has_range.get(*index)?);
-            Some((parts.0.clone(), *parts.1, self.values.get(*index)?.clone()))
-        };
-        let mut selected = Self {
-            header: Vec::new(),
-            has_range: Vec::new(),
-            values: Vec::new(),
+        Ok(Self {
+            columns: columns.collect::<Result<_, _>>()?,
             start_utc_s: self.start_utc_s,
-        };
-        for (header, has_range, values) in indices.iter().filter_map(of) {
-            selected.header.push(header);
-            selected.has_range.push(has_range);
-            selected.values.push(values);
-        }
-        Ok(selected)
+        })
     }
 
     /// At most so many rows: two for each of equal spans, in which a curve has its smallest
     /// and its largest value in their order.
-    pub(super) fn thinned(self, points: usize) -> Self {
-        let rows = self.values.first().map_or(0, Vec::len);
+    pub(super) fn thinned(mut self, points: usize) -> Self {
+        let rows = self.rows();
         let spans = points / 2;
         if rows <= points || spans == 0 {
             return self;
         }
         let edges: Vec<usize> = (0..=spans).map(|span| span * rows / spans).collect();
-        let values = self
-            .values
-            .iter()
-            .zip(&self.has_range)
-            .map(|(column, has_range)| {
-                let parts = edges.iter().zip(edges.iter().skip(1));
-                let parts = parts.filter_map(|(from, to)| column.get(*from..*to));
-                parts
-                    .flat_map(|part| {
-                        if *has_range {
-                            range(part)
-                        } else {
-                            samples(part)
-                        }
-                    })
-                    .collect()
-            });
-        Self {
-            values: values.collect(),
-            ..self
+        for column in &mut self.columns {
+            let parts = edges.iter().zip(edges.iter().skip(1));
+            let parts = parts.filter_map(|(from, to)| column.values.get(*from..*to));
+            column.values = parts.flat_map(|part| column.thinned(part)).collect();
         }
+        self
     }
 
     /// As it is sent.
     pub(super) fn to_bytes(&self) -> Vec<u8> {
-        let rows = self.values.first().map_or(0, Vec::len);
+        let rows = self.rows();
+        let headers = self.columns.iter().map(|column| &column.header);
         let header = json!({
-            "columns": self.header,
+            "columns": headers.collect::<Vec<_>>(),
             "rows": rows,
             "start_utc_s": self.start_utc_s,
         });
         let header = header.to_string();
-        let mut bytes = Vec::with_capacity(16 + header.len() + 8 * rows * self.values.len());
+        let mut bytes = Vec::with_capacity(16 + header.len() + 8 * rows * self.columns.len());
         bytes.extend_from_slice(&(header.len() as u32).to_le_bytes());
         bytes.extend_from_slice(header.as_bytes());
         bytes.resize(bytes.len().next_multiple_of(8), 0);
-        for value in self.values.iter().flatten() {
+        for value in self.columns.iter().flat_map(|column| &column.values) {
             bytes.extend_from_slice(&value.to_le_bytes());
         }
         bytes
@@ -370,28 +372,32 @@ impl Events {
 mod tests {
     use super::*;
 
+    fn column(name: &str, has_range: bool, values: Vec<f64>) -> TableColumn {
+        TableColumn {
+            header: json!({ "name": name }),
+            has_range,
+            values,
+        }
+    }
+
     #[test]
     fn a_thinned_curve_keeps_its_extremes() {
         let mut curve: Vec<f64> = vec![0.0; 10_000];
         curve[1_234] = 7.0;
         curve[5_678] = -7.0;
         let table = Table {
-            header: Vec::new(),
-            has_range: vec![false, true],
-            values: vec![(0..10_000).map(f64::from).collect(), curve],
+            columns: vec![
+                column("time_s", false, (0..10_000).map(f64::from).collect()),
+                column("curve", true, curve),
+            ],
             start_utc_s: 0.0,
         };
-        let thinned = table.thinned(200);
-        assert_eq!(thinned.values[0].len(), 200);
-        assert_eq!(thinned.values[1].len(), 200);
-        assert!(thinned.values[0].is_sorted());
-        let at = |value: f64| {
-            thinned.values[1]
-                .iter()
-                .position(|found| *found == value)
-                .unwrap()
-        };
-        let time_of = |value: f64| thinned.values[0][at(value)];
+        let thinned = table.thinned(200).columns;
+        let (time, curve) = (&thinned[0].values, &thinned[1].values);
+        assert_eq!((time.len(), curve.len()), (200, 200));
+        assert!(time.is_sorted());
+        let at = |value: f64| curve.iter().position(|found| *found == value).unwrap();
+        let time_of = |value: f64| time[at(value)];
         assert!((time_of(7.0) - 1_234.0).abs() <= 100.0);
         assert!((time_of(-7.0) - 5_678.0).abs() <= 100.0);
     }
@@ -399,9 +405,7 @@ mod tests {
     #[test]
     fn a_table_is_sent_column_by_column() {
         let table = Table {
-            header: vec![json!({ "name": "time_s" })],
-            has_range: vec![false],
-            values: vec![vec![0.0, 0.025]],
+            columns: vec![column("time_s", false, vec![0.0, 0.025])],
             start_utc_s: 5.0,
         };
         let bytes = table.to_bytes();

@@ -3,11 +3,11 @@
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use fcc_record::Recording;
 use serde_json::Value;
+use tokio::sync::Mutex;
 
 use super::scan::{self, Table};
 use super::summary::{KEPT_POINTS, Summary, VERSION, stamp};
@@ -25,15 +25,18 @@ const LIST_WITHIN: Duration = Duration::from_millis(1_500);
 #[derive(Debug)]
 pub(crate) struct Summaries {
     folder: PathBuf,
-    /// Held while one is made: one at a time.
-    turn: Mutex<()>,
+    /// Held while one is made for who opens a recording: one at a time.
+    opening: Mutex<()>,
+    /// Held by the list that makes some.
+    listing: Mutex<()>,
 }
 
 impl Summaries {
     pub(crate) const fn new(folder: PathBuf) -> Self {
         Self {
             folder,
-            turn: Mutex::new(()),
+            opening: Mutex::const_new(()),
+            listing: Mutex::const_new(()),
         }
     }
 
@@ -58,14 +61,19 @@ impl Summaries {
         is_of_it.then_some(kept)
     }
 
-    /// The summary of a recording.
+    /// The summary of a recording that is opened. What a list reads does not hold it up.
     pub(super) fn summary(&self, path: &Path) -> Result<Summary, Failure> {
-        let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(kept) = self.kept(path) {
-            return Ok(kept);
-        }
-        let (summary, events, table) = Summary::read(path)?;
-        if !summary.being_written {
+        let _turn = match self.kept(path) {
+            Some(kept) => return Ok(kept),
+            None => self.opening.blocking_lock(),
+        };
+        self.kept(path).map_or_else(|| self.read(path, || true), Ok)
+    }
+
+    /// Makes a summary, and keeps it if the recording is read to its end.
+    fn read(&self, path: &Path, goes_on: impl Fn() -> bool) -> Result<Summary, Failure> {
+        let (summary, events, table) = Summary::read(path, goes_on)?;
+        if summary.is_complete() {
             // Without them it is read again.
             let _ = self.keep(&summary, &events, table.as_ref());
         }
@@ -123,7 +131,7 @@ impl Summaries {
         let kept = self.part(path, EVENTS);
         match kept.and_then(|bytes| serde_json::from_slice(&bytes).ok()) {
             Some(events) => Ok(events),
-            None => Ok(Summary::read(path)?.1),
+            None => Ok(Summary::read(path, || true)?.1),
         }
     }
 
@@ -138,6 +146,8 @@ impl Summaries {
         };
         files.reverse();
         let begun = Instant::now();
+        let turn = self.listing.try_lock();
+        let may_read = || turn.is_ok() && self.opening.try_lock().is_ok();
         let listed = files
             .into_iter()
             .filter(|path| !path.is_symlink())
@@ -146,10 +156,10 @@ impl Summaries {
                 if let Some(known) = known {
                     return known.listed();
                 }
-                let read = if begun.elapsed() > LIST_WITHIN {
+                let read = if begun.elapsed() > LIST_WITHIN || !may_read() {
                     Summary::begin(&path).map(|(summary, _)| summary)
                 } else {
-                    self.summary(&path)
+                    self.read(&path, may_read)
                 };
                 read.unwrap_or_else(|_| Summary::unread(&path)).listed()
             });
@@ -163,4 +173,77 @@ fn compressed(table: &Table) -> io::Result<Vec<u8>> {
 
 fn decompressed(bytes: &[u8]) -> Option<Table> {
     Table::of_bytes(&zstd::decode_all(bytes).ok()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use fcc_core::framework::{Message, State, Tick, Time};
+    use fcc_record::{About, Recorder, RecorderSettings, RecordingPace};
+    use fcc_telemetry::{FlightMessage, FlightRecord};
+
+    use super::*;
+
+    /// A folder with a recording of 100 ticks, and its summaries.
+    fn recorded() -> (tempfile::TempDir, PathBuf, Summaries) {
+        let folder = tempfile::tempdir().unwrap();
+        let about = About {
+            rate_hz: 40.0,
+            ..About::default()
+        };
+        let settings = RecorderSettings {
+            pace: RecordingPace::Lockstep,
+            ..RecorderSettings::new(folder.path().join("recordings"))
+        };
+        let mut recorder = Recorder::start(about, settings).unwrap();
+        for number in 0..100 {
+            let woke = Time::from_nanos(i64::from(number) * 25_000_000);
+            let tick = Tick {
+                woke,
+                ..Tick::default()
+            };
+            let record = FlightRecord::new(tick, State::Engaged);
+            let message: FlightMessage = Message::Tick(record);
+            recorder.take(&message);
+        }
+        let file = recorder.finish("stop requested").0.files[0].clone();
+        let summaries = Summaries::new(folder.path().join("summaries"));
+        (folder, file, summaries)
+    }
+
+    fn is_read(list: &Value) -> bool {
+        list[0]["distance_m"].is_f64()
+    }
+
+    #[test]
+    fn while_a_list_reads_a_recording_is_opened_at_once() {
+        let (_folder, file, summaries) = recorded();
+        let _list = summaries.listing.blocking_lock();
+        assert!(summaries.summary(&file).unwrap().is_complete());
+    }
+
+    #[test]
+    fn while_a_recording_is_opened_a_list_reads_none() {
+        let (_folder, file, summaries) = recorded();
+        let folder = file.parent().unwrap();
+        let opening = summaries.opening.blocking_lock();
+        let list = summaries.list(folder).unwrap();
+        assert_eq!(list[0]["whole"], true);
+        assert!(!is_read(&list) && summaries.kept(&file).is_none());
+        drop(opening);
+        assert!(is_read(&summaries.list(folder).unwrap()));
+        // What is kept waits for no other one that is opened.
+        let _opening = summaries.opening.blocking_lock();
+        assert!(is_read(&summaries.list(folder).unwrap()));
+        assert!(summaries.summary(&file).unwrap().is_complete());
+    }
+
+    #[test]
+    fn a_list_stops_within_the_recording_that_it_reads() {
+        let (_folder, file, summaries) = recorded();
+        let asked = std::cell::Cell::new(0);
+        let goes_on = || asked.replace(asked.get() + 1) < 10;
+        assert!(!summaries.read(&file, goes_on).unwrap().is_complete());
+        assert_eq!(asked.get(), 11);
+        assert!(summaries.kept(&file).is_none());
+    }
 }

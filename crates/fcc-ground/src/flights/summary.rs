@@ -136,8 +136,17 @@ impl Summary {
         Ok((summary, recording))
     }
 
-    /// The summary, the events, and the curves of a file that is finished.
-    pub(super) fn read(path: &Path) -> Result<(Self, Value, Option<Table>), Failure> {
+    /// Whether the whole file was read, and stays as it is.
+    pub(super) const fn is_complete(&self) -> bool {
+        self.distance_m.is_some() && !self.being_written
+    }
+
+    /// The summary, the events, and the curves of a file that is finished; what its begin
+    /// says if it does not go on.
+    pub(super) fn read(
+        path: &Path,
+        goes_on: impl Fn() -> bool,
+    ) -> Result<(Self, Value, Option<Table>), Failure> {
         let (begin, recording) = Self::begin(path)?;
         let scanner = Scanner::of(&recording)?;
         let mut reading = Reading::new(&scanner);
@@ -149,6 +158,7 @@ impl Summary {
         let span = ticks.map(|ticks| (2 * ticks).div_ceil(KEPT_POINTS).max(1));
         let table = span.map(|span| TableReader::new(&scanner.columns, &names, span));
         let mut table = table.transpose()?;
+        let mut is_read = true;
         scanner.read(&recording, |found| {
             events.take(&found, &scanner.columns);
             if let Found::Row(woke_ns, row) = found {
@@ -157,8 +167,12 @@ impl Summary {
                     table.take(woke_ns, row);
                 }
             }
-            true
+            is_read = goes_on();
+            is_read
         })?;
+        if !is_read {
+            return Ok((begin, Value::Null, None));
+        }
         let summary = Self {
             start_utc_s: utc_s(&recording, reading.first_ns.unwrap_or(0)),
             duration_s: reading.duration_s(),
@@ -347,27 +361,21 @@ fn thumbnail(places: &[Place]) -> Vec<[f64; 2]> {
             [east * shrink, place.latitude_deg]
         })
         .collect();
-    let least = points.iter().fold([f64::MAX; 2], |[x, y], point| {
-        [x.min(point[0]), y.min(point[1])]
-    });
-    let most = points.iter().fold([f64::MIN; 2], |[x, y], point| {
-        [x.max(point[0]), y.max(point[1])]
-    });
-    let size = (most[0] - least[0]).max(most[1] - least[1]).max(1e-9);
-    let middle = |axis: usize, [x, y]: [f64; 2]| {
-        let value = if axis == 0 { x } else { y };
-        let (least, most) = if axis == 0 {
-            (least[0], most[0])
-        } else {
-            (least[1], most[1])
-        };
+    let bounds = |axis: fn(&[f64; 2]) -> f64| {
+        let values = || points.iter().map(axis);
+        let least = values().fold(f64::MAX, f64::min);
+        (least, values().fold(f64::MIN, f64::max))
+    };
+    let (east, north) = (bounds(|[x, _]| *x), bounds(|[_, y]| *y));
+    let size = (east.1 - east.0).max(north.1 - north.0).max(1e-9);
+    let within = |value: f64, (least, most): (f64, f64)| {
         let at = 0.5 + (value - 0.5 * (least + most)) / size;
         (at * 1e4).round() / 1e4
     };
-    points
-        .into_iter()
-        .map(|point| [middle(0, point), middle(1, point)])
-        .collect()
+    let placed = points
+        .iter()
+        .map(|[x, y]| [within(*x, east), within(*y, north)]);
+    placed.collect()
 }
 
 #[cfg(test)]

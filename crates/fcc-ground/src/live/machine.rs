@@ -71,12 +71,12 @@ impl Machine {
             "load": load(),
             "processors": std::thread::available_parallelism().ok(),
             "temperature_c": temperature_c(),
-            "memory_available_bytes": memory_available_bytes(),
+            "memory_available_bytes": memory_bytes("/proc/meminfo", "MemAvailable:"),
             "disk_available_bytes": self.disk_available_bytes(),
             "station": {
                 "clients": self.0.clients.load(Ordering::Relaxed),
                 "cpu_percent": percent,
-                "memory_bytes": memory_bytes(),
+                "memory_bytes": memory_bytes("/proc/self/status", "VmRSS:"),
             },
         });
         *last = Some(Look {
@@ -115,19 +115,10 @@ fn temperature_c() -> Option<f64> {
     millis.max().map(|millis| millis as f64 * 1e-3)
 }
 
-fn memory_available_bytes() -> Option<u64> {
-    let text = fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text
-        .lines()
-        .find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    let kib: u64 = line.trim().strip_suffix(" kB")?.trim().parse().ok()?;
-    Some(kib * 1_024)
-}
-
-/// What the station has in memory.
-fn memory_bytes() -> Option<u64> {
-    let text = fs::read_to_string("/proc/self/status").ok()?;
-    let line = text.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+/// A line `NAME: NUMBER kB` of a file of the kernel.
+fn memory_bytes(file: &str, name: &str) -> Option<u64> {
+    let text = fs::read_to_string(file).ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     let kib: u64 = line.trim().strip_suffix(" kB")?.trim().parse().ok()?;
     Some(kib * 1_024)
 }

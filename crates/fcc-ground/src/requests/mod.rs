@@ -48,6 +48,7 @@ pub(crate) fn router(station: Arc<Station>) -> Router {
         .route("/api/flights/{file}/data", get(flights::data))
         .route("/api/flights/{file}/events", get(flights::events))
         .route("/api/flights/{file}/plan", get(flights::plan))
+        .route("/api/flights/{file}/aircraft", get(flights::aircraft))
         .route("/api/flights/{file}/report", get(flights::report))
         .route("/api/flights/{file}/download", get(flights::download))
         .route("/api/flights/{a}/compare/{b}", get(flights::compare))

@@ -14,6 +14,9 @@ const SPEED_MPS: f64 = 50.0;
 const BEGIN_DEG: f64 = 45.0;
 /// Of latitude, on WGS-84 at 45°.
 const DEGREE_M: f64 = 111_132.0;
+/// Of no daemon that runs, nor of one that the station knows.
+const CONFIG: &str =
+    "[autopilot.envelope]\nstall_airspeed_kt = 50.0\nnever_exceed_airspeed_kt = 180.0\n";
 const REMARK: &str = "<script>alert(1)</script>";
 
 fn record(number: u64) -> FlightRecord {
@@ -44,6 +47,7 @@ pub(crate) fn fly(
 ) -> PathBuf {
     let about = About {
         plant: "built-in".to_owned(),
+        config: CONFIG.to_owned(),
         rate_hz: RATE_HZ as f64,
         started_unix_ns: started_unix_s * 1_000_000_000,
         clock_offset_ns: (started_unix_s * 1_000_000_000).cast_signed() - 1_000_000_000,
@@ -187,6 +191,22 @@ fn curves_are_those_of_the_recording() {
             .iter()
             .any(|event| event["text"] == REMARK)
     );
+}
+
+#[test]
+fn the_limits_of_a_flight_are_those_that_it_flew_with() {
+    let ground = Ground::new();
+    let file = name(&fly(&ground, 1_795_148_400, 10, false, true));
+    let limits = ground.get(&format!("/api/flights/{file}/aircraft")).json();
+    // A knot is 1,852 m in an hour.
+    let is_kt = |limit: &str, kt: f64| {
+        let mps = limits[limit].as_f64().unwrap();
+        assert!((mps - kt * 1_852.0 / 3_600.0).abs() < 1e-9, "{limits}");
+    };
+    is_kt("stall_mps", 50.0);
+    is_kt("never_exceed_mps", 180.0);
+    let none = ground.get("/api/flights/other.mcap/aircraft");
+    assert_eq!(none.status, 404);
 }
 
 #[test]

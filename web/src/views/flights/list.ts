@@ -85,11 +85,9 @@ function card(flight: Flight, flights: Flight[], actions: CardActions): HTMLElem
   const faults = flight.faults ? `${flight.faults} ${flight.faults === 1 ? "fault" : "faults"}` : "";
   const state = flight.being_written ? "being recorded" : flight.whole ? `no faults${flight.ending ? `; ${flight.ending}` : ""}` : "unfinished recording: fccd recover finishes it";
   const name = utc(flight.start_utc_s);
-  const remove = button(`Delete the flight of ${name}`, () => actions.ask(true), { icon: "trash", bare: true, class: "button plain" });
-  remove.disabled = !writable.get() || flight.being_written === true;
-  const compare = button(actions.first === flight.file ? "Chosen" : actions.first === null ? "Compare" : "Compare with this", actions.choose);
+  const remove = button(`Delete the flight of ${name}`, () => actions.ask(true), { icon: "trash", bare: true, class: "button plain", disabled: !writable.get() || flight.being_written === true });
+  const compare = button(actions.first === flight.file ? "Chosen" : actions.first === null ? "Compare" : "Compare with this", actions.choose, { disabled: flights.length < 2 });
   compare.setAttribute("aria-pressed", String(actions.first === flight.file));
-  compare.disabled = flights.length < 2;
   const link = (format: string) => h("a", { href: `/api/flights/${part(flight.file)}/download?format=${format}`, download: "", "aria-label": `Download ${name} as ${format.toUpperCase()}` }, format.toUpperCase());
   return h(
     "li",

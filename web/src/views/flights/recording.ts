@@ -1,6 +1,6 @@
 /** A recording in the page: columns by name, and a row at any time. */
 
-import { getJson, part, request, type FlightEvent, type VehiclePlan } from "../../core/api";
+import { getJson, part, request, type Daemon, type FlightEvent, type VehiclePlan } from "../../core/api";
 import type { Row } from "../../live/flight-state";
 import type { Column } from "../../live/record";
 
@@ -22,6 +22,14 @@ interface Header {
   start_utc_s: number;
 }
 
+/** A part of the flight in which a column keeps its value. */
+export interface Run {
+  value: number;
+  name: string;
+  from_s: number;
+  to_s: number;
+}
+
 export class Recording {
   readonly #columns = new Map<string, Float64Array>();
   readonly #described = new Map<string, Column>();
@@ -29,6 +37,8 @@ export class Recording {
   readonly start_utc_s: number;
   events: FlightEvent[] = [];
   plan: VehiclePlan | null = null;
+  /** The limits that it was flown with. */
+  aircraft: Daemon["aircraft"] = null;
 
   constructor(
     readonly file: string,
@@ -48,15 +58,13 @@ export class Recording {
 
   static async open(file: string): Promise<Recording> {
     const path = `/flights/${part(file)}`;
-    const [data, events, plan] = await Promise.all([
+    const [data, events, plan, aircraft] = await Promise.all([
       request("GET", `${path}/data?columns=${REPLAY_COLUMNS.join(",")}&points=${POINTS}`).then((answer) => answer.arrayBuffer()),
       getJson<FlightEvent[]>(`${path}/events`),
       getJson<VehiclePlan | null>(`${path}/plan`).catch(() => null),
+      getJson<Daemon["aircraft"]>(`${path}/aircraft`).catch(() => null),
     ]);
-    const recording = new Recording(file, data);
-    recording.events = events;
-    recording.plan = plan;
-    return recording;
+    return Object.assign(new Recording(file, data), { events, plan, aircraft });
   }
 
   column(name: string): Float64Array {
@@ -99,6 +107,13 @@ export class Recording {
   named(name: string, time_s: number): string {
     const value = this.#columns.get(name)?.[this.index(time_s)] ?? NaN;
     return this.#described.get(name)?.names?.[value] ?? (Number.isFinite(value) ? String(value) : "");
+  }
+
+  runs(name: string): Run[] {
+    const values = this.column(name);
+    const starts = [...values.keys()].filter((at) => values[at] !== values[at - 1]);
+    const time = (at: number) => this.time[Math.min(at, values.length - 1)] ?? 0;
+    return starts.map((at, n) => ({ value: values[at] ?? 0, name: this.#described.get(name)?.names?.[values[at] ?? 0] ?? "", from_s: time(at), to_s: time(starts[n + 1] ?? values.length) }));
   }
 
   /** When control was first taken; the begin without it. */

@@ -2,11 +2,10 @@
 
 import L from "leaflet";
 import { getJson, message, part, type Difference, type Flight } from "../../core/api";
-import { button, h, replace, setText } from "../../core/dom";
+import { append, button, h, replace, setText } from "../../core/dom";
 import { fixed, shown, unitSystem, utc, withUnit } from "../../core/units";
 import { FlightDisplay } from "../../instruments/display";
 import { flightState, modeText, type FlightState } from "../../live/flight-state";
-import { daemons } from "../../live/session";
 import { AircraftLayer } from "../../map/aircraft";
 import { createChart } from "../../map/chart";
 import { PlanLayer } from "../../map/plan-layer";
@@ -24,7 +23,7 @@ import "../../design/fly.css";
 const TEXTS_EVERY_MS = 100;
 
 export async function openReplay(file: string, other_file: string | undefined): Promise<View> {
-  const [recording, flights] = await Promise.all([Recording.open(file), getJson<Flight[]>("/flights").catch((): Flight[] => [])]);
+  const recording = await Recording.open(file);
   const chart = createChart("Map of the flight");
   const { map } = chart;
   const plan = new PlanLayer(map);
@@ -33,7 +32,7 @@ export async function openReplay(file: string, other_file: string | undefined): 
   const aircraft = new AircraftLayer().addTo(map);
   const ghost = new AircraftLayer(true, false).addTo(map);
   const display = new FlightDisplay();
-  display.setLimits(daemons.get().find((one) => one.instance === flights.find((flight) => flight.file === file)?.instance)?.aircraft ?? null);
+  display.setLimits(recording.aircraft);
   const values = h("dl", { class: "readouts", "aria-label": "Flight values" });
   const cells = ["State", "Mode", "To go", "Off path", "Ground speed", "Wind", "UTC"].map((label) => {
     const value = h("dd", {});
@@ -111,12 +110,14 @@ export async function openReplay(file: string, other_file: string | undefined): 
       setText(notice, `The flights cannot be compared: ${message(error)}`);
     }
   };
-  const others = flights.filter((one) => one.file !== file);
-  const picker = h("select", { "aria-label": "Second flight", change: () => void compare(picker.value) }, h("option", { value: "" }, "no second flight"), ...others.map((one) => h("option", { value: one.file }, `${utc(one.start_utc_s)} ${one.instance}`)));
-  if (other_file && others.some((one) => one.file === other_file)) {
-    picker.value = other_file;
-    void compare(other_file);
-  }
+  const picker = h("select", { "aria-label": "Second flight", change: () => void compare(picker.value) }, h("option", { value: "" }, "no second flight"));
+  if (other_file) void compare(other_file);
+  // A list that reads new recordings may come late.
+  void getJson<Flight[]>("/flights").then((flights) => {
+    const others = flights.filter((one) => one.file !== file);
+    append(picker, others.map((one) => h("option", { value: one.file }, `${utc(one.start_utc_s)} ${one.instance}`)));
+    picker.value = other?.file ?? other_file ?? "";
+  }, () => undefined);
 
   const fit = () => {
     const bounds = L.latLngBounds([]);

@@ -2,7 +2,7 @@
 
 import L from "leaflet";
 import { message, sendCommand, writable, type Command } from "../../core/api";
-import { button, h, setClass, setText } from "../../core/dom";
+import { button, h, setClass, setText, tell } from "../../core/dom";
 import { slide } from "../../core/slide";
 import { inUnits, toShown, toSi, unitOf } from "../../core/units";
 import { toPlace } from "../../map/plan-layer";
@@ -58,8 +58,11 @@ export class Commands {
       if (this.#picking) this.#place(event.latlng);
     });
     this.map.getContainer().addEventListener("keydown", (event) => {
-      if (this.#picking && event.key === "Enter") this.#place(this.map.getCenter());
-      if (this.#picking && event.key === "Escape") this.#pick(false);
+      if (!this.#picking || !["Enter", "Escape"].includes(event.key)) return;
+      // The field that gets the focus would take the key, and send the form.
+      event.preventDefault();
+      if (event.key === "Enter") this.#place(this.map.getCenter());
+      else this.#pick(false);
     });
   }
 
@@ -67,28 +70,24 @@ export class Commands {
     const instance = daemon.get()?.instance;
     if (!instance) return;
     const name = typeof command === "string" ? command : "set" in command ? "set points" : "go to";
-    this.#say(`${name}: sent`, "");
+    tell(this.#result, `${name}: sent`);
     try {
       const tick = await sendCommand(instance, command);
-      this.#say(`${name}: carried out at tick ${tick}`, "good");
+      tell(this.#result, `${name}: carried out at tick ${tick}`, "good");
     } catch (error) {
-      this.#say(`${name} refused: ${inUnits(message(error)).replace(/^refused: /, "")}`, "bad");
+      tell(this.#result, `${name} refused: ${inUnits(message(error)).replace(/^refused: /, "")}`, "bad");
     }
-  }
-
-  #say(text: string, tone: string): void {
-    setText(this.#result, text);
-    this.#result.dataset["tone"] = tone;
   }
 
   #pick(on: boolean): void {
     this.#picking = on;
     this.#goTo.setAttribute("aria-pressed", String(on));
     setClass(this.map.getContainer(), "picking", on);
+    if (this.#target.contains(document.activeElement)) this.#goTo.focus();
     setClass(this.#target, "hidden", true);
     this.#marker?.remove();
     this.#marker = null;
-    this.#say(on ? "Tap the map where to fly, or press Enter on it for its centre." : "", "");
+    tell(this.#result, on ? "Tap the map where to fly, or press Enter on it for its centre." : "");
   }
 
   #place(at: L.LatLng): void {
@@ -121,5 +120,8 @@ export class Commands {
     this.#resume.disabled = !(may && engaged && ["loiter", "go to", "return", "hold"].includes(mode));
     for (const one of [this.#goTo, ...this.#others]) one.disabled = !(may && engaged);
     if (this.#picking && !engaged) this.#pick(false);
+    // A disabled button would lose the focus.
+    const at = document.activeElement;
+    if (at instanceof HTMLButtonElement && at.disabled && this.element.contains(at)) ([this.#pause, this.#resume].find((one) => !one.disabled) ?? this.#slide.element).focus();
   }
 }

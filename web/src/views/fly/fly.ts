@@ -75,7 +75,9 @@ export function openFly(): View {
   const commands = new Commands(map);
   const set_points = new SetPoints((values) => void commands.send({ set: values }));
   const list = new EventList();
-  const conditions = h("section", { class: "panel conditions hidden", "aria-label": "Conditions", role: "status" });
+  const conditions_title = h("h2", {}, "Conditions");
+  const conditions_list = h("ul", { class: "scroll", tabindex: 0, "aria-label": "Conditions, the newest first" });
+  const conditions = h("section", { class: "panel conditions", "aria-label": "Conditions", role: "status" }, conditions_title, conditions_list);
   const cells = READOUTS.map((one) => ({ one, value: h("dd", {}), box: h("div", { class: "readout" }) }));
   for (const { one, value, box } of cells) box.append(h("dt", {}, one.label), value);
   const strip = h("dl", { class: "readouts", "aria-label": "Flight values" }, ...cells.map((cell) => cell.box));
@@ -104,20 +106,18 @@ export function openFly(): View {
   setFollowing(true);
 
   let shown_conditions = "";
+  let found: string[] = [];
   const showConditions = (record: LiveRecord, engaged: boolean) => {
-    const found = engaged ? [...new Set([...record.flags("faults"), ...present(record.layout.at(record.layout.indexOf("faults"))?.names ?? [])])] : record.flags("engage_inhibits");
+    const now = new Set(engaged ? [...record.flags("faults"), ...present(record.layout.at(record.layout.indexOf("faults"))?.names ?? [])] : record.flags("engage_inhibits"));
+    // What is new comes first.
+    found = [...[...now].filter((one) => !found.includes(one)), ...found.filter((one) => now.has(one))];
     const key = `${engaged}${found.join("|")}`;
     if (key === shown_conditions) return;
     shown_conditions = key;
-    setClass(conditions, "hidden", found.length === 0);
-    replace(
-      conditions,
-      h("h2", {}, engaged ? "Conditions in flight" : "Engaging is inhibited"),
-      h("ul", {}, ...found.map((one) => {
-        const advice = engaged ? null : adviceFor(one);
-        return h("li", {}, h("strong", {}, one), advice ? h("span", { class: "advice" }, advice) : null);
-      })),
-    );
+    setClass(conditions, "some", found.length > 0);
+    const title = engaged ? "Conditions in flight" : found.length > 0 ? "Engaging is inhibited" : "Engaging is not inhibited";
+    setText(conditions_title, found.length > 0 ? `${title}: ${found.length}` : engaged ? "No condition in flight" : title);
+    replace(conditions_list, ...found.map((one) => h("li", {}, h("strong", {}, one), " ", h("span", { class: "advice" }, engaged ? null : adviceFor(one)))));
   };
 
   let texts_ms = -Infinity;
@@ -204,7 +204,6 @@ export function openFly(): View {
     }),
     run_started_utc_s.watch(() => track.grow()),
   ];
-  for (const event of events) list.add(event);
   const timers = [
     setInterval(() => {
       if (linkAge() > AGED_EVERY_MS / 1000) onNextFrame(draw);

@@ -3,9 +3,9 @@
 import { getJson, message, type Finding } from "../../core/api";
 import { button, h, icon, replace, setText } from "../../core/dom";
 import { notOnNextFrame, onNextFrame } from "../../core/frame";
-import { bytes, fixed } from "../../core/units";
+import { bytes, fixed, microseconds } from "../../core/units";
 import { freshness } from "../../live/flight-state";
-import { daemon, events, linkAge, newest, onEvent, onRecord, run } from "../../live/session";
+import { daemon, linkAge, newest, onEvent, onRecord, run } from "../../live/session";
 import type { RunStatus } from "../../live/connection";
 import type { LiveRecord } from "../../live/record";
 import type { View } from "../../shell";
@@ -26,18 +26,19 @@ interface Figure {
 
 const given = (value: number | null | undefined, digits: number, unit: string): string =>
   value === null || value === undefined ? "–" : `${fixed(value, digits)}\u202f${unit}`;
+const late = (us: number | null | undefined, digits: number): string => (us === null || us === undefined ? "–" : microseconds(us, digits));
 const bad = (on: boolean) => (on ? "bad" : "");
 const HOT_C = 80;
 
 const TIMING: readonly Figure[] = [
-  { label: "p50", text: (r) => given(r?.lateness_p50_us, 2, "µs") },
-  { label: "p99", text: (r) => given(r?.lateness_p99_us, 2, "µs") },
-  { label: "p99.9", text: (r) => given(r?.lateness_p99_9_us, 2, "µs") },
-  { label: "Largest", text: (r) => given(r?.lateness_max_us, 1, "µs") },
+  { label: "p50", text: (r) => late(r?.lateness_p50_us, 2) },
+  { label: "p99", text: (r) => late(r?.lateness_p99_us, 2) },
+  { label: "p99.9", text: (r) => late(r?.lateness_p99_9_us, 2) },
+  { label: "Largest", text: (r) => late(r?.lateness_max_us, 1) },
   { label: "Missed periods", text: (r) => String(r?.missed ?? "–"), tone: (r) => bad((r?.missed ?? 0) > 0) },
   { label: "Overruns", text: (_, one) => (one ? String(one.number("overruns")) : "–"), tone: (_, one) => bad((one?.number("overruns") ?? 0) > 0) },
   { label: "Ticks", text: (r) => (r?.ticks ?? 0).toLocaleString("en") },
-  { label: "Early wake", text: (_, one) => (one ? `${fixed(one.number("early_wake_ns") / 1000, 0)}\u202fµs` : "–") },
+  { label: "Early wake", text: (_, one) => (one ? microseconds(one.number("early_wake_ns") / 1000, 0) : "–") },
 ];
 
 const BOARD: readonly Figure[] = [
@@ -110,7 +111,6 @@ export function openHealth(): View {
     }
   };
 
-  for (const event of events) list.add(event);
   const stops = [onRecord(() => onNextFrame(draw)), onEvent((event) => list.add(event)), run.watch(() => onNextFrame(draw))];
   const timer = setInterval(() => onNextFrame(draw), AGED_EVERY_MS);
 
@@ -119,7 +119,7 @@ export function openHealth(): View {
     "div",
     { class: "page health" },
     h("h1", { class: "visually-hidden" }, "Health"),
-    panel("Lateness of the loop", "lateness", histogram.element, timing.element),
+    panel("Lateness of the loop", "lateness", histogram.canvas, timing.element),
     panel("Stages of a tick", "stage-panel", stages.element),
     panel("Board", "board", board.element),
     panel("Recorder", "recorder", recorder.element, file),

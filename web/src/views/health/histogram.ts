@@ -1,8 +1,8 @@
 /** How late the loop's ticks are: bins of half a decade, the counts on a logarithm. */
 
+import { Drawing } from "../../core/canvas";
 import { h } from "../../core/dom";
-import { onNextFrame } from "../../core/frame";
-import { FONT, palette } from "../../design/theme";
+import { FONT, type Palette } from "../../design/theme";
 
 /** Upper ends of the bins (proto/layout.md); the last counts what is above. */
 const LABELS = ["0.1", "0.3", "1", "3", "10", "32", "100", "316", "1 ms", "3", "10", "32", "100", ">"];
@@ -12,23 +12,12 @@ const LATE_BIN = 8;
 const NARROW_PX = 28;
 const BOTTOM_PX = 30, TOP_PX = 16;
 
-export class Histogram {
-  readonly #canvas = h("canvas", { class: "histogram", role: "img", "aria-label": "Lateness: no data" });
-  readonly element = this.#canvas;
+export class Histogram extends Drawing {
   #counts: number[] | null = null;
   #seen = "";
-  readonly #draw = () => this.#redraw();
-  readonly #observer = new ResizeObserver(() => onNextFrame(this.#draw));
-  readonly #stop: () => void;
 
   constructor() {
-    this.#observer.observe(this.#canvas);
-    this.#stop = palette.watch(() => onNextFrame(this.#draw));
-  }
-
-  close(): void {
-    this.#observer.disconnect();
-    this.#stop();
+    super(h("canvas", { class: "histogram", role: "img", "aria-label": "Lateness: no data" }));
   }
 
   show(counts: number[] | null): void {
@@ -37,21 +26,11 @@ export class Histogram {
     this.#seen = seen;
     this.#counts = counts ? [...counts] : null;
     const total = counts?.reduce((sum, one) => sum + one, 0) ?? 0;
-    this.#canvas.setAttribute("aria-label", `Lateness of ${total} ticks: ${(counts ?? []).map((one, at) => `${one} up to ${LABELS[at] ?? ""}`).filter((_, at) => (counts?.[at] ?? 0) > 0).join(", ")} µs`);
-    onNextFrame(this.#draw);
+    this.canvas.setAttribute("aria-label", `Lateness of ${total} ticks: ${(counts ?? []).map((one, at) => `${one} up to ${LABELS[at] ?? ""}`).filter((_, at) => (counts?.[at] ?? 0) > 0).join(", ")} µs`);
+    this.again();
   }
 
-  #redraw(): void {
-    const canvas = this.#canvas;
-    const width = canvas.clientWidth, height = canvas.clientHeight;
-    if (width === 0) return;
-    const ratio = Math.min(2, devicePixelRatio || 1);
-    canvas.width = width * ratio;
-    canvas.height = height * ratio;
-    const context = canvas.getContext("2d");
-    if (!context) return;
-    context.scale(ratio, ratio);
-    const colours = palette.get();
+  protected draw(context: CanvasRenderingContext2D, width: number, height: number, colours: Palette): void {
     const counts = this.#counts ?? [];
     const most = Math.max(10, ...counts);
     const step = width / LABELS.length;

@@ -1,30 +1,23 @@
 /** Readings: how old, from which sensor, and how far from the estimate. */
 
 import { h, replace, setText } from "../../core/dom";
-import { fixed } from "../../core/units";
+import { DEGREES, fixed } from "../../core/units";
 import { freshness } from "../../live/flight-state";
 import type { LiveRecord } from "../../live/record";
 
-interface Residual {
-  text: (record: LiveRecord) => string;
-}
-
-const DEGREES = 180 / Math.PI;
 const EARTH_M = 6_371_008.8;
 
-function difference(record: LiveRecord, measured: string, estimated: string): number {
-  return record.number(measured) - record.number(estimated);
-}
+const difference = (record: LiveRecord, measured: string, estimated: string): number => record.number(measured) - record.number(estimated);
 const turned = (radians: number): number => Math.atan2(Math.sin(radians), Math.cos(radians)) * DEGREES;
 
 /** Measured minus estimated. */
-const RESIDUALS: Record<string, Residual> = {
-  attitude: { text: (r) => `${fixed(difference(r, "roll_rad", "estimated_roll_rad") * DEGREES, 2)}° roll, ${fixed(difference(r, "pitch_rad", "estimated_pitch_rad") * DEGREES, 2)}° pitch` },
-  heading: { text: (r) => `${fixed(turned(difference(r, "heading_rad", "estimated_heading_rad")), 2)}°` },
-  airspeed: { text: (r) => `${fixed(difference(r, "airspeed_mps", "estimated_airspeed_mps"), 2)} m/s` },
-  altitude: { text: (r) => `${fixed(difference(r, "altitude_m", "estimated_altitude_m"), 2)} m` },
-  position: { text: (r) => metres(r, "latitude_rad", "longitude_rad") },
-  gnss: { text: (r) => metres(r, "gnss_latitude_rad", "gnss_longitude_rad") },
+const RESIDUALS: Record<string, (record: LiveRecord) => string> = {
+  attitude: (r) => `${fixed(difference(r, "roll_rad", "estimated_roll_rad") * DEGREES, 2)}° roll, ${fixed(difference(r, "pitch_rad", "estimated_pitch_rad") * DEGREES, 2)}° pitch`,
+  heading: (r) => `${fixed(turned(difference(r, "heading_rad", "estimated_heading_rad")), 2)}°`,
+  airspeed: (r) => `${fixed(difference(r, "airspeed_mps", "estimated_airspeed_mps"), 2)} m/s`,
+  altitude: (r) => `${fixed(difference(r, "altitude_m", "estimated_altitude_m"), 2)} m`,
+  position: (r) => metres(r, "latitude_rad", "longitude_rad"),
+  gnss: (r) => metres(r, "gnss_latitude_rad", "gnss_longitude_rad"),
 };
 
 function metres(record: LiveRecord, latitude: string, longitude: string): string {
@@ -55,7 +48,7 @@ export class SensorTable {
       setText(age, known ? `${fixed(Math.max(0, age_s) * 1000, 0)}` : "never");
       row.dataset["fresh"] = known ? freshness(age_s) : "fresh";
       setText(source, known && record.layout.indexOf(`${name}_source`) >= 0 ? String(record.number(`${name}_source`) + 1) : "–");
-      setText(residual, known ? (RESIDUALS[name]?.text(record) ?? "") : "");
+      setText(residual, known ? (RESIDUALS[name]?.(record) ?? "") : "");
     }
   }
 

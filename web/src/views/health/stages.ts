@@ -1,7 +1,7 @@
 /** How long the stages of a tick take, and what is left of the period. */
 
 import { h, setText } from "../../core/dom";
-import { fixed } from "../../core/units";
+import { fixed, microseconds } from "../../core/units";
 import type { LiveRecord } from "../../live/record";
 
 const STAGES = ["sensors", "estimate", "guide", "control", "actuators", "total"] as const;
@@ -16,7 +16,7 @@ export class StageBars {
   constructor() {
     this.element.append(
       this.#budget,
-      h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Stage"), h("th", { scope: "col" }, h("span", { class: "visually-hidden" }, "Bar")), h("th", { scope: "col", class: "number" }, "Now µs"), h("th", { scope: "col", class: "number" }, "Recent most µs"))),
+      h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Stage"), h("th", { scope: "col" }, h("span", { class: "visually-hidden" }, "Bar")), h("th", { scope: "col", class: "number" }, "Now"), h("th", { scope: "col", class: "number" }, "Recent most"))),
       h("tbody", {}, ...this.#rows.map((row) => h("tr", {}, h("th", { scope: "row" }, row.stage), h("td", { class: "bar-cell" }, row.bar), row.now, row.most))),
     );
   }
@@ -26,8 +26,8 @@ export class StageBars {
     for (const row of this.#rows) {
       const us = (record?.number(`${row.stage}_time_ns`) ?? NaN) / 1000;
       row.largest = Number.isFinite(us) ? Math.max(us, row.largest * DECAY) : row.largest;
-      setText(row.now, fixed(us, 1));
-      setText(row.most, fixed(row.largest, 1));
+      setText(row.now, microseconds(us, 1));
+      setText(row.most, microseconds(row.largest, 1));
     }
     for (const row of this.#rows) {
       const us = (record?.number(`${row.stage}_time_ns`) ?? NaN) / 1000;
@@ -36,6 +36,6 @@ export class StageBars {
     }
     const period_us = rate_hz > 0 ? 1e6 / rate_hz : NaN;
     const used = total ? (total.largest / period_us) * 100 : NaN;
-    setText(this.#budget, Number.isFinite(used) ? `A period is ${fixed(period_us, 0)} µs; a tick uses ${fixed(used, 2)} % of it at most.` : "");
+    setText(this.#budget, Number.isFinite(used) ? `A period is ${microseconds(period_us, 0)}; a tick uses ${fixed(used, 2)} % of it at most.` : "");
   }
 }

@@ -4,6 +4,7 @@ import type { Problem } from "../../core/api";
 import { button, h, icon, replace } from "../../core/dom";
 import { keepingFocus, numberField, quantityField, selectField } from "../../core/fields";
 import { ADDABLE, asKind, KIND_NAMES, type Datum, type Item, type Kind, type LoiterEnd } from "../../plan/model";
+import { places } from "./zones";
 
 export interface ItemActions {
   change(index: number, item: Item, what: string): void;
@@ -18,7 +19,6 @@ const FRAMES: readonly (readonly [Datum, string])[] = [
   ["sea-level", "sea level"],
   ["terrain", "terrain"],
 ];
-const PLACE_DIGITS = 6;
 const LONGEST_M = 100_000;
 
 export class ItemTable {
@@ -54,7 +54,7 @@ export class ItemTable {
       h("th", { scope: "row", class: "number" }, h("button", { type: "button", class: "item-number", "data-key": key("number"), "aria-label": `Select item ${number}`, "aria-pressed": String(selected), click: () => actions.select(index) }, number)),
       h("td", {}, kind),
       ...this.#altitude(item, key, number, off, change),
-      ...this.#place(item, key, number, off, change),
+      ...this.#place(item, number, off, change),
       h("td", { class: "details" }, ...details(item, key, number, off, change)),
       h(
         "td",
@@ -67,17 +67,11 @@ export class ItemTable {
     return row;
   }
 
-  #place(item: Item, key: (name: string) => string, number: number, off: boolean, change: (item: Item, what: string) => void): HTMLElement[] {
+  #place(item: Item, number: number, off: boolean, change: (item: Item, what: string) => void): HTMLElement[] {
     if (!("place" in item)) return [h("td", {}), h("td", {})];
     const place = item.place;
     if (!place) return [h("td", { class: "note", colspan: 2 }, item.kind === "takeoff" ? "straight ahead" : item.kind === "land" ? "where it took off" : "here")];
-    return (["latitude_deg", "longitude_deg"] as const).map((axis) =>
-      h("td", {}, numberField({
-        key: key(axis), label: `${axis === "latitude_deg" ? "Latitude" : "Longitude"} of item ${number}, degrees`, value: place[axis], digits: PLACE_DIGITS, fixed: true, disabled: off, class: "place",
-        lowest: axis === "latitude_deg" ? -90 : -180, highest: axis === "latitude_deg" ? 90 : 180,
-        changed: (value) => value !== null && change({ ...item, place: { ...place, [axis]: value } } as Item, "position"),
-      })),
-    );
+    return places(`item-${number - 1}`, `item ${number}`, place, off, (now) => change({ ...item, place: now } as Item, "position"));
   }
 
   #altitude(item: Item, key: (name: string) => string, number: number, off: boolean, change: (item: Item, what: string) => void): HTMLElement[] {
@@ -94,10 +88,7 @@ export class ItemTable {
 }
 
 function tool(name: "up" | "down" | "trash", label: string, key: string, disabled: boolean, action: () => void): HTMLButtonElement {
-  const element = button(label, action, { icon: name, bare: true, class: "button small plain" });
-  element.dataset["key"] = key;
-  element.disabled = disabled;
-  return element;
+  return button(label, action, { icon: name, bare: true, class: "button small plain", key, disabled });
 }
 
 function problemRow(problem: Problem): HTMLElement {

@@ -2,7 +2,7 @@
 
 import L from "leaflet";
 import { getJson, message, part, postJson, Refused, request, writable, type Check, type DraftEntry, type Problem } from "../../core/api";
-import { button, choice, h, icon, replace, setClass, setText } from "../../core/dom";
+import { button, choice, h, icon, replace, setClass, setText, tell } from "../../core/dom";
 import { refusal } from "../../core/fields";
 import { notOnNextFrame, onNextFrame } from "../../core/frame";
 import { duration, unitSystem, withUnit } from "../../core/units";
@@ -134,10 +134,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
   const asking = h("div", { class: "notice hidden" });
   const conflict = h("div", { class: "notice bad hidden", role: "alert" });
   const notice = h("p", { class: "result", role: "status" });
-  const say = (text: string, tone = "") => {
-    setText(notice, text);
-    notice.dataset["tone"] = tone;
-  };
+  const say = (text: string, tone = "") => tell(notice, text, tone);
   const ask = (...content: Node[]) => {
     replace(asking, ...content, button("Cancel", () => setClass(asking, "hidden", true)));
     setClass(asking, "hidden", false);
@@ -173,6 +170,11 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
       say(`The draft ${name} cannot be opened: ${message(error)}`, "bad");
     }
   };
+  /** A name that no draft has, nor one that is in this browser alone. */
+  const freeName = (name: string): string => {
+    const isFree = (one: string) => one !== editor?.name && !entries.some((known) => known.name === one) && localStorage.getItem(`fcc.draft.${one}`) === null;
+    return [name, ...entries.map((_, n) => `${name}-${n + 2}`), `${name}-${Date.now()}`].find(isFree) ?? name;
+  };
   const newDraft = (source: Plan | null) => {
     const form = h("form", { class: "row", submit: (event: Event) => {
       event.preventDefault();
@@ -186,7 +188,7 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
         if (source) editor?.edit(source, "copy");
       });
     } }, h("label", { class: "labelled" }, "Name ", name_input), h("button", { type: "submit", class: "button primary" }, "Create"));
-    name_input.value = source ? `${editor?.name ?? "plan"}-copy` : `plan-${entries.length + 1}`;
+    name_input.value = freeName(source ? `${editor?.name ?? "plan"}-copy` : `plan-${entries.length + 1}`);
     ask(form);
     name_input.select();
   };
@@ -216,9 +218,12 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
     if (!chosen) return;
     try {
       const { plan: found } = await postJson<{ plan: Plan }>("/plan/import", { text: await chosen.text(), name: chosen.name });
-      editor?.edit(found, `import ${chosen.name}`);
+      const name = freeName(chosen.name.replace(/\.\w+$/, "").replace(/[^\w.-]+/g, "-").replace(/^[^A-Za-z0-9]+/, "").slice(0, 40) || "import");
+      await open(name);
+      if (editor?.name !== name) return;
+      editor.edit(found, `import ${chosen.name}`);
       fitted = "";
-      say(`${chosen.name} is imported; undo brings back what was there.`, "good");
+      say(`${chosen.name} is imported as a new draft, ${name}; the others stay as they are.`, "good");
     } catch (error) {
       const body = error instanceof Refused ? (error.body as { problems?: Problem[] } | null) : null;
       say(`${chosen.name} is not imported: ${body?.problems?.map((one) => [one.item && `item ${one.item}`, one.field, one.message].filter(Boolean).join(": ")).join("; ") ?? message(error)}`, "bad");
@@ -376,7 +381,6 @@ export async function openPlan(wanted: string | undefined): Promise<View> {
   const position = setInterval(() => {
     const state = pose();
     aircraft.show(state?.position_known ? { ...state } : null, (state?.ages.position ?? Infinity) > LOST_S);
-    vehicle.show(editor, { errors: (check?.problems ?? []).filter((one) => one.level === "error").length, checked_hash: checked === plan() ? (check?.hash ?? null) : null });
   }, 500);
   const stops = [
     unitSystem.watch(refresh),

@@ -1,35 +1,25 @@
 /** The height profile: altitude of the plan over the terrain along its path. */
 
 import type { Check } from "../../core/api";
+import { Drawing } from "../../core/canvas";
 import { h } from "../../core/dom";
-import { onNextFrame } from "../../core/frame";
-import { fixed, shown, toShown, unitOf, unitSystem } from "../../core/units";
-import { FONT, palette } from "../../design/theme";
+import { fixed, shown, toShown, unitOf } from "../../core/units";
+import { FONT, type Palette } from "../../design/theme";
 
 const LEFT_PX = 46, RIGHT_PX = 12, TOP_PX = 20, BOTTOM_PX = 20;
 
-export class Profile {
-  readonly #canvas = h("canvas", { class: "profile-canvas", role: "img", "aria-label": "Height profile: empty" });
-  readonly element = h("div", { class: "profile" }, this.#canvas);
+export class Profile extends Drawing {
+  readonly element = h("div", { class: "profile" }, this.canvas);
   #check: Check | null = null;
   #places: boolean[] = [];
   #selected: number | null = null;
-  readonly #draw = () => this.#redraw();
-  readonly #observer = new ResizeObserver(() => onNextFrame(this.#draw));
-  readonly #stops: (() => void)[];
 
   constructor(select: (index: number) => void) {
-    this.#observer.observe(this.#canvas);
-    this.#stops = [palette.watch(() => onNextFrame(this.#draw)), unitSystem.watch(() => onNextFrame(this.#draw))];
-    this.#canvas.addEventListener("click", (event) => {
+    super(h("canvas", { class: "profile-canvas", role: "img", "aria-label": "Height profile: empty" }));
+    this.canvas.addEventListener("click", (event) => {
       const index = this.#nearest(event.offsetX);
       if (index !== null) select(index);
     });
-  }
-
-  close(): void {
-    this.#observer.disconnect();
-    for (const stop of this.#stops) stop();
   }
 
   /** `places` says which items have one, and so a point of the profile. */
@@ -38,8 +28,8 @@ export class Profile {
     this.#places = places;
     this.#selected = selected;
     const distance = check?.distance_m;
-    this.#canvas.setAttribute("aria-label", distance ? `Height profile over ${shown("distance", distance)} ${unitOf("distance")}; altitudes are in the table` : "Height profile: empty");
-    onNextFrame(this.#draw);
+    this.canvas.setAttribute("aria-label", distance ? `Height profile over ${shown("distance", distance)} ${unitOf("distance")}; altitudes are in the table` : "Height profile: empty");
+    this.again();
   }
 
   #points(): { index: number; distance_m: number; altitude_m: number }[] {
@@ -48,23 +38,13 @@ export class Profile {
 
   #nearest(x: number): number | null {
     const length = Math.max(1, this.#check?.distance_m ?? 1);
-    const wide = this.#canvas.clientWidth - LEFT_PX - RIGHT_PX;
+    const wide = this.canvas.clientWidth - LEFT_PX - RIGHT_PX;
     const distance = ((x - LEFT_PX) / wide) * length;
     const points = this.#points();
     return points.reduce<(typeof points)[number] | null>((best, one) => (best === null || Math.abs(one.distance_m - distance) < Math.abs(best.distance_m - distance) ? one : best), null)?.index ?? null;
   }
 
-  #redraw(): void {
-    const canvas = this.#canvas;
-    const width = canvas.clientWidth, height = canvas.clientHeight;
-    if (width === 0) return;
-    const ratio = Math.min(2, devicePixelRatio || 1);
-    canvas.width = width * ratio;
-    canvas.height = height * ratio;
-    const context = canvas.getContext("2d");
-    if (!context) return;
-    context.scale(ratio, ratio);
-    const colours = palette.get();
+  protected draw(context: CanvasRenderingContext2D, width: number, height: number, colours: Palette): void {
     const points = this.#points();
     context.font = `11px ${FONT}`;
     context.fillStyle = colours.muted;

@@ -1,7 +1,7 @@
 /** The vehicle's plan beside the draft, and the upload. */
 
 import { commandEnvelope, getJson, message, part, postJson, type VehiclePlan } from "../../core/api";
-import { button, h, setClass, setText } from "../../core/dom";
+import { button, h, setClass, setText, tell } from "../../core/dom";
 import { duration, utc } from "../../core/units";
 import { daemon } from "../../live/session";
 import type { DraftEditor } from "../../plan/draft";
@@ -85,21 +85,16 @@ export class Vehicle {
     const instance = daemon.get()?.instance;
     if (!draft || !instance) return;
     this.#sending = true;
-    this.#say("Uploading, and reading back …", "");
+    tell(this.#result, "Uploading, and reading back …");
     this.#show();
     try {
       const answer = await postJson<{ hash: string }>(`/live/${part(instance)}/plan`, { draft: draft.name, revision: draft.revision, item: 1, ...commandEnvelope() });
-      this.#say(`Uploaded and read back: the vehicle has plan ${answer.hash}.`, "good");
+      tell(this.#result, `Uploaded and read back: the vehicle has plan ${answer.hash}.`, "good");
     } catch (error) {
-      this.#say(`Not uploaded, the vehicle keeps its plan: ${message(error)}`, "bad");
+      tell(this.#result, `Not uploaded, the vehicle keeps its plan: ${message(error)}`, "bad");
     } finally {
       this.#sending = false;
       await this.refresh();
     }
-  }
-
-  #say(text: string, tone: string): void {
-    setText(this.#result, text);
-    this.#result.dataset["tone"] = tone;
   }
 }

@@ -27,7 +27,7 @@ export class Zones {
   }
 }
 
-function places(key: string, name: string, place: Place, off: boolean, set: (place: Place) => void): HTMLElement[] {
+export function places(key: string, name: string, place: Place, off: boolean, set: (place: Place) => void): HTMLElement[] {
   return (["latitude_deg", "longitude_deg"] as const).map((axis) =>
     h("td", {}, numberField({
       key: `${key}-${axis}`, label: `${axis === "latitude_deg" ? "Latitude" : "Longitude"} of ${name}, degrees`, value: place[axis], digits: 6, fixed: true, disabled: off, class: "place",
@@ -47,15 +47,11 @@ function section(title: string, columns: string[], rows: HTMLElement[], ...actio
 }
 
 function remover(name: string, off: boolean, action: () => void): HTMLElement {
-  const element = button(`Delete ${name}`, action, { icon: "trash", bare: true, class: "button small plain" });
-  element.disabled = off;
-  return h("td", { class: "order" }, element);
+  return h("td", { class: "order" }, button(`Delete ${name}`, action, { icon: "trash", bare: true, class: "button small plain", disabled: off }));
 }
 
 function adder(label: string, off: boolean, action: () => void): HTMLButtonElement {
-  const element = button(label, action, { icon: "add", class: "button small" });
-  element.disabled = off;
-  return element;
+  return button(label, action, { icon: "add", class: "button small", disabled: off });
 }
 
 function home(plan: Plan, { edit, centre, writable }: ZoneActions): HTMLElement {
