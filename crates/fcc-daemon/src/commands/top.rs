@@ -1,15 +1,13 @@
 //! `fccd top`: a flight on this machine, live.
 
 use fcc_fixed_wing::Autopilot;
-use fcc_live::{WatcherOf, running};
+use fcc_live::running;
 use fcc_telemetry::Instance;
-use fcc_top::Watched;
 
 use super::failure::Failure;
-use super::vehicles::Kind;
+use super::vehicles::{Kind, watch};
 use crate::cli::TopArgs;
 use crate::exit::Exit;
-use crate::output;
 
 /// Watches a daemon.
 pub(super) fn top(args: &TopArgs) -> Result<Exit, Failure> {
@@ -17,17 +15,6 @@ pub(super) fn top(args: &TopArgs) -> Result<Exit, Failure> {
     let instance = instance.unwrap_or_else(the_one);
     let kind = Kind::of_instance(&instance);
     kind.map_or(watch::<Autopilot> as _, |kind| kind.top)(&instance, args.json)
-}
-
-/// Watches a vehicle.
-pub(super) fn watch<V: Watched>(instance: &Instance, is_json: bool) -> Result<Exit, Failure> {
-    if is_json {
-        let snapshot = WatcherOf::<V>::open(instance).and_then(fcc_top::snapshot);
-        let snapshot = snapshot.map_err(Failure::new)?;
-        return Ok(output::json(&snapshot, Exit::Success));
-    }
-    fcc_top::top::<V>(instance).map_err(Failure::new)?;
-    Ok(Exit::Success)
 }
 
 /// The only daemon that runs, or else the one without another name.

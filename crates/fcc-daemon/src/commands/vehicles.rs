@@ -5,12 +5,13 @@ use std::time::Instant;
 
 use fcc_core::framework::MessageOf;
 
+use fcc_fixed_wing::Autopilot;
 use fcc_flight::config::{Config, ConfigError};
 use fcc_flight::flight::{FlyError, Pace};
 use fcc_flight::vehicle::{
     Vehicle, Wishes, fly_vehicle, live_vehicle, parse, replay_vehicle, vehicle_in,
 };
-use fcc_live::{Commandable, RowWatcher};
+use fcc_live::{Commandable, WatchError, WatcherOf};
 use fcc_multicopter::Multicopter;
 use fcc_record::Recording;
 use fcc_replay::{Chain, Comparison, Identity};
@@ -20,10 +21,11 @@ use fcc_telemetry::Instance;
 use fcc_top::Watched;
 
 use super::failure::{Failure, not_opened};
-use super::{fly, replay, report, top};
+use super::{fly, replay, report};
 use crate::cli::{FlyArgs, ReplayArgs, ReportArgs};
 use crate::exit::Exit;
 use crate::observers::{Announcer, Service, StatusLine};
+use crate::output;
 use crate::process::{Process, own_program};
 
 /// All of them.
@@ -50,7 +52,7 @@ impl Kind {
             fly: fly_it::<V>,
             replay: replay_it::<V>,
             report: report_it::<V>,
-            top: top::watch::<V>,
+            top: watch::<V>,
             check: |text, file| {
                 let config = parse::<V>(text, file)?;
                 Ok(V::check(&config).unwrap_or_default())
@@ -73,10 +75,13 @@ impl Kind {
         Self::named(&Recording::open(file).ok()?.about().plant)
     }
 
-    /// The vehicle that is published under a name.
+    /// The vehicle that is published under a name; none for an aeroplane, and for what is not
+    /// known: the aeroplane's watcher says what is wrong with it.
     pub(super) fn of_instance(instance: &Instance) -> Option<&'static Self> {
-        let watcher = RowWatcher::open(instance).ok()?;
-        Self::named(&watcher.info().plant.to_string())
+        match WatcherOf::<Autopilot>::open(instance) {
+            Err(WatchError::AnotherPlant { plant, .. }) => Self::named(&plant),
+            _ => None,
+        }
     }
 
     /// The vehicle of a command line, or of the configuration that it names.
@@ -172,4 +177,15 @@ fn replay_it<V: Vehicle>(args: &ReplayArgs) -> Result<Exit, Failure> {
 fn report_it<V: Reported<Addition = ()>>(args: &ReportArgs) -> Result<Exit, Failure> {
     let recording = Recording::open_as::<MessageOf<V>>(&args.file)?;
     report::print::<V>(args, &recording, ())
+}
+
+/// Watches a vehicle live.
+pub(super) fn watch<V: Watched>(instance: &Instance, is_json: bool) -> Result<Exit, Failure> {
+    if is_json {
+        let snapshot = WatcherOf::<V>::open(instance).and_then(fcc_top::snapshot);
+        let snapshot = snapshot.map_err(Failure::new)?;
+        return Ok(output::json(&snapshot, Exit::Success));
+    }
+    fcc_top::top::<V>(instance).map_err(Failure::new)?;
+    Ok(Exit::Success)
 }
