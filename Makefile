@@ -274,15 +274,15 @@ test-android: tested $(STAMPS)/java $(STAMPS)/aapt ## Test the app and its nativ
 	cargo build --locked -p fcc-android --features fault-injection
 	cp $(TARGET)/debug/libfcc_android.so $(ANDROID)/faulty/
 	cargo build --locked -p fcc-android -p fake-libandroid
-	cd android/host-tests && mvn --quiet --batch-mode -Dlibrary=$(abspath $(TARGET))/debug test \
+	cd android/tests && mvn --quiet --batch-mode -Dlibrary=$(abspath $(TARGET))/debug test \
 	    > $(abspath $(ANDROID))/host-tests.log 2>&1 || { cat $(abspath $(ANDROID))/host-tests.log; exit 1; }
 	for sdk in 28 35; do \
-	    (cd android/host-tests && mvn --quiet --batch-mode --offline -Dlibrary=$(abspath $(TARGET))/debug \
+	    (cd android/tests && mvn --quiet --batch-mode --offline -Dlibrary=$(abspath $(TARGET))/debug \
 	        -Dsdk=$$sdk surefire:test@app) > $(abspath $(ANDROID))/host-tests-$$sdk.log 2>&1 || \
 	        { cat $(abspath $(ANDROID))/host-tests-$$sdk.log; exit 1; }; \
 	done
 	@! grep -E 'WARNING in native method|WARNING: JNI|FATAL ERROR in native' $(ANDROID)/host-tests.log
-	FCC_ANDROID=$(abspath android/host-tests/fccd) FCC_ANDROID_LIBRARY=$(abspath $(TARGET))/debug \
+	FCC_ANDROID=$(abspath android/tests/fccd) FCC_ANDROID_LIBRARY=$(abspath $(TARGET))/debug \
 	    FCCD=$(TESTED)/fccd $(PYTHON) -m pytest hil/tests/test_android.py
 
 # For bench-android, such as ANDROID_TIMING="--rounds 2 --seconds 20 --rate 100".
@@ -290,10 +290,10 @@ ANDROID_TIMING ?=
 
 bench-android: build $(STAMPS)/python $(STAMPS)/java $(STAMPS)/aapt ## Compare the loop's timing in the app with the daemon's, in turn (35 minutes; ANDROID_TIMING=)
 	cargo build --locked --release -p fcc-android
-	cd android/host-tests && mvn --quiet --batch-mode test-compile
+	cd android/tests && mvn --quiet --batch-mode test-compile
 	FCC_ANDROID_LIBRARY=$(abspath $(TARGET))/release $(call result,android,'The loop in the app',ANDROID_TIMING) \
 	    $(PYTHON) -m fcc_hil bench-android --fccd $(FCCD) \
-	    --app android/host-tests/timing-flight --json target/bench-android.json $(ANDROID_TIMING)
+	    --app android/tests/timing-flight --json target/bench-android.json $(ANDROID_TIMING)
 
 android: $(STAMPS)/rust ## Build the app for phones: needs Android's SDK and NDK, cargo-ndk and Gradle (docs/android.md)
 	./scripts/android-build

@@ -36,7 +36,7 @@ class Comparison:
 
     fccd: Path
     app: Path
-    """android/host-tests/timing-flight: its arguments are configuration, seconds and recording."""
+    """android/tests/timing-flight: its arguments are configuration, seconds and recording."""
     rounds: int
     seconds: float
     rate_hz: float

@@ -17,7 +17,7 @@ def add(commands: Any) -> None:
         "bench-android", help="compare the loop's timing in the Android app with the daemon's"
     )
     ranges.add_daemon(app)
-    app.add_argument("--app", type=Path, required=True, help="android/host-tests/timing-flight")
+    app.add_argument("--app", type=Path, required=True, help="android/tests/timing-flight")
     app.add_argument("--rounds", type=ranges.count, default=5, help="(default %(default)s)")
     app.add_argument(
         "--seconds",

@@ -13,7 +13,7 @@ import org.json.JSONObject
 /**
  * Flies a configuration as `fccd run --config FILE --json` does, in this process:
  * until SIGINT or SIGTERM, and then prints the outcome. For the programs of `hil/`,
- * by `android/host-tests/fccd`.
+ * by `android/tests/fccd`.
  */
 fun main(words: Array<String>) {
     if (words.firstOrNull() == HELPER) {
