@@ -39,7 +39,7 @@ def test_a_multicopter_is_watched_and_commanded(fccd: Path, tmp_path: Path) -> N
         watcher = fcc.Watcher(instance)
         latest = watcher.latest(5.0)
         assert latest is not None
-        assert latest["estimate"]["height_m"] == pytest.approx(4.0, abs=0.6)
+        assert latest["estimated_height_m"] == pytest.approx(4.0, abs=0.6)
         commander = fcc.Commander(instance)
         # By the names of its own set points, and not by those of an aeroplane.
         assert commander.set(go_to_north_m=5.0, go_to_east_m=-3.0, go_to_height_m=6.0) > 0
@@ -50,7 +50,7 @@ def test_a_multicopter_is_watched_and_commanded(fccd: Path, tmp_path: Path) -> N
         daemon.wait_for("mode: hover, was go-to")
         latest = watcher.latest(5.0)
         assert latest is not None
-        place = [latest["estimate"][name] for name in ("north_m", "east_m", "height_m")]
+        place = [latest[f"estimated_{name}_m"] for name in ("north", "east", "height")]
         assert place == pytest.approx([5.0, -3.0, 6.0], abs=0.6)
         by_command = [fccd, "command", "--instance", instance, "plan", "land"]
         assert subprocess.run(by_command, check=False).returncode == SUCCESS

@@ -97,7 +97,10 @@ pub enum Action {
     /// Publish live telemetry; started by the daemon itself
     #[cfg(feature = "live")]
     #[command(hide = true)]
-    Publisher,
+    Publisher {
+        /// Of whose records, if not an aeroplane's
+        vehicle: Option<String>,
+    },
     /// Print a completion script for a shell
     Completions {
         /// The shell

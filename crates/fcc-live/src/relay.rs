@@ -60,7 +60,7 @@ pub enum RelayError {
 /// # Errors
 /// When publishing does not begin, or cannot go on: the daemon starts another
 /// process.
-pub fn run_publisher<C: Telemetry>(socket: &impl AsFd) -> Result<(), RelayError> {
+pub fn run_publisher<C: Telemetry, S: AsFd>(socket: &S) -> Result<(), RelayError> {
     // What other programs do to shared memory is no fault of this one.
     let _ = setrlimit(Resource::RLIMIT_CORE, 0, 0);
     let mut encoded = Encoded::default();

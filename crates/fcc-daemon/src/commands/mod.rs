@@ -13,6 +13,8 @@ mod failure;
 mod fly;
 mod ground;
 mod list;
+#[cfg(feature = "live")]
+mod live_vehicles;
 mod lookup;
 mod outcome;
 mod plan;
@@ -137,7 +139,7 @@ fn carry_out(command: Action) -> Result<Exit, Failure> {
         },
         Action::Ground(args) => ground::ground(&args)?,
         #[cfg(feature = "live")]
-        Action::Publisher => publisher::publisher()?,
+        Action::Publisher { vehicle } => publisher::publisher(vehicle.as_deref())?,
         Action::ReleaseHelper => release_helper::release_helper()?,
         Action::Completions { shell } => completions(shell),
         Action::Schema => output::json(&fcc_flight::config::schema(), Exit::Success),

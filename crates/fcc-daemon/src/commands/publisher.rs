@@ -2,15 +2,14 @@
 
 use std::io;
 
-use fcc_fixed_wing::Autopilot;
-
 use super::failure::Failure;
+use super::vehicles::Kind;
 use crate::exit::Exit;
 use crate::process::{begin_helper, outlive_signals};
 
 /// Publishes until the daemon ends. What ended it sooner is known to the
 /// daemon, which starts it again.
-pub(super) fn publisher() -> Result<Exit, Failure> {
+pub(super) fn publisher(vehicle: Option<&str>) -> Result<Exit, Failure> {
     begin_helper();
     outlive_signals().map_err(|error| {
         Failure::new(format_args!("publisher: signals cannot be caught: {error}"))
@@ -18,7 +17,7 @@ pub(super) fn publisher() -> Result<Exit, Failure> {
     // A panic because of damaged shared memory is told by the daemon, not as
     // often as it happens.
     std::panic::set_hook(Box::new(|_| {}));
-    match fcc_live::run_publisher::<Autopilot>(&io::stdin()) {
+    match (Kind::live(vehicle).publish)(&io::stdin()) {
         Ok(()) => Ok(Exit::Success),
         Err(error @ fcc_live::RelayError::Nothing) => {
             Err(Failure::new(format_args!("publisher: {error}")))

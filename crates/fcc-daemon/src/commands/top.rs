@@ -1,11 +1,10 @@
 //! `fccd top`: a flight on this machine, live.
 
-use fcc_fixed_wing::Autopilot;
 use fcc_live::running;
 use fcc_telemetry::Instance;
 
 use super::failure::Failure;
-use super::vehicles::{Kind, watch};
+use super::vehicles::Kind;
 use crate::cli::TopArgs;
 use crate::exit::Exit;
 
@@ -13,8 +12,7 @@ use crate::exit::Exit;
 pub(super) fn top(args: &TopArgs) -> Result<Exit, Failure> {
     let instance = args.instance.clone();
     let instance = instance.unwrap_or_else(the_one);
-    let kind = Kind::of_instance(&instance);
-    kind.map_or(watch::<Autopilot> as _, |kind| kind.top)(&instance, args.json)
+    (Kind::published(&instance).watch)(&instance, args.json)
 }
 
 /// The only daemon that runs, or else the one without another name.

@@ -5,28 +5,31 @@ use std::time::Instant;
 
 use fcc_core::framework::MessageOf;
 
+#[cfg(feature = "live")]
 use fcc_fixed_wing::Autopilot;
 use fcc_flight::config::{Config, ConfigError};
-use fcc_flight::flight::{FlyError, Pace};
-use fcc_flight::vehicle::{
-    Vehicle, Wishes, fly_vehicle, live_vehicle, parse, replay_vehicle, vehicle_in,
-};
-use fcc_live::{Commandable, WatchError, WatcherOf};
+use fcc_flight::flight::FlyError;
+#[cfg(feature = "live")]
+use fcc_flight::flight::Pace;
+use fcc_flight::vehicle::{Vehicle, Wishes, fly_vehicle, parse, replay_vehicle, vehicle_in};
+#[cfg(feature = "live")]
+use fcc_live::{WatchError, WatcherOf};
 use fcc_multicopter::Multicopter;
 use fcc_record::Recording;
 use fcc_replay::{Chain, Comparison, Identity};
 use fcc_report::Reported;
 use fcc_runtime::SpawnError;
+#[cfg(feature = "live")]
 use fcc_telemetry::Instance;
-use fcc_top::Watched;
 
 use super::failure::{Failure, not_opened};
+#[cfg(feature = "live")]
+use super::live_vehicles::{self, LiveKind, Shown};
 use super::{fly, replay, report};
 use crate::cli::{FlyArgs, ReplayArgs, ReportArgs};
 use crate::exit::Exit;
 use crate::observers::{Announcer, Service, StatusLine};
-use crate::output;
-use crate::process::{Process, own_program};
+use crate::process::Process;
 
 /// All of them.
 const KINDS: &[Kind] = &[Kind::of::<Multicopter>()];
@@ -34,25 +37,32 @@ const KINDS: &[Kind] = &[Kind::of::<Multicopter>()];
 /// The name of the vehicle whose configurations have no key `vehicle`.
 const AEROPLANE: &str = "aeroplane";
 
+#[cfg(not(feature = "live"))]
+trait Shown: Vehicle + Reported<Addition = ()> {}
+#[cfg(not(feature = "live"))]
+impl<V: Vehicle + Reported<Addition = ()>> Shown for V {}
+
 /// A vehicle, and what the commands do with it.
 pub(super) struct Kind {
     name: &'static str,
     pub(super) fly: fn(&FlyArgs) -> Result<Exit, Failure>,
     pub(super) replay: fn(&ReplayArgs) -> Result<Exit, Failure>,
     pub(super) report: fn(&ReportArgs) -> Result<Exit, Failure>,
-    pub(super) top: fn(&Instance, bool) -> Result<Exit, Failure>,
+    #[cfg(feature = "live")]
+    live: LiveKind,
     /// Describes a valid configuration.
     pub(super) check: fn(&str, &str) -> Result<String, ConfigError>,
 }
 
 impl Kind {
-    const fn of<V: Vehicle + Reported<Addition = ()> + Commandable + Watched>() -> Self {
+    const fn of<V: Shown>() -> Self {
         Self {
             name: V::NAME,
             fly: fly_it::<V>,
             replay: replay_it::<V>,
             report: report_it::<V>,
-            top: watch::<V>,
+            #[cfg(feature = "live")]
+            live: LiveKind::of::<V>(),
             check: |text, file| {
                 let config = parse::<V>(text, file)?;
                 Ok(V::check(&config).unwrap_or_default())
@@ -75,12 +85,20 @@ impl Kind {
         Self::named(&Recording::open(file).ok()?.about().plant)
     }
 
-    /// The vehicle that is published under a name; none for an aeroplane, and for what is not
-    /// known: the aeroplane's watcher says what is wrong with it.
-    pub(super) fn of_instance(instance: &Instance) -> Option<&'static Self> {
+    /// The live telemetry of a vehicle, else the aeroplane's.
+    #[cfg(feature = "live")]
+    pub(super) fn live(name: Option<&str>) -> &'static LiveKind {
+        const AEROPLANE: &LiveKind = &LiveKind::of::<Autopilot>();
+        name.and_then(Self::named)
+            .map_or(AEROPLANE, |kind| &kind.live)
+    }
+
+    /// That of what is published under a name. The aeroplane's watcher says what else is wrong.
+    #[cfg(feature = "live")]
+    pub(super) fn published(instance: &Instance) -> &'static LiveKind {
         match WatcherOf::<Autopilot>::open(instance) {
-            Err(WatchError::AnotherPlant { plant, .. }) => Self::named(&plant),
-            _ => None,
+            Err(WatchError::AnotherPlant { plant, .. }) => Self::live(Some(&plant)),
+            _ => Self::live(None),
         }
     }
 
@@ -103,7 +121,7 @@ impl Kind {
     }
 }
 
-fn fly_it<V: Vehicle + Commandable>(args: &FlyArgs) -> Result<Exit, Failure> {
+fn fly_it<V: Shown>(args: &FlyArgs) -> Result<Exit, Failure> {
     let (mut config, as_given) = match &args.config {
         None => (V::Config::default(), None),
         Some(path) => {
@@ -124,9 +142,9 @@ fn fly_it<V: Vehicle + Commandable>(args: &FlyArgs) -> Result<Exit, Failure> {
     let mut observers: Vec<Box<dyn fcc_flight::flight::Observer<V>>> =
         vec![Box::new(Announcer::default())];
     let pace = fly::pace(args);
+    #[cfg(feature = "live")]
     if pace == Pace::RealTime {
-        let publisher = Box::new(|| Ok(own_program("publisher")));
-        observers.extend(live_vehicle::<V>(&config, publisher));
+        observers.extend(live_vehicles::publisher::<V>(&config));
     }
     if !args.quiet {
         observers.push(Box::new(StatusLine::new(
@@ -177,15 +195,4 @@ fn replay_it<V: Vehicle>(args: &ReplayArgs) -> Result<Exit, Failure> {
 fn report_it<V: Reported<Addition = ()>>(args: &ReportArgs) -> Result<Exit, Failure> {
     let recording = Recording::open_as::<MessageOf<V>>(&args.file)?;
     report::print::<V>(args, &recording, ())
-}
-
-/// Watches a vehicle live.
-pub(super) fn watch<V: Watched>(instance: &Instance, is_json: bool) -> Result<Exit, Failure> {
-    if is_json {
-        let snapshot = WatcherOf::<V>::open(instance).and_then(fcc_top::snapshot);
-        let snapshot = snapshot.map_err(Failure::new)?;
-        return Ok(output::json(&snapshot, Exit::Success));
-    }
-    fcc_top::top::<V>(instance).map_err(Failure::new)?;
-    Ok(Exit::Success)
 }
