@@ -50,6 +50,10 @@ pub(crate) struct Feed {
     end: watch::Sender<Utf8Bytes>,
 }
 
+fn flight() -> RecordDescription {
+    RecordDescription::of::<FlightRecord>()
+}
+
 impl Feed {
     /// Starts to watch a daemon, in a thread of its own.
     pub(super) fn start(instance: &Instance, machine: Machine) -> Result<Arc<Self>, String> {
@@ -59,6 +63,10 @@ impl Feed {
             .name("ground-feed".to_owned())
             .spawn(move || match RowWatcher::open(&name) {
                 Err(error) => drop(send.send(Err(error.to_string()))),
+                Ok(watcher) if watcher.columns().is_of_another_plant(&flight()) => {
+                    let plant = watcher.info().plant;
+                    drop(send.send(Err(format!("{plant}: see fccd top, this shows aeroplanes"))));
+                }
                 Ok(mut watcher) => {
                     let feed = Arc::new(Self::new(&watcher));
                     if send.send(Ok(Arc::clone(&feed))).is_ok() {
@@ -83,9 +91,7 @@ impl Feed {
                 .map(Into::into),
             track: Mutex::default(),
             columns,
-            is_flight: watcher
-                .columns()
-                .has_layout_of(&RecordDescription::of::<FlightRecord>()),
+            is_flight: watcher.columns().has_layout_of(&flight()),
             record: watch::Sender::default(),
             status: watch::Sender::default(),
             events: broadcast::Sender::new(EVENT_HISTORY),
