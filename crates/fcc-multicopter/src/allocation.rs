@@ -1,6 +1,7 @@
 //! Allocation: from axes to rotors, within what the rotors can do.
 
 use fcc_core::flight::MOST_ROTORS;
+use fcc_core::units::GRAVITY_MPS2;
 use nalgebra::{SMatrix, SVector, Vector4};
 
 use crate::airframe::{Airframe, Effectiveness, Refusal};
@@ -33,6 +34,8 @@ pub struct Allocator {
     effectiveness: Effectiveness,
     inverse: SMatrix<f64, MOST_ROTORS, 4>,
     is_rotor: [bool; MOST_ROTORS],
+    /// A rotor is lost: what the others do about yaw is as far as possible undone.
+    yaws: bool,
 }
 
 impl Allocator {
@@ -61,7 +64,41 @@ impl Allocator {
             effectiveness,
             inverse,
             is_rotor: airframe.rotors.map(|rotor| rotor.is_some()),
+            yaws: false,
         })
+    }
+
+    pub(crate) const fn effectiveness(&self) -> &Effectiveness {
+        &self.effectiveness
+    }
+
+    /// The same without a rotor; none if the others cannot lift it level: of four rotors the
+    /// one opposite would have to stand still. Thrust, roll and pitch come first, yaw takes what
+    /// is left.
+    pub(crate) fn without(&self, rotor: usize) -> Option<Self> {
+        let mut rest = *self;
+        *rest.is_rotor.get_mut(rotor)? = false;
+        rest.effectiveness.column_mut(rotor).fill(0.0);
+        rest.yaws = true;
+        let level = rest.effectiveness.fixed_rows::<3>(0).into_owned();
+        let inverse = level.transpose() * (level * level.transpose()).try_inverse()?;
+        rest.inverse.fixed_columns_mut::<3>(0).copy_from(&inverse);
+        let about_yaw = rest.effectiveness.row(3).transpose();
+        let free = about_yaw - inverse * (level * about_yaw);
+        let turns = about_yaw.dot(&free);
+        let yaw = if turns > LEAST_DETERMINANT {
+            free / turns
+        } else {
+            Shares::zeros()
+        };
+        rest.inverse.column_mut(3).copy_from(&yaw);
+        let hovers = inverse.column(0) * GRAVITY_MPS2;
+        let mut lift = hovers
+            .iter()
+            .zip(rest.is_rotor)
+            .filter(|(_, is_rotor)| *is_rotor);
+        lift.all(|(share, _)| (2.0 * LEAST_SHARE..=0.9).contains(share))
+            .then_some(rest)
     }
 
     /// The shares for a demand.
@@ -73,8 +110,13 @@ impl Allocator {
         self.give_up(&mut shares, 0, thrust, 1.0);
         self.give_up(&mut shares, 1, roll, 1.0);
         self.give_up(&mut shares, 2, pitch, 1.0);
-        shares += self.inverse.column(3) * yaw;
-        self.give_up(&mut shares, 3, yaw, 1.0 + YAW_RESERVE);
+        let undone = if self.yaws {
+            self.effectiveness.row(3).tr_dot(&shares)
+        } else {
+            0.0
+        };
+        shares += self.inverse.column(3) * (yaw - undone);
+        self.give_up(&mut shares, 3, yaw - undone, 1.0 + YAW_RESERVE);
         self.give_up(&mut shares, 0, thrust, 1.0);
         for (share, is_rotor) in shares.iter_mut().zip(self.is_rotor) {
             *share = if is_rotor {
@@ -118,7 +160,6 @@ impl Allocator {
 
 #[cfg(test)]
 mod tests {
-    use fcc_core::units::GRAVITY_MPS2;
     use nalgebra::Vector3;
 
     use super::*;
@@ -145,6 +186,25 @@ mod tests {
         }
         let turn = torque.component_div(&airframe.inertia_kgm2);
         Demand::new(-force.z / airframe.mass_kg, turn.x, turn.y, turn.z)
+    }
+
+    /// By hand, of six: 5a - b = T, 2b = a with b along the lost rotor's direction: the opposite
+    /// one lifts T/9, its neighbours T/6, those of the lost one 5T/18.
+    #[test]
+    fn six_rotors_less_one_lift_it_level() {
+        let all = allocator(6);
+        let rest = all.without(0).unwrap();
+        let level = rest.inverse.column(0) * GRAVITY_MPS2;
+        let total: f64 = level.iter().sum();
+        let shares = [0.0, 5.0 / 18.0, 1.0 / 6.0, 1.0 / 9.0, 1.0 / 6.0, 5.0 / 18.0];
+        for (share, expected) in level.iter().zip(shares) {
+            assert!((share / total - expected).abs() < 1e-9, "{level}");
+        }
+        let hover = Demand::new(GRAVITY_MPS2, 0.0, 0.0, 0.0);
+        let missing = rest.allocate(&hover).missing;
+        assert!(missing.xyz().norm() < 1e-9, "{missing}");
+        assert!(allocator(8).without(5).is_some());
+        assert!(allocator(4).without(1).is_none());
     }
 
     #[test]

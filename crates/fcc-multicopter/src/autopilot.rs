@@ -21,6 +21,7 @@ use crate::landing::LandingDetector;
 use crate::plan::Item;
 use crate::position::{PositionLoop, Reference};
 use crate::rate::RateLoop;
+use crate::rotor_watch::RotorWatch;
 use crate::values::{Command, Estimate, GroundContact, Mode, Setpoints, Shortfall};
 
 /// Faults, conditions, and what prevents engaging.
@@ -35,6 +36,9 @@ pub mod flags {
     pub const TILTED: Flags = Flags::bit(2);
     /// Less than a fifth of the battery is left.
     pub const BATTERY_LOW: Flags = Flags::bit(3);
+    /// A rotor does not turn: it flies on with the others, and holds its heading as far as they
+    /// can.
+    pub const ROTOR_LOST: Flags = Flags::bit(4);
 }
 
 /// A position may be older than an attitude by so many times.
@@ -105,6 +109,9 @@ pub struct Multicopter {
     position: PositionLoop,
     rate: RateLoop,
     allocator: Allocator,
+    rotors: RotorWatch,
+    /// The number of a rotor that is lost, from 0.
+    lost: Option<usize>,
     hover: HoverThrust,
     landing: LandingDetector,
     given: Given,
@@ -126,6 +133,8 @@ impl Multicopter {
             position: PositionLoop::new(gains),
             rate: RateLoop::new(&gains, &config.airframe),
             allocator: Allocator::new(&config.airframe)?,
+            rotors: RotorWatch::new(&config.airframe, config.latency_s),
+            lost: None,
             hover: HoverThrust::new(config.airframe.hover_share(), lag_s),
             landing: LandingDetector::LANDED,
             given: Given::default(),
@@ -218,6 +227,16 @@ impl Multicopter {
         let demand = Demand::new(collective_mps2 * nominal, turn.x, turn.y, turn.z);
         let allocated = self.allocator.allocate(&demand);
         self.given.missing = allocated.missing;
+        // The ground turns it, too.
+        if learns && self.lost.is_none() && !self.guidance.descends() {
+            let effect = self.allocator.effectiveness();
+            let lost = self.rotors.step(effect, &allocated.shares, rates, dt_s);
+            let rest = lost.and_then(|rotor| self.allocator.without(rotor));
+            if let Some(rest) = rest {
+                (self.allocator, self.lost) = (rest, lost);
+                self.rate.reset();
+            }
+        }
         let given_mps2 = (demand - allocated.missing).x;
         self.given.thrust = given_mps2 / (GRAVITY_MPS2 * nominal);
         self.motors(&allocated.shares)
@@ -289,10 +308,12 @@ impl Controller for Multicopter {
 
     fn conditions(&self, _: &Tick, measured: &Measurements) -> Flags {
         let charge = measured.battery.value.charge;
-        Flags::NONE.with(
-            flags::BATTERY_LOW,
-            charge.is_some_and(|charge| charge < 0.2),
-        )
+        Flags::NONE
+            .with(
+                flags::BATTERY_LOW,
+                charge.is_some_and(|charge| charge < 0.2),
+            )
+            .with(flags::ROTOR_LOST, self.lost.is_some())
     }
 
     fn flag_name(bit: u32) -> &'static str {
@@ -301,6 +322,7 @@ impl Controller for Multicopter {
             flags::NO_POSITION => "position or velocity is lost",
             flags::TILTED => "tilted by more than 30°",
             flags::BATTERY_LOW => "the battery is below 20 %",
+            flags::ROTOR_LOST => "a rotor does not turn: flown with the others",
             _ => "a condition of another version",
         }
     }

@@ -26,6 +26,10 @@ const STOPS_AT_M: f64 = 2.0;
 const LOWEST_M: f64 = 1.0;
 /// Below this height above home it sinks slowly, m.
 const SLOWLY_BELOW_M: f64 = 4.0;
+/// Below this height it rises again if the wind tilts it by more than 25°, m: it would tip
+/// over on the ground.
+const WAITS_BELOW_M: f64 = 1.2;
+const COS_TOUCHES: f64 = 0.906;
 /// A stick that is not given again for so long is let go, s.
 const LET_GO_AFTER_S: f64 = 2.0;
 /// How fast the speed approaches that of a tilted stick, 1/s.
@@ -483,7 +487,10 @@ impl Guidance {
         let limits = &self.limits;
         // From the height at which it has to brake.
         let is_low = -state.position_m.z < SLOWLY_BELOW_M;
-        let sink_mps = if is_low || self.activity == Activity::Descend {
+        let waits = -state.position_m.z < WAITS_BELOW_M && state.cos_tilt() < COS_TOUCHES;
+        let sink_mps = if waits && self.activity == Activity::Land {
+            -limits.touchdown_mps
+        } else if is_low || self.activity == Activity::Descend {
             limits.touchdown_mps
         } else {
             limits.sink_mps

@@ -28,6 +28,7 @@ mod landing;
 mod plan;
 mod position;
 mod rate;
+mod rotor_watch;
 mod trajectory;
 mod values;
 

@@ -11,9 +11,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use fcc_core::flight::Measurements;
-use fcc_core::framework::{AfterRelease, LoopCommand, Sensor, SensorFault, State, Switch, Tick};
+use fcc_core::framework::{
+    AfterRelease, EventKind, LoopCommand, Message, Sensor, SensorFault, State, Switch, Tick,
+};
 use fcc_multicopter::{
     Airframe, Command, GoTo, Item, Mode, Multicopter, MulticopterConfig, Tilt, Velocity, Waypoint,
+    flags,
 };
 use fcc_runtime::{Link, LoopConfig, Machine, Parts};
 use fcc_sim::multirotor::{Frame, MultirotorConfig, MultirotorSensor, MultirotorSimulation};
@@ -43,6 +46,9 @@ struct Flight {
     /// Whether position and velocity are silent.
     lost: Arc<AtomicBool>,
     ground_m: f64,
+    /// Whether a rotor stops; and whether it was found.
+    stops: bool,
+    found: bool,
 }
 
 /// The sensors, of which position and velocity can become silent.
@@ -109,6 +115,8 @@ impl Flight {
             switch: simulation.switch,
             lost,
             ground_m,
+            stops: simulated.frame.stops.is_some(),
+            found: false,
         }
     }
 
@@ -123,7 +131,17 @@ impl Flight {
     /// A tick; where it is after it.
     fn tick(&mut self) -> Vector3<f64> {
         self.machine.step();
-        while self.link.messages.receive().is_some() {}
+        while let Some(message) = self.link.messages.receive() {
+            if let Message::Event(event) = message
+                && let EventKind::ConditionsChanged { began, .. } = event.kind
+            {
+                self.found |= began.contains(flags::ROTOR_LOST);
+            }
+        }
+        assert!(
+            self.stops || !self.found,
+            "a rotor that turns is called lost"
+        );
         let impact = self.truth.impact();
         assert!(impact.is_none(), "crashed: {impact:?}");
         self.place()
@@ -565,6 +583,85 @@ fn it_is_released_on_the_ground() {
             flight.during(1.0, |_| ());
             assert!(flight.truth.get().throttle < 1e-6);
         }
+    }
+}
+
+/// The same body with other rotors.
+fn of_rotors(count: usize, plan: &'static [Item]) -> MulticopterConfig {
+    let airframe = Airframe::default().with_ring(count, 0.233);
+    MulticopterConfig {
+        airframe: Airframe {
+            rotor_thrust_n: 4.0 / count as f64 * airframe.rotor_thrust_n,
+            ..airframe
+        },
+        plan,
+        ..MulticopterConfig::default()
+    }
+}
+
+/// Corners, circles and landings in moderate turbulence: no rotor is called lost.
+#[test]
+fn rotors_that_turn_are_not_called_lost() {
+    static PLAN: [Item; 6] = [
+        Item::TakeOff(10.0),
+        to(30.0, 0.0, 4.0),
+        to(30.0, 30.0, 20.0),
+        to(0.0, 0.0, 10.0),
+        Item::Circle {
+            radius_m: 4.0,
+            turns: 3.0,
+        },
+        Item::Return,
+    ];
+    for (count, seeds) in [(6, 360..370), (8, 370..380)] {
+        for seed in seeds {
+            let mut simulated = gusty(seed);
+            simulated.frame = Frame::ring(count, 0.225);
+            let mut flight = Flight::of(&of_rotors(count, &PLAN), &simulated);
+            flight.until(Mode::Return, 120.0);
+            flight.until(Mode::Idle, 60.0);
+        }
+    }
+}
+
+/// Hovering in wind and light turbulence a rotor stops. Wanted: ±1 m height (a hexacopter of
+/// others: ±4 m).
+#[test]
+fn a_hexacopter_or_octocopter_that_loses_a_rotor_flies_on() {
+    for (count, seeds) in [(6, 320..326), (8, 330..336)] {
+        let config = of_rotors(count, &HOVER);
+        let (mut lowest_m, mut farthest_m, mut tilt_rad) = (10.0_f64, 0.0_f64, 0.0_f64);
+        for seed in seeds {
+            let mut simulated = windy(seed);
+            simulated.frame = Frame::ring(count, 0.225);
+            simulated.frame.stops = Some((seed as usize % count, 30.0));
+            let mut flight = Flight::of(&config, &simulated);
+            flight.until(Mode::Hover, 20.0);
+            flight.during(5.0, |_| ());
+            for _ in 0..(40.0 / PERIOD_S) as u64 {
+                let place = flight.tick();
+                lowest_m = lowest_m.min(place.z);
+                farthest_m = farthest_m.max(place.xy().norm());
+                let truth = flight.truth.get();
+                tilt_rad = tilt_rad.max(truth.roll_rad.hypot(truth.pitch_rad));
+            }
+            flight.send(Command::Land);
+            flight.until(Mode::Idle, 60.0);
+        }
+        measured(
+            &format!("{count} rotors, one lost: lowest of 10 m, m"),
+            lowest_m,
+        );
+        measured(
+            &format!("{count} rotors, one lost: farthest, m"),
+            farthest_m,
+        );
+        measured(
+            &format!("{count} rotors, one lost: tilt, deg"),
+            tilt_rad.to_degrees(),
+        );
+        assert!(lowest_m > 9.0, "{lowest_m}");
+        assert!(farthest_m < 3.0, "{farthest_m}");
     }
 }
 

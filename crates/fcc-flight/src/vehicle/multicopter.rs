@@ -125,6 +125,10 @@ pub struct BuiltInKeys {
     pub delay_ms: u16,
     /// The same seed gives the same flight.
     pub seed: u64,
+    /// The number of a rotor whose motor stops, from 1; 0 for none.
+    pub rotor_stops: usize,
+    /// When it stops, from the start.
+    pub rotor_stops_at_s: f64,
     /// Where it begins.
     pub latitude_deg: f64,
     /// See `latitude_deg`.
@@ -204,6 +208,8 @@ impl Default for BuiltInKeys {
             noise: true,
             delay_ms: 10,
             seed: 1,
+            rotor_stops: 0,
+            rotor_stops_at_s: 15.0,
             latitude_deg: 47.0,
             longitude_deg: 8.0,
         }
@@ -326,8 +332,11 @@ impl MulticopterFile {
         if !keys.noise {
             sensors.noise = Channels::default();
         }
+        let mut frame = Frame::ring(self.airframe.rotors, 0.225);
+        let rotor = keys.rotor_stops.checked_sub(1);
+        frame.stops = rotor.map(|rotor| (rotor, keys.rotor_stops_at_s));
         MultirotorConfig {
-            frame: Frame::ring(self.airframe.rotors, 0.225),
+            frame,
             world: SimConfig {
                 wind: Wind {
                     from_rad: keys.wind_from_deg.to_radians(),

@@ -111,7 +111,14 @@ impl Multirotor {
             return;
         }
         self.blow(dt_s);
-        let (force_n, torque_nm) = self.loads(motors, dt_s);
+        let mut motors = *motors;
+        if let Some((rotor, at_s)) = self.frame.stops
+            && self.time_s >= at_s
+            && let Some(stopped) = motors.get_mut(rotor)
+        {
+            *stopped = 0.0;
+        }
+        let (force_n, torque_nm) = self.loads(&motors, dt_s);
         let state = &mut self.state;
         let inertia = &self.frame.inertia_kgm2;
         let momentum = inertia.component_mul(&state.rates_radps);

@@ -46,6 +46,8 @@ pub struct Frame {
     pub foot_m: Vector3<f64>,
     /// Of a full battery.
     pub battery: LithiumBattery,
+    /// A rotor whose motor stops, and when, s.
+    pub stops: Option<(usize, f64)>,
 }
 
 impl Frame {
@@ -79,6 +81,7 @@ impl Frame {
             drag_area_m2: 0.02,
             foot_m: Vector3::new(0.12, 0.12, 0.12),
             battery: LithiumBattery::default(),
+            stops: None,
         }
     }
 }
