@@ -40,7 +40,7 @@ def truth_now(simulator: StandInProcess) -> dict[str, float]:
 
 @pytest.mark.fault(
     "Simulator and link",
-    "X-Plane's autopilot, time above twice as fast",
+    "X-Plane's autopilot, time more than 2.2 times as fast",
     "[what else acts](x-plane.md#what-else-acts-on-the-controls)",
     "at most 3 s",
     "engaging refused; in flight event",

@@ -6,12 +6,12 @@ const ADVICE: readonly (readonly [RegExp, string])[] = [
   [/paused/i, "Continue the simulator."],
   [/too slow|below the floor/i, "Speed up, or upload a plan that takes off from here. An upload puts the built-in aircraft back on its runway."],
   [/bank or pitch|spin/i, "Level the aircraft first."],
-  [/settling/i, "Wait: navigation settles within 15 s while the aircraft is still."],
+  [/settling/i, "Wait: navigation settles within 20 s while the aircraft is still."],
   [/time has stopped|nothing arrives/i, "Check that the simulator runs and reaches this board."],
   [/replay/i, "End the simulator's replay."],
   [/another autopilot/i, "Switch the other autopilot off."],
   [/contradict|implausible/i, "Compare the sensors in Health; calibrate the one that differs."],
-  [/reloaded|moved|jumped/i, "Wait until the aircraft stands or flies undisturbed."],
+  [/reloaded|jumped/i, "Wait until the aircraft stands or flies undisturbed."],
   [/pilot moves/i, "Release the stick and the pedals."],
 ];
 
