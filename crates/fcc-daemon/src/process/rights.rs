@@ -70,15 +70,15 @@ pub(crate) fn give_up(config: &Config) -> Result<(), RightsError> {
     let found = User::from_name(name).map_err(|errno| failed(name, errno.into()))?;
     let user = match (found, configured) {
         (Some(user), _) if user.uid.is_root() => {
-            output::message("runs as root, by rights.user: its errors have root's rights");
+            output::message("runs as root, as rights.user says: a bug has root's rights");
             return Ok(());
         }
         (Some(user), _) => user,
         (None, Some(name)) => return Err(RightsError::NoUser(name.to_owned())),
         (None, None) => {
             output::message(format_args!(
-                "runs as root, for there is no user {SERVICE_USER}: its errors have root's rights; \
-                 give another user in rights.user"
+                "runs as root, since there is no user {SERVICE_USER}: a bug has root's rights; set \
+                 rights.user"
             ));
             return Ok(());
         }

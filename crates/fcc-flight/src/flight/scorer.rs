@@ -59,9 +59,7 @@ impl Observer<Autopilot> for Scorer {
         };
         outcome.not_scored = match &failed {
             Some(error) => Some(error.to_string()),
-            None if !self.was_engaged => Some(
-                "the flight was never engaged, and the timed pattern begins with that".to_owned(),
-            ),
+            None if !self.was_engaged => Some("the autopilot was never engaged".to_owned()),
             None if score.legs.is_empty() => Some(
                 "no leg of the timed pattern was flown to its end: fly longer\n\
                  (commanded set points end the pattern)"

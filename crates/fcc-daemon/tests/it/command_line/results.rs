@@ -26,10 +26,7 @@ fn a_flight_that_is_not_engaged_says_why_at_its_end() {
          a take-off begins standing, where its runway begins"
     );
     // No command ended its pattern.
-    assert_eq!(
-        found["not_scored"],
-        "the flight was never engaged, and the timed pattern begins with that"
-    );
+    assert_eq!(found["not_scored"], "the autopilot was never engaged");
 }
 
 /// A terminal has 80 columns; a landing gear withstands 10 ft/s, 600 ft/min (14 CFR 23.473).
