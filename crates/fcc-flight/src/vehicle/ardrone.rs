@@ -87,7 +87,7 @@ impl ArDrone {
 
     /// Whether a datagram is of the one client that flies it.
     fn admits(&mut self, from: SocketAddr, now: Duration, reports: &mut Reports) -> bool {
-        let is_left = |client: &Client| now - client.heard > LEFT_AFTER;
+        let is_left = |client: &Client| now.saturating_sub(client.heard) > LEFT_AFTER;
         if self.client.as_ref().is_none_or(is_left) {
             reports.commander(&format!("an AR.Drone client at {}", from.ip()));
             self.session = Session::default();
@@ -139,12 +139,13 @@ impl ArDrone {
     /// The command for what the client wants; none if that is flown.
     fn command(&self, wanted: Wanted) -> Option<Command> {
         match (wanted, self.mode) {
-            (Wanted::StopMotors, Mode::Idle) => None,
+            (Wanted::StopMotors, Mode::Idle)
+            | (Wanted::Land, Mode::Idle | Mode::Land | Mode::Descend)
+            | (Wanted::Hover, Mode::Hover) => None,
             (Wanted::StopMotors, _) => Some(Command::StopMotors),
-            (Wanted::Land, Mode::Idle | Mode::Land | Mode::Descend) => None,
             (Wanted::Land, _) => Some(Command::Land),
             (_, Mode::Idle) => Some(Command::TakeOff(TAKES_OFF_TO_M)),
-            (_, Mode::TakeOff) | (Wanted::Hover, Mode::Hover) => None,
+            (_, Mode::TakeOff) => None,
             (Wanted::Hover, _) => Some(Command::Hover),
             (Wanted::Fly(stick), _) => Some(Command::Tilt(self.tilt(stick))),
         }
@@ -216,9 +217,9 @@ impl Observer<Multicopter> for ArDrone {
         if let Some(command) = self.command(wanted)
             && self.is_engaged
         {
-            let is_new = self
-                .given
-                .is_none_or(|(last, at)| last != command || now - at >= REPEATS_EVERY);
+            let is_new = self.given.is_none_or(|(last, at)| {
+                last != command || now.saturating_sub(at) >= REPEATS_EVERY
+            });
             if is_new
                 && access
                     .commands
@@ -228,7 +229,7 @@ impl Observer<Multicopter> for ArDrone {
                 self.given = Some((command, now));
             }
         }
-        if now - self.told >= TELLS_EVERY {
+        if now.saturating_sub(self.told) >= TELLS_EVERY {
             self.told = now;
             // A client that has gone does not listen.
             let _ = self.tell(now);

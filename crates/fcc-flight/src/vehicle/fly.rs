@@ -107,7 +107,6 @@ pub fn fly_vehicle<V: Vehicle>(
     let wish = StopHandle::default();
     host.attach(&wish).map_err(FlyError::Host)?;
     let flown = Flown {
-        ends_at_rest,
         seconds: seconds.unwrap_or(LONGEST_S),
         wish,
         ..Flown::default()
@@ -116,6 +115,7 @@ pub fn fly_vehicle<V: Vehicle>(
         list,
         host,
         true_now: opened.true_now,
+        ends_at_rest,
         flown,
     };
     let report = match pace {
@@ -145,7 +145,6 @@ pub fn fly_vehicle<V: Vehicle>(
 /// What is known of the flight so far.
 #[derive(Default)]
 struct Flown {
-    ends_at_rest: bool,
     seconds: f64,
     /// The host stops the flight.
     wish: StopHandle,
@@ -161,6 +160,7 @@ struct Flight<'a, V: Vehicle> {
     list: ObserverList<V>,
     host: &'a mut dyn Host,
     true_now: TruthHandle,
+    ends_at_rest: bool,
     flown: Flown,
 }
 
@@ -176,7 +176,7 @@ impl<V: Vehicle> Flight<'_, V> {
             if let Message::Tick(record) = &message {
                 let rests = V::rests(record);
                 self.flown.has_moved |= !rests;
-                let ends = self.flown.ends_at_rest || self.flown.ends;
+                let ends = self.ends_at_rest || self.flown.ends;
                 self.flown.is_over |= ends && self.flown.has_moved && rests;
                 if record.state == State::Engaged {
                     let now_s = self.list.monitor.at().time_s;
