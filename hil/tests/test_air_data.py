@@ -140,7 +140,7 @@ def _fly(
     "Sensors",
     "airspeed wrong: tube or drain blocked, decay, jump, slow drift",
     "[forces](envelope.md#air-data) contradict it; a blocked tube: height",
-    "step: 0.3 s; else 2.5 s; tube: some 2 s after 10 kt of error "
+    "step: 0.3 s; else 2.5 s; tube: 1 to 2 s (median) after 10 kt of error "
     "([campaign](results/airspeed.md))",
     "event; airspeed by forces and motion",
 )
