@@ -66,7 +66,7 @@ fn a_loss_that_is_failsafe_with_one_sensor_is_flown_through_with_two() {
     assert_eq!(states, [State::Standby, State::Engaged]);
     // The first twelve readings but the switch, which is of one sensor, weight on wheels,
     // engine speed and battery.
-    let all = ReadingSet::from_bits(0b1011_1111_1111 | 0b111 << 23);
+    let all = ReadingSet::from_bits(0b1011_1111_1111 | 0b111 << 22);
     let (to, back) = ((0, 1), (1, 0));
     let change = |(from, to)| SourceChange {
         readings: all,
@@ -141,7 +141,7 @@ fn a_replay_reproduces_that_an_inertial_unit_was_left() {
         panic!("{:?}", changes(&messages))
     };
     // Raw acceleration and raw body rates.
-    assert_eq!(change.readings, ReadingSet::from_bits(0b11 << 15));
+    assert_eq!(change.readings, ReadingSet::from_bits(0b11 << 14));
     assert_eq!((change.from, change.to), (0, 1));
     assert!((1_200..1_400).contains(&left_at), "{left_at}");
     let events = messages.iter().filter_map(|message| match message {
