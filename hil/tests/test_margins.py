@@ -97,6 +97,15 @@ def test_late_commands_and_a_slow_servo_do_not_oscillate(
     assert np.std(flown.pitch_rate_degps) <= 2.0
 
 
+def test_three_times_the_gain_oscillates_until_the_monitor_takes_gain_out() -> None:
+    """As in an aircraft whose elevator is three times as effective as configured."""
+    flown = _fly(
+        "c172p", 100, delay_s=0.025, servo_hz=3, elevator_gain=3, seconds=40, judged_after_s=25
+    )
+    assert "now: oscillation: gain is reduced" in flown.events
+    assert np.std(flown.pitch_rate_degps) <= 2.0
+
+
 @pytest.mark.parametrize("airspeed_kt", [73, 100])
 def test_late_commands_without_a_gyroscope_do_not_oscillate(airspeed_kt: float) -> None:
     """40 and 50 degrees per second before: the derivative of the attitude is late, too."""

@@ -16,6 +16,7 @@ EXCLUSION, FAILSAFE, RELEASE, SURFACE = KINDS = ("exclusion", "failsafe", "relea
 
 _HARMLESS = (
     "recovering from an upset",
+    "oscillation: gain is reduced",
     "the outputs take effect too late for the gains",
     "too little energy: speed is held, height given up",
     "flying on without a lost quantity",

@@ -1,7 +1,8 @@
-//! What is between the outputs and their effect: latency, play.
+//! What is between the outputs and their effect: latency, play, oscillation.
 
 use super::{Autopilot, AutopilotConfig, flags};
-use crate::control::{ElevatorResponse, PlayInverse, Schedule};
+use crate::control::{ElevatorResponse, LEAST_PACE, OscillationMonitor, PlayInverse, Schedule};
+use fcc_core::blocks::limit;
 use fcc_core::flight::Surfaces;
 use fcc_core::framework::Flags;
 use fcc_navigation::{DERIVED_RATES_LATE_S, Estimate};
@@ -17,9 +18,6 @@ const OWN_S: f64 = 0.2;
 /// In an aircraft whose loops are slower than this, by their unit of time, the
 /// elevator's effect is not told from noise: the latency stays the assumed one.
 const SLOWEST_MEASURED: f64 = 1.25;
-/// The least part of the loops' bandwidth: with less, the outer loops are no longer
-/// slower than the inner ones.
-const LEAST_PACE: f64 = 0.35;
 /// A latency above the first is reported until it is below the second, s.
 const LATE_S: (f64, f64) = (0.12, 0.1);
 
@@ -35,6 +33,7 @@ impl AutopilotConfig {
 #[derive(Clone, Debug)]
 pub(super) struct Actuation {
     elevator: ElevatorResponse,
+    oscillation: OscillationMonitor,
     inverse: PlayInverse,
     is_late: bool,
     /// The latency that the age of the readings shows, s.
@@ -52,6 +51,7 @@ impl Actuation {
     pub(super) fn new(assumed_latency_s: f64, configured_pace: f64) -> Self {
         Self {
             elevator: ElevatorResponse::new(assumed_latency_s),
+            oscillation: OscillationMonitor::new(),
             inverse: PlayInverse::new(0.0),
             is_late: false,
             known_s: 0.0,
@@ -65,6 +65,7 @@ impl Actuation {
     /// aircraft's.
     pub(super) fn engage(&mut self, standing: &Surfaces) {
         self.elevator.reset();
+        self.oscillation = OscillationMonitor::new();
         self.inverse = PlayInverse::new(standing.elevator);
     }
 
@@ -76,6 +77,7 @@ impl Actuation {
         load_mps2: f64,
         dt_s: f64,
     ) {
+        self.watch(sent, estimate, dt_s);
         if self.unit <= SLOWEST_MEASURED {
             let rate_radps = estimate.body_rates.pitch_radps;
             self.elevator
@@ -84,6 +86,11 @@ impl Actuation {
         let (late_s, timely_s) = LATE_S;
         let latency_s = self.elevator.latency_s();
         self.is_late = latency_s > if self.is_late { timely_s } else { late_s };
+    }
+
+    /// Watches for oscillations, with body rates that need not be measured.
+    pub(super) fn watch(&mut self, sent: &Surfaces, estimate: &Estimate, dt_s: f64) {
+        self.oscillation.step(sent, estimate, dt_s);
     }
 
     /// The mean age of the body rates, s: measured or not, the latency is not less.
@@ -102,7 +109,8 @@ impl Actuation {
         };
     }
 
-    /// The schedule with the part of the loops' bandwidth that latency leaves.
+    /// The schedule with the part of the loops' bandwidth that latency and
+    /// oscillation leave.
     pub(super) fn slowed(&self, schedule: Schedule) -> Schedule {
         schedule.slowed(self.pace(PITCH_TUNED_FOR_S), self.pace(ROLL_TUNED_FOR_S))
     }
@@ -111,7 +119,8 @@ impl Actuation {
         let latency_s = self.elevator.latency_s().max(self.known_s) + self.replaced_s;
         let excess_s = (latency_s - tuned_for_s * self.unit).max(0.0);
         let own_s = OWN_S * self.unit;
-        (own_s / (own_s + excess_s)).max(LEAST_PACE)
+        let pace = own_s / (own_s + excess_s) * self.oscillation.pace();
+        limit(pace, LEAST_PACE, 1.0)
     }
 
     /// The elevator to send for the one that the loops want.
@@ -121,7 +130,9 @@ impl Actuation {
 
     /// What is reported.
     pub(super) fn conditions(&self) -> Flags {
-        Flags::NONE.with(flags::LATE_EFFECT, self.is_late)
+        Flags::NONE
+            .with(flags::OSCILLATION, self.oscillation.is_oscillating())
+            .with(flags::LATE_EFFECT, self.is_late)
     }
 
     /// The estimate with what was found.

@@ -59,6 +59,8 @@ pub const PLANT_FAST: Flags = Flags::bit(30);
 pub const DOUBTED_AIRSPEED: Flags = Flags::bit(32);
 /// The aircraft is recovered from an upset.
 pub const RECOVERING: Flags = Flags::bit(33);
+/// The loops or the airframe oscillate: gain is taken out.
+pub const OSCILLATION: Flags = Flags::bit(34);
 /// The outputs take effect too late for the configured gains.
 pub const LATE_EFFECT: Flags = Flags::bit(35);
 /// The outputs do not reach the aircraft.
@@ -211,7 +213,7 @@ pub(super) const NAMES: [&str; 64] = [
     "not used (bit 31)",
     "airspeed contradicts the other sensors and is not used",
     "recovering from an upset",
-    "not used (bit 34)",
+    "oscillation: gain is reduced",
     "the outputs take effect too late for the gains",
     "the outputs do not reach the aircraft",
     "too little energy: speed is held, height given up",

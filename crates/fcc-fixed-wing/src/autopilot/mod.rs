@@ -269,6 +269,10 @@ impl Controller for Autopilot {
         let estimate = *self.estimator.estimate();
         if !lost.intersects(Quantity::BodyRates | Quantity::Attitude) {
             self.follow_outputs(&estimate);
+        } else if !lost.contains(Quantity::Attitude) {
+            self.loops
+                .actuation
+                .watch(&self.loops.last, &estimate, self.intake.clock.step_s());
         }
         let held = self.safest(tick.woke, &seen);
         let stops = self.stop_on_wheels(lost);
