@@ -70,8 +70,8 @@ schema! {
         /// Readings are taken from another sensor than before (which, one bit each;
         /// the sensor before); the index is the sensor now.
         SourceChanged = 17,
-        /// The controller's mode changed (mode before, mode now). An autopilot's: 0
-        /// none, 1 hold, 2 timed pattern, 3 plan, 4 loiter, 5 go-to, 6 return.
+        /// The controller's mode changed (mode before, mode now, as the column
+        /// `desired_guidance_mode` numbers them).
         ModeChanged = 18,
         /// Conditions that the controller reports while control is held changed
         /// (those that began, those that ended).
