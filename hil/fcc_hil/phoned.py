@@ -1,6 +1,6 @@
 """A stand-in with a phone aboard, under the fuselage, its screen down and its top to the nose.
 
-What its raw sensors give goes to the fake libandroid of `android/tests/fake-libandroid`, in Android's
+What its raw sensors give goes to the library of `android/tests/fake-libandroid`, in Android's
 axes and units and on Android's clock; its positions go to the app. They are those of
 `raw_sensors`, calibrated on the ground before.
 """

@@ -52,7 +52,7 @@ def test_a_multicopter_is_watched_and_commanded(fccd: Path, tmp_path: Path) -> N
         assert latest is not None
         place = [latest[f"estimated_{name}_m"] for name in ("north", "east", "height")]
         assert place == pytest.approx([5.0, -3.0, 6.0], abs=0.6)
-        by_command = [fccd, "command", "--instance", instance, "plan", "land"]
+        by_command: list[str | Path] = [fccd, "command", "--instance", instance, "plan", "land"]
         assert subprocess.run(by_command, check=False).returncode == SUCCESS
         ending = daemon.end(within_s=60.0)
     assert ending.exit_code == SUCCESS
